@@ -1,0 +1,208 @@
+//! One touch with all descriptors of all regions, beside what one would write without taxel ([`peer`]).
+//!
+//! The three figures of each, and the stages of taxel's by themselves: figure to imprint, imprint to regions,
+//! regions to every value of [`DESCRIPTORS`]. And what a keystroke takes until the screen is drawn.
+
+use std::hint::black_box;
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use taxel::description::descriptor::{DESCRIPTORS, Description};
+use taxel::description::region::{Kind as RegionKind, Region, each_region, regions};
+use taxel::figure::{Figure, Kind};
+use taxel::parameter::Parameter;
+use taxel::sensor::Sensor;
+use taxel::touch::Plane;
+use taxel::tui::{app::Options, effect::World, script::Session, theme::Theme};
+
+use peer::{Outline, Peer};
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    reason = "its crates count in u32 and f32; all numbers are small"
+)]
+#[expect(unreachable_pub, reason = "written as one would for oneself")]
+mod peer;
+
+fn figure(kind: Kind, values: &[(Parameter, f64)]) -> Figure {
+    let value = |parameter| {
+        let given = values.iter().find(|(of, _)| *of == parameter);
+        given.map(|&(_, value)| value)
+    };
+    Figure::new(kind, 16, value).expect("a figure of the paper's range")
+}
+
+fn rectangle() -> Figure {
+    use Parameter::{Angle, Length, Width, X0, Y0};
+    let values = [
+        (Length, 6.0),
+        (Width, 3.0),
+        (X0, 5.3),
+        (Y0, 6.1),
+        (Angle, 30.0),
+    ];
+    figure(Kind::Rectangle, &values)
+}
+
+fn hexagon() -> Figure {
+    use Parameter::{Angle, Side, Thickness, X0, Y0};
+    let values = [
+        (Side, 3.0),
+        (X0, 5.3),
+        (Y0, 4.1),
+        (Angle, 17.0),
+        (Thickness, 1.0),
+    ];
+    figure(Kind::Hexagon, &values)
+}
+
+fn circle() -> Figure {
+    use Parameter::{Angle, RadiusX, RadiusY, Thickness, X0, Y0};
+    let values = [
+        (RadiusX, 4.0),
+        (RadiusY, 4.0),
+        (X0, 4.37),
+        (Y0, 4.21),
+        (Angle, 0.0),
+        (Thickness, 2.0),
+    ];
+    figure(Kind::Ellipse, &values)
+}
+
+/// Every value of the table.
+fn describe(region: &Region) {
+    let description = Description::of(region);
+    for descriptor in &DESCRIPTORS {
+        black_box((descriptor.measure)(&description));
+    }
+}
+
+fn peer_rectangle(peer: &mut Peer) -> &[peer::Region] {
+    let (size, corner, degrees) = black_box(((6.0, 3.0), (5.3, 6.1), 30.0));
+    let (exterior, hole) = peer::rectangle(size, corner, degrees, None);
+    let hole = hole.as_ref().map(|hole| Outline::Polygon(hole));
+    peer.touch(&Outline::Polygon(&exterior), hole.as_ref())
+}
+
+fn peer_hexagon(peer: &mut Peer) -> &[peer::Region] {
+    let (side, corner, degrees, wall) = black_box((3.0, (5.3, 4.1), 17.0, Some(1.0)));
+    let (exterior, hole) = peer::regular::<6>(side, corner, degrees, wall);
+    let hole = hole.as_ref().map(|hole| Outline::Polygon(hole));
+    peer.touch(&Outline::Polygon(&exterior), hole.as_ref())
+}
+
+fn peer_circle(peer: &mut Peer) -> &[peer::Region] {
+    let (radii, corner, degrees, wall) = black_box(((4.0, 4.0), (4.37, 4.21), 0.0, Some(2.0)));
+    let (exterior, hole) = peer::ellipse(radii, corner, degrees, wall);
+    peer.touch(&exterior, hole.as_ref())
+}
+
+type PeerTouch = fn(&mut Peer) -> &[peer::Region];
+type Case = (&'static str, fn() -> Figure, PeerTouch);
+const FIGURES: [Case; 3] = [
+    ("rectangle", rectangle, peer_rectangle),
+    ("hexagon", hexagon, peer_hexagon),
+    ("circle", circle, peer_circle),
+];
+
+/// A comparison is worth something where both do the same work: the imprint and every number are held equal first.
+fn assert_alike(name: &str, plane: &mut Plane, figure: &Figure, peer: &mut Peer, touch: PeerTouch) {
+    let imprint = plane.touch(figure);
+    let theirs = touch(peer).to_vec();
+    let active = peer.image().enumerate_pixels();
+    let pixels = active.filter(|(_, _, pixel)| pixel.0[0] != 0);
+    assert!(
+        pixels
+            .map(|(x, y, _)| (x, y))
+            .eq(imprint.active().map(|(x, y)| (u32::from(x), u32::from(y)))),
+        "{name}: the imprints differ"
+    );
+    let ours = regions(&imprint);
+    assert_eq!(ours.len(), theirs.len(), "{name}: the regions differ");
+    for (region, theirs) in ours.iter().zip(&theirs) {
+        let own = Description::of(region);
+        let counts = (own.na, own.nae, own.ce, own.kind == RegionKind::Hole);
+        assert_eq!(
+            counts,
+            (theirs.na, theirs.nae, theirs.ce, theirs.hole),
+            "{name}: the counts differ"
+        );
+        let numbers = [
+            (own.num_x, theirs.num.0),
+            (own.num_y, theirs.num.1),
+            (own.steps.length(), theirs.p),
+            (own.cg().x, theirs.cg.0),
+            (own.cd().y, theirs.cd.1),
+        ];
+        assert!(
+            numbers.iter().all(|(a, b)| (a - b).abs() < 1e-9),
+            "{name}: the numbers differ"
+        );
+    }
+}
+
+fn touch(criterion: &mut Criterion) {
+    let mut plane = Plane::new(Sensor::default());
+    let mut peer = Peer::new(16, 16);
+    for (name, figure, peer_touch) in FIGURES {
+        let figure = figure();
+        assert_alike(name, &mut plane, &figure, &mut peer, peer_touch);
+        let mut group = criterion.benchmark_group(name);
+        group.bench_function("taxel", |bencher| {
+            bencher.iter(|| each_region(&plane.touch(black_box(&figure)), describe));
+        });
+        group.bench_function("peer", |bencher| {
+            bencher.iter(|| {
+                black_box(peer_touch(&mut peer));
+            });
+        });
+        group.finish();
+    }
+}
+
+fn stages(criterion: &mut Criterion) {
+    let mut plane = Plane::new(Sensor::default());
+    for (name, figure, _) in FIGURES {
+        let figure = figure();
+        let imprint = plane.touch(&figure);
+        let found = regions(&imprint);
+        let mut group = criterion.benchmark_group(format!("{name}/stages"));
+        group.bench_function("touch", |bencher| {
+            bencher.iter(|| plane.touch(black_box(&figure)));
+        });
+        group.bench_function("regions", |bencher| {
+            bencher.iter(|| {
+                each_region(black_box(&imprint), |region| {
+                    black_box(region);
+                });
+            });
+        });
+        group.bench_function("descriptors", |bencher| {
+            bencher.iter(|| black_box(&found).iter().for_each(describe));
+        });
+        group.finish();
+    }
+}
+
+/// From a keystroke to a finished frame of 80 × 24 in a test buffer: the cursor moved, a taxel turned over.
+fn frame(criterion: &mut Criterion) {
+    let options = Options {
+        sensor: Sensor::default(),
+        theme: Theme::plain(false),
+    };
+    let mut group = criterion.benchmark_group("frame");
+    // Two keys, two frames, and all is as before; undone, so that no history grows.
+    for (name, keys) in [("move", "<Right><Left>"), ("toggle", "<Space>u")] {
+        let world = World::scratch().expect("a folder for the time being");
+        let mut session = Session::new(&options, world, 80, 24);
+        session.keys("f<Enter>").expect("keys that exist");
+        group.throughput(Throughput::Elements(2));
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| session.keys(black_box(keys)).expect("keys that exist"));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, touch, stages, frame);
+criterion_main!(benches);

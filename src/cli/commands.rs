@@ -1,0 +1,393 @@
+//! The commands and their flags as clap takes them, with the texts of their help.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::builder::PossibleValuesParser;
+use clap::{Arg, ArgAction, Command, value_parser};
+
+use super::examples::{
+    ABOUT, BATCH_EXAMPLES, CHECK_EXAMPLES, DELETE_EXAMPLES, DESCRIBE_EXAMPLES, EXAMPLES,
+    FIGURE_EXAMPLES, LIBRARY_EXAMPLES, LIST_EXAMPLES, MERGE_EXAMPLES, PATH_EXAMPLES,
+    PICTURE_EXAMPLES, RESTORE_EXAMPLES, SAVE_EXAMPLES, SCRIPT_EXAMPLES, SHOW_EXAMPLES,
+    SWEEP_EXAMPLES,
+};
+use super::flags;
+use super::sweep::Table;
+use crate::figure::Kind;
+use crate::formats::name::{Name, NameError};
+use crate::parameter::Parameter;
+use crate::picture::PICTURE_PARAMETERS;
+use crate::sweep::grid::Ranges;
+use crate::sweep::plan::{Shard, ShardError};
+use crate::sweep::range::{DecimalRange, RangeError};
+use crate::tui::script::command;
+
+/// The parameters of a sensor, in the order of helps.
+const SENSOR: [Parameter; 4] = [
+    Parameter::Columns,
+    Parameter::Rows,
+    Parameter::Threshold,
+    Parameter::Pitch,
+];
+
+/// All commands.
+pub(super) fn all() -> Command {
+    Command::new("taxel")
+        .version(env!("CARGO_PKG_VERSION"))
+        .about(ABOUT)
+        .after_help(EXAMPLES)
+        .args(sensor())
+        .args(terminal())
+        .args([folder(), ascii()].map(|arg| arg.global(true)))
+        .subcommand(figure())
+        .subcommand(picture())
+        .subcommand(describe())
+        .subcommand(batch())
+        .subcommand(sweep())
+        .subcommand(merge())
+        .subcommand(library())
+        .subcommand(script())
+}
+
+fn figure() -> Command {
+    let kinds = Kind::ALL.into_iter().map(|kind| kind.name().to_owned());
+    let kind = Arg::new("kind")
+        .value_name("KIND")
+        .required(true)
+        .value_parser(PossibleValuesParser::new(Kind::ALL.map(Kind::name)))
+        .hide_possible_values(true)
+        .help(flags::wrapped(&list(kinds, "or"), 64));
+    let parameters = flags::figure_parameters();
+    Command::new("figure")
+        .about("Touch a figure and describe its imprint")
+        .after_help(FIGURE_EXAMPLES)
+        .arg(kind)
+        .args(parameters.map(|parameter| flags::arg(parameter).help_heading("Figure")))
+        .args(sensor())
+        .args(saving())
+        .arg(json())
+}
+
+fn picture() -> Command {
+    let own = |parameter: Parameter| flags::arg_with_own(parameter);
+    Command::new("picture")
+        .about("Move, zoom and turn a stored shape and describe its imprint")
+        .after_help(PICTURE_EXAMPLES)
+        .arg(what(
+            "Shape of the library, or file; '-' for standard input",
+        ))
+        .args(PICTURE_PARAMETERS.map(|parameter| own(parameter).help_heading("Picture")))
+        .args(SENSOR.map(|parameter| own(parameter).help_heading("Sensor")))
+        .args(saving())
+        .arg(json())
+}
+
+fn describe() -> Command {
+    let file = Arg::new("file")
+        .value_name("FILE")
+        .required(true)
+        .value_parser(value_parser!(PathBuf))
+        .help("Imprint or stored shape to read; '-' for standard input");
+    Command::new("describe")
+        .about("Describe an imprint or a stored shape")
+        .after_help(DESCRIBE_EXAMPLES)
+        .arg(file)
+        .args(of_sensor(&[Parameter::Pitch]))
+        .arg(json())
+}
+
+fn batch() -> Command {
+    Command::new("batch")
+        .about("Answer poses, one JSON object a line, on standard input")
+        .after_help(BATCH_EXAMPLES)
+        .args(of_sensor(&[
+            Parameter::Columns,
+            Parameter::Rows,
+            Parameter::Threshold,
+        ]))
+}
+
+fn sweep() -> Command {
+    let kind = Arg::new("kind")
+        .value_name("KIND")
+        .required_unless_present("picture")
+        .conflicts_with("picture")
+        .value_parser(PossibleValuesParser::new(Kind::ALL.map(Kind::name)))
+        .hide_possible_values(true)
+        .help("Kind of figure, as of 'taxel figure'");
+    let picture = Arg::new("picture")
+        .long("picture")
+        .value_name("NAME|FILE")
+        .value_parser(value_parser!(OsString))
+        .help("Sweep a stored shape instead");
+    let sizes = flags::figure_parameters().filter(|parameter| {
+        Ranges::default()
+            .rows()
+            .iter()
+            .all(|(own, _)| own != parameter)
+    });
+    let ranges = Ranges::default().rows().map(|(parameter, default)| {
+        let (row, flag) = (parameter.row(), flags::flag(parameter));
+        let help = format!("{}; default {default}", flags::capitalised(row.meaning));
+        Arg::new(format!("range_{}", row.key))
+            .long(flag)
+            .value_name("START:END:STEP")
+            .allow_hyphen_values(true)
+            .value_parser(parse_range)
+            .help_heading("Grid")
+            .help(flags::wrapped(&help, 46))
+    });
+    let anchor = Arg::new("anchor")
+        .long("anchor")
+        .value_name("POINT")
+        .value_parser(PossibleValuesParser::new(["corner", "centre"]))
+        .hide_possible_values(true)
+        .help_heading("Grid")
+        .help("What x0 and y0 place: corner or centre");
+    let poses = Arg::new("poses")
+        .long("poses")
+        .value_name("FILE.npy")
+        .value_parser(value_parser!(PathBuf))
+        .conflicts_with("shard")
+        .help("Write the number of each pose's imprint");
+    let jobs = Arg::new("jobs")
+        .long("jobs")
+        .value_name("N")
+        .value_parser(value_parser!(u16).range(1..=1024))
+        .help("Threads; default all cores");
+    let shard = Arg::new("shard")
+        .long("shard")
+        .value_name("K/N")
+        .value_parser(parse_shard)
+        .help("Sweep this piece of the grid only");
+    Command::new("sweep")
+        .about("Find every imprint that a shape can leave")
+        .after_help(SWEEP_EXAMPLES)
+        .arg(kind)
+        .arg(picture)
+        .args(sizes.map(|parameter| flags::arg(parameter).help_heading("Figure")))
+        .args(ranges)
+        .arg(anchor)
+        .args(of_sensor(&[
+            Parameter::Columns,
+            Parameter::Rows,
+            Parameter::Threshold,
+        ]))
+        .args([atlas(), poses, jobs, shard, json(), quiet()])
+}
+
+fn merge() -> Command {
+    let files = Arg::new("files")
+        .value_name("FILE.npz")
+        .required(true)
+        .num_args(1..)
+        .value_parser(value_parser!(PathBuf))
+        .help("Atlases of all shards, in any order");
+    Command::new("merge")
+        .about("Put the shards of a sweep together")
+        .after_help(MERGE_EXAMPLES)
+        .args([files, atlas().required(true), json(), quiet()])
+}
+
+fn atlas() -> Arg {
+    Arg::new("atlas")
+        .long("atlas")
+        .value_name("FILE")
+        .value_parser(Table::parse)
+        .help("Write the atlas, as .csv, .jsonl or .npz")
+}
+
+fn quiet() -> Arg {
+    Arg::new("quiet")
+        .long("quiet")
+        .action(ArgAction::SetTrue)
+        .help("Show no progress")
+}
+
+fn parse_range(text: &str) -> Result<DecimalRange, RangeError> {
+    text.parse()
+}
+
+fn parse_shard(text: &str) -> Result<Shard, ShardError> {
+    text.parse()
+}
+
+fn library() -> Command {
+    let command = |name: &'static str, about: &'static str, examples: &'static str| {
+        Command::new(name).about(about).after_help(examples)
+    };
+    let list = command("list", "List all shapes", LIST_EXAMPLES).arg(json());
+    let show = command("show", "Show a shape and describe it", SHOW_EXAMPLES)
+        .arg(name("Which shape"))
+        .args(of_sensor(&[Parameter::Pitch]))
+        .arg(json());
+    let save = command("save", "Store a shape under a name", SAVE_EXAMPLES)
+        .arg(name("Its name from now on"))
+        .arg(what(
+            "Shape of the library, or file; '-' for standard input",
+        ))
+        .arg(force());
+    let delete = command("delete", "Move a shape into the trash", DELETE_EXAMPLES);
+    let restore = command("restore", "Bring a deleted shape back", RESTORE_EXAMPLES);
+    Command::new("library")
+        .about("List, show, save, delete and check stored shapes")
+        .after_help(LIBRARY_EXAMPLES)
+        .subcommand_required(true)
+        .subcommand(list)
+        .subcommand(show)
+        .subcommand(save)
+        .subcommand(delete.arg(name("Which shape")))
+        .subcommand(restore.arg(name("Which shape")))
+        .subcommand(command("path", "Print the library's folder", PATH_EXAMPLES))
+        .subcommand(command("check", "Check every file", CHECK_EXAMPLES))
+}
+
+fn script() -> Command {
+    let file = Arg::new("file")
+        .value_name("FILE")
+        .value_parser(value_parser!(PathBuf))
+        .help("Script to run; '-' for standard input");
+    let keys = Arg::new("keys")
+        .short('k')
+        .value_name("KEYS")
+        .help("Keys to press first; without a script the screen follows");
+    let styles = Arg::new("styles")
+        .long("styles")
+        .action(ArgAction::SetTrue)
+        .help("Screens with a grid of style letters");
+    let json = Arg::new("json")
+        .long("json")
+        .action(ArgAction::SetTrue)
+        .help("Screens as lines of JSON");
+    Command::new("script")
+        .about("Drive the screen without a terminal")
+        .after_help(SCRIPT_EXAMPLES)
+        .args([file, keys, size(), styles, json])
+}
+
+/// What the terminal is like, where the environment does not say it well.
+fn terminal() -> [Arg; 5] {
+    let choice = |name: &'static str, values: &'static [&'static str], help: &'static str| {
+        let parser = PossibleValuesParser::new(values);
+        Arg::new(name)
+            .long(name)
+            .value_name(name.to_ascii_uppercase())
+            .value_parser(parser)
+            .hide_possible_values(true)
+            .help(help)
+    };
+    let record = Arg::new("record")
+        .long("record")
+        .value_name("FILE")
+        .value_parser(value_parser!(PathBuf))
+        .help("Write what is typed as a script");
+    let no_mouse = Arg::new("no-mouse")
+        .long("no-mouse")
+        .action(ArgAction::SetTrue)
+        .help("Leave the mouse to the terminal");
+    [
+        choice(
+            "color",
+            &["auto", "never", "16", "256", "true"],
+            "Colours: auto, never, 16, 256 or true",
+        ),
+        choice("theme", &["dark", "light", "mono"], "Dark, light or mono"),
+        size(),
+        no_mouse,
+        record,
+    ]
+    .map(|arg| arg.help_heading("Terminal"))
+}
+
+fn size() -> Arg {
+    Arg::new("size")
+        .long("size")
+        .value_name("CxR")
+        .value_parser(parse_size)
+        .help("Columns and rows of the screen")
+}
+
+fn parse_size(text: &str) -> Result<(u16, u16), String> {
+    command::size(text)
+}
+
+fn sensor() -> Vec<Arg> {
+    of_sensor(&SENSOR)
+}
+
+fn of_sensor(parameters: &[Parameter]) -> Vec<Arg> {
+    let flag = |&parameter: &Parameter| flags::arg(parameter).help_heading("Sensor");
+    parameters.iter().map(flag).collect()
+}
+
+fn saving() -> [Arg; 2] {
+    let save = Arg::new("save")
+        .long("save")
+        .value_name("NAME")
+        .value_parser(parse_name)
+        .help_heading("Library")
+        .help("Store the shape in the library too");
+    [save, force().help_heading("Library").requires("save")]
+}
+
+fn force() -> Arg {
+    Arg::new("force")
+        .long("force")
+        .action(ArgAction::SetTrue)
+        .help("Replace a shape that has the name already")
+}
+
+fn folder() -> Arg {
+    Arg::new("library")
+        .long("library")
+        .value_name("DIR")
+        .value_parser(value_parser!(PathBuf))
+        .help_heading("Library")
+        .help("The library's folder")
+}
+
+fn name(help: &'static str) -> Arg {
+    Arg::new("name")
+        .value_name("NAME")
+        .required(true)
+        .value_parser(parse_name)
+        .help(help)
+}
+
+fn parse_name(text: &str) -> Result<Name, NameError> {
+    Name::new(text)
+}
+
+fn what(help: &'static str) -> Arg {
+    Arg::new("what")
+        .value_name("NAME|FILE")
+        .required(true)
+        .value_parser(value_parser!(OsString))
+        .help(help)
+}
+
+fn json() -> Arg {
+    Arg::new("json")
+        .long("json")
+        .action(ArgAction::SetTrue)
+        .help("Answer in one line of JSON")
+}
+
+/// Declared for the help only: [`super::locale::Charset`] has seen it before.
+fn ascii() -> Arg {
+    Arg::new("ascii")
+        .long("ascii")
+        .action(ArgAction::SetTrue)
+        .help("Keep to ASCII, as where the locale is not UTF-8")
+}
+
+/// "a, b or c", and the like with another word.
+pub(super) fn list(names: impl Iterator<Item = String>, word: &str) -> String {
+    let names: Vec<String> = names.collect();
+    match names.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, others)) => format!("{} {word} {last}", others.join(", ")),
+        None => String::new(),
+    }
+}

@@ -1,0 +1,41 @@
+//! `taxel describe`: what a file holds, shown.
+
+use super::arguments::Form;
+use super::failure::Failure;
+use super::input::{self, Content, Place};
+use super::locale::Charset;
+use super::report;
+
+/// The imprint at a place with what describes it. A stored shape says what made it; its pitch counts only where
+/// none is given.
+pub(super) fn describe(place: &Place, form: Form, charset: Charset) -> Result<String, Failure> {
+    let content = input::read(place).map_err(|error| Failure::Input {
+        name: place.name(),
+        error,
+    })?;
+    Ok(self::content(&content, form, charset))
+}
+
+/// The same for what was read elsewhere.
+pub(super) fn content(content: &Content, form: Form, charset: Charset) -> String {
+    let imprint = match content {
+        Content::Text(imprint) => imprint,
+        Content::Shape(shape) => &shape.imprint,
+    };
+    let Form::Table(pitch) = form else {
+        return report::json(imprint);
+    };
+    let mut made = Vec::new();
+    match content {
+        Content::Text(_) => made.push(report::size(imprint, None, pitch)),
+        Content::Shape(shape) => {
+            made.push(shape.name.to_string());
+            if let Some(source) = &shape.source {
+                made.extend(report::made(source, &shape.sensor));
+            }
+            let stored = Some(shape.sensor.pitch_mm());
+            made.push(report::size(imprint, Some(&shape.sensor), pitch.or(stored)));
+        }
+    }
+    report::table(imprint, &made, pitch, charset)
+}

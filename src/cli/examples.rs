@@ -1,0 +1,166 @@
+//! The longer texts of the help: what a command is for, and examples of it. None is wider than 80 columns.
+
+pub(super) const ABOUT: &str = "\
+Which shapes can a robot recognise by one touch?
+
+Touches figures with a matrix of tactile sensors, computes the exact imprint and
+describes it. Without a command the screen opens, where all of this is live.";
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  taxel
+  taxel figure ellipse --x0 1.99 --y0 1.47 --thickness 2
+  taxel figure hexagon --side 3 --angle 17 --json
+  taxel picture washer --x0 6 --angle 30 --save \"turned washer\"
+  taxel library list
+  taxel describe imprint.txt
+  taxel batch < poses.jsonl > answers.jsonl
+
+Exit status: 0 done, 1 the input was wrong, 2 the command was.
+All lengths are in sides of a sensory cell, x to the right, y down.";
+
+pub(super) const FIGURE_EXAMPLES: &str = "\
+Ranges are those of the 16 x 16 sensor: on another one its larger side takes the
+place of 16. A flag that is not given takes its default.
+
+Examples:
+  taxel figure ellipse --x0 1.99 --y0 1.47 --thickness 2
+  taxel figure rectangle --length 6 --width 3 --angle 30 --pitch 2.5
+  taxel figure triangle --side 5 --x0 -0.8 --columns 32 --rows 8 --json
+  taxel figure hexagon --side 6 --thickness 2.5 --save \"my nut\"";
+
+pub(super) const PICTURE_EXAMPLES: &str = "\
+A name of the library goes before a file of the same name. A file is a stored
+shape or an imprint as text. The sensor is that of the stored shape; an imprint
+as text lies on one of 16 x 16, or of its own size where that is larger. What is
+not given leaves the picture where it was: without flags it is the same again.
+
+Examples:
+  taxel picture washer --x0 6 --y0 4.5
+  taxel picture key --angle 30 --zoom-x 0.8 --zoom-y 0.8 --json
+  taxel picture imprint.txt --x0 2 --save \"moved imprint\"";
+
+pub(super) const DESCRIBE_EXAMPLES: &str = "\
+An imprint is text, a line a row, '#' for an active taxel and '.' for an
+inactive one, at most 64 x 64. A stored shape is a JSON file.
+
+Examples:
+  taxel describe imprint.txt --pitch 2.5
+  taxel describe washer.json --json
+  printf '.##.\\n#..#\\n.##.\\n' | taxel describe -";
+
+pub(super) const BATCH_EXAMPLES: &str = r###"Each line is a JSON object:
+  {"figure":"hexagon","side":3,"x0":2.1,"y0":1.35,"angle":17,"thickness":1}
+  {"picture":["##","#."],"x0":5,"y0":3,"angle":10,"zoom_x":1.5,"zoom_y":1}
+  {"picture":"washer","x0":2,"y0":2,"angle":0,"zoom_x":1,"zoom_y":1}
+  {"imprint":[".##.","#..#",".##."]}
+A figure without "thickness" is solid. A picture's name is one of the library. A
+line may bring a sensor of its own:
+  "sensor":{"columns":32,"rows":32,"threshold":0.5}
+
+Each answer is one line, in the order of the poses. A line that is wrong or
+longer than 1 MiB is answered by {"error":"line 3: ..."}, the others go on, and
+the exit status is 1. Blank lines are skipped. Answers are written out whenever
+the input pauses.
+
+Examples:
+  taxel batch < poses.jsonl > answers.jsonl
+  echo '{"imprint":["##","#."]}' | taxel batch"###;
+
+pub(super) const SCRIPT_EXAMPLES: &str = r#"One command a line; places are column,row of the screen, from 0:
+  Size 80x24          Set ascii on        Resize 100x30
+  Keys f<Down><Tab>4.00<Enter>            <lt> for '<'; <3x:Down> thrice
+  Type "text"         Paste "1.5"         Click 12,5   Click "Figure"
+  Drag 3,4 9,9        Scroll 12,5 -3      Signal HUP   Wait   Quit
+  Screen [name]       State [json-pointer]
+  Expect /re/         ExpectNot /re/      ExpectAt 3,10 "text"
+  ExpectStyle 3,10 reverse
+Quit holds where the program has ended. Without --library the script has an
+empty library of its own. Exit status: 0 all held, 1 an expectation failed,
+2 the script is wrong, 3 the program ended before the script.
+
+Examples:
+  taxel script test.taxel
+  taxel script -k 'f<Enter>' --size 60x20 --styles
+  echo 'State /regions/0/f' | taxel script -k 'fh<Enter>' -"#;
+
+pub(super) const SWEEP_EXAMPLES: &str = "\
+A range is START:END:STEP with the end included, or one number; decimals are
+exact. What is not given is the paper's own grid of 3.6 million poses, solid
+figures and the 16 x 16 sensor. The sensor of a picture is its own.
+
+Examples:
+  taxel sweep rectangle --length 6 --width 3
+  taxel sweep ellipse --radius-x 4 --radius-y 4 --thickness 2 --angle 0 --json
+  taxel sweep --picture key --zoom-x 0.8:1.2:0.1 --atlas key.csv
+  taxel sweep hexagon --side 12 --columns 64 --rows 64 --x0 20:20.99:0.01 \\
+    --shard 3/40 --atlas hexagon-3.npz --quiet";
+
+pub(super) const MERGE_EXAMPLES: &str = "\
+All shards together give the same atlas as one sweep of the whole grid.
+
+Examples:
+  taxel merge hexagon-*.npz --atlas hexagon.npz
+  taxel merge a.npz b.npz --atlas both.csv --json";
+
+pub(super) const LIBRARY_EXAMPLES: &str = "\
+A library is a folder with one JSON file a shape. The shapes that come with the
+program are always listed; they can be copied, not changed. A name has 1 to 64
+letters, digits, spaces, '-', '_', '.'; upper and lower case are the same.
+Without --library the folder is that of the variable TAXEL_LIBRARY, else 'taxel'
+among the user's data.
+
+Examples:
+  taxel library list
+  taxel library show washer
+  taxel library save ring imprint.txt
+  taxel library --library ./shapes check";
+
+pub(super) const LIST_EXAMPLES: &str = "\
+Size in columns x rows, active taxels, pieces and holes. What cannot be read is
+listed as broken, with the reason.
+
+Examples:
+  taxel library list
+  taxel library list --json";
+
+pub(super) const SHOW_EXAMPLES: &str = "\
+Examples:
+  taxel library show washer
+  taxel library show \"my nut\" --pitch 2.5
+  taxel library show key --json";
+
+pub(super) const SAVE_EXAMPLES: &str = "\
+A file is a stored shape or an imprint as text. A name of the library goes
+before a file of the same name: so a shape is copied.
+
+Examples:
+  taxel library save ring imprint.txt
+  taxel library save \"my washer\" washer
+  printf '.##.\\n#..#\\n.##.\\n' | taxel library save ring - --force";
+
+pub(super) const DELETE_EXAMPLES: &str = "\
+The last 50 that were deleted are kept.
+
+Examples:
+  taxel library delete ring
+  taxel library restore ring";
+
+pub(super) const RESTORE_EXAMPLES: &str = "\
+Of several deleted ones of that name the last comes back.
+
+Examples:
+  taxel library restore ring";
+
+pub(super) const PATH_EXAMPLES: &str = "\
+Examples:
+  taxel library path
+  ls \"$(taxel library path)\"";
+
+pub(super) const CHECK_EXAMPLES: &str = "\
+Reads every shape, and tells what else lies in the folder. The exit status is 1
+where a shape is broken.
+
+Examples:
+  taxel library check
+  taxel library check --library ./shapes";

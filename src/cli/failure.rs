@@ -1,0 +1,134 @@
+//! Everything that can go wrong on the command line, and the exit status and message of each: the one place for these.
+
+use std::io;
+
+use super::input::{InputError, shortened};
+use super::locale::Charset;
+use crate::formats::archive::ArchiveError;
+use crate::library::error::LibraryError;
+use crate::sweep::grid::GridError;
+use crate::sweep::survey::MergeError;
+use crate::tui::script::runner;
+
+/// Why a command was not done, or not wholly.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum Failure {
+    /// The command itself is wrong.
+    #[error(transparent)]
+    Usage(#[from] clap::Error),
+    /// A number is, though it is one.
+    #[error("--{flag} {text}: out of range, {expected}")]
+    Range {
+        /// The flag without its dashes.
+        flag: String,
+        /// What was given.
+        text: String,
+        /// What is allowed.
+        expected: String,
+    },
+    /// A file is.
+    #[error("{name}: {error}")]
+    Input {
+        /// Its name.
+        name: String,
+        /// What is wrong with it.
+        error: InputError,
+    },
+    /// Some of the lines of a batch are; each has said so in its place.
+    #[error("{bad} of {lines} lines could not be answered")]
+    Lines {
+        /// How many.
+        bad: u64,
+        /// Of how many that were not blank.
+        lines: u64,
+    },
+    /// The poses of a batch cannot be read on.
+    #[error("standard input: cannot read: {0}")]
+    Read(io::Error),
+    /// The answer cannot be written.
+    #[error("cannot write: {0}")]
+    Write(io::Error),
+    /// The library refuses.
+    #[error("{}", shortened(&.0.to_string()))]
+    Library(#[from] LibraryError),
+    /// Neither a name nor a file.
+    #[error("no shape is called {name:?}, and no file either")]
+    Nowhere {
+        /// What was asked for.
+        name: String,
+    },
+    /// The name is that of another shape.
+    #[error("{name:?} is there already; --force replaces it")]
+    Taken {
+        /// The name.
+        name: String,
+    },
+    /// Some shapes of the library are; each has been told.
+    #[error("{broken} of {shapes} shapes cannot be read")]
+    Shapes {
+        /// How many.
+        broken: usize,
+        /// Of how many.
+        shapes: usize,
+    },
+    /// A script cannot be read.
+    #[error("{name}: {error}")]
+    NoScript {
+        /// Its name.
+        name: String,
+        /// Why not.
+        error: InputError,
+    },
+    /// A script did not hold.
+    #[error(transparent)]
+    Script(#[from] runner::Failure),
+    /// There is no such grid.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    /// An atlas, or the numbers of all poses.
+    #[error("{name}: {error}")]
+    Atlas {
+        /// The file's name.
+        name: String,
+        /// What is wrong with it.
+        error: ArchiveError,
+    },
+    /// Shards that do not make a whole.
+    #[error(transparent)]
+    Merge(#[from] MergeError),
+    /// A sweep was.
+    #[error("stopped; nothing was written")]
+    Stopped,
+    /// There is no screen.
+    #[error("{0}")]
+    Screen(io::Error),
+}
+
+impl Failure {
+    /// Nobody reads on: `taxel batch | head -1`. No failure of ours.
+    fn is_closed_pipe(&self) -> bool {
+        matches!(self, Self::Write(error) | Self::Screen(error) if error.kind() == io::ErrorKind::BrokenPipe)
+    }
+
+    /// The exit status.
+    pub(super) fn status(&self) -> u8 {
+        match self {
+            _ if self.is_closed_pipe() => 0,
+            Self::Usage(_) | Self::NoScript { .. } | Self::Script(runner::Failure::Script(_)) => 2,
+            Self::Script(runner::Failure::Ended { .. }) => 3,
+            // As a shell tells of a command that was interrupted.
+            Self::Stopped => 130,
+            _ => 1,
+        }
+    }
+
+    /// What standard error shows, with its line end; nothing for a closed pipe.
+    pub(super) fn message(&self, charset: Charset) -> Option<String> {
+        match self {
+            _ if self.is_closed_pipe() => None,
+            Self::Script(failure) => Some(charset.lines(&format!("error: {failure}\n"))),
+            Self::Usage(error) => Some(charset.lines(&error.render().to_string())),
+            _ => Some(format!("error: {}\n", charset.line(&self.to_string()))),
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! Flags made from the table of parameters: name, help text, and the values that were given.
+
+use clap::{Arg, ArgMatches};
+
+use super::failure::Failure;
+use crate::figure::{Figure, Kind};
+use crate::parameter::{PARAMETERS, Parameter, ParameterError, Unit};
+use crate::picture::{PICTURE_PARAMETERS, Picture};
+use crate::sensor::{MAX_SIDE, Sensor};
+
+/// Help texts are broken so that they fit 80 columns beside the flags.
+const HELP_WIDTH: usize = 52;
+
+/// A number as it was given, for messages, and its value.
+#[derive(Clone, Debug)]
+struct Number {
+    text: String,
+    value: f64,
+}
+
+/// All parameters that some figure has, in the order of the table.
+pub(super) fn figure_parameters() -> impl Iterator<Item = Parameter> {
+    PARAMETERS
+        .iter()
+        .map(|row| row.parameter)
+        .filter(|&parameter| kinds_with(parameter).next().is_some())
+}
+
+fn kinds_with(parameter: Parameter) -> impl Iterator<Item = Kind> {
+    Kind::ALL
+        .into_iter()
+        .filter(move |kind| kind.parameters().any(|own| own == parameter))
+}
+
+/// The name of a parameter's flag, without the dashes.
+pub(super) fn flag(parameter: Parameter) -> String {
+    match parameter {
+        // The key carries the unit, the flag's value name does.
+        Parameter::Pitch => "pitch".to_owned(),
+        _ => parameter.row().key.replace('_', "-"),
+    }
+}
+
+/// The flag of a parameter; its range and default are those of the default sensor.
+pub(super) fn arg(parameter: Parameter) -> Arg {
+    let default = match parameter {
+        Parameter::Thickness | Parameter::Pitch => String::new(),
+        _ => format!("; default {}", parameter.default(Sensor::default().side())),
+    };
+    arg_with(parameter, &default)
+}
+
+/// The same where a stored shape has values of its own, which stay as they are unless others are given.
+pub(super) fn arg_with_own(parameter: Parameter) -> Arg {
+    match parameter {
+        Parameter::Angle | Parameter::ZoomX | Parameter::ZoomY | Parameter::Pitch => arg(parameter),
+        _ => arg_with(parameter, "; default its own"),
+    }
+}
+
+fn arg_with(parameter: Parameter, default: &str) -> Arg {
+    let row = parameter.row();
+    let side = Sensor::default().side();
+    let unit = match row.unit {
+        Unit::Ratio => String::new(),
+        unit => format!("{}, ", unit.symbol()),
+    };
+    let also = match parameter {
+        Parameter::Pitch => "; gives lengths and areas in mm too",
+        _ => "",
+    };
+    let range = parameter.range(side);
+    let meaning = capitalised(row.meaning);
+    let help = format!("{meaning}{also} ({unit}{range}{default})");
+    Arg::new(row.key)
+        .long(flag(parameter))
+        .value_name(match row.unit {
+            Unit::Ratio => "NUMBER".to_owned(),
+            unit => unit.symbol().to_ascii_uppercase(),
+        })
+        .help(wrapped(&help, HELP_WIDTH))
+        // A minus sign begins a number here, not a flag.
+        .allow_hyphen_values(true)
+        .value_parser(number)
+}
+
+fn number(text: &str) -> Result<Number, &'static str> {
+    let text = text.trim();
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(Number {
+            text: text.to_owned(),
+            value,
+        }),
+        _ => Err("not a number"),
+    }
+}
+
+/// As clap writes its own help texts.
+pub(super) fn capitalised(text: &str) -> String {
+    let mut characters = text.chars();
+    let first = characters.next().map(|first| first.to_ascii_uppercase());
+    first.into_iter().chain(characters).collect()
+}
+
+/// Breaks a text at spaces into lines of at most `width` characters, or of one word.
+pub(super) fn wrapped(text: &str, width: usize) -> String {
+    let mut lines = String::new();
+    let mut used = 0;
+    for word in text.split(' ') {
+        let length = word.chars().count();
+        if used > 0 && used + 1 + length > width {
+            lines.push('\n');
+            used = 0;
+        } else if used > 0 {
+            lines.push(' ');
+            used += 1;
+        }
+        lines.push_str(word);
+        used += length;
+    }
+    lines
+}
+
+/// The values that were given by flags, not checked yet.
+#[derive(Clone, Debug)]
+pub(super) struct Given(Vec<(Parameter, Number)>);
+
+impl Given {
+    /// Those of a command; it needs not have all the flags.
+    pub(super) fn of(matches: &ArgMatches) -> Self {
+        let given = |parameter: Parameter| {
+            let number = matches.try_get_one::<Number>(parameter.row().key);
+            Some((parameter, number.ok().flatten()?.clone()))
+        };
+        let parameters = PARAMETERS.iter().map(|row| row.parameter);
+        Self(parameters.filter_map(given).collect())
+    }
+
+    /// The name of the first flag.
+    pub(super) fn first(&self) -> Option<String> {
+        self.0.first().map(|(parameter, _)| flag(*parameter))
+    }
+
+    /// Whether a value was given.
+    pub(super) fn has(&self, parameter: Parameter) -> bool {
+        self.0.iter().any(|(given, _)| *given == parameter)
+    }
+
+    /// Gives a thing the values among `own`, one after the other.
+    fn fold<T>(
+        &self,
+        own: &[Parameter],
+        mut thing: T,
+        with: impl Fn(T, Parameter, f64) -> Result<T, ParameterError>,
+    ) -> Result<T, Failure> {
+        for (parameter, number) in &self.0 {
+            if own.contains(parameter) {
+                thing = with(thing, *parameter, number.value).map_err(|error| Failure::Range {
+                    flag: flag(*parameter),
+                    text: number.text.clone(),
+                    expected: error.expected(),
+                })?;
+            }
+        }
+        Ok(thing)
+    }
+
+    /// A sensor with what was given.
+    pub(super) fn sensor(&self, sensor: Sensor) -> Result<Sensor, Failure> {
+        let own = [
+            Parameter::Columns,
+            Parameter::Rows,
+            Parameter::Threshold,
+            Parameter::Pitch,
+        ];
+        self.fold(&own, sensor, Sensor::with)
+    }
+
+    /// The pitch in mm, where one was given.
+    pub(super) fn pitch(&self) -> Result<Option<f64>, Failure> {
+        self.fold(&[Parameter::Pitch], None, |_, parameter, value| {
+            parameter.check(value, MAX_SIDE).map(Some)
+        })
+    }
+
+    /// The first flag that was given though this kind of figure has no such parameter.
+    pub(super) fn foreign(&self, kind: Kind) -> Option<Parameter> {
+        figure_parameters()
+            .filter(|&parameter| kind.parameters().all(|own| own != parameter))
+            .find(|&parameter| self.0.iter().any(|(given, _)| *given == parameter))
+    }
+
+    /// The default figure of a kind with what was given.
+    pub(super) fn figure(&self, kind: Kind, side: u8) -> Result<Figure, Failure> {
+        let own: Vec<Parameter> = kind.parameters().collect();
+        let figure = Figure::default_of(kind, side);
+        self.fold(&own, figure, |figure, parameter, value| {
+            figure.with(parameter, value, side)
+        })
+    }
+
+    /// A picture with what was given.
+    pub(super) fn picture(&self, picture: Picture, side: u8) -> Result<Picture, Failure> {
+        self.fold(&PICTURE_PARAMETERS, picture, |picture, parameter, value| {
+            picture.with(parameter, value, side)
+        })
+    }
+}

@@ -1,0 +1,202 @@
+//! `taxel library`: the shapes listed, shown, stored, deleted, brought back, checked.
+
+use std::ffi::OsStr;
+use std::fmt::Write;
+
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+use super::arguments::{Form, Saving};
+use super::describe;
+use super::failure::Failure;
+use super::input::{Content, shortened};
+use super::locale::Charset;
+use super::report;
+use super::shelf::Shelf;
+use crate::description::region::{Kind, regions};
+use crate::formats::shape::Shape;
+use crate::library::store::{Entry, Library, Origin};
+use crate::parameter::Parameter;
+use crate::sensor::Sensor;
+
+/// A line of the list.
+struct Line {
+    name: String,
+    origin: Origin,
+    /// What the file holds, or why it is broken.
+    found: Result<Summary, String>,
+}
+
+/// What the list tells of a shape.
+struct Summary {
+    columns: u8,
+    rows: u8,
+    na: u32,
+    pieces: usize,
+    holes: usize,
+}
+
+impl Line {
+    fn of(library: &Library, entry: Entry) -> Self {
+        let found = library.load(&entry.name);
+        Self {
+            found: found
+                .map(|loaded| Summary::of(&loaded.shape))
+                .map_err(|error| shortened(&error.to_string())),
+            name: entry.name,
+            origin: entry.origin,
+        }
+    }
+
+    fn origin(&self) -> &'static str {
+        match (&self.found, self.origin) {
+            (Err(_), _) => "broken",
+            (_, Origin::Own) => "own",
+            (_, Origin::Shipped) => "shipped",
+        }
+    }
+}
+
+impl Summary {
+    fn of(shape: &Shape) -> Self {
+        let regions = regions(&shape.imprint);
+        let holes = regions.iter().filter(|region| region.kind() == Kind::Hole);
+        let holes = holes.count();
+        Self {
+            columns: shape.imprint.columns(),
+            rows: shape.imprint.rows(),
+            na: shape.imprint.count(),
+            pieces: regions.len() - holes,
+            holes,
+        }
+    }
+}
+
+impl Serialize for Line {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("name", &self.name)?;
+        map.serialize_entry("origin", self.origin())?;
+        match &self.found {
+            Ok(summary) => {
+                map.serialize_entry("columns", &summary.columns)?;
+                map.serialize_entry("rows", &summary.rows)?;
+                map.serialize_entry("na", &summary.na)?;
+                map.serialize_entry("pieces", &summary.pieces)?;
+                map.serialize_entry("holes", &summary.holes)?;
+            }
+            Err(reason) => map.serialize_entry("error", reason)?,
+        }
+        map.end()
+    }
+}
+
+/// Reads every shape.
+fn lines(library: &Library) -> Result<Vec<Line>, Failure> {
+    let entries = library.list()?.into_iter();
+    Ok(entries.map(|entry| Line::of(library, entry)).collect())
+}
+
+/// All shapes.
+pub(super) fn list(shelf: &Shelf, json: bool, charset: Charset) -> Result<String, Failure> {
+    let lines = lines(&shelf.library()?)?;
+    if json {
+        // Cannot fail: every key is a text and every number finite.
+        let text = serde_json::to_string(&lines).unwrap_or_default();
+        return Ok(report::ascii_json(&text) + "\n");
+    }
+    let names: Vec<_> = lines.iter().map(|line| charset.line(&line.name)).collect();
+    let width = names.iter().map(|name| name.chars().count()).max();
+    let width = width.unwrap_or(0).max("name".len());
+    let mut text = format!(
+        "{:width$}  origin   {:>7}   NA  pieces  holes\n",
+        "name", "size"
+    );
+    for (line, name) in lines.iter().zip(names) {
+        // Cannot fail: a String takes everything.
+        let _ = write!(text, "{name:width$}  {:<7}  ", line.origin());
+        let _ = match &line.found {
+            Ok(summary) => {
+                let size = format!("{} × {}", summary.columns, summary.rows);
+                let size = charset.line(&size);
+                let (na, pieces, holes) = (summary.na, summary.pieces, summary.holes);
+                writeln!(text, "{size:>7} {na:>4}  {pieces:>6}  {holes:>5}")
+            }
+            Err(reason) => writeln!(text, "{}", charset.line(reason)),
+        };
+    }
+    Ok(text)
+}
+
+/// One shape.
+pub(super) fn show(
+    shelf: &Shelf,
+    name: &str,
+    form: Form,
+    charset: Charset,
+) -> Result<String, Failure> {
+    let shape = shelf.library()?.load(name)?.shape;
+    Ok(describe::content(&Content::Shape(shape), form, charset))
+}
+
+/// Stores what is found under a name or in a file. An imprint as text is a whole matrix.
+pub(super) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String, Failure> {
+    let shape = match shelf.find(what)? {
+        Content::Shape(shape) => Shape {
+            name: saving.name,
+            ..shape
+        },
+        Content::Text(imprint) => Shape {
+            name: saving.name,
+            sensor: [
+                (Parameter::Columns, imprint.columns()),
+                (Parameter::Rows, imprint.rows()),
+            ]
+            .into_iter()
+            .fold(Sensor::default(), |sensor, (parameter, side)| {
+                // A side of an imprint is one of a sensor.
+                sensor.with(parameter, f64::from(side)).unwrap_or(sensor)
+            }),
+            imprint,
+            source: None,
+        },
+    };
+    shelf.save(&shape, saving.force)?;
+    Ok(format!("saved as {}\n", shape.name))
+}
+
+/// Moves a shape into the trash.
+pub(super) fn delete(shelf: &Shelf, name: &str) -> Result<String, Failure> {
+    let name = shelf.library()?.delete(name)?;
+    Ok(format!(
+        "deleted {name}; taxel library restore brings it back\n"
+    ))
+}
+
+/// Brings a shape back.
+pub(super) fn restore(shelf: &Shelf, name: &str) -> Result<String, Failure> {
+    let name = shelf.library()?.restore(name)?;
+    Ok(format!("restored {name}\n"))
+}
+
+/// Reads every file; what it says, and how many shapes are broken of how many.
+pub(super) fn check(shelf: &Shelf, charset: Charset) -> Result<(String, usize, usize), Failure> {
+    let library = shelf.library()?;
+    let lines = lines(&library)?;
+    let mut text = String::new();
+    let mut broken = 0;
+    for line in &lines {
+        if let Err(reason) = &line.found {
+            broken += 1;
+            let line = format!("broken: {}: {reason}", line.name);
+            text += &(charset.line(&line).into_owned() + "\n");
+        }
+    }
+    for (path, what) in library.leftovers()? {
+        let line = format!("left over: {}: {what}", path.display());
+        text += &(charset.line(&line).into_owned() + "\n");
+    }
+    if broken == 0 {
+        text += &format!("{} shapes, all whole\n", lines.len());
+    }
+    Ok((text, broken, lines.len()))
+}

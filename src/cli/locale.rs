@@ -1,0 +1,144 @@
+//! Which characters the terminal shows, and how text is brought down to these.
+
+use std::borrow::Cow;
+use std::ffi::OsString;
+use std::fmt::Write;
+
+/// The characters that may be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Charset {
+    /// Space to `~`.
+    Ascii,
+    /// All that can be seen.
+    Unicode,
+}
+
+impl Charset {
+    /// ASCII where an argument is `--ascii` or the locale is not UTF-8.
+    ///
+    /// The arguments are looked at before they are read, so that a message about them keeps to ASCII too. Of the
+    /// variables `LC_ALL`, `LC_CTYPE`, `LANG` the first that is set and not empty decides, as POSIX has it; where
+    /// none is, the locale is `C`.
+    pub(super) fn of(
+        arguments: &[OsString],
+        variable: impl Fn(&'static str) -> Option<OsString>,
+    ) -> Self {
+        let locale = ["LC_ALL", "LC_CTYPE", "LANG"]
+            .into_iter()
+            .filter_map(variable)
+            .find(|value| !value.is_empty())
+            .unwrap_or_default();
+        let locale = locale.to_string_lossy().to_ascii_lowercase();
+        // language_COUNTRY.codeset@modifier
+        let codeset = locale
+            .split('@')
+            .next()
+            .and_then(|name| name.split_once('.'))
+            .map_or("", |(_, codeset)| codeset);
+        let ascii = arguments.iter().any(|argument| argument == "--ascii");
+        if ascii || !matches!(codeset, "utf-8" | "utf8") {
+            Self::Ascii
+        } else {
+            Self::Unicode
+        }
+    }
+
+    /// An active and an inactive taxel, two columns of the terminal each, so that cells look square.
+    pub(super) fn taxels(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Ascii => ("# ", ". "),
+            Self::Unicode => ("██", "· "),
+        }
+    }
+
+    /// One line of text as it may be written: control characters are escaped, since text from files and arguments
+    /// must not steer the terminal.
+    pub(super) fn line(self, text: &str) -> Cow<'_, str> {
+        if text.chars().all(|character| self.has(character)) {
+            return Cow::Borrowed(text);
+        }
+        let mut line = String::with_capacity(text.len() + 8);
+        for character in text.chars() {
+            match character {
+                _ if self.has(character) => line.push(character),
+                '²' => line.push_str("^2"),
+                'π' => line.push_str("pi"),
+                '°' => line.push_str(" deg"),
+                '·' => line.push('*'),
+                '×' => line.push('x'),
+                '–' => line.push('-'),
+                '…' => line.push_str("..."),
+                // Cannot fail: a String takes everything.
+                _ => drop(write!(line, "{}", character.escape_unicode())),
+            }
+        }
+        Cow::Owned(line)
+    }
+
+    /// The same for text of several lines.
+    pub(super) fn lines(self, text: &str) -> String {
+        let lines: Vec<Cow<'_, str>> = text.split('\n').map(|line| self.line(line)).collect();
+        lines.join("\n")
+    }
+
+    fn has(self, character: char) -> bool {
+        match self {
+            Self::Ascii => matches!(character, ' '..='~'),
+            Self::Unicode => !character.is_control() && !is_unseen(character),
+        }
+    }
+}
+
+/// Characters without a shape of their own that reorder or break the text around them.
+fn is_unseen(character: char) -> bool {
+    matches!(character, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn charset(arguments: &[&str], variables: &[(&str, &str)]) -> Charset {
+        let arguments: Vec<OsString> = arguments.iter().map(OsString::from).collect();
+        Charset::of(&arguments, |name| {
+            let found = variables.iter().find(|(own, _)| *own == name);
+            found.map(|(_, value)| OsString::from(value))
+        })
+    }
+
+    #[test]
+    fn the_first_variable_that_is_set_decides() {
+        let unicode = |variables: &[(&str, &str)]| charset(&[], variables) == Charset::Unicode;
+        assert!(!unicode(&[]));
+        assert!(unicode(&[("LANG", "en_GB.UTF-8")]));
+        assert!(unicode(&[("LANG", "ro_RO.utf8@euro")]));
+        assert!(unicode(&[
+            ("LC_ALL", ""),
+            ("LC_CTYPE", "C.UTF-8"),
+            ("LANG", "C")
+        ]));
+        assert!(!unicode(&[("LC_ALL", "C"), ("LANG", "en_GB.UTF-8")]));
+        assert!(!unicode(&[("LC_CTYPE", "POSIX"), ("LANG", "en_GB.UTF-8")]));
+        assert!(!unicode(&[("LANG", "ro_RO.ISO-8859-2")]));
+    }
+
+    #[test]
+    fn the_flag_overrides_the_locale() {
+        let utf8 = [("LANG", "C.UTF-8")];
+        assert_eq!(charset(&["taxel", "--ascii"], &utf8), Charset::Ascii);
+    }
+
+    #[test]
+    fn text_keeps_to_the_characters() {
+        assert_eq!(
+            Charset::Ascii.line("45° × 2 – 4π·NAE/P²"),
+            "45 deg x 2 - 4pi*NAE/P^2"
+        );
+        assert_eq!(Charset::Ascii.line("é\u{1b}"), "\\u{e9}\\u{1b}");
+        assert_eq!(
+            Charset::Unicode.line("é°\u{1b}\u{202e}\n"),
+            "é°\\u{1b}\\u{202e}\\u{a}"
+        );
+        assert_eq!(Charset::Ascii.lines("a\nb…\n"), "a\nb...\n");
+    }
+}

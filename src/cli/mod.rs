@@ -1,0 +1,145 @@
+//! The command line: `taxel figure`, `picture`, `describe`, `batch`, `sweep`, `merge`, `library`, and the screen where
+//! no command is given.
+//!
+//! Answers go to standard output, messages to standard error, one line each and starting with `error:`. The exit
+//! status is 0 where all was done, 1 where the input was wrong, 2 where the command was, 3 where the program ended before
+//! its script. A pipe that is closed at its other end is no error: the program stops there. Nothing ever writes an
+//! escape code, but for the bar of a sweep on a terminal.
+
+mod locale;
+
+mod input;
+
+mod failure;
+
+mod progress;
+
+mod summary;
+
+mod sweep;
+
+mod flags;
+
+mod examples;
+
+mod commands;
+
+mod arguments;
+
+mod report;
+
+mod shelf;
+
+mod touch;
+
+mod describe;
+
+mod library;
+
+mod batch;
+
+mod script;
+
+use std::ffi::OsString;
+use std::io::{self, Write};
+
+use arguments::{Asked, Chore, Request, Swept};
+use failure::Failure;
+use locale::Charset;
+use shelf::Shelf;
+
+use crate::sweep::grid::Grid;
+
+/// Does what the arguments ask for, the first of which is the program's own name, and gives the exit status.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let charset = Charset::of(&arguments, std::env::var_os);
+    let failure = match perform(arguments, charset) {
+        Ok(status) => return status,
+        Err(failure) => failure,
+    };
+    if let Some(message) = failure.message(charset) {
+        // Where not even this can be written, the exit status still tells.
+        let _ = io::stderr().lock().write_all(message.as_bytes());
+    }
+    failure.status()
+}
+
+fn perform(arguments: Vec<OsString>, charset: Charset) -> Result<u8, Failure> {
+    let Asked { request, library } = arguments::read(arguments)?;
+    let shelf = Shelf::new(library);
+    match request {
+        Request::Help(text) => print(&charset.lines(&text))?,
+        Request::Screen(sensor, flags, record) => {
+            return script::screen(sensor, flags, record, &shelf, charset);
+        }
+        Request::Script(asked) => {
+            let (printed, result) = script::run(&asked, &shelf, charset)?;
+            print(&printed)?;
+            result?;
+        }
+        Request::Figure(figure, sensor, form, saving) => {
+            print(&touch::touch(
+                *figure, sensor, form, saving, &shelf, charset,
+            )?)?;
+        }
+        Request::Picture(what, given, form, saving) => {
+            let (picture, sensor) = touch::picture(&what, &given, &shelf)?;
+            print(&touch::touch(
+                picture, sensor, form, saving, &shelf, charset,
+            )?)?;
+        }
+        Request::Describe(place, form) => print(&describe::describe(&place, form, charset)?)?,
+        Request::Batch(sensor) => {
+            let by_name = |name: &str| shelf.imprint(name).map_err(|error| error.to_string());
+            batch::answer_lines(sensor, &by_name, io::stdin().lock(), io::stdout().lock())?;
+        }
+        Request::Sweep(asked) => {
+            let (source, sensor) = match asked.what {
+                Swept::Figure(figure, sensor) => (figure, sensor),
+                Swept::Picture(what, given) => touch::picture(&what, &given, &shelf)?,
+            };
+            let grid = Grid::new(source, sensor, asked.anchor, asked.ranges)?;
+            let (shard, jobs) = (asked.shard, asked.jobs);
+            print(&sweep::sweep(&grid, shard, jobs, &asked.wanted, charset)?)?;
+        }
+        Request::Merge(files, wanted) => print(&sweep::merge(&files, &wanted, charset)?)?,
+        Request::Library(chore) => self::chore(chore, &shelf, charset)?,
+    }
+    Ok(0)
+}
+
+fn chore(chore: Chore, shelf: &Shelf, charset: Charset) -> Result<(), Failure> {
+    match chore {
+        Chore::List(json) => print(&library::list(shelf, json, charset)?),
+        Chore::Show(name, form) => print(&library::show(shelf, name.as_str(), form, charset)?),
+        Chore::Save(saving, what) => print(&charset.lines(&library::save(shelf, saving, &what)?)),
+        Chore::Delete(name) => print(&charset.lines(&library::delete(shelf, name.as_str())?)),
+        Chore::Restore(name) => print(&charset.lines(&library::restore(shelf, name.as_str())?)),
+        Chore::Path => {
+            // As the system has it, so that other programs find it whatever its bytes are.
+            let folder = shelf.library()?.folder().to_owned();
+            write(&[folder.as_os_str().as_encoded_bytes(), b"\n"].concat())
+        }
+        Chore::Check => {
+            let (text, broken, shapes) = library::check(shelf, charset)?;
+            print(&text)?;
+            match broken {
+                0 => Ok(()),
+                _ => Err(Failure::Shapes { broken, shapes }),
+            }
+        }
+    }
+}
+
+fn print(text: &str) -> Result<(), Failure> {
+    write(text.as_bytes())
+}
+
+fn write(bytes: &[u8]) -> Result<(), Failure> {
+    let mut output = io::stdout().lock();
+    output
+        .write_all(bytes)
+        .and_then(|()| output.flush())
+        .map_err(Failure::Write)
+}

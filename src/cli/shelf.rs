@@ -1,0 +1,109 @@
+//! The library as the commands use it: shapes by name or by file, and storing them.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::ffi::OsStr;
+use std::io::ErrorKind;
+use std::path::PathBuf;
+
+use super::failure::Failure;
+use super::input::{self, Content, InputError, Place};
+use crate::formats::shape::Shape;
+use crate::imprint::Imprint;
+use crate::library::error::LibraryError;
+use crate::library::place;
+use crate::library::store::{Expected, Library};
+
+/// The library, opened when it is used first.
+#[derive(Debug)]
+pub(super) struct Shelf {
+    asked: Option<PathBuf>,
+    library: RefCell<Option<Library>>,
+    /// What [`Shelf::imprint`] has found. A run uses what a shape was when it was asked for first.
+    found: RefCell<HashMap<String, Imprint>>,
+}
+
+impl Shelf {
+    /// The library in the folder asked for, or where it is otherwise.
+    pub(super) fn new(asked: Option<PathBuf>) -> Self {
+        Self {
+            asked,
+            library: RefCell::default(),
+            found: RefCell::default(),
+        }
+    }
+
+    /// The library.
+    pub(super) fn library(&self) -> Result<Library, LibraryError> {
+        let mut library = self.library.borrow_mut();
+        if library.is_none() {
+            let variable = std::env::var_os(place::VARIABLE);
+            let folder = place::folder(self.asked.clone(), variable)?;
+            *library = Some(Library::open(folder));
+        }
+        library.clone().ok_or(LibraryError::NoPlace)
+    }
+
+    /// The library that the arguments name, if they do.
+    pub(super) fn named(&self) -> Result<Option<Library>, LibraryError> {
+        self.asked.is_some().then(|| self.library()).transpose()
+    }
+
+    /// The shape of that name, else the content of that file; of standard input for `-`.
+    pub(super) fn find(&self, what: &OsStr) -> Result<Content, Failure> {
+        let read = |place: &Place| {
+            input::read(place).map_err(|error| Failure::Input {
+                name: place.name(),
+                error,
+            })
+        };
+        if what == "-" {
+            return read(&Place::Standard);
+        }
+        let named = what
+            .to_str()
+            .map(|name| self.library().and_then(|library| library.load(name)));
+        let nowhere = match named {
+            Some(Ok(loaded)) => return Ok(Content::Shape(loaded.shape)),
+            Some(Err(LibraryError::Unknown { name })) => Some(name),
+            // What cannot be a name may be a path, and a path needs no library.
+            Some(Err(LibraryError::Name(_) | LibraryError::NoPlace)) | None => None,
+            Some(Err(error)) => return Err(error.into()),
+        };
+        match (read(&Place::File(what.into())), nowhere) {
+            (
+                Err(Failure::Input {
+                    error: InputError::Read(error),
+                    ..
+                }),
+                Some(name),
+            ) if error.kind() == ErrorKind::NotFound => Err(Failure::Nowhere { name }),
+            (result, _) => result,
+        }
+    }
+
+    /// The imprint of the shape of that name; read once.
+    pub(super) fn imprint(&self, name: &str) -> Result<Imprint, LibraryError> {
+        if let Some(imprint) = self.found.borrow().get(name) {
+            return Ok(*imprint);
+        }
+        let shape = self.library()?.load(name)?.shape;
+        // Only what is there is kept, and under one name each, not under all ways to write it in upper and lower case:
+        // no input makes this larger than the library.
+        let mut found = self.found.borrow_mut();
+        Ok(*found.entry(shape.name.to_string()).or_insert(shape.imprint))
+    }
+
+    /// Stores a shape; in place of an own one of that name only by `force`.
+    pub(super) fn save(&self, shape: &Shape, force: bool) -> Result<(), Failure> {
+        let library = self.library()?;
+        let saved = match library.save(shape, Expected::Nothing) {
+            Err(LibraryError::Exists { stamp, .. }) if force => {
+                library.save(shape, Expected::Stamp(stamp))
+            }
+            Err(LibraryError::Exists { name, .. }) => return Err(Failure::Taken { name }),
+            saved => saved,
+        };
+        saved.map(drop).map_err(Failure::from)
+    }
+}

@@ -1,0 +1,144 @@
+//! What a sweep found, in short: as people read it, and as one line of JSON.
+
+use std::fmt::Write;
+use std::time::Duration;
+
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+use super::locale::Charset;
+use crate::sweep::statistics::Statistic;
+use crate::sweep::survey::Survey;
+
+/// A survey, and how long it took.
+pub(super) struct Summary<'a> {
+    survey: &'a Survey,
+    classes: (usize, usize),
+    took: Duration,
+}
+
+impl<'a> Summary<'a> {
+    pub(super) fn new(survey: &'a Survey, took: Duration) -> Self {
+        Self {
+            survey,
+            classes: survey.atlas.distinct_classes(),
+            took,
+        }
+    }
+
+    /// One line of JSON.
+    pub(super) fn json(&self) -> String {
+        // Cannot fail: every key is a text and every number finite.
+        let mut line = serde_json::to_string(self).unwrap_or_default();
+        line.push('\n');
+        line
+    }
+
+    /// Counts, and a table of the statistics.
+    pub(super) fn text(&self, charset: Charset) -> String {
+        let Survey {
+            grid,
+            poses,
+            partly_off,
+            atlas,
+            statistics,
+            shard,
+            ..
+        } = self.survey;
+        let mut text = String::new();
+        let mut line = |line: &str| {
+            text.push_str(charset.line(line).trim_end());
+            text.push('\n');
+        };
+        let part = match shard.of() {
+            1 => String::new(),
+            _ => format!(", shard {shard}"),
+        };
+        let ranges = grid.ranges().rows();
+        let ranges = ranges
+            .iter()
+            .filter(|(parameter, range)| {
+                grid.source().get(*parameter).is_some() && range.count() > 1
+            })
+            .map(|(parameter, range)| format!("{} {range}", parameter.row().key));
+        line(&format!(
+            "{poses} poses{part}: {}",
+            ranges.collect::<Vec<_>>().join(", ")
+        ));
+        let (shifts, symmetry) = self.classes;
+        line(&format!(
+            "{} distinct imprints, {shifts} up to shifts, {symmetry} up to quarter turns and mirror images too",
+            atlas.len()
+        ));
+        line(&format!(
+            "{partly_off} poses reach beyond the sensor, {} leave no imprint; {:.2} s",
+            atlas.empty_poses(),
+            self.took.as_secs_f64()
+        ));
+        line("");
+        let heads = [
+            "min", "mean", "max", "sd", "cv", "ideal", "sd pos", "sd angle",
+        ];
+        let mut row = format!("{:<16}", "");
+        for head in heads {
+            // Cannot fail: a String takes everything.
+            let _ = write!(row, "{head:>11}");
+        }
+        line(&row);
+        for statistic in statistics {
+            let mut row = format!("{:<16}", statistic.quantity.key);
+            for (_, value) in values(statistic) {
+                let value = value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
+                let value = charset.line(&value).into_owned();
+                let _ = write!(row, "{value:>11}");
+            }
+            line(&row);
+        }
+        text
+    }
+}
+
+fn values(statistic: &Statistic) -> [(&'static str, Option<f64>); 8] {
+    [
+        ("min", statistic.min),
+        ("mean", statistic.mean),
+        ("max", statistic.max),
+        ("sd", statistic.sd),
+        ("cv", statistic.cv),
+        ("ideal", statistic.ideal),
+        ("sd_position", statistic.sd_position),
+        ("sd_angle", statistic.sd_angle),
+    ]
+}
+
+impl Serialize for Summary<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let survey = self.survey;
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("poses", &survey.poses)?;
+        map.serialize_entry("distinct", &survey.atlas.len())?;
+        map.serialize_entry("distinct_shifts", &self.classes.0)?;
+        map.serialize_entry("distinct_symmetry", &self.classes.1)?;
+        map.serialize_entry("partly_off", &survey.partly_off)?;
+        map.serialize_entry("empty", &survey.atlas.empty_poses())?;
+        map.serialize_entry("seconds", &self.took.as_secs_f64())?;
+        map.serialize_entry("descriptors", &Descriptors(&survey.statistics))?;
+        map.end()
+    }
+}
+
+struct Descriptors<'a>(&'a [Statistic]);
+
+impl Serialize for Descriptors<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let rows = self.0.iter();
+        serializer.collect_map(rows.map(|row| (&row.quantity.key, Row(row))))
+    }
+}
+
+struct Row<'a>(&'a Statistic);
+
+impl Serialize for Row<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(values(self.0))
+    }
+}

@@ -1,0 +1,72 @@
+//! `taxel figure` and `taxel picture`: one touch, shown, and stored where that is asked for.
+
+use std::ffi::OsStr;
+
+use super::arguments::{Form, Saving};
+use super::failure::Failure;
+use super::flags::Given;
+use super::input::Content;
+use super::locale::Charset;
+use super::report;
+use super::shelf::Shelf;
+use crate::formats::shape::Shape;
+use crate::parameter::Parameter;
+use crate::picture::Picture;
+use crate::sensor::Sensor;
+use crate::source::Source;
+use crate::touch::Plane;
+
+/// The imprint of a source with what describes it.
+pub(super) fn touch(
+    source: Source,
+    sensor: Sensor,
+    form: Form,
+    saving: Option<Saving>,
+    shelf: &Shelf,
+    charset: Charset,
+) -> Result<String, Failure> {
+    let imprint = Plane::new(sensor).touch(&source);
+    let mut made = report::made(&source, &sensor);
+    if let Some(Saving { name, force }) = saving {
+        made.push(format!("saved as {name}"));
+        let shape = Shape {
+            name,
+            sensor,
+            imprint,
+            source: Some(source),
+        };
+        shelf.save(&shape, force)?;
+    }
+    Ok(match form {
+        Form::Json => report::json(&imprint),
+        Form::Table(pitch) => {
+            made.push(report::size(&imprint, Some(&sensor), pitch));
+            report::table(&imprint, &made, pitch, charset)
+        }
+    })
+}
+
+/// A stored shape as a picture, moved as the values say, and the sensor that touches it.
+pub(super) fn picture(
+    what: &OsStr,
+    given: &Given,
+    shelf: &Shelf,
+) -> Result<(Source, Sensor), Failure> {
+    let (imprint, sensor) = match shelf.find(what)? {
+        Content::Shape(shape) => (shape.imprint, shape.sensor),
+        Content::Text(imprint) => {
+            let paper = Sensor::default();
+            let side = |own: u8, paper: u8| f64::from(own.max(paper));
+            let sensor = paper
+                .with(Parameter::Columns, side(imprint.columns(), paper.columns()))
+                .and_then(|sensor| {
+                    sensor.with(Parameter::Rows, side(imprint.rows(), paper.rows()))
+                });
+            // Both are sides of an imprint or of a sensor: in range.
+            (imprint, sensor.unwrap_or(paper))
+        }
+    };
+    let sensor = given.sensor(sensor)?;
+    let picture = given.picture(Picture::at_home(imprint), sensor.side())?;
+    Ok((Source::Picture(picture), sensor))
+}

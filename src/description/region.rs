@@ -1,0 +1,292 @@
+//! The regions of an imprint: its pieces, and its holes.
+//!
+//! An **exterior** is an 8-connected component of the active taxels. A **hole** is a 4-connected component of the
+//! inactive ones that does not reach the outside; an inactive taxel on the rim of the matrix belongs to the outside.
+//! Exteriors come first, then holes, each in reading order of their first taxel. Each region is described as a shape
+//! of its own: `filled` is the region with everything that its own exterior outline encloses.
+//!
+//! Floods work on whole rows: a run of taxels that is entered anywhere is filled at once by the carry of an addition.
+
+use crate::imprint::{Bounds, Imprint};
+
+/// What a region is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// A piece of the object.
+    Exterior,
+    /// A hole in it.
+    Hole,
+}
+
+impl Kind {
+    /// Its name, in JSON and on the screen.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Exterior => "exterior",
+            Self::Hole => "hole",
+        }
+    }
+}
+
+/// A piece or a hole; never empty.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Region {
+    kind: Kind,
+    taxels: Imprint,
+    filled: Imprint,
+    bounds: Bounds,
+}
+
+impl Region {
+    /// Whether it is a piece or a hole.
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// Its taxels, on a matrix of the imprint's size.
+    pub fn taxels(&self) -> &Imprint {
+        &self.taxels
+    }
+
+    /// Its taxels and everything that its exterior outline encloses.
+    pub fn filled(&self) -> &Imprint {
+        &self.filled
+    }
+
+    /// The smallest rectangle of whole taxels around it.
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+}
+
+/// All regions of an imprint, exteriors first. Empty for an empty imprint.
+///
+/// ```
+/// use taxel::{description::region::{regions, Kind}, imprint::Imprint};
+/// let ring: Imprint = "\
+/// .##.
+/// #..#
+/// .##.".parse().unwrap();
+/// let regions = regions(&ring);
+/// assert_eq!(regions.iter().map(|region| region.kind()).collect::<Vec<_>>(), [Kind::Exterior, Kind::Hole]);
+/// assert_eq!(regions[1].taxels().to_string(), "....\n.##.\n....");
+/// ```
+pub fn regions(imprint: &Imprint) -> Vec<Region> {
+    let mut found = Vec::new();
+    each_region(imprint, |region| found.push(region.clone()));
+    found
+}
+
+/// Shows all regions of an imprint one after another, in the order of [`regions`], and allocates nothing.
+///
+/// ```
+/// use taxel::{description::{descriptor::Description, region::each_region}, imprint::Imprint};
+/// let two: Imprint = "##.#".parse().unwrap();
+/// let mut counts = Vec::new();
+/// each_region(&two, |region| counts.push(Description::of(region).na));
+/// assert_eq!(counts, [2, 1]);
+/// ```
+pub fn each_region(imprint: &Imprint, mut visit: impl FnMut(&Region)) {
+    let Some(bounds) = imprint.bounds() else {
+        return;
+    };
+    let holes = enclosed(imprint, bounds);
+    let holes_bounds = holes.bounds();
+    let mut region = Region {
+        kind: Kind::Exterior,
+        taxels: *imprint,
+        filled: *imprint,
+        bounds,
+    };
+    if let Some(bounds) = holes_bounds {
+        unite(&mut region.filled, &holes, bounds);
+    }
+    if is_stack(&region.filled, bounds, true) && holes_bounds.is_none_or(|at| is_runs(&holes, at)) {
+        visit(&region);
+    } else {
+        pieces(imprint, bounds, &mut region, &mut visit);
+    }
+    if let Some(bounds) = holes_bounds {
+        region.kind = Kind::Hole;
+        if is_stack(&holes, bounds, false) {
+            (region.taxels, region.filled, region.bounds) = (holes, holes, bounds);
+            visit(&region);
+        } else {
+            pieces(&holes, bounds, &mut region, &mut visit);
+        }
+    }
+}
+
+/// Which region is selected at the start and described by sweeps: the exterior with the largest filled area, the
+/// first of equals. None of an empty list.
+pub fn main_region(regions: &[Region]) -> Option<usize> {
+    let exteriors = regions
+        .iter()
+        .enumerate()
+        .filter(|(_, region)| region.kind == Kind::Exterior);
+    let largest = |best: Option<(usize, u32)>, (index, region): (usize, &Region)| {
+        let area = region.filled.count();
+        if best.is_some_and(|(_, most)| most >= area) {
+            best
+        } else {
+            Some((index, area))
+        }
+    };
+    exteriors.fold(None, largest).map(|(index, _)| index)
+}
+
+/// Whether every row within the bounds is one run that meets the next row's: then it is one piece without holes.
+///
+/// Nearly every imprint of one figure is such a stack of runs once it is filled. If its holes have one run at most in
+/// each row, the imprint itself is one piece too: what is left of the runs beside a hole meets what is left of them in
+/// the next row, since otherwise the hole would be open there.
+fn is_stack(matrix: &Imprint, bounds: Bounds, diagonal: bool) -> bool {
+    let mut above = u64::MAX;
+    rows(matrix, bounds).iter().all(|&word| {
+        let near = if diagonal {
+            above | above << 1 | above >> 1
+        } else {
+            above
+        };
+        above = word;
+        near & word != 0 && is_run(word)
+    })
+}
+
+/// Whether no row has more than one run.
+fn is_runs(matrix: &Imprint, bounds: Bounds) -> bool {
+    rows(matrix, bounds).iter().all(|&word| is_run(word))
+}
+
+/// Whether the set bits are next to each other: adding the lowest then carries out of all of them.
+fn is_run(word: u64) -> bool {
+    word & word.wrapping_add(word & word.wrapping_neg()) == 0
+}
+
+/// The rows within the bounds.
+fn rows(matrix: &Imprint, bounds: Bounds) -> &[u64] {
+    &matrix.words()[usize::from(bounds.top)..usize::from(bounds.bottom)]
+}
+
+/// The connected components of a matrix in reading order: exteriors 8-connected, holes 4-connected. Each is put into
+/// `region`, of that kind, and shown.
+fn pieces(matrix: &Imprint, bounds: Bounds, region: &mut Region, visit: &mut impl FnMut(&Region)) {
+    let mut rest = *matrix;
+    let mut top = bounds.top;
+    while top < bounds.bottom {
+        let word = rest.words()[usize::from(top)];
+        if word == 0 {
+            top += 1;
+            continue;
+        }
+        let mut piece = Imprint::empty(matrix.columns(), matrix.rows());
+        piece.set_word(usize::from(top), word & word.wrapping_neg());
+        flood(
+            &mut piece,
+            &rest,
+            Bounds { top, ..bounds },
+            region.kind == Kind::Exterior,
+        );
+        for row in usize::from(top)..usize::from(bounds.bottom) {
+            rest.set_word(row, rest.words()[row] & !piece.words()[row]);
+        }
+        if let Some(bounds) = piece.bounds() {
+            (region.taxels, region.filled, region.bounds) = (piece, piece, bounds);
+            unite(&mut region.filled, &enclosed(&piece, bounds), bounds);
+            visit(region);
+        }
+    }
+}
+
+/// Grows the seeds through the mask as far as they reach, inside of the bounds.
+fn flood(seeds: &mut Imprint, mask: &Imprint, bounds: Bounds, diagonal: bool) {
+    let (top, bottom) = (usize::from(bounds.top), usize::from(bounds.bottom));
+    let enter = |seeds: &mut Imprint, row: usize, neighbour: u64| {
+        let open = mask.words()[row];
+        let old = seeds.words()[row];
+        let near = if diagonal {
+            neighbour | neighbour << 1 | neighbour >> 1
+        } else {
+            neighbour
+        };
+        let entered = (old | near) & open;
+        if entered != old {
+            seeds.set_word(
+                row,
+                if entered == open {
+                    open
+                } else {
+                    spread(entered, open)
+                },
+            );
+        }
+        entered != old
+    };
+    seeds.set_word(top, spread(seeds.words()[top], mask.words()[top]));
+    loop {
+        for row in top + 1..bottom {
+            enter(seeds, row, seeds.words()[row - 1]);
+        }
+        let mut changed = false;
+        for row in (top..bottom - 1).rev() {
+            changed |= enter(seeds, row, seeds.words()[row + 1]);
+        }
+        if !changed {
+            return;
+        }
+    }
+}
+
+/// All runs of `open` that hold a bit of `seeds`, which lies inside of `open`.
+fn spread(seeds: u64, open: u64) -> u64 {
+    // Adding a seed to its run carries up to the run's end and turns every bit over on the way.
+    let up = |seeds: u64, open: u64| (open ^ open.wrapping_add(seeds)) & open | seeds;
+    up(seeds, open) | up(seeds.reverse_bits(), open.reverse_bits()).reverse_bits()
+}
+
+/// The taxels outside of a matrix's active ones that these enclose: background that does not reach the rim.
+fn enclosed(matrix: &Imprint, bounds: Bounds) -> Imprint {
+    let mut inner = Imprint::empty(matrix.columns(), matrix.rows());
+    // What lies left of a row's first active taxel or right of its last one is outside. Of the rest, what is next to
+    // the outside is outside as well, and so on.
+    let (mut far_above, mut inner_above) = (u64::MAX, 0);
+    let (mut any, mut open) = (0, 0);
+    for (row, &word) in (usize::from(bounds.top)..).zip(rows(matrix, bounds)) {
+        let far = !span(word);
+        let inside = !(far | word);
+        inner.set_word(row, inside);
+        open |= inside & far_above | inner_above & far;
+        any |= inside;
+        (far_above, inner_above) = (far, inside);
+    }
+    // Below the last row everything is outside.
+    if any == 0 || open | inner_above == 0 {
+        return inner;
+    }
+    let mut outside = Imprint::empty(matrix.columns(), matrix.rows());
+    for row in usize::from(bounds.top)..usize::from(bounds.bottom) {
+        let far = |row: usize| !span(*matrix.words().get(row).unwrap_or(&0));
+        let reached = inner.words()[row] & (far(row.wrapping_sub(1)) | far(row + 1));
+        outside.set_word(row, spread(reached, inner.words()[row]));
+    }
+    flood(&mut outside, &inner, bounds, false);
+    for row in usize::from(bounds.top)..usize::from(bounds.bottom) {
+        inner.set_word(row, inner.words()[row] & !outside.words()[row]);
+    }
+    inner
+}
+
+/// From the first set bit to the last, all set.
+fn span(word: u64) -> u64 {
+    if word == 0 {
+        return 0;
+    }
+    u64::MAX << word.trailing_zeros() & u64::MAX >> word.leading_zeros()
+}
+
+/// Adds what lies within the bounds.
+fn unite(matrix: &mut Imprint, other: &Imprint, bounds: Bounds) {
+    for (row, &word) in (usize::from(bounds.top)..).zip(rows(other, bounds)) {
+        matrix.set_word(row, matrix.words()[row] | word);
+    }
+}

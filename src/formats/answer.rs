@@ -1,0 +1,87 @@
+//! An imprint with its descriptors as JSON: the answer of `taxel batch` and of `--json`.
+
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+use crate::description::descriptor::{DESCRIPTORS, Description, Value};
+use crate::description::region::regions;
+use crate::imprint::Imprint;
+
+/// Serialises as `{"imprint":[…],"na":…,"regions":[{"kind":…,…},…]}`.
+///
+/// ```
+/// use taxel::{formats::answer::Answer, imprint::Imprint};
+/// let one: Imprint = "..\n.#".parse().unwrap();
+/// let json = serde_json::to_string(&Answer(&one)).unwrap();
+/// assert!(json.starts_with(r#"{"imprint":["..",".#"],"na":1,"regions":[{"kind":"exterior","na":1,"nae":1,"ce":1,"#));
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Answer<'a>(pub &'a Imprint);
+
+impl Serialize for Answer<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let regions = regions(self.0);
+        let mut map = serializer.serialize_map(Some(3))?;
+        map.serialize_entry("imprint", &Rows(self.0))?;
+        map.serialize_entry("na", &self.0.count())?;
+        map.serialize_entry(
+            "regions",
+            &regions
+                .iter()
+                .map(|region| Entry(Description::of(region)))
+                .collect::<Vec<_>>(),
+        )?;
+        map.end()
+    }
+}
+
+/// An imprint as a list of its rows.
+#[derive(Clone, Copy, Debug)]
+pub struct Rows<'a>(pub &'a Imprint);
+
+impl Serialize for Rows<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut text = [b'.'; 64];
+        serializer.collect_seq(self.0.words().iter().map(|word| {
+            let row = &mut text[..usize::from(self.0.columns())];
+            for (column, byte) in row.iter_mut().enumerate() {
+                *byte = if word >> column & 1 == 1 { b'#' } else { b'.' };
+            }
+            String::from_utf8_lossy(row).into_owned()
+        }))
+    }
+}
+
+/// A region by its descriptors.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry(pub Description);
+
+impl Serialize for Entry {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("kind", self.0.kind.name())?;
+        for descriptor in DESCRIPTORS.iter().filter(|descriptor| descriptor.in_answer) {
+            map.serialize_entry(descriptor.key, &(descriptor.measure)(&self.0))?;
+        }
+        map.end()
+    }
+}
+
+impl Serialize for Value {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match *self {
+            Self::None => serializer.serialize_none(),
+            Self::Count(count) => serializer.serialize_u32(count),
+            Self::Number(number) => serializer.serialize_f64(number),
+            Self::Point(point) => [point.x, point.y].serialize(serializer),
+            Self::Pair(pair) => pair.serialize(serializer),
+            Self::Rect(rect) => {
+                let mut map = serializer.serialize_map(Some(4))?;
+                map.serialize_entry("left", &rect.left)?;
+                map.serialize_entry("top", &rect.top)?;
+                map.serialize_entry("right", &rect.right)?;
+                map.serialize_entry("bottom", &rect.bottom)?;
+                map.end()
+            }
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! An atlas as an archive of numpy arrays (`numpy.load`), which can be read back and merged.
+//!
+//! Per imprint, in order: `rows` (a word per row of the sensor, bit `i` for column `i`; shaped imprints × rows),
+//! `count`, `first_pose` (its number in the grid), `first` (its values; imprints × parameters), `pieces`, `holes` and an
+//! array for each quantity, NaN where it does not exist, since arrays have no other word for that. Then `header`,
+//! JSON as bytes: format, source, sensor, anchor, ranges, shard and how many poses there were; and `spread`, the sums
+//! that shards are merged by. The archive is a zip without compression and without dates: equal atlases are
+//! equal files.
+
+use std::io::{Read, Seek, Write};
+
+use serde::{Deserialize, Serialize};
+use zip::result::ZipError;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
+
+use super::atlas::{place, value};
+use super::npy::{self, Kind};
+use super::record::{Record, RecordError, Values};
+use crate::sensor::Sensor;
+use crate::source::Source;
+use crate::sweep::grid::{Anchor, Grid, GridError, Ranges};
+use crate::sweep::parts::{Parts, PartsError};
+use crate::sweep::plan::{Shard, ShardError};
+use crate::sweep::quantity::{quantities, values};
+use crate::sweep::range::RangeError;
+use crate::sweep::survey::Survey;
+
+/// What the header must say first.
+pub const FORMAT: &str = "taxel-atlas/1";
+
+/// No array of an archive may be larger; what is larger is not read.
+const MAX_BYTES: u64 = 1 << 34;
+
+#[derive(Serialize)]
+struct Header<'a> {
+    format: &'static str,
+    source: &'a Source,
+    sensor: &'a Sensor,
+    anchor: &'static str,
+    x0: String,
+    y0: String,
+    angle: String,
+    zoom_x: String,
+    zoom_y: String,
+    shard: String,
+    poses: u64,
+    partly_off: u64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Known<'a> {
+    format: String,
+    #[serde(borrow)]
+    source: Record<'a>,
+    sensor: Values,
+    anchor: String,
+    x0: String,
+    y0: String,
+    angle: String,
+    zoom_x: String,
+    zoom_y: String,
+    shard: String,
+    poses: u64,
+    partly_off: u64,
+}
+
+/// Writes the archive.
+///
+/// # Errors
+/// Those of the writer.
+pub fn write(survey: &Survey, output: impl Write + Seek) -> Result<(), ArchiveError> {
+    let mut archive = Arrays(ZipWriter::new(output));
+    let (grid, parts) = (&survey.grid, survey.parts());
+    let ranges = grid.ranges();
+    let header = serde_json::to_vec(&Header {
+        format: FORMAT,
+        source: grid.source(),
+        sensor: grid.sensor(),
+        anchor: match grid.anchor() {
+            Anchor::Corner => "corner",
+            Anchor::Centre => "centre",
+        },
+        x0: ranges.x0.to_string(),
+        y0: ranges.y0.to_string(),
+        angle: ranges.angle.to_string(),
+        zoom_x: ranges.zoom_x.to_string(),
+        zoom_y: ranges.zoom_y.to_string(),
+        shard: survey.shard.to_string(),
+        poses: parts.poses,
+        partly_off: parts.partly_off,
+    })
+    .map_err(|error| ArchiveError::Io(error.into()))?;
+    archive.add("header", Kind::U8, &[header.len() as u64], &header)?;
+    let count = parts.counts.len() as u64;
+    let words =
+        |words: &[u64]| -> Vec<u8> { words.iter().flat_map(|word| word.to_le_bytes()).collect() };
+    let height = u64::from(grid.sensor().rows());
+    archive.add("rows", Kind::U64, &[count, height], &words(&parts.rows))?;
+    archive.add("count", Kind::U64, &[count], &words(&parts.counts))?;
+    archive.add(
+        "first_pose",
+        Kind::U64,
+        &[count],
+        &words(&parts.first_poses),
+    )?;
+    let own: Vec<_> = place(grid).collect();
+    let mut first = Vec::new();
+    for &number in &parts.first_poses {
+        let pose = grid.pose(number);
+        let own = own.iter().map(|&parameter| value(&pose, parameter));
+        first.extend(own.flat_map(f64::to_le_bytes));
+    }
+    archive.add("first", Kind::F64, &[count, own.len() as u64], &first)?;
+    let small = |of: fn(&crate::sweep::quantity::Note) -> u16| {
+        let notes = survey.atlas.entries().map(|entry| entry.note);
+        notes
+            .flat_map(|note| of(&note).to_le_bytes())
+            .collect::<Vec<u8>>()
+    };
+    archive.add("pieces", Kind::U16, &[count], &small(|note| note.pieces))?;
+    archive.add("holes", Kind::U16, &[count], &small(|note| note.holes))?;
+    let mut columns = vec![Vec::with_capacity(parts.counts.len() * 8); quantities().len()];
+    for entry in survey.atlas.entries() {
+        let mut row = vec![f64::NAN; columns.len()];
+        if let Some(description) = &entry.note.description {
+            values(description, |index, value| row[index] = value);
+        }
+        for (column, value) in columns.iter_mut().zip(row) {
+            column.extend(value.to_le_bytes());
+        }
+    }
+    for (quantity, column) in quantities().iter().zip(columns) {
+        archive.add(&quantity.key, Kind::F64, &[count], &column)?;
+    }
+    let length = parts.spread.len() as u64;
+    archive.add("spread", Kind::U64, &[length], &words(&parts.spread))?;
+    archive.0.finish()?.flush()?;
+    Ok(())
+}
+
+struct Arrays<W: Write + Seek>(ZipWriter<W>);
+
+impl<W: Write + Seek> Arrays<W> {
+    fn add(
+        &mut self,
+        name: &str,
+        kind: Kind,
+        shape: &[u64],
+        numbers: &[u8],
+    ) -> Result<(), ArchiveError> {
+        let options = SimpleFileOptions::default()
+            .compression_method(CompressionMethod::Stored)
+            .last_modified_time(DateTime::default())
+            .large_file(numbers.len() >= 1 << 31);
+        self.0.start_file(format!("{name}.npy"), options)?;
+        self.0.write_all(&npy::header(kind, shape))?;
+        self.0.write_all(numbers)?;
+        Ok(())
+    }
+}
+
+/// Reads an archive.
+///
+/// # Errors
+/// What is wrong with it; any bytes are taken.
+pub fn read(input: impl Read + Seek) -> Result<Survey, ArchiveError> {
+    let mut archive = ZipArchive::new(input)?;
+    let mut array = |name: &'static str| {
+        let mut file = archive.by_name(&format!("{name}.npy"))?;
+        if file.size() > MAX_BYTES {
+            return Err(ArchiveError::Array(name));
+        }
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes)?;
+        Ok(bytes)
+    };
+    let header = array("header")?;
+    let header = npy::content(&header, Kind::U8).ok_or(ArchiveError::Array("header"))?;
+    let header: Known<'_> = serde_json::from_slice(header)
+        .map_err(|error| ArchiveError::Header(super::quote::message(&error)))?;
+    if header.format != FORMAT {
+        return Err(ArchiveError::Format(header.format));
+    }
+    let sensor = header.sensor.sensor(Sensor::default())?;
+    let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
+    let source = header.source.source(sensor.side(), &no_name)?;
+    let anchor = match header.anchor.as_str() {
+        "corner" => Anchor::Corner,
+        "centre" => Anchor::Centre,
+        _ => return Err(ArchiveError::Header("anchor".to_owned())),
+    };
+    let ranges = Ranges {
+        x0: header.x0.parse()?,
+        y0: header.y0.parse()?,
+        angle: header.angle.parse()?,
+        zoom_x: header.zoom_x.parse()?,
+        zoom_y: header.zoom_y.parse()?,
+    };
+    let shard: Shard = header.shard.parse()?;
+    let grid = Grid::new(source, sensor, anchor, ranges)?;
+    let mut words = |name: &'static str| {
+        let array = array(name)?;
+        npy::words(&array).ok_or(ArchiveError::Array(name))
+    };
+    let parts = Parts {
+        poses: header.poses,
+        partly_off: header.partly_off,
+        rows: words("rows")?,
+        counts: words("count")?,
+        first_poses: words("first_pose")?,
+        spread: words("spread")?,
+    };
+    Ok(Survey::from_parts(grid, shard, &parts)?)
+}
+
+/// Why an archive cannot be written or read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ArchiveError {
+    /// The system's word.
+    #[error(transparent)]
+    Io(#[from] std::io::Error),
+    /// No zip, or a broken one.
+    #[error("no archive of arrays: {0}")]
+    Zip(#[from] ZipError),
+    /// An array that is not what it should be.
+    #[error("array {0:?} is not as taxel writes it")]
+    Array(&'static str),
+    /// Another format, or a newer one.
+    #[error("format: {0:?} is not known here, expected \"{FORMAT}\"")]
+    Format(String),
+    /// A header that is none.
+    #[error("header: {0}")]
+    Header(String),
+    /// A source or a sensor that is none.
+    #[error("header: {0}")]
+    Record(#[from] RecordError),
+    /// A range that is none.
+    #[error("header: {0}")]
+    Range(#[from] RangeError),
+    /// A shard that is none.
+    #[error("header: {0}")]
+    Shard(#[from] ShardError),
+    /// A grid that is none.
+    #[error("header: {0}")]
+    Grid(#[from] GridError),
+    /// Numbers that contradict each other.
+    #[error("{0}")]
+    Parts(#[from] PartsError),
+}

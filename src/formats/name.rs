@@ -1,0 +1,75 @@
+//! Names of shapes: the same rules on every file system, so that a library can move.
+
+use std::fmt;
+
+/// The longest name.
+pub const LONGEST: usize = 64;
+
+/// The most bytes of a name: file systems take 255, and `.json` and a number in the trash come to them.
+const MOST_BYTES: usize = 200;
+
+/// A name that can be a file's on every system: 1 to 64 letters, digits, spaces, `-`, `_`, `.`; not starting with
+/// `.` or a space, not ending with a space.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Name(String);
+
+/// Why a text is no name.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NameError {
+    /// Nothing there.
+    #[error("a name is missing")]
+    Empty,
+    /// Too long.
+    #[error("a name has at most {LONGEST} characters, this has {0}")]
+    Long(usize),
+    /// Too long as a file's name, which is counted in bytes.
+    #[error("a name has at most {MOST_BYTES} bytes in UTF-8, this has {0}")]
+    Bytes(usize),
+    /// A character that not every file system takes.
+    #[error("{0:?} cannot be in a name, only letters, digits, space, - _ .")]
+    Character(char),
+    /// A hidden file.
+    #[error("a name cannot start with {0:?}")]
+    Start(char),
+    /// An invisible difference.
+    #[error("a name cannot end with a space")]
+    End,
+}
+
+impl Name {
+    /// The name in a text.
+    ///
+    /// # Errors
+    /// The first rule that it breaks.
+    pub fn new(text: &str) -> Result<Self, NameError> {
+        let first = text.chars().next().ok_or(NameError::Empty)?;
+        let fits = |c: char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_' | '.');
+        if let Some(character) = text.chars().find(|&character| !fits(character)) {
+            return Err(NameError::Character(character));
+        }
+        match (first, text.chars().count()) {
+            ('.' | ' ', _) => Err(NameError::Start(first)),
+            (_, count) if count > LONGEST => Err(NameError::Long(count)),
+            _ if text.len() > MOST_BYTES => Err(NameError::Bytes(text.len())),
+            _ if text.ends_with(' ') => Err(NameError::End),
+            _ => Ok(Self(text.to_owned())),
+        }
+    }
+
+    /// The text.
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+
+    /// Whether two names are the same on a file system that ignores case.
+    pub fn same(&self, other: &str) -> bool {
+        self.0.to_lowercase() == other.to_lowercase()
+    }
+}
+
+impl fmt::Display for Name {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}

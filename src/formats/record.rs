@@ -1,0 +1,399 @@
+//! JSON objects whose keys are parameters, sensors and imprints: what jobs and stored shapes are made of.
+//!
+//! Keys that are parameters are looked up in the table of parameters; a key that stands twice, or is none of
+//! those expected, is refused.
+
+use std::borrow::Cow;
+use std::fmt;
+
+use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+use super::answer::Rows;
+use super::quote::{shortened, without_place};
+use crate::figure::{Figure, Kind};
+use crate::imprint::{Imprint, ImprintError};
+use crate::parameter::{PARAMETERS, Parameter, ParameterError};
+use crate::picture::{PICTURE_PARAMETERS, Picture};
+use crate::sensor::Sensor;
+use crate::source::Source;
+
+/// Why an object has no meaning, though it is JSON and its keys are known.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RecordError {
+    /// A value out of range, or missing.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// A value that this kind of thing does not have.
+    #[error("{key}: not a value of {article} {thing}{expected}", article = article(thing))]
+    Foreign {
+        /// The key that does not belong here.
+        key: &'static str,
+        /// What it was given for.
+        thing: &'static str,
+        /// The keys that do belong, in the form of a clause; empty where none does.
+        expected: String,
+    },
+    /// A figure of another name than the seven.
+    #[error("figure: {found:?} is unknown, expected one of {}", Kind::ALL.map(Kind::name).join(", "))]
+    Kind {
+        /// What was given.
+        found: String,
+    },
+    /// Rows that are no imprint.
+    #[error("{key}: {error}")]
+    Imprint {
+        /// Where they stand.
+        key: &'static str,
+        /// What is wrong with them.
+        error: ImprintError,
+    },
+    /// None, or several, of the keys that tell what an object is.
+    #[error("expected exactly one of the keys {0}")]
+    Which(&'static str),
+    /// A picture's name where names are not known.
+    #[error("picture: {0}")]
+    Name(String),
+}
+
+fn article(noun: &str) -> &'static str {
+    if noun.starts_with(['a', 'e', 'i', 'o', 'u']) {
+        "an"
+    } else {
+        "a"
+    }
+}
+
+/// Numbers by parameter.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Values([Option<f64>; PARAMETERS.len()]);
+
+impl Values {
+    fn index(parameter: Parameter) -> Option<usize> {
+        PARAMETERS.iter().position(|row| row.parameter == parameter)
+    }
+
+    /// The value of a parameter, where one was given.
+    pub fn get(&self, parameter: Parameter) -> Option<f64> {
+        self.0[Self::index(parameter)?]
+    }
+
+    /// Gives a parameter its value.
+    pub fn set(&mut self, parameter: Parameter, value: f64) {
+        if let Some(index) = Self::index(parameter) {
+            self.0[index] = Some(value);
+        }
+    }
+
+    /// Refuses the first value that is not of the parameters expected.
+    pub(crate) fn only(
+        &self,
+        thing: &'static str,
+        expected: &[Parameter],
+    ) -> Result<(), RecordError> {
+        let foreign = PARAMETERS
+            .iter()
+            .zip(self.0)
+            .find(|(row, value)| value.is_some() && !expected.contains(&row.parameter));
+        foreign.map_or(Ok(()), |(row, _)| {
+            let expected = expected
+                .iter()
+                .map(|parameter| parameter.row().key)
+                .collect::<Vec<_>>()
+                .join(", ");
+            let expected = match expected.as_str() {
+                "" => String::new(),
+                keys => format!(", expected {keys}"),
+            };
+            Err(RecordError::Foreign {
+                key: row.key,
+                thing,
+                expected,
+            })
+        })
+    }
+
+    /// The figure that these values give.
+    ///
+    /// # Errors
+    /// The first value that is missing, out of range, or not of this kind.
+    pub fn figure(&self, kind: Kind, side: u8) -> Result<Figure, RecordError> {
+        self.only(kind.name(), &kind.parameters().collect::<Vec<_>>())?;
+        Ok(Figure::new(kind, side, |parameter| self.get(parameter))?)
+    }
+
+    /// The picture that these values give.
+    ///
+    /// # Errors
+    /// The first value that is missing, out of range, or not of a picture.
+    pub fn picture(&self, imprint: Imprint, side: u8) -> Result<Picture, RecordError> {
+        self.only("picture", &PICTURE_PARAMETERS)?;
+        Ok(Picture::new(imprint, side, |parameter| {
+            self.get(parameter)
+        })?)
+    }
+
+    /// The sensor that these values give, the others as in `base`.
+    ///
+    /// # Errors
+    /// The first value that is out of range or not of a sensor.
+    pub fn sensor(&self, base: Sensor) -> Result<Sensor, RecordError> {
+        let own = [
+            Parameter::Columns,
+            Parameter::Rows,
+            Parameter::Threshold,
+            Parameter::Pitch,
+        ];
+        self.only("sensor", &own)?;
+        own.into_iter()
+            .try_fold(base, |sensor, parameter| match self.get(parameter) {
+                Some(value) => Ok(sensor.with(parameter, value)?),
+                None => Ok(sensor),
+            })
+    }
+}
+
+/// Rows of text, or a name.
+#[derive(Clone, Debug)]
+pub enum Content<'a> {
+    /// Rows of `#` and `.`, not checked yet.
+    Rows(Vec<Cow<'a, str>>),
+    /// A name.
+    Name(Cow<'a, str>),
+}
+
+impl Content<'_> {
+    /// The imprint in the rows; a name is looked up.
+    ///
+    /// # Errors
+    /// Where the rows are no imprint, or the name leads to none.
+    pub fn imprint(
+        &self,
+        key: &'static str,
+        lookup: &dyn Fn(&str) -> Result<Imprint, String>,
+    ) -> Result<Imprint, RecordError> {
+        match self {
+            Self::Rows(rows) => Imprint::from_rows(rows.iter().map(AsRef::as_ref))
+                .map_err(|error| RecordError::Imprint { key, error }),
+            Self::Name(name) => lookup(name).map_err(RecordError::Name),
+        }
+    }
+}
+
+/// An object with any of the keys that occur in jobs, sensors and sources.
+#[derive(Clone, Debug, Default)]
+pub struct Record<'a> {
+    /// A figure's name.
+    pub figure: Option<Cow<'a, str>>,
+    /// A picture's rows or name.
+    pub picture: Option<Content<'a>>,
+    /// A whole matrix.
+    pub imprint: Option<Content<'a>>,
+    /// A sensor.
+    pub sensor: Option<Values>,
+    /// All keys that are parameters.
+    pub values: Values,
+}
+
+impl Record<'_> {
+    /// The figure or the picture that it gives, whose key must be the only one of its kind.
+    ///
+    /// # Errors
+    /// Any [`RecordError`].
+    pub fn source(
+        &self,
+        side: u8,
+        lookup: &dyn Fn(&str) -> Result<Imprint, String>,
+    ) -> Result<Source, RecordError> {
+        match (&self.figure, &self.picture, &self.imprint) {
+            (Some(name), None, None) => {
+                let kind = Kind::from_name(name).ok_or_else(|| RecordError::Kind {
+                    found: shortened(name),
+                })?;
+                Ok(Source::Figure(self.values.figure(kind, side)?))
+            }
+            (None, Some(content), None) => {
+                let imprint = content.imprint("picture", lookup)?;
+                Ok(Source::Picture(self.values.picture(imprint, side)?))
+            }
+            _ => Err(RecordError::Which("figure, picture, imprint")),
+        }
+    }
+}
+
+impl<'de: 'a, 'a> Deserialize<'de> for Record<'a> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(RecordVisitor)
+    }
+}
+
+struct RecordVisitor;
+
+impl<'de> Visitor<'de> for RecordVisitor {
+    type Value = Record<'de>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object with a figure, a picture or an imprint")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+        let mut record = Record::default();
+        while let Some(Text(key)) = map.next_key()? {
+            match key.as_ref() {
+                "figure" => once(
+                    "figure",
+                    &mut record.figure,
+                    map.next_value::<Text<'_>>()?.0,
+                )?,
+                "picture" => once("picture", &mut record.picture, map.next_value()?)?,
+                "imprint" => once("imprint", &mut record.imprint, map.next_value()?)?,
+                "sensor" => once("sensor", &mut record.sensor, map.next_value()?)?,
+                other => record.values.take(
+                    other,
+                    &mut map,
+                    "figure, picture, imprint, sensor or a parameter",
+                )?,
+            }
+        }
+        Ok(record)
+    }
+}
+
+fn once<T, E: Error>(key: &'static str, slot: &mut Option<T>, value: T) -> Result<(), E> {
+    if slot.replace(value).is_some() {
+        Err(E::duplicate_field(key))
+    } else {
+        Ok(())
+    }
+}
+
+impl Values {
+    /// Takes the value of a key that must be a parameter.
+    fn take<'de, A: MapAccess<'de>>(
+        &mut self,
+        key: &str,
+        map: &mut A,
+        expected: &str,
+    ) -> Result<(), A::Error> {
+        let Some(index) = PARAMETERS.iter().position(|row| row.key == key) else {
+            return Err(A::Error::custom(format_args!(
+                "unknown key {:?}, expected {expected}",
+                shortened(key)
+            )));
+        };
+        let Number(number) = map.next_value().map_err(|error| {
+            A::Error::custom(format_args!("{key}: {}", without_place(&error.to_string())))
+        })?;
+        once(PARAMETERS[index].key, &mut self.0[index], number)
+    }
+}
+
+impl<'de> Deserialize<'de> for Values {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ValuesVisitor;
+        impl<'de> Visitor<'de> for ValuesVisitor {
+            type Value = Values;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("an object of parameters")
+            }
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+                let mut values = Values::default();
+                while let Some(Text(key)) = map.next_key()? {
+                    values.take(&key, &mut map, "columns, rows, threshold or pitch_mm")?;
+                }
+                Ok(values)
+            }
+        }
+        deserializer.deserialize_map(ValuesVisitor)
+    }
+}
+
+/// A text, borrowed where JSON needs no unescaping.
+struct Text<'a>(Cow<'a, str>);
+
+impl<'de> Deserialize<'de> for Text<'de> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct TextVisitor;
+        impl<'de> Visitor<'de> for TextVisitor {
+            type Value = Text<'de>;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a text")
+            }
+            fn visit_borrowed_str<E: Error>(self, text: &'de str) -> Result<Self::Value, E> {
+                Ok(Text(Cow::Borrowed(text)))
+            }
+            fn visit_str<E: Error>(self, text: &str) -> Result<Self::Value, E> {
+                Ok(Text(Cow::Owned(text.to_owned())))
+            }
+        }
+        deserializer.deserialize_str(TextVisitor)
+    }
+}
+
+/// A number, however it is written.
+struct Number(f64);
+
+impl<'de> Deserialize<'de> for Number {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        f64::deserialize(deserializer).map(Self)
+    }
+}
+
+impl<'de: 'a, 'a> Deserialize<'de> for Content<'a> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ContentVisitor;
+        impl<'de> Visitor<'de> for ContentVisitor {
+            type Value = Content<'de>;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("rows of '#' and '.'")
+            }
+            fn visit_borrowed_str<E: Error>(self, text: &'de str) -> Result<Self::Value, E> {
+                Ok(Content::Name(Cow::Borrowed(text)))
+            }
+            fn visit_str<E: Error>(self, text: &str) -> Result<Self::Value, E> {
+                Ok(Content::Name(Cow::Owned(text.to_owned())))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Self::Value, A::Error> {
+                let mut rows = Vec::new();
+                while let Some(Text(row)) = list.next_element()? {
+                    rows.push(row);
+                    if rows.len() > usize::from(crate::sensor::MAX_SIDE) {
+                        // One row too many is kept, which tells; the others need no memory.
+                        while list.next_element::<IgnoredAny>()?.is_some() {}
+                    }
+                }
+                Ok(Content::Rows(rows))
+            }
+        }
+        deserializer.deserialize_any(ContentVisitor)
+    }
+}
+
+impl Serialize for Source {
+    /// The object that reads back as the same source.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        match self {
+            Self::Figure(figure) => map.serialize_entry("figure", figure.kind().name())?,
+            Self::Picture(picture) => map.serialize_entry("picture", &Rows(picture.imprint()))?,
+        }
+        for parameter in self.parameters() {
+            if let Some(value) = self.get(parameter) {
+                map.serialize_entry(parameter.row().key, &value)?;
+            }
+        }
+        map.end()
+    }
+}
+
+impl Serialize for Sensor {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(4))?;
+        map.serialize_entry(Parameter::Columns.row().key, &self.columns())?;
+        map.serialize_entry(Parameter::Rows.row().key, &self.rows())?;
+        map.serialize_entry(Parameter::Pitch.row().key, &self.pitch_mm())?;
+        map.serialize_entry(Parameter::Threshold.row().key, &self.threshold())?;
+        map.end()
+    }
+}

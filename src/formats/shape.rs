@@ -1,0 +1,199 @@
+//! A stored shape: one JSON file with a name, a sensor, an imprint and, where it was not drawn by hand, its source.
+
+use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
+use serde::ser::{Serialize, SerializeMap, Serializer};
+use std::fmt;
+
+use super::answer::Rows;
+use super::name::{Name, NameError};
+use super::quote::message;
+use super::record::{Content, Record, RecordError, Values};
+use crate::imprint::Imprint;
+use crate::sensor::Sensor;
+use crate::source::Source;
+
+/// What the first key of a file must say.
+pub const FORMAT: &str = "taxel-shape/1";
+
+/// No shape file is larger; what is larger is not read.
+pub const MAX_BYTES: usize = 1 << 20;
+
+/// A shape as it is stored.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shape {
+    /// Its name.
+    pub name: Name,
+    /// The sensor that it was made on.
+    pub sensor: Sensor,
+    /// Its taxels; as many columns and rows as the sensor has.
+    pub imprint: Imprint,
+    /// What made it.
+    pub source: Option<Source>,
+}
+
+/// Why a text is no stored shape.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ShapeError {
+    /// Too large to be one.
+    #[error("larger than 1 MiB, which no shape is")]
+    Large,
+    /// Not JSON, not an object with the keys of a shape, or another format, a newer one perhaps.
+    #[error("line {line}, column {column}: {message}")]
+    Json {
+        /// Counted from 1.
+        line: usize,
+        /// Counted from 1.
+        column: usize,
+        /// What is wrong.
+        message: String,
+    },
+    /// A key without which it is no shape.
+    #[error("{0}: missing")]
+    Missing(&'static str),
+    /// A value that has no meaning.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// A name that is none.
+    #[error("name: {0}")]
+    Name(NameError),
+    /// A sensor that is none.
+    #[error("sensor: {0}")]
+    Sensor(RecordError),
+    /// A source that is none.
+    #[error("source: {0}")]
+    Source(RecordError),
+    /// An imprint of another size than the sensor's.
+    #[error("imprint: {} x {} taxels, expected {} x {} as the sensor has", found.0, found.1, expected.0, expected.1)]
+    Size {
+        /// Columns and rows of the imprint.
+        found: (u8, u8),
+        /// Columns and rows of the sensor.
+        expected: (u8, u8),
+    },
+}
+
+impl Shape {
+    /// Reads a file's content.
+    ///
+    /// # Errors
+    /// What is wrong with it, where, and what was expected.
+    pub fn read(text: &[u8]) -> Result<Self, ShapeError> {
+        if text.len() > MAX_BYTES {
+            return Err(ShapeError::Large);
+        }
+        let file: File<'_> = serde_json::from_slice(text).map_err(|error| ShapeError::Json {
+            line: error.line(),
+            column: error.column().max(1),
+            message: message(&error),
+        })?;
+        if !file.format {
+            return Err(ShapeError::Missing("format"));
+        }
+        let name = file.name.ok_or(ShapeError::Missing("name"))?;
+        let name = Name::new(&name).map_err(ShapeError::Name)?;
+        let sensor = file.sensor.ok_or(ShapeError::Missing("sensor"))?;
+        let sensor = sensor
+            .sensor(Sensor::default())
+            .map_err(ShapeError::Sensor)?;
+        let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
+        let imprint = file
+            .imprint
+            .ok_or(ShapeError::Missing("imprint"))?
+            .imprint("imprint", &no_name)?;
+        let (found, expected) = (
+            (imprint.columns(), imprint.rows()),
+            (sensor.columns(), sensor.rows()),
+        );
+        if found != expected {
+            return Err(ShapeError::Size { found, expected });
+        }
+        let source = file
+            .source
+            .map(|source| source.source(sensor.side(), &no_name))
+            .transpose();
+        Ok(Self {
+            name,
+            sensor,
+            imprint,
+            source: source.map_err(ShapeError::Source)?,
+        })
+    }
+
+    /// The file's content, a line per row of the imprint.
+    pub fn write(&self) -> String {
+        // Cannot fail: every key is a text and every number finite.
+        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
+        text.push('\n');
+        text
+    }
+}
+
+impl Serialize for Shape {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("format", FORMAT)?;
+        map.serialize_entry("name", self.name.as_str())?;
+        map.serialize_entry("sensor", &self.sensor)?;
+        map.serialize_entry("imprint", &Rows(&self.imprint))?;
+        if let Some(source) = &self.source {
+            map.serialize_entry("source", source)?;
+        }
+        map.end()
+    }
+}
+
+/// A file's keys before they are checked.
+#[derive(Default)]
+struct File<'a> {
+    /// Whether it says that it is one of [`FORMAT`].
+    format: bool,
+    name: Option<String>,
+    sensor: Option<Values>,
+    imprint: Option<Content<'a>>,
+    source: Option<Record<'a>>,
+}
+
+impl<'de: 'a, 'a> Deserialize<'de> for File<'a> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct FileVisitor;
+        impl<'de> Visitor<'de> for FileVisitor {
+            type Value = File<'de>;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a stored shape")
+            }
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+                let mut file = File::default();
+                let mut seen: Vec<String> = Vec::new();
+                while let Some(key) = map.next_key::<String>()? {
+                    if seen.contains(&key) {
+                        return Err(A::Error::custom(format_args!("key {key:?} stands twice")));
+                    }
+                    match key.as_str() {
+                        "format" => {
+                            let format: String = map.next_value()?;
+                            if format != FORMAT {
+                                // What comes after it is that format's business: said before its keys are refused.
+                                return Err(A::Error::custom(format_args!(
+                                    "format: {format:?} is not known here, expected {FORMAT:?}"
+                                )));
+                            }
+                            file.format = true;
+                        }
+                        "name" => file.name = Some(map.next_value()?),
+                        "sensor" => file.sensor = Some(map.next_value()?),
+                        "imprint" => file.imprint = Some(map.next_value()?),
+                        "source" => file.source = Some(map.next_value()?),
+                        _ => {
+                            let keys = &["format", "name", "sensor", "imprint", "source"];
+                            return Err(A::Error::unknown_field(&key, keys));
+                        }
+                    }
+                    seen.push(key);
+                }
+                Ok(file)
+            }
+        }
+        deserializer.deserialize_map(FileVisitor)
+    }
+}

@@ -1,0 +1,78 @@
+//! Descriptor values as people read them: at most four decimals, shares in percent, directions in degrees.
+
+use crate::description::descriptor::{Unit, Value};
+
+/// The text of a value; none where the value does not exist.
+///
+/// ```
+/// use taxel::{description::descriptor::{Unit, Value}, formats::value::text};
+/// assert_eq!(text(Value::Number(9.0 / 14.0), Unit::Share).as_deref(), Some("64.29 %"));
+/// assert_eq!(text(Value::Number(5.5), Unit::Length).as_deref(), Some("5.5"));
+/// assert_eq!(text(Value::None, Unit::Length), None);
+/// ```
+pub fn text(value: Value, unit: Unit) -> Option<String> {
+    match unit {
+        Unit::Direction => times(value, 1.0, 2).map(|text| format!("{text}°")),
+        Unit::Share => times(value, 100.0, 2).map(|text| format!("{text} %")),
+        _ => times(value, 1.0, 4),
+    }
+}
+
+/// The text of a length in mm or an area in mm²; none of anything else, or where the value does not exist.
+pub fn in_millimetres(value: Value, unit: Unit, pitch_mm: f64) -> Option<String> {
+    match unit {
+        Unit::Length => times(value, pitch_mm, 4).map(|text| format!("{text} mm")),
+        Unit::Area => times(value, pitch_mm * pitch_mm, 4).map(|text| format!("{text} mm²")),
+        _ => None,
+    }
+}
+
+/// The numbers of a value times a factor, with at most so many decimals; none where the value does not exist.
+pub fn times(value: Value, factor: f64, decimals: usize) -> Option<String> {
+    let number = |number: f64| decimal(number * factor, decimals);
+    match value {
+        Value::None => None,
+        Value::Count(count) => Some(number(f64::from(count))),
+        Value::Number(value) => Some(number(value)),
+        Value::Point(point) => Some(format!("{}, {}", number(point.x), number(point.y))),
+        Value::Pair([first, second]) => Some(format!("{}, {}", number(first), number(second))),
+        Value::Rect(rect) => {
+            let side = |low: u8, high: u8| {
+                format!("{}..{}", number(f64::from(low)), number(f64::from(high)))
+            };
+            Some(format!(
+                "{} × {}",
+                side(rect.left, rect.right),
+                side(rect.top, rect.bottom)
+            ))
+        }
+    }
+}
+
+/// With at most so many decimals, no zeros at their end, and no minus before a zero.
+fn decimal(number: f64, decimals: usize) -> String {
+    let text = format!("{number:.decimals$}");
+    let text = if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        &text
+    };
+    if text == "-0" {
+        "0".to_owned()
+    } else {
+        text.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::decimal;
+
+    #[test]
+    fn numbers_have_no_more_decimals_than_they_need() {
+        let shown =
+            [0.0, -0.000_01, 10.0, 23.656_854, -0.5, 1234.0].map(|number| decimal(number, 4));
+        assert_eq!(shown, ["0", "0", "10", "23.6569", "-0.5", "1234"]);
+        assert_eq!(decimal(100.0, 0), "100");
+    }
+}

@@ -1,0 +1,16 @@
+//! Plane geometry: outlines that bound a shape, and the exact area of what they bound inside each cell of a grid.
+//!
+//! Frame: that of the sensory plane, x to the right, y **down**, the side of a cell as unit. Angles are degrees.
+//! The module knows nothing of sensors, figures or imprints.
+
+pub mod real;
+
+pub mod outline;
+
+pub mod curve;
+
+pub mod grid;
+
+pub mod arcs;
+
+pub mod overlap;

@@ -1,0 +1,218 @@
+//! What bounds a shape: straight edges and ellipses, drawn with a [`Pen`].
+//!
+//! A shape is *drawn* rather than returned: it calls the pen for each edge and each ellipse of its boundary. So one
+//! definition of a shape serves every use (areas, extents, pictures) in every number ([`Real`]), and nothing is
+//! allocated on the way.
+//!
+//! **Orientation.** Edges run clockwise as seen (x right, y down) around the material, that is with the material on
+//! their right; around a hole they run the other way. Only closed sets of edges bound anything; their order is free.
+
+use super::real::Real;
+
+/// A point of the plane, or a vector in it; cell sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point<T> {
+    /// To the right.
+    pub x: T,
+    /// Downwards.
+    pub y: T,
+}
+
+impl<T: Real> Point<T> {
+    /// The point at (`x`, `y`).
+    pub const fn new(x: T, y: T) -> Self {
+        Self { x, y }
+    }
+
+    /// The point moved by a vector.
+    #[must_use]
+    pub fn moved(self, by: Self) -> Self {
+        Self::new(self.x + by.x, self.y + by.y)
+    }
+}
+
+/// A turn about the origin.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn<T> {
+    sin: T,
+    cos: T,
+}
+
+impl<T: Real> Turn<T> {
+    /// Clockwise as seen (y runs down), by an angle in degrees.
+    pub fn clockwise(degrees: T) -> Self {
+        let (sin, cos) = degrees.sin_cos_degrees();
+        Self { sin, cos }
+    }
+
+    /// Where the vector goes.
+    pub fn of(&self, vector: Point<T>) -> Point<T> {
+        Point::new(
+            vector.x * self.cos - vector.y * self.sin,
+            vector.x * self.sin + vector.y * self.cos,
+        )
+    }
+}
+
+/// An ellipse as the affine image of the unit disc: `centre + across·u + along·v` for `u² + v² ≤ 1`.
+#[derive(Clone, Copy, Debug)]
+pub struct Ellipse<T> {
+    /// The centre.
+    pub centre: Point<T>,
+    /// Where the disc's first axis goes.
+    pub across: Point<T>,
+    /// Where its second axis goes; not parallel to the first.
+    pub along: Point<T>,
+}
+
+impl<T: Real> Ellipse<T> {
+    /// Half of its width and of its height.
+    pub fn reach(&self) -> Point<T> {
+        let length = |a: T, b: T| (a * a + b * b).sqrt();
+        Point::new(
+            length(self.across.x, self.along.x),
+            length(self.across.y, self.along.y),
+        )
+    }
+}
+
+/// Which side of a boundary the material lies on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The boundary encloses material.
+    Inside,
+    /// The boundary encloses a hole.
+    Outside,
+}
+
+/// What a shape draws its boundary with.
+pub trait Pen<T: Real> {
+    /// A straight piece of boundary, the material on the right of the way from `from` to `to`.
+    fn edge(&mut self, from: Point<T>, to: Point<T>);
+    /// A whole ellipse.
+    fn ellipse(&mut self, ellipse: &Ellipse<T>, material: Side);
+
+    /// The closed ring through the points, given clockwise as seen.
+    fn ring(&mut self, points: &[Point<T>], material: Side) {
+        let Some(&last) = points.last() else { return };
+        let mut from = last;
+        for &to in points {
+            match material {
+                Side::Inside => self.edge(from, to),
+                Side::Outside => self.edge(to, from),
+            }
+            from = to;
+        }
+    }
+}
+
+/// Anything with a boundary: figures, pictures, and outlines of one's own.
+pub trait Solid {
+    /// Draws the whole boundary. The numbers of the shape are to be taken through [`Real::decimal`].
+    fn draw<T: Real>(&self, pen: &mut impl Pen<T>);
+}
+
+/// A simple polygon of one's own: its vertices in either sense of rotation, at least three.
+///
+/// With fewer vertices, or all of them on a line, it bounds nothing. Where its edges cross each other, a part that is
+/// wound around twice counts twice: such polygons have no meaning here.
+///
+/// ```
+/// use taxel::geometry::outline::{Extent, Polygon};
+/// let kite = Polygon::new([(3.0, 1.0), (1.0, 4.0), (3.0, 9.0), (5.0, 4.0)]);
+/// assert_eq!(Extent::of(&kite), Some(Extent { left: 1.0, top: 1.0, right: 5.0, bottom: 9.0 }));
+/// ```
+#[derive(Clone, Debug)]
+pub struct Polygon {
+    vertices: Vec<(f64, f64)>,
+}
+
+impl Polygon {
+    /// The polygon through the vertices, in order. A coordinate that is not finite is read as 0.
+    pub fn new(vertices: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
+        let mut vertices: Vec<_> = vertices
+            .into_iter()
+            .map(|(x, y)| (finite(x), finite(y)))
+            .collect();
+        let next = vertices.iter().cycle().skip(1);
+        let doubled_area: f64 = vertices
+            .iter()
+            .zip(next)
+            .map(|(a, b)| a.0 * b.1 - b.0 * a.1)
+            .sum();
+        if doubled_area < 0.0 {
+            vertices.reverse();
+        }
+        Self { vertices }
+    }
+}
+
+impl Solid for Polygon {
+    fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
+        let point = |&(x, y): &(f64, f64)| Point::new(T::decimal(x), T::decimal(y));
+        let Some(mut from) = self.vertices.last().map(point) else {
+            return;
+        };
+        for to in self.vertices.iter().map(point) {
+            pen.edge(from, to);
+            from = to;
+        }
+    }
+}
+
+/// The smallest upright rectangle around a shape; cell sides, in the plane's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent {
+    /// Smallest x.
+    pub left: f64,
+    /// Smallest y.
+    pub top: f64,
+    /// Largest x.
+    pub right: f64,
+    /// Largest y.
+    pub bottom: f64,
+}
+
+impl Extent {
+    /// The extent of a shape; none of one without a boundary.
+    pub fn of(solid: &impl Solid) -> Option<Self> {
+        let mut pen = ExtentPen(None);
+        solid.draw(&mut pen);
+        pen.0
+    }
+}
+
+/// Draws nothing and remembers how far it went.
+struct ExtentPen(Option<Extent>);
+
+impl ExtentPen {
+    fn cover(&mut self, low: Point<f64>, high: Point<f64>) {
+        let old = self.0.unwrap_or(Extent {
+            left: low.x,
+            top: low.y,
+            right: high.x,
+            bottom: high.y,
+        });
+        self.0 = Some(Extent {
+            left: old.left.min(low.x),
+            top: old.top.min(low.y),
+            right: old.right.max(high.x),
+            bottom: old.bottom.max(high.y),
+        });
+    }
+}
+
+impl Pen<f64> for ExtentPen {
+    fn edge(&mut self, from: Point<f64>, to: Point<f64>) {
+        self.cover(from, from);
+        self.cover(to, to);
+    }
+    fn ellipse(&mut self, ellipse: &Ellipse<f64>, _material: Side) {
+        let (centre, reach) = (ellipse.centre, ellipse.reach());
+        self.cover(
+            Point::new(centre.x - reach.x, centre.y - reach.y),
+            Point::new(centre.x + reach.x, centre.y + reach.y),
+        );
+    }
+}

@@ -1,0 +1,359 @@
+//! The number that geometry is computed in: [`f64`] for speed, [`Double`] to decide what `f64` cannot.
+//!
+//! Every outline and every area is written once, over [`Real`]. A touch computes in `f64`, whose error here stays
+//! below 1e-12; what lies nearer than that to the threshold is computed again as a [`Double`], a pair of `f64`
+//! with about 106 bits, and there a difference below 1e-20 counts as none ([`Real::TIE`]).
+//!
+//! **A parameter means the decimal number that one reads.** `0.1` as an `f64` is not one tenth, so a figure that
+//! should cover exactly half of a cell would miss by 1e-17. [`Real::decimal`] therefore takes the shortest decimal
+//! that reads back as the given `f64`, which is what a user typed, and a `Double` holds that decimal to 32 digits.
+//!
+//! Double-double arithmetic after T. J. Dekker, *A floating-point technique for extending the available
+//! precision*, Numerische Mathematik 18 (1971), and D. E. Knuth, *The Art of Computer Programming*, vol. 2, 4.2.2.
+
+use std::fmt::Debug;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// What geometry needs of a number. Total: no operation panics; the callers keep divisors away from zero.
+pub trait Real:
+    Copy
+    + Debug
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// Nought.
+    const ZERO: Self;
+    /// One.
+    const ONE: Self;
+    /// One half.
+    const HALF: Self;
+    /// Two areas (in cells) that differ by less than this cannot be told apart in this number.
+    const TIE: Self;
+
+    /// The decimal number that `value` is written as; `value` itself where the number has no more digits than that.
+    fn decimal(value: f64) -> Self;
+    /// The nearest `f64`.
+    fn to_f64(self) -> f64;
+    /// A whole number.
+    fn whole(value: i32) -> Self;
+    /// The largest whole number not above it; saturates beyond the range of `i32`.
+    fn floor(self) -> i32;
+    /// The cell of a line that a number from 0 to 2²⁰ lies in: its index, and its lower end. A whole number lies in
+    /// either of two.
+    fn cell(self) -> (usize, Self);
+    /// The square root, of a negative number 0: roots of differences that vanish may come out at −1e-17.
+    #[must_use]
+    fn sqrt(self) -> Self;
+    /// Sine and cosine of an angle in degrees; exactly 0 and ±1 at the multiples of 90°.
+    fn sin_cos_degrees(self) -> (Self, Self);
+    /// `(θ / sin θ − 1) / 2` from `sin²(θ/2)` in [0, 1/8]: what the chord of an arc `θ` cuts off the unit disc, over
+    /// `sin θ`. Its power series is `q/3 + 4q²/15 + 8q³/35 + …`, each coefficient `(2k + 2)/(2k + 3)` of the one before.
+    #[must_use]
+    fn segment_series(squared: Self) -> Self;
+
+    /// The smaller of two.
+    #[must_use]
+    fn min(self, other: Self) -> Self {
+        if other < self { other } else { self }
+    }
+    /// The larger of two.
+    #[must_use]
+    fn max(self, other: Self) -> Self {
+        if other > self { other } else { self }
+    }
+    /// Without its sign.
+    #[must_use]
+    fn abs(self) -> Self {
+        if self < Self::ZERO { -self } else { self }
+    }
+}
+
+impl Real for f64 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+    const HALF: Self = 0.5;
+    const TIE: Self = 1e-12;
+
+    fn decimal(value: f64) -> Self {
+        value
+    }
+    fn to_f64(self) -> f64 {
+        self
+    }
+    fn whole(value: i32) -> Self {
+        Self::from(value)
+    }
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "saturating is what the contract asks for"
+    )]
+    fn floor(self) -> i32 {
+        // Not `f64::floor`, which is a call where the processor is not known to have the instruction.
+        let towards_zero = self as i32;
+        towards_zero - i32::from(Self::from(towards_zero) > self)
+    }
+    fn cell(self) -> (usize, Self) {
+        // Added to 1.5 · 2⁵², a number is rounded to a whole one, which stands in the lowest bits. A cast takes three times
+        // as long: it has to saturate.
+        const WHOLE: f64 = 6_755_399_441_055_744.0;
+        let moved = (self - 0.5) + WHOLE;
+        ((moved.to_bits() & 0xf_ffff) as usize, moved - WHOLE)
+    }
+    fn sqrt(self) -> Self {
+        f64::sqrt(f64::max(self, 0.0))
+    }
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+    fn sin_cos_degrees(self) -> (Self, Self) {
+        let (quarter, angle) = quarters(self);
+        let (sin, cos) = angle.to_radians().sin_cos();
+        turn_by_quarters(quarter, sin, cos)
+    }
+    fn segment_series(squared: Self) -> Self {
+        // Fitted to the series over [0, 1/8] (Chebyshev, in 40 digits), within 5e-16 of its first coefficient; cut
+        // short, the series would take 16 terms.
+        const FITTED: [f64; 10] = [
+            0.333_333_333_333_332_9,
+            0.266_666_666_667_355_8,
+            0.228_571_428_390_047_04,
+            0.203_174_621_641_487_52,
+            0.184_703_233_116_290_23,
+            0.170_524_206_501_430_26,
+            0.158_630_337_026_788_93,
+            0.155_212_174_431_306,
+            0.106_842_362_314_137_64,
+            0.253_071_850_031_495_9,
+        ];
+        // In pairs (Estrin), so that a processor can work on several at once.
+        let [c0, c1, c2, c3, c4, c5, c6, c7, c8, c9] = FITTED;
+        let q = squared;
+        let (q2, q4) = (q * q, q * q * (q * q));
+        let low = (c0 + c1 * q) + (c2 + c3 * q) * q2;
+        let middle = (c4 + c5 * q) + (c6 + c7 * q) * q2;
+        let high = c8 + c9 * q;
+        q * (low + (middle + high * q4) * q4)
+    }
+}
+
+/// The nearest number of right angles, and the degrees left over, from −45 to 45. Both are exact.
+fn quarters(degrees: f64) -> (i32, f64) {
+    // Not `round` and `rem_euclid`, which are calls; a turn more or less makes no difference.
+    let degrees = if degrees.abs() < 1e9 {
+        degrees
+    } else {
+        degrees % 360.0
+    };
+    let quarter = Real::floor(degrees / 90.0 + 0.5);
+    (quarter, degrees - f64::from(quarter) * 90.0)
+}
+
+/// Turns the angle's reduced sine and cosine back by `quarter` right angles.
+fn turn_by_quarters<T: Real>(quarter: i32, sin: T, cos: T) -> (T, T) {
+    match quarter & 3 {
+        0 => (sin, cos),
+        1 => (cos, -sin),
+        2 => (-sin, -cos),
+        _ => (-cos, sin),
+    }
+}
+
+/// An unevaluated sum of two `f64`, the second at most half a last place of the first.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct Double {
+    high: f64,
+    low: f64,
+}
+
+/// π to 32 digits.
+const PI: Double = Double {
+    high: std::f64::consts::PI,
+    low: 1.224_646_799_147_353_2e-16,
+};
+
+/// A sum and its rounding error.
+fn two_sum(a: f64, b: f64) -> Double {
+    let high = a + b;
+    let part = high - a;
+    Double {
+        high,
+        low: (a - (high - part)) + (b - part),
+    }
+}
+
+/// The same, where `a` is known to be the larger.
+fn quick_two_sum(a: f64, b: f64) -> Double {
+    let high = a + b;
+    Double {
+        high,
+        low: b - (high - a),
+    }
+}
+
+/// A product and its rounding error.
+fn two_product(a: f64, b: f64) -> Double {
+    let high = a * b;
+    Double {
+        high,
+        low: a.mul_add(b, -high),
+    }
+}
+
+impl Add for Double {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        let high = two_sum(self.high, other.high);
+        let low = two_sum(self.low, other.low);
+        let sum = quick_two_sum(high.high, high.low + low.high);
+        quick_two_sum(sum.high, sum.low + low.low)
+    }
+}
+
+impl Neg for Double {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self {
+            high: -self.high,
+            low: -self.low,
+        }
+    }
+}
+
+impl Sub for Double {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Double {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        let product = two_product(self.high, other.high);
+        quick_two_sum(
+            product.high,
+            product.low + (self.high * other.low + self.low * other.high),
+        )
+    }
+}
+
+impl Div for Double {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        // Long division, three digits of 53 bits each.
+        let first = self.high / other.high;
+        let rest = self - other * Self::from(first);
+        let second = rest.high / other.high;
+        let rest = rest - other * Self::from(second);
+        let third = rest.high / other.high;
+        quick_two_sum(first, second) + Self::from(third)
+    }
+}
+
+impl From<f64> for Double {
+    /// Exactly this binary number; see [`Real::decimal`] for the number that a user meant.
+    fn from(value: f64) -> Self {
+        Self {
+            high: value,
+            low: 0.0,
+        }
+    }
+}
+
+impl Real for Double {
+    const ZERO: Self = Self {
+        high: 0.0,
+        low: 0.0,
+    };
+    const ONE: Self = Self {
+        high: 1.0,
+        low: 0.0,
+    };
+    const HALF: Self = Self {
+        high: 0.5,
+        low: 0.0,
+    };
+    const TIE: Self = Self {
+        high: 1e-20,
+        low: 0.0,
+    };
+
+    fn decimal(value: f64) -> Self {
+        // The power of ten below would overflow, and what the binary number is off by is less than any tie.
+        if value.abs() < 1e-200 {
+            return Self::from(value);
+        }
+        // `{:e}` prints the shortest digits that read back as the same number: "2.35e-1".
+        let text = format!("{value:e}");
+        let Some((digits, exponent)) = text.split_once('e') else {
+            return Self::from(value);
+        };
+        let places = digits
+            .split_once('.')
+            .map_or(0, |(_, fraction)| fraction.len());
+        let (Ok(exponent), Ok(places)) = (exponent.parse::<i32>(), i32::try_from(places)) else {
+            return Self::from(value);
+        };
+        // At most 17 digits, so the halves and the powers of ten up to 10^22 are exact.
+        let mut number = Self::ZERO;
+        for digit in digits.bytes().filter(u8::is_ascii_digit) {
+            number = number * Self::from(10.0) + Self::from(f64::from(digit - b'0'));
+        }
+        let number = if value < 0.0 { -number } else { number };
+        let shift = exponent - places;
+        let power = (0..shift.unsigned_abs()).fold(Self::ONE, |power, _| power * Self::from(10.0));
+        if shift < 0 {
+            number / power
+        } else {
+            number * power
+        }
+    }
+    fn to_f64(self) -> f64 {
+        self.high + self.low
+    }
+    fn whole(value: i32) -> Self {
+        Self::from(f64::from(value))
+    }
+    fn floor(self) -> i32 {
+        let floor = Real::floor(self.high);
+        // A whole high part with a negative low one lies just below that whole number.
+        floor - i32::from(Self::whole(floor) > self)
+    }
+    fn cell(self) -> (usize, Self) {
+        let floor = self.floor();
+        (usize::try_from(floor).unwrap_or(0), Self::whole(floor))
+    }
+    fn sqrt(self) -> Self {
+        if self.high <= 0.0 {
+            return Self::ZERO;
+        }
+        // One Newton step from the f64 root doubles its digits; a second one settles the last.
+        let step = |root: Self| (root + self / root) * Self::HALF;
+        step(step(Self::from(self.high.sqrt())))
+    }
+    fn sin_cos_degrees(self) -> (Self, Self) {
+        let (quarter, angle) = quarters(self.high);
+        let angle = (Self::from(angle) + Self::from(self.low)) * PI / Self::whole(180);
+        // Taylor's series: |angle| ≤ π/4, so the terms fall below 1e-33 before the 28th power.
+        let (mut sin, mut cos, mut term) = (Self::ZERO, Self::ZERO, Self::ONE);
+        for power in (0..30).step_by(2) {
+            cos = cos + term;
+            term = term * angle / Self::whole(power + 1);
+            sin = sin + term;
+            term = -(term * angle / Self::whole(power + 2));
+        }
+        turn_by_quarters(quarter, sin, cos)
+    }
+    fn segment_series(squared: Self) -> Self {
+        let (mut sum, mut term) = (Self::ZERO, squared / Self::whole(3));
+        for k in 1..40 {
+            sum = sum + term;
+            term = term * squared * Self::whole(2 * k + 2) / Self::whole(2 * k + 3);
+        }
+        sum
+    }
+}

@@ -1,0 +1,302 @@
+//! The imprint: which taxels are active, one `u64` a row.
+//!
+//! Bit `i` of a row is the taxel in column `i`. Bits beyond the last column and rows beyond the last one are always
+//! 0, so counting is `count_ones`, neighbours are shifts, and two imprints are equal when their words are.
+
+use std::fmt;
+use std::ops::Range;
+
+use crate::sensor::MAX_SIDE;
+
+/// A binary matrix from 1 × 1 to 64 × 64.
+///
+/// ```
+/// use taxel::imprint::Imprint;
+/// let imprint: Imprint = ".##.\n#..#\n.##.".parse().unwrap();
+/// assert_eq!((imprint.columns(), imprint.rows(), imprint.count()), (4, 3, 6));
+/// assert!(imprint.get(1, 0) && !imprint.get(1, 1) && !imprint.get(9, 9));
+/// ```
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Imprint {
+    columns: u8,
+    rows: u8,
+    words: [u64; MAX_SIDE as usize],
+}
+
+impl Imprint {
+    /// No taxel active. Sides beyond 1 to 64 are brought to the nearest of these.
+    pub fn empty(columns: u8, rows: u8) -> Self {
+        Self {
+            columns: columns.clamp(1, MAX_SIDE),
+            rows: rows.clamp(1, MAX_SIDE),
+            words: [0; MAX_SIDE as usize],
+        }
+    }
+
+    /// Number of columns.
+    pub fn columns(&self) -> u8 {
+        self.columns
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> u8 {
+        self.rows
+    }
+
+    /// The rows from the top, bit `i` for column `i`.
+    pub fn words(&self) -> &[u64] {
+        &self.words[..usize::from(self.rows)]
+    }
+
+    /// Sets a whole row; bits beyond the last column are dropped, rows beyond the last one ignored.
+    pub fn set_word(&mut self, row: usize, word: u64) {
+        let mask = self.mask();
+        if let Some(slot) = self.words[..usize::from(self.rows)].get_mut(row) {
+            *slot = word & mask;
+        }
+    }
+
+    /// Sets rows `2 * pair` and `2 * pair + 1` in the same way.
+    pub fn set_pair(&mut self, pair: usize, words: [u64; 2]) {
+        let mask = self.mask();
+        let rows = &mut self.words[..usize::from(self.rows)];
+        for (slot, word) in rows.iter_mut().skip(2 * pair).zip(words) {
+            *slot = word & mask;
+        }
+    }
+
+    /// A row full of active taxels.
+    pub fn mask(&self) -> u64 {
+        u64::MAX >> (MAX_SIDE - self.columns)
+    }
+
+    /// Whether a taxel is active; none beyond the matrix is.
+    pub fn get(&self, column: u8, row: u8) -> bool {
+        column < self.columns && row < self.rows && self.words[usize::from(row)] >> column & 1 == 1
+    }
+
+    /// Makes a taxel active or inactive; does nothing beyond the matrix.
+    pub fn set(&mut self, column: u8, row: u8, active: bool) {
+        if column < self.columns && row < self.rows {
+            let word = &mut self.words[usize::from(row)];
+            *word = *word & !(1 << column) | u64::from(active) << column;
+        }
+    }
+
+    /// Turns a taxel over.
+    pub fn toggle(&mut self, column: u8, row: u8) {
+        self.set(column, row, !self.get(column, row));
+    }
+
+    /// Number of active taxels.
+    pub fn count(&self) -> u32 {
+        self.words().iter().map(|word| word.count_ones()).sum()
+    }
+
+    /// Whether no taxel is active.
+    pub fn is_empty(&self) -> bool {
+        self.words().iter().all(|&word| word == 0)
+    }
+
+    /// The smallest rectangle of whole taxels around the active ones; none of an empty imprint.
+    pub fn bounds(&self) -> Option<Bounds> {
+        let rows = self.words();
+        let top = rows.iter().position(|&word| word != 0)?;
+        let bottom = rows.iter().rposition(|&word| word != 0)? + 1;
+        let across = rows[top..bottom].iter().fold(0, |all, word| all | word);
+        Some(Bounds {
+            left: trailing(across),
+            top: narrow(top),
+            right: MAX_SIDE - narrow_bits(across.leading_zeros()),
+            bottom: narrow(bottom),
+        })
+    }
+
+    /// The active taxels, (column, row), in reading order.
+    pub fn active(&self) -> impl Iterator<Item = (u8, u8)> + '_ {
+        (0..self.rows).flat_map(move |row| {
+            let word = self.words[usize::from(row)];
+            (0..self.columns)
+                .filter(move |column| word >> column & 1 == 1)
+                .map(move |column| (column, row))
+        })
+    }
+
+    /// The taxels in which two imprints differ, on the matrix of this one.
+    #[must_use]
+    pub fn differing(&self, other: &Self) -> Self {
+        let mut differing = *self;
+        for (row, &word) in other.words().iter().enumerate() {
+            differing.set_word(row, self.words.get(row).unwrap_or(&0) ^ word);
+        }
+        differing
+    }
+
+    /// The same active taxels on a matrix of another size; what lies beyond it is dropped.
+    #[must_use]
+    pub fn resized(&self, columns: u8, rows: u8) -> Self {
+        let mut resized = Self::empty(columns, rows);
+        for (row, &word) in self.words().iter().enumerate() {
+            resized.set_word(row, word);
+        }
+        resized
+    }
+}
+
+/// A rectangle of whole taxels, by the plane coordinates of its edges: columns `left..right`, rows `top..bottom`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bounds {
+    /// First column.
+    pub left: u8,
+    /// First row.
+    pub top: u8,
+    /// One past the last column.
+    pub right: u8,
+    /// One past the last row.
+    pub bottom: u8,
+}
+
+impl Bounds {
+    /// Its columns.
+    pub fn columns(&self) -> Range<u8> {
+        self.left..self.right
+    }
+
+    /// Its rows.
+    pub fn rows(&self) -> Range<u8> {
+        self.top..self.bottom
+    }
+}
+
+fn narrow(index: usize) -> u8 {
+    u8::try_from(index).unwrap_or(MAX_SIDE)
+}
+
+fn narrow_bits(bits: u32) -> u8 {
+    u8::try_from(bits).unwrap_or(MAX_SIDE)
+}
+
+fn trailing(word: u64) -> u8 {
+    narrow_bits(word.trailing_zeros())
+}
+
+impl fmt::Display for Imprint {
+    /// One line a row, `#` active, `.` inactive, no line end after the last row.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (row, line) in self.lines().enumerate() {
+            if row > 0 {
+                writeln!(f)?;
+            }
+            f.write_str(&line)?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Debug for Imprint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Imprint {}x{}\n{self}", self.columns, self.rows)
+    }
+}
+
+impl Imprint {
+    /// The rows as text, `#` active, `.` inactive.
+    pub fn lines(&self) -> impl Iterator<Item = String> + '_ {
+        (0..self.rows).map(|row| {
+            (0..self.columns)
+                .map(|column| if self.get(column, row) { '#' } else { '.' })
+                .collect()
+        })
+    }
+
+    /// The imprint in rows of `#` and `.`, at most 64 × 64, all of one length.
+    ///
+    /// # Errors
+    /// Where a row is of another length than the first, a character is another one, or a side is not 1 to 64.
+    pub fn from_rows<'a>(rows: impl IntoIterator<Item = &'a str>) -> Result<Self, ImprintError> {
+        let mut imprint: Option<Self> = None;
+        let mut count = 0;
+        for (index, text) in rows.into_iter().enumerate() {
+            let row = index + 1;
+            if row > usize::from(MAX_SIDE) {
+                return Err(ImprintError::Rows);
+            }
+            let mut word = 0;
+            let mut length = 0_usize;
+            for character in text.chars() {
+                let column = length + 1;
+                match character {
+                    '#' if length < usize::from(MAX_SIDE) => word |= 1 << length,
+                    '#' | '.' => {}
+                    found => return Err(ImprintError::Character { row, column, found }),
+                }
+                length = column;
+            }
+            let columns = u8::try_from(length)
+                .ok()
+                .filter(|columns| (1..=MAX_SIDE).contains(columns));
+            let columns = columns.ok_or(ImprintError::Columns { row, found: length })?;
+            let imprint = imprint.get_or_insert_with(|| Self::empty(columns, MAX_SIDE));
+            if columns != imprint.columns {
+                return Err(ImprintError::Ragged {
+                    row,
+                    found: length,
+                    expected: imprint.columns,
+                });
+            }
+            imprint.words[index] = word;
+            count = narrow(row);
+        }
+        imprint
+            .map(|imprint| Self {
+                rows: count,
+                ..imprint
+            })
+            .ok_or(ImprintError::Rows)
+    }
+}
+
+impl std::str::FromStr for Imprint {
+    type Err = ImprintError;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Self::from_rows(text.lines())
+    }
+}
+
+/// Why rows of text are no imprint. Rows and columns count from 1.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ImprintError {
+    /// No rows, or too many.
+    #[error("expected 1 to 64 rows")]
+    Rows,
+    /// A row that is empty or too long.
+    #[error("row {row} has {found} characters, expected 1 to 64")]
+    Columns {
+        /// Which row.
+        row: usize,
+        /// Its length.
+        found: usize,
+    },
+    /// A row that is not as long as the first.
+    #[error("row {row} has {found} characters, expected {expected} as in the first row")]
+    Ragged {
+        /// Which row.
+        row: usize,
+        /// Its length.
+        found: usize,
+        /// The length of the first row.
+        expected: u8,
+    },
+    /// Something else than `#` or `.`.
+    #[error("row {row}, column {column}: found {found:?}, expected '#' or '.'")]
+    Character {
+        /// Which row.
+        row: usize,
+        /// Which column.
+        column: usize,
+        /// What stands there.
+        found: char,
+    },
+}

@@ -1,0 +1,80 @@
+//! Which shapes can a robot recognise by one touch?
+//!
+//! A tactile matrix sensor touches a flat shape, and a taxel is active when the shape covers at least half of its
+//! cell. This crate computes that binary imprint exactly, for any position, rotation and size; describes it by the
+//! geometric parameters of D. Purcaru and E. Niculescu, *Experimental Results in Shape Description*; and keeps shapes
+//! in a library of files. The program of the same name is a screen and a command line over it.
+//!
+//! ```
+//! use taxel::description::{descriptor::Description, region::{main_region, regions}};
+//! use taxel::{figure::{Figure, Kind}, parameter::Parameter, sensor::Sensor, touch::Plane};
+//!
+//! // The paper's Fig. 1: an ellipse with radii of 4, a wall of 2.
+//! let figure = Figure::default_of(Kind::Ellipse, 16)
+//!     .with(Parameter::X0, 1.99, 16)?
+//!     .with(Parameter::Y0, 1.47, 16)?
+//!     .with(Parameter::Thickness, 2.0, 16)?;
+//! let imprint = Plane::new(Sensor::default()).touch(&figure);
+//! assert_eq!(imprint.count(), 36);
+//!
+//! let regions = regions(&imprint);
+//! let main = main_region(&regions).expect("something is active");
+//! let ring = Description::of(&regions[main]);
+//! assert_eq!((ring.na, ring.nae, ring.ce), (36, 48, 22));
+//! assert_eq!(ring.cg(), ring.cd());
+//! # Ok::<(), taxel::parameter::ParameterError>(())
+//! ```
+//!
+//! # Frame and units
+//!
+//! One frame for everything, and the side of a sensory cell as unit:
+//! ```text
+//!   0   1   2   3 → x        The taxel in column i, row j (both from 0) covers
+//! 0 +---+---+---+            [i, i+1] × [j, j+1]; its coordinates are those of its
+//!   |0,0|1,0|2,0|            centre, (i + ½, j + ½). Directions are degrees
+//! 1 +---+---+---+            counter-clockwise as seen from +x, in (−180, 180].
+//!   |0,1|1,1|2,1|            Figures turn clockwise as seen, pictures
+//! 2 +---+---+---+            counter-clockwise. With a pitch, lengths and areas
+//! ↓ y                        are told in mm and mm² too.
+//! ```
+//!
+//! # Map
+//!
+//! A module uses only those above it, and the same holds inside each of them; a test reads the `use` lines and holds
+//! that law. Only `tui` names ratatui and crossterm. Only `library`, `formats`, `cli`, `tui::effect`, `tui::terminal`
+//! and `main` touch the world; everything above them is total: no input or output, no panic on any input.
+//!
+//! # Invariants
+//!
+//! - A coverage of exactly the threshold in real arithmetic is active ([`touch`]).
+//! - Every [`figure::Figure`], [`picture::Picture`] and [`sensor::Sensor`] is in range: checked when it is made.
+//! - What follows from a document (coverage, imprint, regions, descriptors) is computed, never stored beside it.
+//! - No number that is not finite is ever shown or written: a value that does not exist is none.
+
+pub mod geometry;
+
+pub mod parameter;
+
+pub mod sensor;
+
+pub mod imprint;
+
+pub mod figure;
+
+pub mod picture;
+
+pub mod source;
+
+pub mod touch;
+
+pub mod description;
+
+pub mod sweep;
+
+pub mod formats;
+
+pub mod library;
+
+pub mod tui;
+
+pub mod cli;

@@ -1,0 +1,123 @@
+//! Deleting moves a shape into a trash inside the library, from where it comes back.
+//!
+//! The files there have a running number before their name; the last [`KEPT`] are kept.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::error::LibraryError;
+use super::file::{self, system};
+use super::lock::Lock;
+use super::shipped;
+use super::store::Library;
+use crate::formats::name::Name;
+
+/// How many deleted shapes are kept.
+pub const KEPT: usize = 50;
+
+/// A file in the trash.
+struct Deleted {
+    number: u64,
+    name: String,
+    path: PathBuf,
+}
+
+impl Library {
+    fn trash(&self) -> PathBuf {
+        self.folder().join(".trash")
+    }
+
+    /// What is in the trash, the oldest first; nothing where there is no trash yet.
+    fn deleted(&self) -> Result<Vec<Deleted>, LibraryError> {
+        let trash = self.trash();
+        let names = file::names(&trash)?;
+        let of = |name| Deleted::of(&trash.join(name));
+        let mut deleted: Vec<Deleted> = names.into_iter().filter_map(of).collect();
+        deleted.sort_by_key(|deleted| deleted.number);
+        Ok(deleted)
+    }
+
+    /// Moves a shape into the trash, whatever its file holds; answers its name as the file had it.
+    ///
+    /// # Errors
+    /// Where there is none of that name, it comes with the program, or the system refuses.
+    pub fn delete(&self, name: &str) -> Result<String, LibraryError> {
+        let name = Name::new(name)?;
+        let unknown = || {
+            let shipped = shipped::has(&name);
+            let name = name.to_string();
+            if shipped {
+                LibraryError::Shipped { name }
+            } else {
+                LibraryError::Unknown { name }
+            }
+        };
+        if !self.folder().is_dir() {
+            return Err(unknown());
+        }
+        let _lock = Lock::of(self.folder())?;
+        let own = self.own_name(&name)?.ok_or_else(unknown)?;
+        let path = self.path(&own);
+        file::regular(&path)?;
+        file::make_inner_folder(&self.trash())?;
+        let mut deleted = self.deleted()?;
+        let number = deleted.last().map_or(1, |last| last.number + 1);
+        let target = self.trash().join(format!("{number:010} {own}.json"));
+        fs::rename(&path, &target).map_err(system("move it into the trash", &path))?;
+        file::sync(&self.trash())?;
+        file::sync(self.folder())?;
+        for old in deleted.drain(..deleted.len().saturating_sub(KEPT - 1)) {
+            // One too many does no harm.
+            let _ = fs::remove_file(old.path);
+        }
+        Ok(own)
+    }
+
+    /// Brings back the shape of that name that was deleted last; answers its name.
+    ///
+    /// # Errors
+    /// Where none of that name is in the trash, the name is taken again, or the system refuses.
+    pub fn restore(&self, name: &str) -> Result<String, LibraryError> {
+        let name = Name::new(name)?;
+        let missing = || LibraryError::NotInTrash {
+            name: name.to_string(),
+        };
+        if !self.folder().is_dir() {
+            return Err(missing());
+        }
+        let _lock = Lock::of(self.folder())?;
+        let deleted = self
+            .deleted()?
+            .into_iter()
+            .rev()
+            .find(|deleted| name.same(&deleted.name))
+            .ok_or_else(missing)?;
+        file::regular(&deleted.path)?;
+        if let Some(taken) = self.own_name(&name)? {
+            let stamp = file::read(&self.path(&taken))
+                .map(|content| file::stamp(&content))
+                .unwrap_or_default();
+            return Err(LibraryError::Exists { name: taken, stamp });
+        }
+        fs::rename(&deleted.path, self.path(&deleted.name))
+            .map_err(system("bring it back", &deleted.path))?;
+        file::sync(self.folder())?;
+        file::sync(&self.trash())?;
+        Ok(deleted.name)
+    }
+}
+
+impl Deleted {
+    fn of(path: &Path) -> Option<Self> {
+        let (number, name) = path
+            .file_name()?
+            .to_str()?
+            .strip_suffix(".json")?
+            .split_once(' ')?;
+        Some(Self {
+            number: number.parse().ok().filter(|&number| number < u64::MAX)?,
+            name: Name::new(name).ok()?.to_string(),
+            path: path.to_owned(),
+        })
+    }
+}

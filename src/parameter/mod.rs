@@ -1,0 +1,18 @@
+//! Every quantity that a user can set, one row of a table each: key, label, unit, range, decimals, default.
+//!
+//! Forms, flags, JSON checks and error texts are made from [`PARAMETERS`]; nothing else in the program knows a range.
+//! Lengths are relative to the side of a sensory cell. The ranges of figures are the paper's (0.00–9.99 with two
+//! decimals, 10.0–16.0 with one, whole degrees 0–359) for a sensor whose larger side is 16, and grow and shrink with
+//! that side (convention of this project). The decimals bind forms only: files and flags take any.
+
+mod range;
+
+mod table;
+
+mod error;
+
+mod check;
+
+pub use error::ParameterError;
+pub use range::Range;
+pub use table::{PARAMETERS, Parameter, Row, Unit};

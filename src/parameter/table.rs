@@ -1,0 +1,275 @@
+//! The table of parameters.
+
+use super::range::End;
+
+/// A quantity that a user can set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Parameter {
+    /// Half of an ellipse's extent along x, before rotation.
+    RadiusX,
+    /// Half of an ellipse's extent along y, before rotation.
+    RadiusY,
+    /// A rectangle's side along x, before rotation.
+    Length,
+    /// A rectangle's side along y, before rotation.
+    Width,
+    /// The side of a triangle, pentagon, hexagon, heptagon or octagon.
+    Side,
+    /// Smallest x of the bounding rectangle before rotation.
+    X0,
+    /// Smallest y of the bounding rectangle before rotation.
+    Y0,
+    /// Degrees: a figure's clockwise as seen, a picture's counter-clockwise.
+    Angle,
+    /// Distance from the outer outline to that of the hole.
+    Thickness,
+    /// Scale along x, of a picture and its position.
+    ZoomX,
+    /// Scale along y, of a picture and its position.
+    ZoomY,
+    /// Columns of the sensor.
+    Columns,
+    /// Rows of the sensor.
+    Rows,
+    /// Share of a cell that must be covered for its taxel to be active.
+    Threshold,
+    /// Side of a sensory cell in mm.
+    Pitch,
+}
+
+/// What a number counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Unit {
+    /// Sides of a sensory cell.
+    Cells,
+    /// Degrees of arc.
+    Degrees,
+    /// A pure number.
+    Ratio,
+    /// Taxels.
+    Taxels,
+    /// Millimetres.
+    Millimetres,
+}
+
+impl Unit {
+    /// As written after a number; empty for a pure number.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Cells => "cells",
+            Self::Degrees => "deg",
+            Self::Ratio => "",
+            Self::Taxels => "taxels",
+            Self::Millimetres => "mm",
+        }
+    }
+}
+
+/// How many decimals a form takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Decimals {
+    /// Two below ten, one from ten on.
+    Paper,
+    /// This many.
+    Fixed(u8),
+}
+
+/// A row of [`PARAMETERS`].
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// Which quantity.
+    pub parameter: Parameter,
+    /// Its name in files; in flags with `-` for `_`.
+    pub key: &'static str,
+    /// Its name on the screen.
+    pub label: &'static str,
+    /// Its name in the line that says what made an imprint.
+    pub short: &'static str,
+    /// What it counts.
+    pub unit: Unit,
+    /// Where a new form starts, on a sensor that is large enough.
+    pub default: f64,
+    /// One line for help texts.
+    pub meaning: &'static str,
+    pub(super) low: End,
+    pub(super) high: End,
+    /// The ends in forms, where these are others.
+    pub(super) form: Option<(End, End)>,
+    pub(super) decimals: Decimals,
+}
+
+/// A length of a figure: above 0, up to the sensor's larger side.
+pub(super) const LENGTH: Row = Row {
+    parameter: Parameter::Side,
+    key: "side",
+    label: "Side",
+    short: "side",
+    unit: Unit::Cells,
+    default: 4.0,
+    meaning: "side of the regular polygon",
+    low: End::Beyond(0.0),
+    high: End::Side(1.0),
+    form: None,
+    decimals: Decimals::Paper,
+};
+
+/// A position: in files also left of or above the sensor.
+const POSITION: Row = Row {
+    default: 4.0,
+    low: End::Side(-1.0),
+    form: Some((End::At(0.0), End::Side(1.0))),
+    ..LENGTH
+};
+
+/// A scale: one taxel can be made as large as the largest sensor.
+const ZOOM: Row = Row {
+    unit: Unit::Ratio,
+    default: 1.0,
+    high: End::At(64.0),
+    ..LENGTH
+};
+
+/// A side of the sensor.
+const COUNT: Row = Row {
+    unit: Unit::Taxels,
+    default: 16.0,
+    low: End::At(1.0),
+    high: End::At(64.0),
+    decimals: Decimals::Fixed(0),
+    ..LENGTH
+};
+
+/// The table, in the order of forms.
+pub const PARAMETERS: [Row; 15] = [
+    Row {
+        parameter: Parameter::RadiusX,
+        key: "radius_x",
+        label: "Radius x",
+        short: "rx",
+        meaning: "half of the ellipse's width, before rotation",
+        ..LENGTH
+    },
+    Row {
+        parameter: Parameter::RadiusY,
+        key: "radius_y",
+        label: "Radius y",
+        short: "ry",
+        meaning: "half of the ellipse's height, before rotation",
+        ..LENGTH
+    },
+    Row {
+        parameter: Parameter::Length,
+        key: "length",
+        label: "Length",
+        short: "length",
+        default: 6.0,
+        meaning: "the rectangle's side along x, before rotation",
+        ..LENGTH
+    },
+    Row {
+        parameter: Parameter::Width,
+        key: "width",
+        label: "Width",
+        short: "width",
+        default: 3.0,
+        meaning: "the rectangle's side along y, before rotation",
+        ..LENGTH
+    },
+    LENGTH,
+    Row {
+        parameter: Parameter::X0,
+        key: "x0",
+        label: "x0",
+        short: "x0",
+        meaning: "left of the bounding rectangle, before rotation",
+        ..POSITION
+    },
+    Row {
+        parameter: Parameter::Y0,
+        key: "y0",
+        label: "y0",
+        short: "y0",
+        meaning: "top of the bounding rectangle, before rotation (y runs down)",
+        ..POSITION
+    },
+    Row {
+        parameter: Parameter::Angle,
+        key: "angle",
+        label: "Angle",
+        short: "angle",
+        unit: Unit::Degrees,
+        default: 0.0,
+        meaning: "a figure turns clockwise about its centre, a picture counter-clockwise",
+        low: End::At(0.0),
+        high: End::Beyond(360.0),
+        form: Some((End::At(0.0), End::At(359.0))),
+        decimals: Decimals::Fixed(0),
+    },
+    Row {
+        parameter: Parameter::Thickness,
+        key: "thickness",
+        label: "Thickness",
+        short: "wall",
+        default: 1.0,
+        meaning: "wall around one concentric hole; solid without it",
+        ..LENGTH
+    },
+    Row {
+        parameter: Parameter::ZoomX,
+        key: "zoom_x",
+        label: "Zoom x",
+        short: "zoom x",
+        meaning: "scale along x, of the picture and of x0",
+        ..ZOOM
+    },
+    Row {
+        parameter: Parameter::ZoomY,
+        key: "zoom_y",
+        label: "Zoom y",
+        short: "zoom y",
+        meaning: "scale along y, of the picture and of y0",
+        ..ZOOM
+    },
+    Row {
+        parameter: Parameter::Columns,
+        key: "columns",
+        label: "Columns",
+        short: "columns",
+        meaning: "columns of the sensor",
+        ..COUNT
+    },
+    Row {
+        parameter: Parameter::Rows,
+        key: "rows",
+        label: "Rows",
+        short: "rows",
+        meaning: "rows of the sensor",
+        ..COUNT
+    },
+    Row {
+        parameter: Parameter::Threshold,
+        key: "threshold",
+        label: "Threshold",
+        short: "threshold",
+        unit: Unit::Ratio,
+        default: 0.5,
+        meaning: "share of a cell that makes its taxel active",
+        high: End::At(1.0),
+        decimals: Decimals::Fixed(3),
+        ..LENGTH
+    },
+    Row {
+        parameter: Parameter::Pitch,
+        key: "pitch_mm",
+        label: "Pitch",
+        short: "pitch",
+        unit: Unit::Millimetres,
+        default: 1.0,
+        meaning: "side of a sensory cell",
+        high: End::At(1000.0),
+        decimals: Decimals::Fixed(3),
+        ..LENGTH
+    },
+];

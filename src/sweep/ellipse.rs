@@ -1,0 +1,145 @@
+//! Spans of ellipses, solid or with one ellipse as their hole, row by row of the grid.
+//!
+//! **Method.** With `O` and `I` the areas of the outer and the inner ellipse in the cell, a taxel is active where
+//! `O − I` reaches the threshold `t`. `O` does so between one rising and one falling passage ([`super::track`]), and
+//! outside of these nothing is active. Where the cell lies inside of the outer ellipse (`O = 1`), what matters is where
+//! `I` exceeds `1 − t`: again one rising and one falling passage. What remains is where the cell reaches the
+//! hole already and the outside still; there `O` rises from its value at the first touch of the hole and `I` to
+//! its value at the last touch of the outside, and as a rule the difference of the two stays above `t`. Whenever
+//! something of this does not hold the band is settled from nothing ([`super::settle`]).
+
+use super::oval::Oval;
+use super::settle::Ring;
+use super::span::{DOUBT, Level, NEAR, Spans};
+use super::track::Track;
+use crate::geometry::outline::{Ellipse, Side};
+use crate::sensor::MAX_SIDE;
+
+/// The passages of one row of the sensor: outer rising and falling, inner rising and falling.
+type Tracks = [Track; 4];
+
+/// An ellipse, perhaps with a hole.
+#[derive(Clone, Debug)]
+pub(super) struct Elliptic {
+    ring: Ring,
+    tracks: Box<[Tracks]>,
+}
+
+impl Elliptic {
+    /// None where the ellipses are not one with at most one hole.
+    pub(super) fn new(ellipses: &[(Ellipse<f64>, Side)]) -> Option<Self> {
+        let (outer, inner) = match ellipses {
+            [(outer, Side::Inside)] => (outer, None),
+            [(outer, Side::Inside), (inner, Side::Outside)] => (outer, Some(Oval::new(inner))),
+            _ => return None,
+        };
+        Some(Self {
+            ring: Ring {
+                threshold: 1.0,
+                outer: Oval::new(outer),
+                inner,
+            },
+            tracks: vec![Tracks::default(); usize::from(MAX_SIDE)].into(),
+        })
+    }
+
+    /// The spans at which the coverage of the cells from `top` to `top + 1` reaches the threshold. `row` is the row of
+    /// the sensor: the passages of the same row a moment ago tell where to look.
+    pub(super) fn band(&mut self, top: f64, row: usize, threshold: f64, spans: &mut Spans) {
+        spans.clear();
+        self.ring.threshold = threshold;
+        let outer = &mut self.ring.outer;
+        // Where no section is high enough no cell is covered enough.
+        if !outer.cut(top) || outer.highest() < threshold - 2.0 * DOUBT {
+            return;
+        }
+        if let Some(inner) = &mut self.ring.inner {
+            inner.cut(top);
+        }
+        let Some(tracks) = self.tracks.get_mut(row) else {
+            return self.ring.settle_all(spans);
+        };
+        let Some(found) = follow(&self.ring, tracks) else {
+            self.ring.settle_all(spans);
+            return learn(spans, tracks);
+        };
+        spans.turn(found.from, Level::Above);
+        if let Some((hole, end)) = found.hole {
+            spans.turn(hole, Level::Below);
+            spans.turn(end, Level::Above);
+        }
+        spans.turn(found.to, Level::Below);
+    }
+}
+
+/// A span, and the gap in it.
+struct Found {
+    from: f64,
+    to: f64,
+    hole: Option<(f64, f64)>,
+}
+
+/// What the passages of the rows before lead to; none where not all is certain.
+fn follow(ring: &Ring, tracks: &mut Tracks) -> Option<Found> {
+    let [from, to, hole, end] = tracks;
+    let (outer, threshold) = (&ring.outer, ring.threshold);
+    let (from, to) = (
+        from.follow(outer, threshold, true)?,
+        to.follow(outer, threshold, false)?,
+    );
+    let solid = Found {
+        from,
+        to,
+        hole: None,
+    };
+    let Some(inner) = ring.inner.as_ref().filter(|inner| inner.is_here()) else {
+        return Some(solid);
+    };
+    // Between these places the cell reaches the hole.
+    let (first, last) = (inner.reach().0 - 1.0, inner.reach().1);
+    if first <= from + 2.0 * NEAR || last >= to - 2.0 * NEAR {
+        return None;
+    }
+    let covered = |oval: &Oval, u: f64| oval.coverage(&oval.at(u), &oval.at(u + 1.0));
+    let least = covered(outer, first).min(covered(outer, last));
+    // The hole is nowhere high enough to matter.
+    if least - inner.highest() > threshold + DOUBT {
+        return Some(solid);
+    }
+    let (hole, end) = (
+        hole.follow(inner, 1.0 - threshold, true)?,
+        end.follow(inner, 1.0 - threshold, false)?,
+    );
+    let (full, full_end) = outer.full()?;
+    let apart = full < hole - NEAR && full_end > end + NEAR;
+    // Up to `full` both areas rise, from `full_end` on both fall.
+    let left = first >= full || covered(outer, first) - covered(inner, full) > threshold + DOUBT;
+    let right =
+        last <= full_end || covered(outer, last) - covered(inner, full_end) > threshold + DOUBT;
+    (apart && left && right).then_some(Found {
+        hole: Some((hole, end)),
+        ..solid
+    })
+}
+
+/// Takes note of where the passages are, as far as the spans tell.
+fn learn(spans: &Spans, tracks: &mut Tracks) {
+    let all = spans.all();
+    match (spans.sharp(), all) {
+        (true, [only]) => {
+            tracks[0].note(only.from);
+            tracks[1].note(only.to);
+            tracks[2].forget();
+            tracks[3].forget();
+        }
+        (true, [left, right]) => {
+            for (track, place) in tracks
+                .iter_mut()
+                .zip([left.from, right.to, left.to, right.from])
+            {
+                track.note(place);
+            }
+        }
+        _ => tracks.iter_mut().for_each(Track::forget),
+    }
+}

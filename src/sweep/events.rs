@@ -1,0 +1,104 @@
+//! What happens along one row of the grid: which taxels are active at its first x0, and which turn over where.
+//!
+//! Events are kept by the step at which they happen, in lists without an order of their own, and a bit per step tells
+//! where to look. Playing them back gives one imprint per run of steps at which nothing happens.
+
+use super::layout::Layout;
+
+/// Which taxels are active at first, and which turn over at which step.
+#[derive(Clone, Debug)]
+pub(super) struct Events<'a> {
+    pub(super) layout: &'a Layout,
+    count: u64,
+    key: Vec<u64>,
+    hash: u64,
+    /// A bit per step, whether something happens there, and then the last event of it.
+    marked: Vec<u64>,
+    last: Vec<u32>,
+    list: Vec<Event>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Event {
+    mask: u64,
+    number: u64,
+    word: u32,
+    /// The one before it at the same step, or none.
+    before: u32,
+}
+
+const NONE: u32 = u32::MAX;
+
+impl<'a> Events<'a> {
+    pub(super) fn new(layout: &'a Layout, count: u64) -> Self {
+        let steps = usize::try_from(count).unwrap_or(0);
+        Self {
+            layout,
+            count,
+            key: vec![0; layout.words()],
+            hash: 0,
+            marked: vec![0; steps.div_ceil(64)],
+            last: vec![NONE; steps],
+            list: Vec::new(),
+        }
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.key.fill(0);
+        self.hash = 0;
+        self.list.clear();
+    }
+
+    /// Taxels of a row that are active at the first step.
+    pub(super) fn start(&mut self, row: usize, mut taxels: u64) {
+        let (word, shift) = self.layout.place(row);
+        self.key[word] ^= taxels << shift;
+        let numbers = self.layout.numbers(row);
+        while taxels != 0 {
+            let column = taxels.trailing_zeros();
+            self.hash ^= numbers[usize::try_from(column).unwrap_or(0)];
+            taxels &= taxels - 1;
+        }
+    }
+
+    /// A taxel turns over at a step, 1 to the last.
+    pub(super) fn turn_over(&mut self, row: usize, column: usize, step: i32) {
+        let step = usize::try_from(step).unwrap_or(0);
+        let (word, shift) = self.layout.place(row);
+        let (bits, bit) = (&mut self.marked[step / 64], 1 << (step % 64));
+        let before = if *bits & bit == 0 {
+            NONE
+        } else {
+            self.last[step]
+        };
+        *bits |= bit;
+        self.last[step] = u32::try_from(self.list.len()).unwrap_or(NONE);
+        self.list.push(Event {
+            mask: 1 << (shift + column),
+            number: self.layout.numbers(row)[column],
+            word: u32::try_from(word).unwrap_or(0),
+            before,
+        });
+    }
+
+    /// Gives key, hash, first step and the step after the last of each run in turn, and forgets the marks.
+    pub(super) fn play(&mut self, mut run: impl FnMut(&[u64], u64, u64, u64)) {
+        let mut from = 0;
+        for (index, marked) in self.marked.iter_mut().enumerate() {
+            while *marked != 0 {
+                let bit = marked.trailing_zeros();
+                *marked &= *marked - 1;
+                let step = index as u64 * 64 + u64::from(bit);
+                run(&self.key, self.hash, from, step);
+                from = step;
+                let mut event = self.last[usize::try_from(step).unwrap_or(0)];
+                while let Some(turned) = self.list.get(usize::try_from(event).unwrap_or(0)) {
+                    self.key[usize::try_from(turned.word).unwrap_or(0)] ^= turned.mask;
+                    self.hash ^= turned.number;
+                    event = turned.before;
+                }
+            }
+        }
+        run(&self.key, self.hash, from, self.count);
+    }
+}

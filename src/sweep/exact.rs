@@ -1,0 +1,70 @@
+//! What `f64` cannot decide: whether the shape covers exactly the threshold of a cell, with 32 digits.
+//!
+//! The same rule as that of a touch ([`crate::touch`]): a coverage that falls short by less than 1e-20 does not fall
+//! short. The boundary is drawn once per turn in [`Double`] at the origin and shifted by the decimals that the ranges
+//! give, which is in real arithmetic the shape of the pose itself.
+
+use super::boundary::Boundary;
+use super::grid::Grid;
+use crate::geometry::outline::Point;
+use crate::geometry::overlap::Overlap;
+use crate::geometry::real::{Double, Real};
+
+/// How many values of x0 and of y0 are kept as places.
+const REMEMBERED: usize = 128;
+
+/// The shape of one turn, ready for exact decisions.
+#[derive(Debug)]
+pub(super) struct Exact<'a> {
+    grid: &'a Grid,
+    turn: u64,
+    boundary: Option<Boundary<Double>>,
+    /// Where the anchor lies for the values of x0 and of y0 asked for last.
+    places: Box<[(Option<u64>, Double)]>,
+    cell: Overlap<Double>,
+    least: Double,
+}
+
+impl<'a> Exact<'a> {
+    pub(super) fn new(grid: &'a Grid, turn: u64) -> Self {
+        Self {
+            grid,
+            turn,
+            boundary: None,
+            places: vec![(None, Double::ZERO); 2 * REMEMBERED].into(),
+            cell: Overlap::new(1, 1),
+            // What is not covered at all stays inactive, however low the threshold.
+            least: Real::max(
+                Double::decimal(grid.sensor().threshold()) - Double::TIE,
+                Double::TIE,
+            ),
+        }
+    }
+
+    /// Whether the taxel is active when the shape lies at value `x` of x0 and value `y` of y0.
+    #[cold]
+    pub(super) fn active(&mut self, column: usize, row: usize, x: u64, y: u64) -> bool {
+        let whole = |index: usize| Double::whole(i32::try_from(index).unwrap_or(0));
+        let by = Point::new(
+            self.place(x, false) - whole(column),
+            self.place(y, true) - whole(row),
+        );
+        let boundary = self
+            .boundary
+            .get_or_insert_with(|| self.grid.boundary(self.turn));
+        self.cell.clear();
+        boundary.draw(by, &mut self.cell);
+        self.cell.first() >= self.least
+    }
+
+    /// Where the anchor lies at a value of x0, or of y0. Reading a decimal takes longer than looking it up.
+    fn place(&mut self, index: u64, down: bool) -> Double {
+        let slot = usize::try_from(index).unwrap_or(0) % REMEMBERED;
+        let (known, place) = &mut self.places[2 * slot + usize::from(down)];
+        if *known != Some(index) {
+            let offset = self.grid.offset::<Double>(self.turn, index, index);
+            (*known, *place) = (Some(index), if down { offset.y } else { offset.x });
+        }
+        *place
+    }
+}

@@ -1,0 +1,109 @@
+//! A survey as plain numbers, for files: what shards are merged from.
+//!
+//! Imprints, how often each occurs and where first, and the sums that the statistics need beside these. Descriptors
+//! are not among them: they follow from the imprints.
+
+use super::atlas::Atlas;
+use super::census::Census;
+use super::grid::Grid;
+use super::plan::Shard;
+use super::spread::Spread;
+use super::survey::Survey;
+use super::table::Table;
+use crate::imprint::Imprint;
+
+/// The numbers of a survey.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Parts {
+    /// Poses gone through.
+    pub poses: u64,
+    /// Poses that reach beyond the sensor.
+    pub partly_off: u64,
+    /// The imprints one after another, a word per row of the sensor, bit `i` for column `i`.
+    pub rows: Vec<u64>,
+    /// How often each imprint occurs.
+    pub counts: Vec<u64>,
+    /// The number of the first pose of each.
+    pub first_poses: Vec<u64>,
+    /// Sums about the turns; their meaning is a matter of this version of the program.
+    pub spread: Vec<u64>,
+}
+
+impl Survey {
+    /// The numbers that it is made of.
+    pub fn parts(&self) -> Parts {
+        let mut parts = Parts {
+            poses: self.poses,
+            partly_off: self.partly_off,
+            spread: self.spread.words(),
+            ..Parts::default()
+        };
+        for entry in self.atlas.entries() {
+            parts.rows.extend_from_slice(entry.imprint.words());
+            parts.counts.push(entry.count);
+            parts.first_poses.push(entry.first_pose);
+        }
+        parts
+    }
+
+    /// The survey that such numbers make.
+    ///
+    /// # Errors
+    /// Where they contradict each other or the grid.
+    pub fn from_parts(grid: Grid, shard: Shard, parts: &Parts) -> Result<Self, PartsError> {
+        let check = |holds: bool, what: &'static str| holds.then_some(()).ok_or(PartsError(what));
+        let (columns, rows) = (grid.sensor().columns(), grid.sensor().rows());
+        let height = usize::from(rows);
+        let same = parts.counts.len() == parts.first_poses.len()
+            && parts.counts.len().checked_mul(height) == Some(parts.rows.len());
+        check(same, "arrays of different lengths")?;
+        let sum = parts
+            .counts
+            .iter()
+            .map(|&count| u128::from(count))
+            .sum::<u128>();
+        check(sum == u128::from(parts.poses), "counts that do not add up")?;
+        let own = shard.rows(grid.rows());
+        let width = grid.ranges().x0.count();
+        check(
+            parts.poses <= (own.end - own.start) * width && parts.partly_off <= parts.poses,
+            "more poses than there are",
+        )?;
+        let ascending = parts.first_poses.windows(2).all(|pair| pair[0] < pair[1]);
+        let last = parts.first_poses.last();
+        check(
+            ascending && last.is_none_or(|&last| last < own.end * width),
+            "first poses out of order",
+        )?;
+        let mut atlas = Atlas::new(columns, rows);
+        let mut census = Census::new(atlas.layout().words());
+        let entries = parts.counts.iter().zip(&parts.first_poses);
+        for (words, (&count, &first)) in parts.rows.chunks_exact(height).zip(entries) {
+            let mut imprint = Imprint::empty(columns, rows);
+            for (row, &word) in words.iter().enumerate() {
+                imprint.set_word(row, word);
+            }
+            check(imprint.words() == words, "taxels beyond the sensor")?;
+            let (key, hash) = atlas.layout().key(&imprint);
+            let known = census.len();
+            census.add(&key, hash, count, first);
+            check(
+                census.len() > known && count > 0,
+                "an imprint that is there twice",
+            )?;
+        }
+        let spread = Spread::from_words(width * grid.ranges().y0.count(), &parts.spread)
+            .ok_or(PartsError("sums of another version"))?;
+        atlas.add(&census, 1);
+        atlas.describe();
+        let mut table = Table::default();
+        table.extend(atlas.notes());
+        let poses = (parts.poses, parts.partly_off);
+        Ok(Self::new(grid, shard, poses, atlas, &table, spread))
+    }
+}
+
+/// Why numbers make no survey.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct PartsError(&'static str);

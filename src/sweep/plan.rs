@@ -1,0 +1,201 @@
+//! How a grid is cut up: shards for several machines, and tasks for the threads of one.
+//!
+//! A shard is a piece of the list of rows, in their order. A task is a piece of one turn; turns whose figure looks the
+//! same share it. Nothing of a result depends on how the tasks are cut.
+//!
+//! **Symmetry.** (x0, y0) places the corner of the figure *before* it is turned, so the centre stays where it is, and
+//! two angles give the same shape when they differ by a symmetry of the figure: 180° for rectangles and ellipses, 90°
+//! for squares, 360°/n for regular polygons where that is a whole number of degrees (not the heptagon's), and any
+//! angle for circles. A picture that a half turn maps onto itself has 180°. Angles are compared as exact decimals.
+
+use std::collections::HashMap;
+use std::fmt;
+use std::ops::Range;
+use std::str::FromStr;
+use std::sync::Arc;
+
+use super::grid::Grid;
+use crate::figure::Kind;
+use crate::parameter::Parameter;
+use crate::source::Source;
+
+/// One of `of` nearly equal pieces of a grid, `number` from 1.
+///
+/// ```
+/// use taxel::sweep::plan::Shard;
+/// let shard: Shard = "2/3".parse().unwrap();
+/// assert_eq!(shard.rows(10), 3..6);
+/// assert!("4/3".parse::<Shard>().is_err());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    number: u32,
+    of: u32,
+}
+
+impl Shard {
+    /// The only piece.
+    pub const WHOLE: Self = Self { number: 1, of: 1 };
+
+    /// Piece `number` of `of`, counted from 1.
+    ///
+    /// # Errors
+    /// Where `number` is not from 1 to `of`.
+    pub fn new(number: u32, of: u32) -> Result<Self, ShardError> {
+        if (1..=of).contains(&number) {
+            Ok(Self { number, of })
+        } else {
+            Err(ShardError {
+                text: format!("{number}/{of}"),
+            })
+        }
+    }
+
+    /// Which one, from 1.
+    pub fn number(&self) -> u32 {
+        self.number
+    }
+
+    /// Out of so many.
+    pub fn of(&self) -> u32 {
+        self.of
+    }
+
+    /// Its rows, out of so many.
+    pub fn rows(&self, rows: u64) -> Range<u64> {
+        let cut = |piece: u32| {
+            let rows = u128::from(rows) * u128::from(piece) / u128::from(self.of);
+            u64::try_from(rows).unwrap_or(u64::MAX)
+        };
+        cut(self.number - 1)..cut(self.number)
+    }
+}
+
+impl FromStr for Shard {
+    type Err = ShardError;
+
+    fn from_str(text: &str) -> Result<Self, ShardError> {
+        let error = || ShardError {
+            text: text.to_owned(),
+        };
+        let (number, of) = text.split_once('/').ok_or_else(error)?;
+        let read = |text: &str| text.trim().parse().map_err(|_| error());
+        Self::new(read(number)?, read(of)?).map_err(|_| error())
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.number, self.of)
+    }
+}
+
+/// A text that is no shard.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("\"{text}\" is no shard, expected K/N with K from 1 to N")]
+pub struct ShardError {
+    /// What was given.
+    pub text: String,
+}
+
+/// Some rows of a turn, and of all turns that look the same.
+#[derive(Clone, Debug)]
+pub(super) struct Task {
+    /// The turns, the first of which is gone through.
+    pub(super) turns: Arc<[u64]>,
+    /// Numbers of its values of y0.
+    pub(super) rows: Range<u64>,
+}
+
+/// About so many poses make a task: enough to pay for its start, few enough to stop soon and to share out.
+const TASK_POSES: u64 = 20_000;
+/// A piece of work is cut into at least so many tasks, where it has as many rows.
+const TASKS: u64 = 16;
+
+/// The tasks of one block of turns (all angles at one pair of zooms) inside of the rows of a shard, in the order in
+/// which they meet a new imprint first.
+pub(super) fn tasks(grid: &Grid, shard: &Range<u64>, block: u64) -> Vec<Task> {
+    let (angles, height) = (grid.ranges().angle.count(), grid.ranges().y0.count());
+    let first_row = block * angles * height;
+    let clipped = |row: u64| row.clamp(first_row, first_row + angles * height) - first_row;
+    let rows = clipped(shard.start)..clipped(shard.end);
+    if rows.is_empty() {
+        return Vec::new();
+    }
+    // Angles that the shard holds only a part of stand for themselves.
+    let full = rows.start.div_ceil(height)..rows.end / height;
+    let mut pieces: Vec<(Vec<u64>, Range<u64>)> = Vec::new();
+    let partial = |angle: u64| {
+        let start = angle * height;
+        let part = rows.start.max(start)..rows.end.min(start + height);
+        (
+            vec![angle],
+            part.start.saturating_sub(start)..part.end.saturating_sub(start),
+        )
+    };
+    if rows.start < full.start * height {
+        pieces.push(partial(full.start - 1));
+    }
+    let mut classes: HashMap<i128, usize> = HashMap::new();
+    let period = period(grid.source());
+    for angle in full.clone() {
+        let class = period.map_or(0, |period| grid.ranges().angle.residue(angle, period));
+        let piece = *classes.entry(class).or_insert(pieces.len());
+        if piece == pieces.len() {
+            pieces.push((Vec::new(), 0..height));
+        }
+        pieces[piece].0.push(angle);
+    }
+    if full.start <= full.end && full.end * height < rows.end {
+        pieces.push(partial(full.end));
+    }
+    let width = grid.ranges().x0.count();
+    let count = pieces.len() as u64;
+    let length = (TASK_POSES / width).min(height * count / TASKS).max(1);
+    let turns = |angles: Vec<u64>, first: u64| angles.into_iter().map(move |angle| first + angle);
+    let mut tasks = Vec::new();
+    for (members, rows) in pieces {
+        let members: Arc<[u64]> = turns(members, block * angles).collect();
+        let mut start = rows.start;
+        while start < rows.end {
+            let end = rows.end.min(start + length);
+            tasks.push(Task {
+                turns: Arc::clone(&members),
+                rows: start..end,
+            });
+            start = end;
+        }
+    }
+    tasks
+}
+
+/// After how many degrees a shape looks the same again; none where any angle will do.
+fn period(source: &Source) -> Option<u32> {
+    let figure = match source {
+        Source::Figure(figure) => figure,
+        Source::Picture(picture) => {
+            let imprint = picture.imprint();
+            let half_turned = imprint.bounds().is_some_and(|bounds| {
+                let mirrored = |column: u8, row: u8| {
+                    imprint.get(
+                        bounds.left + bounds.right - 1 - column,
+                        bounds.top + bounds.bottom - 1 - row,
+                    )
+                };
+                imprint.active().all(|(column, row)| mirrored(column, row))
+            });
+            return Some(if half_turned { 180 } else { 360 });
+        }
+    };
+    let equal = |one: Parameter, other: Parameter| figure.get(one) == figure.get(other);
+    match figure.kind() {
+        Kind::Ellipse if equal(Parameter::RadiusX, Parameter::RadiusY) => None,
+        Kind::Rectangle if equal(Parameter::Length, Parameter::Width) => Some(90),
+        Kind::Ellipse | Kind::Rectangle => Some(180),
+        Kind::Triangle => Some(120),
+        Kind::Pentagon => Some(72),
+        Kind::Hexagon => Some(60),
+        Kind::Heptagon => Some(360),
+        Kind::Octagon => Some(45),
+    }
+}

@@ -1,0 +1,305 @@
+//! Spans of shapes bounded by straight edges, convex or not: figures with corners, and pictures.
+//!
+//! **Method.** Cut to a band one cell high, each edge is a piece from `left` to `right` that climbs by `rise`
+//! (positive where the material is on its right). The height `w(x)` of the shape's section inside the band is the sum
+//! of what the pieces left of `x` have climbed: piecewise linear, with a corner at each piece's ends. Its integral
+//! `W` is piecewise quadratic, and the coverage at place `u` is `C(u) = W(u + 1) − W(u)`, with slope
+//! `w(u + 1) − w(u)`. Two fingers go through the corners of `w`, one a cell ahead of the other; between two stops `C` is
+//! one quadratic, whose passages through the threshold are solved for.
+//!
+//! **Error.** `w` at a corner is a sum of shares of rises, each in [0, 1] of them, and `W` is summed up by
+//! trapezoids: nothing is extrapolated, so steep pieces do no harm. Below 1e-12.
+
+use super::span::{DOUBT, Level, STEEP, Spans};
+use crate::geometry::outline::Point;
+
+/// An edge, from its upper end.
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    top: f64,
+    bottom: f64,
+    /// x at the upper end, and by how much it grows downwards.
+    x: f64,
+    slope: f64,
+    low: f64,
+    high: f64,
+    /// +1 upwards.
+    sign: f64,
+}
+
+impl Edge {
+    fn x_at(&self, y: f64) -> f64 {
+        // Kept between the ends: the slope of an edge that is horizontal up to a rounding means nothing.
+        (self.x + (y - self.top) * self.slope)
+            .max(self.low)
+            .min(self.high)
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    left: f64,
+    right: f64,
+    rise: f64,
+    steepness: f64,
+}
+
+/// The section's height between two corners of `w`, and its integral.
+#[derive(Clone, Copy, Debug)]
+struct Stretch {
+    left: f64,
+    right: f64,
+    /// `w` at the left end, and by how much it grows to the right.
+    from: f64,
+    slope: f64,
+    /// `W` at `left`.
+    area: f64,
+    /// No piece lies here: `w` is a whole number.
+    flat: bool,
+}
+
+impl Stretch {
+    fn far(left: f64, right: f64, area: f64) -> Self {
+        Self {
+            left,
+            right,
+            from: 0.0,
+            slope: 0.0,
+            area,
+            flat: true,
+        }
+    }
+
+    /// `w` and `W` at a place inside.
+    fn at(&self, x: f64) -> (f64, f64) {
+        let way = (x - self.left).max(0.0).min(self.right - self.left);
+        let height = self.from + self.slope * way;
+        (height, self.area + (self.from + height) * 0.5 * way)
+    }
+}
+
+/// A shape of straight edges, and room to work in.
+#[derive(Clone, Debug)]
+pub(super) struct Polygonal {
+    edges: Vec<Edge>,
+    /// Where edges lie that are level, which cut nothing.
+    levels: Vec<f64>,
+    pieces: Vec<Piece>,
+    corners: Vec<f64>,
+    stretches: Vec<Stretch>,
+}
+
+impl Polygonal {
+    pub(super) fn new(edges: &[(Point<f64>, Point<f64>)]) -> Self {
+        let edge = |&(from, to): &(Point<f64>, Point<f64>)| {
+            let (upper, lower, sign) = if to.y < from.y {
+                (to, from, 1.0)
+            } else {
+                (from, to, -1.0)
+            };
+            Edge {
+                top: upper.y,
+                bottom: lower.y,
+                x: upper.x,
+                slope: (lower.x - upper.x) / (lower.y - upper.y),
+                low: upper.x.min(lower.x),
+                high: upper.x.max(lower.x),
+                sign,
+            }
+        };
+        let (mut edges, level): (Vec<Edge>, Vec<Edge>) = edges
+            .iter()
+            .map(edge)
+            .partition(|edge| edge.top < edge.bottom);
+        let levels = level.iter().map(|edge| edge.top).collect();
+        edges.sort_by(|one, other| one.top.total_cmp(&other.top));
+        Self {
+            edges,
+            levels,
+            pieces: Vec::new(),
+            corners: Vec::new(),
+            stretches: Vec::new(),
+        }
+    }
+
+    /// The spans at which the coverage of the cells from `top` to `top + 1` reaches the threshold.
+    pub(super) fn band(&mut self, top: f64, threshold: f64, spans: &mut Spans) {
+        spans.clear();
+        self.cut(top);
+        self.stretch();
+        // A threshold of 1 is reached by a full cell just so. Where no edge comes near, it is full without any doubt.
+        let inside = |level: &f64| *level > top - DOUBT && *level < top + 1.0 + DOUBT;
+        let certain = threshold > 1.0 - 2.0 * DOUBT && !self.levels.iter().any(inside);
+        self.walk(threshold, certain, spans);
+    }
+
+    /// Cuts the edges to the band.
+    fn cut(&mut self, top: f64) {
+        self.pieces.clear();
+        self.corners.clear();
+        for edge in &self.edges {
+            if edge.top >= top + 1.0 {
+                break;
+            }
+            let (from, to) = (edge.top.max(top), edge.bottom.min(top + 1.0));
+            if from >= to {
+                continue;
+            }
+            let (upper, lower) = (edge.x_at(from), edge.x_at(to));
+            let (left, right) = if upper < lower {
+                (upper, lower)
+            } else {
+                (lower, upper)
+            };
+            self.pieces.push(Piece {
+                left,
+                right,
+                rise: edge.sign * (to - from),
+                steepness: edge.sign * (to - from) / (right - left),
+            });
+            self.corners.push(left);
+            self.corners.push(right);
+        }
+        sort(&mut self.corners);
+    }
+
+    /// The section's height and area from corner to corner, with nothing before and after.
+    fn stretch(&mut self) {
+        self.stretches.clear();
+        let (Some(&first), Some(&last)) = (self.corners.first(), self.corners.last()) else {
+            return;
+        };
+        self.stretches.push(Stretch::far(first - 2.0, first, 0.0));
+        let mut area = 0.0;
+        for ends in self.corners.windows(2) {
+            let (left, right) = (ends[0], ends[1]);
+            if left >= right {
+                continue;
+            }
+            let (mut from, mut to, mut flat) = (0.0, 0.0, true);
+            for piece in &self.pieces {
+                if piece.right <= left {
+                    from += piece.rise;
+                    to += piece.rise;
+                } else if piece.left < right {
+                    from += piece.steepness * (left - piece.left);
+                    to += piece.steepness * (right - piece.left);
+                    flat = false;
+                }
+            }
+            self.stretches.push(Stretch {
+                left,
+                right,
+                from,
+                slope: (to - from) / (right - left),
+                area,
+                flat,
+            });
+            area += (from + to) * 0.5 * (right - left);
+        }
+        self.stretches.push(Stretch::far(last, f64::INFINITY, area));
+    }
+
+    /// Follows the coverage from left to right.
+    fn walk(&self, threshold: f64, certain: bool, spans: &mut Spans) {
+        let Some(first) = self.stretches.get(1) else {
+            return;
+        };
+        // The finger at u lies before everything, the one at u + 1 at the first corner. Each has a height and an area.
+        let (mut near, mut far) = (0, 1);
+        let (mut behind, mut ahead) = (&self.stretches[near], &self.stretches[far]);
+        let (mut low, mut left) = (0.0, 0.0);
+        let (mut high, mut right) = (ahead.from, 0.0);
+        let mut u = first.left - 1.0;
+        let end = self.stretches.len() - 1;
+        while near < end {
+            let (stop_behind, stop_ahead) = (behind.right, ahead.right - 1.0);
+            let next = stop_behind.min(stop_ahead);
+            if next > u {
+                let from = (u, right - left - threshold, high - low);
+                (low, left) = behind.at(next);
+                (high, right) = ahead.at(next + 1.0);
+                if certain && near == far && behind.flat && behind.from > 0.5 {
+                    spans.turn(u, Level::Above);
+                } else {
+                    quadratic(from, (next, right - left - threshold, high - low), spans);
+                }
+                u = next;
+            }
+            if stop_behind <= next {
+                near += 1;
+                behind = &self.stretches[near];
+                (low, left) = (behind.from, behind.area);
+            }
+            if stop_ahead <= next && far < end {
+                far += 1;
+                ahead = &self.stretches[far];
+                (high, right) = (ahead.from, ahead.area);
+            }
+        }
+        spans.turn(u, Level::Below);
+    }
+}
+
+/// Insertion sort: the lists are short and nearly in order.
+fn sort(list: &mut [f64]) {
+    for end in 1..list.len() {
+        let value = list[end];
+        let mut at = end;
+        while at > 0 && list[at - 1] > value {
+            list[at] = list[at - 1];
+            at -= 1;
+        }
+        list[at] = value;
+    }
+}
+
+/// Notes the levels that a quadratic goes through between two places, each given with its value and slope there.
+fn quadratic(from: (f64, f64, f64), to: (f64, f64, f64), spans: &mut Spans) {
+    let ((start, first, slope), (end, last, final_slope)) = (from, to);
+    // Nearly all: on one side of the threshold all along, since nowhere steeper than one.
+    if first.abs().min(last.abs()) > end - start + DOUBT && first * last > 0.0 {
+        return spans.turn(start, Level::of(first));
+    }
+    if slope * final_slope < 0.0 {
+        let way = slope / (slope - final_slope) * (end - start);
+        let extreme = (start + way, first + slope * way * 0.5, 0.0);
+        monotone(from, extreme, spans);
+        monotone(extreme, to, spans);
+    } else {
+        monotone((start, first, slope), (end, last, final_slope), spans);
+    }
+}
+
+/// The same, where the slope does not change its sign.
+fn monotone(from: (f64, f64, f64), to: (f64, f64, f64), spans: &mut Spans) {
+    let ((start, first, slope), (end, last, final_slope)) = (from, to);
+    let (before, after) = (Level::of(first), Level::of(last));
+    spans.turn(start, before);
+    if before == after {
+        return;
+    }
+    let bend = (final_slope - slope) / (end - start) * 0.5;
+    let sense = if last > first { 1.0 } else { -1.0 };
+    // Where the quadratic is at a height, and its slope there.
+    let passage = |height: f64| {
+        let gap = first - height;
+        let root = (slope * slope - 4.0 * bend * gap).max(0.0).sqrt();
+        let way = -2.0 * gap / (slope + sense * root);
+        let way = if way.is_finite() { way } else { end - start };
+        ((start + way.max(0.0)).min(end), root)
+    };
+    if before != Level::Doubtful && after != Level::Doubtful {
+        let (at, steepness) = passage(0.0);
+        if steepness >= STEEP && 8.0 * bend.abs() * DOUBT <= steepness * steepness {
+            return spans.turn(at, after);
+        }
+    }
+    // Through the doubt: in at one height, out at another.
+    if before != Level::Doubtful {
+        spans.turn(passage(-sense * DOUBT).0, Level::Doubtful);
+    }
+    if after != Level::Doubtful {
+        spans.turn(passage(sense * DOUBT).0, after);
+    }
+}

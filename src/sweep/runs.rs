@@ -1,0 +1,201 @@
+//! The imprints of the rows of one turn, run by run instead of pose by pose.
+//!
+//! The spans of a band ([`super::span`]) say for each taxel of a row of the sensor between which x0 it is active: taxel
+//! `i` inside of a span from `a` to `b` is so while `i − b ≤ x0 ≤ i − a`. So the imprint at the first x0 follows,
+//! and where along the range which taxel turns over. Between two such places the imprint is the same: one *run*.
+//!
+//! **Exactly as touching does.** Where a value of x0 lies within [`NEAR`] of the end of a span, or in a span that is in
+//! doubt, [`Exact`] decides for that taxel and that pose.
+
+use super::boundary::Boundary;
+use super::census::Census;
+use super::ellipse::Elliptic;
+use super::events::Events;
+use super::exact::Exact;
+use super::grid::Grid;
+use super::layout::Layout;
+use super::mark::{Marker, Steps};
+use super::plan::Task;
+use super::polygon::Polygonal;
+use super::span::Spans;
+use crate::geometry::outline::{Extent, Point};
+use crate::geometry::real::Real;
+use crate::touch::DOUBTFUL;
+
+/// What a task gave.
+#[derive(Debug)]
+pub(super) struct Found {
+    /// Its imprints, counted once per pose of one of its turns.
+    pub(super) census: Census,
+    /// Poses of one turn that reach beyond the sensor.
+    pub(super) partly_off: u64,
+    /// Index in the census and length of each run, row after row; only where asked for.
+    pub(super) runs: Vec<(u32, u32)>,
+}
+
+/// Goes through the rows of a task.
+pub(super) fn go(grid: &Grid, layout: &Layout, task: &Task, keep_runs: bool) -> Found {
+    let turn = task.turns[0];
+    let mut sweeper = Sweeper::new(grid, layout, turn);
+    let mut found = Found {
+        census: Census::new(layout.words()),
+        partly_off: 0,
+        runs: Vec::new(),
+    };
+    let (width, height) = (grid.ranges().x0.count(), grid.ranges().y0.count());
+    for y in task.rows.clone() {
+        sweeper.row(y);
+        found.partly_off += sweeper.beyond(y);
+        let first = (turn * height + y) * width;
+        sweeper.events.play(|key, hash, from, to| {
+            let index = found.census.add(key, hash, to - from, first + from);
+            if keep_runs {
+                let (index, length) = (u32::try_from(index), u32::try_from(to - from));
+                found
+                    .runs
+                    .push((index.unwrap_or(u32::MAX), length.unwrap_or(u32::MAX)));
+            }
+        });
+    }
+    found
+}
+
+/// Either kind of shape.
+#[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "one per task")]
+enum Shape {
+    Polygonal(Polygonal),
+    Elliptic(Elliptic),
+}
+
+impl Shape {
+    fn new(boundary: &Boundary<f64>) -> Self {
+        match Elliptic::new(&boundary.ellipses) {
+            Some(elliptic) => Self::Elliptic(elliptic),
+            None => Self::Polygonal(Polygonal::new(&boundary.edges)),
+        }
+    }
+
+    fn band(&mut self, top: f64, row: usize, threshold: f64, spans: &mut Spans) {
+        match self {
+            Self::Polygonal(shape) => shape.band(top, threshold, spans),
+            Self::Elliptic(shape) => shape.band(top, row, threshold, spans),
+        }
+    }
+}
+
+struct Sweeper<'a> {
+    grid: &'a Grid,
+    turn: u64,
+    shape: Shape,
+    /// Of the shape at the origin; none of one without a boundary.
+    extent: Option<Extent>,
+    steps: Steps,
+    /// How many x0 of a row put the shape partly beyond the left or the right side.
+    beyond: u64,
+    spans: Spans,
+    events: Events<'a>,
+    exact: Exact<'a>,
+}
+
+impl<'a> Sweeper<'a> {
+    fn new(grid: &'a Grid, layout: &'a Layout, turn: u64) -> Self {
+        let boundary = grid.boundary::<f64>(turn);
+        let count = grid.ranges().x0.count();
+        let place = |x: u64| grid.offset::<f64>(turn, x, 0).x;
+        let (first, last) = (place(0), place(count - 1));
+        let count = i32::try_from(count).unwrap_or(i32::MAX);
+        let extent = extent(&boundary);
+        let outside = |extent: &Extent| {
+            let off = |x: &f64| {
+                extent.left + x < -DOUBTFUL
+                    || extent.right + x > f64::from(layout.columns()) + DOUBTFUL
+            };
+            let places = (0..grid.ranges().x0.count()).map(place);
+            places.filter(off).count() as u64
+        };
+        Self {
+            grid,
+            turn,
+            shape: Shape::new(&boundary),
+            beyond: extent.as_ref().map_or(0, outside),
+            extent,
+            steps: Steps {
+                first,
+                // Of a range of one value, anything will do.
+                per_cell: if count > 1 {
+                    f64::from(count - 1) / (last - first)
+                } else {
+                    1.0
+                },
+                count,
+            },
+            spans: Spans::default(),
+            events: Events::new(layout, grid.ranges().x0.count()),
+            exact: Exact::new(grid, turn),
+        }
+    }
+
+    /// How many poses of a row reach beyond the sensor.
+    fn beyond(&self, y: u64) -> u64 {
+        let y = self.grid.offset::<f64>(self.turn, 0, y).y;
+        let bottom = f64::from(self.grid.sensor().rows()) + DOUBTFUL;
+        match &self.extent {
+            Some(extent) if extent.top + y < -DOUBTFUL || extent.bottom + y > bottom => {
+                self.grid.ranges().x0.count()
+            }
+            Some(_) => self.beyond,
+            None => 0,
+        }
+    }
+
+    /// Finds the events of a row.
+    fn row(&mut self, y: u64) {
+        self.events.clear();
+        let Some(extent) = &self.extent else { return };
+        let offset = self.grid.offset::<f64>(self.turn, 0, y).y;
+        let threshold = self.grid.sensor().threshold();
+        let rows = i32::from(self.grid.sensor().rows());
+        let first = Real::floor(extent.top + offset).max(0);
+        let last = Real::floor(extent.bottom + offset).min(rows - 1);
+        for row in first..=last {
+            let (top, row) = (f64::from(row) - offset, usize::try_from(row).unwrap_or(0));
+            self.shape.band(top, row, threshold, &mut self.spans);
+            Marker {
+                steps: self.steps,
+                row,
+                y,
+                events: &mut self.events,
+                exact: &mut self.exact,
+            }
+            .spans(&self.spans);
+        }
+    }
+}
+
+/// The extent of a boundary.
+fn extent(boundary: &Boundary<f64>) -> Option<Extent> {
+    let corners = boundary.edges.iter().map(|&(from, _)| (from, from));
+    let ovals = boundary.ellipses.iter().map(|(ellipse, _)| {
+        let (centre, reach) = (ellipse.centre, ellipse.reach());
+        (
+            Point::new(centre.x - reach.x, centre.y - reach.y),
+            Point::new(centre.x + reach.x, centre.y + reach.y),
+        )
+    });
+    corners.chain(ovals).fold(None, |all, (low, high)| {
+        let own = Extent {
+            left: low.x,
+            top: low.y,
+            right: high.x,
+            bottom: high.y,
+        };
+        let all = all.unwrap_or(own);
+        Some(Extent {
+            left: all.left.min(own.left),
+            top: all.top.min(own.top),
+            right: all.right.max(own.right),
+            bottom: all.bottom.max(own.bottom),
+        })
+    })
+}

@@ -1,0 +1,144 @@
+//! Where along a band of the shape a taxel is active: intervals of its place `u`.
+//!
+//! For one angle and one y0 the coverage of a taxel in row `j` depends only on `u = i − x0`, its column relative to
+//! the shape's anchor: it is the shape's area inside of the unit square whose top left corner is (`u`, `j − y0`).
+//! So one function of `u` per row serves all columns and all x0. This module holds the set of `u` at which it
+//! reaches the threshold.
+
+/// A coverage this near to the threshold is not decided in `f64`; a share of a cell.
+pub(super) const DOUBT: f64 = 1e-10;
+
+/// An end of a sharp span lies this near to its true place; cell sides. Where the coverage passes the threshold
+/// with a slope of [`STEEP`] or more, [`DOUBT`] is left after this way.
+pub(super) const NEAR: f64 = 1e-8;
+
+/// See [`NEAR`]; the factor of two leaves room for the curvature.
+pub(super) const STEEP: f64 = 2.0 * DOUBT / NEAR;
+
+/// What is known of the coverage at some place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Level {
+    /// Short of the threshold.
+    Below,
+    /// Within [`DOUBT`] of it.
+    Doubtful,
+    /// Above it.
+    Above,
+}
+
+impl Level {
+    /// Of a coverage less the threshold.
+    pub(super) fn of(excess: f64) -> Self {
+        if excess > DOUBT {
+            Self::Above
+        } else if excess < -DOUBT {
+            Self::Below
+        } else {
+            Self::Doubtful
+        }
+    }
+}
+
+/// An interval of places.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Span {
+    pub(super) from: f64,
+    pub(super) to: f64,
+    /// Active inside, and not outside, but within [`NEAR`] of the ends, where nothing is known. Otherwise nothing is
+    /// known inside and within [`NEAR`] of it.
+    pub(super) sharp: bool,
+}
+
+/// The spans of one band, ascending and apart from each other by more than four times [`NEAR`] if all are sharp.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Spans {
+    list: Vec<Span>,
+    sharp: bool,
+    level: Option<(f64, Level)>,
+}
+
+impl Spans {
+    /// Starts again, far to the left of the shape.
+    pub(super) fn clear(&mut self) {
+        self.list.clear();
+        self.sharp = true;
+        self.level = None;
+    }
+
+    /// Takes note that from `at` on the level is this one. Places come in ascending order.
+    pub(super) fn turn(&mut self, at: f64, level: Level) {
+        if let Some((from, old)) = self.level {
+            if old == level {
+                return;
+            }
+            let doubtful = old == Level::Doubtful;
+            // A doubt on the way from one side to the other that is hardly wider than nothing is no doubt.
+            let passing = doubtful
+                && at - from <= NEAR
+                && level != Level::Doubtful
+                && self.side_before(from) != level;
+            if passing {
+                let middle = f64::midpoint(from, at);
+                if level == Level::Above {
+                    self.level = Some((middle, level));
+                } else {
+                    if let Some(last) = self.list.last_mut() {
+                        last.to = middle;
+                    }
+                    self.level = None;
+                }
+                return;
+            }
+            self.push(Span {
+                from,
+                to: at,
+                sharp: !doubtful,
+            });
+        }
+        self.level = (level != Level::Below).then_some((at, level));
+    }
+
+    /// The level before the span that begins at `from`.
+    fn side_before(&self, from: f64) -> Level {
+        match self.list.last() {
+            Some(last) if last.to == from => {
+                if last.sharp {
+                    Level::Above
+                } else {
+                    Level::Doubtful
+                }
+            }
+            _ => Level::Below,
+        }
+    }
+
+    fn push(&mut self, mut span: Span) {
+        if span.to - span.from <= 4.0 * NEAR {
+            span.sharp = false;
+        }
+        if let Some(last) = self.list.last() {
+            // A gap that hardly is one.
+            if span.from > last.to && span.from - last.to <= 4.0 * NEAR {
+                let gap = Span {
+                    from: last.to,
+                    to: span.from,
+                    sharp: false,
+                };
+                self.list.push(gap);
+                self.sharp = false;
+            }
+        }
+        self.sharp &= span.sharp;
+        self.list.push(span);
+    }
+
+    /// Whether all of them are sharp.
+    pub(super) fn sharp(&self) -> bool {
+        self.sharp
+    }
+
+    /// The spans, from left to right.
+    pub(super) fn all(&self) -> &[Span] {
+        &self.list
+    }
+}

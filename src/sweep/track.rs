@@ -1,0 +1,66 @@
+//! The passages of an ellipse's coverage through a level, followed from one row of the grid to the next.
+//!
+//! The area of a convex set in a moving cell rises to a plateau and falls again: its root is concave where it is not
+//! 0 (Brunn and Minkowski). So the coverage passes a level at most twice, once on either side, and whoever holds one
+//! rising and one falling passage holds all. From one row to the next a passage moves smoothly: three former ones tell
+//! where to look, and one step of Newton's method usually ends there.
+//!
+//! **Certainty.** At a place the excess over the level is `e` and the slope `m`; within `e/m` and a little the
+//! slope cannot change by more than `c` ([`Oval::change`]). Then the passage lies between `e/(m + c)` and `e/(m − c)`
+//! away. It is taken for known once that is narrower than [`NEAR`] asks for.
+
+use super::oval::Oval;
+use super::span::{NEAR, STEEP};
+
+/// Where a passage was in the last rows.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Track {
+    places: [f64; 3],
+    known: usize,
+}
+
+impl Track {
+    /// Where it is to be expected next; none of a new one.
+    fn expected(&self) -> Option<f64> {
+        let [last, before, first] = self.places;
+        match self.known {
+            0 => None,
+            1 => Some(last),
+            2 => Some(2.0 * last - before),
+            _ => Some(3.0 * (last - before) + first),
+        }
+    }
+
+    pub(super) fn note(&mut self, place: f64) {
+        self.places = [place, self.places[0], self.places[1]];
+        self.known = (self.known + 1).min(3);
+    }
+
+    pub(super) fn forget(&mut self) {
+        self.known = 0;
+    }
+
+    /// The passage through a level in the present band, rising or falling; none where it cannot be told for certain.
+    pub(super) fn follow(&mut self, oval: &Oval, level: f64, rising: bool) -> Option<f64> {
+        let mut u = self.expected()?;
+        for _ in 0..4 {
+            let (left, right) = (oval.at(u), oval.at(u + 1.0));
+            let excess = oval.coverage(&left, &right) - level;
+            let slope = right.height - left.height;
+            if (slope > 0.0) != rising {
+                return None;
+            }
+            let way = excess / slope;
+            let around = way.abs() * 1.5 + NEAR;
+            let change = oval.change(&left, around) + oval.change(&right, around);
+            let steep = slope.abs() - change;
+            u -= way;
+            let enough = slope.abs() <= 1.5 * steep && way.abs() * change <= 0.5 * NEAR * steep;
+            if steep > STEEP && enough {
+                self.note(u);
+                return Some(u);
+            }
+        }
+        None
+    }
+}

@@ -1,0 +1,168 @@
+//! One touch: a shape on a sensor gives the coverage of every taxel and the imprint.
+//!
+//! **The rule** (the paper's "50 %"): a taxel is active when the shape covers at least the threshold share of its
+//! cell. What reaches beyond the sensor is cut off.
+//!
+//! **Exactly the threshold is active**, in real arithmetic, for the decimals that the user wrote. Coverages are
+//! computed in `f64` first, with an error below 1e-12 ([`crate::geometry::overlap`]). One that lies within
+//! [`DOUBTFUL`] of the threshold is computed again with 32 digits ([`Double`]), and is active unless it falls short
+//! by more than 1e-20 ([`Real::TIE`]). Whether two algebraic expressions of the input are *equal* cannot be decided
+//! by any number of digits; but decimals of at most 17 digits that come within 1e-20 of a tie without being one are
+//! not known, and on grids of hundredths the nearest are about 6e-9 away.
+
+use crate::geometry::outline::{Extent, Solid};
+use crate::geometry::overlap::{Overlap, cell};
+use crate::geometry::real::{Double, Real};
+use crate::imprint::Imprint;
+use crate::sensor::Sensor;
+
+/// A coverage this near to the threshold is decided with more digits; a share of a cell.
+pub const DOUBTFUL: f64 = 1e-10;
+
+/// The sensory plane: a sensor that can be touched again and again without allocating.
+///
+/// ```
+/// use taxel::{figure::{Figure, Kind}, sensor::Sensor, touch::Plane};
+/// let mut plane = Plane::new(Sensor::default());
+/// let imprint = plane.touch(&Figure::default_of(Kind::Rectangle, 16));
+/// assert_eq!(imprint.count(), 6 * 3);
+/// assert_eq!(plane.coverage(4, 4), 1.0);
+/// ```
+#[derive(Clone, Debug)]
+pub struct Plane {
+    sensor: Sensor,
+    areas: Overlap<f64>,
+}
+
+impl Plane {
+    /// The plane of a sensor, untouched.
+    pub fn new(sensor: Sensor) -> Self {
+        Self {
+            sensor,
+            areas: Overlap::new(sensor.columns(), sensor.rows()),
+        }
+    }
+
+    /// The sensor.
+    pub fn sensor(&self) -> &Sensor {
+        &self.sensor
+    }
+
+    /// The imprint that a shape leaves. Total: a shape without a boundary leaves none.
+    pub fn touch(&mut self, solid: &impl Solid) -> Imprint {
+        self.areas.clear();
+        solid.draw(&mut self.areas);
+        let mut imprint = Imprint::empty(self.sensor.columns(), self.sensor.rows());
+        let threshold = self.sensor.threshold();
+        let areas = self.areas.grid();
+        let rows = areas.rows();
+        let columns = areas.columns();
+        let first = u32::try_from(columns.start).unwrap_or(0);
+        let unused = u64::BITS - u32::try_from(columns.len()).unwrap_or(0);
+        // Of a shape wholly right of the sensor the columns are none.
+        if rows.is_empty() || columns.is_empty() {
+            return imprint;
+        }
+        for pair in rows.start / 2..rows.end.div_ceil(2) {
+            // The sign of what a cell has too little is its bit. Bits come in from the left: after the last one they
+            // stand `unused` places too high.
+            let (mut short, mut nearest) = ([0_u64; 2], [f64::MAX; 2]);
+            for areas in areas.pair(pair, &columns) {
+                for lane in 0..2 {
+                    let excess = areas[lane] - threshold;
+                    short[lane] = short[lane] >> 1 | excess.to_bits() & 1 << 63;
+                    nearest[lane] = Real::min(Real::abs(excess), nearest[lane]);
+                }
+            }
+            let mut active = short.map(|short| (!short >> unused) << first);
+            if Real::min(nearest[0], nearest[1]) < DOUBTFUL {
+                for lane in 0..2 {
+                    if nearest[lane] < DOUBTFUL {
+                        active[lane] = self.decide(solid, 2 * pair + lane, active[lane]);
+                    }
+                }
+            }
+            imprint.set_pair(pair, active);
+        }
+        imprint
+    }
+
+    /// The active taxels of a row, those in doubt computed again.
+    #[cold]
+    fn decide(&self, solid: &impl Solid, row: usize, mut active: u64) -> u64 {
+        let threshold = self.sensor.threshold();
+        // At least TIE, so that a threshold below it does not activate what is not covered at all.
+        let least = Double::decimal(threshold) - Double::TIE;
+        let least = Real::max(least, Double::TIE);
+        let areas = self.areas.grid();
+        let columns = areas.columns();
+        // The last cell that was decided and that no boundary crosses: its neighbours share its area. So full cells
+        // are decided once a row at a threshold of 1, not one by one.
+        let mut open: Option<(usize, bool)> = None;
+        for (column, area) in columns.clone().zip(areas.row(row, &columns)) {
+            if (area - threshold).abs() >= DOUBTFUL {
+                continue;
+            }
+            let (Ok(cell_column), Ok(cell_row)) = (u8::try_from(column), u8::try_from(row)) else {
+                continue;
+            };
+            let crossed = areas.crosses(row, column);
+            let enough = match open {
+                Some((last, enough)) if last + 1 == column && !crossed => enough,
+                _ => cell::<Double>(solid, cell_column, cell_row) >= least,
+            };
+            open = (!crossed).then_some((column, enough));
+            active = active & !(1 << column) | u64::from(enough) << column;
+        }
+        active
+    }
+
+    /// How much of a taxel's cell the shape of the last touch covers, 0 to 1; of one beyond the sensor, 0.
+    pub fn coverage(&self, column: u8, row: u8) -> f64 {
+        let (column, row) = (usize::from(column), usize::from(row));
+        let areas = self.areas.grid();
+        let columns = areas.columns();
+        if !areas.rows().contains(&row) || !columns.contains(&column) {
+            return 0.0;
+        }
+        let area = areas.row(row, &columns).nth(column - columns.start);
+        area.map_or(0.0, tidy)
+    }
+
+    /// All coverages of the last touch in reading order, each 0 to 1.
+    pub fn coverages(&self) -> Vec<f64> {
+        let width = usize::from(self.sensor.columns());
+        let mut all = vec![0.0; width * usize::from(self.sensor.rows())];
+        let areas = self.areas.grid();
+        let columns = areas.columns();
+        for row in areas.rows() {
+            let cells = &mut all[row * width..][columns.clone()];
+            for (cell, area) in cells.iter_mut().zip(areas.row(row, &columns)) {
+                *cell = tidy(area);
+            }
+        }
+        all
+    }
+}
+
+/// A share of a cell without the roundings that show: never below 0 or above 1, and 0, ½ and 1 just these.
+fn tidy(area: f64) -> f64 {
+    let near = (area * 2.0).round() / 2.0;
+    let area = if (area - near).abs() < f64::TIE {
+        near
+    } else {
+        area
+    };
+    // A negative zero would be printed as such; `max` may keep it, the sum does not.
+    area.clamp(0.0, 1.0) + 0.0
+}
+
+/// Whether a shape reaches beyond the sensor, by more than a rounding.
+pub fn reaches_beyond(solid: &impl Solid, sensor: &Sensor) -> bool {
+    Extent::of(solid).is_some_and(|extent| {
+        let beyond =
+            |low: f64, high: f64, side: u8| low < -DOUBTFUL || high > f64::from(side) + DOUBTFUL;
+        beyond(extent.left, extent.right, sensor.columns())
+            || beyond(extent.top, extent.bottom, sensor.rows())
+    })
+}

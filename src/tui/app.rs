@@ -1,0 +1,213 @@
+//! The state of the program. Everybody may read it; only [`super::update`] writes it.
+
+use super::binding::Context;
+use super::dialog::Dialog;
+use super::document::{Document, History, Seen, StoredName};
+use super::theme::Theme;
+use crate::formats::name::Name;
+use crate::formats::shape::Shape;
+use crate::library::journal::UNNAMED;
+use crate::sensor::Sensor;
+
+/// How the program starts.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// The sensor of the empty matrix.
+    pub sensor: Sensor,
+    /// How it looks.
+    pub theme: Theme,
+}
+
+/// What the arrows do on the matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// They move the cursor.
+    Draw,
+    /// They move the shape.
+    Grab,
+}
+
+/// How taxels are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Display {
+    /// Active or not.
+    Imprint,
+    /// Coverage in shades.
+    Shades,
+    /// Coverage in percent.
+    Percent,
+}
+
+/// What a screen shows that is too narrow for matrix and descriptors side by side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Page {
+    /// The matrix.
+    Matrix,
+    /// The descriptors.
+    Panel,
+}
+
+/// A step of nudging.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NudgeStep {
+    /// 0.01 cells.
+    Hundredth,
+    /// 0.1 cells.
+    Tenth,
+    /// One cell.
+    One,
+}
+
+impl NudgeStep {
+    /// Its length in cell sides.
+    pub fn length(self) -> f64 {
+        match self {
+            Self::Hundredth => 0.01,
+            Self::Tenth => 0.1,
+            Self::One => 1.0,
+        }
+    }
+
+    /// The next larger or smaller one, or the same at the end.
+    #[must_use]
+    pub fn other(self, direction: i8) -> Self {
+        match (self, direction > 0) {
+            (Self::Hundredth, true) | (Self::One, false) => Self::Tenth,
+            (_, true) => Self::One,
+            (_, false) => Self::Hundredth,
+        }
+    }
+}
+
+/// Something said to the user until the next key.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Notice {
+    /// For information.
+    Info(String),
+    /// Why something was not done.
+    Refusal(String),
+}
+
+/// The state of the program.
+#[derive(Clone, Debug)]
+pub struct App {
+    pub(super) history: History,
+    pub(super) cursor: (u8, u8),
+    /// The region chosen with Tab; none: the main one.
+    pub(super) chosen: Option<usize>,
+    pub(super) mode: Mode,
+    pub(super) display: Display,
+    pub(super) page: Page,
+    pub(super) step: NudgeStep,
+    pub(super) dialogs: Vec<Dialog>,
+    pub(super) notice: Option<Notice>,
+    /// The shape that was removed last, until something else is done: undo brings it back.
+    pub(super) removed: Option<String>,
+    /// The commands that were given, the last one last.
+    pub(super) commands: Vec<String>,
+    /// Whether the mouse is wanted.
+    pub(super) mouse: bool,
+    /// What a drag of the mouse sets taxels to, and the taxel that it was on last.
+    pub(super) paint: Option<(bool, (u8, u8))>,
+    /// Columns and rows of the screen.
+    pub(super) screen: (u16, u16),
+    pub(super) theme: Theme,
+    pub(super) ended: bool,
+    /// It ends without having asked: what is not saved stays in the journal.
+    pub(super) killed: bool,
+}
+
+impl App {
+    /// An empty matrix, the cursor in its middle.
+    pub fn new(options: &Options) -> Self {
+        let document = Document::empty(options.sensor);
+        Self {
+            cursor: (options.sensor.columns() / 2, options.sensor.rows() / 2),
+            history: History::new(document),
+            chosen: None,
+            mode: Mode::Draw,
+            display: Display::Imprint,
+            page: Page::Matrix,
+            step: NudgeStep::Hundredth,
+            dialogs: Vec::new(),
+            notice: None,
+            removed: None,
+            commands: Vec::new(),
+            mouse: true,
+            paint: None,
+            screen: (80, 24),
+            theme: options.theme,
+            ended: false,
+            killed: false,
+        }
+    }
+
+    /// Where keys are looked up.
+    pub fn context(&self) -> Context {
+        match (self.dialogs.last(), self.mode) {
+            (Some(dialog), _) => dialog.context(),
+            (None, Mode::Grab) => Context::Grab,
+            (None, Mode::Draw) => Context::Matrix,
+        }
+    }
+
+    /// The document that the matrix shows: what an open form would make of it, or the present one.
+    pub fn shown(&self) -> Document {
+        let form = self.dialogs.iter().rev().find_map(|dialog| match dialog {
+            Dialog::Form(form) => Some(form.shown()),
+            _ => None,
+        });
+        form.unwrap_or_else(|| self.history.present()).clone()
+    }
+
+    /// What can be seen of it.
+    pub fn seen(&self) -> Seen {
+        Seen::of(&self.shown())
+    }
+
+    /// Whether there is work that would be lost.
+    pub fn unsaved(&self) -> bool {
+        self.history.present() != &self.history.origin().saved
+    }
+
+    /// What is on the matrix and would be lost, to be kept in the journal. At an end that was asked for, it was given up.
+    pub fn unsaved_work(&self) -> Option<Shape> {
+        if self.ended && !self.killed {
+            return None;
+        }
+        let stored = self.stored_name().unwrap_or(UNNAMED);
+        let name = Name::new(stored).or_else(|_| Name::new(UNNAMED)).ok()?;
+        let shown = self.shown();
+        (shown != self.history.origin().saved).then(|| shown.to_shape(name))
+    }
+
+    /// The taxel that the cursor is on: column, row.
+    pub fn cursor(&self) -> (u8, u8) {
+        self.cursor
+    }
+
+    /// The region that was chosen, by its number from 0; none: the main one.
+    pub fn chosen(&self) -> Option<usize> {
+        self.chosen
+    }
+
+    /// Where the document is stored.
+    pub(super) fn stored(&self) -> Option<&StoredName> {
+        self.history.origin().name.as_ref()
+    }
+
+    /// The name that the document was loaded from or stored under.
+    pub fn stored_name(&self) -> Option<&str> {
+        self.stored().map(|stored| stored.name.as_str())
+    }
+
+    /// Whether the program has come to its end.
+    pub fn ended(&self) -> bool {
+        self.ended
+    }
+
+    /// How it looks.
+    pub fn theme(&self) -> &Theme {
+        &self.theme
+    }
+}

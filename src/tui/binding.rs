@@ -1,0 +1,139 @@
+//! Rows of the table of keys: where, which keys, what they mean, how they are shown.
+
+use super::key::{Arrow, Key};
+use super::message::Message;
+
+/// Where a key is pressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Context {
+    /// Anywhere, unless the key means something else there.
+    Everywhere,
+    /// On the matrix.
+    Matrix,
+    /// On the matrix, the shape being held.
+    Grab,
+    /// In a form.
+    Form,
+    /// In the list of shapes.
+    List,
+    /// In the field for a name.
+    Name,
+    /// In the command line at the foot.
+    Command,
+    /// In the list of keys.
+    Help,
+    /// At a question.
+    Question,
+}
+
+impl Context {
+    /// All of them, in the order of help.
+    pub const ALL: [Self; 9] = [
+        Self::Matrix,
+        Self::Grab,
+        Self::Form,
+        Self::List,
+        Self::Name,
+        Self::Command,
+        Self::Question,
+        Self::Help,
+        Self::Everywhere,
+    ];
+
+    /// Its heading in help.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Everywhere => "Everywhere",
+            Self::Matrix => "On the matrix",
+            Self::Grab => "While a shape is held",
+            Self::Form => "In a form",
+            Self::List => "In the list of shapes",
+            Self::Name => "Saving",
+            Self::Command => "In the command line",
+            Self::Help => "In this list",
+            Self::Question => "At a question",
+        }
+    }
+
+    /// Where a key is looked up next that means nothing here.
+    pub(super) fn outer(self) -> Option<Self> {
+        match self {
+            Self::Everywhere => None,
+            Self::Grab => Some(Self::Matrix),
+            _ => Some(Self::Everywhere),
+        }
+    }
+
+    /// Whether characters that are no command are typed into a field.
+    pub(super) fn takes_text(self) -> bool {
+        matches!(self, Self::Form | Self::List | Self::Name | Self::Command)
+    }
+}
+
+/// A row of the table.
+#[derive(Clone, Debug)]
+pub struct Binding {
+    /// Where.
+    pub context: Context,
+    /// Any of these keys, each with the message it gives.
+    pub keys: &'static [(Key, Message)],
+    /// A word or two for the line of hints; empty where it does not stand there.
+    pub hint: &'static str,
+    /// What it does, for help.
+    pub help: &'static str,
+}
+
+impl Binding {
+    /// Its keys as people write them: "Home End"; the four arrows as one word.
+    pub fn labels(&self) -> String {
+        let arrows = |shown: fn(Arrow) -> Key| {
+            let all = [Arrow::Left, Arrow::Right, Arrow::Up, Arrow::Down];
+            all.iter()
+                .all(|&arrow| self.keys.iter().any(|(key, _)| *key == shown(arrow)))
+        };
+        if arrows(Key::Arrow) {
+            return "arrows".to_owned();
+        }
+        if arrows(Key::ShiftArrow) {
+            return "Shift-arrows".to_owned();
+        }
+        self.keys
+            .iter()
+            .map(|(key, _)| key.label())
+            .collect::<Vec<_>>()
+            .join(" ")
+    }
+
+    /// The same in short, for hints: one key, or a pair of opposite ones where these are short.
+    pub fn short_labels(&self) -> String {
+        let all = self.labels();
+        let (Some((first, message)), true) = (self.keys.first(), all.contains(' ')) else {
+            return all;
+        };
+        let opposite = self
+            .keys
+            .iter()
+            .find(|(_, other)| other != message)
+            .map(|(key, _)| key.label());
+        let first = first.label();
+        match opposite {
+            Some(second) if first.len() + second.len() <= 7 => format!("{first} {second}"),
+            _ => first,
+        }
+    }
+}
+
+/// A row.
+pub(super) const fn bind(
+    context: Context,
+    keys: &'static [(Key, Message)],
+    hint: &'static str,
+    help: &'static str,
+) -> Binding {
+    Binding {
+        context,
+        keys,
+        hint,
+        help,
+    }
+}

@@ -1,0 +1,198 @@
+//! Keys, and their notation: `f<Down><Tab>4.00<Enter>`.
+//!
+//! Only keys that arrive on every terminal: no Alt, no Ctrl with a digit. A character stands for itself, `<lt>` for
+//! `<`; named keys and Ctrl stand in angle brackets, `<3x:Down>` repeats one.
+
+use std::fmt;
+
+/// One of the four arrows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arrow {
+    /// To smaller x.
+    Left,
+    /// To larger x.
+    Right,
+    /// To smaller y.
+    Up,
+    /// To larger y.
+    Down,
+}
+
+impl Arrow {
+    /// The step (dx, dy) in the plane's frame.
+    pub fn step(self) -> (i8, i8) {
+        match self {
+            Self::Left => (-1, 0),
+            Self::Right => (1, 0),
+            Self::Up => (0, -1),
+            Self::Down => (0, 1),
+        }
+    }
+}
+
+/// A key that was pressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Key {
+    /// A character, Shift already in it.
+    Char(char),
+    /// Ctrl with a lower-case letter.
+    Ctrl(char),
+    /// An arrow.
+    Arrow(Arrow),
+    /// An arrow with Shift, where the terminal sends it.
+    ShiftArrow(Arrow),
+    /// Home.
+    Home,
+    /// End.
+    End,
+    /// Page up.
+    PageUp,
+    /// Page down.
+    PageDown,
+    /// Enter.
+    Enter,
+    /// Escape.
+    Esc,
+    /// Tab.
+    Tab,
+    /// Shift-Tab.
+    BackTab,
+    /// Delete to the left.
+    Backspace,
+    /// Delete to the right.
+    Delete,
+}
+
+/// Names in brackets; the first of a key is the one that is written.
+const NAMES: [(&str, Key); 22] = [
+    ("Left", Key::Arrow(Arrow::Left)),
+    ("Right", Key::Arrow(Arrow::Right)),
+    ("Up", Key::Arrow(Arrow::Up)),
+    ("Down", Key::Arrow(Arrow::Down)),
+    ("S-Left", Key::ShiftArrow(Arrow::Left)),
+    ("S-Right", Key::ShiftArrow(Arrow::Right)),
+    ("S-Up", Key::ShiftArrow(Arrow::Up)),
+    ("S-Down", Key::ShiftArrow(Arrow::Down)),
+    ("Home", Key::Home),
+    ("End", Key::End),
+    ("PageUp", Key::PageUp),
+    ("PageDown", Key::PageDown),
+    ("Enter", Key::Enter),
+    ("CR", Key::Enter),
+    ("Esc", Key::Esc),
+    ("Tab", Key::Tab),
+    ("S-Tab", Key::BackTab),
+    ("BS", Key::Backspace),
+    ("Del", Key::Delete),
+    ("Space", Key::Char(' ')),
+    ("lt", Key::Char('<')),
+    ("gt", Key::Char('>')),
+];
+
+impl fmt::Display for Key {
+    /// The notation.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (*self, NAMES.iter().find(|(_, key)| key == self)) {
+            (Self::Char('>'), _) => f.write_str(">"),
+            (_, Some((name, _))) => write!(f, "<{name}>"),
+            (Self::Ctrl(letter), _) => write!(f, "<C-{letter}>"),
+            (Self::Char(character), _) => write!(f, "{character}"),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Key {
+    /// How people write it: in hints, help and tables.
+    pub fn label(self) -> String {
+        match self {
+            Self::Char(' ') => "Space".to_owned(),
+            Self::Char(character) => character.to_string(),
+            Self::Ctrl(letter) => format!("Ctrl-{}", letter.to_ascii_uppercase()),
+            Self::BackTab => "Shift-Tab".to_owned(),
+            Self::Backspace => "Backspace".to_owned(),
+            Self::Delete => "Delete".to_owned(),
+            Self::ShiftArrow(arrow) => format!("Shift-{arrow:?}"),
+            other => other.to_string().trim_matches(['<', '>']).to_owned(),
+        }
+    }
+}
+
+/// Why a text is no sequence of keys.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("key {found:?} at character {at} is unknown; a '<' by itself is written <lt>")]
+pub struct KeyError {
+    /// Where, in characters, from 1.
+    pub at: usize,
+    /// What stands there.
+    pub found: String,
+}
+
+/// The most keys that one repetition gives: a slip of the pen must not take hours.
+const MOST_REPEATED: usize = 10_000;
+/// The most keys that a text gives.
+const MOST_KEYS: usize = 200_000;
+
+/// The keys of a text in notation.
+///
+/// ```
+/// use taxel::tui::key::{Key, Arrow, parse};
+/// assert_eq!(parse("f<2x:Down><C-r>").unwrap(),
+///     [Key::Char('f'), Key::Arrow(Arrow::Down), Key::Arrow(Arrow::Down), Key::Ctrl('r')]);
+/// ```
+///
+/// # Errors
+/// The first name in brackets that is unknown.
+pub fn parse(text: &str) -> Result<Vec<Key>, KeyError> {
+    let mut keys = Vec::new();
+    let (mut rest, mut at) = (text, 1);
+    while let Some(first) = rest.chars().next() {
+        let mut used = first.len_utf8();
+        if first == '<' {
+            let error = |length: usize| KeyError {
+                at,
+                found: rest.chars().take(length.min(24)).collect(),
+            };
+            let end = rest.find('>').ok_or_else(|| error(24))?;
+            used = end + 1;
+            let name = &rest[1..end];
+            let (times, name) = match name.split_once("x:") {
+                Some((times, name)) => (
+                    times.parse().ok().filter(|&times| times <= MOST_REPEATED),
+                    name,
+                ),
+                None => (Some(1), name),
+            };
+            let (Some(times), Some(key)) = (times, named(name)) else {
+                return Err(error(rest[..used].chars().count()));
+            };
+            if keys.len() + times > MOST_KEYS {
+                return Err(error(rest[..used].chars().count()));
+            }
+            keys.extend(std::iter::repeat_n(key, times));
+        } else {
+            keys.push(Key::Char(first));
+        }
+        at += rest[..used].chars().count();
+        rest = &rest[used..];
+    }
+    Ok(keys)
+}
+
+fn named(name: &str) -> Option<Key> {
+    let ctrl = || {
+        let letter = name
+            .strip_prefix("C-")
+            .or_else(|| name.strip_prefix("c-"))?;
+        let mut characters = letter.chars();
+        let letter = characters.next().filter(char::is_ascii_alphabetic)?;
+        characters
+            .next()
+            .is_none()
+            .then(|| Key::Ctrl(letter.to_ascii_lowercase()))
+    };
+    let listed = NAMES
+        .iter()
+        .find(|(known, _)| known.eq_ignore_ascii_case(name));
+    listed.map(|&(_, key)| key).or_else(ctrl)
+}

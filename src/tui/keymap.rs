@@ -1,0 +1,543 @@
+//! The table of keys. Help, hints and the menu are made from it; a key that is not in it does nothing.
+//!
+//! The arrows move the cursor, not `hjkl`: `l` is Load, as in the paper's menu.
+
+use super::binding::{Binding, Context, bind};
+use super::key::{Arrow, Key};
+use super::message::{Copied, End, Erase, Message};
+
+use Context::{Command, Everywhere, Form, Grab, Help, List, Matrix, Name, Question};
+use Key::Char;
+
+const LEFT: Key = Key::Arrow(Arrow::Left);
+const RIGHT: Key = Key::Arrow(Arrow::Right);
+const UP: Key = Key::Arrow(Arrow::Up);
+const DOWN: Key = Key::Arrow(Arrow::Down);
+
+/// The table, in the order of help and hints; the first seven are the paper's options and make the menu.
+pub const KEYMAP: &[Binding] = &[
+    bind(
+        Matrix,
+        &[(Char('n'), Message::New)],
+        "",
+        "New: empty the matrix, to draw by hand",
+    ),
+    bind(
+        Matrix,
+        &[(Char('l'), Message::Load)],
+        "",
+        "Load: bring a stored shape onto the matrix",
+    ),
+    bind(
+        Matrix,
+        &[(Char('f'), Message::Figure)],
+        "",
+        "Figure: touch one of the seven figures",
+    ),
+    bind(
+        Matrix,
+        &[(Char('p'), Message::Picture)],
+        "",
+        "Picture: move, turn and zoom a stored shape",
+    ),
+    bind(
+        Matrix,
+        &[(Char('s'), Message::Save)],
+        "",
+        "Save: store what is on the matrix",
+    ),
+    bind(
+        Matrix,
+        &[(Char('d'), Message::Delete)],
+        "",
+        "Delete: remove a stored shape",
+    ),
+    bind(
+        Matrix,
+        &[(Char('q'), Message::Quit)],
+        "",
+        "Quit, after a question where work would be lost",
+    ),
+    bind(
+        Matrix,
+        &[
+            (LEFT, Message::Cursor(Arrow::Left)),
+            (RIGHT, Message::Cursor(Arrow::Right)),
+            (UP, Message::Cursor(Arrow::Up)),
+            (DOWN, Message::Cursor(Arrow::Down)),
+        ],
+        "",
+        "move the cursor",
+    ),
+    bind(
+        Matrix,
+        &[
+            (Key::Home, Message::ToColumn(End::First)),
+            (Key::End, Message::ToColumn(End::Last)),
+        ],
+        "",
+        "cursor to the first, the last column",
+    ),
+    bind(
+        Matrix,
+        &[
+            (Key::PageUp, Message::ToRow(End::First)),
+            (Key::PageDown, Message::ToRow(End::Last)),
+        ],
+        "",
+        "cursor to the first, the last row",
+    ),
+    bind(
+        Matrix,
+        &[(Char(' '), Message::Toggle)],
+        "toggle",
+        "turn the taxel under the cursor on or off",
+    ),
+    bind(
+        Matrix,
+        &[(Char('u'), Message::Undo)],
+        "undo",
+        "take back the last change, and those before",
+    ),
+    bind(
+        Matrix,
+        &[(Char('U'), Message::Redo), (Key::Ctrl('r'), Message::Redo)],
+        "redo",
+        "make it again",
+    ),
+    bind(
+        Matrix,
+        &[
+            (Key::Tab, Message::Region(1)),
+            (Key::BackTab, Message::Region(-1)),
+        ],
+        "region",
+        "describe the next, the previous piece or hole",
+    ),
+    bind(
+        Matrix,
+        &[(Char('c'), Message::Display)],
+        "coverage",
+        "coverage in shades, in percent, the imprint again",
+    ),
+    bind(
+        Matrix,
+        &[(Char('g'), Message::Grab)],
+        "grab",
+        "hold the shape, to move it with the arrows",
+    ),
+    bind(
+        Matrix,
+        &[
+            (Key::ShiftArrow(Arrow::Left), Message::Nudge(Arrow::Left)),
+            (Key::ShiftArrow(Arrow::Right), Message::Nudge(Arrow::Right)),
+            (Key::ShiftArrow(Arrow::Up), Message::Nudge(Arrow::Up)),
+            (Key::ShiftArrow(Arrow::Down), Message::Nudge(Arrow::Down)),
+        ],
+        "",
+        "move the shape without holding it",
+    ),
+    bind(
+        Matrix,
+        &[
+            (Char('<'), Message::Turn(-1)),
+            (Char('>'), Message::Turn(1)),
+        ],
+        "turn",
+        "turn the shape by 1 degree, left, right",
+    ),
+    bind(
+        Matrix,
+        &[
+            (Char('('), Message::Turn(-10)),
+            (Char(')'), Message::Turn(10)),
+        ],
+        "",
+        "turn it by 10 degrees",
+    ),
+    bind(
+        Matrix,
+        &[
+            (Char('z'), Message::Zoom(1)),
+            (Char('Z'), Message::Zoom(-1)),
+        ],
+        "",
+        "zoom a picture in, out, by the step of holding",
+    ),
+    bind(
+        Matrix,
+        &[(Char('S'), Message::Sensor)],
+        "",
+        "Sensor: columns, rows, threshold, pitch",
+    ),
+    bind(
+        Matrix,
+        &[(Char('i'), Message::Page)],
+        "descriptors",
+        "on a narrow screen: descriptors, matrix",
+    ),
+    bind(
+        Matrix,
+        &[
+            (Char('y'), Message::Copy(Copied::Descriptors)),
+            (Char('Y'), Message::Copy(Copied::Imprint)),
+        ],
+        "",
+        "copy the descriptors, the imprint to your terminal",
+    ),
+    bind(
+        Matrix,
+        &[(Char('m'), Message::MouseOnOff)],
+        "",
+        "the mouse: to taxel, or to select text",
+    ),
+    bind(
+        Matrix,
+        &[(Char(':'), Message::Command)],
+        "",
+        "a command by its name",
+    ),
+    bind(
+        Matrix,
+        &[(Char('?'), Message::Help)],
+        "help",
+        "Help: this list",
+    ),
+    bind(
+        Grab,
+        &[
+            (LEFT, Message::Nudge(Arrow::Left)),
+            (RIGHT, Message::Nudge(Arrow::Right)),
+            (UP, Message::Nudge(Arrow::Up)),
+            (DOWN, Message::Nudge(Arrow::Down)),
+        ],
+        "move",
+        "move the shape by a step",
+    ),
+    bind(
+        Grab,
+        &[
+            (Char('+'), Message::NudgeStep(1)),
+            (Char('='), Message::NudgeStep(1)),
+            (Char('-'), Message::NudgeStep(-1)),
+        ],
+        "step",
+        "a larger, a smaller step: 0.01, 0.1, 1",
+    ),
+    bind(
+        Grab,
+        &[
+            (Char('g'), Message::Grab),
+            (Key::Enter, Message::Grab),
+            (Key::Esc, Message::Grab),
+        ],
+        "let go",
+        "let the shape go",
+    ),
+    bind(
+        Form,
+        &[
+            (Key::Tab, Message::Field(1)),
+            (Key::BackTab, Message::Field(-1)),
+        ],
+        "field",
+        "next, previous field",
+    ),
+    bind(
+        Form,
+        &[
+            (LEFT, Message::Choose(Arrow::Left)),
+            (RIGHT, Message::Choose(Arrow::Right)),
+            (UP, Message::Choose(Arrow::Up)),
+            (DOWN, Message::Choose(Arrow::Down)),
+        ],
+        "",
+        "choose the kind; move in a field, to other fields",
+    ),
+    bind(
+        Form,
+        &[
+            (Char('+'), Message::Step(1)),
+            (Char('='), Message::Step(1)),
+            (Char('-'), Message::Step(-1)),
+        ],
+        "step",
+        "change the number by its last decimal",
+    ),
+    bind(
+        Form,
+        &[
+            (Key::Backspace, Message::Erase(Erase::Before)),
+            (Key::Delete, Message::Erase(Erase::Under)),
+        ],
+        "",
+        "delete a character",
+    ),
+    bind(
+        Form,
+        &[(Key::Ctrl('u'), Message::Erase(Erase::All))],
+        "clear",
+        "clear the field",
+    ),
+    bind(
+        Form,
+        &[
+            (Key::Home, Message::ToEdge(End::First)),
+            (Key::End, Message::ToEdge(End::Last)),
+        ],
+        "",
+        "to the start, the end of the field",
+    ),
+    bind(
+        Form,
+        &[(Key::Enter, Message::Accept)],
+        "take it",
+        "take it; refused while a field is wrong",
+    ),
+    bind(
+        Form,
+        &[
+            (Key::Esc, Message::Cancel),
+            (Key::Ctrl('g'), Message::Cancel),
+        ],
+        "cancel",
+        "leave everything as it was",
+    ),
+    bind(Question, &[(Char('y'), Message::Accept)], "yes", "yes"),
+    bind(Question, &[(Char('n'), Message::Decline)], "no", "no"),
+    bind(
+        Question,
+        &[
+            (Key::Esc, Message::Cancel),
+            (Key::Ctrl('g'), Message::Cancel),
+            (Char('q'), Message::Cancel),
+        ],
+        "not now",
+        "no answer now",
+    ),
+    bind(
+        List,
+        &[(UP, Message::Scroll(-1)), (DOWN, Message::Scroll(1))],
+        "choose",
+        "previous, next shape",
+    ),
+    bind(
+        List,
+        &[
+            (Key::PageUp, Message::Scroll(-10)),
+            (Key::PageDown, Message::Scroll(10)),
+        ],
+        "",
+        "ten shapes back, on",
+    ),
+    bind(
+        List,
+        &[
+            (Key::Home, Message::ScrollTo(End::First)),
+            (Key::End, Message::ScrollTo(End::Last)),
+        ],
+        "",
+        "first, last shape",
+    ),
+    bind(
+        List,
+        &[(Key::Enter, Message::Accept)],
+        "take it",
+        "take the shape",
+    ),
+    bind(
+        List,
+        &[(Key::Backspace, Message::Erase(Erase::Before))],
+        "",
+        "delete a character of the filter",
+    ),
+    bind(
+        List,
+        &[(Key::Ctrl('u'), Message::Erase(Erase::All))],
+        "clear",
+        "clear the filter",
+    ),
+    bind(
+        List,
+        &[
+            (Key::Esc, Message::Cancel),
+            (Key::Ctrl('g'), Message::Cancel),
+        ],
+        "cancel",
+        "leave everything as it was",
+    ),
+    bind(
+        Name,
+        &[(Key::Enter, Message::Accept)],
+        "save",
+        "store under this name",
+    ),
+    bind(
+        Name,
+        &[
+            (LEFT, Message::Choose(Arrow::Left)),
+            (RIGHT, Message::Choose(Arrow::Right)),
+        ],
+        "",
+        "move in the name",
+    ),
+    bind(
+        Name,
+        &[
+            (Key::Home, Message::ToEdge(End::First)),
+            (Key::End, Message::ToEdge(End::Last)),
+        ],
+        "",
+        "to its start, its end",
+    ),
+    bind(
+        Name,
+        &[
+            (Key::Backspace, Message::Erase(Erase::Before)),
+            (Key::Delete, Message::Erase(Erase::Under)),
+        ],
+        "",
+        "delete a character",
+    ),
+    bind(
+        Name,
+        &[(Key::Ctrl('u'), Message::Erase(Erase::All))],
+        "clear",
+        "clear the name",
+    ),
+    bind(
+        Name,
+        &[
+            (Key::Esc, Message::Cancel),
+            (Key::Ctrl('g'), Message::Cancel),
+        ],
+        "cancel",
+        "do not store",
+    ),
+    bind(Command, &[(Key::Enter, Message::Accept)], "do it", "do it"),
+    bind(
+        Command,
+        &[(Key::Tab, Message::Field(1))],
+        "complete",
+        "complete the word",
+    ),
+    bind(
+        Command,
+        &[
+            (UP, Message::Choose(Arrow::Up)),
+            (DOWN, Message::Choose(Arrow::Down)),
+        ],
+        "earlier",
+        "earlier, later commands",
+    ),
+    bind(
+        Command,
+        &[
+            (LEFT, Message::Choose(Arrow::Left)),
+            (RIGHT, Message::Choose(Arrow::Right)),
+        ],
+        "",
+        "move in the line",
+    ),
+    bind(
+        Command,
+        &[
+            (Key::Home, Message::ToEdge(End::First)),
+            (Key::End, Message::ToEdge(End::Last)),
+        ],
+        "",
+        "to its start, its end",
+    ),
+    bind(
+        Command,
+        &[
+            (Key::Backspace, Message::Erase(Erase::Before)),
+            (Key::Delete, Message::Erase(Erase::Under)),
+        ],
+        "",
+        "delete a character",
+    ),
+    bind(
+        Command,
+        &[(Key::Ctrl('u'), Message::Erase(Erase::All))],
+        "",
+        "clear the line",
+    ),
+    bind(
+        Command,
+        &[
+            (Key::Esc, Message::Cancel),
+            (Key::Ctrl('g'), Message::Cancel),
+        ],
+        "cancel",
+        "do nothing",
+    ),
+    bind(
+        Help,
+        &[
+            (UP, Message::Scroll(-1)),
+            (DOWN, Message::Scroll(1)),
+            (Key::PageUp, Message::Scroll(-10)),
+            (Key::PageDown, Message::Scroll(10)),
+        ],
+        "scroll",
+        "scroll",
+    ),
+    bind(
+        Help,
+        &[
+            (Char('q'), Message::Cancel),
+            (Char('?'), Message::Cancel),
+            (Key::Enter, Message::Cancel),
+            (Key::Esc, Message::Cancel),
+            (Key::Ctrl('g'), Message::Cancel),
+        ],
+        "close",
+        "close",
+    ),
+    bind(
+        Everywhere,
+        &[(Key::Ctrl('l'), Message::Redraw)],
+        "",
+        "draw the screen anew",
+    ),
+    bind(
+        Everywhere,
+        &[(Key::Ctrl('z'), Message::Suspend)],
+        "",
+        "back to the shell; its fg comes back here",
+    ),
+    bind(
+        Everywhere,
+        &[(Key::Ctrl('c'), Message::Quit)],
+        "",
+        "close what is open; on the matrix: quit",
+    ),
+];
+
+/// How many rows at the head of the table make the menu.
+pub const MENU: usize = 7;
+
+/// How many lines the list of keys has: a heading for each place, and the table.
+pub fn help_lines() -> usize {
+    Context::ALL.len() + KEYMAP.len()
+}
+
+/// What a key means where it is pressed.
+pub fn lookup(context: Context, key: Key) -> Option<Message> {
+    let mut place = Some(context);
+    while let Some(here) = place {
+        let rows = KEYMAP.iter().filter(|binding| binding.context == here);
+        if let Some((_, message)) = rows
+            .flat_map(|binding| binding.keys)
+            .find(|(bound, _)| *bound == key)
+        {
+            return Some(message.clone());
+        }
+        place = here.outer();
+    }
+    match key {
+        Char(character) if context.takes_text() => Some(Message::Type(character)),
+        _ => None,
+    }
+}

@@ -1,0 +1,121 @@
+//! The list of shapes: filtered as one types, its shapes read as they come into sight.
+
+use std::collections::HashMap;
+
+use tui_input::{Input, InputRequest};
+
+use super::purpose::Purpose;
+use crate::formats::name::LONGEST;
+use crate::library::store::{Entry, Loaded, Origin};
+
+/// So many shapes around the selected one are read at once: more than any screen shows.
+const AHEAD: usize = 64;
+
+/// The list.
+#[derive(Clone, Debug)]
+pub struct ListDialog {
+    purpose: Purpose,
+    entries: Vec<Entry>,
+    filter: Input,
+    /// The entries that the filter leaves, by their place in `entries`.
+    matching: Vec<usize>,
+    selected: usize,
+    read: HashMap<usize, Result<Loaded, String>>,
+}
+
+impl ListDialog {
+    /// The list of a library. Only the user's own shapes can be removed.
+    pub fn new(purpose: Purpose, mut entries: Vec<Entry>) -> Self {
+        if purpose == Purpose::Delete {
+            entries.retain(|entry| entry.origin == Origin::Own);
+        }
+        let mut list = Self {
+            purpose,
+            entries,
+            filter: Input::default(),
+            matching: Vec::new(),
+            selected: 0,
+            read: HashMap::new(),
+        };
+        list.sift();
+        list
+    }
+
+    /// What a shape is chosen for.
+    pub fn purpose(&self) -> Purpose {
+        self.purpose
+    }
+
+    /// What was typed.
+    pub fn filter(&self) -> &str {
+        self.filter.value()
+    }
+
+    /// How many shapes there are without the filter.
+    pub fn total(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// The shapes that the filter leaves, with their content where it was read.
+    pub fn rows(&self) -> impl ExactSizeIterator<Item = (&Entry, Option<&Result<Loaded, String>>)> {
+        self.matching
+            .iter()
+            .map(|index| (&self.entries[*index], self.read.get(index)))
+    }
+
+    /// Which of these rows is selected.
+    pub fn selected(&self) -> usize {
+        self.selected
+    }
+
+    /// The selected shape.
+    pub fn choice(&self) -> Option<(&Entry, Option<&Result<Loaded, String>>)> {
+        self.rows().nth(self.selected)
+    }
+
+    /// Selects another row, so many further on.
+    pub fn go(&mut self, lines: i16) {
+        self.select(self.selected.saturating_add_signed(isize::from(lines)));
+    }
+
+    /// Selects a row, or the last one.
+    pub fn select(&mut self, row: usize) {
+        self.selected = row.min(self.matching.len().saturating_sub(1));
+    }
+
+    /// Types a character of the filter.
+    pub fn insert(&mut self, character: char) {
+        if !character.is_control() && self.filter().chars().count() < LONGEST {
+            self.edit(InputRequest::InsertChar(character));
+        }
+    }
+
+    /// Changes the filter.
+    pub fn edit(&mut self, request: InputRequest) {
+        let _ = self.filter.handle(request);
+        self.sift();
+    }
+
+    fn sift(&mut self) {
+        let wanted = self.filter().to_lowercase();
+        let fits = |entry: &Entry| wanted.is_empty() || entry.name.to_lowercase().contains(&wanted);
+        self.matching = (0..self.entries.len())
+            .filter(|&index| fits(&self.entries[index]))
+            .collect();
+        self.selected = 0;
+    }
+
+    /// The shapes in sight that were not read yet, by their place in the list.
+    pub fn unread(&self) -> Vec<(usize, String)> {
+        let first = self.selected.saturating_sub(AHEAD);
+        let near = self.matching.iter().skip(first).take(2 * AHEAD);
+        near.filter(|index| !self.read.contains_key(index))
+            .map(|&index| (index, self.entries[index].name.clone()))
+            .collect()
+    }
+
+    /// Takes the content of shapes, by their place in the list.
+    pub fn take(&mut self, read: Vec<(usize, Result<Loaded, String>)>) {
+        self.read.extend(read);
+    }
+}

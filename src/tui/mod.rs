@@ -1,0 +1,58 @@
+//! The screen: a terminal program over the same core as the command line.
+//!
+//! The way of one keystroke:
+//! ```text
+//! terminal   crossterm event -> Key
+//! keymap     lookup(context, key) -> Message       one table: context, keys, message, help
+//! update     update(&mut App, Message) -> Effect   the only writer
+//! view       view(&App, &mut Frame)                reads only; one pane per file
+//! ```
+//! A [`script::Session`] replaces the first line by text and the terminal by a buffer; the middle is the same code.
+
+pub mod key;
+
+pub mod document;
+
+pub mod purpose;
+
+pub mod message;
+
+pub mod binding;
+
+pub mod keymap;
+
+pub mod theme;
+
+pub mod form;
+
+pub mod form_dialog;
+
+pub mod list;
+
+pub mod name_dialog;
+
+pub mod commands;
+
+pub mod command_dialog;
+
+pub mod dialog;
+
+pub mod app;
+
+pub mod command;
+
+pub mod layout;
+
+pub mod hit;
+
+pub mod request;
+
+pub mod update;
+
+pub mod effect;
+
+pub mod view;
+
+pub mod terminal;
+
+pub mod script;

@@ -1,0 +1,231 @@
+//! The commands of a script, one a line.
+//!
+//! ```text
+//! Size 80x24          Set ascii on        Resize 100x30
+//! Keys f<Down><Tab>4.00<Enter>            vim notation; <lt>; <3x:Down>
+//! Type "literal text" Paste "1.5"         Click 12,5   Click "Figure"   Drag 3,4 9,9   Scroll 12,5 -3
+//! Screen [name]       State [json-pointer]
+//! Expect /re/         ExpectNot /re/      ExpectAt 3,10 "text"   ExpectStyle 3,10 reverse
+//! Signal HUP          Wait                Quit
+//! ```
+//! Places are column,row of the screen, from 0. `#` begins a comment line. `Quit` holds where the program has ended.
+
+use regex_lite::Regex;
+
+use crate::tui::key::{Key, parse};
+
+/// A place of the screen: column, row.
+pub type Place = (u16, u16);
+
+/// What a line asks for.
+#[derive(Clone, Debug)]
+pub enum Command {
+    /// A screen of so many columns and rows; before the first key.
+    Size(u16, u16),
+    /// ASCII characters only, or not; before the first key.
+    Ascii(bool),
+    /// Another size while the program runs.
+    Resize(u16, u16),
+    /// Keys.
+    Keys(Vec<Key>),
+    /// Characters as they are.
+    Type(String),
+    /// Pasted text.
+    Paste(String),
+    /// The left button at a place.
+    Click(Place),
+    /// The left button at the first place where a text stands.
+    ClickText(String),
+    /// The left button, held from one place to others.
+    Drag(Vec<Place>),
+    /// The wheel at a place: so many turns, up where negative.
+    Scroll(Place, i16),
+    /// Print the screen, under a name.
+    Screen(String),
+    /// Print the state, or the part of it that a JSON pointer names.
+    State(String),
+    /// The screen must match.
+    Expect(Regex),
+    /// It must not.
+    ExpectNot(Regex),
+    /// A text must stand at a place.
+    ExpectAt(Place, String),
+    /// A character must have a style.
+    ExpectStyle(Place, char),
+    /// What a signal does.
+    Signal(String),
+    /// Everything that is under way is done; it always is.
+    Wait,
+    /// The program must have ended.
+    Quit,
+}
+
+/// The styles that can be expected, and their letters in printed screens.
+const STYLES: [(&str, char); 5] = [
+    ("plain", '.'),
+    ("reverse", 'R'),
+    ("bold", 'B'),
+    ("underline", 'U'),
+    ("dim", 'D'),
+];
+
+/// The signals that can be sent.
+const SIGNALS: [&str; 5] = ["HUP", "INT", "QUIT", "TERM", "TSTP"];
+
+/// Why a line is no command.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}{message}", line_name(*line))]
+pub struct ScriptError {
+    /// Counted from 1; 0 for keys that are not part of the script.
+    pub line: usize,
+    /// What is wrong, and what was expected.
+    pub message: String,
+}
+
+fn line_name(line: usize) -> String {
+    if line == 0 {
+        "-k: ".to_owned()
+    } else {
+        format!("line {line}: ")
+    }
+}
+
+/// The commands of a script, each with its line number.
+///
+/// # Errors
+/// The first line that is none.
+pub fn read(script: &str) -> Result<Vec<(usize, Command)>, ScriptError> {
+    let lines = script
+        .lines()
+        .enumerate()
+        .map(|(index, line)| (index + 1, line.trim()));
+    lines
+        .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
+        .map(|(number, line)| match command(line) {
+            Ok(command) => Ok((number, command)),
+            Err(message) => Err(ScriptError {
+                line: number,
+                message,
+            }),
+        })
+        .collect()
+}
+
+fn command(line: &str) -> Result<Command, String> {
+    let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+    let rest = rest.trim();
+    let nothing = |command: Command| {
+        if rest.is_empty() {
+            Ok(command)
+        } else {
+            Err(format!("{word} stands alone, found {rest:?}"))
+        }
+    };
+    match word {
+        "Size" => size(rest).map(|(columns, rows)| Command::Size(columns, rows)),
+        "Resize" => size(rest).map(|(columns, rows)| Command::Resize(columns, rows)),
+        "Set" => match rest.split_whitespace().collect::<Vec<_>>()[..] {
+            ["ascii", "on"] => Ok(Command::Ascii(true)),
+            ["ascii", "off"] => Ok(Command::Ascii(false)),
+            _ => Err(format!("expected Set ascii on, or off; found {rest:?}")),
+        },
+        "Keys" => parse(rest)
+            .map(Command::Keys)
+            .map_err(|error| error.to_string()),
+        "Type" => quoted(rest).map(Command::Type),
+        "Paste" => quoted(rest).map(Command::Paste),
+        "Click" if rest.starts_with('"') => quoted(rest).map(Command::ClickText),
+        "Click" => place(rest).map(Command::Click),
+        "Drag" => match rest
+            .split_whitespace()
+            .map(place)
+            .collect::<Result<Vec<_>, _>>()?
+        {
+            places if places.len() > 1 => Ok(Command::Drag(places)),
+            _ => Err(format!("expected two places or more, found {rest:?}")),
+        },
+        "Scroll" => {
+            let (at, turns) = two(rest)?;
+            let turns = turns
+                .parse()
+                .ok()
+                .filter(|turns: &i16| turns.unsigned_abs() <= 1000)
+                .ok_or_else(|| format!("expected a whole number of turns, found {turns:?}"))?;
+            Ok(Command::Scroll(place(at)?, turns))
+        }
+        "Screen" => Ok(Command::Screen(rest.to_owned())),
+        "State" => Ok(Command::State(rest.to_owned())),
+        "Expect" => pattern(rest).map(Command::Expect),
+        "ExpectNot" => pattern(rest).map(Command::ExpectNot),
+        "ExpectAt" => {
+            let (at, text) = two(rest)?;
+            Ok(Command::ExpectAt(place(at)?, quoted(text)?))
+        }
+        "ExpectStyle" => {
+            let (at, name) = two(rest)?;
+            let letter = STYLES
+                .iter()
+                .find(|(style, _)| *style == name)
+                .map(|(_, letter)| *letter);
+            let names = STYLES.map(|(style, _)| style).join(", ");
+            Ok(Command::ExpectStyle(
+                place(at)?,
+                letter.ok_or(format!("style {name:?} is unknown, expected {names}"))?,
+            ))
+        }
+        "Signal" if SIGNALS.contains(&rest) => Ok(Command::Signal(rest.to_owned())),
+        "Signal" => Err(format!(
+            "signal {rest:?} is unknown, expected one of {}",
+            SIGNALS.join(", ")
+        )),
+        "Wait" => nothing(Command::Wait),
+        "Quit" => nothing(Command::Quit),
+        _ => Err(format!(
+            "{word:?} is unknown, expected one of Size, Set, Resize, Keys, Type, Paste, Click, Drag, Scroll, Screen, \
+             State, Expect, ExpectNot, ExpectAt, ExpectStyle, Signal, Wait, Quit"
+        )),
+    }
+}
+
+fn two(text: &str) -> Result<(&str, &str), String> {
+    let (first, second) = text
+        .split_once(char::is_whitespace)
+        .ok_or_else(|| format!("expected two things, found {text:?}"))?;
+    Ok((first, second.trim()))
+}
+
+/// `80x24`. No terminal is larger than 1000 either way.
+pub(crate) fn size(text: &str) -> Result<(u16, u16), String> {
+    let numbers = text
+        .split_once('x')
+        .and_then(|(columns, rows)| Some((columns.parse().ok()?, rows.parse().ok()?)));
+    numbers
+        .filter(|(columns, rows): &(u16, u16)| {
+            (1..=1000).contains(columns) && (1..=1000).contains(rows)
+        })
+        .ok_or_else(|| format!("expected a size like 80x24, from 1x1 to 1000x1000, found {text:?}"))
+}
+
+fn place(text: &str) -> Result<Place, String> {
+    let numbers = text
+        .split_once(',')
+        .and_then(|(column, row)| Some((column.parse().ok()?, row.parse().ok()?)));
+    let numbers = numbers.filter(|(column, row): &Place| *column < 1000 && *row < 1000);
+    numbers.ok_or_else(|| format!("expected column,row like 12,5, found {text:?}"))
+}
+
+/// A text in quotes, with the escapes of JSON.
+fn quoted(text: &str) -> Result<String, String> {
+    serde_json::from_str(text)
+        .map_err(|_| format!("expected a text in double quotes, found {text}"))
+}
+
+/// A regular expression between slashes.
+fn pattern(text: &str) -> Result<Regex, String> {
+    let inner = text
+        .strip_prefix('/')
+        .and_then(|text| text.strip_suffix('/'));
+    let inner =
+        inner.ok_or_else(|| format!("expected a pattern between slashes, found {text:?}"))?;
+    Regex::new(inner).map_err(|error| format!("pattern /{inner}/: {error}"))
+}

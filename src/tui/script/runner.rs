@@ -1,0 +1,302 @@
+//! Runs a script: does its commands one by one, prints what they ask for, and stops where an expectation fails.
+
+use serde_json::{Value, json};
+
+use super::command::{Command, Place, ScriptError, read};
+use super::session::Session;
+use crate::formats::answer::Answer;
+use crate::tui::app::Options;
+use crate::tui::effect::World;
+use crate::tui::key::Key;
+use crate::tui::message::{Message, Mouse, MouseKind};
+
+/// How a script is run.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// How the program starts.
+    pub options: Options,
+    /// Columns and rows of the screen, unless the script says otherwise.
+    pub size: (u16, u16),
+    /// Screens with a grid of style letters.
+    pub styles: bool,
+    /// Screens and states as JSON lines.
+    pub json: bool,
+}
+
+/// How a script came to its end before the last line.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Failure {
+    /// An expectation does not hold. The screen is in the message.
+    #[error("line {line}: {message}\n{screen}")]
+    Expectation {
+        /// Counted from 1.
+        line: usize,
+        /// Which, and what is there.
+        message: String,
+        /// The screen.
+        screen: String,
+    },
+    /// A line is no command.
+    #[error(transparent)]
+    Script(#[from] ScriptError),
+    /// The program ended before the script.
+    #[error("line {line}: the program has ended before")]
+    Ended {
+        /// The first line that could not be done.
+        line: usize,
+    },
+}
+
+/// Runs a script in a world, after some keys; `print` takes what it prints. Without a script the screen is printed.
+///
+/// # Errors
+/// The first line that is wrong or does not hold. A script with a wrong line is not run at all.
+pub fn run(
+    script: &str,
+    keys: &[Key],
+    settings: &Settings,
+    world: World,
+    mut print: impl FnMut(&str),
+) -> Result<(), Failure> {
+    let commands = read(script)?;
+    let mut settings = *settings;
+    // What describes the screen comes before it is made.
+    let mut rest = commands.as_slice();
+    while let [(_, command), others @ ..] = rest {
+        match command {
+            Command::Size(columns, rows) => settings.size = (*columns, *rows),
+            Command::Ascii(ascii) => settings.options.theme.ascii = *ascii,
+            _ => break,
+        }
+        rest = others;
+    }
+    let mut session = Session::new(&settings.options, world, settings.size.0, settings.size.1);
+    for &key in keys {
+        session.press(key);
+    }
+    if commands.is_empty() {
+        print(&screen(&session, "", &settings));
+    }
+    for (line, command) in rest {
+        if !look(&session, *line, command, &settings, &mut print)? {
+            act(&mut session, *line, command)?;
+        }
+    }
+    Ok(())
+}
+
+/// Does a command that changes the program.
+fn act(session: &mut Session, line: usize, command: &Command) -> Result<(), Failure> {
+    if session.app().ended() {
+        return Err(Failure::Ended { line });
+    }
+    match command {
+        Command::Resize(columns, rows) => session.resize(*columns, *rows),
+        Command::Keys(keys) => {
+            for &key in keys {
+                if session.app().ended() {
+                    return Err(Failure::Ended { line });
+                }
+                session.press(key);
+            }
+        }
+        Command::Type(text) => text
+            .chars()
+            .for_each(|character| session.press(Key::Char(character))),
+        Command::Paste(text) => session.send(Message::Paste(text.clone())),
+        Command::Click(place) => click(session, *place),
+        Command::ClickText(text) => {
+            let place = find(&session.screen(), text);
+            click(
+                session,
+                place.ok_or_else(|| fails(session, line, format!("no {text:?} to click on")))?,
+            );
+        }
+        Command::Drag(places) => {
+            for (index, pair) in places.windows(2).enumerate() {
+                if index == 0 {
+                    mouse(session, MouseKind::Press, pair[0]);
+                }
+                for place in way(pair[0], pair[1]) {
+                    mouse(session, MouseKind::Drag, place);
+                }
+            }
+            if let Some(&last) = places.last() {
+                mouse(session, MouseKind::Release, last);
+            }
+        }
+        Command::Scroll(place, turns) => {
+            let kind = if *turns < 0 {
+                MouseKind::ScrollUp
+            } else {
+                MouseKind::ScrollDown
+            };
+            (0..turns.unsigned_abs()).for_each(|_| mouse(session, kind, *place));
+        }
+        Command::Signal(name) if name == "TSTP" => session.send(Message::Redraw),
+        // What is not saved is in the journal already; the program ends without a question.
+        Command::Signal(_) => session.send(Message::Killed),
+        _ => {
+            let message = "Size and Set come before all that needs a screen".to_owned();
+            return Err(ScriptError { line, message }.into());
+        }
+    }
+    Ok(())
+}
+
+/// Does a command that looks at the program. Answers whether it was one.
+fn look(
+    session: &Session,
+    line: usize,
+    command: &Command,
+    settings: &Settings,
+    print: &mut impl FnMut(&str),
+) -> Result<bool, Failure> {
+    let fails = |message: String| Err(fails(session, line, message));
+    let looks = !matches!(command, Command::Quit | Command::Wait);
+    if looks && session.app().ended() {
+        return Err(Failure::Ended { line });
+    }
+    match command {
+        Command::Screen(name) => print(&screen(session, name, settings)),
+        Command::State(pointer) => match state(session).pointer(pointer) {
+            Some(part) => print(&format!("{part}\n")),
+            None => return fails(format!("the state has no {pointer:?}")),
+        },
+        Command::Expect(pattern) => {
+            if !pattern.is_match(&session.screen()) {
+                return fails(format!("no /{pattern}/ on the screen"));
+            }
+        }
+        Command::ExpectNot(pattern) => {
+            if pattern.is_match(&session.screen()) {
+                return fails(format!("/{pattern}/ is on the screen"));
+            }
+        }
+        Command::ExpectAt((column, row), text) => {
+            let shown = session.screen();
+            let found: String = line_of(&shown, *row)
+                .chars()
+                .skip((*column).into())
+                .take(text.chars().count())
+                .collect();
+            if found != *text {
+                return fails(format!(
+                    "at {column},{row} stands {found:?}, expected {text:?}"
+                ));
+            }
+        }
+        Command::ExpectStyle((column, row), letter) => {
+            let found = line_of(&session.styles(), *row)
+                .chars()
+                .nth((*column).into());
+            if found != Some(*letter) {
+                let found = found.map_or("nothing".to_owned(), |found| format!("style {found}"));
+                return fails(format!("at {column},{row} is {found}, expected {letter}"));
+            }
+        }
+        Command::Quit if !session.app().ended() => {
+            return fails("the program has not ended".to_owned());
+        }
+        Command::Quit | Command::Wait => {}
+        _ => return Ok(false),
+    }
+    Ok(true)
+}
+
+fn fails(session: &Session, line: usize, message: String) -> Failure {
+    let screen = session
+        .screen()
+        .lines()
+        .map(|row| format!("  | {row}\n"))
+        .collect();
+    Failure::Expectation {
+        line,
+        message,
+        screen,
+    }
+}
+
+fn mouse(session: &mut Session, kind: MouseKind, (column, row): Place) {
+    session.send(Message::Mouse(Mouse { kind, column, row }));
+}
+
+fn click(session: &mut Session, place: Place) {
+    mouse(session, MouseKind::Press, place);
+    mouse(session, MouseKind::Release, place);
+}
+
+/// The places from one to another, in a straight line, without the first.
+fn way(from: Place, to: Place) -> Vec<Place> {
+    let steps = from.0.abs_diff(to.0).max(from.1.abs_diff(to.1)).max(1);
+    let between = |a: u16, b: u16, step: u16| {
+        let (a, b, step, steps) = (
+            i64::from(a),
+            i64::from(b),
+            i64::from(step),
+            i64::from(steps),
+        );
+        u16::try_from(a + ((b - a) * step * 2 + steps) / (2 * steps)).unwrap_or(u16::MAX)
+    };
+    (1..=steps)
+        .map(|step| (between(from.0, to.0, step), between(from.1, to.1, step)))
+        .collect()
+}
+
+/// Where a text stands first.
+fn find(screen: &str, text: &str) -> Option<Place> {
+    screen.lines().enumerate().find_map(|(row, line)| {
+        let column = line[..line.find(text)?].chars().count();
+        Some((u16::try_from(column).ok()?, u16::try_from(row).ok()?))
+    })
+}
+
+fn line_of(grid: &str, row: u16) -> &str {
+    grid.lines().nth(row.into()).unwrap_or("")
+}
+
+/// The screen under its header, and its styles if they are asked for.
+fn screen(session: &Session, name: &str, settings: &Settings) -> String {
+    let (columns, rows) = session.size();
+    let cursor = session.cursor();
+    if settings.json {
+        let lines = |grid: String| grid.lines().map(str::to_owned).collect::<Vec<_>>();
+        let object = json!({
+            "screen": name, "size": [columns, rows], "cursor": [cursor.x, cursor.y],
+            "rows": lines(session.screen()), "styles": lines(session.styles()),
+        });
+        return format!("{object}\n");
+    }
+    let name = if name.is_empty() {
+        String::new()
+    } else {
+        format!(" {name}")
+    };
+    let header = format!(
+        "--- screen{name} {columns}x{rows} cursor {},{} ---\n",
+        cursor.x, cursor.y
+    );
+    let styles = if settings.styles {
+        format!("--- styles ---\n{}", session.styles())
+    } else {
+        String::new()
+    };
+    header + &session.screen() + &styles
+}
+
+/// The document, and what `taxel batch` would answer about its imprint.
+fn state(session: &Session) -> Value {
+    let app = session.app();
+    let document = app.shown();
+    let seen = app.seen();
+    let answer = serde_json::to_value(Answer(&seen.imprint)).unwrap_or_default();
+    let (column, row) = app.cursor();
+    json!({
+        "document": { "sensor": document.sensor, "source": document.source, "name": app.stored_name() },
+        "unsaved": app.unsaved(),
+        "cursor": [column, row],
+        "region": seen.region(app.chosen()).map(|(index, _)| index),
+        "imprint": answer["imprint"], "na": answer["na"], "regions": answer["regions"],
+    })
+}

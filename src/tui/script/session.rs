@@ -1,0 +1,125 @@
+//! The program without a terminal: keys in as text, the screen out as text, the same on every machine.
+//!
+//! Keys go through the same table, the same update and the same view as in a terminal.
+//!
+//! ```
+//! use taxel::tui::{app::Options, effect::World, script::Session, theme::Theme};
+//! use taxel::sensor::Sensor;
+//! let theme = Theme::plain(true);
+//! let mut session = Session::new(&Options { sensor: Sensor::default(), theme }, World::scratch()?, 80, 24);
+//! session.keys("f<Enter>")?;
+//! assert!(session.screen().contains("ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0 deg"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+use ratatui::layout::Position;
+
+use crate::tui::app::{App, Options};
+use crate::tui::effect::World;
+use crate::tui::key::{Key, KeyError, parse};
+use crate::tui::keymap::lookup;
+use crate::tui::message::Message;
+use crate::tui::theme::Role;
+use crate::tui::view::view;
+
+/// A running program on a screen of its own.
+#[derive(Debug)]
+pub struct Session {
+    app: App,
+    world: World,
+    terminal: Terminal<TestBackend>,
+}
+
+impl Session {
+    /// Starts the program in a world, on a screen of `width × height` characters.
+    pub fn new(options: &Options, world: World, width: u16, height: u16) -> Self {
+        // A buffer in memory cannot fail: its error type has no values.
+        let Ok(terminal) = Terminal::new(TestBackend::new(width, height));
+        let mut session = Self {
+            app: App::new(options),
+            world,
+            terminal,
+        };
+        let greeting = session.world.greeting();
+        for message in [Some(Message::Resized(width, height)), greeting]
+            .into_iter()
+            .flatten()
+        {
+            session.send(message);
+        }
+        session
+    }
+
+    /// Presses keys, given in notation.
+    ///
+    /// # Errors
+    /// A key that is unknown; none is pressed then.
+    pub fn keys(&mut self, text: &str) -> Result<(), KeyError> {
+        for key in parse(text)? {
+            self.press(key);
+        }
+        Ok(())
+    }
+
+    /// Presses a key and draws the screen.
+    pub fn press(&mut self, key: Key) {
+        if let Some(message) = lookup(self.app.context(), key) {
+            self.send(message);
+        }
+    }
+
+    /// Sends a message and draws the screen.
+    pub fn send(&mut self, message: Message) {
+        // What is left to do is for a real terminal.
+        let _ = self.world.handle(&mut self.app, message);
+        self.draw();
+    }
+
+    /// Gives the screen another size.
+    pub fn resize(&mut self, width: u16, height: u16) {
+        self.terminal.backend_mut().resize(width, height);
+        self.send(Message::Resized(width, height));
+    }
+
+    fn draw(&mut self) {
+        let Ok(_) = self.terminal.draw(|frame| view(&self.app, frame));
+    }
+
+    /// The state of the program.
+    pub fn app(&self) -> &App {
+        &self.app
+    }
+
+    /// Columns and rows of the screen.
+    pub fn size(&self) -> (u16, u16) {
+        let area = self.terminal.backend().buffer().area;
+        (area.width, area.height)
+    }
+
+    /// Where the terminal's cursor is.
+    pub fn cursor(&self) -> Position {
+        self.terminal.backend().cursor_position()
+    }
+
+    /// The screen, a line a row, blanks at the end cut off.
+    pub fn screen(&self) -> String {
+        self.rows(|cell| cell.symbol().to_owned())
+    }
+
+    /// The styles of the screen, a letter a character: `R` reversed, `B` bold, `D` dim, `.` plain.
+    pub fn styles(&self) -> String {
+        self.rows(|cell| Role::letter(&cell.style()).to_string())
+    }
+
+    fn rows(&self, show: impl Fn(&ratatui::buffer::Cell) -> String) -> String {
+        let buffer = self.terminal.backend().buffer();
+        let width = usize::from(buffer.area.width).max(1);
+        let rows = buffer
+            .content
+            .chunks(width)
+            .map(|row| row.iter().map(&show).collect::<String>());
+        rows.map(|row| row.trim_end().to_owned() + "\n").collect()
+    }
+}

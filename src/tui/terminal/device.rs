@@ -1,0 +1,146 @@
+//! The terminal's two files: the standard ones where these are terminals, else the controlling terminal.
+
+use std::io::{self, stdin, stdout};
+use std::os::fd::{AsFd, AsRawFd, BorrowedFd, OwnedFd};
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::fs::{Mode, OFlags, open};
+use rustix::io::{Errno, read, write};
+use rustix::termios::{isatty, tcgetwinsize};
+
+/// A write that the terminal does not take is given up after this time when nobody waits for it any more.
+const LAST_WRITE: Timespec = Timespec {
+    tv_sec: 0,
+    tv_nsec: 100_000_000,
+};
+
+/// Larger screens are no screens, but mistakes that would cost gigabytes.
+const LARGEST: (u16, u16) = (1000, 500);
+
+/// Where bytes come from and go to.
+#[derive(Debug)]
+pub(super) struct Device {
+    input: OwnedFd,
+    output: OwnedFd,
+}
+
+/// What became of a write.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Written {
+    /// All is out.
+    All,
+    /// Something else wants attention, and an unknown part is out.
+    Interrupted,
+}
+
+impl Device {
+    /// Opens it.
+    ///
+    /// The output is opened anew without blocking, so that a line that takes nothing cannot keep the program from
+    /// its end. Where that is not allowed, as after `su`, the file is used as it is.
+    ///
+    /// # Errors
+    /// Where there is no terminal.
+    pub(super) fn open() -> io::Result<Self> {
+        let input = match stdin() {
+            file if isatty(&file) => file.as_fd().try_clone_to_owned()?,
+            _ => controlling(OFlags::RDONLY)?,
+        };
+        let output = match stdout() {
+            file if isatty(&file) => file.as_fd().try_clone_to_owned()?,
+            _ => controlling(OFlags::WRONLY)?,
+        };
+        let anew = open(
+            format!("/proc/self/fd/{}", output.as_raw_fd()),
+            OFlags::WRONLY | OFlags::NONBLOCK | OFlags::NOCTTY | OFlags::CLOEXEC,
+            Mode::empty(),
+        );
+        let output = anew.ok().filter(|file| isatty(file)).unwrap_or(output);
+        Ok(Self { input, output })
+    }
+
+    /// Where keys come from.
+    pub(super) fn input(&self) -> BorrowedFd<'_> {
+        self.input.as_fd()
+    }
+
+    /// Reads what is there; none where the terminal is gone.
+    pub(super) fn read(&self, buffer: &mut [u8]) -> io::Result<Option<usize>> {
+        match read(&self.input, buffer) {
+            Ok(0) | Err(Errno::IO | Errno::NXIO) => Ok(None),
+            Ok(count) => Ok(Some(count)),
+            Err(Errno::AGAIN | Errno::INTR) => Ok(Some(0)),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Writes all of it, unless `attention` becomes readable while the terminal takes nothing.
+    pub(super) fn write(&self, bytes: &[u8], attention: BorrowedFd<'_>) -> io::Result<Written> {
+        let wait = || {
+            let mut fds = [
+                PollFd::new(&self.output, PollFlags::OUT),
+                PollFd::from_borrowed_fd(attention, PollFlags::IN),
+            ];
+            match poll(&mut fds, None) {
+                Ok(_) | Err(Errno::INTR) => Ok(fds[1].revents().is_empty()),
+                Err(error) => Err(error),
+            }
+        };
+        self.write_waiting(bytes, wait)
+    }
+
+    /// The same for last words, which a terminal that takes nothing does not get.
+    pub(super) fn write_last(&self, bytes: &[u8]) -> io::Result<Written> {
+        let wait = || {
+            let mut fds = [PollFd::new(&self.output, PollFlags::OUT)];
+            poll(&mut fds, Some(&LAST_WRITE)).map(|ready| ready > 0)
+        };
+        self.write_waiting(bytes, wait)
+    }
+
+    fn write_waiting(
+        &self,
+        bytes: &[u8],
+        wait: impl Fn() -> Result<bool, Errno>,
+    ) -> io::Result<Written> {
+        let mut rest = bytes;
+        while !rest.is_empty() {
+            match write(&self.output, rest) {
+                Ok(count) => rest = &rest[count..],
+                Err(Errno::INTR) => {}
+                Err(Errno::AGAIN) => {
+                    if !wait()? {
+                        return Ok(Written::Interrupted);
+                    }
+                }
+                Err(error) => return Err(error.into()),
+            }
+        }
+        Ok(Written::All)
+    }
+
+    /// Columns and rows; `fallback` for a side that the terminal does not know.
+    pub(super) fn size(&self, fallback: (u16, u16)) -> (u16, u16) {
+        let known = tcgetwinsize(&self.output).map_or((0, 0), |size| (size.ws_col, size.ws_row));
+        let side = |known: u16, otherwise: u16, most: u16| {
+            if known == 0 { otherwise } else { known }.clamp(1, most)
+        };
+        (
+            side(known.0, fallback.0, LARGEST.0),
+            side(known.1, fallback.1, LARGEST.1),
+        )
+    }
+
+    /// A second pair of names for the same files.
+    pub(super) fn try_clone(&self) -> io::Result<Self> {
+        Ok(Self {
+            input: self.input.try_clone()?,
+            output: self.output.try_clone()?,
+        })
+    }
+}
+
+fn controlling(access: OFlags) -> io::Result<OwnedFd> {
+    open("/dev/tty", access | OFlags::CLOEXEC, Mode::empty())
+        .map_err(|_| io::Error::other("there is no terminal here"))
+}

@@ -1,0 +1,344 @@
+//! Bytes from the terminal become keys, pasted text and the mouse.
+//!
+//! Sequences may come in pieces, over a slow line in single bytes. Only two things wait for a moment: an ESC by
+//! itself, which may be a key or the beginning of one, and an answer of the terminal to a program before us, which
+//! would otherwise be read as keys. Everything that is not known is swallowed whole.
+//!
+//! ESC before a character is the key Esc, then the character: nothing here is bound to Alt, and a quick Esc over a
+//! slow line arrives together with the next key. ESC ESC is Alt-Esc, one Esc.
+//!
+//! Sequences: xterm's ctlseqs, ECMA-48.
+
+use std::time::Duration;
+
+use crate::tui::key::{Arrow, Key};
+use crate::tui::message::{Mouse, MouseKind};
+
+/// What came in.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Input {
+    /// A key.
+    Key(Key),
+    /// Text that was pasted, lines ending in `\n`.
+    Paste(String),
+    /// The mouse.
+    Mouse(Mouse),
+    /// Not from the keyboard: the screen has this many columns and rows.
+    Size(u16, u16),
+}
+
+/// How long half of something waits for the rest.
+const MOMENT: Duration = Duration::from_millis(50);
+/// The same for pasted text, the end of which is lost where the terminal does not send it.
+const PASTE_MOMENT: Duration = Duration::from_secs(1);
+
+/// Longer sequences are nothing that anybody sends.
+const LONGEST: usize = 64;
+/// Nor more pasted text than this; the rest is dropped.
+const LONGEST_PASTE: usize = 1 << 20;
+
+const ESC: u8 = 0x1b;
+const BEL: u8 = 0x07;
+const PASTE_END: &[u8] = b"\x1b[201~";
+
+/// Where the reader is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    Ground,
+    /// After ESC.
+    Escape,
+    /// After ESC O.
+    Single,
+    /// After ESC [.
+    Sequence,
+    /// In a function key of the Linux console: ESC [ [, then one more.
+    Function,
+    /// So many bytes of a mouse report in the old form are still to come.
+    OldMouse(u8),
+    /// In an answer: ESC ] or ESC P up to BEL or ESC \.
+    Answer,
+    /// In pasted text.
+    Paste,
+    /// In a character, of which so many bytes are still to come.
+    Character(u8),
+}
+
+/// Reads bytes as they come.
+#[derive(Debug)]
+pub struct Reader {
+    state: State,
+    held: Vec<u8>,
+    found: Vec<Input>,
+}
+
+impl Default for Reader {
+    fn default() -> Self {
+        Self {
+            state: State::Ground,
+            held: Vec::new(),
+            found: Vec::new(),
+        }
+    }
+}
+
+impl Reader {
+    /// What these bytes complete.
+    pub fn read(&mut self, bytes: &[u8]) -> Vec<Input> {
+        for &byte in bytes {
+            self.step(byte);
+        }
+        std::mem::take(&mut self.found)
+    }
+
+    /// How long to wait for more before [`Reader::settle`]; none: for ever.
+    pub fn patience(&self) -> Option<Duration> {
+        match self.state {
+            State::Escape | State::Answer => Some(MOMENT),
+            State::Paste => Some(PASTE_MOMENT),
+            _ => None,
+        }
+    }
+
+    /// Nothing more came in time.
+    pub fn settle(&mut self) -> Vec<Input> {
+        match self.state {
+            State::Escape => self.key(Key::Esc),
+            State::Paste => self.paste(self.held.len()),
+            _ => {}
+        }
+        self.ground();
+        std::mem::take(&mut self.found)
+    }
+
+    fn key(&mut self, key: Key) {
+        self.found.push(Input::Key(key));
+    }
+
+    fn ground(&mut self) {
+        self.state = State::Ground;
+        self.held.clear();
+    }
+
+    fn step(&mut self, byte: u8) {
+        match self.state {
+            State::Ground => self.plain(byte),
+            State::Escape => self.after_escape(byte),
+            State::Paste => self.in_paste(byte),
+            State::Answer => match (byte, self.held.pop()) {
+                (BEL, _) | (b'\\', Some(ESC)) => self.ground(),
+                (ESC, _) => self.held.push(ESC),
+                (_, Some(ESC)) => self.after_escape(byte),
+                (..0x20, _) => {
+                    self.ground();
+                    self.plain(byte);
+                }
+                _ => {}
+            },
+            State::OldMouse(left) => {
+                self.held.push(byte);
+                self.state = State::OldMouse(left - 1);
+                if left == 1 {
+                    let [button, x, y] = [0, 1, 2]
+                        .map(|index| u16::from(self.held.get(index).copied().unwrap_or(0)));
+                    let released = button & 3 == 3;
+                    self.mouse(
+                        button.saturating_sub(32),
+                        x.saturating_sub(32),
+                        y.saturating_sub(32),
+                        released,
+                    );
+                    self.ground();
+                }
+            }
+            State::Character(left) => {
+                if byte & 0xc0 != 0x80 {
+                    // Broken off: what comes now is a new beginning.
+                    self.ground();
+                    return self.plain(byte);
+                }
+                self.held.push(byte);
+                self.state = State::Character(left - 1);
+                if left == 1 {
+                    let character = std::str::from_utf8(&self.held)
+                        .ok()
+                        .and_then(|text| text.chars().next());
+                    // U+0080 to U+009F are control characters of one byte elsewhere.
+                    if let Some(character) = character.filter(|character| !character.is_control()) {
+                        self.key(Key::Char(character));
+                    }
+                    self.ground();
+                }
+            }
+            // A control character breaks a sequence off.
+            _ if byte < 0x20 => {
+                self.ground();
+                self.plain(byte);
+            }
+            State::Function => self.ground(),
+            State::Single => {
+                self.ground();
+                if byte == b'M' {
+                    self.key(Key::Enter);
+                } else {
+                    self.letter(byte, false);
+                }
+            }
+            State::Sequence => match byte {
+                b'[' if self.held.is_empty() => self.state = State::Function,
+                // Shift-arrows of rxvt.
+                b'a'..=b'd' if self.held.is_empty() => {
+                    self.ground();
+                    self.letter(byte.to_ascii_uppercase(), true);
+                }
+                b'M' if self.held.is_empty() => self.state = State::OldMouse(3),
+                0x40..=0x7e => {
+                    let held = std::mem::take(&mut self.held);
+                    self.ground();
+                    self.sequence(&held, byte);
+                }
+                _ if self.held.len() < LONGEST => self.held.push(byte),
+                _ => {}
+            },
+        }
+    }
+
+    fn plain(&mut self, byte: u8) {
+        match byte {
+            ESC => self.state = State::Escape,
+            b'\r' | b'\n' => self.key(Key::Enter),
+            b'\t' => self.key(Key::Tab),
+            // Serial terminals send Ctrl-H for the key that others send DEL for.
+            0x08 | 0x7f => self.key(Key::Backspace),
+            0x01..=0x1a => self.key(Key::Ctrl(char::from(byte - 1 + b'a'))),
+            b' '..=b'~' => self.key(Key::Char(char::from(byte))),
+            0xc2..=0xf4 => {
+                self.held.push(byte);
+                self.state = State::Character(match byte {
+                    0xc2..=0xdf => 1,
+                    0xe0..=0xef => 2,
+                    _ => 3,
+                });
+            }
+            _ => {}
+        }
+    }
+
+    fn after_escape(&mut self, byte: u8) {
+        self.ground();
+        match byte {
+            b'[' => self.state = State::Sequence,
+            b'O' => self.state = State::Single,
+            b']' | b'P' | b'_' | b'^' => self.state = State::Answer,
+            // Alt-Esc; or Alt with a key that is a sequence itself, where the second ESC begins it.
+            ESC => self.state = State::Escape,
+            _ => {
+                self.key(Key::Esc);
+                self.plain(byte);
+            }
+        }
+    }
+
+    /// `ESC [ parameters final`.
+    fn sequence(&mut self, parameters: &[u8], last: u8) {
+        let text = std::str::from_utf8(parameters).unwrap_or_default();
+        if let Some(report) = text.strip_prefix('<') {
+            let [button, x, y] = numbers(report);
+            return self.mouse(button, x, y, last == b'm');
+        }
+        if text.starts_with(['?', '>', '=']) {
+            return;
+        }
+        let [first, modifiers, _] = numbers(text);
+        let shifted = modifiers.saturating_sub(1) & 1 == 1;
+        // The second number of "1;2:3" tells a key that was let go.
+        let released = text
+            .split(';')
+            .nth(1)
+            .is_some_and(|part| part.ends_with(":3"));
+        match last {
+            _ if released => {}
+            b'~' => match first {
+                1 | 7 => self.key(Key::Home),
+                3 => self.key(Key::Delete),
+                4 | 8 => self.key(Key::End),
+                5 => self.key(Key::PageUp),
+                6 => self.key(Key::PageDown),
+                200 => self.state = State::Paste,
+                _ => {}
+            },
+            b'Z' => self.key(Key::BackTab),
+            b'u' => match (u8::try_from(first), shifted) {
+                (Ok(27), _) => self.key(Key::Esc),
+                (Ok(b'\t'), true) => self.key(Key::BackTab),
+                (Ok(byte @ (b'\r' | b'\t' | 0x7f)), _) => self.plain(byte),
+                _ => {}
+            },
+            _ => self.letter(last, shifted),
+        }
+    }
+
+    fn letter(&mut self, letter: u8, shifted: bool) {
+        let arrow = match letter {
+            b'A' => Arrow::Up,
+            b'B' => Arrow::Down,
+            b'C' => Arrow::Right,
+            b'D' => Arrow::Left,
+            b'H' => return self.key(Key::Home),
+            b'F' => return self.key(Key::End),
+            _ => return,
+        };
+        self.key(if shifted {
+            Key::ShiftArrow(arrow)
+        } else {
+            Key::Arrow(arrow)
+        });
+    }
+
+    /// The left button and the wheel. Places count from 1 there and from 0 here; a 0 there, which is wrong, is 0 here
+    /// too.
+    fn mouse(&mut self, button: u16, x: u16, y: u16, released: bool) {
+        let kind = match button & !0b1_1100 {
+            64 => MouseKind::ScrollUp,
+            65 => MouseKind::ScrollDown,
+            0 | 3 if released => MouseKind::Release,
+            0 => MouseKind::Press,
+            32 => MouseKind::Drag,
+            _ => return,
+        };
+        self.found.push(Input::Mouse(Mouse {
+            kind,
+            column: x.saturating_sub(1),
+            row: y.saturating_sub(1),
+        }));
+    }
+
+    fn in_paste(&mut self, byte: u8) {
+        self.held.push(byte);
+        if self.held.ends_with(PASTE_END) {
+            self.paste(self.held.len() - PASTE_END.len());
+            self.ground();
+        } else if self.held.len() > LONGEST_PASTE + PASTE_END.len() {
+            // Keeps what may be the beginning of the end.
+            self.held.remove(LONGEST_PASTE);
+        }
+    }
+
+    fn paste(&mut self, length: usize) {
+        let text = String::from_utf8_lossy(&self.held[..length.min(LONGEST_PASTE)]);
+        let text = text.replace("\r\n", "\n").replace('\r', "\n");
+        self.found.push(Input::Paste(text));
+    }
+}
+
+/// Up to three numbers between semicolons; what follows a colon is a part of a number, and is left out.
+fn numbers(text: &str) -> [u16; 3] {
+    let mut numbers = [0; 3];
+    for (number, part) in numbers.iter_mut().zip(text.split(';')) {
+        let digits = part.split(':').next().unwrap_or_default();
+        *number = digits.parse().unwrap_or(0);
+    }
+    numbers
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,127 @@
+//! Keys of many terminals, in pieces and whole.
+
+use super::*;
+use crate::tui::key;
+use MouseKind::{Drag, Press, Release, ScrollDown, ScrollUp};
+use proptest::prelude::*;
+
+fn read(bytes: &[u8]) -> Vec<Input> {
+    let mut reader = Reader::default();
+    let mut found = reader.read(bytes);
+    found.extend(reader.settle());
+    found
+}
+
+fn keys(notation: &str) -> Vec<Input> {
+    let keys = key::parse(notation).expect("the keys of a test are right");
+    keys.into_iter().map(Input::Key).collect()
+}
+
+#[test]
+fn keys_of_many_terminals() {
+    for (bytes, notation) in [
+        ("aZ\u{e9}\u{4f60} <", "aZ\u{e9}\u{4f60} <lt>"),
+        ("\r\n\t\x08\x7f", "<CR><CR><Tab><BS><BS>"),
+        ("\x03\x1a\x0c", "<C-c><C-z><C-l>"),
+        ("\x1b[A\x1bOB\x1b[1;2C\x1b[d", "<Up><Down><S-Right><S-Left>"),
+        // Other modifiers count for nothing.
+        ("\x1b[1;5A\x1b[1;6A\x1b[1;1A", "<Up><S-Up><Up>"),
+        (
+            "\x1b[H\x1bOF\x1b[1~\x1b[4~\x1b[7~\x1b[8~",
+            "<Home><End><Home><End><Home><End>",
+        ),
+        (
+            "\x1b[3~\x1b[5~\x1b[6~\x1b[Z",
+            "<Del><PageUp><PageDown><S-Tab>",
+        ),
+        ("\x1bOM\x1b[27u\x1b[9;2u\x1b[13u", "<CR><Esc><S-Tab><CR>"),
+        // Function keys, keys let go, keys and bytes that nobody knows.
+        ("\x1b[[A\x1b[15~\x1bOP\x1b[2~\x1b[1;1:3Aq\0\x1c\x1f", "q"),
+        ("\x1b", "<Esc>"),
+        ("\x1b\x1b", "<Esc>"),
+        ("\x1b\x1b[A", "<Up>"),
+        ("\x1bq\x1b\r", "<Esc>q<Esc><CR>"),
+        // Broken off by another.
+        ("\x1b[12\x1b[A\x1b[5\rq", "<Up><CR>q"),
+        // Answers to a program before us.
+        (
+            "\x1b]11;rgb:0000/ffff/0000\x1b\\\x1b[?62;22c\x1b]10;x\x07q\x1b[24;80R",
+            "q",
+        ),
+    ] {
+        assert_eq!(read(bytes.as_bytes()), keys(notation), "{bytes:?}");
+    }
+    assert_eq!(read(b"\xff\xc3(\xc2\x9b\xed\xa0\x80q"), keys("(q"));
+}
+
+#[test]
+fn an_escape_waits_for_a_moment_and_a_sequence_for_ever() {
+    let mut reader = Reader::default();
+    assert_eq!(reader.read(b"\x1b"), []);
+    assert_eq!(reader.patience(), Some(MOMENT));
+    assert_eq!(reader.settle(), keys("<Esc>"));
+    assert_eq!(reader.patience(), None);
+    assert_eq!(reader.read(b"\x1b["), []);
+    assert_eq!(reader.patience(), None);
+    assert_eq!(reader.read(b"A"), keys("<Up>"));
+}
+
+#[test]
+fn pasted_text_is_no_keys() {
+    let text = |text: &str| vec![Input::Paste(text.to_owned())];
+    assert_eq!(
+        read(b"\x1b[200~q\x1b[Ay\r\nz\r\x1b[201~"),
+        text("q\x1b[Ay\nz\n")
+    );
+    assert_eq!(read(b"\x1b[200~\x1b[201~"), text(""));
+    // The end is lost.
+    assert_eq!(read(b"\x1b[200~1.5"), text("1.5"));
+    let long = [
+        b"\x1b[200~".to_vec(),
+        vec![b'x'; LONGEST_PASTE + 5000],
+        PASTE_END.to_vec(),
+    ]
+    .concat();
+    assert_eq!(read(&long), text(&"x".repeat(LONGEST_PASTE)));
+}
+
+#[test]
+fn the_mouse_is_read_in_both_forms() {
+    let mouse = |kind, column, row| Input::Mouse(Mouse { kind, column, row });
+    for (bytes, expected) in [
+        ("\x1b[<0;13;6M", mouse(Press, 12, 5)),
+        ("\x1b[<4;13;6M", mouse(Press, 12, 5)),
+        ("\x1b[<0;13;6m", mouse(Release, 12, 5)),
+        ("\x1b[<32;13;6M", mouse(Drag, 12, 5)),
+        ("\x1b[<64;1;1M", mouse(ScrollUp, 0, 0)),
+        ("\x1b[<65;1;1M", mouse(ScrollDown, 0, 0)),
+        // Nothing lies left of the first column.
+        ("\x1b[<0;0;0M", mouse(Press, 0, 0)),
+        ("\x1b[<0;70000;-4M", mouse(Press, 0, 0)),
+        ("\x1b[M -&", mouse(Press, 12, 5)),
+        ("\x1b[M#-&", mouse(Release, 12, 5)),
+        ("\x1b[M   ", mouse(Press, 0, 0)),
+    ] {
+        assert_eq!(read(bytes.as_bytes()), [expected], "{bytes:?}");
+    }
+    assert_eq!(read(b"\x1b[<2;13;6M\x1b[<35;1;1M"), []);
+}
+
+proptest! {
+    /// Wherever a line cuts the bytes, the same comes out; and nothing makes it fail.
+    #[test]
+    fn pieces_are_as_good_as_the_whole(
+        pieces in prop::collection::vec(
+            prop_oneof![
+                Just(b"\x1b[A".to_vec()), Just(b"\x1b".to_vec()), Just(b"\x1b[200~".to_vec()),
+                Just(PASTE_END.to_vec()), Just(b"\x1b[<0;13;6M".to_vec()), Just(b"\x1b]1;".to_vec()),
+                Just(b"\x1b[M".to_vec()), prop::collection::vec(any::<u8>(), 0..6),
+            ], 0..12)
+    ) {
+        let bytes = pieces.concat();
+        let mut reader = Reader::default();
+        let mut found: Vec<_> = bytes.iter().flat_map(|&byte| reader.read(&[byte])).collect();
+        found.extend(reader.settle());
+        prop_assert_eq!(found, read(&bytes));
+    }
+}

@@ -1,0 +1,64 @@
+//! The real terminal: into raw mode and out of it, bytes in, bytes out.
+//!
+//! ```text
+//! settings   environment and flags -> what this terminal is sent
+//! input      bytes -> key, paste, mouse
+//! pen        styles -> few bytes
+//! screen     changed cells -> few bytes
+//! device     the terminal's two files
+//! session    one way in, one way out
+//! signals    what the system says
+//! job        stopped and continued by a shell
+//! mailbox    messages from workers
+//! outcome    how it ended
+//! converse   the loop: waits for all of them at once
+//! ```
+//! The loop sleeps until there is something to do, without a tick; it writes only where the screen changes, in one
+//! write a frame; and it ends when the terminal is gone, whether or not a signal says so. Nothing is asked of the
+//! terminal: an answer over a slow line would come as keys.
+
+pub mod settings;
+
+pub mod input;
+
+mod pen;
+
+pub mod screen;
+
+mod device;
+
+mod session;
+
+mod signals;
+
+mod job;
+
+pub mod mailbox;
+
+mod outcome;
+
+mod converse;
+
+use std::io;
+
+pub use outcome::Outcome;
+pub use settings::Settings;
+
+use super::app::App;
+use super::effect::World;
+use input::Input;
+
+/// Runs the program until it ends. The terminal is left as it was, after an error, a signal and a panic too, and
+/// unsaved work is in the journal wherever the program may not come back. `watch` is told of all that comes in.
+///
+/// # Errors
+/// Where there is no terminal, or it cannot be read or written.
+pub fn run(
+    app: App,
+    world: World,
+    settings: &Settings,
+    watch: &mut dyn FnMut(&Input),
+) -> io::Result<Outcome> {
+    let (_, mailbox) = mailbox::new()?;
+    converse::run(app, world, settings, mailbox, watch)
+}

@@ -1,0 +1,23 @@
+//! How the program ended, for the exit status.
+
+/// How the program ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// The user left it.
+    Quit,
+    /// A signal of this number asked for it.
+    Signal(i32),
+    /// The terminal is gone.
+    Hangup,
+}
+
+impl Outcome {
+    /// The exit status: 0, or 128 and the signal's number as a shell has it; a lost terminal counts as its signal.
+    pub fn status(self) -> u8 {
+        match self {
+            Self::Quit => 0,
+            Self::Signal(number) => 128_u8.saturating_add(u8::try_from(number).unwrap_or(127)),
+            Self::Hangup => Self::Signal(signal_hook::consts::SIGHUP).status(),
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! Styles, told by their difference.
+
+use ratatui::buffer::Cell;
+use ratatui::style::{Color, Modifier};
+
+/// How characters are written: colours and attributes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Pen {
+    pub(super) fore: Color,
+    pub(super) back: Color,
+    pub(super) attributes: Modifier,
+}
+
+pub(super) const PLAIN: Pen = Pen {
+    fore: Color::Reset,
+    back: Color::Reset,
+    attributes: Modifier::empty(),
+};
+
+/// The attributes that are sent: the number that switches one on, the one that switches it off. Bold and dim share
+/// theirs.
+const ATTRIBUTES: [(Modifier, u8, u8); 7] = [
+    (Modifier::BOLD, 1, 22),
+    (Modifier::DIM, 2, 22),
+    (Modifier::ITALIC, 3, 23),
+    (Modifier::UNDERLINED, 4, 24),
+    (Modifier::SLOW_BLINK, 5, 25),
+    (Modifier::REVERSED, 7, 27),
+    (Modifier::CROSSED_OUT, 9, 29),
+];
+
+impl Pen {
+    pub(super) fn of(cell: &Cell) -> Self {
+        Self {
+            fore: cell.fg,
+            back: cell.bg,
+            attributes: cell.modifier,
+        }
+    }
+
+    /// Whether a blank looks the same as a plain one.
+    pub(super) fn leaves_blanks_plain(self) -> bool {
+        let seen = Modifier::REVERSED | Modifier::UNDERLINED | Modifier::CROSSED_OUT;
+        self.back == Color::Reset && !self.attributes.intersects(seen)
+    }
+
+    /// The shortest sequence that changes `before` into this one.
+    pub(super) fn change(self, before: Self, out: &mut Vec<u8>) {
+        if self == before {
+            return;
+        }
+        let difference = sgr(&self.steps(before, false));
+        let anew = sgr(&self.steps(PLAIN, true));
+        out.extend(if difference.len() < anew.len() {
+            difference
+        } else {
+            anew
+        });
+    }
+
+    fn steps(self, before: Self, reset: bool) -> Vec<String> {
+        let mut steps = Vec::new();
+        let mut held = before.attributes;
+        if reset {
+            // Empty stands for 0, and is enough where nothing follows.
+            steps.push(if self == PLAIN { "" } else { "0" }.to_owned());
+        }
+        for (attribute, _, off) in ATTRIBUTES {
+            if held.contains(attribute) && !self.attributes.contains(attribute) {
+                steps.push(off.to_string());
+                let together = ATTRIBUTES.iter().filter(|(_, _, other)| *other == off);
+                together.for_each(|(gone, ..)| held.remove(*gone));
+            }
+        }
+        for (attribute, on, _) in ATTRIBUTES {
+            if self.attributes.contains(attribute) && !held.contains(attribute) {
+                steps.push(on.to_string());
+            }
+        }
+        if self.fore != before.fore {
+            steps.push(color(self.fore, 30));
+        }
+        if self.back != before.back {
+            steps.push(color(self.back, 40));
+        }
+        steps
+    }
+}
+
+fn sgr(steps: &[String]) -> Vec<u8> {
+    format!("\x1b[{}m", steps.join(";")).into_bytes()
+}
+
+/// A colour's number, `base` being 30 in front and 40 behind. The sixteen have short ones that every terminal knows.
+fn color(color: Color, base: u8) -> String {
+    let numbered = |number: u8| (base + number).to_string();
+    match color {
+        Color::Reset => numbered(9),
+        Color::Black => numbered(0),
+        Color::Red => numbered(1),
+        Color::Green => numbered(2),
+        Color::Yellow => numbered(3),
+        Color::Blue => numbered(4),
+        Color::Magenta => numbered(5),
+        Color::Cyan => numbered(6),
+        Color::Gray => numbered(7),
+        Color::DarkGray => numbered(60),
+        Color::LightRed => numbered(61),
+        Color::LightGreen => numbered(62),
+        Color::LightYellow => numbered(63),
+        Color::LightBlue => numbered(64),
+        Color::LightMagenta => numbered(65),
+        Color::LightCyan => numbered(66),
+        Color::White => numbered(67),
+        Color::Indexed(index) => format!("{};5;{index}", base + 8),
+        Color::Rgb(red, green, blue) => format!("{};2;{red};{green};{blue}", base + 8),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn styles_are_told_by_their_difference() {
+        let pen = |attributes, fore| Pen {
+            fore,
+            back: Color::Reset,
+            attributes,
+        };
+        let change = |from: Pen, to: Pen| {
+            let mut out = Vec::new();
+            to.change(from, &mut out);
+            String::from_utf8(out).expect("text")
+        };
+        let (bold, dim) = (Modifier::BOLD, Modifier::DIM);
+        let red = pen(bold, Color::Red);
+        assert_eq!(change(red, red), "");
+        assert_eq!(change(red, PLAIN), "\x1b[m");
+        assert_eq!(change(PLAIN, red), "\x1b[1;31m");
+        assert_eq!(change(red, pen(bold, Color::LightGreen)), "\x1b[92m");
+        assert_eq!(change(red, pen(dim, Color::Red)), "\x1b[22;2m");
+        assert_eq!(
+            change(pen(bold | dim, Color::Reset), pen(dim, Color::Reset)),
+            "\x1b[0;2m"
+        );
+        assert_eq!(
+            change(PLAIN, pen(Modifier::empty(), Color::Indexed(114))),
+            "\x1b[38;5;114m"
+        );
+    }
+}

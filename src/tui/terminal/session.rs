@@ -1,0 +1,188 @@
+//! One way into the terminal's modes and one way out, which may be taken twice.
+//!
+//! What was found is kept in one place for the whole process, so that a panic anywhere can put it right.
+
+use std::io::{self, Write};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use crossterm::terminal::{Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen};
+use crossterm::{Command, cursor};
+use rustix::io::Errno;
+use rustix::termios::{OptionalActions, QueueSelector, Termios, tcflush, tcgetattr, tcsetattr};
+
+use super::device::Device;
+use super::settings::Settings;
+
+/// Buttons only, places as numbers. Crossterm's own command also has every motion reported, a flood on a slow line.
+const MOUSE_ON: &str = "\x1b[?1000h\x1b[?1006h";
+const MOUSE_OFF: &str = "\x1b[?1006l\x1b[?1000l";
+/// Shows what a frame that was cut off has held back.
+const SHOW_FRAME: &str = "\x1b[?2026l";
+/// Marks pasted text.
+const PASTE_ON: &str = "\x1b[?2004h";
+const PASTE_OFF: &str = "\x1b[?2004l";
+const PLAIN: &str = "\x1b[m";
+/// Below whatever is on the screen: the first row that there is not is the last one.
+const BELOW: &str = "\x1b[999;1H\r\n";
+
+/// What has to be put back.
+#[derive(Debug)]
+struct Found {
+    device: Device,
+    attributes: Termios,
+    settings: Settings,
+    mouse: bool,
+    /// What is to be said on standard error when the terminal is the shell's again.
+    later: String,
+}
+
+static FOUND: Mutex<Option<Found>> = Mutex::new(None);
+
+fn found() -> MutexGuard<'static, Option<Found>> {
+    FOUND.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Into raw mode, onto the second screen, the mouse as asked for. Inside already, all of it is said again: somebody
+/// may have changed it while the program was stopped.
+pub(super) fn enter(device: &Device, settings: &Settings, mouse: bool) -> io::Result<()> {
+    let mut held = found();
+    let (attributes, later) = match held.take() {
+        Some(found) => (found.attributes, found.later),
+        None => (tcgetattr(device.input())?, String::new()),
+    };
+    let mut raw = attributes.clone();
+    raw.make_raw();
+    set(device, &raw)?;
+    *held = Some(Found {
+        device: device.try_clone()?,
+        attributes,
+        settings: *settings,
+        mouse,
+        later,
+    });
+    let mut hello = String::new();
+    if settings.kind.has_modes() {
+        push(&mut hello, EnterAlternateScreen);
+        hello += PASTE_ON;
+    }
+    if mouse {
+        hello += MOUSE_ON;
+    }
+    push(&mut hello, cursor::MoveTo(0, 0));
+    push(&mut hello, Clear(ClearType::All));
+    device.write_last(hello.as_bytes()).map(drop)
+}
+
+/// Everything as it was found. Outside, nothing.
+pub(super) fn leave() -> io::Result<()> {
+    let Some(found) = found().take() else {
+        return Ok(());
+    };
+    let mut goodbye = String::new();
+    if found.settings.synchronized {
+        goodbye += SHOW_FRAME;
+    }
+    if found.settings.styles {
+        goodbye += PLAIN;
+    }
+    if found.mouse {
+        goodbye += MOUSE_OFF;
+    }
+    push(&mut goodbye, cursor::Show);
+    if found.settings.kind.has_modes() {
+        goodbye += PASTE_OFF;
+        push(&mut goodbye, LeaveAlternateScreen);
+    } else {
+        goodbye += BELOW;
+    }
+    let said = found.device.write_last(goodbye.as_bytes());
+    if found.mouse {
+        // Reports that are on their way would be typed into the shell.
+        let _ = tcflush(found.device.input(), QueueSelector::IFlush);
+    }
+    set(&found.device, &found.attributes)?;
+    eprint(&found.later);
+    said.map(drop)
+}
+
+/// Keeps a text for standard error until the terminal is the shell's again. Answers whether the terminal is ours.
+pub(super) fn tell_later(text: &str) -> bool {
+    let mut found = found();
+    let ours = found.as_mut().map(|found| found.later += text);
+    ours.is_some()
+}
+
+fn eprint(text: &str) {
+    // Where standard error is gone, nobody is there to be told.
+    let _ = io::stderr().write_all(text.as_bytes());
+}
+
+/// Has the mouse reported, or leaves it to the terminal.
+pub(super) fn set_mouse(on: bool) -> io::Result<()> {
+    if let Some(found) = found().as_mut() {
+        found.mouse = on;
+        let words = if on { MOUSE_ON } else { MOUSE_OFF };
+        found.device.write_last(words.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// Puts a text into the clipboard of the user's terminal, which may refuse without saying so (OSC 52).
+pub(super) fn copy(text: &str) -> io::Result<()> {
+    if let Some(found) = found().as_ref() {
+        let words = format!("\x1b]52;c;{}\x07", base64(text.as_bytes()));
+        found.device.write_last(words.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// RFC 4648, section 4.
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::new();
+    for group in bytes.chunks(3) {
+        let byte = |index: usize| u32::from(group.get(index).copied().unwrap_or(0));
+        let joined = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for index in 0..4 {
+            let digit = (joined >> (18 - 6 * index) & 63) as usize;
+            let digit = char::from(DIGITS[digit]);
+            text.push(if index <= group.len() { digit } else { '=' });
+        }
+    }
+    text
+}
+
+/// Without waiting for output: a line that takes none would never let go.
+fn set(device: &Device, attributes: &Termios) -> io::Result<()> {
+    loop {
+        match tcsetattr(device.input(), OptionalActions::Now, attributes) {
+            Err(Errno::INTR) => {}
+            other => return Ok(other?),
+        }
+    }
+}
+
+fn push(text: &mut String, command: impl Command) {
+    // A string takes everything.
+    let _ = command.write_ansi(text);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base64_of_the_standard() {
+        for (text, expected) in [
+            ("", ""),
+            ("f", "Zg=="),
+            ("fo", "Zm8="),
+            ("foo", "Zm9v"),
+            ("foob", "Zm9vYg=="),
+            ("fooba", "Zm9vYmE="),
+            ("foobar", "Zm9vYmFy"),
+        ] {
+            assert_eq!(base64(text.as_bytes()), expected);
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! What the terminal is sent, decided from the environment and the command line without asking the terminal.
+//!
+//! `TERM` tells the kind. A terminal that is not named, or is named `dumb`, is taken to move its cursor and no more;
+//! names of video terminals (`vt100`) stand for serial lines.
+
+use std::ffi::OsString;
+
+use crate::tui::theme::{ColorDepth, Palette, Theme};
+
+/// Kinds of terminals, from the poorest on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// Moves its cursor and clears its screen; no styles, no characters but ASCII.
+    Dumb,
+    /// A video terminal, or a program that is one at the end of a serial line.
+    Serial,
+    /// A text console.
+    Console,
+    /// A window, or a multiplexer.
+    Window,
+}
+
+impl Kind {
+    fn of(term: &str) -> Self {
+        let begins = |starts: &[&str]| starts.iter().any(|start| term.starts_with(start));
+        match term {
+            "" | "dumb" | "unknown" | "network" => Self::Dumb,
+            _ if begins(&["vt", "ansi", "pcansi", "wy"]) => Self::Serial,
+            _ if begins(&["linux", "cons25", "bterm", "fbterm"]) => Self::Console,
+            _ => Self::Window,
+        }
+    }
+
+    /// Whether it has a second screen, and can mark pasted text.
+    pub fn has_modes(self) -> bool {
+        self >= Self::Console
+    }
+}
+
+/// What the command line says; nothing where it is silent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Flags {
+    /// `--color`; none: automatic.
+    pub color: Option<ColorDepth>,
+    /// `--theme`.
+    pub palette: Option<Palette>,
+    /// `--ascii`, or a locale that is not UTF-8.
+    pub ascii: bool,
+    /// `--no-mouse`.
+    pub no_mouse: bool,
+    /// `--size`: columns and rows.
+    pub size: Option<(u16, u16)>,
+}
+
+/// What the terminal is sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is a switch by itself, with any of the others"
+)]
+pub struct Settings {
+    /// What it is.
+    pub kind: Kind,
+    /// Columns and rows, whatever the terminal says.
+    pub size: Option<(u16, u16)>,
+    /// Columns and rows where the terminal does not know them, as serial lines do not.
+    pub fallback: (u16, u16),
+    /// Whether buttons of the mouse are reported at the start.
+    pub mouse: bool,
+    /// How many colours.
+    pub color: ColorDepth,
+    /// Which ones.
+    pub palette: Palette,
+    /// ASCII characters only.
+    pub ascii: bool,
+    /// Whether a frame is marked, so that the terminal shows it all at once.
+    pub synchronized: bool,
+    /// Whether bold, reversed and colours are sent at all.
+    pub styles: bool,
+}
+
+impl Settings {
+    /// Decides from the variables of the environment and from the command line, which wins.
+    pub fn from_environment(
+        variable: impl Fn(&'static str) -> Option<OsString>,
+        flags: &Flags,
+    ) -> Self {
+        let text = |name| {
+            variable(name)
+                .and_then(|value| value.into_string().ok())
+                .unwrap_or_default()
+        };
+        let term = text("TERM");
+        let kind = Kind::of(&term);
+        let no_color = variable("NO_COLOR").is_some_and(|value| !value.is_empty());
+        let color = flags.color.unwrap_or_else(|| match kind {
+            _ if no_color => ColorDepth::Never,
+            Kind::Dumb | Kind::Serial => ColorDepth::Never,
+            Kind::Console => ColorDepth::Sixteen,
+            Kind::Window => depth(&term, &text("COLORTERM")),
+        });
+        let number = |name, otherwise| {
+            let number = text(name).trim().parse().ok();
+            number.filter(|&number| number > 0).unwrap_or(otherwise)
+        };
+        Self {
+            kind,
+            size: flags.size,
+            fallback: (number("COLUMNS", 80), number("LINES", 24)),
+            mouse: kind == Kind::Window && !flags.no_mouse,
+            color,
+            palette: flags
+                .palette
+                .unwrap_or_else(|| background(&text("COLORFGBG"))),
+            ascii: flags.ascii || kind <= Kind::Serial,
+            synchronized: kind == Kind::Window,
+            styles: kind > Kind::Dumb || color != ColorDepth::Never,
+        }
+    }
+
+    /// The look that goes with it.
+    pub fn theme(&self) -> Theme {
+        Theme {
+            ascii: self.ascii,
+            depth: self.color,
+            palette: self.palette,
+        }
+    }
+}
+
+/// How many colours a window has.
+fn depth(term: &str, colorterm: &str) -> ColorDepth {
+    let has = |ends: &[&str]| ends.iter().any(|end| term.contains(end));
+    if matches!(colorterm, "truecolor" | "24bit") || has(&["direct", "truecolor"]) {
+        ColorDepth::True
+    } else if has(&["256color", "kitty", "alacritty", "foot", "ghostty"]) {
+        ColorDepth::TwoFiftySix
+    } else if has(&["mono", "-m"]) {
+        ColorDepth::Never
+    } else {
+        ColorDepth::Sixteen
+    }
+}
+
+/// Some terminals tell their colours as "15;0": the last number is the background's, 7 and 15 are white.
+fn background(colors: &str) -> Palette {
+    match colors.rsplit(';').next() {
+        Some("7" | "15") => Palette::Light,
+        _ => Palette::Dark,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn settings(variables: &[(&str, &str)], flags: Flags) -> Settings {
+        let variable = |name| {
+            let found = variables.iter().find(|(own, _)| *own == name);
+            found.map(|(_, value)| OsString::from(value))
+        };
+        Settings::from_environment(variable, &flags)
+    }
+
+    fn term(term: &str) -> Settings {
+        settings(&[("TERM", term)], Flags::default())
+    }
+
+    #[test]
+    fn the_kind_decides_what_is_sent() {
+        for (name, kind) in [
+            ("", Kind::Dumb),
+            ("dumb", Kind::Dumb),
+            ("vt100", Kind::Serial),
+            ("vt220", Kind::Serial),
+            ("linux", Kind::Console),
+            ("xterm-256color", Kind::Window),
+            ("tmux", Kind::Window),
+        ] {
+            let settings = term(name);
+            assert_eq!(settings.kind, kind, "{name}");
+            assert_eq!(settings.mouse, kind == Kind::Window, "{name}");
+            assert_eq!(settings.synchronized, kind == Kind::Window, "{name}");
+            assert_eq!(settings.ascii, kind <= Kind::Serial, "{name}");
+            assert_eq!(settings.styles, kind != Kind::Dumb, "{name}");
+        }
+        assert_eq!(settings(&[], Flags::default()), term("dumb"));
+    }
+
+    #[test]
+    fn colours_follow_the_terminal_unless_somebody_says_otherwise() {
+        assert_eq!(term("linux").color, ColorDepth::Sixteen);
+        assert_eq!(term("xterm").color, ColorDepth::Sixteen);
+        assert_eq!(term("screen-256color").color, ColorDepth::TwoFiftySix);
+        assert_eq!(term("vt100").color, ColorDepth::Never);
+        let with = |name, value| {
+            let variables = [("TERM", "xterm-256color"), (name, value)];
+            settings(&variables, Flags::default()).color
+        };
+        assert_eq!(with("COLORTERM", "truecolor"), ColorDepth::True);
+        assert_eq!(with("NO_COLOR", "1"), ColorDepth::Never);
+        // Empty is as good as unset: https://no-color.org
+        assert_eq!(with("NO_COLOR", ""), ColorDepth::TwoFiftySix);
+        let asked = Flags {
+            color: Some(ColorDepth::Sixteen),
+            ..Flags::default()
+        };
+        let forced = settings(&[("TERM", "dumb"), ("NO_COLOR", "1")], asked);
+        assert_eq!(
+            (forced.color, forced.styles),
+            (ColorDepth::Sixteen, true),
+            "the command line wins"
+        );
+    }
+
+    #[test]
+    fn sizes_and_backgrounds_come_from_the_environment() {
+        let none = term("xterm");
+        assert_eq!((none.size, none.fallback), (None, (80, 24)));
+        let some = settings(
+            &[
+                ("COLUMNS", "132"),
+                ("LINES", " 43 "),
+                ("COLORFGBG", "0;default;15"),
+            ],
+            Flags::default(),
+        );
+        assert_eq!((some.fallback, some.palette), ((132, 43), Palette::Light));
+        for wrong in ["0", "-5", "many", "99999999"] {
+            let settings = settings(&[("COLUMNS", wrong), ("LINES", wrong)], Flags::default());
+            assert_eq!(settings.fallback, (80, 24), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! What the system says: to end, to stop, to look at the size again. Handlers write into a pipe that can be waited
+//! for together with everything else.
+
+use std::io;
+use std::os::fd::{AsFd, BorrowedFd};
+use std::os::unix::net::UnixStream;
+
+use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGWINCH};
+use signal_hook::iterator::backend::SignalDelivery;
+use signal_hook::iterator::exfiltrator::SignalOnly;
+
+/// A signal, as far as it matters here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Said {
+    /// End, by this number.
+    End(i32),
+    /// Stop.
+    Stop,
+    /// Go on.
+    Continue,
+    /// The terminal has another size.
+    Size,
+}
+
+/// Listens from its making on.
+#[derive(Debug)]
+pub(super) struct Signals {
+    delivery: SignalDelivery<UnixStream, SignalOnly>,
+}
+
+impl Signals {
+    /// Begins to listen.
+    pub(super) fn new() -> io::Result<Self> {
+        let (read, write) = UnixStream::pair()?;
+        read.set_nonblocking(true)?;
+        write.set_nonblocking(true)?;
+        let heard = [SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGCONT, SIGWINCH];
+        let delivery = SignalDelivery::with_pipe(read, write, SignalOnly, heard)?;
+        Ok(Self { delivery })
+    }
+
+    /// Readable when there is something to hear.
+    pub(super) fn ear(&self) -> BorrowedFd<'_> {
+        self.delivery.get_read().as_fd()
+    }
+
+    /// What was said since the last time; what ends the program comes first.
+    pub(super) fn heard(&mut self) -> Vec<Said> {
+        let mut heard: Vec<Said> = self
+            .delivery
+            .pending()
+            .map(|signal| match signal {
+                SIGTSTP => Said::Stop,
+                SIGCONT => Said::Continue,
+                SIGWINCH => Said::Size,
+                other => Said::End(other),
+            })
+            .collect();
+        heard.sort_by_key(|said| !matches!(said, Said::End(_)));
+        heard
+    }
+}

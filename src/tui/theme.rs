@@ -1,0 +1,207 @@
+//! How things look: a style a role, and the characters of the matrix.
+//!
+//! Nothing is told by colour alone: what a colour says, a character or a word says too. The characters of the
+//! Unicode set are those that the fonts of text consoles have (code page 437).
+
+use std::borrow::Cow;
+
+use ratatui::style::{Color, Modifier, Style};
+
+/// What a piece of screen is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Ordinary text.
+    Text,
+    /// Rulers, units, explanations.
+    Quiet,
+    /// A key that can be pressed.
+    Key,
+    /// A heading.
+    Title,
+    /// An active taxel of the region that is described.
+    Chosen,
+    /// Another active taxel.
+    Active,
+    /// A taxel of the hole that is described.
+    Hole,
+    /// An inactive taxel.
+    Inactive,
+    /// Where the cursor is.
+    Cursor,
+    /// The field that has the focus.
+    Focus,
+    /// Something is wrong.
+    Error,
+}
+
+impl Role {
+    /// Its letter in printed screens.
+    pub fn letter(style: &Style) -> char {
+        let has = |modifier| style.add_modifier.contains(modifier);
+        if has(Modifier::REVERSED) {
+            'R'
+        } else if has(Modifier::BOLD) {
+            'B'
+        } else if has(Modifier::UNDERLINED) {
+            'U'
+        } else if has(Modifier::DIM) {
+            'D'
+        } else {
+            '.'
+        }
+    }
+}
+
+/// How many colours the terminal has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ColorDepth {
+    /// None, or none are wanted.
+    Never,
+    /// The eight and their bright ones, in whatever tones the user gave them.
+    Sixteen,
+    /// The table of 256.
+    TwoFiftySix,
+    /// Any.
+    True,
+}
+
+/// What the colours are chosen for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Palette {
+    /// A dark background.
+    Dark,
+    /// A light background.
+    Light,
+    /// No colours, whatever the terminal has.
+    Mono,
+}
+
+/// How much the terminal can show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Theme {
+    /// ASCII characters only.
+    pub ascii: bool,
+    /// How many colours.
+    pub depth: ColorDepth,
+    /// Which ones.
+    pub palette: Palette,
+}
+
+/// The two characters of a taxel that is one column or two columns wide.
+pub type Cell = [char; 2];
+
+/// One colour in each depth: of the sixteen, of the 256, and as red, green, blue.
+type Tone = (Color, u8, [u8; 3]);
+
+/// The colours of a palette. Bright ones of the sixteen are left out: some terminals show them as bold, some not at
+/// all.
+fn tone(role: Role, palette: Palette) -> Option<Tone> {
+    match (palette, role) {
+        (Palette::Dark, Role::Title) => Some((Color::Cyan, 80, [95, 215, 215])),
+        (Palette::Dark, Role::Chosen) => Some((Color::Green, 114, [135, 215, 135])),
+        (Palette::Dark, Role::Active) => Some((Color::Blue, 75, [95, 175, 255])),
+        (Palette::Dark, Role::Hole) => Some((Color::Yellow, 221, [255, 215, 95])),
+        (Palette::Dark, Role::Error) => Some((Color::Red, 203, [255, 95, 95])),
+        (Palette::Light, Role::Title) => Some((Color::Blue, 25, [0, 95, 175])),
+        (Palette::Light, Role::Chosen) => Some((Color::Green, 28, [0, 135, 0])),
+        (Palette::Light, Role::Active) => Some((Color::Cyan, 31, [0, 135, 175])),
+        // Yellow on white cannot be read.
+        (Palette::Light, Role::Hole) => Some((Color::Magenta, 130, [175, 95, 0])),
+        (Palette::Light, Role::Error) => Some((Color::Red, 160, [215, 0, 0])),
+        _ => None,
+    }
+}
+
+impl Theme {
+    /// No colours.
+    pub const fn plain(ascii: bool) -> Self {
+        Self {
+            ascii,
+            depth: ColorDepth::Never,
+            palette: Palette::Mono,
+        }
+    }
+
+    /// The style of a role.
+    pub fn style(&self, role: Role) -> Style {
+        let style = match role {
+            Role::Quiet | Role::Inactive => Style::new().add_modifier(Modifier::DIM),
+            Role::Key | Role::Title | Role::Error => Style::new().add_modifier(Modifier::BOLD),
+            Role::Cursor | Role::Focus => Style::new().add_modifier(Modifier::REVERSED),
+            Role::Text | Role::Active | Role::Chosen | Role::Hole => Style::new(),
+        };
+        let Some((named, index, [red, green, blue])) = tone(role, self.palette) else {
+            return style;
+        };
+        match self.depth {
+            ColorDepth::Never => style,
+            ColorDepth::Sixteen => style.fg(named),
+            ColorDepth::TwoFiftySix => style.fg(Color::Indexed(index)),
+            ColorDepth::True => style.fg(Color::Rgb(red, green, blue)),
+        }
+    }
+
+    /// The characters of a taxel, by its role.
+    pub fn taxel(&self, role: Role) -> Cell {
+        match (role, self.ascii) {
+            (Role::Chosen, true) => ['#', '#'],
+            (Role::Active, true) => ['%', '%'],
+            (Role::Hole, true) => ['o', 'o'],
+            (_, true) => ['.', ' '],
+            (Role::Chosen, false) => ['█', '█'],
+            (Role::Active, false) => ['▒', '▒'],
+            (Role::Hole, false) => ['░', '░'],
+            (_, false) => ['·', ' '],
+        }
+    }
+
+    /// The characters of a coverage from 0 to 1, five shades.
+    pub fn shade(&self, coverage: f64) -> Cell {
+        let shades = if self.ascii {
+            ['.', ':', '+', '%', '#']
+        } else {
+            ['·', '░', '▒', '▓', '█']
+        };
+        let shade = match coverage {
+            none if none <= 0.0 => 0,
+            low if low < 0.25 => 1,
+            low if low < 0.5 => 2,
+            high if high < 1.0 => 3,
+            _ => 4,
+        };
+        [shades[shade], if shade == 0 { ' ' } else { shades[shade] }]
+    }
+
+    /// What stands for a value that does not exist.
+    pub fn none(&self) -> &'static str {
+        if self.ascii { "-" } else { "–" }
+    }
+
+    /// A text with the characters that the terminal has.
+    pub fn text<'a>(&self, text: &'a str) -> Cow<'a, str> {
+        if !self.ascii || text.is_ascii() {
+            return Cow::Borrowed(text);
+        }
+        Cow::Owned(to_ascii(text))
+    }
+}
+
+/// The nearest text in ASCII: "17°" becomes "17 deg".
+fn to_ascii(text: &str) -> String {
+    let mut plain = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '°' => plain.push_str(" deg"),
+            '²' => plain.push_str("^2"),
+            '×' => plain.push('x'),
+            '·' => plain.push('*'),
+            'π' => plain.push_str("pi"),
+            '–' | '—' => plain.push('-'),
+            '…' => plain.push_str("..."),
+            '→' => plain.push_str("->"),
+            other if other.is_ascii() => plain.push(other),
+            _ => plain.push('?'),
+        }
+    }
+    plain
+}

@@ -1,0 +1,174 @@
+//! What the library answers.
+
+use super::change::{begin, change, inform, refuse};
+use crate::imprint::Imprint;
+use crate::library::store::{Expected, Loaded, Origin};
+use crate::picture::Picture;
+use crate::tui::app::App;
+use crate::tui::dialog::{Dialog, Question};
+use crate::tui::document::{Document, StoredName};
+use crate::tui::form_dialog::FormDialog;
+use crate::tui::list::ListDialog;
+use crate::tui::message::{Answer, Message};
+use crate::tui::purpose::Purpose;
+use crate::tui::request::{Effect, Request};
+
+/// Takes an answer.
+pub(super) fn take(app: &mut App, answer: Answer) -> Option<Effect> {
+    match answer {
+        Answer::List(Ok(entries)) => {
+            if let Some(Dialog::List(list)) = app.dialogs.last_mut() {
+                *list = ListDialog::new(list.purpose(), entries);
+            }
+            return look(app);
+        }
+        Answer::Read(read) => {
+            if let Some(Dialog::List(list)) = app.dialogs.last_mut() {
+                list.take(read);
+            }
+        }
+        Answer::Named(Purpose::Picture, Ok(loaded)) => {
+            let name = loaded.shape.name.to_string();
+            open_picture(app, &loaded.shape.imprint, name);
+        }
+        Answer::Named(_, Ok(loaded)) => {
+            if let Err(text) = place(app, &loaded) {
+                refuse(app, text);
+            }
+        }
+        Answer::Stored(name, stamp) => {
+            inform(app, format!("saved as {name}"));
+            app.history.stored(StoredName {
+                name,
+                stamp,
+                owner: Origin::Own,
+            });
+        }
+        Answer::Differs(shape, stamp, text) => {
+            let yes = Message::Store(shape, Expected::Stamp(stamp));
+            app.dialogs.push(Dialog::Question(Question::new(
+                format!("{text}. Replace it?"),
+                yes,
+            )));
+        }
+        Answer::Removed(name) => {
+            inform(app, format!("{name} deleted; u brings it back"));
+            app.removed = Some(name);
+        }
+        Answer::Restored(name) => {
+            app.removed = None;
+            inform(app, format!("{name} is back"));
+        }
+        Answer::Found(what) => {
+            let text = format!("Unsaved work of {what}. Bring it back? y yes, n into the trash");
+            let question = Question {
+                text,
+                yes: Message::Recover,
+                no: Some(Message::GiveUp),
+            };
+            app.dialogs.push(Dialog::Question(question));
+        }
+        Answer::Recovered(shape) => {
+            begin(app, Document::empty(shape.sensor), None);
+            change(app, Document::of_shape(&shape));
+            inform(app, "brought back; s saves it");
+        }
+        Answer::List(Err(text)) => {
+            app.dialogs
+                .pop_if(|dialog| matches!(dialog, Dialog::List(_)));
+            refuse(app, text);
+        }
+        Answer::GivenUp(Some(name)) => {
+            inform(
+                app,
+                format!("it is in the trash as {name}; u brings it back"),
+            );
+            app.removed = Some(name);
+        }
+        Answer::GivenUp(None) => refuse(
+            app,
+            "it cannot be moved into the trash, and is offered again",
+        ),
+        Answer::Named(_, Err(text)) | Answer::Failed(text) => refuse(app, text),
+    }
+    None
+}
+
+/// Asks for the shapes of the list that have come into sight.
+pub(super) fn look(app: &App) -> Option<Effect> {
+    let Some(Dialog::List(list)) = app.dialogs.last() else {
+        return None;
+    };
+    let unread = list.unread();
+    (!unread.is_empty()).then_some(Effect::Library(Request::Read(unread)))
+}
+
+/// The selected shape of a list is taken, for what the list is for.
+pub(super) fn choose(app: &mut App, list: ListDialog) -> Option<Effect> {
+    let purpose = list.purpose();
+    let chosen = list
+        .choice()
+        .map(|(entry, read)| (entry.name.clone(), read.cloned()));
+    match (chosen, purpose) {
+        (None, _) => app.dialogs.push(Dialog::List(list)),
+        (Some((name, _)), Purpose::Delete) => {
+            let question = Question::new(format!("Delete {name}?"), Message::Remove(name));
+            app.dialogs.push(Dialog::Question(question));
+        }
+        (Some((_, Some(Ok(loaded)))), Purpose::Load) => {
+            if let Err(text) = place(app, &loaded) {
+                app.dialogs.push(Dialog::List(list));
+                refuse(app, text);
+            }
+        }
+        (Some((name, Some(Ok(loaded)))), Purpose::Picture) => {
+            open_picture(app, &loaded.shape.imprint, name);
+        }
+        (Some((name, read)), _) => {
+            app.dialogs.push(Dialog::List(list));
+            let reason = read
+                .and_then(Result::err)
+                .unwrap_or_else(|| "it was not read".to_owned());
+            refuse(app, format!("{name}: {reason}"));
+        }
+    }
+    None
+}
+
+fn open_picture(app: &mut App, imprint: &Imprint, name: String) {
+    let form = FormDialog::picture(app.history.present(), Picture::at_home(*imprint), name);
+    app.dialogs.push(Dialog::Form(Box::new(form)));
+}
+
+/// Brings a shape onto the matrix: with its sensor where that has as many columns and rows, as it is where its taxels
+/// fit, else not at all.
+fn place(app: &mut App, loaded: &Loaded) -> Result<(), String> {
+    let (shape, sensor) = (&loaded.shape, app.history.present().sensor);
+    let own = (shape.sensor.columns(), shape.sensor.rows());
+    let here = (sensor.columns(), sensor.rows());
+    let document = if own == here {
+        Document::of_shape(shape)
+    } else {
+        let imprint = shape.imprint.resized(here.0, here.1);
+        if imprint.count() < shape.imprint.count() {
+            return Err(format!(
+                "{} is {} x {} and does not fit on {} x {} taxels; S changes the sensor",
+                shape.name, own.0, own.1, here.0, here.1
+            ));
+        }
+        Document {
+            turned: imprint,
+            ..Document::empty(sensor)
+        }
+    };
+    // What was cut out of its sensor is another shape: it is not stored under that name.
+    let name = (own == here).then(|| StoredName {
+        name: shape.name.to_string(),
+        stamp: loaded.stamp,
+        owner: loaded.origin,
+    });
+    begin(app, document, name);
+    app.chosen = None;
+    inform(app, format!("{} loaded", shape.name));
+    Ok(())
+}

@@ -1,0 +1,147 @@
+//! Changes of the document: touching, moving, turning, zooming, and going back through them.
+
+use crate::parameter::Parameter;
+use crate::source::Source;
+use crate::tui::app::{App, Mode, Notice};
+use crate::tui::document::{Document, History, Origin, StoredName};
+use crate::tui::key::Arrow;
+
+/// Says something.
+pub(super) fn inform(app: &mut App, text: impl Into<String>) {
+    app.notice = Some(Notice::Info(text.into()));
+}
+
+/// Says why something was not done.
+pub(super) fn refuse(app: &mut App, text: impl Into<String>) {
+    app.notice = Some(Notice::Refusal(text.into()));
+}
+
+/// A change of the document. The chosen region stays chosen while there is one of that number.
+pub(super) fn change(app: &mut App, document: Document) {
+    app.history.push(document);
+    settle(app);
+}
+
+/// A document that comes from somewhere else, with the name that it is stored under, if it is.
+pub(super) fn begin(app: &mut App, document: Document, name: Option<StoredName>) {
+    let saved = document.clone();
+    app.history.begin(document, Origin { name, saved });
+    settle(app);
+}
+
+/// Brings back into range what depends on the document.
+pub(super) fn settle(app: &mut App) {
+    app.removed = None;
+    let present = app.history.present();
+    app.cursor.0 = app.cursor.0.min(present.sensor.columns() - 1);
+    app.cursor.1 = app.cursor.1.min(present.sensor.rows() - 1);
+    if present.source.is_none() {
+        app.mode = Mode::Draw;
+    }
+    let regions = app.seen().regions.len();
+    app.chosen = app.chosen.filter(|&index| index < regions);
+}
+
+/// Back or forth by one change.
+pub(super) fn travel(app: &mut App, step: impl FnOnce(&mut History) -> bool, otherwise: &str) {
+    if step(&mut app.history) {
+        settle(app);
+    } else {
+        inform(app, otherwise);
+    }
+}
+
+/// A document from a form: a new touch, or another sensor. What was done by hand and goes is said.
+pub(super) fn replace(app: &mut App, document: Document) {
+    let present = app.history.present();
+    if *present == document {
+        return;
+    }
+    let dropped = present
+        .turned
+        .count()
+        .saturating_sub(document.turned.count());
+    change(app, document);
+    if dropped > 0 {
+        let taxels = if dropped == 1 { "taxel" } else { "taxels" };
+        inform(
+            app,
+            format!("{dropped} {taxels} set by hand dropped; u brings back what was"),
+        );
+    }
+}
+
+fn refuse_to_move(app: &mut App) {
+    refuse(
+        app,
+        "nothing to move: this was drawn by hand; f touches a figure, p a stored shape",
+    );
+}
+
+/// What can be moved; where there is nothing, that is said.
+pub(super) fn movable(app: &mut App) -> Option<Source> {
+    let source = app.history.present().source.clone();
+    if source.is_none() {
+        refuse_to_move(app);
+    }
+    source
+}
+
+/// Moves the shape by a step.
+pub(super) fn nudge(app: &mut App, arrow: Arrow) {
+    let Some(source) = movable(app) else { return };
+    let (dx, dy) = arrow.step();
+    let (parameter, direction) = if dx == 0 {
+        (Parameter::Y0, dy)
+    } else {
+        (Parameter::X0, dx)
+    };
+    let value = source.get(parameter).unwrap_or(0.0) + f64::from(direction) * app.step.length();
+    set(app, source, &[(parameter, tidy(value))]);
+}
+
+/// Turns the shape, as seen.
+pub(super) fn turn(app: &mut App, clockwise: i16) {
+    let Some(source) = movable(app) else { return };
+    let value = source.get(Parameter::Angle).unwrap_or(0.0) + f64::from(clockwise) * source.sense();
+    set(
+        app,
+        source,
+        &[(Parameter::Angle, tidy(value).rem_euclid(360.0))],
+    );
+}
+
+/// Makes a picture larger or smaller by a step.
+pub(super) fn zoom(app: &mut App, direction: i8) {
+    let Some(source) = movable(app) else { return };
+    let by = f64::from(direction) * app.step.length();
+    let (Some(x), Some(y)) = (source.get(Parameter::ZoomX), source.get(Parameter::ZoomY)) else {
+        return refuse(app, "a figure has sizes in place of a zoom: f changes them");
+    };
+    set(
+        app,
+        source,
+        &[
+            (Parameter::ZoomX, tidy(x + by)),
+            (Parameter::ZoomY, tidy(y + by)),
+        ],
+    );
+}
+
+/// Steps of a hundredth shall lead from decimal to decimal, not drift by roundings.
+fn tidy(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6
+}
+
+fn set(app: &mut App, source: Source, values: &[(Parameter, f64)]) {
+    let sensor = app.history.present().sensor;
+    let moved = values
+        .iter()
+        .try_fold(source, |source, &(parameter, value)| {
+            source.with(parameter, value, sensor.side())
+        });
+    match moved {
+        Ok(source) => replace(app, Document::touched(sensor, source)),
+        Err(error) => refuse(app, error.to_string()),
+    }
+}

@@ -1,0 +1,205 @@
+//! What messages do while nothing lies over the matrix.
+
+use super::change::{begin, change, inform, movable, nudge, refuse, replace, travel, turn, zoom};
+use crate::description::descriptor::DESCRIPTORS;
+use crate::formats::value;
+use crate::library::store::{Expected, Origin};
+use crate::tui::app::{App, Display, Mode, Page};
+use crate::tui::command_dialog::CommandDialog;
+use crate::tui::dialog::{Dialog, Question};
+use crate::tui::document::{Document, History};
+use crate::tui::form_dialog::FormDialog;
+use crate::tui::key::Arrow;
+use crate::tui::list::ListDialog;
+use crate::tui::message::{Copied, End, Message};
+use crate::tui::name_dialog::NameDialog;
+use crate::tui::purpose::Purpose;
+use crate::tui::request::{Effect, Request};
+
+/// Does what a message says.
+pub(super) fn act(app: &mut App, message: Message) -> Option<Effect> {
+    let sensor = app.history.present().sensor;
+    match message {
+        Message::New => {
+            begin(app, Document::empty(sensor), None);
+        }
+        Message::Load => return Some(open_list(app, Purpose::Load)),
+        Message::Delete => return Some(open_list(app, Purpose::Delete)),
+        Message::Picture => return Some(open_list(app, Purpose::Picture)),
+        Message::Figure => open_form(app, FormDialog::figure(app.history.present())),
+        Message::Sensor => open_form(app, FormDialog::sensor(app.history.present())),
+        Message::Save if app.seen().imprint.is_empty() => {
+            refuse(app, "nothing to save: the matrix is empty");
+        }
+        Message::Save => {
+            let own = app.stored().filter(|stored| stored.owner == Origin::Own);
+            let name = own.map_or("", |stored| &stored.name);
+            app.dialogs.push(Dialog::Name(NameDialog::new(name)));
+        }
+        Message::Store(shape, expected) => {
+            return Some(Effect::Library(Request::Store(shape, expected)));
+        }
+        Message::AskRemove(name) => {
+            let question = Question::new(format!("Delete {name}?"), Message::Remove(name));
+            app.dialogs.push(Dialog::Question(question));
+        }
+        Message::LoadNamed(name) => {
+            return Some(Effect::Library(Request::Named(Purpose::Load, name)));
+        }
+        Message::PictureNamed(name) => {
+            return Some(Effect::Library(Request::Named(Purpose::Picture, name)));
+        }
+        Message::Restore(name) => return Some(Effect::Library(Request::Restore(name))),
+        Message::Become(document) => replace(app, *document),
+        Message::Command => app.dialogs.push(Dialog::Command(CommandDialog::default())),
+        Message::Copy(what) => return Some(copy(app, what)),
+        Message::MouseOnOff => {
+            app.mouse = !app.mouse;
+            inform(
+                app,
+                if app.mouse {
+                    "the mouse points at taxels; m gives it back"
+                } else {
+                    "the mouse selects text; m takes it again"
+                },
+            );
+            return Some(Effect::Mouse(app.mouse));
+        }
+        Message::Replace(shape, stamp) => {
+            let text = format!("Replace {}?", shape.name);
+            let question = Question::new(text, Message::Store(shape, Expected::Stamp(stamp)));
+            app.dialogs.push(Dialog::Question(question));
+        }
+        Message::Remove(name) => return Some(Effect::Library(Request::Remove(name))),
+        Message::Recover => return Some(Effect::Library(Request::Recover)),
+        Message::GiveUp => return Some(Effect::Library(Request::GiveUp)),
+        Message::Quit if app.unsaved() => {
+            let question = Question::new(
+                "The imprint is not saved. Quit all the same?",
+                Message::QuitNow,
+            );
+            app.dialogs.push(Dialog::Question(question));
+        }
+        Message::Quit | Message::QuitNow => app.ended = true,
+        Message::Help => app.dialogs.push(Dialog::Help(0)),
+        Message::Undo if app.removed.is_some() => {
+            return app
+                .removed
+                .take()
+                .map(|name| Effect::Library(Request::Restore(name)));
+        }
+        other => edit(app, &other),
+    }
+    None
+}
+
+/// What needs nothing from outside: the cursor, what is shown, and the shape.
+fn edit(app: &mut App, message: &Message) {
+    let sensor = app.history.present().sensor;
+    match *message {
+        Message::Cursor(arrow) => move_cursor(app, arrow),
+        Message::ToColumn(end) => app.cursor.0 = at_end(end, sensor.columns()),
+        Message::ToRow(end) => app.cursor.1 = at_end(end, sensor.rows()),
+        Message::Toggle => {
+            let mut document = app.history.present().clone();
+            document.turned.toggle(app.cursor.0, app.cursor.1);
+            change(app, document);
+        }
+        Message::Undo => travel(app, History::undo, "nothing to undo"),
+        Message::Redo => travel(app, History::redo, "nothing to redo"),
+        Message::Region(by) => choose_region(app, by),
+        Message::Display => {
+            app.display = match app.display {
+                Display::Imprint => Display::Shades,
+                Display::Shades => Display::Percent,
+                Display::Percent => Display::Imprint,
+            };
+        }
+        Message::Page => {
+            app.page = match app.page {
+                Page::Matrix => Page::Panel,
+                Page::Panel => Page::Matrix,
+            };
+        }
+        Message::Grab if app.mode == Mode::Grab => app.mode = Mode::Draw,
+        Message::Grab if movable(app).is_some() => app.mode = Mode::Grab,
+        Message::Nudge(arrow) => nudge(app, arrow),
+        Message::Turn(degrees) => turn(app, degrees),
+        Message::Zoom(direction) => zoom(app, direction),
+        Message::NudgeStep(direction) => app.step = app.step.other(direction),
+        Message::Paste(_) => refuse(app, "pasted text goes into fields only"),
+        _ => {}
+    }
+}
+
+/// The text goes to the terminal, which puts it into its clipboard or does not: it never says.
+fn copy(app: &mut App, what: Copied) -> Effect {
+    let seen = app.seen();
+    let text = match (what, seen.description(app.chosen)) {
+        (Copied::Imprint, _) | (_, None) => seen.imprint.to_string() + "\n",
+        (Copied::Descriptors, Some(description)) => {
+            let line = |descriptor: &crate::description::descriptor::Descriptor| {
+                let value = value::text((descriptor.measure)(&description), descriptor.unit);
+                format!("{}\t{}\n", descriptor.key, value.as_deref().unwrap_or("–"))
+            };
+            DESCRIPTORS.iter().map(line).collect()
+        }
+    };
+    inform(
+        app,
+        format!(
+            "{} characters sent to your terminal's clipboard",
+            text.chars().count()
+        ),
+    );
+    Effect::Copy(text)
+}
+
+fn open_form(app: &mut App, form: FormDialog) {
+    app.mode = Mode::Draw;
+    app.dialogs.push(Dialog::Form(Box::new(form)));
+}
+
+fn open_list(app: &mut App, purpose: Purpose) -> Effect {
+    app.mode = Mode::Draw;
+    app.dialogs
+        .push(Dialog::List(ListDialog::new(purpose, Vec::new())));
+    Effect::Library(Request::List)
+}
+
+fn at_end(end: End, count: u8) -> u8 {
+    match end {
+        End::First => 0,
+        End::Last => count - 1,
+    }
+}
+
+fn move_cursor(app: &mut App, arrow: Arrow) {
+    let sensor = app.history.present().sensor;
+    let (dx, dy) = arrow.step();
+    app.cursor.0 = app
+        .cursor
+        .0
+        .saturating_add_signed(dx)
+        .min(sensor.columns() - 1);
+    app.cursor.1 = app
+        .cursor
+        .1
+        .saturating_add_signed(dy)
+        .min(sensor.rows() - 1);
+}
+
+/// Selects the region that comes `by` further on, the first after the last.
+fn choose_region(app: &mut App, by: i8) {
+    let seen = app.seen();
+    let Some((now, _)) = seen.region(app.chosen) else {
+        return inform(app, "no region: the matrix is empty");
+    };
+    let count = seen.regions.len();
+    if count == 1 {
+        return inform(app, "there is no other region");
+    }
+    let forward = usize::from(by.unsigned_abs()) % count;
+    let step = if by < 0 { count - forward } else { forward };
+    app.chosen = Some((now + step) % count);
+}

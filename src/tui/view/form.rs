@@ -1,0 +1,137 @@
+//! A form: the kind of a figure, then a line a field with its range and unit, errors under the field.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use super::write;
+use crate::figure::Kind;
+use crate::tui::app::App;
+use crate::tui::form::Field;
+use crate::tui::form_dialog::FormDialog;
+use crate::tui::layout::FormRows;
+use crate::tui::theme::Role;
+
+const LABEL: usize = 10;
+const INPUT: usize = 9;
+
+/// A pane from this width on has room for the range beside the field.
+const WIDE: u16 = 40;
+
+/// Draws the form; answers where the text cursor is.
+pub fn draw(app: &App, dialog: &FormDialog, buffer: &mut Buffer, area: Rect) -> Option<Position> {
+    let theme = app.theme();
+    write::clear(buffer, area);
+    write::line(
+        buffer,
+        area,
+        theme,
+        [(dialog.title().as_str(), Role::Title)],
+    );
+    let (focus, rows) = (dialog.form().focus(), FormRows::of(area, dialog));
+    let mut cursor = None;
+    if let (Some(kind), Some(line)) = (dialog.kind(), rows.kind) {
+        let row = write::row(area, usize::from(line));
+        draw_kind(app, kind, focus.is_none(), buffer, row);
+        cursor = focus.is_none().then(|| Position::new(row.x, row.y));
+    }
+    let fields = dialog.form().fields();
+    let mut end = 0;
+    for (index, row) in rows.fields(fields.len()) {
+        let (field, row) = (&fields[index], usize::from(row));
+        end = row + usize::from(rows.spacing);
+        let error = field
+            .value(dialog.form().side())
+            .err()
+            .map(|error| error.expected());
+        let marked = focus == Some(index);
+        let at = draw_field(app, field, marked, buffer, write::row(area, row));
+        let range = range(field, dialog.form().side());
+        let beside = write::right_of(write::row(area, row), area.x + narrow(LABEL + INPUT + 1));
+        let under = write::right_of(write::row(area, row + 1), area.x + 2);
+        let (error_at, range_at) = match (rows.spacing, area.width >= WIDE) {
+            (2, true) => (under, Some(beside)),
+            (2, false) => (under, error.is_none().then_some(under)),
+            _ => (beside, error.is_none().then_some(beside)),
+        };
+        if let Some(range_at) = range_at {
+            write::line(buffer, range_at, theme, [(range.as_str(), Role::Quiet)]);
+        }
+        if let Some(error) = error {
+            write::line(
+                buffer,
+                error_at,
+                theme,
+                [("! ", Role::Error), (error.as_str(), Role::Error)],
+            );
+        }
+        cursor = cursor.or(marked.then_some(at));
+    }
+    if let Some(warning) = dialog.warning() {
+        write::wrapped(
+            buffer,
+            write::below(area, narrow(end)),
+            theme,
+            &format!("! {warning}"),
+            Role::Error,
+        );
+    }
+    cursor
+}
+
+/// The kind between angle brackets, and the letters that choose one.
+fn draw_kind(app: &App, kind: Kind, focused: bool, buffer: &mut Buffer, row: Rect) {
+    let label = format!("{:LABEL$}", "Kind");
+    let name = format!("{:<9}", kind.name());
+    let role = if focused { Role::Focus } else { Role::Text };
+    let mut letters: Vec<&str> = Kind::ALL.iter().map(|kind| &kind.name()[..1]).collect();
+    letters.dedup();
+    let letters = if focused {
+        letters.join(" ")
+    } else {
+        String::new()
+    };
+    let pieces = [
+        (label.as_str(), Role::Text),
+        ("< ", Role::Quiet),
+        (name.as_str(), role),
+        (" >", Role::Quiet),
+        (" ", Role::Text),
+        (letters.as_str(), Role::Key),
+    ];
+    write::line(buffer, row, app.theme(), pieces);
+}
+
+/// Label and text; answers where the text cursor would be.
+fn draw_field(app: &App, field: &Field, focused: bool, buffer: &mut Buffer, row: Rect) -> Position {
+    let theme = app.theme();
+    let label = format!("{:LABEL$}", field.parameter().row().label);
+    // A text that is longer than the field shows the part around its cursor.
+    let hidden = (field.cursor() + 1).saturating_sub(INPUT);
+    let shown: String = field.text().chars().skip(hidden).take(INPUT).collect();
+    let padded = format!("{shown:INPUT$}");
+    let role = if focused { Role::Focus } else { Role::Text };
+    write::line(
+        buffer,
+        row,
+        theme,
+        [(label.as_str(), Role::Text), (padded.as_str(), role)],
+    );
+    Position::new(row.x + narrow(LABEL + field.cursor() - hidden), row.y)
+}
+
+/// What the field takes: range and unit.
+fn range(field: &Field, side: u8) -> String {
+    let parameter = field.parameter();
+    if field.optional() && field.text().is_empty() {
+        return "empty: solid".to_owned();
+    }
+    format!(
+        "{} {}",
+        parameter.form_range(side),
+        parameter.row().unit.symbol()
+    )
+}
+
+fn narrow(columns: usize) -> u16 {
+    u16::try_from(columns).unwrap_or(u16::MAX)
+}

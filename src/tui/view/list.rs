@@ -1,0 +1,177 @@
+//! The list of shapes with its filter, and a preview of the selected one.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use super::write;
+use crate::description::region::{Kind, regions};
+use crate::imprint::Imprint;
+use crate::library::store::{Entry, Loaded, Origin};
+use crate::tui::app::App;
+use crate::tui::layout::{LIST_HEAD, list, list_first};
+use crate::tui::list::ListDialog;
+use crate::tui::purpose::Purpose;
+use crate::tui::theme::Role;
+
+/// Columns of a name.
+const NAME: usize = 24;
+
+/// Draws the list; answers where the text cursor is.
+pub fn draw(app: &App, dialog: &ListDialog, buffer: &mut Buffer, body: Rect) -> Option<Position> {
+    let theme = app.theme();
+    write::clear(buffer, body);
+    let (area, preview) = list(body);
+    let title = match dialog.purpose() {
+        Purpose::Load => "Load",
+        Purpose::Delete => "Delete",
+        Purpose::Picture => "Picture",
+    };
+    let filter = format!("  filter: {}", dialog.filter());
+    let count = format!("   {} of {}", dialog.rows().len(), dialog.total());
+    let head = [(title, Role::Title), (filter.as_str(), Role::Text)];
+    let end = write::line(buffer, area, theme, head);
+    write::line(
+        buffer,
+        write::right_of(area, end),
+        theme,
+        [(count.as_str(), Role::Quiet)],
+    );
+    if dialog.rows().len() == 0 {
+        let text = match (dialog.total(), dialog.purpose()) {
+            (0, Purpose::Delete) => "there are no shapes of your own",
+            (0, _) => "the library is empty",
+            _ => "no name has this in it; Backspace widens the filter",
+        };
+        write::line(
+            buffer,
+            write::row(area, usize::from(LIST_HEAD)),
+            theme,
+            [(text, Role::Quiet)],
+        );
+    }
+    let first = list_first(area, dialog.rows().len(), dialog.selected());
+    let lines = usize::from(area.height.saturating_sub(LIST_HEAD));
+    for (index, (entry, read)) in dialog.rows().enumerate().skip(first).take(lines) {
+        let row = write::row(area, index - first + usize::from(LIST_HEAD));
+        draw_row(app, entry, read, index == dialog.selected(), buffer, row);
+    }
+    if let (Some(preview), Some((entry, Some(read)))) = (preview, dialog.choice()) {
+        draw_preview(app, entry, read, buffer, preview);
+    }
+    Some(Position::new(
+        end.min(area.right().saturating_sub(1)),
+        area.y,
+    ))
+}
+
+fn draw_row(
+    app: &App,
+    entry: &Entry,
+    read: Option<&Result<Loaded, String>>,
+    selected: bool,
+    buffer: &mut Buffer,
+    row: Rect,
+) {
+    // A sign beside the reversed line, for terminals that cannot reverse.
+    let sign = if selected { "> " } else { "  " };
+    let name = format!("{:NAME$} ", entry.name);
+    let size = match read {
+        Some(Ok(loaded)) => format!(
+            "{:>2} x {:<2} ",
+            loaded.shape.imprint.columns(),
+            loaded.shape.imprint.rows()
+        ),
+        Some(Err(_)) => "broken  ".to_owned(),
+        None => "        ".to_owned(),
+    };
+    let origin = if entry.origin == Origin::Shipped {
+        "shipped"
+    } else {
+        ""
+    };
+    let role = if selected { Role::Focus } else { Role::Text };
+    let pieces = [
+        (sign, Role::Key),
+        (name.as_str(), role),
+        (size.as_str(), Role::Quiet),
+        (origin, Role::Quiet),
+    ];
+    write::line(buffer, row, app.theme(), pieces);
+}
+
+fn draw_preview(
+    app: &App,
+    entry: &Entry,
+    read: &Result<Loaded, String>,
+    buffer: &mut Buffer,
+    area: Rect,
+) {
+    let theme = app.theme();
+    write::line(buffer, area, theme, [(entry.name.as_str(), Role::Title)]);
+    let below = write::below(area, 2);
+    match read {
+        Ok(loaded) => {
+            let imprint = &loaded.shape.imprint;
+            let count = |wanted: Kind| {
+                regions(imprint)
+                    .iter()
+                    .filter(|region| region.kind() == wanted)
+                    .count()
+            };
+            let facts = format!(
+                "NA {}, pieces {}, holes {}",
+                imprint.count(),
+                count(Kind::Exterior),
+                count(Kind::Hole)
+            );
+            let source = loaded
+                .shape
+                .source
+                .as_ref()
+                .map_or("drawn by hand".to_owned(), ToString::to_string);
+            write::line(
+                buffer,
+                write::row(area, 1),
+                theme,
+                [(facts.as_str(), Role::Text)],
+            );
+            write::line(buffer, below, theme, [(source.as_str(), Role::Quiet)]);
+            draw_imprint(app, imprint, buffer, write::below(area, 4));
+        }
+        Err(reason) => {
+            write::line(
+                buffer,
+                write::row(area, 1),
+                theme,
+                [("broken:", Role::Error)],
+            );
+            write::wrapped(buffer, below, theme, reason, Role::Text);
+        }
+    }
+}
+
+/// Two rows in a line by half blocks; in ASCII a row a line, which a long imprint leaves at the bottom.
+fn draw_imprint(app: &App, imprint: &Imprint, buffer: &mut Buffer, area: Rect) {
+    let theme = app.theme();
+    let rows = if theme.ascii { 1 } else { 2 };
+    for (line, top) in (0..imprint.rows()).step_by(rows).enumerate() {
+        let half = |column: u8| match (
+            imprint.get(column, top),
+            rows == 2 && imprint.get(column, top + 1),
+        ) {
+            (true, true) => '█',
+            (true, false) if theme.ascii => '#',
+            (true, false) => '▀',
+            (false, true) => '▄',
+            (false, false) if theme.ascii => '.',
+            (false, false) => '·',
+        };
+        let text: String = (0..imprint.columns()).map(half).collect();
+        write::line(
+            buffer,
+            write::row(area, line),
+            theme,
+            [(text.as_str(), Role::Chosen)],
+        );
+    }
+}

@@ -1,0 +1,28 @@
+//! The first line: the paper's seven options, and help.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+use super::write;
+use crate::tui::app::App;
+use crate::tui::layout::menu;
+use crate::tui::theme::Role;
+
+/// Draws the options: key and name, from the table of keys.
+pub fn draw(app: &App, buffer: &mut Buffer, area: Rect) {
+    for item in menu(area) {
+        let label = item.binding.labels();
+        let pieces = if item.with_key {
+            [
+                (label.as_str(), Role::Key),
+                (" ", Role::Text),
+                (item.name, Role::Text),
+            ]
+        } else {
+            // The key is the first letter.
+            let (first, rest) = item.name.split_at(1);
+            [(first, Role::Key), (rest, Role::Text), ("", Role::Text)]
+        };
+        write::line(buffer, item.area, app.theme(), pieces);
+    }
+}

@@ -1,0 +1,92 @@
+//! The view: reads the state and draws it, one pane per file.
+//!
+//! ```text
+//! +--------------------------------------------------+
+//! | menu: the paper's seven options                   |
+//! | column ruler                |                     |
+//! | row   matrix                | descriptor panel,   |
+//! | ruler                       | or a form           |
+//! |                             |                     |
+//! | what made the imprint                             |
+//! | the taxel under the cursor                        |
+//! | notice, or a question                             |
+//! | hints: keys that mean something now               |
+//! +--------------------------------------------------+
+//! ```
+//! On a narrow screen matrix and panel are two pages; on a low one the lines below the matrix give way first. What
+//! does not fit at all is said. Every pane takes any rectangle, an empty one too.
+
+pub mod write;
+
+pub mod menu;
+
+pub mod matrix;
+
+pub mod panel;
+
+pub mod form;
+
+pub mod list;
+
+pub mod help;
+
+pub mod status;
+
+use ratatui::Frame;
+
+use super::app::{App, Page};
+use super::dialog::Dialog;
+use super::layout::{Panes, SMALLEST};
+use super::theme::Role;
+
+/// Draws the whole screen.
+pub fn view(app: &App, frame: &mut Frame<'_>) {
+    let area = frame.area();
+    let seen = app.seen();
+    let theme = app.theme();
+    let buffer = frame.buffer_mut();
+    let Some(panes) = Panes::of(area, &seen.imprint) else {
+        let (width, height) = SMALLEST;
+        let needed = format!("{width} x {height}");
+        for (index, text) in ["too small,", "need", &needed].into_iter().enumerate() {
+            write::line(
+                buffer,
+                write::row(area, index),
+                theme,
+                [(text, Role::Error)],
+            );
+        }
+        return;
+    };
+    menu::draw(app, buffer, panes.menu);
+    let mut cursor = None;
+    match (app.dialogs.last(), panes.panel) {
+        (Some(Dialog::Help(top)), _) => help::draw(app, *top, buffer, panes.body),
+        (Some(Dialog::List(dialog)), _) => cursor = list::draw(app, dialog, buffer, panes.body),
+        (Some(Dialog::Form(dialog)), _) => {
+            matrix::draw(app, &seen, buffer, panes.matrix);
+            cursor = form::draw(app, dialog, buffer, panes.form);
+        }
+        (_, Some(panel)) => {
+            cursor = matrix::draw(app, &seen, buffer, panes.matrix);
+            panel::draw(app, &seen, buffer, panel);
+        }
+        (_, None) if app.page == Page::Panel => panel::draw(app, &seen, buffer, panes.body),
+        (_, None) => cursor = matrix::draw(app, &seen, buffer, panes.matrix),
+    }
+    status::draw(app, &seen, buffer, &panes);
+    // A name and a command are typed in the line of notices.
+    let typed = match app.dialogs.last() {
+        Some(Dialog::Name(dialog)) => Some(status::NAME_LABEL.len() + dialog.cursor()),
+        Some(Dialog::Command(dialog)) => Some(1 + dialog.cursor()),
+        _ => None,
+    };
+    if let Some(column) = typed {
+        let column = u16::try_from(column).unwrap_or(u16::MAX);
+        cursor = Some((panes.notice.x.saturating_add(column), panes.notice.y).into());
+    }
+    // The terminal's own cursor shows the place where there are neither colours nor reversed characters.
+    if let Some(position) = cursor.filter(|&position| area.contains(position)) {
+        frame.set_cursor_position(position);
+    }
+}

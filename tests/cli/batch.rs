@@ -1,0 +1,144 @@
+//! `taxel batch`: order, bad lines, long lines, pauses.
+
+use std::io::{BufRead, BufReader, Read, Write};
+
+use super::{program, taxel};
+
+/// The shortest pose, and its answer.
+pub(super) const POINT: &str = r##"{"imprint":["#"]}"##;
+const POINT_ANSWER: &str = concat!(
+    r##"{"imprint":["#"],"na":1,"regions":[{"kind":"exterior","na":1,"nae":1,"ce":1,"num_x":0.5,"num_y":0.5,"##,
+    r##""cg":[0.5,0.5],"p":0.0,"f":0.0,"rect":{"left":0,"top":0,"right":1,"bottom":1},"cd":[0.5,0.5],"area":1,"##,
+    r##""diagonals":[45.0,135.0],"side_ratio":1.0,"filling":1.0,"cg_cd":0.0,"cg_cd_direction":null}]}"##,
+    "\n"
+);
+
+#[test]
+fn bad_lines_are_answered_in_their_places() {
+    let lines: [&[u8]; 13] = [
+        POINT.as_bytes(),
+        b"nonsense",
+        b"  \r",
+        b"{\"figure\":\"hexagon\",\"side\":99,\"x0\":2,\"y0\":2,\"angle\":0}",
+        b"{\"picture\":\"gasket\",\"x0\":2,\"y0\":2,\"angle\":0,\"zoom_x\":1,\"zoom_y\":1}",
+        b"{\"figure\":\"\xff\"}",
+        b"\0",
+        b"",
+        b"{\"figure\":\"\\u001b\xc3\xa9\"}",
+        b"{\"picture\":[\"#\"],\"x0\":0,\"y0\":0,\"angle\":0,\"zoom_x\":1,\"zoom_y\":1,\"sensor\":{\"columns\":1,\"rows\":1}}\r",
+        b"{\"imprint\":[\"#\",\"\"]}",
+        b"{\"imprint\":[\"#\"],\"imprint\":[\"#\"]}",
+        POINT.as_bytes(),
+    ];
+    let run = taxel("batch", lines.join(&b'\n'));
+    let error = |message: &str| format!("{{\"error\":\"line {message}\"}}\n");
+    let expected = [
+        POINT_ANSWER.to_owned(),
+        error("2: column 2: expected ident"),
+        error("4: side: 99 is out of range, expected above 0, up to 16"),
+        error("5: picture: no shape is called \\\"gasket\\\""),
+        error("6: column 12: invalid unicode code point"),
+        error("7: column 1: expected value"),
+        error(
+            "9: figure: \\\"\\\\u{1b}\\u00e9\\\" is unknown, expected one of ellipse, rectangle, triangle, pentagon, hexagon, heptagon, octagon",
+        ),
+        POINT_ANSWER.to_owned(),
+        error("11: imprint: row 2 has 0 characters, expected 1 to 64"),
+        error("12: column 33: duplicate field `imprint`"),
+        POINT_ANSWER.to_owned(),
+    ];
+    assert_eq!(run.stdout, expected.concat());
+    assert_eq!(run.stderr, "error: 8 of 11 lines could not be answered\n");
+    assert_eq!(run.status, Some(1));
+}
+
+#[test]
+fn a_line_too_long_is_refused_and_read_over() {
+    let mebibyte = 1 << 20;
+    let padded = |length: usize| format!("{}{POINT}", " ".repeat(length - POINT.len()));
+    let input = [
+        padded(mebibyte),
+        padded(mebibyte + 1),
+        "x".repeat(2 * mebibyte),
+        POINT.to_owned(),
+    ];
+    let run = taxel("batch", input.join("\n"));
+    let long = |line: usize| {
+        format!("{{\"error\":\"line {line}: longer than 1 MiB, which no pose is\"}}\n")
+    };
+    let expected = [
+        POINT_ANSWER.to_owned(),
+        long(2),
+        long(3),
+        POINT_ANSWER.to_owned(),
+    ];
+    assert_eq!(run.stdout, expected.concat());
+    assert_eq!(run.status, Some(1));
+    let run = taxel("batch", "x".repeat(2 * mebibyte));
+    assert_eq!(run.stdout, long(1));
+}
+
+#[test]
+fn a_message_does_not_quote_a_long_line_wholly() {
+    let line = format!(
+        "{{\"figure\":\"hexagon\",\"side\":\"{}\"}}",
+        "é".repeat(100_000)
+    );
+    let run = taxel("batch", line);
+    assert!(run.stdout.starts_with("{\"error\":\"line 1: ") && run.stdout.len() < 3000);
+}
+
+#[test]
+fn the_sensor_of_a_batch_is_set_by_flags_and_lines() {
+    let pose = r#"{"figure":"rectangle","length":1,"width":1,"x0":0,"y0":0.25,"angle":0"#;
+    let input =
+        format!("{pose}}}\n{pose},\"sensor\":{{\"rows\":2,\"threshold\":0.25}}}}\n{pose}}}\n");
+    let run = taxel("batch --columns 1 --rows 1 --threshold 0.75", input);
+    let rows: Vec<&str> = run
+        .stdout
+        .lines()
+        .filter_map(|line| line.get(..21))
+        .collect();
+    assert_eq!(
+        rows,
+        [
+            r##"{"imprint":["#"],"na""##,
+            r##"{"imprint":["#","#"],"##,
+            r##"{"imprint":["#"],"na""##
+        ]
+    );
+}
+
+#[test]
+fn no_input_is_no_answer() {
+    for input in ["", "\n", " \r\n\t\n"] {
+        let run = taxel("batch", input);
+        assert_eq!(
+            (run.status, run.stdout.as_str(), run.stderr.as_str()),
+            (Some(0), "", "")
+        );
+    }
+}
+
+#[test]
+fn an_answer_does_not_wait_for_the_next_line() {
+    let mut child = program(&["batch"], "C")
+        .spawn()
+        .expect("the program starts");
+    let mut stdin = child.stdin.take().expect("piped");
+    let mut stdout = BufReader::new(child.stdout.take().expect("piped"));
+    // The second pose arrives in two pieces, the first of them together with the first pose.
+    let (begin, end) = POINT.split_at(5);
+    for (sent, expected) in [
+        (format!("{POINT}\n{begin}"), POINT_ANSWER),
+        (format!("{end}\n"), POINT_ANSWER),
+    ] {
+        stdin.write_all(sent.as_bytes()).expect("the program reads");
+        let mut answer = String::new();
+        stdout.read_line(&mut answer).expect("the program answers");
+        assert_eq!(answer, expected);
+    }
+    drop(stdin);
+    assert_eq!(stdout.read_to_end(&mut Vec::new()).expect("the end"), 0);
+    assert_eq!(child.wait().expect("the program ends").code(), Some(0));
+}

@@ -1,0 +1,200 @@
+//! `taxel describe`: imprints as text, stored shapes, and what is said of bad ones.
+
+use std::path::PathBuf;
+
+use super::{Run, refused, run_in, taxel};
+
+/// A shape whose source reaches beyond its sensor, on cells of 2.5 mm.
+pub(super) const SHAPE: &str = r###"
+{
+  "format": "taxel-shape/1",
+  "name": "corner",
+  "sensor": { "columns": 3, "rows": 2, "pitch_mm": 2.5, "threshold": 0.5 },
+  "imprint": ["##.", "#.."],
+  "source": { "figure": "triangle", "side": 2, "x0": -1, "y0": 0, "angle": 0 }
+}"###;
+
+/// A file of its own for a test.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str, content: &[u8]) -> Self {
+        let file = format!("taxel-cli-{}-{name}", std::process::id());
+        let path = std::env::temp_dir().join(file);
+        std::fs::write(&path, content).expect("the temporary folder takes files");
+        Self(path)
+    }
+
+    fn describe(&self) -> Run {
+        run_in("C.UTF-8", &["describe".as_ref(), self.0.as_os_str()], b"")
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(&self.0);
+    }
+}
+
+#[test]
+fn an_imprint_is_described_whatever_its_line_ends() {
+    let expected = taxel("describe -", ".##.\n#..#\n.##.");
+    assert_eq!((expected.status, expected.stderr.as_str()), (Some(0), ""));
+    assert!(expected.stdout.starts_with(
+        "    0   2\n 0  · ████·\n 1  ██· · ██\n 2  · ████·\n\n4 × 3 taxels, NA 6 in all\n\n"
+    ));
+    let na = expected.stdout.lines().find(|line| line.starts_with("NA "));
+    let na: Vec<&str> = na.into_iter().flat_map(str::split_whitespace).collect();
+    assert_eq!(na, ["NA", "active", "taxels", "6", "2"]);
+    for input in [
+        ".##.\n#..#\n.##.\n",
+        ".##.\r\n#..#\r\n.##.\r\n\r\n",
+        ".##.\n#..#\n.##.\r",
+        ".##.\n#..#\n.##.\n\n  \n",
+    ] {
+        assert_eq!(taxel("describe -", input), expected, "{input:?}");
+    }
+    let file = Scratch::new("ring.txt", b".##.\n#..#\n.##.\n");
+    assert_eq!(file.describe(), expected);
+}
+
+#[test]
+fn a_bad_imprint_is_told_by_line_and_column() {
+    let bad = |input: &[u8], message: &str| {
+        refused(
+            &taxel("describe -", input),
+            1,
+            &format!("standard input: {message}"),
+        );
+    };
+    bad(
+        b"##\n#x\n",
+        "line 2, column 2: found 'x', expected '#' or '.'",
+    );
+    bad(
+        b"##\n# \n##",
+        "line 2, column 2: found ' ', expected '#' or '.'",
+    );
+    bad(
+        "##\n.\u{e9}".as_bytes(),
+        "line 2, column 2: found '\u{e9}', expected '#' or '.'",
+    );
+    bad(
+        b"##\n#\x1b",
+        "line 2, column 2: found '\\u{1b}', expected '#' or '.'",
+    );
+    bad(
+        b"##\n#\0",
+        "line 2, column 2: found '\\0', expected '#' or '.'",
+    );
+    bad(
+        b"##\n.\xff",
+        "line 2, column 2: found byte 0xff, expected '#' or '.'",
+    );
+    bad(
+        b"##\n###\n",
+        "line 2, column 3: found 3 taxels, expected 2 as in line 1",
+    );
+    bad(
+        b"##\n#\n",
+        "line 2, column 2: found 1 taxels, expected 2 as in line 1",
+    );
+    bad(
+        b"##\n\n##\n",
+        "line 2, column 1: found 0 taxels, expected 1 to 64",
+    );
+    bad(
+        &[b'#'; 65],
+        "line 1, column 65: found 65 taxels, expected 1 to 64",
+    );
+    bad(&b"#\n".repeat(65), "found 65 lines, expected 1 to 64");
+    bad(b"", "found 0 lines, expected 1 to 64");
+    bad(b"\r\n\n", "found 0 lines, expected 1 to 64");
+    bad(
+        &b"\n".repeat(1 << 21),
+        "larger than 1 MiB, which neither an imprint nor a shape is",
+    );
+}
+
+#[test]
+fn a_stored_shape_tells_its_name_and_what_made_it() {
+    let file = Scratch::new("corner.json", SHAPE.as_bytes());
+    let run = file.describe();
+    let expected = "
+    0   2
+ 0  ████·
+ 1  ██· ·
+
+corner
+triangle side 2.00 at -1.00, 0.00, 0°
+the figure reaches beyond the sensor
+3 × 2 taxels of 2.5 mm, threshold 0.5, NA 3 in all
+
+";
+    assert!(run.stdout.starts_with(&expected[1..]), "{}", run.stdout);
+    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
+    assert!(!run.stdout.contains("in mm"), "mm are asked for by a flag");
+    let run = taxel("describe - --pitch 4", SHAPE);
+    assert!(run.stdout.contains("\n3 × 2 taxels of 4 mm, "));
+    assert!(run.stdout.contains("in mm²"));
+}
+
+#[test]
+fn a_bad_shape_is_told_by_line_and_column() {
+    let bad = |from: &str, to: &str, message: &str| {
+        let run = taxel("describe -", SHAPE.replace(from, to));
+        refused(&run, 1, &format!("standard input: {message}"));
+    };
+    bad(
+        "shape/1",
+        "shape/2",
+        "line 3, column 27: format: \"taxel-shape/2\" is not known here, expected \"taxel-shape/1\"",
+    );
+    bad(
+        "\"name\"",
+        "\"nom\"",
+        "line 4, column 7: unknown field `nom`, expected one of `format`, `name`, `sensor`, `imprint`, `source`",
+    );
+    bad(
+        "#..",
+        "#.x",
+        "imprint: row 2, column 3: found 'x', expected '#' or '.'",
+    );
+    bad(
+        "\"side\": 2",
+        "\"side\": 20",
+        "source: side: 20 is out of range, expected above 0, up to 3",
+    );
+    bad(
+        "corner\"",
+        "\u{1b}[31m\"",
+        "line 4, column 12: control character (\\u0000-\\u001F) found while parsing a string",
+    );
+}
+
+#[test]
+fn text_from_files_does_not_steer_the_terminal() {
+    let run = taxel(
+        "describe -",
+        SHAPE.replace("corner", r"\u001b[31m\u0007\u009b"),
+    );
+    assert_eq!(run.status, Some(1));
+    assert!(run.stderr.contains("name: "), "{}", run.stderr);
+    assert!(
+        !run.stderr.contains('\u{1b}') && !run.stderr.contains('\u{7}'),
+        "{}",
+        run.stderr
+    );
+}
+
+#[test]
+fn a_file_that_cannot_be_read_is_named() {
+    let run = taxel("describe no-such-file", "");
+    let message = "no-such-file: cannot read: No such file or directory (os error 2)";
+    refused(&run, 1, message);
+    refused(
+        &taxel("describe .", ""),
+        1,
+        ".: cannot read: Is a directory (os error 21)",
+    );
+}

@@ -1,0 +1,159 @@
+//! `taxel figure`: the worked example of the paper, flags, ranges, usage.
+
+use super::{RING, misused, refused, taxel};
+
+#[test]
+fn the_worked_example_is_shown_as_matrix_and_table() {
+    let run = taxel(RING, "");
+    assert_eq!(run.stdout, include_str!("ring.txt"));
+    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
+}
+
+#[test]
+fn with_a_pitch_lengths_and_areas_stand_in_mm_too() {
+    let run = taxel(&format!("{RING} --pitch 2.5 --ascii"), "");
+    assert_eq!(run.stdout, include_str!("ring-ascii-mm.txt"));
+    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
+}
+
+#[test]
+fn the_worked_example_is_one_line_of_json_from_every_command() {
+    let expected = include_str!("ring.json");
+    let run = taxel(&format!("{RING} --json"), "");
+    assert_eq!((run.status, run.stdout.as_str()), (Some(0), expected));
+    let pose = r#"{"figure":"ellipse","radius_x":4,"radius_y":4,"x0":1.99,"y0":1.47,"angle":0,"thickness":2}"#;
+    assert_eq!(taxel("batch", pose).stdout, expected);
+    let rows = expected
+        .split('"')
+        .filter(|text| text.contains(['.', '#']) && text.len() == 16);
+    let text = rows.collect::<Vec<_>>().join("\n");
+    assert_eq!(taxel("describe - --json", text).stdout, expected);
+}
+
+#[test]
+fn what_is_not_given_takes_its_default() {
+    let line = |line: &str| taxel(line, "").stdout.lines().nth(18).map(str::to_owned);
+    let made = |text: &str| Some(text.to_owned());
+    assert_eq!(
+        line("figure ellipse"),
+        made("ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0°")
+    );
+    assert_eq!(
+        line("figure rectangle"),
+        made("rectangle length 6.00 width 3.00 at 4.00, 4.00, 0°")
+    );
+    assert_eq!(
+        line("figure octagon --angle 7.25"),
+        made("octagon side 4.00 at 4.00, 4.00, 7.25°")
+    );
+}
+
+#[test]
+fn numbers_may_be_negative_and_figures_reach_beyond_the_sensor() {
+    for x0 in ["-0.8", "-.8", "-8e-1"] {
+        let run = taxel(
+            &format!("figure hexagon --x0 {x0} --columns 3 --rows 2"),
+            "",
+        );
+        let expected = "
+    0   2
+ 0  · · ·
+ 1  · · ·
+
+hexagon side 3.00 at -0.80, 3.00, 0°
+the figure reaches beyond the sensor
+3 × 2 taxels, threshold 0.5, NA 0 in all
+
+no active taxels, so no regions to describe
+";
+        assert_eq!(run.stdout, expected[1..], "{x0}");
+        assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
+    }
+}
+
+#[test]
+fn wrong_usage_is_status_2() {
+    misused("figur", "unrecognized subcommand 'figur'\n");
+    misused(
+        "figure",
+        "the following required arguments were not provided:\n  <KIND>\n",
+    );
+    misused(
+        "figure circle",
+        "invalid value 'circle' for '<KIND>'\n  [possible values: ellipse, ",
+    );
+    misused(
+        "figure ellipse --side 3",
+        "'--side' does not belong to 'ellipse', which takes --radius-x, --radius-y, --x0, --y0, --angle and --thickness\n\nUsage: taxel figure ",
+    );
+    misused(
+        "figure hexagon --side",
+        "a value is required for '--side <CELLS>'",
+    );
+    misused(
+        "figure hexagon --side 1 --side 2",
+        "the argument '--side <CELLS>' cannot be used multiple times\n",
+    );
+    misused(
+        "figure hexagon --zoom-x 2",
+        "unexpected argument '--zoom-x' found\n",
+    );
+    for text in ["three", "3,5", "nan", "inf", "--json", "0x3"] {
+        misused(
+            &format!("figure hexagon --side {text}"),
+            &format!("invalid value '{text}' for '--side <CELLS>': not a number\n"),
+        );
+    }
+    misused("describe", "the following required arguments");
+    misused("describe one two", "unexpected argument 'two' found\n");
+    misused("batch --pitch 2", "unexpected argument '--pitch' found\n");
+    misused(
+        "--columns 3 figure hexagon",
+        "the subcommand 'figure' cannot be used with '--columns', which is the screen's\n",
+    );
+}
+
+#[test]
+fn a_number_out_of_range_is_status_1_and_the_range_is_told() {
+    let out = |line: &str, message: &str| refused(&taxel(line, ""), 1, message);
+    out(
+        "figure hexagon --side 99",
+        "--side 99: out of range, expected above 0, up to 16",
+    );
+    out(
+        "figure hexagon --side 0",
+        "--side 0: out of range, expected above 0, up to 16",
+    );
+    out(
+        "figure hexagon --side 17 --rows 8",
+        "--side 17: out of range, expected above 0, up to 16",
+    );
+    out(
+        "figure ellipse --angle 360",
+        "--angle 360: out of range, expected 0 to below 360",
+    );
+    out(
+        "figure ellipse --x0 -16.5",
+        "--x0 -16.5: out of range, expected -16 to 16",
+    );
+    out(
+        "figure ellipse --columns 1e3",
+        "--columns 1e3: out of range, expected 1 to 64, a whole number",
+    );
+    out(
+        "batch --columns 2.5",
+        "--columns 2.5: out of range, expected 1 to 64, a whole number",
+    );
+    out(
+        "describe - --pitch -1 --json",
+        "--pitch -1: out of range, expected above 0, up to 1000",
+    );
+    out(
+        "--threshold 0",
+        "--threshold 0: out of range, expected above 0, up to 1",
+    );
+    assert_eq!(
+        taxel("figure hexagon --side 20 --columns 32", "").status,
+        Some(0)
+    );
+}

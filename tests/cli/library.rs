@@ -1,0 +1,255 @@
+//! `taxel library`, and what `--save` and `--library` do: every command, every refusal.
+
+use std::path::PathBuf;
+
+use tempfile::TempDir;
+
+use super::{Run, misused, refused, run_in};
+
+/// A library of its own.
+pub(super) struct Shelf {
+    outside: TempDir,
+    pub(super) folder: PathBuf,
+}
+
+impl Shelf {
+    pub(super) fn new() -> Self {
+        let outside = tempfile::tempdir().expect("there is a folder for temporary files");
+        let folder = outside.path().join("library");
+        Self { outside, folder }
+    }
+
+    /// Runs a command line, split at `|`, on this library.
+    pub(super) fn run(&self, line: &str, input: &str) -> Run {
+        let folder = self.folder.to_str().expect("text");
+        let mut arguments: Vec<&str> = line.split('|').collect();
+        arguments.extend(["--library", folder]);
+        run_in("C.UTF-8", &arguments, input.as_bytes())
+    }
+
+    /// Runs it, and answers what it says; it must succeed.
+    pub(super) fn does(&self, line: &str, input: &str) -> String {
+        let run = self.run(line, input);
+        assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""), "{line}");
+        run.stdout
+    }
+
+    /// A file outside the library.
+    pub(super) fn file(&self, name: &str, content: &str) -> String {
+        let path = self.outside.path().join(name);
+        std::fs::write(&path, content).expect("written");
+        path.to_str().expect("text").to_owned()
+    }
+
+    fn refuses(&self, line: &str, message: &str) {
+        let run = self.run(line, "");
+        let folder = self.folder.display().to_string();
+        let stderr = run.stderr.replace(&folder, "FOLDER");
+        refused(&Run { stderr, ..run }, 1, message);
+    }
+}
+
+const RING: &str = ".##.\n#..#\n.##.\n";
+
+#[test]
+fn a_shape_is_saved_listed_shown_deleted_and_restored() {
+    let shelf = Shelf::new();
+    assert_eq!(
+        shelf.does("library|save|my ring|-", RING),
+        "saved as my ring\n"
+    );
+    let list = shelf.does("library|list", "");
+    let mut lines = list.lines();
+    assert_eq!(
+        lines.next(),
+        Some("name           origin      size   NA  pieces  holes")
+    );
+    assert_eq!(
+        lines.next(),
+        Some("my ring        own        4 × 3    6       1      1")
+    );
+    assert_eq!(
+        lines.next(),
+        Some("arrow          shipped  16 × 16   74       1      0")
+    );
+    assert!(list.contains("\nsmile          shipped  16 × 16  102       4      1\n"));
+    let shown = shelf.does("library|show|MY RING", "");
+    assert!(shown.contains("\nmy ring\n4 × 3 taxels of 1 mm, threshold 0.5, NA 6 in all\n"));
+    let json = shelf.does("library|show|my ring|--json", "");
+    assert!(json.starts_with(r##"{"imprint":[".##.","#..#",".##."],"na":6,"##));
+    assert!(
+        shelf
+            .does("library|show|my ring|--pitch|2", "")
+            .contains("in mm²")
+    );
+    assert_eq!(
+        shelf.does("library|delete|My Ring", ""),
+        "deleted my ring; taxel library restore brings it back\n"
+    );
+    shelf.refuses("library|show|my ring", "no shape is called \"my ring\"");
+    shelf.refuses("library|delete|my ring", "no shape is called \"my ring\"");
+    assert_eq!(
+        shelf.does("library|restore|MY RING", ""),
+        "restored my ring\n"
+    );
+    shelf.refuses(
+        "library|restore|my ring",
+        "nothing called \"my ring\" is in the trash",
+    );
+    let count = taxel::library::shipped::names().count() + 1;
+    assert_eq!(
+        shelf.does("library|check", ""),
+        format!("{count} shapes, all whole\n")
+    );
+    let path = shelf.does("library|path", "");
+    assert_eq!(path, format!("{}\n", shelf.folder.display()));
+}
+
+#[test]
+fn an_existing_shape_is_replaced_by_force_only() {
+    let shelf = Shelf::new();
+    shelf.does("library|save|one|-", RING);
+    let taken = "\"one\" is there already; --force replaces it";
+    let other = shelf.file("other.txt", "#");
+    shelf.refuses(&format!("library|save|ONE|{other}"), taken);
+    shelf.refuses("figure|hexagon|--save|one", taken);
+    shelf.refuses("picture|washer|--save|one", taken);
+    assert!(shelf.does("library|show|one", "").contains("NA 6 in all"));
+    shelf.does(&format!("library|save|ONE|{other}|--force"), "");
+    assert!(shelf.does("library|show|one", "").contains("NA 1 in all"));
+    let shipped = "\"washer\" comes with the program; it can be copied under another name";
+    shelf.refuses("library|save|washer|key|--force", shipped);
+    shelf.refuses("figure|hexagon|--save|washer|--force", shipped);
+    shelf.refuses("library|delete|washer", shipped);
+    shelf.refuses(
+        "library|restore|washer",
+        "nothing called \"washer\" is in the trash",
+    );
+}
+
+#[test]
+fn figures_are_saved_with_their_sensor_and_source() {
+    let shelf = Shelf::new();
+    let touched = shelf.does(
+        "figure|hexagon|--angle|7.25|--columns|20|--pitch|2.5|--save|mine",
+        "",
+    );
+    assert!(
+        touched.contains("\nsaved as mine\n20 × 16 taxels of 2.5 mm, threshold 0.5"),
+        "{touched}"
+    );
+    let shown = shelf.does("library|show|mine", "");
+    assert!(
+        shown.contains("\nmine\nhexagon side ") && shown.contains("\n20 × 16 taxels of 2.5 mm"),
+        "{shown}"
+    );
+    let json = shelf.does("figure|hexagon|--json|--save|json", "");
+    assert_eq!(json.lines().count(), 1, "nothing but the answer");
+    assert_eq!(json, shelf.does("library|show|json|--json", ""));
+    // Copied with all that it has, a file of the library being a file as well.
+    let file = shelf.folder.join("mine.json").display().to_string();
+    shelf.does(&format!("library|save|copy|{file}"), "");
+    let copied = shelf.does("library|show|copy", "");
+    assert_eq!(copied.replace("\ncopy\n", "\nmine\n"), shown);
+    shelf.does("library|save|other washer|washer", "");
+    assert!(
+        shelf
+            .does("library|show|other washer", "")
+            .contains("\nellipse rx 4.00 ry 4.00 at 1.99")
+    );
+}
+
+#[test]
+fn broken_shapes_are_listed_and_checked_with_the_reason() {
+    let shelf = Shelf::new();
+    shelf.does("library|save|good|-", RING);
+    let bad = shelf.folder.join("bad\u{e9}.json");
+    std::fs::write(&bad, "{\"format\":\"taxel-shape/9\"}").expect("written");
+    std::fs::create_dir(shelf.folder.join("dir.json")).expect("made");
+    std::fs::write(shelf.folder.join("notes.txt"), "").expect("written");
+    let list = shelf
+        .does("library|list", "")
+        .replace(&shelf.folder.display().to_string(), "FOLDER");
+    let lines: Vec<&str> = list.lines().skip(1).take(3).collect();
+    assert_eq!(
+        lines,
+        [
+            "bad\u{e9}           broken   FOLDER/bad\u{e9}.json: line 1, column 26: format: \"taxel-shape/9\" is not known here, expected \"taxel-shape/1\"",
+            "dir            broken   FOLDER/dir.json: is a folder, expected a regular file",
+            "good           own        4 × 3    6       1      1",
+        ]
+    );
+    let run = shelf.run("library|check", "");
+    let folder = shelf.folder.display().to_string();
+    let all = taxel::library::shipped::names().count() + 3;
+    assert_eq!(
+        run.stdout.replace(&folder, "FOLDER"),
+        "broken: bad\u{e9}: FOLDER/bad\u{e9}.json: line 1, column 26: format: \"taxel-shape/9\" is not known here, expected \"taxel-shape/1\"\n\
+         broken: dir: FOLDER/dir.json: is a folder, expected a regular file\n\
+         left over: FOLDER/notes.txt: no shape: its name is not NAME.json\n"
+    );
+    assert_eq!(
+        (run.status, run.stderr),
+        (
+            Some(1),
+            format!("error: 2 of {all} shapes cannot be read\n")
+        )
+    );
+    let json = shelf.does("library|list|--json", "");
+    assert!(
+        json.is_ascii() && json.starts_with(r#"[{"name":"bad\u00e9","origin":"broken","error":"/"#)
+    );
+    let parsed: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    assert_eq!(parsed.as_array().map(Vec::len), Some(all));
+    assert_eq!(
+        parsed[2],
+        serde_json::json!({"name": "good", "origin": "own", "columns": 4, "rows": 3, "na": 6, "pieces": 1, "holes": 1})
+    );
+    // The name is that of the library, so no file is looked for.
+    let run = shelf.run("picture|bad\u{e9}", "");
+    assert_eq!(run.status, Some(1));
+    assert!(run.stderr.contains("taxel-shape/9"), "{}", run.stderr);
+}
+
+#[test]
+fn the_folder_is_that_of_the_flag_wherever_it_stands() {
+    let shelf = Shelf::new();
+    let folder = shelf.folder.to_str().expect("text");
+    for line in [
+        ["--library", folder, "library", "path"],
+        ["library", "--library", folder, "path"],
+        ["library", "path", "--library", folder],
+    ] {
+        let run = run_in("C", &line, b"");
+        assert_eq!(run.stdout, format!("{folder}\n"));
+    }
+    let run = run_in("C", &["library", "path"], b"");
+    assert!(
+        run.stdout.ends_with("/no-library\n"),
+        "that of the variable"
+    );
+    assert!(!shelf.folder.exists(), "nothing is made by looking");
+}
+
+#[test]
+fn wrong_usage_is_status_2() {
+    misused("library", "'taxel library' requires a subcommand");
+    misused("library show", "the following required arguments");
+    misused("library save name", "the following required arguments");
+    misused(
+        "library show ../x",
+        "invalid value '../x' for '<NAME>': '/' cannot be in a name, only letters, digits, space, - _ .\n",
+    );
+    misused(
+        "figure hexagon --save a/b",
+        "invalid value 'a/b' for '--save <NAME>': '/' cannot be in a name, only letters, digits, space, - _ .\n",
+    );
+    misused(
+        "figure hexagon --force",
+        "the following required arguments were not provided:\n  --save <NAME>\n",
+    );
+    misused(
+        "library list --library",
+        "a value is required for '--library <DIR>'",
+    );
+}

@@ -1,0 +1,103 @@
+//! The program as users run it: arguments and standard input in, text and exit status out.
+
+mod figure;
+
+mod describe;
+
+mod batch;
+
+mod library;
+
+mod picture;
+
+mod sweep;
+
+mod streams;
+
+use std::ffi::OsStr;
+use std::io::Write;
+use std::process::{Child, Command, Stdio};
+
+/// The program in a locale, its pipes open.
+fn program<A: AsRef<OsStr>>(arguments: &[A], locale: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_taxel"));
+    command
+        .args(arguments)
+        .env_remove("LC_CTYPE")
+        .env_remove("LANG")
+        .env("LC_ALL", locale)
+        // No library but the shapes that come with the program, whoever runs the tests.
+        .env(
+            "TAXEL_LIBRARY",
+            concat!(env!("CARGO_TARGET_TMPDIR"), "/no-library"),
+        )
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    command
+}
+
+/// What a run leaves.
+#[derive(Debug, PartialEq, Eq)]
+struct Run {
+    status: Option<i32>,
+    stdout: String,
+    stderr: String,
+}
+
+fn finish(mut child: Child, input: &[u8]) -> Run {
+    let mut stdin = child.stdin.take().expect("standard input is piped");
+    let output = std::thread::scope(|scope| {
+        // A program that stops early closes its end; that is its right.
+        scope.spawn(move || drop(stdin.write_all(input)));
+        child.wait_with_output().expect("the program ends")
+    });
+    Run {
+        status: output.status.code(),
+        stdout: String::from_utf8(output.stdout).expect("answers are UTF-8"),
+        stderr: String::from_utf8(output.stderr).expect("messages are UTF-8"),
+    }
+}
+
+fn run_in<A: AsRef<OsStr>>(locale: &str, arguments: &[A], input: &[u8]) -> Run {
+    let child = program(arguments, locale).spawn();
+    finish(child.expect("the program starts"), input)
+}
+
+/// Runs a command line, split at spaces, in a UTF-8 locale.
+fn taxel(line: &str, input: impl AsRef<[u8]>) -> Run {
+    let arguments: Vec<&str> = line.split_whitespace().collect();
+    run_in("C.UTF-8", &arguments, input.as_ref())
+}
+
+/// Nothing written but one message.
+fn refused(run: &Run, status: i32, message: &str) {
+    let stderr = format!("error: {message}\n");
+    let stdout = String::new();
+    let expected = Run {
+        status: Some(status),
+        stdout,
+        stderr,
+    };
+    assert_eq!(*run, expected);
+}
+
+/// Wrong usage: status 2, a message that starts like this, and the way to the help.
+fn misused(line: &str, message: &str) {
+    let run = taxel(line, "");
+    assert_eq!(run.status, Some(2), "{line}");
+    assert_eq!(run.stdout, "", "{line}");
+    assert!(
+        run.stderr.starts_with(&format!("error: {message}")),
+        "{line}: {}",
+        run.stderr
+    );
+    assert!(
+        run.stderr.ends_with("try '--help'.\n"),
+        "{line}: {}",
+        run.stderr
+    );
+}
+
+/// The paper's Fig. 1.
+const RING: &str = "figure ellipse --radius-x 4 --radius-y 4 --x0 1.99 --y0 1.47 --thickness 2";

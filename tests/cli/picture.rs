@@ -1,0 +1,120 @@
+//! `taxel picture`: shapes of the library and of files, moved; named pictures in a batch.
+
+use super::library::Shelf;
+use super::refused;
+
+#[test]
+fn without_flags_a_picture_is_the_shape_itself() {
+    let shelf = Shelf::new();
+    for name in taxel::library::shipped::names() {
+        let shown = shelf.does(&format!("library|show|{name}|--json"), "");
+        let touched = shelf.does(&format!("picture|{name}|--json"), "");
+        assert_eq!(shown, touched, "{name}");
+    }
+    let text = shelf.does("picture|washer", "");
+    assert!(text.contains("\npicture at 2.00, 2.00, 0°, zoom 1.00 x 1.00\n16 × 16 taxels, threshold 0.5, NA 36 in all\n"), "{text}");
+}
+
+#[test]
+fn a_picture_is_moved_as_a_pose_of_a_batch_is() {
+    let shelf = Shelf::new();
+    let json = shelf.does(
+        "picture|key|--x0|3.5|--y0|-1|--angle|30|--zoom-x|0.8|--zoom-y|1.25|--columns|20|--threshold|0.4|--json",
+        "",
+    );
+    let pose = r#"{"picture":"KEY","x0":3.5,"y0":-1,"angle":30,"zoom_x":0.8,"zoom_y":1.25}"#;
+    let answer = shelf.does(
+        "batch|--columns|20|--threshold|0.4",
+        &format!("{pose}\n{pose}"),
+    );
+    assert_eq!(answer, json.repeat(2));
+}
+
+#[test]
+fn the_sensor_is_that_of_the_shape_or_large_enough() {
+    let shelf = Shelf::new();
+    let size = |line: &str, input: &str| {
+        let text = shelf.does(line, input);
+        let line = text.lines().find(|line| line.contains("taxels"));
+        line.map(str::to_owned).unwrap_or_default()
+    };
+    shelf.does(
+        "figure|hexagon|--columns|20|--rows|12|--threshold|0.25|--save|wide",
+        "",
+    );
+    assert!(size("picture|wide", "").starts_with("20 × 12 taxels, threshold 0.25, "));
+    assert!(size("picture|wide|--rows|30", "").starts_with("20 × 30 taxels, "));
+    assert!(size("picture|-", "##\n#.\n").starts_with("16 × 16 taxels, threshold 0.5, NA 3 "));
+    let wide = format!("{}\n", "#".repeat(40));
+    assert!(size("picture|-", &wide).starts_with("40 × 16 taxels, threshold 0.5, NA 40 "));
+}
+
+#[test]
+fn a_name_of_the_library_goes_before_a_file() {
+    let shelf = Shelf::new();
+    let file = shelf.file("shape.txt", "##\n##\n");
+    assert!(
+        shelf
+            .does(&format!("picture|{file}"), "")
+            .contains("NA 4 in all")
+    );
+    let saved = shelf.does(
+        &format!("picture|{file}|--x0|5|--zoom-x|2|--save|moved"),
+        "",
+    );
+    assert!(saved.contains("\nsaved as moved\n"), "{saved}");
+    let stored = std::fs::read_to_string(shelf.folder.join("moved.json")).expect("saved");
+    assert!(stored.contains("\"picture\": ["), "{stored}");
+    let path = shelf.folder.join("moved.json").display().to_string();
+    let json = |what: &str| shelf.does(&format!("picture|{what}|--json"), "");
+    assert_eq!(json(&path), json("moved"));
+    refused(
+        &shelf.run("picture|nothing", ""),
+        1,
+        "no shape is called \"nothing\", and no file either",
+    );
+    refused(
+        &shelf.run("picture|no/such.txt", ""),
+        1,
+        "no/such.txt: cannot read: No such file or directory (os error 2)",
+    );
+    refused(
+        &shelf.run("picture|washer|--zoom-x|0", ""),
+        1,
+        "--zoom-x 0: out of range, expected above 0, up to 64",
+    );
+    refused(
+        &shelf.run("picture|washer|--x0|17", ""),
+        1,
+        "--x0 17: out of range, expected -16 to 16",
+    );
+}
+
+#[test]
+fn a_batch_tells_of_names_that_lead_nowhere() {
+    let shelf = Shelf::new();
+    shelf.does("library|save|mine|-", "#\n");
+    std::fs::write(shelf.folder.join("bad.json"), "{").expect("written");
+    let pose = |name: &str| {
+        format!(r#"{{"picture":"{name}","x0":0,"y0":0,"angle":0,"zoom_x":1,"zoom_y":1}}"#)
+    };
+    let input = ["mine", "none", "a/b", "bad", "Mine"].map(pose).join("\n");
+    let run = shelf.run("batch", &input);
+    let answers: Vec<&str> = run.stdout.lines().collect();
+    assert!(answers[0].contains(r#""na":1,"#) && answers[4] == answers[0]);
+    assert_eq!(
+        answers[1],
+        r#"{"error":"line 2: picture: no shape is called \"none\""}"#
+    );
+    assert!(
+        answers[2].contains("line 3: picture: '/' cannot be in a name"),
+        "{}",
+        answers[2]
+    );
+    assert!(
+        answers[3].contains("bad.json: line 1, column 1: EOF"),
+        "{}",
+        answers[3]
+    );
+    assert_eq!(run.status, Some(1));
+}

@@ -1,0 +1,158 @@
+//! What holds for every command: characters, help, pipes that close, disks that are full.
+
+use super::batch::POINT;
+use super::describe::SHAPE;
+use super::{RING, finish, program, refused, run_in, taxel};
+
+#[test]
+fn ascii_is_kept_to_where_the_locale_is_not_utf_8() {
+    let ascii = |arguments: &[&str], input: &str| {
+        for locale in ["C", "POSIX", "ro_RO.ISO-8859-2"] {
+            let run = run_in(locale, arguments, input.as_bytes());
+            assert!(
+                run.stdout.is_ascii() && run.stderr.is_ascii(),
+                "{arguments:?} {run:?}"
+            );
+        }
+        let mut flagged = arguments.to_vec();
+        flagged.push("--ascii");
+        let run = run_in("C.UTF-8", &flagged, input.as_bytes());
+        assert!(
+            run.stdout.is_ascii() && run.stderr.is_ascii(),
+            "{flagged:?} {run:?}"
+        );
+    };
+    ascii(&["figure", "hexagon", "--pitch", "2"], "");
+    ascii(&["figure", "hexagon", "--angle", "12.5", "--x0", "-1"], "");
+    ascii(&["figure", "hexagon", "--side", "três"], "");
+    ascii(&["figure", "hexágono"], "");
+    ascii(&["descreve…"], "");
+    ascii(&["describe", "imprimé.txt"], "");
+    ascii(&["describe", "-"], "##\n#é\n");
+    ascii(&["describe", "-"], &SHAPE.replace("corner", "colț"));
+    ascii(&["library", "list"], "");
+    ascii(&["library", "show", "washer"], "");
+    ascii(&["library", "show", "colț"], "");
+    ascii(&["library", "restore", "colț"], "");
+    ascii(&["picture", "washer", "--angle", "12.5"], "");
+    ascii(&["picture", "colț"], "");
+    ascii(&["batch"], "{\"figure\":\"hexágono\"}\n{\"é\":1}\n");
+    for help in [
+        &["--help"][..],
+        &["figure", "--help"],
+        &["describe", "--help"],
+        &["batch", "--help"],
+        &["picture", "--help"],
+        &["library", "save", "--help"],
+    ] {
+        ascii(help, "");
+    }
+}
+
+#[test]
+fn help_fits_80_columns_and_ends_with_examples() {
+    for line in [
+        "--help",
+        "-h",
+        "help",
+        "figure --help",
+        "help figure",
+        "describe --help",
+        "batch --help",
+        "picture --help",
+        "library --help",
+        "library list --help",
+        "library show --help",
+        "library save --help",
+        "library delete --help",
+        "library restore --help",
+        "library path --help",
+        "library check --help",
+    ] {
+        let run = taxel(line, "");
+        assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""), "{line}");
+        assert!(
+            run.stdout.contains("\nExamples:\n  taxel") || run.stdout.contains("taxel batch"),
+            "{line}"
+        );
+        let widest = run.stdout.lines().map(|line| line.chars().count()).max();
+        assert!(widest <= Some(80), "{line}: {widest:?}\n{}", run.stdout);
+    }
+    let version = format!("taxel {}\n", env!("CARGO_PKG_VERSION"));
+    assert_eq!(taxel("--version", "").stdout, version);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_closed_pipe_ends_quietly() {
+    for line in [
+        RING,
+        "figure hexagon --json",
+        "picture washer",
+        "library list",
+        "describe -",
+        "batch",
+        "--help",
+        "--version",
+    ] {
+        let arguments: Vec<&str> = line.split_whitespace().collect();
+        let (reader, writer) = std::io::pipe().expect("a pipe");
+        drop(reader);
+        let child = program(&arguments, "C").stdout(writer).spawn();
+        let input = if line == "batch" {
+            format!("{POINT}\n").repeat(10_000)
+        } else {
+            "#\n".to_owned()
+        };
+        let run = finish(child.expect("the program starts"), input.as_bytes());
+        assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""), "{line}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told() {
+    for line in [
+        RING,
+        "figure hexagon --json",
+        "picture washer",
+        "library list",
+        "describe -",
+        "batch",
+        "--help",
+        "--version",
+    ] {
+        let arguments: Vec<&str> = line.split_whitespace().collect();
+        let full = std::fs::File::options()
+            .write(true)
+            .open("/dev/full")
+            .expect("there is one");
+        let child = program(&arguments, "C")
+            .stdout(full)
+            .spawn()
+            .expect("the program starts");
+        let input = if line == "batch" { POINT } else { "#\n" };
+        let run = finish(child, input.as_bytes());
+        refused(
+            &run,
+            1,
+            "cannot write: No space left on device (os error 28)",
+        );
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn input_that_cannot_be_read_is_told() {
+    let folder = std::fs::File::open(".").expect("a folder");
+    let output = program(&["batch"], "C")
+        .stdin(folder)
+        .output()
+        .expect("the program runs");
+    let stderr = String::from_utf8(output.stderr).expect("text");
+    assert_eq!(
+        stderr,
+        "error: standard input: cannot read: Is a directory (os error 21)\n"
+    );
+    assert_eq!(output.status.code(), Some(1));
+}

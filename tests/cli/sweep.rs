@@ -1,0 +1,360 @@
+//! `taxel sweep` and `taxel merge`: summaries, files, shards, interrupts, refusals.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use super::{finish, program, refused, taxel};
+
+/// The paper's ring over one cell.
+const RING: &str = "sweep ellipse --radius-x 4 --radius-y 4 --thickness 2 --angle 0 --x0 1:1.99:0.01 --y0 1:1.99:0.01";
+
+/// A folder of a test's own, empty.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("sweep-{name}"));
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder can be made");
+    folder
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let files = fs::read_dir(folder).expect("the folder is there");
+    let name = |file: std::io::Result<fs::DirEntry>| {
+        let name = file.expect("a file").file_name();
+        name.to_string_lossy().into_owned()
+    };
+    let mut names: Vec<String> = files.map(name).collect();
+    names.sort();
+    names
+}
+
+fn json(line: &str) -> Value {
+    let run = taxel(line, "");
+    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""), "{line}");
+    serde_json::from_str(&run.stdout).expect("a line of JSON")
+}
+
+#[test]
+fn the_summary_has_the_numbers_of_the_paper_s_ring() {
+    let summary = json(&format!("{RING} --json"));
+    let keys: Vec<&String> = summary.as_object().expect("an object").keys().collect();
+    let expected = [
+        "poses",
+        "distinct",
+        "distinct_shifts",
+        "distinct_symmetry",
+        "partly_off",
+        "empty",
+        "seconds",
+        "descriptors",
+    ];
+    assert!(expected.iter().all(|key| keys.iter().any(|own| own == key)));
+    assert_eq!(keys.len(), expected.len());
+    let count = |key: &str| summary[key].as_u64().expect("a count");
+    let counts = ["poses", "distinct", "distinct_shifts", "distinct_symmetry"].map(count);
+    assert_eq!(counts, [10_000, 393, 376, 58]);
+    let na = &summary["descriptors"]["na"];
+    assert_eq!(
+        (na["min"].as_f64(), na["max"].as_f64()),
+        (Some(35.0), Some(40.0))
+    );
+    let ideal = na["ideal"].as_f64().expect("an ideal value");
+    assert!((ideal - 12.0 * std::f64::consts::PI).abs() < 1e-9);
+    assert_eq!(na["sd"], na["sd_position"]);
+    assert_eq!(na["sd_angle"].as_f64(), Some(0.0));
+    assert!(summary["descriptors"]["ce"]["ideal"].is_null());
+}
+
+#[test]
+fn a_summary_for_people_fits_their_eyes() {
+    let run = taxel(
+        "sweep triangle --side 5 --x0 5 --y0 5:5.3:0.1 --angle 0:90:45 --ascii",
+        "",
+    );
+    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
+    let first = run.stdout.lines().next();
+    assert_eq!(first, Some("12 poses: y0 5:5.3:0.1, angle 0:90:45"));
+    assert!(run.stdout.is_ascii());
+    assert!(run.stdout.contains("\ncg_cd_direction "));
+    assert!(run.stdout.lines().all(|line| line.len() <= 110));
+}
+
+#[test]
+fn tables_hold_every_imprint() {
+    let folder = folder("tables");
+    let path = |name: &str| folder.join(name).display().to_string();
+    let csv = json(&format!("{RING} --json --atlas {}", path("ring.csv")));
+    json(&format!("{RING} --json --atlas {}", path("ring.jsonl")));
+    let table = fs::read_to_string(path("ring.csv")).expect("the table");
+    let lines: Vec<&str> = table.lines().collect();
+    assert!(
+        lines[0]
+            .starts_with("id,count,share,first_x0,first_y0,first_angle,pieces,holes,na,nae,ce,")
+    );
+    assert_eq!(
+        lines.len() as u64,
+        1 + csv["distinct"].as_u64().expect("a count")
+    );
+    assert!(lines[1].starts_with("0,258,0.0258,1,1,0,1,1,40,52,20,200,200,5,5,"));
+    assert!(lines[1].contains(",0,,................/...####........./"));
+    let counts = lines[1..]
+        .iter()
+        .map(|line| line.split(',').nth(1).expect("a count"));
+    let sum: u64 = counts
+        .map(|count| count.parse::<u64>().expect("a count"))
+        .sum();
+    assert_eq!(sum, 10_000);
+    let lines = fs::read_to_string(path("ring.jsonl")).expect("the lines");
+    let lines: Vec<Value> = lines
+        .lines()
+        .map(|line| serde_json::from_str(line).expect("JSON"))
+        .collect();
+    assert_eq!(lines.len(), 393);
+    for (id, line) in lines.iter().enumerate() {
+        assert_eq!(line["id"], id);
+        // The first pose does leave that imprint, and its main region is described as elsewhere.
+        if id % 40 == 0 {
+            let value = |key: &str| line["first"][key].to_string();
+            let answer = json(&format!(
+                "figure ellipse --radius-x 4 --radius-y 4 --thickness 2 --x0 {} --y0 {} --json",
+                value("x0"),
+                value("y0")
+            ));
+            assert_eq!(line["imprint"], answer["imprint"]);
+            assert_eq!(line["main"], answer["regions"][0]);
+        }
+    }
+    assert_eq!(names(&folder), ["ring.csv", "ring.jsonl"]);
+}
+
+#[test]
+fn shards_merge_into_the_same_bytes() {
+    let folder = folder("shards");
+    let path = |name: &str| folder.join(name).display().to_string();
+    let sweep = "sweep pentagon --side 3 --thickness 0.8 --x0 4:6:0.05 --y0 4:5:0.05 --angle 0:359:3 --quiet";
+    let whole = json(&format!(
+        "{sweep} --json --jobs 1 --atlas {}",
+        path("whole.npz")
+    ));
+    for number in 1..=5 {
+        let name = path(&format!("{number}.npz"));
+        json(&format!(
+            "{sweep} --json --jobs 2 --shard {number}/5 --atlas {name}"
+        ));
+    }
+    let files: Vec<String> = [4, 2, 5, 1, 3]
+        .map(|number| path(&format!("{number}.npz")))
+        .into();
+    let mut merged = json(&format!(
+        "merge {} --json --atlas {}",
+        files.join(" "),
+        path("merged.npz")
+    ));
+    merged["seconds"] = whole["seconds"].clone();
+    assert_eq!(merged, whole);
+    let read = |name: &str| fs::read(path(name)).expect("an atlas");
+    assert!(
+        read("merged.npz") == read("whole.npz"),
+        "the archives differ"
+    );
+    json(&format!(
+        "merge {} --json --atlas {}",
+        path("whole.npz"),
+        path("again.csv")
+    ));
+    json(&format!("{sweep} --json --atlas {}", path("whole.csv")));
+    assert!(read("again.csv") == read("whole.csv"), "the tables differ");
+    let run = taxel(
+        &format!(
+            "merge {} {} --atlas {}",
+            path("1.npz"),
+            path("2.npz"),
+            path("no.npz")
+        ),
+        "",
+    );
+    refused(&run, 1, "shard 3/5 is missing");
+    assert!(!folder.join("no.npz").exists());
+}
+
+#[test]
+fn damaged_archives_are_refused() {
+    let folder = folder("damaged");
+    let path = |name: &str| folder.join(name).display().to_string();
+    json(&format!("{RING} --json --atlas {}", path("ring.npz")));
+    let good = fs::read(path("ring.npz")).expect("the archive");
+    let mut refusals = 0;
+    for place in (0..good.len()).step_by(991) {
+        let mut bad = good.clone();
+        bad[place] ^= 0x55;
+        fs::write(path("bad.npz"), &bad).expect("a file");
+        let run = taxel(
+            &format!("merge {} --json --atlas {}", path("bad.npz"), path("x.csv")),
+            "",
+        );
+        assert!(matches!(run.status, Some(0 | 1)), "{place}: {}", run.stderr);
+        refusals += i32::from(run.status == Some(1));
+    }
+    assert!(refusals > 50, "{refusals}");
+    for (name, content) in [
+        ("empty", &b""[..]),
+        ("text", b"no archive"),
+        ("half", &good[..good.len() / 2]),
+    ] {
+        fs::write(path("bad.npz"), content).expect("a file");
+        let run = taxel(
+            &format!("merge {} --atlas {}", path("bad.npz"), path("y.csv")),
+            "",
+        );
+        assert_eq!(run.status, Some(1), "{name}");
+        assert!(
+            run.stderr.contains("bad.npz: no archive of arrays"),
+            "{name}: {}",
+            run.stderr
+        );
+    }
+}
+
+#[test]
+fn an_interrupt_stops_at_once_and_leaves_nothing() {
+    let folder = folder("interrupted");
+    let path = |name: &str| folder.join(name).display().to_string();
+    let line = format!(
+        "sweep heptagon --side 3 --thickness 1 --angle 0:359.99:0.01 --quiet --atlas {} --poses {}",
+        path("a.npz"),
+        path("p.npy")
+    );
+    let arguments: Vec<&str> = line.split_whitespace().collect();
+    let child = program(&arguments, "C.UTF-8")
+        .spawn()
+        .expect("the program starts");
+    let id = i32::try_from(child.id()).expect("a process");
+    std::thread::sleep(Duration::from_millis(300));
+    let start = Instant::now();
+    let id = rustix::process::Pid::from_raw(id).expect("a process");
+    rustix::process::kill_process(id, rustix::process::Signal::INT).expect("it runs still");
+    let run = finish(child, b"");
+    // 0.2 s are asked for; machines that run tests may be busy.
+    assert!(
+        start.elapsed() < Duration::from_secs(5),
+        "{:?}",
+        start.elapsed()
+    );
+    refused(&run, 130, "stopped; nothing was written");
+    assert_eq!(names(&folder), [""; 0]);
+}
+
+#[test]
+fn what_is_no_sweep_is_refused() {
+    refused(
+        &taxel("sweep hexagon --x0 1:20:1", ""),
+        1,
+        "x0: 20 is out of range, expected -16 to 16",
+    );
+    refused(
+        &taxel(
+            "sweep hexagon --x0 0:0.999999:0.000001 --y0 0:0.999999:0.000001",
+            "",
+        ),
+        1,
+        "360000000000000 poses, expected at most 1000000000000",
+    );
+    refused(
+        &taxel("sweep hexagon --zoom-x 2", ""),
+        1,
+        "zoom_x, zoom_y: a figure has none, only pictures have",
+    );
+    for (line, expected) in [
+        (
+            "sweep hexagon --x0 1:2:0",
+            "step 0 leads nowhere, expected one above 0",
+        ),
+        (
+            "sweep hexagon --y0 2:1:0.1",
+            "2:1:0.1 ends before it starts, expected an end from 2 on and a step above 0",
+        ),
+        (
+            "sweep hexagon --shard 4/3",
+            "\"4/3\" is no shard, expected K/N with K from 1 to N",
+        ),
+        (
+            "sweep hexagon --atlas x.txt",
+            "expected a name that ends in .csv, .jsonl or .npz",
+        ),
+        (
+            "sweep hexagon --length 3",
+            "'--length' does not belong to 'hexagon'",
+        ),
+        (
+            "sweep --picture washer --side 3",
+            "'--side' does not belong to a picture",
+        ),
+        (
+            "sweep hexagon --poses p.npy --shard 1/2",
+            "cannot be used with",
+        ),
+        ("sweep", "required arguments were not provided"),
+        (
+            "merge --atlas a.csv",
+            "required arguments were not provided",
+        ),
+    ] {
+        let run = taxel(line, "");
+        assert_eq!((run.status, run.stdout.as_str()), (Some(2), ""), "{line}");
+        assert!(run.stderr.contains(expected), "{line}: {}", run.stderr);
+    }
+    let run = taxel("sweep hexagon --angle 0 --quiet --atlas /nowhere/a.csv", "");
+    assert_eq!(run.status, Some(1));
+    assert!(
+        run.stderr.starts_with("error: /nowhere/a.csv: "),
+        "{}",
+        run.stderr
+    );
+}
+
+/// Read by the real numpy, where Python has it.
+#[test]
+fn numpy_reads_atlas_and_poses() {
+    let numpy = Command::new("python3")
+        .args(["-c", "import numpy"])
+        .output();
+    if !numpy.is_ok_and(|output| output.status.success()) {
+        eprintln!("SKIPPED: no python3 with numpy");
+        return;
+    }
+    let folder = folder("numpy");
+    let path = |name: &str| folder.join(name).display().to_string();
+    json(&format!(
+        "sweep rectangle --length 4 --width 4 --x0 5:5.9:0.1 --y0 5:5.4:0.2 --angle 0:180:45 --json --poses {} --atlas {}",
+        path("poses.npy"),
+        path("atlas.npz")
+    ));
+    let check = r"
+import sys, json, numpy
+poses, atlas = numpy.load(sys.argv[1]), numpy.load(sys.argv[2])
+assert poses.shape == (5, 3, 10) and poses.dtype == numpy.uint32, (poses.shape, poses.dtype)
+count = atlas['count']
+assert (numpy.bincount(poses.ravel()) == count).all() and count.sum() == 150
+flat = poses.ravel()
+assert (atlas['first_pose'] == [numpy.argmax(flat == id) for id in range(len(count))]).all()
+bits = atlas['rows'][:, :, None] >> numpy.arange(16, dtype=numpy.uint64) & 1
+assert bits.shape == (len(count), 16, 16)
+assert (bits.sum(axis=(1, 2)) == atlas['na']).all() and (poses[0] == poses[2]).all()
+header = json.loads(atlas['header'].tobytes())
+assert header['format'] == 'taxel-atlas/1' and header['poses'] == 150
+x0 = atlas['first'][:, 0]
+assert x0[0] == 5.0 and x0.max() <= 5.9 and numpy.isnan(atlas['cg_cd_direction']).any()
+";
+    let python = Command::new("python3")
+        .args(["-c", check, &path("poses.npy"), &path("atlas.npz")])
+        .output()
+        .expect("python3 runs");
+    assert!(
+        python.status.success(),
+        "{}",
+        String::from_utf8_lossy(&python.stderr)
+    );
+}

@@ -1,0 +1,114 @@
+//! What several test files share: random numbers from a fixed seed, and short ways to write a shape down.
+#![allow(dead_code, reason = "every test file uses its own part of this one")]
+
+use taxel::figure::{Figure, Kind};
+use taxel::imprint::Imprint;
+use taxel::parameter::Parameter;
+use taxel::picture::Picture;
+use taxel::sensor::Sensor;
+
+/// Random numbers by xorshift (G. Marsaglia, *Xorshift RNGs*, 2003): the same on every machine and in every run.
+pub(crate) struct Random(u64);
+
+impl Random {
+    /// Any seed; what matters is that it stands in the test.
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1)
+    }
+
+    pub(crate) fn word(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        // The low bits of a plain xorshift are its weak ones.
+        self.0.wrapping_mul(0x2545_F491_4F6C_DD1D).rotate_left(32)
+    }
+
+    /// A whole number from `low` to `high`, both possible.
+    pub(crate) fn whole(&mut self, low: i32, high: i32) -> i32 {
+        let count = u64::from(high.abs_diff(low)) + 1;
+        low + i32::try_from(self.word() % count).expect("below the span")
+    }
+
+    /// The same for a side of a sensor, a column or a row.
+    pub(crate) fn side(&mut self, low: u8, high: u8) -> u8 {
+        u8::try_from(self.whole(i32::from(low), i32::from(high))).expect("between two u8")
+    }
+
+    /// True in so many of a thousand.
+    pub(crate) fn chance(&mut self, permille: u64) -> bool {
+        self.word() % 1000 < permille
+    }
+
+    /// A decimal from `low` to `high` with none, one or two digits after the point: few digits make many ties.
+    pub(crate) fn decimal(&mut self, low: i32, high: i32) -> f64 {
+        let scale = [1, 10, 100][usize::from(self.side(0, 2))];
+        f64::from(self.whole(low * scale, high * scale)) / f64::from(scale)
+    }
+
+    /// The same, but never 0 or below.
+    pub(crate) fn size(&mut self, high: i32) -> f64 {
+        loop {
+            let size = self.decimal(0, high);
+            if size > 0.0 {
+                return size;
+            }
+        }
+    }
+
+    /// Whole degrees, every other time one of those where edges become upright or ties occur.
+    pub(crate) fn angle(&mut self) -> f64 {
+        if self.chance(500) {
+            f64::from(self.whole(0, 23) * 15)
+        } else {
+            f64::from(self.whole(0, 359))
+        }
+    }
+}
+
+/// The value of a key in "key=value key=value".
+fn value(text: &str, parameter: Parameter) -> Option<f64> {
+    let (_, number) = text
+        .split_whitespace()
+        .filter_map(|word| word.split_once('='))
+        .find(|&(key, _)| key == parameter.row().key)?;
+    Some(number.parse().expect("a number after the ="))
+}
+
+/// The figure `hexagon side=3 x0=2.1 y0=1.35 angle=17 thickness=1`; an angle that is not given is 0.
+pub(crate) fn figure(text: &str, side: u8) -> Figure {
+    let name = text.split_whitespace().next().expect("a name first");
+    let kind = Kind::from_name(name).expect("one of the seven names");
+    let given =
+        |parameter| value(text, parameter).or((parameter == Parameter::Angle).then_some(0.0));
+    Figure::new(kind, side, given).expect("values in range")
+}
+
+/// The picture of the rows in `##/#. x0=1 y0=1 angle=10 zoom_x=2 zoom_y=2`; angle 0 and zoom 1 where not given.
+pub(crate) fn picture(text: &str, side: u8) -> Picture {
+    let rows = text.split_whitespace().next().expect("rows first");
+    let given = |parameter| {
+        value(text, parameter).or(match parameter {
+            Parameter::Angle => Some(0.0),
+            Parameter::ZoomX | Parameter::ZoomY => Some(1.0),
+            _ => None,
+        })
+    };
+    Picture::new(grid(rows), side, given).expect("values in range")
+}
+
+/// An imprint from rows with `/` or line ends between them; blanks around the rows do not count.
+pub(crate) fn grid(text: &str) -> Imprint {
+    let rows = text
+        .split(['/', '\n'])
+        .map(str::trim)
+        .filter(|row| !row.is_empty());
+    Imprint::from_rows(rows).expect("rows of # and .")
+}
+
+/// A sensor of so many taxels and a threshold.
+pub(crate) fn sensor(columns: u8, rows: u8, threshold: f64) -> Sensor {
+    Sensor::new(f64::from(columns), f64::from(rows))
+        .and_then(|sensor| sensor.with(Parameter::Threshold, threshold))
+        .expect("a sensor in range")
+}

@@ -1,0 +1,107 @@
+//! What the programs do that are killed: this binary, started again with a variable that says so.
+//!
+//! Each act says on standard output what it has done, as soon as it has; so much must have lasted.
+
+use std::fs::{self, File};
+use std::io::{Write, stdout};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use taxel::library::journal::{Journal, Orphan};
+use taxel::library::store::{Expected, Library};
+
+use super::state::shape;
+
+/// The variable: an act and a folder, with a colon between.
+const VARIABLE: &str = "TAXEL_CRASH_ACT";
+
+/// This binary, to perform an act.
+pub(crate) fn command(act: &str, folder: &Path) -> Command {
+    let mut command = Command::new(std::env::current_exe().expect("this binary"));
+    command
+        .env(VARIABLE, format!("{act}:{}", folder.display()))
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    command
+}
+
+/// Performs what the variable asks for; false where it asks for nothing.
+pub(crate) fn perform() -> bool {
+    let Ok(asked) = std::env::var(VARIABLE) else {
+        return false;
+    };
+    let (act, folder) = asked.split_once(':').expect("an act and a folder");
+    let folder = PathBuf::from(folder);
+    match act {
+        "journal" => journal(&folder),
+        "recover" => recover(&folder),
+        "churn" => churn(&folder),
+        "naive" => naive(&folder),
+        "full" => super::disk::on_full_disk(&folder),
+        "read-only" => super::disk::on_read_only_disk(&folder),
+        _ => panic!("an unknown act: {act}"),
+    }
+    true
+}
+
+fn say(text: &str) {
+    let mut out = stdout().lock();
+    // Nobody listens any more once this program is to be killed.
+    let _ = writeln!(out, "{text}").and_then(|()| out.flush());
+}
+
+/// Keeps two states of unsaved work, one after the other, and gives it up.
+fn journal(folder: &Path) {
+    let mut journal = Journal::new(&Library::open(folder.to_owned()));
+    for version in [1, 2] {
+        journal.keep(&shape("work", version)).expect("kept");
+        say(&format!("kept {version}"));
+    }
+    say("clearing");
+    journal.clear();
+    say("cleared");
+}
+
+/// Takes over the work that a dead program has left.
+fn recover(folder: &Path) {
+    let library = Library::open(folder.to_owned());
+    let mut journal = Journal::new(&library);
+    for orphan in Orphan::all(&library) {
+        journal.keep(&orphan.shape).expect("kept");
+        orphan.discard();
+    }
+    say("recovered");
+}
+
+/// Saves, journals, deletes and restores for ever.
+fn churn(folder: &Path) {
+    let library = Library::open(folder.to_owned());
+    let mut journal = Journal::new(&library);
+    let mut stamp = library.load("one").expect("it is there").stamp;
+    for version in 2.. {
+        stamp = library
+            .save(&shape("one", version), Expected::Stamp(stamp))
+            .expect("saved");
+        say(&format!("saved {version}"));
+        journal.keep(&shape("work", version)).expect("kept");
+        say(&format!("kept {version}"));
+        library.delete("two").expect("deleted");
+        library.restore("two").expect("restored");
+    }
+}
+
+/// Saves for ever as one should not: into the file itself, line by line.
+fn naive(folder: &Path) {
+    for version in 2.. {
+        let mut file = File::create(folder.join("one.json")).expect("created");
+        for line in shape("one", version).write().lines() {
+            writeln!(file, "{line}").expect("written");
+        }
+        file.sync_all().expect("synced");
+        say(&format!("saved {version}"));
+        if fs::exists(folder.join("enough")).unwrap_or(false) {
+            return;
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! A disk that is full, and one that cannot be written to: small ones in memory, mounted for one program only.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use super::act;
+use super::state::{State, finish, shape, taxel};
+use taxel::library::journal::{Journal, Orphan};
+use taxel::library::store::{Expected, Library, Origin};
+
+/// The exit status of a program that may not mount.
+const NOT_ALLOWED: i32 = 77;
+
+/// Performs an act where a disk of 64 KiB is mounted over the library's folder.
+fn on_own_disk(act: &str) -> Result<(), String> {
+    let state = State::new();
+    let own = act::command(act, &state.folder);
+    let mut command = Command::new("unshare");
+    command
+        .args(["--map-root-user", "--mount", "sh", "-c"])
+        .arg("mount -t tmpfs -o size=64k taxel \"$1\" || exit 77; exec \"$0\"")
+        .arg(own.get_program())
+        .arg(&state.folder)
+        .envs(
+            own.get_envs()
+                .filter_map(|(name, value)| Some((name, value?))),
+        );
+    if Command::new("unshare").arg("--version").output().is_err() {
+        return Err("SKIPPED, there is no unshare".to_owned());
+    }
+    let output = finish(&mut command);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    match output.status.code() {
+        Some(0) => Ok(()),
+        Some(NOT_ALLOWED) => Err("SKIPPED, nothing may be mounted".to_owned()),
+        _ if message.starts_with("unshare:") => {
+            Err(format!("SKIPPED, nothing may be mounted: {message}"))
+        }
+        _ => panic!("{message}"),
+    }
+}
+
+pub(crate) fn full() -> String {
+    let done = "message, status 1, old file whole, nothing left behind".to_owned();
+    on_own_disk("full").map_or_else(|skipped| skipped, |()| done)
+}
+
+pub(crate) fn read_only() -> String {
+    let done = "listed, loaded, work offered back; saving and deleting refused".to_owned();
+    on_own_disk("read-only").map_or_else(|skipped| skipped, |()| done)
+}
+
+/// Inside: the disk is filled to the last byte.
+pub(crate) fn on_full_disk(folder: &Path) {
+    let library = Library::open(folder.to_owned());
+    let stamp = library.save(&shape("one", 1), Expected::Nothing);
+    let stamp = stamp.expect("there is room");
+    let mut journal = Journal::new(&library);
+    journal.keep(&shape("work", 1)).expect("there is room");
+    let mut size = 1 << 16;
+    for number in 0.. {
+        while size > 0
+            && fs::write(folder.join(format!("filler {number}")), vec![b'x'; size]).is_err()
+        {
+            size /= 2;
+        }
+        if size == 0 {
+            break;
+        }
+    }
+    let saved = library.save(&shape("one", 9), Expected::Stamp(stamp));
+    let message = saved.expect_err("no room").to_string();
+    assert!(
+        message.contains("one.json") && message.contains("No space left on device"),
+        "{message}"
+    );
+    let kept = journal.keep(&shape("work", 2));
+    let message = kept.expect_err("no room").to_string();
+    assert!(message.contains("No space left on device"), "{message}");
+    drop(journal);
+    assert_eq!(
+        library.load("one").map(|one| one.shape).ok(),
+        Some(shape("one", 1))
+    );
+    let work = Orphan::all(&library).into_iter().next();
+    assert_eq!(work.map(|work| work.shape), Some(shape("work", 1)));
+    let run = taxel(&["figure", "hexagon", "--save", "new"], folder);
+    assert_eq!(
+        (run.status.code(), run.stdout.len()),
+        (Some(1), 0),
+        "{run:?}"
+    );
+    let leftovers = library.leftovers().expect("read").into_iter();
+    let half: Vec<_> = leftovers
+        .filter(|(_, what)| what.contains("half"))
+        .collect();
+    assert_eq!(half, []);
+    // Deleting needs no room but for the trash's folder, and makes none; it says what it can do.
+    let deleted = library.delete("one");
+    assert!(deleted.is_ok() == library.load("one").is_err());
+    if deleted.is_ok() {
+        library.restore("one").expect("back again");
+    }
+}
+
+/// Inside: what is on the disk can be read, and nothing else.
+pub(crate) fn on_read_only_disk(folder: &Path) {
+    let library = Library::open(folder.to_owned());
+    library
+        .save(&shape("one", 1), Expected::Nothing)
+        .expect("saved");
+    let mut journal = Journal::new(&library);
+    journal.keep(&shape("work", 1)).expect("kept");
+    drop(journal);
+    fs::write(folder.join(".taxel-tmp"), "{").expect("written");
+    let mounted = Command::new("mount")
+        .args(["-o", "remount,bind,ro"])
+        .arg(folder)
+        .status();
+    if !mounted.is_ok_and(|status| status.success()) {
+        std::process::exit(NOT_ALLOWED);
+    }
+    let library = Library::open(folder.to_owned());
+    let own = library.list().expect("listed").into_iter();
+    let own = own.filter(|entry| entry.origin == Origin::Own).count();
+    assert_eq!(own, 1);
+    let one = library.load("one").expect("loaded");
+    let work = Orphan::all(&library);
+    assert_eq!(work.len(), 1, "offered");
+    let read_only = |error: Option<String>| {
+        let message = error.expect("refused");
+        assert!(message.contains("Read-only file system"), "{message}");
+    };
+    let text = |error: taxel::library::error::LibraryError| error.to_string();
+    read_only(
+        library
+            .save(&shape("one", 2), Expected::Stamp(one.stamp))
+            .map_err(text)
+            .err(),
+    );
+    read_only(
+        library
+            .save(&shape("new", 2), Expected::Nothing)
+            .map_err(text)
+            .err(),
+    );
+    read_only(library.delete("one").map_err(text).err());
+    read_only(
+        Journal::new(&library)
+            .keep(&shape("work", 2))
+            .map_err(text)
+            .err(),
+    );
+    let list = taxel(&["library", "list"], folder);
+    assert_eq!(list.status.code(), Some(0), "{list:?}");
+}

@@ -1,0 +1,81 @@
+//! The crash campaign: real programs, killed at every call of the system and at random, refused every call in turn, on
+//! a full disk and on one that cannot be written to. After each of these the library must be whole: no shape lost or
+//! torn, no start blocked, the old file or the new one in its place.
+//!
+//! `cargo test --test crash` kills 300 times at random; `TAXEL_KILLS=2000 cargo test --test crash`, or `-- --ignored`,
+//! does it 2,000 times. What the machine does not allow is skipped, and said.
+
+mod act;
+
+mod state;
+
+mod strace;
+
+mod calls;
+
+mod random;
+
+mod disk;
+
+use std::panic::catch_unwind;
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// What a campaign has seen, in one line.
+type Campaign = fn() -> String;
+
+const CAMPAIGNS: [(&str, Campaign); 6] = [
+    ("killed_at_every_call", calls::killed),
+    ("every_error_is_told", calls::refused),
+    ("killed_at_random", random::killed),
+    ("naive_writing_is_caught", random::naive),
+    ("a_full_disk_loses_nothing", disk::full),
+    ("a_read_only_disk_can_be_read", disk::read_only),
+];
+
+fn main() -> ExitCode {
+    if act::perform() {
+        return ExitCode::SUCCESS;
+    }
+    let asked = asked();
+    let mut failed = 0;
+    for (name, campaign) in CAMPAIGNS {
+        if !asked.is_empty() && !asked.iter().any(|part| name.contains(part.as_str())) {
+            continue;
+        }
+        let start = Instant::now();
+        let result = catch_unwind(campaign);
+        let seconds = start.elapsed().as_secs_f64();
+        if let Ok(seen) = result {
+            println!("test {name} ... ok in {seconds:.1} s: {seen}");
+        } else {
+            println!("test {name} ... FAILED in {seconds:.1} s");
+            failed += 1;
+        }
+    }
+    if failed == 0 {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
+}
+
+/// Parts of the names of the campaigns that are asked for, as `cargo test` passes them on.
+fn asked() -> Vec<String> {
+    let mut arguments = std::env::args().skip(1);
+    let mut asked = Vec::new();
+    while let Some(argument) = arguments.next() {
+        match argument.as_str() {
+            "--list" => {
+                for (name, _) in CAMPAIGNS {
+                    println!("{name}: test");
+                }
+                std::process::exit(0);
+            }
+            "--test-threads" | "--skip" | "--color" | "--format" => drop(arguments.next()),
+            flag if flag.starts_with('-') => {}
+            _ => asked.push(argument),
+        }
+    }
+    asked
+}

@@ -1,0 +1,112 @@
+//! Killed at any moment, as a power cut or the system's own killer would; and a control that must fail.
+
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::{Duration, SystemTime};
+
+use super::state::{State, each};
+use super::{act, calls, strace};
+use taxel::library::error::LibraryError;
+
+/// Kills in a run of all tests.
+const KILLS: usize = 300;
+
+/// Kills where a long run is asked for.
+const MANY_KILLS: usize = 2000;
+
+fn kills() -> usize {
+    let asked = std::env::var("TAXEL_KILLS").ok();
+    let ignored = std::env::args().any(|argument| argument.ends_with("ignored"));
+    let many = if ignored { MANY_KILLS } else { KILLS };
+    asked.and_then(|kills| kills.parse().ok()).unwrap_or(many)
+}
+
+/// Starts an act, kills it after some time, and answers the last numbers that it has said after "saved" and "kept".
+fn kill(act: &str, state: &State, after: Duration) -> (u32, u32) {
+    let mut child = act::command(act, &state.folder)
+        .spawn()
+        .expect("the program starts");
+    std::thread::sleep(after);
+    child.kill().expect("killed");
+    let output = child.wait_with_output().expect("a child");
+    let said = String::from_utf8(output.stdout).expect("text");
+    let last = |word: &str| {
+        let number = said.lines().rev().find_map(|line| line.strip_prefix(word));
+        number.map_or(1, |number| number.trim().parse().expect("a number"))
+    };
+    (last("saved"), last("kept"))
+}
+
+/// Up to 40 ms, the start of the program included; other ones in each run.
+fn moments(count: usize) -> Vec<Duration> {
+    let clock = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+    let mut word = clock.map_or(1, |time| time.subsec_nanos()) | 1;
+    let mut next = || {
+        // Xorshift: G. Marsaglia, *Xorshift RNGs*, 2003.
+        word ^= word << 13;
+        word ^= word >> 17;
+        word ^= word << 5;
+        Duration::from_micros(u64::from(word % 40_000))
+    };
+    (0..count).map(|_| next()).collect()
+}
+
+/// Saving, deleting, restoring and journalling for ever, killed at random: what was said to be saved is.
+pub(crate) fn killed() -> String {
+    let (saves, in_trash) = (AtomicU32::new(0), AtomicU32::new(0));
+    let kills = kills();
+    each(&moments(kills), |&after| {
+        let state = State::new();
+        let (saved, kept) = kill("churn", &state, after);
+        let one = state.version("one").expect("there is always one");
+        assert!(
+            [saved, saved + 1].contains(&one),
+            "{one} after {saved} was saved"
+        );
+        match state.orphans()[..] {
+            [] => assert_eq!(kept, 1, "the journal is lost"),
+            [work] => assert!(
+                [kept, kept + 1].contains(&work),
+                "{work} after {kept} was kept"
+            ),
+            _ => panic!("one program has one journal"),
+        }
+        if state.version("two").is_none() {
+            in_trash.fetch_add(1, Ordering::Relaxed);
+            state.library().restore("two").expect("it is in the trash");
+        }
+        assert_eq!(state.version("two"), Some(2));
+        state.starts();
+        saves.fetch_add(saved - 1, Ordering::Relaxed);
+    });
+    let (saves, in_trash) = (saves.into_inner(), in_trash.into_inner());
+    format!(
+        "{kills} kills in {saves} saves, nothing lost or torn, no start blocked; {in_trash} times between deleting and \
+         restoring"
+    )
+}
+
+/// The same with a program that writes into the file itself: if this were not caught, nothing would be.
+pub(crate) fn naive() -> String {
+    let kills = kills() / 10;
+    let mut torn = 0;
+    for after in moments(kills) {
+        let state = State::new();
+        kill("naive", &state, after);
+        match state.library().load("one") {
+            Ok(_) => {}
+            Err(LibraryError::Broken { .. }) => torn += 1,
+            Err(error) => panic!("{error}"),
+        }
+    }
+    assert!(
+        torn > 0,
+        "{kills} kills of a program that writes in place, and no file torn"
+    );
+    let at_random = format!("{torn} of {kills} kills at random tore the file");
+    if !strace::works() {
+        return at_random + "; at every call SKIPPED, strace is missing or may not trace";
+    }
+    let (torn, kills) = calls::naive();
+    assert!(torn > 0, "{kills} kills at every call, and no file torn");
+    format!("{at_random}, and {torn} of {kills} at every call")
+}

@@ -1,0 +1,143 @@
+//! A mebibyte of input, each of another kind of malice.
+
+/// How long an input is, and a file may be.
+pub(crate) const SIZE: usize = 1 << 20;
+
+/// What it is, and its bytes.
+pub(crate) type Malice = (&'static str, fn() -> Vec<u8>);
+
+/// Those for a body.
+pub(crate) fn all(body: &str) -> Vec<Malice> {
+    let general: [Malice; 5] = [
+        ("zeros", || vec![0; SIZE]),
+        ("no text", || vec![0xff; SIZE]),
+        ("spaces", || vec![b' '; SIZE]),
+        ("line ends", || vec![b'\n'; SIZE]),
+        ("letters of four bytes", || filled("", "𝔸", "")),
+    ];
+    let own: &[Malice] = match body {
+        "shape" => &SHAPES,
+        "job" => &JOBS,
+        "imprint" => &IMPRINTS,
+        _ => &KEYS,
+    };
+    [&general[..], own].concat()
+}
+
+/// A beginning, something again and again, an end: as many times as fit.
+fn filled(start: &str, again: &str, end: &str) -> Vec<u8> {
+    let times = (SIZE - start.len() - end.len()) / again.len();
+    [start, &again.repeat(times), end].concat().into_bytes()
+}
+
+/// A shape up to what is filled.
+macro_rules! in_shape {
+    ($start:expr, $again:expr, $end:expr) => {
+        || {
+            filled(
+                concat!("{\"format\":\"taxel-shape/1\",", $start),
+                $again,
+                $end,
+            )
+        }
+    };
+}
+
+const SHAPES: [Malice; 17] = [
+    ("deep lists", || filled("", "[", "")),
+    ("deep objects", || filled("", "{\"source\":", "")),
+    ("deep rows", in_shape!("\"imprint\":", "[", "")),
+    ("deep sources", in_shape!("", "\"source\":{", "")),
+    ("a long name", in_shape!("\"name\":\"", "a", "\"}")),
+    ("a long format", || {
+        filled("{\"format\":\"", "a", "\",\"name\":\"a\"}")
+    }),
+    ("a long key", in_shape!("\"", "a", "\":1}")),
+    ("a long key in escapes", in_shape!("\"", "\\u00e9", "\":1}")),
+    (
+        "a key again and again",
+        in_shape!("", "\"name\":\"a\",", "\"a\":1}"),
+    ),
+    (
+        "a parameter again and again",
+        in_shape!("\"sensor\":{", "\"rows\":1,", "\"rows\":1}}"),
+    ),
+    ("many rows", in_shape!("\"imprint\":[", "\"\",", "\"\"]}")),
+    ("a long row", in_shape!("\"imprint\":[\"", "#", "\"]}")),
+    (
+        "a long row in escapes",
+        in_shape!("\"imprint\":[\"", "\\u0023", "\"]}"),
+    ),
+    (
+        "rows that are long",
+        in_shape!(
+            "\"imprint\":[",
+            "\"################################################################################################\",",
+            "\"\"]}"
+        ),
+    ),
+    (
+        "a long number",
+        in_shape!("\"sensor\":{\"rows\":", "7", "}}"),
+    ),
+    (
+        "a long fraction",
+        in_shape!("\"sensor\":{\"threshold\":0.", "3", "}}"),
+    ),
+    (
+        "an unknown kind",
+        in_shape!(
+            "\"name\":\"a\",\"sensor\":{},\"imprint\":[\"#\"],\"source\":{\"figure\":\"",
+            "x",
+            "\"}}"
+        ),
+    ),
+];
+
+const JOBS: [Malice; 14] = [
+    ("deep lists", || filled("", "[", "")),
+    ("deep pictures", || filled("{\"picture\":", "[", "")),
+    ("deep sensors", || filled("", "{\"sensor\":", "")),
+    ("a long kind", || filled("{\"figure\":\"", "a", "\"}")),
+    ("a long name", || {
+        filled(
+            "{\"picture\":\"",
+            "a",
+            "\",\"x0\":1,\"y0\":1,\"angle\":0,\"zoom_x\":1,\"zoom_y\":1}",
+        )
+    }),
+    ("a long key", || filled("{\"", "a", "\":1}")),
+    ("a key again and again", || {
+        filled("{", "\"x0\":1,", "\"x0\":1}")
+    }),
+    ("many rows", || {
+        filled("{\"imprint\":[", "\"#\",", "\"#\"]}")
+    }),
+    ("a long row", || filled("{\"imprint\":[\"", "#", "\"]}")),
+    ("a long row in escapes", || {
+        filled("{\"imprint\":[\"", "\\u002e", "\"]}")
+    }),
+    ("a long number", || {
+        filled("{\"imprint\":[\"#\"],\"x0\":", "9", "}")
+    }),
+    ("a long fraction", || filled("{\"x0\":0.", "0", "1}")),
+    ("a long exponent", || filled("{\"x0\":1e", "9", "}")),
+    ("spaces around a pose", || {
+        filled("{\"imprint\":[\"#\"]", " ", "}")
+    }),
+];
+
+const IMPRINTS: [Malice; 4] = [
+    ("a long row", || filled("", "#", "\n")),
+    ("many rows", || filled("", "#\n", "")),
+    ("returns", || filled("#", "\r", "")),
+    ("long rows", || filled("", &("#".repeat(16_000) + "\n"), "")),
+];
+
+const KEYS: [Malice; 5] = [
+    ("brackets", || filled("", "<", "")),
+    ("names", || filled("", "<Down>", "")),
+    ("a long name", || filled("<", "a", ">")),
+    ("long numbers", || filled("<", "9", "x:Down>")),
+    ("nothing so often", || filled("", "<0x:Down>", "")),
+];

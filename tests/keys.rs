@@ -1,0 +1,290 @@
+//! What keys do: keys in, then what must and what must not be on the screen.
+
+use taxel::sensor::Sensor;
+use taxel::tui::app::Options;
+use taxel::tui::binding::Context;
+use taxel::tui::effect::World;
+use taxel::tui::keymap::KEYMAP;
+use taxel::tui::message::Message;
+use taxel::tui::script::Session;
+use taxel::tui::theme::Theme;
+
+fn world() -> World {
+    World::scratch().expect("there is a folder for temporary files")
+}
+
+fn session(keys: &str) -> Session {
+    let options = Options {
+        sensor: Sensor::default(),
+        theme: Theme::plain(false),
+    };
+    let mut session = Session::new(&options, world(), 80, 24);
+    session.keys(keys).expect("the keys of a test are right");
+    session
+}
+
+fn shows(keys: &str, texts: &[&str]) {
+    let screen = session(keys).screen();
+    for text in texts {
+        assert!(screen.contains(text), "{keys}: no {text:?} on\n{screen}");
+    }
+}
+
+#[test]
+fn the_cursor_stays_on_the_matrix() {
+    shows("", &["column 8, row 8    inactive"]);
+    shows("<Left><Up>", &["column 7, row 7"]);
+    shows("<20x:Left><20x:Down>", &["column 0, row 15"]);
+    shows("<Home><PageUp>", &["column 0, row 0"]);
+    shows("<End><PageDown><Right><Down>", &["column 15, row 15"]);
+}
+
+#[test]
+fn taxels_are_turned_over_and_undone() {
+    shows(
+        "<Space>",
+        &[
+            "column 8, row 8    active",
+            "drawn by hand",
+            "NA 1 in all",
+            "Region 1 of 1",
+        ],
+    );
+    shows("<Space><Space>", &["inactive", "empty"]);
+    shows("<Space><Right><Space>u", &["NA 1 in all"]);
+    shows("<Space><Right><Space>uu", &["NA 0 in all"]);
+    shows("<Space><Right><Space>uuu", &["nothing to undo"]);
+    shows("<Space><Right><Space>uuUU", &["NA 2 in all"]);
+    shows("<Space><Right><Space>uu<C-r>", &["NA 1 in all"]);
+    shows(
+        "<Space>u<Right><Space>U",
+        &["nothing to redo", "NA 1 in all"],
+    );
+}
+
+#[test]
+fn a_figure_follows_while_it_is_typed_and_escape_restores() {
+    shows("f<Tab>2", &["ellipse rx 2.00 ry 4.00", "NA 28 in all"]);
+    shows("f<Tab>2<Esc>", &["empty", "NA 0 in all"]);
+    shows(
+        "f<Tab>2<Enter>",
+        &["ellipse rx 2.00 ry 4.00", "Region 1 of 1"],
+    );
+    shows("<Space>f<Tab>2<Esc>", &["drawn by hand", "NA 1 in all"]);
+    shows("f<Tab>2<C-g>", &["empty"]);
+    shows("f<Tab>2<C-c>", &["empty", "n New"]);
+    // A wrong field keeps the last figure on the matrix, and Enter is refused until it is right.
+    shows(
+        "f<Tab>2<Tab>x<Enter>",
+        &[
+            "ellipse rx 2.00 ry 4.00",
+            "! radius_y: \"x\" is not a number",
+            "! not a number",
+        ],
+    );
+    shows(
+        "f<Tab>2<Tab>x<Enter><C-u>3<Enter>",
+        &["ellipse rx 2.00 ry 3.00", "Region 1 of 1"],
+    );
+}
+
+#[test]
+fn kinds_are_chosen_by_arrow_and_by_letter() {
+    shows("f<Down>", &["< rectangle >", "Length", "Width"]);
+    shows("f<Up>", &["< octagon "]);
+    shows("f<7x:Right>", &["< ellipse "]);
+    shows("fh", &["< hexagon "]);
+    shows("fhh", &["< heptagon "]);
+    shows("fhhh", &["< hexagon "]);
+    shows("ft<Enter>", &["triangle side 4.00 at 4.00, 4.00"]);
+    shows("fz", &["< ellipse "]);
+    // What was typed stays when the kind changes, and comes back with it.
+    shows(
+        "f<Tab><Tab><Tab>1.5<4x:BackTab>"
+            .replace("BackTab", "S-Tab")
+            .as_str(),
+        &["< ellipse ", "1.5 "],
+    );
+    shows("f<Tab>2<S-Tab>rp<S-Tab>", &["< pentagon "]);
+    shows("f<Tab>2<S-Tab>re", &["ellipse rx 2.00"]);
+}
+
+#[test]
+fn fields_are_edited_and_stepped() {
+    shows("f<Tab>+", &["rx 4.01"]);
+    shows("f<Tab>--", &["rx 3.98"]);
+    shows("f<Tab>9.99+", &["rx 10.0"]);
+    shows("f<Tab>9.99++", &["rx 10.1"]);
+    shows("f<Tab>10.0-", &["rx 9.99"]);
+    shows("f<Tab>0.01-", &["rx 0.01"]);
+    shows("f<Tab>16+", &["rx 16.0"]);
+    shows("f<4x:Tab><Tab>-", &["359°"]);
+    shows("f<4x:Tab><Tab>359+", &["at 4.00, 4.00, 0°"]);
+    shows("f<6x:Tab>+", &["wall 1.00"]);
+    shows("f<Tab><Left><BS>5", &["rx 4.50"]);
+    shows("f<Tab><Home><Del>5", &["rx 5.00"]);
+    shows("f<Tab>12.5<BS><BS><BS><BS>3", &["rx 3.00"]);
+    shows("fr<Tab><Up>t", &["< triangle "]);
+}
+
+#[test]
+fn pasted_text_goes_into_fields_only() {
+    let mut form = session("f<Tab>");
+    form.send(Message::Paste(" 2.5\n".to_owned()));
+    assert!(form.screen().contains("rx 2.50"), "{}", form.screen());
+    let mut matrix = session("");
+    matrix.send(Message::Paste("qqq f".to_owned()));
+    assert!(!matrix.app().ended());
+    assert!(
+        matrix
+            .screen()
+            .contains("pasted text goes into fields only")
+    );
+}
+
+#[test]
+fn a_shape_is_nudged_and_turned() {
+    shows("f<Enter>g", &["held, step 0.01", "let go"]);
+    shows("f<Enter>g<Right><Down><Down>", &["at 4.01, 4.02, 0°"]);
+    shows("f<Enter>g<Right><Down>uu", &["at 4.00, 4.00, 0°"]);
+    shows("f<Enter>g+<Left>", &["at 3.90, 4.00", "step 0.1"]);
+    shows("f<Enter>g+++<Left>", &["at 3.00, 4.00", "step 1"]);
+    shows("f<Enter>g++--<Left>", &["at 3.99, 4.00"]);
+    shows("f<Enter>gg<Left>", &["column 7", "at 4.00, 4.00"]);
+    shows("f<Enter>g<Enter><Left>", &["column 7"]);
+    shows("f<Enter>g<Esc><Left>", &["column 7"]);
+    shows(
+        "f<Enter><S-Right><S-Up>",
+        &["at 4.01, 3.99", "column 8, row 8"],
+    );
+    shows("f<Enter>><lt><lt>", &["359°"]);
+    shows("f<Enter>))>(", &["11°"]);
+    shows(
+        "f<Enter>g<500x:Left>",
+        &["at -1.00, 4.00", "reaches beyond the sensor"],
+    );
+    shows("f<Enter>g++<9x:Left>", &["at -5.00, 4.00"]);
+    shows(
+        "f<Enter>g++<40x:Left>",
+        &[
+            "at -16.0, 4.00",
+            "! x0: -17 is out of range, expected -16 to 16",
+        ],
+    );
+    shows("g", &["nothing to move"]);
+    shows("<Space>>", &["nothing to move"]);
+    // A hundred steps of a hundredth are exactly one.
+    shows("f<Enter>g<100x:Right>", &["at 5.00, 4.00"]);
+}
+
+#[test]
+fn toggles_that_a_new_touch_drops_are_said_to_be_dropped() {
+    shows("f<Enter><Space>", &["+ 1 taxel by hand"]);
+    shows("f<Enter><Space>>", &["1 taxel set by hand dropped"]);
+    shows("f<Enter><Space>>u", &["+ 1 taxel by hand"]);
+    shows(
+        "<Space><Right><Space>f<Enter>",
+        &["2 taxels set by hand dropped"],
+    );
+    shows("f<Enter><Space>n", &["empty"]);
+}
+
+#[test]
+fn regions_are_gone_through() {
+    let ring = "f<6x:Tab>2<Enter>";
+    shows(ring, &["Region 1 of 2: exterior"]);
+    shows(&format!("{ring}<Tab>"), &["Region 2 of 2: hole"]);
+    shows(&format!("{ring}<Tab><Tab>"), &["Region 1 of 2: exterior"]);
+    shows(&format!("{ring}<S-Tab>"), &["Region 2 of 2: hole"]);
+    shows("<Tab>", &["no region: the matrix is empty"]);
+    // The largest piece is described first, not the first one.
+    shows(
+        "<Space><Right><Right><Space><Right><Space>",
+        &["Region 2 of 2: exterior"],
+    );
+}
+
+#[test]
+fn quitting_asks_where_work_would_be_lost() {
+    assert!(session("q").app().ended());
+    assert!(session("<C-c>").app().ended());
+    let asked = session("f<Enter>q");
+    assert!(
+        !asked.app().ended()
+            && asked
+                .screen()
+                .contains("not saved. Quit all the same? (y/n)")
+    );
+    assert!(session("f<Enter>qy").app().ended());
+    assert!(
+        !session("f<Enter>q<Enter>").app().ended(),
+        "Enter by habit answers nothing"
+    );
+    for no in ["n", "q", "<Esc>", "<C-c>", "<C-g>"] {
+        assert!(!session(&format!("f<Enter>q{no}")).app().ended(), "{no}");
+    }
+    assert!(
+        session("f<Enter>uq").app().ended(),
+        "nothing is left to lose"
+    );
+}
+
+#[test]
+fn the_screen_of_a_lone_or_full_or_empty_matrix_has_no_impossible_numbers() {
+    for keys in [
+        "",
+        "<Space>",
+        "fr<Tab>16<Tab>16<Tab>0<Tab>0<Enter>",
+        "<Space><Right><Right><Space>",
+    ] {
+        let screen = session(keys).screen();
+        assert!(
+            !screen.contains("NaN") && !screen.contains("inf"),
+            "{screen}"
+        );
+    }
+    shows("", &["NA     –", "F      –"]);
+    shows(
+        "<Space>",
+        &["P      0 ", "F      0 ", "Round  –", "dir    –"],
+    );
+    shows(
+        "fr<Tab>16<Tab>16<Tab>0<Tab>0<Enter>",
+        &["NA     256", "Fill   100 %"],
+    );
+}
+
+/// Every row of the table of keys is in help, fits its line, and does something where it says so.
+#[test]
+fn every_key_is_in_help() {
+    let help: String = (0..8)
+        .map(|page| session(&format!("?<{page}x:PageDown>")).screen())
+        .collect();
+    for binding in KEYMAP {
+        assert!(
+            help.contains(&format!("{:23} {}", binding.labels(), binding.help)),
+            "{binding:?}"
+        );
+        assert!(
+            binding.labels().chars().count() <= 23 && binding.help.chars().count() <= 54,
+            "{binding:?}"
+        );
+    }
+    for context in Context::ALL {
+        assert!(help.contains(context.title()), "{context:?}");
+    }
+}
+
+/// No key stands twice in one place: the second row could never be reached.
+#[test]
+fn no_key_means_two_things_in_one_place() {
+    for context in Context::ALL {
+        let rows = KEYMAP.iter().filter(|binding| binding.context == context);
+        let keys: Vec<_> = rows
+            .flat_map(|binding| binding.keys.iter().map(|(key, _)| *key))
+            .collect();
+        for (index, key) in keys.iter().enumerate() {
+            assert!(!keys[..index].contains(key), "{key} in {context:?}");
+        }
+    }
+}

@@ -1,0 +1,297 @@
+//! Links, folders, pipes, read-only places and broken files: each told, none in the way of the others.
+#![cfg(unix)]
+
+use std::fs::{self, Permissions};
+use std::os::unix::fs::{PermissionsExt, symlink};
+use std::path::Path;
+use std::sync::mpsc::channel;
+use std::time::Duration;
+
+use rustix::fs::{CWD, FileType, Mode, mknodat};
+use taxel::library::journal::{Journal, Orphan};
+use taxel::library::store::{Expected, Library};
+
+use super::{Scratch, is_root, refusal, shape};
+
+fn pipe(path: &Path) {
+    mknodat(CWD, path, FileType::Fifo, Mode::from_raw_mode(0o666), 0).expect("a pipe");
+}
+
+/// Fails where something waits, as opening a pipe does.
+fn soon<T: Send + 'static>(act: impl FnOnce() -> T + Send + 'static) -> T {
+    let (done, waiting) = channel();
+    std::thread::spawn(move || done.send(act()));
+    let result = waiting.recv_timeout(Duration::from_secs(20));
+    result.expect("it does not wait")
+}
+
+#[test]
+fn what_is_no_file_is_told_and_left_alone() {
+    let scratch = Scratch::with(&["good"]);
+    let outside = tempfile::NamedTempFile::new().expect("a file");
+    fs::write(outside.path(), shape("out", 7).write()).expect("written");
+    symlink(outside.path(), scratch.path("link.json")).expect("a link");
+    symlink("nowhere", scratch.path("dangling.json")).expect("a link");
+    fs::create_dir(scratch.path("dir.json")).expect("a folder");
+    pipe(&scratch.path("pipe.json"));
+    for (name, what) in [
+        ("link", "a symbolic link"),
+        ("dangling", "a symbolic link"),
+        ("dir", "a folder"),
+        ("pipe", "a device, a pipe or a socket"),
+    ] {
+        let expected = format!("FOLDER/{name}.json: is {what}, expected a regular file");
+        let library = scratch.library.clone();
+        let (loaded, saved, replaced, deleted) = soon(move || {
+            let new = shape(name, 9);
+            (
+                library.load(name),
+                library.save(&new, Expected::Nothing),
+                library.save(&new, Expected::Stamp(0)),
+                library.delete(name),
+            )
+        });
+        assert_eq!(refusal(loaded, &scratch), expected);
+        assert_eq!(refusal(saved, &scratch), expected);
+        assert_eq!(refusal(replaced, &scratch), expected);
+        assert_eq!(refusal(deleted, &scratch), expected);
+        assert!(
+            fs::symlink_metadata(scratch.path(&format!("{name}.json"))).is_ok(),
+            "{name}"
+        );
+    }
+    let through = fs::read(outside.path()).expect("still there");
+    assert_eq!(
+        through,
+        shape("out", 7).write().into_bytes(),
+        "nothing is written through a link"
+    );
+    assert_eq!(scratch.own(), ["dangling", "dir", "good", "link", "pipe"]);
+    assert_eq!(scratch.number("good"), Some(1));
+}
+
+#[test]
+fn a_pipe_or_a_link_in_place_of_a_lock_blocks_no_start() {
+    for make in [pipe, |path: &Path| {
+        symlink("/dev/null", path).expect("a link");
+    }] {
+        let scratch = Scratch::new();
+        fs::create_dir(scratch.path(".journal")).expect("made");
+        make(&scratch.path(".lock"));
+        make(&scratch.path(".journal/1-0.lock"));
+        make(&scratch.path(".journal/2-0.json"));
+        scratch.put(".journal/1-0.json", shape("work", 1).write());
+        scratch.put(".taxel-tmp", "{");
+        let folder = scratch.folder.clone();
+        let (listed, orphans, saved) = soon(move || {
+            let library = Library::open(folder);
+            (
+                library.list().is_ok(),
+                Orphan::all(&library).len(),
+                library.save(&shape("new", 1), Expected::Nothing),
+            )
+        });
+        assert!(listed && orphans == 0);
+        let message = refusal(saved, &scratch);
+        assert!(message.starts_with("FOLDER/.lock: is "), "{message}");
+    }
+}
+
+#[test]
+fn a_library_that_is_no_folder_is_told() {
+    let scratch = Scratch::new();
+    scratch.put("file", "");
+    symlink("nowhere", scratch.path("dangling")).expect("a link");
+    for (inner, message) in [
+        ("file", "FOLDER/file: is no folder, expected a folder"),
+        ("file/inner", "FOLDER/file: is no folder, expected a folder"),
+        (
+            "dangling",
+            "FOLDER/dangling: is no folder, expected a folder",
+        ),
+    ] {
+        let library = Library::open(scratch.path(inner));
+        let saved = library.save(&shape("new", 1), Expected::Nothing);
+        assert_eq!(refusal(saved, &scratch), message);
+        assert_eq!(Orphan::all(&library).len(), 0);
+        let kept = Journal::new(&library).keep(&shape("work", 1));
+        assert_eq!(refusal(kept, &scratch), message);
+    }
+    let library = Library::open(scratch.path("file"));
+    let message = "FOLDER/file: cannot read the folder: Not a directory (os error 20)";
+    assert_eq!(refusal(library.list(), &scratch), message);
+    let folder = scratch.path("a/b/c");
+    let library = Library::open(folder.clone());
+    assert!(library.list().is_ok() && library.load("new").is_err());
+    assert!(!scratch.path("a").exists(), "nothing is made by looking");
+    library
+        .save(&shape("new", 1), Expected::Nothing)
+        .expect("made with those above it");
+    symlink(&folder, scratch.path("linked")).expect("a link");
+    let linked = Library::open(scratch.path("linked"));
+    assert!(
+        linked.load("new").is_ok(),
+        "a link to a folder is as good as one"
+    );
+}
+
+#[test]
+fn trash_and_journal_cannot_lead_out_of_the_library() {
+    for inner in [".trash", ".journal"] {
+        let elsewhere = tempfile::tempdir().expect("a folder");
+        let scratch = Scratch::with(&["one"]);
+        symlink(elsewhere.path(), scratch.path(inner)).expect("a link");
+        let deleted = scratch.library.delete("one");
+        let kept = Journal::new(&scratch.library).keep(&shape("work", 1));
+        let message = format!("FOLDER/{inner}: is a symbolic link, expected a folder");
+        if inner == ".trash" {
+            assert_eq!(refusal(deleted, &scratch), message);
+            assert_eq!(scratch.number("one"), Some(1));
+        } else {
+            assert_eq!(refusal(kept, &scratch), message);
+        }
+        assert_eq!(super::files(elsewhere.path()), [""; 0]);
+    }
+}
+
+#[test]
+fn broken_files_are_listed_told_and_harm_nothing() {
+    let scratch = Scratch::with(&["good"]);
+    let good = shape("x", 1).write();
+    for (name, content, message) in [
+        (
+            "cut",
+            &good[..good.len() / 2],
+            "line 15, column 20: EOF while parsing a string",
+        ),
+        ("empty", "", "line 1, column 1: EOF while parsing a value"),
+        (
+            "newer",
+            &good.replace("shape/1", "shape/2"),
+            "format: \"taxel-shape/2\" is not known here, expected \"taxel-shape/1\"",
+        ),
+        (
+            "ragged",
+            &good.replacen("................\"", "...\"", 1),
+            "imprint: row 2 has 3 characters, expected 16 as in the first row",
+        ),
+        (
+            "other",
+            &good.replacen("\"name\"", "\"nom\"", 1),
+            "unknown field `nom`",
+        ),
+        (
+            "huge",
+            &" ".repeat((1 << 20) + 1),
+            "larger than 1 MiB, which no shape is",
+        ),
+    ] {
+        scratch.put(&format!("{name}.json"), content);
+        let told = refusal(scratch.library.load(name), &scratch);
+        let start = format!("FOLDER/{name}.json: ");
+        assert!(told.starts_with(&start) && told.contains(message), "{told}");
+    }
+    let all = ["cut", "empty", "good", "huge", "newer", "other", "ragged"];
+    assert_eq!(scratch.own(), all);
+    assert_eq!(scratch.number("good"), Some(1));
+    // A broken file goes into the trash as it is, and comes back as it was.
+    scratch.library.delete("cut").expect("deleted");
+    scratch.library.restore("cut").expect("restored");
+    let back = fs::read_to_string(scratch.path("cut.json")).expect("there");
+    assert_eq!(back, good[..good.len() / 2]);
+}
+
+#[test]
+fn files_of_others_are_passed_over_and_told() {
+    let scratch = Scratch::with(&["good"]);
+    for file in [
+        "notes.txt",
+        "a:b.json",
+        ".hidden.json",
+        "good.json~",
+        "x.JSON",
+    ] {
+        scratch.put(file, "");
+    }
+    scratch.put(".taxel-tmp", "");
+    assert_eq!(scratch.own(), ["good"]);
+    let left = scratch.library.leftovers().expect("read").into_iter();
+    let left: Vec<String> = left
+        .map(|(path, _)| {
+            path.file_name()
+                .map(|name| name.to_string_lossy().into_owned())
+        })
+        .map(Option::unwrap_or_default)
+        .collect();
+    assert_eq!(
+        left,
+        [
+            ".hidden.json",
+            ".taxel-tmp",
+            "a:b.json",
+            "good.json~",
+            "notes.txt",
+            "x.JSON"
+        ]
+    );
+    let again = Library::open(scratch.folder.clone());
+    assert_eq!(
+        again.leftovers().expect("read").len(),
+        5,
+        "swept at a start"
+    );
+}
+
+#[test]
+fn a_file_that_is_read_only_is_not_replaced_and_the_mode_of_others_stays() {
+    let scratch = Scratch::with(&["kept", "own"]);
+    let mode = |name: &str| {
+        let found = fs::metadata(scratch.path(name)).expect("there");
+        found.permissions().mode() & 0o777
+    };
+    let stamp = |name: &str| scratch.library.load(name).expect("loaded").stamp;
+    fs::set_permissions(scratch.path("kept.json"), Permissions::from_mode(0o444)).expect("set");
+    fs::set_permissions(scratch.path("own.json"), Permissions::from_mode(0o640)).expect("set");
+    let kept = scratch
+        .library
+        .save(&shape("kept", 9), Expected::Stamp(stamp("kept")));
+    let message = "FOLDER/kept.json: cannot replace it, it is read-only: permission denied";
+    assert_eq!(refusal(kept, &scratch), message);
+    let own = scratch
+        .library
+        .save(&shape("own", 9), Expected::Stamp(stamp("own")));
+    assert!(own.is_ok());
+    assert_eq!(
+        (scratch.number("kept"), scratch.number("own")),
+        (Some(1), Some(9))
+    );
+    assert_eq!((mode("kept.json"), mode("own.json")), (0o444, 0o640));
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_to_can_be_read() {
+    if is_root() {
+        eprintln!(
+            "SKIPPED: root may write everywhere; tests/crash does this with a read-only disk"
+        );
+        return;
+    }
+    let scratch = Scratch::with(&["one"]);
+    let mode = |mode| fs::set_permissions(&scratch.folder, Permissions::from_mode(mode));
+    mode(0o555).expect("set");
+    let again = Library::open(scratch.folder.clone());
+    let (listed, loaded) = (scratch.own(), scratch.number("one"));
+    let saved = again.save(&shape("new", 1), Expected::Nothing);
+    let deleted = again.delete("one");
+    mode(0o755).expect("set");
+    assert_eq!((listed, loaded), (vec!["one".to_owned()], Some(1)));
+    for message in [refusal(saved, &scratch), refusal(deleted, &scratch)] {
+        assert!(
+            message.starts_with("FOLDER") && message.contains("Permission denied"),
+            "{message}"
+        );
+    }
+    // A lock that somebody else has made is enough where the folder can be written to.
+    fs::set_permissions(scratch.path(".lock"), Permissions::from_mode(0o444)).expect("set");
+    scratch.save("new", 1);
+}

@@ -1,0 +1,114 @@
+//! Unsaved work: kept, offered back, never taken from a program that runs.
+
+use taxel::formats::shape::Shape;
+use taxel::library::journal::{Journal, Orphan};
+use taxel::library::store::Expected;
+
+use super::{Scratch, files, shape};
+
+fn offered(scratch: &Scratch) -> Vec<Shape> {
+    let orphans = Orphan::all(&scratch.library);
+    orphans.into_iter().map(|orphan| orphan.shape).collect()
+}
+
+/// Work that a program left when it died.
+fn left(scratch: &Scratch, work: &Shape) {
+    let mut journal = Journal::new(&scratch.library);
+    journal.keep(work).expect("kept");
+}
+
+#[test]
+fn work_of_a_dead_program_is_offered_until_it_is_discarded() {
+    let scratch = Scratch::new();
+    assert_eq!(offered(&scratch), []);
+    let mut journal = Journal::new(&scratch.library);
+    journal.keep(&shape("work", 1)).expect("kept");
+    journal.keep(&shape("work", 2)).expect("kept");
+    assert_eq!(offered(&scratch), [], "its program is running");
+    drop(journal);
+    assert_eq!(offered(&scratch), [shape("work", 2)]);
+    let orphans = Orphan::all(&scratch.library);
+    assert_eq!(offered(&scratch), [], "another program looks at it");
+    drop(orphans);
+    for orphan in Orphan::all(&scratch.library) {
+        orphan.discard();
+    }
+    assert_eq!(files(&scratch.path(".journal")), [""; 0]);
+}
+
+#[test]
+fn cleared_work_is_gone_and_more_can_be_kept() {
+    let scratch = Scratch::new();
+    let mut journal = Journal::new(&scratch.library);
+    journal.clear();
+    journal.keep(&shape("work", 1)).expect("kept");
+    journal.clear();
+    assert_eq!(files(&scratch.path(".journal")), [""; 0]);
+    journal.keep(&shape("work", 2)).expect("kept");
+    drop(journal);
+    assert_eq!(offered(&scratch), [shape("work", 2)]);
+}
+
+#[test]
+fn several_programs_keep_each_their_own() {
+    let scratch = Scratch::new();
+    let mut journals: Vec<Journal> = (0..5).map(|_| Journal::new(&scratch.library)).collect();
+    for (number, journal) in journals.iter_mut().enumerate() {
+        journal.keep(&shape("work", number)).expect("kept");
+    }
+    let running = journals.split_off(3);
+    drop(journals);
+    // An empty matrix is nothing to be lost.
+    assert_eq!(offered(&scratch), [shape("work", 1), shape("work", 2)]);
+    drop(running);
+    assert_eq!(offered(&scratch).len(), 4);
+}
+
+#[test]
+fn only_work_that_is_not_saved_is_offered() {
+    let scratch = Scratch::with(&["one"]);
+    left(&scratch, &shape("one", 1));
+    assert_eq!(offered(&scratch), [], "just so it is saved");
+    assert_eq!(files(&scratch.path(".journal")), [""; 0]);
+    left(&scratch, &shape("one", 2));
+    left(&scratch, &shape("other", 1));
+    assert_eq!(offered(&scratch).len(), 2);
+    let stamp = scratch.library.load("one").expect("loaded").stamp;
+    scratch
+        .library
+        .save(&shape("one", 2), Expected::Stamp(stamp))
+        .expect("saved");
+    assert_eq!(offered(&scratch), [shape("other", 1)]);
+    let washer = scratch.library.load("washer").expect("shipped").shape;
+    left(&scratch, &washer);
+    assert_eq!(offered(&scratch), [shape("other", 1)]);
+}
+
+#[test]
+fn what_cannot_be_read_is_left_alone_and_what_is_half_written_goes() {
+    let scratch = Scratch::new();
+    left(&scratch, &shape("work", 1));
+    let newer = shape("work", 2).write().replace("shape/1", "shape/2");
+    scratch.put(".journal/1-0.json", &newer);
+    scratch.put(".journal/2-0.json", "{");
+    scratch.put(".journal/3-0.lock", "");
+    scratch.put(".journal/3-0.tmp", "{");
+    scratch.put(".journal/4-0.lock", "");
+    scratch.put(".journal/notes.txt", "");
+    assert_eq!(offered(&scratch), [shape("work", 1)]);
+    let mut left = files(&scratch.path(".journal"));
+    left.retain(|name| !name.starts_with(&std::process::id().to_string()));
+    assert_eq!(
+        left,
+        ["1-0.json", "1-0.lock", "2-0.json", "2-0.lock", "notes.txt"]
+    );
+    // And the journal of a program with the same number is not written over.
+    let own = std::process::id();
+    scratch.put(&format!(".journal/{own}-1.json"), &newer);
+    let mut journals = [0, 1].map(|_| Journal::new(&scratch.library));
+    for journal in &mut journals {
+        journal.keep(&shape("work", 5)).expect("kept");
+    }
+    let kept = std::fs::read_to_string(scratch.path(&format!(".journal/{own}-1.json")));
+    assert_eq!(kept.ok(), Some(newer));
+}

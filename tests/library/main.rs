@@ -1,0 +1,118 @@
+//! The library: files in the way, names, stamps, the trash, the journal, the shapes that come with the program.
+
+mod in_the_way;
+
+mod journal;
+
+mod many;
+
+mod names;
+
+mod saved;
+
+mod shipped;
+
+mod stamps;
+
+mod trash;
+
+use std::path::{Path, PathBuf};
+
+use taxel::formats::name::Name;
+use taxel::formats::shape::Shape;
+use taxel::imprint::Imprint;
+use taxel::library::error::LibraryError;
+use taxel::library::store::{Expected, Library, Origin};
+use taxel::sensor::Sensor;
+use tempfile::TempDir;
+
+/// A library in a folder that goes with it.
+struct Scratch {
+    _outside: TempDir,
+    folder: PathBuf,
+    library: Library,
+}
+
+impl Scratch {
+    fn new() -> Self {
+        let outside = tempfile::tempdir().expect("there is a folder for temporary files");
+        let folder = outside.path().join("library");
+        std::fs::create_dir(&folder).expect("made");
+        Self {
+            library: Library::open(folder.clone()),
+            folder,
+            _outside: outside,
+        }
+    }
+
+    /// With shapes of these names, numbered from 1.
+    fn with(names: &[&str]) -> Self {
+        let scratch = Self::new();
+        for (index, name) in names.iter().enumerate() {
+            scratch.save(name, index + 1);
+        }
+        scratch
+    }
+
+    fn path(&self, file: &str) -> PathBuf {
+        self.folder.join(file)
+    }
+
+    /// Saves under a new name.
+    fn save(&self, name: &str, number: usize) -> u64 {
+        let saved = self.library.save(&shape(name, number), Expected::Nothing);
+        saved.expect("a new name")
+    }
+
+    /// Puts a file there as another program would.
+    fn put(&self, file: &str, content: impl AsRef<[u8]>) {
+        std::fs::write(self.path(file), content).expect("written");
+    }
+
+    /// The number of a shape.
+    fn number(&self, name: &str) -> Option<usize> {
+        let loaded = self.library.load(name).ok()?;
+        let word = loaded.shape.imprint.words()[0];
+        usize::try_from(word).ok()
+    }
+
+    /// The names of one's own shapes as they are listed.
+    fn own(&self) -> Vec<String> {
+        let entries = self.library.list().expect("listed").into_iter();
+        let own = entries.filter(|entry| entry.origin == Origin::Own);
+        own.map(|entry| entry.name).collect()
+    }
+}
+
+/// What lies in a folder, by name.
+fn files(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    let mut names: Vec<String> = names.collect();
+    names.sort();
+    names
+}
+
+/// A shape that carries a number below 65,536.
+fn shape(name: &str, number: usize) -> Shape {
+    let mut imprint = Imprint::empty(16, 16);
+    imprint.set_word(0, u64::try_from(number).expect("small"));
+    Shape {
+        name: Name::new(name).expect("a name"),
+        sensor: Sensor::default(),
+        imprint,
+        source: None,
+    }
+}
+
+/// The message of a refusal, without the folder.
+fn refusal<T: std::fmt::Debug>(result: Result<T, LibraryError>, scratch: &Scratch) -> String {
+    let message = result.expect_err("refused").to_string();
+    message.replace(&scratch.folder.display().to_string(), "FOLDER")
+}
+
+/// Whether this user may do everything, so that permissions keep nothing away.
+#[cfg(unix)]
+fn is_root() -> bool {
+    rustix::process::geteuid().is_root()
+}

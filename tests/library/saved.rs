@@ -1,0 +1,97 @@
+//! What is saved is what is loaded, for any shape.
+
+use proptest::collection::vec;
+use proptest::prelude::*;
+use taxel::figure::{Figure, Kind};
+use taxel::formats::name::Name;
+use taxel::formats::shape::Shape;
+use taxel::imprint::Imprint;
+use taxel::library::store::{Expected, Origin};
+use taxel::parameter::Parameter;
+use taxel::picture::Picture;
+use taxel::sensor::Sensor;
+use taxel::source::Source;
+
+use super::Scratch;
+
+fn imprints() -> impl Strategy<Value = Imprint> {
+    (1..=64_u8, 1..=64_u8, vec(any::<u64>(), 64)).prop_map(|(columns, rows, words)| {
+        let mut imprint = Imprint::empty(columns, rows);
+        for (row, word) in words.into_iter().enumerate() {
+            imprint.set_word(row, word);
+        }
+        imprint
+    })
+}
+
+fn sources(side: u8) -> impl Strategy<Value = Option<Source>> {
+    let reach = f64::from(side);
+    let figure = (
+        0..Kind::ALL.len(),
+        -reach..=reach,
+        0.0..360.0,
+        any::<bool>(),
+    );
+    let figure = figure.prop_map(move |(kind, x0, angle, hollow)| {
+        let figure = Figure::default_of(Kind::ALL[kind], side)
+            .with(Parameter::X0, x0, side)
+            .and_then(|figure| figure.with(Parameter::Angle, angle, side))
+            .expect("in range");
+        Source::Figure(if hollow {
+            figure
+                .with(Parameter::Thickness, reach / 7.0, side)
+                .expect("in range")
+        } else {
+            figure
+        })
+    });
+    let picture = (imprints(), -reach..=reach, 1e-9..=64.0);
+    let picture = picture.prop_map(move |(imprint, y0, zoom)| {
+        Source::Picture(
+            // At home only where the picture is no larger than the sensor.
+            Picture::at_home(imprint)
+                .with(Parameter::X0, 0.0, side)
+                .and_then(|picture| picture.with(Parameter::Y0, y0, side))
+                .and_then(|picture| picture.with(Parameter::ZoomX, zoom, side))
+                .expect("in range"),
+        )
+    });
+    prop_oneof![Just(None), figure.prop_map(Some), picture.prop_map(Some)]
+}
+
+fn shapes() -> impl Strategy<Value = Shape> {
+    (imprints(), 1e-6..=1.0, 1e-6..=1000.0)
+        .prop_flat_map(|(imprint, threshold, pitch)| {
+            let sensor = Sensor::new(f64::from(imprint.columns()), f64::from(imprint.rows()))
+                .and_then(|sensor| sensor.with(Parameter::Threshold, threshold))
+                .and_then(|sensor| sensor.with(Parameter::Pitch, pitch))
+                .expect("in range");
+            let name = "[A-Za-z0-9_é字-][A-Za-z0-9_. é字-]{0,30}[A-Za-z0-9_.é字-]";
+            (name, Just(imprint), Just(sensor), sources(sensor.side()))
+        })
+        .prop_map(|(name, imprint, sensor, source)| Shape {
+            name: Name::new(&name).expect("by the rules"),
+            sensor,
+            imprint,
+            source,
+        })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn what_is_saved_is_loaded(first in shapes(), second in shapes()) {
+        let scratch = Scratch::new();
+        let stamp = scratch.library.save(&first, Expected::Nothing).expect("saved");
+        let loaded = scratch.library.load(first.name.as_str()).expect("loaded");
+        prop_assert_eq!(&loaded.shape, &first);
+        prop_assert_eq!((loaded.stamp, loaded.origin), (stamp, Origin::Own));
+        // Another in its place, then through the trash.
+        let second = Shape { name: first.name.clone(), ..second };
+        scratch.library.save(&second, Expected::Stamp(stamp)).expect("replaced");
+        scratch.library.delete(second.name.as_str()).expect("deleted");
+        scratch.library.restore(second.name.as_str()).expect("restored");
+        prop_assert_eq!(scratch.library.load(second.name.as_str()).expect("loaded").shape, second);
+    }
+}

@@ -1,0 +1,114 @@
+//! Deleting and bringing back.
+
+use taxel::library::error::LibraryError;
+use taxel::library::trash::KEPT;
+
+use super::{Scratch, files, refusal};
+
+#[test]
+fn what_is_deleted_comes_back_as_it_was() {
+    let scratch = Scratch::with(&["one", "two"]);
+    let before = std::fs::read(scratch.path("one.json")).expect("there");
+    assert_eq!(scratch.library.delete("one").expect("deleted"), "one");
+    assert_eq!(scratch.own(), ["two"]);
+    assert_eq!(
+        refusal(scratch.library.load("one"), &scratch),
+        "no shape is called \"one\""
+    );
+    assert_eq!(scratch.library.restore("one").expect("restored"), "one");
+    let after = std::fs::read(scratch.path("one.json")).expect("there");
+    assert_eq!(before, after);
+    assert_eq!(
+        refusal(scratch.library.restore("one"), &scratch),
+        "nothing called \"one\" is in the trash"
+    );
+}
+
+#[test]
+fn the_last_deleted_comes_back_first_and_never_over_another() {
+    let scratch = Scratch::new();
+    for number in 1..=3 {
+        scratch.save("one", number);
+        scratch.library.delete("one").expect("deleted");
+    }
+    scratch.save("one", 4);
+    let taken = scratch.library.restore("ONE");
+    assert!(matches!(&taken, Err(LibraryError::Exists { name, .. }) if name == "one"));
+    assert_eq!(scratch.number("one"), Some(4));
+    for number in [4, 3, 2, 1] {
+        assert_eq!(scratch.number("one"), Some(number));
+        let path = scratch.path("one.json");
+        std::fs::remove_file(path).expect("removed by hand");
+        let restored = scratch.library.restore("one");
+        assert_eq!(restored.is_ok(), number > 1);
+    }
+}
+
+#[test]
+fn the_last_fifty_are_kept() {
+    let scratch = Scratch::new();
+    for number in 0..KEPT + 5 {
+        let name = format!("shape {number}");
+        scratch.save(&name, 1);
+        scratch.library.delete(&name).expect("deleted");
+    }
+    let trash = files(&scratch.path(".trash"));
+    assert_eq!(trash.len(), KEPT);
+    assert_eq!(
+        trash.first().map(String::as_str),
+        Some("0000000006 shape 5.json")
+    );
+    assert!(scratch.library.restore("shape 4").is_err());
+    assert!(scratch.library.restore("shape 5").is_ok());
+    assert!(scratch.library.restore("shape 54").is_ok());
+    // Numbers go on where they were, so that nothing in the trash is overwritten.
+    scratch.library.delete("shape 5").expect("deleted");
+    let trash = files(&scratch.path(".trash"));
+    assert_eq!(
+        trash.last().map(String::as_str),
+        Some("0000000055 shape 5.json")
+    );
+}
+
+#[test]
+fn shapes_that_come_with_the_program_are_not_deleted() {
+    let scratch = Scratch::new();
+    let message = "\"Washer\" comes with the program; it can be copied under another name";
+    assert_eq!(refusal(scratch.library.delete("Washer"), &scratch), message);
+    assert_eq!(
+        refusal(scratch.library.delete("nothing"), &scratch),
+        "no shape is called \"nothing\""
+    );
+    let nowhere = taxel::library::store::Library::open(scratch.path("nowhere"));
+    assert_eq!(
+        refusal(nowhere.delete("nothing"), &scratch),
+        "no shape is called \"nothing\""
+    );
+    assert!(nowhere.restore("nothing").is_err() && !scratch.path("nowhere").exists());
+}
+
+#[test]
+fn a_trash_with_anything_in_it_is_used_all_the_same() {
+    let scratch = Scratch::with(&["one"]);
+    let trash = scratch.path(".trash");
+    std::fs::create_dir(&trash).expect("made");
+    for file in [
+        "notes.txt",
+        "x one.json",
+        "18446744073709551615 one.json",
+        "00099 .bad.json",
+        "1 one",
+    ] {
+        std::fs::write(trash.join(file), "").expect("written");
+    }
+    std::fs::create_dir(trash.join("77 one.json")).expect("a folder");
+    scratch.library.delete("one").expect("deleted");
+    assert!(trash.join("0000000078 one.json").exists());
+    scratch.library.restore("one").expect("restored");
+    assert_eq!(scratch.number("one"), Some(1));
+    std::fs::remove_file(scratch.path("one.json")).expect("removed");
+    assert_eq!(
+        refusal(scratch.library.restore("one"), &scratch),
+        "FOLDER/.trash/77 one.json: is a folder, expected a regular file"
+    );
+}

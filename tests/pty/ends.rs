@@ -1,0 +1,141 @@
+//! How it ends: by a key, by a signal, by a lost line, by a panic. The terminal is left as it was, each time.
+
+use std::time::Duration;
+
+use rustix::process::Signal;
+use taxel::sensor::Sensor;
+use taxel::tui::app::{App, Options};
+use taxel::tui::effect::World;
+use taxel::tui::terminal::settings::{Flags, Settings};
+use taxel::tui::terminal::{self, input::Input};
+use taxel::tui::theme::Theme;
+
+use crate::program::{Program, Start, TAXEL};
+
+/// What is open when the end comes: keys, and what then is on the screen.
+const STATES: [(&[u8], &str); 6] = [
+    (b"", "? Help"),
+    (b"f\t2", "rx 2.00"),
+    (b"f\rq", "(y/n)"),
+    (b"?", "On the matrix"),
+    // Half of a paste, half of a key: here a reader that waits for the rest would not hear anything else.
+    (b" \x1b[200~12", "NA 1 in all"),
+    (b" \x1b[1;", "NA 1 in all"),
+];
+
+fn in_state(start: &Start<'_>, (keys, shown): (&[u8], &str)) -> Program {
+    let mut program = Program::started(start);
+    program.types(keys);
+    program.shows(shown);
+    program
+}
+
+#[test]
+fn every_signal_in_every_state_leaves_the_terminal_as_it_was() {
+    for state in STATES {
+        for (signal, status) in [
+            (Signal::HUP, 129),
+            (Signal::INT, 130),
+            (Signal::QUIT, 131),
+            (Signal::TERM, 143),
+        ] {
+            let mut program = in_state(&Start::default(), state);
+            program.signal(signal);
+            program.ends_well(status);
+        }
+    }
+}
+
+#[test]
+fn keys_end_it_with_status_0() {
+    for keys in [&b"q"[..], b"\x03", b" qy", b"f\r\x03y"] {
+        let mut program = Program::started(&Start::default());
+        program.types(keys);
+        program.ends_well(0);
+    }
+}
+
+/// Whether the system says so or not, and whatever was half typed.
+#[test]
+fn a_lost_line_ends_it_within_half_a_second() {
+    let ignoring = ["sh", "-c", "trap '' HUP; exec \"$0\"", TAXEL];
+    let mut slowest = Duration::ZERO;
+    for state in STATES {
+        for (command, controlling) in [(&[TAXEL][..], true), (&ignoring, true), (&[TAXEL], false)] {
+            let start = Start {
+                command,
+                controlling,
+                ..Start::default()
+            };
+            // A machine that is busy with something else for so long is given another chance.
+            let took = (0..3).map(|_| {
+                let mut program = in_state(&start, state);
+                program.hang_up();
+                let (ended, took) = program.ends();
+                assert_eq!(ended.code(), Some(129), "{command:?}");
+                took
+            });
+            let took = took
+                .into_iter()
+                .find(|took| *took < Duration::from_millis(500));
+            slowest = slowest.max(took.expect("within half a second"));
+        }
+    }
+    println!("a lost line ends it within {slowest:?}");
+}
+
+/// A terminal that takes no more output cannot keep it from its end.
+#[test]
+fn a_stuck_line_does_not_hold_it() {
+    let mut program = Program::started(&Start::default());
+    for _ in 0..150 {
+        program.types(b"\x0c");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    program.signal(Signal::TERM);
+    // Nothing is read from it until it has ended.
+    let master = program.take_master();
+    let (ended, took) = program.ends();
+    assert_eq!(ended.code(), Some(143));
+    println!("a stuck line holds it for {took:?}");
+    drop(master);
+}
+
+/// The program with something that fails at the first key; a child of the next test.
+#[test]
+#[ignore = "only as a child of other tests"]
+fn panics() {
+    let _ = rustix::process::setsid();
+    let _ = rustix::process::ioctl_tiocsctty(std::io::stdin());
+    let settings = Settings::from_environment(std::env::var_os, &Flags::default());
+    let app = App::new(&Options {
+        sensor: Sensor::default(),
+        theme: Theme::plain(true),
+    });
+    let world = World::scratch().expect("a folder");
+    let outcome = terminal::run(app, world, &settings, &mut |input| {
+        assert!(!matches!(input, Input::Key(_)), "on purpose");
+    });
+    println!("{outcome:?}");
+}
+
+#[test]
+fn a_panic_leaves_the_terminal_as_it_was() {
+    let own = std::env::current_exe().expect("this test");
+    let own = own.to_str().expect("a name");
+    let command = [own, "--exact", "ends::panics", "--ignored", "--nocapture"];
+    let mut program = Program::started(&Start {
+        command: &command,
+        ..Start::default()
+    });
+    assert!(program.screen().alternate_screen());
+    program.types(b" ");
+    let (ended, _) = program.ends();
+    assert_ne!(ended.code(), Some(0));
+    program.is_left();
+    let said = program.screen().contents();
+    assert!(
+        said.contains("on purpose"),
+        "it is told after the screen is left\n{said}"
+    );
+}

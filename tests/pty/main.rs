@@ -1,0 +1,22 @@
+//! The real program in a pseudo-terminal: ends, hang-ups, stops, odd terminals, bytes and wake-ups.
+//!
+//! Nothing waits a fixed time for something to be right: every wait is for a condition, with a long deadline.
+
+mod program;
+
+mod screens;
+
+mod ends;
+
+mod jobs;
+
+mod cost;
+
+mod scripts;
+
+/// Becomes the program; see `program`.
+#[test]
+#[ignore = "only as a child of other tests"]
+fn launcher() {
+    program::launch();
+}

@@ -1,0 +1,71 @@
+//! Poses answered by independent software, where that file is at hand; it is not part of the project.
+//!
+//! `TAXEL_REFERENCE` names the file of poses; without it, one beside the project's folder is looked for.
+
+use std::path::PathBuf;
+
+use serde_json::Value;
+use taxel::formats::{answer::Answer, job::Job};
+use taxel::sensor::Sensor;
+use taxel::touch::Plane;
+
+#[test]
+fn every_reference_pose_is_answered_alike() {
+    let path = std::env::var_os("TAXEL_REFERENCE").map_or_else(
+        || {
+            PathBuf::from(concat!(
+                env!("CARGO_MANIFEST_DIR"),
+                "/../shared/reference/poses.jsonl"
+            ))
+        },
+        PathBuf::from,
+    );
+    let Ok(text) = std::fs::read_to_string(&path) else {
+        eprintln!("SKIPPED: no reference poses at {}", path.display());
+        return;
+    };
+    let mut plane = Plane::new(Sensor::default());
+    let mut differing = Vec::new();
+    for (number, line) in text.lines().enumerate() {
+        let case: Value = serde_json::from_str(line).expect("a reference line is JSON");
+        let job = case["job"].to_string();
+        let read = Job::read(job.as_bytes(), Sensor::default(), &|_| {
+            Err("no names here".to_owned())
+        });
+        let imprint = read.expect("a reference job is valid").imprint(&mut plane);
+        let answer = serde_json::to_value(Answer(&imprint)).expect("an answer is JSON");
+        if let Some(difference) = difference(&answer, &case["answer"]) {
+            differing.push(format!("line {}: {job}: {difference}", number + 1));
+        }
+    }
+    assert!(
+        differing.is_empty(),
+        "{} differ\n{}",
+        differing.len(),
+        differing.join("\n")
+    );
+    assert!(
+        text.lines().count() >= 600,
+        "the file of reference poses is cut short"
+    );
+}
+
+/// Where two answers differ: numbers with a fraction by more than 1e-9, everything else at all.
+fn difference(found: &Value, expected: &Value) -> Option<String> {
+    match (found, expected) {
+        (Value::Number(a), Value::Number(b)) if a.is_f64() || b.is_f64() => {
+            let (a, b) = (a.as_f64()?, b.as_f64()?);
+            ((a - b).abs() > 1e-9).then(|| format!("{a} instead of {b}"))
+        }
+        (Value::Array(a), Value::Array(b)) if a.len() == b.len() => a
+            .iter()
+            .zip(b)
+            .enumerate()
+            .find_map(|(i, (a, b))| difference(a, b).map(|text| format!("[{i}] {text}"))),
+        (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => a
+            .iter()
+            .zip(b)
+            .find_map(|((key, a), (_, b))| difference(a, b).map(|text| format!("{key}: {text}"))),
+        (a, b) => (a != b).then(|| format!("{a} instead of {b}")),
+    }
+}

@@ -1,0 +1,169 @@
+//! The program's own screens: each `tests/scripts/NAME.taxel` prints what stands in `NAME.snap` beside it.
+//!
+//! `INSTA_UPDATE=always cargo test --test scripts` writes them anew; then read the difference. The same scripts run on the
+//! real program in a pseudo-terminal (`tests/pty`).
+
+use std::path::Path;
+
+use taxel::sensor::Sensor;
+use taxel::tui::app::Options;
+use taxel::tui::effect::World;
+use taxel::tui::script::runner::{Failure, Settings, run};
+use taxel::tui::theme::Theme;
+
+fn output(script: &str, json: bool) -> Result<String, Failure> {
+    let options = Options {
+        sensor: Sensor::default(),
+        theme: Theme::plain(false),
+    };
+    let settings = Settings {
+        options,
+        size: (80, 24),
+        styles: true,
+        json,
+    };
+    let world = World::scratch().expect("there is a folder for temporary files");
+    let mut printed = String::new();
+    run(script, &[], &settings, world, |text| printed.push_str(text)).map(|()| printed)
+}
+
+#[test]
+fn every_script_prints_its_screens() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scripts");
+    let files = std::fs::read_dir(&folder)
+        .expect("the folder is there")
+        .flatten();
+    let mut scripts: Vec<_> = files
+        .map(|file| file.path())
+        .filter(|path| path.extension().is_some_and(|end| end == "taxel"))
+        .collect();
+    scripts.sort();
+    assert!(scripts.len() >= 30, "the scripts are there");
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path(&folder);
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    for path in scripts {
+        let script = std::fs::read_to_string(&path).expect("a script can be read");
+        let printed = output(&script, false)
+            .unwrap_or_else(|failure| panic!("{}: {failure}", path.display()));
+        let name = path
+            .file_stem()
+            .and_then(|name| name.to_str())
+            .expect("a name");
+        // Every row ends in a bar, so that no editor takes blanks away.
+        let shown: String = printed.lines().map(|line| format!("{line}|\n")).collect();
+        settings.bind(|| insta::assert_snapshot!(name, shown));
+    }
+}
+
+#[test]
+fn a_script_answers_alike_every_time() {
+    let script = "Keys f<Enter>smine<Enter><Tab>c\nScreen one\nState\nKeys l\nScreen two\n";
+    let first = output(script, true).expect("it holds");
+    assert_eq!(output(script, true).expect("it holds"), first);
+    assert_eq!(first.lines().count(), 3);
+    for line in first.lines() {
+        let _: serde_json::Value = serde_json::from_str(line).expect("a line is JSON");
+    }
+}
+
+#[test]
+fn what_does_not_hold_is_told_with_its_line() {
+    let told = |script: &str| {
+        output(script, false)
+            .expect_err("it does not hold")
+            .to_string()
+    };
+    for (script, message) in [
+        (
+            "Keys f\nExpect /zzz/",
+            "line 2: no /zzz/ on the screen\n  | n New",
+        ),
+        ("ExpectNot /New/", "line 1: /New/ is on the screen"),
+        (
+            "ExpectAt 0,0 \"x\"",
+            "line 1: at 0,0 stands \"n\", expected \"x\"",
+        ),
+        (
+            "ExpectStyle 0,0 reverse",
+            "line 1: at 0,0 is style B, expected R",
+        ),
+        ("Click \"zzz\"", "line 1: no \"zzz\" to click on"),
+        ("Quit", "line 1: the program has not ended"),
+        ("State /nowhere", "line 1: the state has no \"/nowhere\""),
+        ("Keys q\nKeys f", "line 2: the program has ended before"),
+        (
+            "Signal TERM\nResize 10x10",
+            "line 2: the program has ended before",
+        ),
+        (
+            "\n\nFly",
+            "line 3: \"Fly\" is unknown, expected one of Size",
+        ),
+        (
+            "Keys <Foo>",
+            "line 1: key \"<Foo>\" at character 1 is unknown",
+        ),
+        ("Size 80", "line 1: expected a size like 80x24"),
+        (
+            "Click 1",
+            "line 1: expected column,row like 12,5, found \"1\"",
+        ),
+        (
+            "Type x",
+            "line 1: expected a text in double quotes, found x",
+        ),
+        ("Expect zzz", "line 1: expected a pattern between slashes"),
+        ("Expect /(/", "line 1: pattern /(/"),
+        (
+            "ExpectStyle 0,0 pink",
+            "line 1: style \"pink\" is unknown, expected plain, reverse",
+        ),
+        (
+            "Signal KILL",
+            "line 1: signal \"KILL\" is unknown, expected one of HUP",
+        ),
+        ("Wait now", "line 1: Wait stands alone"),
+        ("Screen\nSize 10x10", "line 2: Size and Set come before"),
+    ] {
+        let found = told(script);
+        assert!(found.starts_with(message), "{script:?}: {found}");
+    }
+}
+
+#[test]
+fn a_signal_keeps_unsaved_work() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let world = || {
+        World::new(taxel::library::store::Library::open(
+            folder.path().to_owned(),
+        ))
+    };
+    let options = Options {
+        sensor: Sensor::default(),
+        theme: Theme::plain(false),
+    };
+    let settings = Settings {
+        options,
+        size: (80, 24),
+        styles: false,
+        json: false,
+    };
+    run(
+        "Keys f<Enter>\nSignal HUP\nQuit",
+        &[],
+        &settings,
+        world(),
+        |_| {},
+    )
+    .expect("it holds");
+    run(
+        "Expect /Unsaved work of 52 taxels/\nKeys y\nExpect /rx 4.00/",
+        &[],
+        &settings,
+        world(),
+        |_| {},
+    )
+    .expect("it holds");
+}

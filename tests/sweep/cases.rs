@@ -1,0 +1,286 @@
+//! The figures and pictures whose sweeps are compared with touching, and the comparison.
+
+use taxel::figure::{Figure, Kind};
+use taxel::parameter::Parameter;
+use taxel::picture::Picture;
+use taxel::sensor::Sensor;
+use taxel::source::Source;
+use taxel::sweep::grid::{Anchor, Grid, Ranges};
+use taxel::sweep::plan::Shard;
+use taxel::sweep::survey::{Survey, Watch};
+use taxel::touch::{Plane, reaches_beyond};
+
+/// What is swept, where, and how.
+pub(crate) struct Case {
+    pub(crate) name: &'static str,
+    pub(crate) source: Source,
+    pub(crate) sensor: Sensor,
+    pub(crate) anchor: Anchor,
+    /// Ranges of x0 and y0; those of the paper's grid where empty.
+    pub(crate) place: &'static str,
+    pub(crate) zoom: &'static str,
+}
+
+/// A figure by its first and second size (the second of a regular polygon is not used) and its wall, 0 for none.
+pub(crate) fn figure(kind: Kind, first: f64, second: f64, wall: f64) -> Source {
+    let figure = Figure::new(kind, 64, |parameter| match parameter {
+        Parameter::RadiusX | Parameter::Length | Parameter::Side => Some(first),
+        Parameter::RadiusY | Parameter::Width => Some(second),
+        Parameter::Thickness => (wall > 0.0).then_some(wall),
+        _ => Some(0.0),
+    });
+    Source::Figure(figure.expect("sizes are in range"))
+}
+
+pub(crate) fn picture(rows: &str) -> Source {
+    let imprint = rows.replace(' ', "\n").parse().expect("rows of an imprint");
+    Source::Picture(Picture::at_home(imprint))
+}
+
+fn sensor(columns: f64, rows: f64, threshold: f64) -> Sensor {
+    let sensor = Sensor::new(columns, rows).expect("sides are in range");
+    sensor
+        .with(Parameter::Threshold, threshold)
+        .expect("a threshold in range")
+}
+
+/// All kinds, solid and with a hole, sizes that make ties, beyond the sensor, other sensors, thresholds and anchors.
+#[expect(clippy::too_many_lines, reason = "a list")]
+pub(crate) fn cases() -> Vec<Case> {
+    let case = |name, source| Case {
+        name,
+        source,
+        sensor: Sensor::default(),
+        anchor: Anchor::Corner,
+        place: "",
+        zoom: "1",
+    };
+    let mut all = vec![
+        case("rectangle 6 x 3", figure(Kind::Rectangle, 6.0, 3.0, 0.0)),
+        case("square 4", figure(Kind::Rectangle, 4.0, 4.0, 0.0)),
+        case("square 0.7", figure(Kind::Rectangle, 0.7, 0.7, 0.0)),
+        case(
+            "rectangle 5.5 x 2.5 wall 1",
+            figure(Kind::Rectangle, 5.5, 2.5, 1.0),
+        ),
+        case(
+            "rectangle 10 x 8 wall 0.7",
+            figure(Kind::Rectangle, 10.0, 8.0, 0.7),
+        ),
+        case("rectangle 9 x 0.5", figure(Kind::Rectangle, 9.0, 0.5, 0.0)),
+        case(
+            "rectangle 7 x 7 wall 0.25",
+            figure(Kind::Rectangle, 7.0, 7.0, 0.25),
+        ),
+        case("triangle 6", figure(Kind::Triangle, 6.0, 0.0, 0.0)),
+        case("triangle 8 wall 1", figure(Kind::Triangle, 8.0, 0.0, 1.0)),
+        case("pentagon 4", figure(Kind::Pentagon, 4.0, 0.0, 0.0)),
+        case(
+            "pentagon 3.5 wall 0.8",
+            figure(Kind::Pentagon, 3.5, 0.0, 0.8),
+        ),
+        case("hexagon 3 wall 1", figure(Kind::Hexagon, 3.0, 0.0, 1.0)),
+        case("hexagon 4", figure(Kind::Hexagon, 4.0, 0.0, 0.0)),
+        case("heptagon 3", figure(Kind::Heptagon, 3.0, 0.0, 0.0)),
+        case("heptagon 3 wall 1", figure(Kind::Heptagon, 3.0, 0.0, 1.0)),
+        case("octagon 3 wall 1.5", figure(Kind::Octagon, 3.0, 0.0, 1.5)),
+        case("octagon 2", figure(Kind::Octagon, 2.0, 0.0, 0.0)),
+        case("ellipse 5 x 3", figure(Kind::Ellipse, 5.0, 3.0, 0.0)),
+        case("ellipse 5 x 3 wall 1", figure(Kind::Ellipse, 5.0, 3.0, 1.0)),
+        case(
+            "ellipse 4.5 x 1.5 wall 0.4",
+            figure(Kind::Ellipse, 4.5, 1.5, 0.4),
+        ),
+        case("ellipse 6 x 0.3", figure(Kind::Ellipse, 6.0, 0.3, 0.0)),
+        case("circle 4 wall 2", figure(Kind::Ellipse, 4.0, 4.0, 2.0)),
+        case("circle 0.5", figure(Kind::Ellipse, 0.5, 0.5, 0.0)),
+    ];
+    let beyond = |case| Case {
+        place: "-1:0.99:0.01",
+        ..case
+    };
+    all.extend([
+        beyond(case(
+            "hexagon 3 wall 1 beyond",
+            figure(Kind::Hexagon, 3.0, 0.0, 1.0),
+        )),
+        beyond(case(
+            "ellipse 5 x 3 wall 1 beyond",
+            figure(Kind::Ellipse, 5.0, 3.0, 1.0),
+        )),
+        Case {
+            sensor: sensor(8.0, 8.0, 0.5),
+            place: "0:1.99:0.01",
+            ..case(
+                "rectangle 8 x 8 wall 2 on 8 x 8",
+                figure(Kind::Rectangle, 8.0, 8.0, 2.0),
+            )
+        },
+        Case {
+            sensor: sensor(33.0, 20.0, 0.5),
+            ..case(
+                "octagon 6 wall 2 on 33 x 20",
+                figure(Kind::Octagon, 6.0, 0.0, 2.0),
+            )
+        },
+        Case {
+            sensor: sensor(16.0, 16.0, 1.0),
+            ..case(
+                "rectangle 6 x 3, threshold 1",
+                figure(Kind::Rectangle, 6.0, 3.0, 0.0),
+            )
+        },
+        Case {
+            sensor: sensor(16.0, 16.0, 1.0),
+            ..case(
+                "circle 4 wall 2, threshold 1",
+                figure(Kind::Ellipse, 4.0, 4.0, 2.0),
+            )
+        },
+        Case {
+            sensor: sensor(16.0, 16.0, 0.25),
+            ..case(
+                "triangle 6 wall 1, threshold 0.25",
+                figure(Kind::Triangle, 6.0, 0.0, 1.0),
+            )
+        },
+        Case {
+            anchor: Anchor::Centre,
+            place: "7.5:8.49:0.01",
+            ..case("triangle 6, centre", figure(Kind::Triangle, 6.0, 0.0, 0.0))
+        },
+        Case {
+            anchor: Anchor::Centre,
+            place: "7.5:8.49:0.01",
+            ..case(
+                "pentagon 4 wall 1, centre",
+                figure(Kind::Pentagon, 4.0, 0.0, 1.0),
+            )
+        },
+        Case {
+            anchor: Anchor::Centre,
+            place: "7.5:8.49:0.01",
+            ..case(
+                "ellipse 4 x 2, centre",
+                figure(Kind::Ellipse, 4.0, 2.0, 0.0),
+            )
+        },
+        Case {
+            place: "5:5.99:0.03",
+            ..case(
+                "hexagon 3, steps of 0.03",
+                figure(Kind::Hexagon, 3.0, 0.0, 0.0),
+            )
+        },
+        case("picture: one taxel", picture("#")),
+        case("picture: ring", picture("#### #..# #..# ####")),
+        case("picture: scattered", picture("##.# .### ##.. #..#")),
+        case("picture: cross", picture(".#. ### .#.")),
+        case(
+            "picture: letter",
+            picture("..###.. .#..... .#..... .####.. .....#. #....#. .####.."),
+        ),
+        Case {
+            place: "4:4.99:0.01",
+            zoom: "0.75:1.25:0.25",
+            ..case("picture: zoomed", picture("###. #..# ####"))
+        },
+        Case {
+            anchor: Anchor::Centre,
+            place: "7.5:8.49:0.01",
+            zoom: "1.1",
+            ..case("picture: zoomed, centre", picture("###. #..# ####"))
+        },
+        case("picture: empty", picture("... ...")),
+    ]);
+    all
+}
+
+impl Case {
+    /// Its grid at the given angles; every `stride`-th step of x0 and y0 only.
+    pub(crate) fn grid(&self, angles: &str, stride: u32) -> Grid {
+        let place = if self.place.is_empty() {
+            "5:5.99:0.01"
+        } else {
+            self.place
+        };
+        let parts: Vec<f64> = place
+            .split(':')
+            .map(|part| part.parse().expect("a number"))
+            .collect();
+        let [start, end, step] = parts[..] else {
+            panic!("a range")
+        };
+        let place = format!(
+            "{start}:{end}:{}",
+            (step * f64::from(stride) * 1e6).round() / 1e6
+        );
+        let read = |text: &str| text.parse().expect("a range");
+        let ranges = Ranges {
+            x0: read(&place),
+            y0: read(&place),
+            angle: read(angles),
+            zoom_x: read(self.zoom),
+            zoom_y: read(self.zoom),
+        };
+        Grid::new(self.source.clone(), self.sensor, self.anchor, ranges).expect("a grid")
+    }
+}
+
+/// Sweeps the grid and touches pose by pose; how many poses differ, and what is wrong otherwise.
+pub(crate) fn differences(grid: &Grid) -> Result<u64, String> {
+    let poses = usize::try_from(grid.poses()).expect("a small grid");
+    let width = usize::try_from(grid.ranges().x0.count()).expect("a small grid");
+    let mut ids = vec![u32::MAX; poses];
+    let mut take = |row: u64, numbers: &[u32]| {
+        let start = usize::try_from(row).expect("a small grid") * width;
+        assert!(ids[start..start + width].iter().all(|&id| id == u32::MAX));
+        ids[start..start + width].copy_from_slice(numbers);
+    };
+    let watch = Watch {
+        progress: &|_| true,
+        rows: Some(&mut take),
+    };
+    let survey = Survey::of(grid, Shard::WHOLE, watch);
+    let imprints: Vec<_> = survey.atlas.entries().collect();
+    let mut plane = Plane::new(*grid.sensor());
+    let (mut differing, mut partly_off, mut empty) = (0, 0, 0);
+    let mut known = 0;
+    let mut counts = vec![0_u64; imprints.len()];
+    for (number, &id) in (0..).zip(&ids) {
+        let placed = grid.placed(grid.pose(number));
+        let touched = plane.touch(&placed);
+        let entry = imprints
+            .get(id as usize)
+            .ok_or_else(|| format!("pose {number} has no imprint"))?;
+        differing += u64::from(touched != entry.imprint);
+        partly_off += u64::from(reaches_beyond(&placed, grid.sensor()));
+        empty += u64::from(touched.is_empty());
+        counts[id as usize] += 1;
+        if id == known {
+            if entry.first_pose != number {
+                return Err(format!(
+                    "{id} is first said to occur at {}",
+                    entry.first_pose
+                ));
+            }
+            known += 1;
+        } else if id > known {
+            return Err(format!("{id} occurs before {known}"));
+        }
+    }
+    let claimed = (survey.poses, survey.partly_off, survey.atlas.empty_poses());
+    if claimed != (grid.poses(), partly_off, empty) {
+        return Err(format!(
+            "{claimed:?} instead of {partly_off} partly off, {empty} empty"
+        ));
+    }
+    if imprints
+        .iter()
+        .zip(&counts)
+        .any(|(entry, &count)| entry.count != count)
+    {
+        return Err("an imprint is counted wrongly".to_owned());
+    }
+    Ok(differing)
+}
