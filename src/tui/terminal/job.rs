@@ -2,28 +2,29 @@
 
 use std::fs;
 
-use rustix::process::{Pid, Signal, getpgid, getpgrp, getppid, getsid, kill_current_process_group};
+use rustix::process::{Signal, kill_current_process_group};
 
-/// Whether anybody is there who would continue the program: a process of the same session that is not of its own
-/// process group, above it. The first process of a connection has none; stopped, it would never come back.
+/// Whether anybody is there who would continue the program: a process above it, on the same terminal, that is not of
+/// its own process group. The first process of a connection has none; stopped, it would never come back.
+///
+/// All is read from `/proc`, where a process, group or session that lies outside the program's PID namespace (a
+/// container's) is a plain 0: the system calls answer 0 there too, which is no process number. A controlling terminal
+/// belongs to one session only, so it tells what the session's number could not.
 pub(super) fn has_shell() -> bool {
-    let Ok(session) = getsid(None) else {
+    let Some(own) = Process::read("self") else {
         return false;
     };
-    let group = getpgrp();
-    let mut above = getppid();
-    while let Some(process) = above {
-        let (Ok(its_session), Ok(its_group)) = (getsid(Some(process)), getpgid(Some(process)))
-        else {
-            return false;
-        };
-        if its_session != session {
-            return false;
+    if own.terminal == 0 {
+        return false;
+    }
+    let mut above = own.parent;
+    while above != 0 {
+        match Process::read(&above.to_string()) {
+            Some(process) if process.terminal != own.terminal => return false,
+            Some(process) if process.group != own.group => return true,
+            Some(process) => above = process.parent,
+            None => return false,
         }
-        if its_group != group {
-            return true;
-        }
-        above = parent(process);
     }
     false
 }
@@ -34,10 +35,56 @@ pub(super) fn stop() -> rustix::io::Result<()> {
     kill_current_process_group(Signal::STOP)
 }
 
-/// `/proc/PID/stat`: number, (name), state, parent; the name may hold anything.
-fn parent(process: Pid) -> Option<Pid> {
-    let stat = fs::read_to_string(format!("/proc/{}/stat", process.as_raw_nonzero())).ok()?;
-    let (_, rest) = stat.rsplit_once(')')?;
-    let number = rest.split_whitespace().nth(1)?.parse().ok()?;
-    Pid::from_raw(number)
+/// Of a process: its parent's number, its group's, and its controlling terminal's device number.
+#[derive(Debug, PartialEq)]
+struct Process {
+    parent: u32,
+    group: u32,
+    terminal: i32,
+}
+
+impl Process {
+    /// `/proc/PID/stat`.
+    fn read(number: &str) -> Option<Self> {
+        let stat = fs::read_to_string(format!("/proc/{number}/stat")).ok()?;
+        Self::parse(&stat)
+    }
+
+    /// `number (name) state parent group session terminal …`; the name may hold anything.
+    fn parse(stat: &str) -> Option<Self> {
+        let (_, rest) = stat.rsplit_once(')')?;
+        let mut fields = rest.split_whitespace().skip(1);
+        Some(Self {
+            parent: fields.next()?.parse().ok()?,
+            group: fields.next()?.parse().ok()?,
+            terminal: fields.nth(1)?.parse().ok()?,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_may_hold_anything_and_a_group_outside_the_namespace_is_0() {
+        let stat = "17 (a) S 1) (b) R 4 0 0 34816 17 4194304";
+        assert_eq!(
+            Process::parse(stat),
+            Some(Process {
+                parent: 4,
+                group: 0,
+                terminal: 34816
+            })
+        );
+        assert_eq!(Process::parse("17 (a) S 4"), None);
+        assert_eq!(Process::parse(""), None);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn its_own_parent_is_the_one_that_the_system_names() {
+        let own = Process::read("self").expect("/proc/self/stat");
+        assert_eq!(own.parent, std::os::unix::process::parent_id());
+    }
 }
