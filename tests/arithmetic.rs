@@ -134,6 +134,10 @@ fn floors_look_at_both_halves() {
         );
     }
     assert_eq!(Real::floor(1e300), i32::MAX);
+    for below in [-1e300, f64::NEG_INFINITY, f64::from(i32::MIN) - 0.5] {
+        assert_eq!(Real::floor(below), i32::MIN);
+        assert_eq!(Double::from(below).floor(), i32::MIN);
+    }
     assert_eq!(Real::floor(f64::NAN), 0);
 }
 

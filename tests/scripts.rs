@@ -11,17 +11,20 @@ use taxel::tui::effect::World;
 use taxel::tui::script::runner::{Failure, Settings, run};
 use taxel::tui::theme::Theme;
 
-fn output(script: &str, json: bool) -> Result<String, Failure> {
-    let options = Options {
-        sensor: Sensor::default(),
-        theme: Theme::plain(false),
-    };
-    let settings = Settings {
-        options,
+fn settings(styles: bool, json: bool) -> Settings {
+    Settings {
+        options: Options {
+            sensor: Sensor::default(),
+            theme: Theme::plain(false),
+        },
         size: (80, 24),
-        styles: true,
+        styles,
         json,
-    };
+    }
+}
+
+fn output(script: &str, json: bool) -> Result<String, Failure> {
+    let settings = settings(true, json);
     let world = World::scratch().expect("there is a folder for temporary files");
     let mut printed = String::new();
     run(script, &[], &settings, world, |text| printed.push_str(text)).map(|()| printed)
@@ -140,16 +143,7 @@ fn a_signal_keeps_unsaved_work() {
             folder.path().to_owned(),
         ))
     };
-    let options = Options {
-        sensor: Sensor::default(),
-        theme: Theme::plain(false),
-    };
-    let settings = Settings {
-        options,
-        size: (80, 24),
-        styles: false,
-        json: false,
-    };
+    let settings = settings(false, false);
     run(
         "Keys f<Enter>\nSignal HUP\nQuit",
         &[],

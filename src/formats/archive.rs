@@ -18,7 +18,6 @@ use super::atlas::{place, value};
 use super::npy::{self, Kind};
 use super::record::{Record, RecordError, Values};
 use crate::sensor::Sensor;
-use crate::source::Source;
 use crate::sweep::grid::{Anchor, Grid, GridError, Ranges};
 use crate::sweep::parts::{Parts, PartsError};
 use crate::sweep::plan::{Shard, ShardError};
@@ -32,29 +31,13 @@ pub const FORMAT: &str = "taxel-atlas/1";
 /// No array of an archive may be larger; what is larger is not read.
 const MAX_BYTES: u64 = 1 << 34;
 
-#[derive(Serialize)]
-struct Header<'a> {
-    format: &'static str,
-    source: &'a Source,
-    sensor: &'a Sensor,
-    anchor: &'static str,
-    x0: String,
-    y0: String,
-    angle: String,
-    zoom_x: String,
-    zoom_y: String,
-    shard: String,
-    poses: u64,
-    partly_off: u64,
-}
-
-#[derive(Deserialize)]
+/// What was swept: written from a source and a sensor, read as the records that they are checked from.
+#[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Known<'a> {
+struct Header<Shape, Size> {
     format: String,
-    #[serde(borrow)]
-    source: Record<'a>,
-    sensor: Values,
+    source: Shape,
+    sensor: Size,
     anchor: String,
     x0: String,
     y0: String,
@@ -75,13 +58,14 @@ pub fn write(survey: &Survey, output: impl Write + Seek) -> Result<(), ArchiveEr
     let (grid, parts) = (&survey.grid, survey.parts());
     let ranges = grid.ranges();
     let header = serde_json::to_vec(&Header {
-        format: FORMAT,
+        format: FORMAT.to_owned(),
         source: grid.source(),
         sensor: grid.sensor(),
         anchor: match grid.anchor() {
             Anchor::Corner => "corner",
             Anchor::Centre => "centre",
-        },
+        }
+        .to_owned(),
         x0: ranges.x0.to_string(),
         y0: ranges.y0.to_string(),
         angle: ranges.angle.to_string(),
@@ -178,7 +162,7 @@ pub fn read(input: impl Read + Seek) -> Result<Survey, ArchiveError> {
     };
     let header = array("header")?;
     let header = npy::content(&header, Kind::U8).ok_or(ArchiveError::Array("header"))?;
-    let header: Known<'_> = serde_json::from_slice(header)
+    let header: Header<Record<'_>, Values> = serde_json::from_slice(header)
         .map_err(|error| ArchiveError::Header(super::quote::message(&error)))?;
     if header.format != FORMAT {
         return Err(ArchiveError::Format(header.format));

@@ -94,7 +94,7 @@ impl Real for f64 {
     fn floor(self) -> i32 {
         // Not `f64::floor`, which is a call where the processor is not known to have the instruction.
         let towards_zero = self as i32;
-        towards_zero - i32::from(Self::from(towards_zero) > self)
+        towards_zero.saturating_sub(i32::from(Self::from(towards_zero) > self))
     }
     fn cell(self) -> (usize, Self) {
         // Added to 1.5 · 2⁵², a number is rounded to a whole one, which stands in the lowest bits. A cast takes three times
@@ -321,7 +321,7 @@ impl Real for Double {
     fn floor(self) -> i32 {
         let floor = Real::floor(self.high);
         // A whole high part with a negative low one lies just below that whole number.
-        floor - i32::from(Self::whole(floor) > self)
+        floor.saturating_sub(i32::from(Self::whole(floor) > self))
     }
     fn cell(self) -> (usize, Self) {
         let floor = self.floor();

@@ -68,26 +68,26 @@ fn a_name_of_the_library_goes_before_a_file() {
     let path = shelf.folder.join("moved.json").display().to_string();
     let json = |what: &str| shelf.does(&format!("picture|{what}|--json"), "");
     assert_eq!(json(&path), json("moved"));
-    refused(
-        &shelf.run("picture|nothing", ""),
-        1,
-        "no shape is called \"nothing\", and no file either",
-    );
-    refused(
-        &shelf.run("picture|no/such.txt", ""),
-        1,
-        "no/such.txt: cannot read: No such file or directory (os error 2)",
-    );
-    refused(
-        &shelf.run("picture|washer|--zoom-x|0", ""),
-        1,
-        "--zoom-x 0: out of range, expected above 0, up to 64",
-    );
-    refused(
-        &shelf.run("picture|washer|--x0|17", ""),
-        1,
-        "--x0 17: out of range, expected -16 to 16",
-    );
+    for (arguments, message) in [
+        (
+            "picture|nothing",
+            "no shape is called \"nothing\", and no file either",
+        ),
+        (
+            "picture|no/such.txt",
+            "no/such.txt: cannot read: No such file or directory (os error 2)",
+        ),
+        (
+            "picture|washer|--zoom-x|0",
+            "--zoom-x 0: out of range, expected above 0, up to 64",
+        ),
+        (
+            "picture|washer|--x0|17",
+            "--x0 17: out of range, expected -16 to 16",
+        ),
+    ] {
+        refused(&shelf.run(arguments, ""), 1, message);
+    }
 }
 
 #[test]

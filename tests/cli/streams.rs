@@ -4,6 +4,18 @@ use super::batch::POINT;
 use super::describe::SHAPE;
 use super::{RING, finish, program, refused, run_in, taxel};
 
+/// Commands that write to standard output, each in its own way.
+const WRITING: [&str; 8] = [
+    RING,
+    "figure hexagon --json",
+    "picture washer",
+    "library list",
+    "describe -",
+    "batch",
+    "--help",
+    "--version",
+];
+
 #[test]
 fn ascii_is_kept_to_where_the_locale_is_not_utf_8() {
     let ascii = |arguments: &[&str], input: &str| {
@@ -85,16 +97,7 @@ fn help_fits_80_columns_and_ends_with_examples() {
 #[cfg(unix)]
 #[test]
 fn a_closed_pipe_ends_quietly() {
-    for line in [
-        RING,
-        "figure hexagon --json",
-        "picture washer",
-        "library list",
-        "describe -",
-        "batch",
-        "--help",
-        "--version",
-    ] {
+    for line in WRITING {
         let arguments: Vec<&str> = line.split_whitespace().collect();
         let (reader, writer) = std::io::pipe().expect("a pipe");
         drop(reader);
@@ -112,16 +115,7 @@ fn a_closed_pipe_ends_quietly() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_told() {
-    for line in [
-        RING,
-        "figure hexagon --json",
-        "picture washer",
-        "library list",
-        "describe -",
-        "batch",
-        "--help",
-        "--version",
-    ] {
+    for line in WRITING {
         let arguments: Vec<&str> = line.split_whitespace().collect();
         let full = std::fs::File::options()
             .write(true)
