@@ -5,6 +5,9 @@ use taxel::description::descriptor::{DESCRIPTORS, Unit};
 use taxel::tui::binding::Context;
 use taxel::tui::keymap::KEYMAP;
 
+#[path = "../examples/positions.rs"]
+#[expect(dead_code, reason = "its main prints the report")]
+mod positions;
 #[path = "common/screen.rs"]
 mod screen;
 use screen::{press, session, shows};
@@ -57,6 +60,7 @@ fn screen_and_tables_are_those_of_the_program() {
         ("screen", figure()),
         ("descriptors", descriptors()),
         ("keys", keys()),
+        ("positions", positions::report()),
     ] {
         let (start, end) = (format!("<!-- {name} -->\n"), format!("<!-- /{name} -->"));
         let (before, rest) = wanted.split_once(&start).expect("the README has the mark");

@@ -1,0 +1,99 @@
+//! Which descriptors hardly depend on where and how a figure lies? The question that the paper's descriptors are for.
+//!
+//! Each of the seven figures goes through the paper's grid, 3.6 million poses, and each descriptor's coefficient of
+//! variation is told in percent, its standard deviation over its mean: what is near 0 is a quasi-invariant. Below it
+//! stand the two parts of the deviation: from the position at a fixed angle, and from the angle.
+//!
+//! `cargo run --release --example invariance [-- STEP]`; STEP is that of the angles in degrees, 1 if none is given.
+
+use std::fmt::Write;
+
+use taxel::figure::{Figure, Kind};
+use taxel::sensor::Sensor;
+use taxel::source::Source;
+use taxel::sweep::grid::{Anchor, Grid, Ranges};
+use taxel::sweep::plan::Shard;
+use taxel::sweep::survey::{Survey, Watch};
+
+/// Those whose variation means something: the others say where the figure lies.
+const DESCRIBING: [&str; 8] = [
+    "na",
+    "nae",
+    "ce",
+    "p",
+    "f",
+    "roundness",
+    "side_ratio",
+    "filling",
+];
+
+fn main() {
+    let step = std::env::args().nth(1).unwrap_or("1".to_owned());
+    match report(&format!("0:359:{step}")) {
+        Ok(table) => print!("{table}"),
+        Err(message) => eprintln!("error: {message}"),
+    }
+}
+
+/// A table in Markdown over a range of angles: a row for each descriptor and each part, a column for each figure.
+///
+/// # Errors
+/// A range that is none.
+pub(crate) fn report(angles: &str) -> Result<String, String> {
+    let angle = angles
+        .parse()
+        .map_err(|error| format!("{angles}: {error}"))?;
+    let ranges = Ranges {
+        angle,
+        ..Ranges::default()
+    };
+    let surveys: Vec<Survey> = Kind::ALL
+        .into_iter()
+        .map(|kind| sweep(kind, ranges))
+        .collect();
+
+    let names = Kind::ALL.map(Kind::name).join(" | ");
+    let mut table = format!("| % of the mean | {names} |\n|---|{}\n", "---:|".repeat(7));
+    for key in DESCRIBING {
+        let _ = writeln!(
+            table,
+            "| `{key}` | {} |",
+            row(&surveys, key, |part| part.sd)
+        );
+        let position = row(&surveys, key, |part| part.sd_position);
+        let _ = writeln!(table, "| from the position | {position} |");
+        let _ = writeln!(
+            table,
+            "| from the angle | {} |",
+            row(&surveys, key, |part| part.sd_angle)
+        );
+    }
+    Ok(table)
+}
+
+/// A deviation of a quantity in percent of its mean, for each figure.
+fn row(
+    surveys: &[Survey],
+    key: &str,
+    deviation: fn(&taxel::sweep::statistics::Statistic) -> Option<f64>,
+) -> String {
+    let percent = |survey: &Survey| {
+        let statistic = survey
+            .statistics
+            .iter()
+            .find(|found| found.quantity.key == key)?;
+        Some(100.0 * deviation(statistic)? / statistic.mean?)
+    };
+    let cells = surveys.iter().map(|survey| match percent(survey) {
+        Some(percent) => format!("{percent:.1}"),
+        None => "–".to_owned(),
+    });
+    cells.collect::<Vec<_>>().join(" | ")
+}
+
+fn sweep(kind: Kind, ranges: Ranges) -> Survey {
+    let sensor = Sensor::default();
+    let figure = Source::Figure(Figure::default_of(kind, sensor.side()));
+    let grid = Grid::new(figure, sensor, Anchor::Corner, ranges).expect("the paper's positions");
+    Survey::of(&grid, Shard::WHOLE, Watch::nothing())
+}

@@ -1,0 +1,80 @@
+//! An outline of one's own: an angle plate with a drilled hole, touched like the figures that come with the program.
+//!
+//! Whatever draws its boundary can touch a sensor. The boundary is drawn with numbers of any precision: once in `f64`,
+//! and again with 32 digits where a taxel is so near to the threshold that rounding could decide.
+//!
+//! `cargo run --example outline`
+
+use std::fmt::Write;
+
+use taxel::description::descriptor::Description;
+use taxel::description::region::{main_region, regions};
+use taxel::geometry::outline::{Ellipse, Pen, Point, Polygon, Side, Solid};
+use taxel::geometry::real::Real;
+use taxel::sensor::Sensor;
+use taxel::touch::Plane;
+
+/// A plate bounded by a polygon, with a round hole; cell sides.
+struct Plate {
+    outline: Polygon,
+    hole: (f64, f64),
+    radius: f64,
+}
+
+impl Solid for Plate {
+    fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
+        self.outline.draw(pen);
+        let radius = T::decimal(self.radius);
+        let hole = Ellipse {
+            centre: Point::new(T::decimal(self.hole.0), T::decimal(self.hole.1)),
+            across: Point::new(radius, T::ZERO),
+            along: Point::new(T::ZERO, radius),
+        };
+        // The material lies around the hole, outside of its edge.
+        pen.ellipse(&hole, Side::Outside);
+    }
+}
+
+fn main() {
+    print!("{}", report());
+}
+
+/// The imprint of the plate, how much of it is covered, and what a robot would know of it.
+pub(crate) fn report() -> String {
+    let corners = [
+        (2.3, 1.6),
+        (8.3, 1.6),
+        (8.3, 7.6),
+        (14.3, 7.6),
+        (14.3, 13.6),
+        (2.3, 13.6),
+    ];
+    let plate = Plate {
+        outline: Polygon::new(corners),
+        hole: (5.3, 10.6),
+        radius: 1.8,
+    };
+    let mut plane = Plane::new(Sensor::default());
+    let imprint = plane.touch(&plate);
+    let covered: f64 = plane.coverages().iter().sum();
+
+    let mut text = format!("{imprint}\n\n");
+    let regions = regions(&imprint);
+    let _ = writeln!(
+        text,
+        "covered {covered:.4} cells, active {} taxels",
+        imprint.count()
+    );
+    if let Some(main) = main_region(&regions) {
+        let description = Description::of(&regions[main]);
+        let cg = description.cg();
+        let _ = writeln!(
+            text,
+            "pieces and holes {}, CG {:.3}, {:.3}",
+            regions.len(),
+            cg.x,
+            cg.y
+        );
+    }
+    text
+}

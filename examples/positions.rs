@@ -1,0 +1,72 @@
+//! The paper's experiment with positions: how many different imprints does one ring leave?
+//!
+//! The paper moved the ring of its Fig. 1 by hand to 56 positions, which it does not list, and reports 8 imprints among
+//! them. Here the same ring goes to a lattice of 56 positions over the same cell, to all 10,000 whose coordinates have
+//! two decimals, and from there to all cells of the sensor on which it fits.
+//!
+//! `cargo run --release --example positions`
+
+use std::fmt::Write;
+
+use taxel::figure::{Figure, Kind};
+use taxel::parameter::Parameter;
+use taxel::sensor::Sensor;
+use taxel::source::Source;
+use taxel::sweep::grid::{Anchor, Grid, Ranges};
+use taxel::sweep::plan::Shard;
+use taxel::sweep::range::DecimalRange;
+use taxel::sweep::survey::{Survey, Watch};
+
+/// What is gone through, the ranges of x0 and y0, and what the paper says of it.
+const EXPERIMENTS: [(&str, &str, &str, &str); 3] = [
+    (
+        "7 × 8 positions in a cell",
+        "1:1.98:0.16",
+        "1:1.98:0.14",
+        "8 of 56",
+    ),
+    ("all positions in a cell", "1:1.99:0.01", "1:1.99:0.01", "–"),
+    ("all positions on the sensor", "0:8:0.01", "0:8:0.01", "–"),
+];
+
+fn main() {
+    print!("{}", report());
+}
+
+/// A table in Markdown: what was gone through, what the paper claims, what is found.
+pub(crate) fn report() -> String {
+    let mut table = String::from(
+        "| positions | poses | the paper | distinct | up to shifts | up to symmetry |\n|---|---|---|---|---|---|\n",
+    );
+    for (name, x0, y0, claimed) in EXPERIMENTS {
+        let survey = sweep(x0, y0);
+        let (shifts, symmetry) = survey.atlas.distinct_classes();
+        let _ = writeln!(
+            table,
+            "| {name} | {} | {claimed} | {} | {shifts} | {symmetry} |",
+            survey.poses,
+            survey.atlas.len(),
+        );
+    }
+    table
+}
+
+fn sweep(x0: &str, y0: &str) -> Survey {
+    let sensor = Sensor::default();
+    let ring = Figure::new(Kind::Ellipse, sensor.side(), |parameter| match parameter {
+        Parameter::RadiusX | Parameter::RadiusY => Some(4.0),
+        Parameter::Thickness => Some(2.0),
+        _ => Some(0.0),
+    })
+    .expect("every value is in its range");
+    let range = |text: &str| -> DecimalRange { text.parse().expect("a range") };
+    let ranges = Ranges {
+        x0: range(x0),
+        y0: range(y0),
+        angle: range("0"),
+        ..Ranges::default()
+    };
+    let grid = Grid::new(Source::Figure(ring), sensor, Anchor::Corner, ranges)
+        .expect("ranges of figures on the sensor");
+    Survey::of(&grid, Shard::WHOLE, Watch::nothing())
+}
