@@ -52,6 +52,11 @@ fn keys() -> String {
     text.trim_end().to_owned() + "\n"
 }
 
+/// The script that `tests/scripts.rs` runs.
+fn tour() -> String {
+    format!("\n```sh\n{}```\n\n", include_str!("scripts/tour.taxel"))
+}
+
 #[test]
 fn screen_and_tables_are_those_of_the_program() {
     let text = std::fs::read_to_string(README).expect("the README is there");
@@ -59,6 +64,7 @@ fn screen_and_tables_are_those_of_the_program() {
     for (name, block) in [
         ("screen", figure()),
         ("descriptors", descriptors()),
+        ("tour", tour()),
         ("keys", keys()),
         ("positions", positions::report()),
     ] {
