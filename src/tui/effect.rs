@@ -118,11 +118,12 @@ impl World {
             }
             Request::Store(shape, expected) => match self.library.save(&shape, expected) {
                 Ok(stamp) => Answer::Stored(shape.name.to_string(), stamp),
-                Err(
-                    error @ (LibraryError::Exists { stamp, .. }
-                    | LibraryError::Changed { stamp, .. }),
-                ) => Answer::Differs(shape, stamp, error.to_string()),
-                Err(error) => Answer::Failed(error.to_string()),
+                Err(error) => match error {
+                    LibraryError::Exists { stamp, .. } | LibraryError::Changed { stamp, .. } => {
+                        Answer::Differs(shape, stamp, error.to_string())
+                    }
+                    _ => Answer::Failed(error.to_string()),
+                },
             },
             Request::Remove(name) => done(self.library.delete(&name), Answer::Removed),
             Request::Restore(name) => done(self.library.restore(&name), Answer::Restored),
