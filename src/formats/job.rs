@@ -37,7 +37,8 @@ pub enum JobError {
 }
 
 impl Job {
-    /// Reads a line; the sensor is `sensor` but for what the line says of its own; pictures by name are looked up.
+    /// Reads a line; the sensor is `sensor` but for what the line says of its own; pictures by name are looked up. A
+    /// whole matrix is not touched, and has no sensor.
     ///
     /// # Errors
     /// What is wrong with the line, in one sentence.
@@ -63,6 +64,7 @@ impl Job {
                 ..
             } => {
                 values.only("imprint", &[])?;
+                record.no_sensor("imprint")?;
                 let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
                 Ok(Self::Describe(content.imprint("imprint", &no_name)?))
             }

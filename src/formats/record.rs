@@ -220,6 +220,18 @@ impl Record<'_> {
             _ => Err(RecordError::Which("figure, picture, imprint")),
         }
     }
+
+    /// Refuses a sensor where it would change nothing.
+    pub(super) fn no_sensor(&self, thing: &'static str) -> Result<(), RecordError> {
+        if self.sensor.is_none() {
+            return Ok(());
+        }
+        Err(RecordError::Foreign {
+            key: "sensor",
+            thing,
+            expected: String::new(),
+        })
+    }
 }
 
 impl<'de: 'a, 'a> Deserialize<'de> for Record<'a> {

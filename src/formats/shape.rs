@@ -110,7 +110,10 @@ impl Shape {
         }
         let source = file
             .source
-            .map(|source| source.source(sensor.side(), &no_name))
+            .map(|source| {
+                source.no_sensor("source")?;
+                source.source(sensor.side(), &no_name)
+            })
             .transpose();
         Ok(Self {
             name,

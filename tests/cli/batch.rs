@@ -110,6 +110,19 @@ fn the_sensor_of_a_batch_is_set_by_flags_and_lines() {
 }
 
 #[test]
+fn a_whole_matrix_is_not_touched_and_takes_no_sensor() {
+    let run = taxel(
+        "batch",
+        r##"{"imprint":["#"],"sensor":{"columns":2,"rows":2}}"##,
+    );
+    assert_eq!(
+        run.stdout,
+        "{\"error\":\"line 1: sensor: not a value of an imprint\"}\n"
+    );
+    assert_eq!(run.status, Some(1));
+}
+
+#[test]
 fn no_input_is_no_answer() {
     for input in ["", "\n", " \r\n\t\n"] {
         let run = taxel("batch", input);
