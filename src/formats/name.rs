@@ -63,9 +63,25 @@ impl Name {
     }
 
     /// Whether two names are the same on a file system that ignores case.
+    ///
+    /// ```
+    /// use taxel::formats::name::Name;
+    /// let name = Name::new("ΟΔΟΣ.2")?;
+    /// assert!(name.same("οδοσ.2") && name.same("οδος.2") && !name.same("οδος"));
+    /// # Ok::<(), taxel::formats::name::NameError>(())
+    /// ```
     pub fn same(&self, other: &str) -> bool {
-        self.0.to_lowercase() == other.to_lowercase()
+        folded(&self.0) == folded(other)
     }
+}
+
+/// A text without the difference of upper and lower case; two texts with one folded form are the same name.
+///
+/// By way of upper case, since some letters have two lower ones (`Σ` has `σ` and `ς`), and a character at a time, since
+/// lower case of a whole text chooses between these by the letters around. `ß` is `ss`.
+pub fn folded(text: &str) -> String {
+    let upper = text.chars().flat_map(char::to_uppercase);
+    upper.flat_map(char::to_lowercase).collect()
 }
 
 impl fmt::Display for Name {

@@ -9,7 +9,7 @@ use super::error::LibraryError;
 use super::file::{self, stamp, system};
 use super::lock::{self, Lock};
 use super::shipped;
-use crate::formats::name::Name;
+use crate::formats::name::{Name, folded};
 use crate::formats::shape::Shape;
 
 /// Where a shape comes from.
@@ -88,13 +88,10 @@ impl Library {
             origin: Origin::Own,
         };
         let mut entries: Vec<Entry> = self.own_names()?.into_iter().map(own).collect();
-        entries.sort_by_cached_key(|entry| (entry.name.to_lowercase(), entry.name.clone()));
-        let key = |entry: &Entry| entry.name.to_lowercase();
+        entries.sort_by_cached_key(|entry| (folded(&entry.name), entry.name.clone()));
+        let key = |entry: &Entry| folded(&entry.name);
         let shipped: Vec<Entry> = shipped::names()
-            .filter(|name| {
-                let name = name.to_lowercase();
-                entries.binary_search_by_key(&name, key).is_err()
-            })
+            .filter(|name| entries.binary_search_by_key(&folded(name), key).is_err())
             .map(|name| Entry {
                 name: name.to_owned(),
                 origin: Origin::Shipped,

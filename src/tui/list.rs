@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use tui_input::{Input, InputRequest};
 
 use super::purpose::Purpose;
-use crate::formats::name::LONGEST;
+use crate::formats::name::{LONGEST, folded};
 use crate::library::store::{Entry, Loaded, Origin};
 
 /// So many shapes around the selected one are read at once: more than any screen shows.
@@ -97,8 +97,8 @@ impl ListDialog {
     }
 
     fn sift(&mut self) {
-        let wanted = self.filter().to_lowercase();
-        let fits = |entry: &Entry| wanted.is_empty() || entry.name.to_lowercase().contains(&wanted);
+        let wanted = folded(self.filter());
+        let fits = |entry: &Entry| wanted.is_empty() || folded(&entry.name).contains(&wanted);
         self.matching = (0..self.entries.len())
             .filter(|&index| fits(&self.entries[index]))
             .collect();

@@ -86,6 +86,11 @@ fn upper_and_lower_case_are_one_name() {
     assert_eq!(deleted, "Washing Line");
     let restored = scratch.library.restore("WASHING LINE").expect("restored");
     assert_eq!(restored, "Washing Line");
+    // A letter with two lower ones is one letter all the same.
+    scratch.save("ΟΔΟΣ", 5);
+    for name in ["οδος", "οδοσ", "Οδος"] {
+        assert_eq!(scratch.number(name), Some(5), "{name}");
+    }
     // So it is for the shapes that come with the program.
     assert_eq!(
         refusal(
