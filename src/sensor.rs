@@ -5,6 +5,14 @@ use crate::parameter::{Parameter, ParameterError};
 /// The largest number of columns, and of rows.
 pub const MAX_SIDE: u8 = 64;
 
+/// The parameters of a sensor, in the order of forms.
+pub const SENSOR_PARAMETERS: [Parameter; 4] = [
+    Parameter::Columns,
+    Parameter::Rows,
+    Parameter::Threshold,
+    Parameter::Pitch,
+];
+
 /// A sensor. Its values are always in range: columns and rows 1 to 64, threshold in (0, 1], pitch above 0 mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
@@ -37,7 +45,7 @@ impl Sensor {
             .with(Parameter::Rows, rows)
     }
 
-    /// The same sensor with one of [`Parameter::Columns`], `Rows`, `Threshold`, `Pitch` set; unchanged by any other.
+    /// The same sensor with one of [`SENSOR_PARAMETERS`] set; unchanged by any other.
     ///
     /// # Errors
     /// Where the value is out of the parameter's range.
@@ -56,6 +64,17 @@ impl Sensor {
             _ => {}
         }
         Ok(self)
+    }
+
+    /// One of its values; none of a parameter that it does not have.
+    pub fn get(&self, parameter: Parameter) -> Option<f64> {
+        match parameter {
+            Parameter::Columns => Some(f64::from(self.columns)),
+            Parameter::Rows => Some(f64::from(self.rows)),
+            Parameter::Threshold => Some(self.threshold),
+            Parameter::Pitch => Some(self.pitch_mm),
+            _ => None,
+        }
     }
 
     /// Number of columns.

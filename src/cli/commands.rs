@@ -18,18 +18,11 @@ use crate::figure::Kind;
 use crate::formats::name::{Name, NameError};
 use crate::parameter::Parameter;
 use crate::picture::PICTURE_PARAMETERS;
+use crate::sensor::SENSOR_PARAMETERS;
 use crate::sweep::grid::Ranges;
 use crate::sweep::plan::{Shard, ShardError};
 use crate::sweep::range::{DecimalRange, RangeError};
 use crate::tui::script::command;
-
-/// The parameters of a sensor, in the order of helps.
-const SENSOR: [Parameter; 4] = [
-    Parameter::Columns,
-    Parameter::Rows,
-    Parameter::Threshold,
-    Parameter::Pitch,
-];
 
 /// All commands.
 pub(super) fn all() -> Command {
@@ -78,7 +71,7 @@ fn picture() -> Command {
             "Shape of the library, or file; '-' for standard input",
         ))
         .args(PICTURE_PARAMETERS.map(|parameter| own(parameter).help_heading("Picture")))
-        .args(SENSOR.map(|parameter| own(parameter).help_heading("Sensor")))
+        .args(SENSOR_PARAMETERS.map(|parameter| own(parameter).help_heading("Sensor")))
         .args(saving())
         .arg(json())
 }
@@ -101,11 +94,7 @@ fn batch() -> Command {
     Command::new("batch")
         .about("Answer poses, one JSON object a line, on standard input")
         .after_help(BATCH_EXAMPLES)
-        .args(of_sensor(&[
-            Parameter::Columns,
-            Parameter::Rows,
-            Parameter::Threshold,
-        ]))
+        .args(sensor_of_imprints())
 }
 
 fn sweep() -> Command {
@@ -169,11 +158,7 @@ fn sweep() -> Command {
         .args(sizes.map(|parameter| flags::arg(parameter).help_heading("Figure")))
         .args(ranges)
         .arg(anchor)
-        .args(of_sensor(&[
-            Parameter::Columns,
-            Parameter::Rows,
-            Parameter::Threshold,
-        ]))
+        .args(sensor_of_imprints())
         .args([atlas(), poses, jobs, shard, json(), quiet()])
 }
 
@@ -313,7 +298,14 @@ fn parse_size(text: &str) -> Result<(u16, u16), String> {
 }
 
 fn sensor() -> Vec<Arg> {
-    of_sensor(&SENSOR)
+    of_sensor(&SENSOR_PARAMETERS)
+}
+
+/// Without the pitch, where no length is shown.
+fn sensor_of_imprints() -> Vec<Arg> {
+    let own = SENSOR_PARAMETERS.into_iter();
+    let own = own.filter(|&parameter| parameter != Parameter::Pitch);
+    of_sensor(&own.collect::<Vec<_>>())
 }
 
 fn of_sensor(parameters: &[Parameter]) -> Vec<Arg> {

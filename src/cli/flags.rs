@@ -6,7 +6,7 @@ use super::failure::Failure;
 use crate::figure::{Figure, Kind};
 use crate::parameter::{PARAMETERS, Parameter, ParameterError, Unit};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
-use crate::sensor::{MAX_SIDE, Sensor};
+use crate::sensor::{MAX_SIDE, SENSOR_PARAMETERS, Sensor};
 
 /// Help texts are broken so that they fit 80 columns beside the flags.
 const HELP_WIDTH: usize = 52;
@@ -167,13 +167,7 @@ impl Given {
 
     /// A sensor with what was given.
     pub(super) fn sensor(&self, sensor: Sensor) -> Result<Sensor, Failure> {
-        let own = [
-            Parameter::Columns,
-            Parameter::Rows,
-            Parameter::Threshold,
-            Parameter::Pitch,
-        ];
-        self.fold(&own, sensor, Sensor::with)
+        self.fold(&SENSOR_PARAMETERS, sensor, Sensor::with)
     }
 
     /// The pitch in mm, where one was given.

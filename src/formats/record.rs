@@ -15,7 +15,7 @@ use crate::figure::{Figure, Kind};
 use crate::imprint::{Imprint, ImprintError};
 use crate::parameter::{PARAMETERS, Parameter, ParameterError};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
-use crate::sensor::Sensor;
+use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::source::Source;
 
 /// Why an object has no meaning, though it is JSON and its keys are known.
@@ -139,14 +139,9 @@ impl Values {
     /// # Errors
     /// The first value that is out of range or not of a sensor.
     pub fn sensor(&self, base: Sensor) -> Result<Sensor, RecordError> {
-        let own = [
-            Parameter::Columns,
-            Parameter::Rows,
-            Parameter::Threshold,
-            Parameter::Pitch,
-        ];
-        self.only("sensor", &own)?;
-        own.into_iter()
+        self.only("sensor", &SENSOR_PARAMETERS)?;
+        SENSOR_PARAMETERS
+            .into_iter()
             .try_fold(base, |sensor, parameter| match self.get(parameter) {
                 Some(value) => Ok(sensor.with(parameter, value)?),
                 None => Ok(sensor),

@@ -7,7 +7,7 @@ use crate::figure::{Figure, Kind};
 use crate::imprint::Imprint;
 use crate::parameter::{Parameter, ParameterError};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
-use crate::sensor::Sensor;
+use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::source::Source;
 
 /// What a form is about.
@@ -122,12 +122,7 @@ impl FormDialog {
         match self.subject {
             Subject::Figure(kind) => kind.parameters().collect(),
             Subject::Picture(..) => PICTURE_PARAMETERS.to_vec(),
-            Subject::Sensor => vec![
-                Parameter::Columns,
-                Parameter::Rows,
-                Parameter::Threshold,
-                Parameter::Pitch,
-            ],
+            Subject::Sensor => SENSOR_PARAMETERS.to_vec(),
         }
     }
 
@@ -153,18 +148,9 @@ impl FormDialog {
     }
 
     fn new_field(&self, parameter: Parameter, side: u8) -> Field {
-        let sensor = self.shown.sensor;
-        let own = match parameter {
-            Parameter::Columns => Some(f64::from(sensor.columns())),
-            Parameter::Rows => Some(f64::from(sensor.rows())),
-            Parameter::Threshold => Some(sensor.threshold()),
-            Parameter::Pitch => Some(sensor.pitch_mm()),
-            of_source => self
-                .shown
-                .source
-                .as_ref()
-                .and_then(|source| source.get(of_source)),
-        };
+        let of_source = |source: &Source| source.get(parameter);
+        let own = self.shown.source.as_ref().and_then(of_source);
+        let own = own.or_else(|| self.shown.sensor.get(parameter));
         let optional = parameter == Parameter::Thickness;
         let value = if optional {
             own
