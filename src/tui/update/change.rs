@@ -128,9 +128,9 @@ pub(super) fn zoom(app: &mut App, direction: i8) {
     );
 }
 
-/// Steps of a hundredth shall lead from decimal to decimal, not drift by roundings.
+/// Steps of a hundredth shall lead from decimal to decimal, not drift by roundings; nor to a zero with a minus.
 fn tidy(value: f64) -> f64 {
-    (value * 1e6).round() / 1e6
+    (value * 1e6).round() / 1e6 + 0.0
 }
 
 fn set(app: &mut App, source: Source, values: &[(Parameter, f64)]) {
@@ -143,5 +143,18 @@ fn set(app: &mut App, source: Source, values: &[(Parameter, f64)]) {
     match moved {
         Ok(source) => replace(app, Document::touched(sensor, source)),
         Err(error) => refuse(app, error.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::tidy;
+
+    #[test]
+    fn steps_lead_to_zero_and_not_to_minus_zero() {
+        let there = [0.3, -0.1, -0.1, -0.1].iter().sum::<f64>();
+        assert!(there < 0.0);
+        assert_eq!(tidy(there).to_string(), "0");
+        assert_eq!(tidy(0.1 + 0.2).to_string(), "0.3");
     }
 }
