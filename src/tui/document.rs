@@ -173,7 +173,7 @@ pub struct StoredName {
 }
 
 /// A document and the number of its origin.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 struct State {
     document: Document,
     origin: usize,
@@ -247,7 +247,14 @@ impl History {
         }
     }
 
+    /// Amended until it was as before, a change is none, and leaves no trace either.
+    fn drop_empty_step(&mut self) {
+        let present = &self.present;
+        self.past.pop_if(|past| *past == *present);
+    }
+
     fn replace(&mut self, state: State) {
+        self.drop_empty_step();
         self.past.push(std::mem::replace(&mut self.present, state));
         self.future.clear();
     }
@@ -260,6 +267,7 @@ impl History {
 
     /// Back by one change; false where there is none.
     pub fn undo(&mut self) -> bool {
+        self.drop_empty_step();
         let Some(earlier) = self.past.pop() else {
             return false;
         };
@@ -275,5 +283,33 @@ impl History {
         };
         self.past.push(std::mem::replace(&mut self.present, later));
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_change_that_is_amended_away_is_none() {
+        let empty = Document::empty(Sensor::default());
+        let mut drawn = empty.clone();
+        drawn.turned.toggle(3, 4);
+        let mut history = History::new(empty.clone());
+        history.push(drawn.clone());
+        history.amend(empty.clone());
+        assert!(!history.undo(), "there is nothing to take back");
+        // Nor does it stand between others, though the change may go on first.
+        history.push(drawn.clone());
+        history.amend(empty.clone());
+        history.amend(drawn.clone());
+        drawn.turned.toggle(5, 6);
+        history.push(drawn.clone());
+        history.amend(empty.clone());
+        history.push(drawn);
+        assert!(history.undo() && history.present() == &empty);
+        assert!(history.undo() && history.present().turned.count() == 1);
+        assert!(history.undo() && history.present() == &empty);
+        assert!(!history.undo());
     }
 }
