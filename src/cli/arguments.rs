@@ -244,7 +244,7 @@ fn sweep(matches: &ArgMatches, command: &mut clap::Command) -> Result<Sweep, Fai
     let what = if let Some(picture) = matches.get_one::<OsString>("picture") {
         let size = flags::figure_parameters().find(|&parameter| given.has(parameter));
         if let Some(size) = size {
-            let message = format!("'--{}' does not belong to a picture", flags::flag(size));
+            let message = format!("'--{}' does not belong to a picture", size.flag());
             return Err(misused(command, "sweep", &message));
         }
         Swept::Picture(picture.clone(), given)
@@ -299,12 +299,10 @@ fn source(
     let kind = kind.unwrap_or(Kind::Ellipse);
     let given = Given::of(matches);
     if let Some(parameter) = given.foreign(kind) {
-        let own = kind
-            .parameters()
-            .map(|own| format!("--{}", flags::flag(own)));
+        let own = kind.parameters().map(|own| format!("--{}", own.flag()));
         let message = format!(
             "'--{}' does not belong to '{}', which takes {}",
-            flags::flag(parameter),
+            parameter.flag(),
             kind.name(),
             commands::list(own, "and")
         );

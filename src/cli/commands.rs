@@ -117,7 +117,7 @@ fn sweep() -> Command {
             .all(|(own, _)| own != parameter)
     });
     let ranges = Ranges::default().rows().map(|(parameter, default)| {
-        let (row, flag) = (parameter.row(), flags::flag(parameter));
+        let (row, flag) = (parameter.row(), parameter.flag());
         let help = format!("{}; default {default}", flags::capitalised(row.meaning));
         Arg::new(format!("range_{}", row.key))
             .long(flag)

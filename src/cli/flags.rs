@@ -4,7 +4,7 @@ use clap::{Arg, ArgMatches};
 
 use super::failure::Failure;
 use crate::figure::{Figure, Kind};
-use crate::parameter::{PARAMETERS, Parameter, ParameterError, Unit};
+use crate::parameter::{PARAMETERS, Parameter, ParameterError, Unit, number};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
 use crate::sensor::{MAX_SIDE, SENSOR_PARAMETERS, Sensor};
 
@@ -30,15 +30,6 @@ fn kinds_with(parameter: Parameter) -> impl Iterator<Item = Kind> {
     Kind::ALL
         .into_iter()
         .filter(move |kind| kind.parameters().any(|own| own == parameter))
-}
-
-/// The name of a parameter's flag, without the dashes.
-pub(super) fn flag(parameter: Parameter) -> String {
-    match parameter {
-        // The key carries the unit, the flag's value name does.
-        Parameter::Pitch => "pitch".to_owned(),
-        _ => parameter.row().key.replace('_', "-"),
-    }
 }
 
 /// The flag of a parameter; its range and default are those of the default sensor.
@@ -73,7 +64,7 @@ fn arg_with(parameter: Parameter, default: &str) -> Arg {
     let meaning = capitalised(row.meaning);
     let help = format!("{meaning}{also} ({unit}{range}{default})");
     Arg::new(row.key)
-        .long(flag(parameter))
+        .long(parameter.flag())
         .value_name(match row.unit {
             Unit::Ratio => "NUMBER".to_owned(),
             unit => unit.symbol().to_ascii_uppercase(),
@@ -81,18 +72,13 @@ fn arg_with(parameter: Parameter, default: &str) -> Arg {
         .help(wrapped(&help, HELP_WIDTH))
         // A minus sign begins a number here, not a flag.
         .allow_hyphen_values(true)
-        .value_parser(number)
+        .value_parser(parse)
 }
 
-fn number(text: &str) -> Result<Number, &'static str> {
-    let text = text.trim();
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(Number {
-            text: text.to_owned(),
-            value,
-        }),
-        _ => Err("not a number"),
-    }
+fn parse(text: &str) -> Result<Number, &'static str> {
+    let value = number::read(text).ok_or("not a number")?;
+    let text = text.trim().to_owned();
+    Ok(Number { text, value })
 }
 
 /// As clap writes its own help texts.
@@ -138,7 +124,7 @@ impl Given {
 
     /// The name of the first flag.
     pub(super) fn first(&self) -> Option<String> {
-        self.0.first().map(|(parameter, _)| flag(*parameter))
+        self.0.first().map(|(parameter, _)| parameter.flag())
     }
 
     /// Whether a value was given.
@@ -156,7 +142,7 @@ impl Given {
         for (parameter, number) in &self.0 {
             if own.contains(parameter) {
                 thing = with(thing, *parameter, number.value).map_err(|error| Failure::Range {
-                    flag: flag(*parameter),
+                    flag: parameter.flag(),
                     text: number.text.clone(),
                     expected: error.expected(),
                 })?;

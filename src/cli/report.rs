@@ -12,6 +12,7 @@ use crate::description::region::{Kind, regions};
 use crate::formats::answer::Answer;
 use crate::formats::value;
 use crate::imprint::Imprint;
+use crate::parameter::number::short;
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::touch::reaches_beyond;
@@ -52,9 +53,9 @@ pub(super) fn made(source: &Source, sensor: &Sensor) -> Vec<String> {
 
 /// The size of the matrix, of its cells where a pitch is known, the sensor's threshold, and the active taxels.
 pub(super) fn size(imprint: &Imprint, sensor: Option<&Sensor>, pitch: Option<f64>) -> String {
-    let cells = pitch.map_or(String::new(), |pitch| format!(" of {pitch} mm"));
+    let cells = pitch.map_or(String::new(), |pitch| format!(" of {} mm", short(pitch)));
     let threshold = sensor.map_or(String::new(), |sensor| {
-        format!(", threshold {}", sensor.threshold())
+        format!(", threshold {}", short(sensor.threshold()))
     });
     let (columns, rows, na) = (imprint.columns(), imprint.rows(), imprint.count());
     format!("{columns} × {rows} taxels{cells}{threshold}, NA {na} in all")

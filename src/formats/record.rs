@@ -289,7 +289,7 @@ impl Values {
                 shortened(key)
             )));
         };
-        let Number(number) = map.next_value().map_err(|error| {
+        let number = map.next_value::<f64>().map_err(|error| {
             A::Error::custom(format_args!("{key}: {}", without_place(&error.to_string())))
         })?;
         once(PARAMETERS[index].key, &mut self.0[index], number)
@@ -335,15 +335,6 @@ impl<'de> Deserialize<'de> for Text<'de> {
             }
         }
         deserializer.deserialize_str(TextVisitor)
-    }
-}
-
-/// A number, however it is written.
-struct Number(f64);
-
-impl<'de> Deserialize<'de> for Number {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        f64::deserialize(deserializer).map(Self)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Numbers in and out: range checks, reading, showing, stepping.
 
 use super::error::ParameterError;
+use super::number;
 use super::range::Range;
 use super::table::{Decimals, LENGTH, PARAMETERS, Parameter, Row, Unit};
 
@@ -71,12 +72,7 @@ impl Parameter {
     }
 
     fn number(self, text: &str) -> Result<f64, ParameterError> {
-        let number = text
-            .trim()
-            .parse::<f64>()
-            .ok()
-            .filter(|number| number.is_finite());
-        number.ok_or_else(|| ParameterError::Number {
+        number::read(text).ok_or_else(|| ParameterError::Number {
             parameter: self,
             text: text.to_owned(),
         })
@@ -129,11 +125,11 @@ impl Parameter {
         }
     }
 
-    /// The number as a form shows it: with the form's decimals, or with all of its own where it has more.
+    /// The number as a form shows it: with the form's decimals, or as [`number::short`] does where it has more.
     pub fn format(self, value: f64) -> String {
         let usual = format!("{value:.*}", self.decimals_at(value));
         let exact = usual.parse::<f64>().is_ok_and(|read| read == value);
-        if exact { usual } else { format!("{value}") }
+        if exact { usual } else { number::short(value) }
     }
 
     /// The next number that a form takes, `direction` last decimals further; angles go round, others stop at the ends.

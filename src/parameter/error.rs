@@ -1,5 +1,6 @@
 //! Why a number was refused: one text for forms, flags and files.
 
+use super::number::short;
 use super::range::Range;
 use super::table::{Parameter, Unit};
 
@@ -16,7 +17,7 @@ pub enum ParameterError {
         text: String,
     },
     /// A number outside of the allowed range.
-    #[error("{key}: {value} is out of range, expected {range}{whole}", key = parameter.row().key, whole = whole(*parameter))]
+    #[error("{key}: {value} is out of range, expected {range}{whole}", key = parameter.row().key, value = short(*value), whole = whole(*parameter))]
     Range {
         /// What was to be set.
         parameter: Parameter,
@@ -26,7 +27,7 @@ pub enum ParameterError {
         range: Range,
     },
     /// More decimals than a form takes.
-    #[error("{key}: {value} has too many decimals, expected {}", decimals(*allowed), key = parameter.row().key)]
+    #[error("{key}: {value} has too many decimals, expected {}", decimals(*allowed), key = parameter.row().key, value = short(*value))]
     Decimals {
         /// What was to be set.
         parameter: Parameter,

@@ -5,9 +5,13 @@
 //! decimals, 10.0–16.0 with one, whole degrees 0–359) for a sensor whose larger side is 16, and grow and shrink with
 //! that side (convention of this project). The decimals bind forms only: files and flags take any.
 
+pub mod number;
+
 mod range;
 
 mod table;
+
+mod flag;
 
 mod error;
 

@@ -9,7 +9,7 @@ use super::message::{Copied, Message};
 use crate::figure::{Figure, Kind};
 use crate::formats::name::Name;
 use crate::library::store::{Expected, Origin};
-use crate::parameter::{PARAMETERS, Parameter};
+use crate::parameter::Parameter;
 use crate::source::Source;
 
 /// What a line asks for.
@@ -89,23 +89,12 @@ fn pairs(words: &[&str], side: u8) -> Result<Vec<(Parameter, f64)>, String> {
         let key = flag
             .strip_prefix("--")
             .ok_or_else(|| format!("expected a flag like --side, found {flag}"))?;
-        let key = if key == "pitch" {
-            "pitch_mm".to_owned()
-        } else {
-            key.replace('-', "_")
-        };
-        let row = PARAMETERS
-            .iter()
-            .find(|row| row.key == key)
-            .ok_or_else(|| format!("{flag} is unknown"))?;
+        let parameter = Parameter::from_flag(key).ok_or_else(|| format!("{flag} is unknown"))?;
         let text = pair
             .get(1)
             .ok_or_else(|| format!("{flag} needs a number"))?;
-        let value = row
-            .parameter
-            .read(text, side)
-            .map_err(|error| error.to_string())?;
-        Ok((row.parameter, value))
+        let value = parameter.read(text, side);
+        Ok((parameter, value.map_err(|error| error.to_string())?))
     };
     words.chunks(2).map(pair).collect()
 }

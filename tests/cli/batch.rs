@@ -15,7 +15,7 @@ const POINT_ANSWER: &str = concat!(
 
 #[test]
 fn bad_lines_are_answered_in_their_places() {
-    let lines: [&[u8]; 13] = [
+    let lines: [&[u8]; 14] = [
         POINT.as_bytes(),
         b"nonsense",
         b"  \r",
@@ -28,6 +28,7 @@ fn bad_lines_are_answered_in_their_places() {
         b"{\"picture\":[\"#\"],\"x0\":0,\"y0\":0,\"angle\":0,\"zoom_x\":1,\"zoom_y\":1,\"sensor\":{\"columns\":1,\"rows\":1}}\r",
         b"{\"imprint\":[\"#\",\"\"]}",
         b"{\"imprint\":[\"#\"],\"imprint\":[\"#\"]}",
+        b"{\"figure\":\"hexagon\",\"side\":1e300,\"x0\":2,\"y0\":2,\"angle\":0}",
         POINT.as_bytes(),
     ];
     let run = taxel("batch", lines.join(&b'\n'));
@@ -45,10 +46,11 @@ fn bad_lines_are_answered_in_their_places() {
         POINT_ANSWER.to_owned(),
         error("11: imprint: row 2 has 0 characters, expected 1 to 64"),
         error("12: column 33: duplicate field `imprint`"),
+        error("13: side: 1e300 is out of range, expected above 0, up to 16"),
         POINT_ANSWER.to_owned(),
     ];
     assert_eq!(run.stdout, expected.concat());
-    assert_eq!(run.stderr, "error: 8 of 11 lines could not be answered\n");
+    assert_eq!(run.stderr, "error: 9 of 12 lines could not be answered\n");
     assert_eq!(run.status, Some(1));
 }
 
