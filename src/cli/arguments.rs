@@ -42,8 +42,8 @@ pub(super) enum Request {
     Figure(Box<Source>, Sensor, Form, Option<Saving>),
     /// To touch a stored shape, moved as the values say.
     Picture(OsString, Given, Form, Option<Saving>),
-    /// To describe what a file holds.
-    Describe(Place, Form),
+    /// To describe a stored shape, or what a file holds.
+    Describe(OsString, Form),
     /// To answer lines.
     Batch(Sensor),
     /// To go through a grid.
@@ -156,13 +156,7 @@ pub(super) fn read(arguments: Vec<OsString>) -> Result<Asked, Failure> {
     let request = match name {
         "figure" => figure(own, &mut command)?,
         "picture" => Request::Picture(what(own), Given::of(own), form(own)?, saving(own)),
-        "describe" => {
-            let file = own
-                .get_one::<PathBuf>("file")
-                .filter(|file| file.as_os_str() != "-");
-            let place = file.map_or(Place::Standard, |file| Place::File(file.clone()));
-            Request::Describe(place, form(own)?)
-        }
+        "describe" => Request::Describe(what(own), form(own)?),
         "library" => Request::Library(chore(own)?),
         "script" => Request::Script(script(own)),
         "sweep" => Request::Sweep(Box::new(sweep(own, &mut command)?)),

@@ -77,15 +77,12 @@ fn picture() -> Command {
 }
 
 fn describe() -> Command {
-    let file = Arg::new("file")
-        .value_name("FILE")
-        .required(true)
-        .value_parser(value_parser!(PathBuf))
-        .help("Imprint or stored shape to read; '-' for standard input");
     Command::new("describe")
         .about("Describe an imprint or a stored shape")
         .after_help(DESCRIBE_EXAMPLES)
-        .arg(file)
+        .arg(what(
+            "Shape of the library, or file; '-' for standard input",
+        ))
         .args(of_sensor(&[Parameter::Pitch]))
         .arg(json())
 }

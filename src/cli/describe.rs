@@ -1,22 +1,11 @@
-//! `taxel describe`: what a file holds, shown.
+//! `taxel describe`: what is stored under a name or in a file, shown.
 
 use super::arguments::Form;
-use super::failure::Failure;
-use super::input::{self, Content, Place};
+use super::input::Content;
 use super::locale::Charset;
 use super::report;
 
-/// The imprint at a place with what describes it. A stored shape says what made it; its pitch counts only where
-/// none is given.
-pub(super) fn describe(place: &Place, form: Form, charset: Charset) -> Result<String, Failure> {
-    let content = input::read(place).map_err(|error| Failure::Input {
-        name: place.name(),
-        error,
-    })?;
-    Ok(self::content(&content, form, charset))
-}
-
-/// The same for what was read elsewhere.
+/// The imprint with what describes it. A stored shape says what made it; its pitch counts only where none is given.
 pub(super) fn content(content: &Content, form: Form, charset: Charset) -> String {
     let imprint = match content {
         Content::Text(imprint) => imprint,

@@ -42,11 +42,13 @@ Examples:
 
 pub(super) const DESCRIBE_EXAMPLES: &str = "\
 An imprint is text, a line a row, '#' for an active taxel and '.' for an
-inactive one, at most 64 x 64. A stored shape is a JSON file.
+inactive one, at most 64 x 64. A stored shape is a JSON file. A name of the
+library goes before a file of the same name.
 
 Examples:
+  taxel describe washer
   taxel describe imprint.txt --pitch 2.5
-  taxel describe washer.json --json
+  taxel describe ./washer.json --json
   printf '.##.\\n#..#\\n.##.\\n' | taxel describe -";
 
 pub(super) const BATCH_EXAMPLES: &str = r###"Each line is a JSON object:

@@ -1,4 +1,4 @@
-//! What `taxel describe` reads: an imprint as text or a stored shape, from a file or from standard input.
+//! What the commands read: an imprint as text or a stored shape, from a file or from standard input.
 
 use std::fs::File;
 use std::io::{self, Read};

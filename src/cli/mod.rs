@@ -89,7 +89,9 @@ fn perform(arguments: Vec<OsString>, charset: Charset) -> Result<u8, Failure> {
                 picture, sensor, form, saving, &shelf, charset,
             )?)?;
         }
-        Request::Describe(place, form) => print(&describe::describe(&place, form, charset)?)?,
+        Request::Describe(what, form) => {
+            print(&describe::content(&shelf.find(&what)?, form, charset))?;
+        }
         Request::Batch(sensor) => {
             let by_name = |name: &str| shelf.imprint(name).map_err(|error| error.to_string());
             batch::answer_lines(sensor, &by_name, io::stdin().lock(), io::stdout().lock())?;

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::library::Shelf;
 use super::{Run, refused, run_in, taxel};
 
 /// A shape whose source reaches beyond its sensor, on cells of 2.5 mm.
@@ -188,9 +189,22 @@ fn text_from_files_does_not_steer_the_terminal() {
 }
 
 #[test]
+fn a_shape_is_described_by_its_name_too() {
+    let shelf = Shelf::new();
+    let shown = shelf.does("library|show|washer|--pitch|2", "");
+    assert_eq!(shelf.does("describe|Washer|--pitch|2", ""), shown);
+    shelf.does("library|save|ring|-", ".##.\n#..#\n.##.\n");
+    let json = shelf.does("describe|ring|--json", "");
+    assert!(json.starts_with(r##"{"imprint":[".##.","#..#",".##."],"na":6,"##));
+}
+
+#[test]
 fn a_file_that_cannot_be_read_is_named() {
-    let run = taxel("describe no-such-file", "");
-    let message = "no-such-file: cannot read: No such file or directory (os error 2)";
+    let run = taxel("describe no-such-shape", "");
+    let message = "no shape is called \"no-such-shape\", and no file either";
+    refused(&run, 1, message);
+    let run = taxel("describe no/such-file", "");
+    let message = "no/such-file: cannot read: No such file or directory (os error 2)";
     refused(&run, 1, message);
     refused(
         &taxel("describe .", ""),
