@@ -1,10 +1,10 @@
 //! The command line: `taxel figure`, `picture`, `describe`, `batch`, `sweep`, `merge`, `library`, and the screen where
 //! no command is given.
 //!
-//! Answers go to standard output, messages to standard error, one line each and starting with `error:`. The exit
-//! status is 0 where all was done, 1 where the input was wrong, 2 where the command was, 3 where the program ended before
-//! its script. A pipe that is closed at its other end is no error: the program stops there. Nothing ever writes an
-//! escape code, but for the bar of a sweep on a terminal.
+//! Answers go to standard output, messages to standard error, one line each, and what went wrong starts with `error:`.
+//! The exit status is 0 where all was done, 1 where the input was wrong, 2 where the command was, 3 where the program
+//! ended before its script. A pipe that is closed at its other end is no error: the program stops there. Nothing ever
+//! writes an escape code, but for the bar of a sweep on a terminal.
 
 mod locale;
 
@@ -47,6 +47,7 @@ use arguments::{Asked, Chore, Request, Swept};
 use failure::Failure;
 use locale::Charset;
 use shelf::Shelf;
+use touch::Touched;
 
 use crate::sweep::grid::Grid;
 
@@ -79,15 +80,13 @@ fn perform(arguments: Vec<OsString>, charset: Charset) -> Result<u8, Failure> {
             result?;
         }
         Request::Figure(figure, sensor, form, saving) => {
-            print(&touch::touch(
-                *figure, sensor, form, saving, &shelf, charset,
-            )?)?;
+            let touched = touch::touch(*figure, sensor, form, saving, &shelf, charset)?;
+            answer(&touched, charset)?;
         }
         Request::Picture(what, given, form, saving) => {
             let (picture, sensor) = touch::picture(&what, &given, &shelf)?;
-            print(&touch::touch(
-                picture, sensor, form, saving, &shelf, charset,
-            )?)?;
+            let touched = touch::touch(picture, sensor, form, saving, &shelf, charset)?;
+            answer(&touched, charset)?;
         }
         Request::Describe(what, form) => {
             print(&describe::content(&shelf.find(&what)?, form, charset))?;
@@ -132,6 +131,15 @@ fn chore(chore: Chore, shelf: &Shelf, charset: Charset) -> Result<(), Failure> {
             }
         }
     }
+}
+
+fn answer(touched: &Touched, charset: Charset) -> Result<(), Failure> {
+    print(&touched.answer)?;
+    if let Some(note) = &touched.note {
+        // Where it cannot be written, the exit status still tells.
+        let _ = writeln!(io::stderr().lock(), "{}", charset.line(note));
+    }
+    Ok(())
 }
 
 fn print(text: &str) -> Result<(), Failure> {

@@ -16,7 +16,15 @@ use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::touch::Plane;
 
-/// The imprint of a source with what describes it.
+/// What a touch has to say.
+pub(super) struct Touched {
+    /// The imprint with what describes it.
+    pub(super) answer: String,
+    /// What was done besides and the answer does not tell: a line.
+    pub(super) note: Option<String>,
+}
+
+/// Touches a source, and stores the shape where that is asked for.
 pub(super) fn touch(
     source: Source,
     sensor: Sensor,
@@ -24,11 +32,12 @@ pub(super) fn touch(
     saving: Option<Saving>,
     shelf: &Shelf,
     charset: Charset,
-) -> Result<String, Failure> {
+) -> Result<Touched, Failure> {
     let imprint = Plane::new(sensor).touch(&source);
     let mut made = report::made(&source, &sensor);
+    let mut saved = None;
     if let Some(Saving { name, force }) = saving {
-        made.push(format!("saved as {name}"));
+        saved = Some(format!("saved as {name}"));
         let shape = Shape {
             name,
             sensor,
@@ -38,10 +47,17 @@ pub(super) fn touch(
         shelf.save(&shape, force)?;
     }
     Ok(match form {
-        Form::Json => report::json(&imprint),
+        Form::Json => Touched {
+            answer: report::json(&imprint),
+            note: saved,
+        },
         Form::Table(pitch) => {
+            made.extend(saved);
             made.push(report::size(&imprint, Some(&sensor), pitch));
-            report::table(&imprint, &made, pitch, charset)
+            Touched {
+                answer: report::table(&imprint, &made, pitch, charset),
+                note: None,
+            }
         }
     })
 }

@@ -143,9 +143,13 @@ fn figures_are_saved_with_their_sensor_and_source() {
         shown.contains("\nmine\nhexagon side ") && shown.contains("\n20 × 16 taxels of 2.5 mm"),
         "{shown}"
     );
-    let json = shelf.does("figure|hexagon|--json|--save|json", "");
-    assert_eq!(json.lines().count(), 1, "nothing but the answer");
-    assert_eq!(json, shelf.does("library|show|json|--json", ""));
+    let run = shelf.run("figure|hexagon|--json|--save|json", "");
+    assert_eq!(
+        (run.status, run.stderr.as_str()),
+        (Some(0), "saved as json\n")
+    );
+    assert_eq!(run.stdout.lines().count(), 1, "nothing but the answer");
+    assert_eq!(run.stdout, shelf.does("library|show|json|--json", ""));
     // Copied with all that it has, a file of the library being a file as well.
     let file = shelf.folder.join("mine.json").display().to_string();
     shelf.does(&format!("library|save|copy|{file}"), "");
