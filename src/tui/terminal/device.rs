@@ -141,6 +141,7 @@ impl Device {
 }
 
 fn controlling(access: OFlags) -> io::Result<OwnedFd> {
-    open("/dev/tty", access | OFlags::CLOEXEC, Mode::empty())
-        .map_err(|_| io::Error::other("there is no terminal here"))
+    let none = "there is no terminal here; 'taxel figure' and the other commands need none, \
+                'taxel script' drives the screen without one";
+    open("/dev/tty", access | OFlags::CLOEXEC, Mode::empty()).map_err(|_| io::Error::other(none))
 }
