@@ -203,7 +203,7 @@ fn the_mouse_draws_and_points() {
     let mut session = session("");
     // Column 2, row 1 of the matrix: 3 columns of ruler, 2 a taxel; the menu and the ruler above.
     mouse(&mut session, MouseKind::Press, 7, 3);
-    shows(&session, &["column 2, row 1    active", "NA 1 in all"]);
+    shows(&session, &["column  2, row  1    active", "NA 1 in all"]);
     mouse(&mut session, MouseKind::Drag, 9, 3);
     mouse(&mut session, MouseKind::Drag, 11, 4);
     mouse(&mut session, MouseKind::Drag, 7, 3);
@@ -248,7 +248,7 @@ fn unsaved_work_is_offered_back_once() {
     press(&mut later, "y");
     shows(
         &later,
-        &["ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0° + 1 taxel by hand"],
+        &["ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0° + 1 by hand"],
     );
     // What was not wanted is in the trash.
     press(&mut later, ":restore unsaved 1<Enter>lunsaved 1<Enter>");
@@ -290,7 +290,7 @@ fn commands_do_what_keys_do() {
         &mut session,
         ":sensor --columns 8 --pitch 2.5<Enter>:undo<Enter>:redo<Enter>",
     );
-    shows(&session, &["column 7"]);
+    shows(&session, &["column 7,"]);
     press(&mut session, ":copy descriptors<Enter>");
     shows(&session, &["characters sent to your terminal's clipboard"]);
     for (line, message) in [
@@ -309,7 +309,7 @@ fn commands_do_what_keys_do() {
             "figure hexagon side 2",
             "! expected a flag like --side, found side",
         ),
-        ("undo now", "! undo takes nothing, found now"),
+        ("undo now", "! undo takes nothing, found \"now\""),
         ("turn round", "! turn takes whole degrees from -360 to 360"),
         ("zoom", "! zoom takes in or out"),
         ("save a/b", "! '/' cannot be in a name"),

@@ -73,6 +73,20 @@ impl Library {
         Ok(own)
     }
 
+    /// The names of the shapes in the trash, those that were deleted last first, each once.
+    ///
+    /// # Errors
+    /// Where the folder is there but cannot be read.
+    pub fn in_trash(&self) -> Result<Vec<String>, LibraryError> {
+        let mut names: Vec<String> = Vec::new();
+        for deleted in self.deleted()?.into_iter().rev() {
+            if !names.contains(&deleted.name) {
+                names.push(deleted.name);
+            }
+        }
+        Ok(names)
+    }
+
     /// Brings back the shape of that name that was deleted last; answers its name.
     ///
     /// # Errors

@@ -84,6 +84,11 @@ pub struct Binding {
 }
 
 impl Binding {
+    /// Whether one of its keys means this.
+    pub fn does(&self, message: &Message) -> bool {
+        self.keys.iter().any(|(_, meaning)| meaning == message)
+    }
+
     /// Its keys as people write them: "Home End"; the four arrows as one word.
     pub fn labels(&self) -> String {
         let arrows = |shown: fn(Arrow) -> Key| {

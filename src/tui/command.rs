@@ -4,8 +4,10 @@
 //! `load washer`, `sensor --columns 32 --rows 32`. What is not given is as it is now, or the default.
 
 use super::app::App;
+use super::commands::{Command, Takes, find};
 use super::document::Document;
-use super::message::{Copied, Message};
+use super::message::Message;
+use super::purpose::Purpose;
 use crate::figure::{Figure, Kind};
 use crate::formats::name::Name;
 use crate::library::store::{Expected, Origin};
@@ -21,94 +23,115 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
     let (name, rest) = line
         .split_once(' ')
         .map_or((line, ""), |(name, rest)| (name, rest.trim()));
+    let command =
+        find(name).ok_or_else(|| format!("{name:?} is unknown; Tab shows the commands"))?;
     let words: Vec<&str> = rest.split_whitespace().collect();
-    let alone = |message: Message| {
-        if rest.is_empty() {
-            Ok(message)
-        } else {
-            Err(format!("{name} takes nothing, found {rest}"))
-        }
-    };
-    let with_name = |otherwise: Message, named: fn(String) -> Message| {
-        if rest.is_empty() {
-            Ok(otherwise)
-        } else {
-            Name::new(rest)
-                .map(|name| named(name.to_string()))
-                .map_err(|error| error.to_string())
-        }
-    };
-    match name {
-        "copy" => match rest {
-            "imprint" => Ok(Message::Copy(Copied::Imprint)),
-            "" | "descriptors" => Ok(Message::Copy(Copied::Descriptors)),
-            other => Err(format!("copy takes imprint or descriptors, found {other}")),
+    if let Some((_, message)) = command.words.iter().find(|(word, _)| *word == rest) {
+        return Ok(message.clone());
+    }
+    let unexpected = || unexpected(command, rest);
+    match (command.takes, &words[..]) {
+        (Takes::Deleted, []) => match &app.removed {
+            Some(name) => Ok(Message::Restore(name.clone())),
+            None => Err("restore needs the name of a deleted shape; Tab shows them".to_owned()),
         },
-        "coverage" => alone(Message::Display),
-        "delete" => with_name(Message::Delete, Message::AskRemove),
-        "figure" if rest.is_empty() => Ok(Message::Figure),
-        "figure" => figure(&words, app),
-        "grab" => alone(Message::Grab),
-        "help" => alone(Message::Help),
-        "load" => with_name(Message::Load, Message::LoadNamed),
-        "mouse" => alone(Message::MouseOnOff),
-        "new" => alone(Message::New),
-        "panel" => alone(Message::Page),
-        "picture" => with_name(Message::Picture, Message::PictureNamed),
-        "quit" | "q" => alone(Message::Quit),
-        "quit!" | "q!" => alone(Message::QuitNow),
-        "redo" => alone(Message::Redo),
-        "redraw" => alone(Message::Redraw),
-        "region" => alone(Message::Region(1)),
-        "restore" => with_name(Message::Undo, Message::Restore),
-        "save" if rest.is_empty() => Ok(Message::Save),
-        "save" => save(rest, app),
-        "sensor" if rest.is_empty() => Ok(Message::Sensor),
-        "sensor" => sensor(&words, app),
-        "toggle" => alone(Message::Toggle),
-        "turn" => match rest.parse() {
+        (_, []) | (Takes::Nothing, _) => Err(unexpected()),
+        (Takes::Shape(purpose), _) => {
+            let name = name_of(rest)?.to_string();
+            Ok(match purpose {
+                Purpose::Load => Message::LoadNamed(name),
+                Purpose::Picture => Message::PictureNamed(name),
+                Purpose::Delete => Message::AskRemove(name),
+            })
+        }
+        (Takes::Deleted, _) => Ok(Message::Restore(name_of(rest)?.to_string())),
+        (Takes::Name, _) if app.seen().imprint.is_empty() => {
+            Err("nothing to save: the matrix is empty".to_owned())
+        }
+        (Takes::Name, _) => Ok(app.storing(name_of(rest)?)),
+        (Takes::Figure, [kind, pairs @ ..]) => figure(kind, pairs, app),
+        (Takes::Sensor, pairs) => sensor(pairs, app),
+        (Takes::Degrees, _) => match rest.parse() {
             Ok(degrees) if (-360..=360).contains(&degrees) => Ok(Message::Turn(degrees)),
             _ => Err(format!(
                 "turn takes whole degrees from -360 to 360, found {rest:?}"
             )),
         },
-        "zoom" => match rest {
-            "in" => Ok(Message::Zoom(1)),
-            "out" => Ok(Message::Zoom(-1)),
-            _ => Err(format!("zoom takes in or out, found {rest:?}")),
-        },
-        "undo" => alone(Message::Undo),
-        _ => Err(format!("{name:?} is unknown; Tab shows the commands")),
+        (Takes::Taxel, [column, row]) => {
+            let sensor = app.shown().sensor;
+            let within = |text: &str, count: u8| text.parse().ok().filter(|&at: &u8| at < count);
+            match (within(column, sensor.columns()), within(row, sensor.rows())) {
+                (Some(column), Some(row)) => Ok(Message::PointAt(column, row)),
+                _ => Err(format!(
+                    "there is no such taxel: columns are 0 to {}, rows 0 to {}",
+                    sensor.columns() - 1,
+                    sensor.rows() - 1
+                )),
+            }
+        }
+        (Takes::Way, [dx, dy]) => {
+            let cells = |text: &str| text.parse().ok().filter(|cells: &f64| cells.is_finite());
+            match (cells(dx), cells(dy)) {
+                (Some(dx), Some(dy)) => Ok(Message::Move(dx, dy)),
+                _ => Err(unexpected()),
+            }
+        }
+        (Takes::Taxel | Takes::Way, _) => Err(unexpected()),
     }
 }
 
-/// The numbers of `--key value` pairs.
-fn pairs(words: &[&str], side: u8) -> Result<Vec<(Parameter, f64)>, String> {
-    let pair = |pair: &[&str]| {
+/// What a command takes, and that something else was found.
+fn unexpected(command: &Command, rest: &str) -> String {
+    let words = command.words.iter().map(|(word, _)| *word);
+    let mut taken: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+    taken.extend(Some(command.takes.form()).filter(|form| !form.is_empty()));
+    let taken = match taken.split_last() {
+        None => "nothing".to_owned(),
+        Some((last, [])) => (*last).to_owned(),
+        Some((last, others)) => format!("{} or {last}", others.join(", ")),
+    };
+    let found = if rest.is_empty() {
+        String::new()
+    } else {
+        format!(", found {rest:?}")
+    };
+    format!("{} takes {taken}{found}", command.name)
+}
+
+fn name_of(text: &str) -> Result<Name, String> {
+    Name::new(text).map_err(|error| error.to_string())
+}
+
+/// The numbers of `--key value` pairs, each key once.
+fn numbers(pairs: &[&str], side: u8) -> Result<Vec<(Parameter, f64)>, String> {
+    let mut numbers: Vec<(Parameter, f64)> = Vec::new();
+    for pair in pairs.chunks(2) {
         let flag = pair.first().copied().unwrap_or_default();
         let key = flag
             .strip_prefix("--")
             .ok_or_else(|| format!("expected a flag like --side, found {flag}"))?;
         let parameter = Parameter::from_flag(key).ok_or_else(|| format!("{flag} is unknown"))?;
+        if numbers.iter().any(|(given, _)| *given == parameter) {
+            return Err(format!("{flag} is given twice"));
+        }
         let text = pair
             .get(1)
             .ok_or_else(|| format!("{flag} needs a number"))?;
         let value = parameter.read(text, side);
-        Ok((parameter, value.map_err(|error| error.to_string())?))
-    };
-    words.chunks(2).map(pair).collect()
+        numbers.push((parameter, value.map_err(|error| error.to_string())?));
+    }
+    Ok(numbers)
 }
 
-fn figure(words: &[&str], app: &App) -> Result<Message, String> {
+fn figure(kind: &str, pairs: &[&str], app: &App) -> Result<Message, String> {
     let sensor = app.shown().sensor;
-    let (name, rest) = words.split_first().ok_or("figure needs a kind")?;
-    let kind = Kind::from_name(name).ok_or_else(|| {
+    let kind = Kind::from_name(kind).ok_or_else(|| {
         format!(
-            "figure: {name:?} is unknown, expected one of {}",
+            "figure: {kind:?} is unknown, expected one of {}",
             Kind::ALL.map(Kind::name).join(", ")
         )
     })?;
-    let values = pairs(rest, sensor.side())?;
+    let values = numbers(pairs, sensor.side())?;
     let own: Vec<Parameter> = kind.parameters().collect();
     if let Some((foreign, _)) = values
         .iter()
@@ -131,9 +154,9 @@ fn figure(words: &[&str], app: &App) -> Result<Message, String> {
     ))))
 }
 
-fn sensor(words: &[&str], app: &App) -> Result<Message, String> {
+fn sensor(pairs: &[&str], app: &App) -> Result<Message, String> {
     let document = app.shown();
-    let values = pairs(words, crate::sensor::MAX_SIDE)?;
+    let values = numbers(pairs, crate::sensor::MAX_SIDE)?;
     let sensor = values
         .into_iter()
         .try_fold(document.sensor, |sensor, (parameter, value)| {
@@ -142,14 +165,6 @@ fn sensor(words: &[&str], app: &App) -> Result<Message, String> {
     Ok(Message::Become(Box::new(
         document.on(sensor.map_err(|error| error.to_string())?),
     )))
-}
-
-fn save(name: &str, app: &App) -> Result<Message, String> {
-    let name = Name::new(name).map_err(|error| error.to_string())?;
-    if app.seen().imprint.is_empty() {
-        return Err("nothing to save: the matrix is empty".to_owned());
-    }
-    Ok(app.storing(name))
 }
 
 impl App {

@@ -4,6 +4,7 @@
 use super::binding::Context;
 use super::command_dialog::CommandDialog;
 use super::form_dialog::FormDialog;
+use super::keymap::{HelpLine, help};
 use super::list::ListDialog;
 use super::message::Message;
 use super::name_dialog::NameDialog;
@@ -21,8 +22,8 @@ pub enum Dialog {
     Command(CommandDialog),
     /// A question.
     Question(Question),
-    /// The list of keys, from a line on.
-    Help(usize),
+    /// The list of keys.
+    Help(Help),
 }
 
 /// A question, and what happens at each answer; leaving it open is none.
@@ -44,6 +45,34 @@ impl Question {
             yes,
             no: None,
         }
+    }
+}
+
+/// The list of the keys that mean something in a place.
+#[derive(Clone, Debug)]
+pub struct Help {
+    context: Context,
+    top: usize,
+}
+
+impl Help {
+    /// The list of a place, from its first line on.
+    pub fn new(context: Context) -> Self {
+        Self { context, top: 0 }
+    }
+
+    /// Its lines, and which of them stands first where there is room for so many.
+    pub fn lines(&self, room: usize) -> (Vec<HelpLine>, usize) {
+        let lines = help(self.context);
+        let last_top = lines.len().saturating_sub(room);
+        (lines, self.top.min(last_top))
+    }
+
+    /// Goes on by lines, where there is room for so many.
+    pub fn scroll(&mut self, lines: i16, room: usize) {
+        let (_, top) = self.lines(room);
+        self.top = top.saturating_add_signed(isize::from(lines));
+        (_, self.top) = self.lines(room);
     }
 }
 

@@ -70,6 +70,27 @@ impl World {
         })
     }
 
+    /// The same with shapes in it, and with unsaved work that programs left when they died, the last one last.
+    ///
+    /// # Errors
+    /// What the system or the library refuses, in a sentence.
+    pub fn furnished(shapes: &[Shape], leftovers: &[Shape]) -> Result<Self, String> {
+        let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+        let library = Library::open(folder.path().join("library"));
+        let told = |error: LibraryError| error.to_string();
+        for shape in shapes {
+            library.save(shape, Expected::Nothing).map_err(told)?;
+        }
+        for leftover in leftovers {
+            // What is kept stays when a journal is dropped, as when its program dies.
+            Journal::new(&library).keep(leftover).map_err(told)?;
+        }
+        Ok(Self {
+            _scratch: Some(folder),
+            ..Self::new(library)
+        })
+    }
+
     /// What there is to say at the start: that a program left work when it died.
     pub fn greeting(&self) -> Option<Message> {
         let shape = &self.orphan.as_ref()?.shape;
@@ -103,6 +124,9 @@ impl World {
     fn perform(&mut self, request: Request) -> Message {
         let answer = match request {
             Request::List => Answer::List(self.library.list().map_err(|error| error.to_string())),
+            Request::Trash => {
+                Answer::Trash(self.library.in_trash().map_err(|error| error.to_string()))
+            }
             Request::Read(names) => {
                 let read = |name: &str| self.library.load(name).map_err(|error| error.to_string());
                 Answer::Read(

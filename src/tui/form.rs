@@ -1,9 +1,7 @@
 //! A form: a text field a parameter. It knows the table of parameters and no shapes.
 
-use tui_input::{Input, InputRequest};
-
-use super::key::Arrow;
-use super::message::{End, Erase};
+use super::message::{End, Message};
+use super::text_field::TextField;
 use crate::parameter::{Parameter, ParameterError};
 
 /// No field takes more characters.
@@ -14,7 +12,7 @@ const LONGEST: usize = 24;
 pub struct Field {
     parameter: Parameter,
     optional: bool,
-    input: Input,
+    input: TextField,
     /// What stood there at first, which is always taken: a shape that was moved or loaded may have more decimals
     /// than the form's own.
     initial: Option<f64>,
@@ -32,7 +30,7 @@ impl Field {
         Self {
             parameter,
             optional,
-            input: Input::new(text.clone()),
+            input: TextField::new(text.clone(), LONGEST),
             initial: value,
             initial_text: text,
             fresh: true,
@@ -51,12 +49,12 @@ impl Field {
 
     /// Its text.
     pub fn text(&self) -> &str {
-        self.input.value()
+        self.input.text()
     }
 
     /// Where its cursor stands, in columns.
     pub fn cursor(&self) -> usize {
-        self.input.visual_cursor()
+        self.input.cursor()
     }
 
     /// Whether the next character replaces the text.
@@ -85,18 +83,16 @@ impl Field {
         }
     }
 
-    fn request(&mut self, request: InputRequest) {
-        self.fresh = false;
-        // What the library answers is only whether anything changed, which the view sees by itself.
-        let _ = self.input.handle(request);
-    }
-
-    fn insert(&mut self, character: char) {
-        if std::mem::take(&mut self.fresh) {
-            self.input.reset();
+    fn take(&mut self, message: &Message) {
+        let replaces = matches!(
+            message,
+            Message::Type(_) | Message::Paste(_) | Message::Erase(_)
+        );
+        if self.fresh && replaces {
+            self.input.set("");
         }
-        if !character.is_control() && self.text().chars().count() < LONGEST {
-            self.request(InputRequest::InsertChar(character));
+        if self.input.take(message) {
+            self.fresh = false;
         }
     }
 
@@ -109,7 +105,7 @@ impl Field {
             }
             Err(_) => return,
         };
-        self.input = Input::new(self.parameter.format(value));
+        self.input.set(self.parameter.format(value));
         self.fresh = true;
     }
 }
@@ -156,8 +152,8 @@ impl Form {
     pub fn set_focus(&mut self, focus: Option<usize>) {
         self.focus = focus.map(|index| index.min(self.fields.len().saturating_sub(1)));
         if let Some(field) = self.focused() {
+            field.input.take(&Message::ToEdge(End::Last));
             field.fresh = true;
-            let _ = field.input.handle(InputRequest::GoToEnd);
         }
     }
 
@@ -180,41 +176,10 @@ impl Form {
         self.fields.get_mut(self.focus?)
     }
 
-    /// Types a character.
-    pub fn insert(&mut self, character: char) {
+    /// Types, moves or deletes in the field that has the focus.
+    pub fn take(&mut self, message: &Message) {
         if let Some(field) = self.focused() {
-            field.insert(character);
-        }
-    }
-
-    /// Deletes in the field.
-    pub fn erase(&mut self, erase: Erase) {
-        let Some(field) = self.focused() else { return };
-        let everything = field.fresh;
-        match erase {
-            Erase::Before if !everything => field.request(InputRequest::DeletePrevChar),
-            Erase::Under if !everything => field.request(InputRequest::DeleteNextChar),
-            _ => field.request(InputRequest::DeleteLine),
-        }
-    }
-
-    /// Moves in the field by a character.
-    pub fn move_cursor(&mut self, arrow: Arrow) {
-        if let Some(field) = self.focused() {
-            match arrow {
-                Arrow::Left => field.request(InputRequest::GoToPrevChar),
-                _ => field.request(InputRequest::GoToNextChar),
-            }
-        }
-    }
-
-    /// Moves to an end of the field.
-    pub fn to_edge(&mut self, end: End) {
-        if let Some(field) = self.focused() {
-            match end {
-                End::First => field.request(InputRequest::GoToStart),
-                End::Last => field.request(InputRequest::GoToEnd),
-            }
+            field.take(message);
         }
     }
 

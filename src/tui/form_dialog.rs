@@ -3,6 +3,7 @@
 use super::document::{Document, Seen};
 use super::form::{Field, Form};
 use super::key::Arrow;
+use super::message::Message;
 use crate::figure::{Figure, Kind};
 use crate::imprint::Imprint;
 use crate::parameter::{Parameter, ParameterError};
@@ -216,7 +217,7 @@ impl FormDialog {
         match (self.form.focus(), arrow) {
             (None, Arrow::Left | Arrow::Up) => self.next_kind(Kind::ALL.len() - 1, |_| true),
             (None, Arrow::Right | Arrow::Down) => self.next_kind(1, |_| true),
-            (Some(_), Arrow::Left | Arrow::Right) => self.form.move_cursor(arrow),
+            (Some(_), Arrow::Left | Arrow::Right) => self.form.take(&Message::Choose(arrow)),
             (Some(_), Arrow::Up) => self.move_focus(-1),
             (Some(_), Arrow::Down) => self.move_focus(1),
         }
@@ -225,7 +226,7 @@ impl FormDialog {
     /// A character: into the field; on the kind, the next kind that begins with it.
     pub fn insert(&mut self, character: char) {
         if self.form.focus().is_some() {
-            self.edit(|form| form.insert(character));
+            self.edit(|form| form.take(&Message::Type(character)));
         } else {
             self.next_kind(1, |kind| {
                 kind.name().starts_with(character.to_ascii_lowercase())

@@ -1,7 +1,8 @@
 //! Keys, and their notation: `f<Down><Tab>4.00<Enter>`.
 //!
 //! Only keys that arrive on every terminal: no Alt, no Ctrl with a digit. A character stands for itself, `<lt>` for
-//! `<`; named keys and Ctrl stand in angle brackets, `<3x:Down>` repeats one.
+//! `<`; named keys and Ctrl stand in angle brackets, so does a character by its number, `<U+3000>`; `<3x:Down>` repeats
+//! one.
 
 use std::fmt;
 
@@ -61,10 +62,12 @@ pub enum Key {
     Backspace,
     /// Delete to the right.
     Delete,
+    /// The first function key.
+    F1,
 }
 
 /// Names in brackets; the first of a key is the one that is written.
-const NAMES: [(&str, Key); 22] = [
+const NAMES: [(&str, Key); 23] = [
     ("Left", Key::Arrow(Arrow::Left)),
     ("Right", Key::Arrow(Arrow::Right)),
     ("Up", Key::Arrow(Arrow::Up)),
@@ -84,6 +87,7 @@ const NAMES: [(&str, Key); 22] = [
     ("S-Tab", Key::BackTab),
     ("BS", Key::Backspace),
     ("Del", Key::Delete),
+    ("F1", Key::F1),
     ("Space", Key::Char(' ')),
     ("lt", Key::Char('<')),
     ("gt", Key::Char('>')),
@@ -96,6 +100,10 @@ impl fmt::Display for Key {
             (Self::Char('>'), _) => f.write_str(">"),
             (_, Some((name, _))) => write!(f, "<{name}>"),
             (Self::Ctrl(letter), _) => write!(f, "<C-{letter}>"),
+            // In a script blanks at the end of a line do not count.
+            (Self::Char(blank), _) if blank.is_whitespace() || blank.is_control() => {
+                write!(f, "<U+{:04X}>", u32::from(blank))
+            }
             (Self::Char(character), _) => write!(f, "{character}"),
             _ => Ok(()),
         }
@@ -191,8 +199,12 @@ fn named(name: &str) -> Option<Key> {
             .is_none()
             .then(|| Key::Ctrl(letter.to_ascii_lowercase()))
     };
+    let numbered = || {
+        let number = u32::from_str_radix(name.strip_prefix("U+")?, 16).ok()?;
+        char::from_u32(number).map(Key::Char)
+    };
     let listed = NAMES
         .iter()
         .find(|(known, _)| known.eq_ignore_ascii_case(name));
-    listed.map(|&(_, key)| key).or_else(ctrl)
+    listed.map(|&(_, key)| key).or_else(ctrl).or_else(numbered)
 }

@@ -303,6 +303,7 @@ pub const KEYMAP: &[Binding] = &[
         "cancel",
         "leave everything as it was",
     ),
+    bind(Form, &[(Char('?'), Message::Help)], "help", "these keys"),
     bind(Question, &[(Char('y'), Message::Accept)], "yes", "yes"),
     bind(Question, &[(Char('n'), Message::Decline)], "no", "no"),
     bind(
@@ -314,6 +315,12 @@ pub const KEYMAP: &[Binding] = &[
         ],
         "not now",
         "no answer now",
+    ),
+    bind(
+        Question,
+        &[(Char('?'), Message::Help)],
+        "help",
+        "these keys",
     ),
     bind(
         List,
@@ -366,6 +373,7 @@ pub const KEYMAP: &[Binding] = &[
         "cancel",
         "leave everything as it was",
     ),
+    bind(List, &[(Char('?'), Message::Help)], "help", "these keys"),
     bind(
         Name,
         &[(Key::Enter, Message::Accept)],
@@ -414,6 +422,7 @@ pub const KEYMAP: &[Binding] = &[
         "cancel",
         "do not store",
     ),
+    bind(Name, &[(Key::F1, Message::Help)], "help", "these keys"),
     bind(Command, &[(Key::Enter, Message::Accept)], "do it", "do it"),
     bind(
         Command,
@@ -472,6 +481,7 @@ pub const KEYMAP: &[Binding] = &[
         "cancel",
         "do nothing",
     ),
+    bind(Command, &[(Key::F1, Message::Help)], "help", "these keys"),
     bind(
         Help,
         &[
@@ -488,6 +498,7 @@ pub const KEYMAP: &[Binding] = &[
         &[
             (Char('q'), Message::Cancel),
             (Char('?'), Message::Cancel),
+            (Key::F1, Message::Cancel),
             (Key::Enter, Message::Cancel),
             (Key::Esc, Message::Cancel),
             (Key::Ctrl('g'), Message::Cancel),
@@ -513,14 +524,44 @@ pub const KEYMAP: &[Binding] = &[
         "",
         "close what is open; on the matrix: quit",
     ),
+    bind(
+        Everywhere,
+        &[(Key::F1, Message::Help)],
+        "",
+        "the keys that mean something here",
+    ),
 ];
 
 /// How many rows at the head of the table make the menu.
 pub const MENU: usize = 7;
 
-/// How many lines the list of keys has: a heading for each place, and the table.
-pub fn help_lines() -> usize {
-    Context::ALL.len() + KEYMAP.len()
+/// A line of help.
+#[derive(Clone, Copy, Debug)]
+pub enum HelpLine {
+    /// The heading of a place.
+    Place(Context),
+    /// A row of the table.
+    Keys(&'static Binding),
+}
+
+/// The lines of help in a place: on the matrix, where one begins, all of the table; elsewhere what means something
+/// there.
+pub fn help(context: Context) -> Vec<HelpLine> {
+    let places = match context {
+        Matrix => Context::ALL.to_vec(),
+        inner => std::iter::successors(Some(inner), |place| place.outer()).collect(),
+    };
+    let rows = |place: Context| {
+        KEYMAP
+            .iter()
+            .filter(move |binding| binding.context == place)
+    };
+    places
+        .into_iter()
+        .flat_map(|place| {
+            std::iter::once(HelpLine::Place(place)).chain(rows(place).map(HelpLine::Keys))
+        })
+        .collect()
 }
 
 /// What a key means where it is pressed.

@@ -2,9 +2,10 @@
 
 use ratatui::layout::Rect;
 
-use super::binding::Binding;
+use super::binding::{Binding, Context};
 use super::form_dialog::FormDialog;
 use super::keymap::{KEYMAP, MENU};
+use super::message::Message;
 use crate::imprint::Imprint;
 
 /// Columns of the row ruler.
@@ -148,7 +149,7 @@ pub fn menu(area: Rect) -> Vec<MenuItem> {
     let with_key = area.width >= 70;
     let help = KEYMAP
         .iter()
-        .filter(|binding| binding.help.starts_with("Help"));
+        .filter(|binding| binding.context == Context::Matrix && binding.does(&Message::Help));
     let mut x = area.x;
     let mut items = Vec::new();
     for binding in KEYMAP.iter().take(MENU).chain(help) {

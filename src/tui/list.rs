@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use tui_input::{Input, InputRequest};
-
+use super::message::Message;
 use super::purpose::Purpose;
+use super::text_field::TextField;
 use crate::formats::name::{LONGEST, folded};
 use crate::library::store::{Entry, Loaded, Origin};
 
@@ -16,7 +16,7 @@ const AHEAD: usize = 64;
 pub struct ListDialog {
     purpose: Purpose,
     entries: Vec<Entry>,
-    filter: Input,
+    filter: TextField,
     /// The entries that the filter leaves, by their place in `entries`.
     matching: Vec<usize>,
     selected: usize,
@@ -32,7 +32,7 @@ impl ListDialog {
         let mut list = Self {
             purpose,
             entries,
-            filter: Input::default(),
+            filter: TextField::new("", LONGEST),
             matching: Vec::new(),
             selected: 0,
             read: HashMap::new(),
@@ -48,7 +48,7 @@ impl ListDialog {
 
     /// What was typed.
     pub fn filter(&self) -> &str {
-        self.filter.value()
+        self.filter.text()
     }
 
     /// How many shapes there are without the filter.
@@ -83,17 +83,11 @@ impl ListDialog {
         self.selected = row.min(self.matching.len().saturating_sub(1));
     }
 
-    /// Types a character of the filter.
-    pub fn insert(&mut self, character: char) {
-        if !character.is_control() && self.filter().chars().count() < LONGEST {
-            self.edit(InputRequest::InsertChar(character));
+    /// Types or deletes in the filter, where that is what a message means.
+    pub fn edit(&mut self, message: &Message) {
+        if self.filter.take(message) {
+            self.sift();
         }
-    }
-
-    /// Changes the filter.
-    pub fn edit(&mut self, request: InputRequest) {
-        let _ = self.filter.handle(request);
-        self.sift();
     }
 
     fn sift(&mut self) {

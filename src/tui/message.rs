@@ -35,6 +35,8 @@ pub enum Message {
     ToColumn(End),
     /// Move the cursor to the first or last row.
     ToRow(End),
+    /// Move the cursor to a taxel: column, row.
+    PointAt(u8, u8),
     /// Turn the taxel under the cursor over.
     Toggle,
     /// Take the last change back.
@@ -51,6 +53,8 @@ pub enum Message {
     Grab,
     /// Move the shape by a step.
     Nudge(Arrow),
+    /// Move the shape by so many cells along x and along y.
+    Move(f64, f64),
     /// Turn the shape clockwise as seen, by whole degrees.
     Turn(i16),
     /// Another step of nudging, larger or smaller.
@@ -135,6 +139,8 @@ pub enum Copied {
 pub enum Answer {
     /// Its list.
     List(Result<Vec<Entry>, String>),
+    /// The names of its shapes that were deleted.
+    Trash(Result<Vec<String>, String>),
     /// Some of its shapes, by their place in the list.
     Read(Vec<(usize, Result<Loaded, String>)>),
     /// The shape that was asked for by its name, and what for.

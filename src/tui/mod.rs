@@ -17,6 +17,8 @@ pub mod purpose;
 
 pub mod message;
 
+pub mod text_field;
+
 pub mod binding;
 
 pub mod keymap;

@@ -24,6 +24,8 @@ pub enum Effect {
 pub enum Request {
     /// Its list.
     List,
+    /// The names of its shapes that were deleted.
+    Trash,
     /// Some of its shapes, by their place in the list and their name.
     Read(Vec<(usize, String)>),
     /// A shape by its name, and what for.

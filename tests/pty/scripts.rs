@@ -34,6 +34,7 @@ fn bytes(key: Key) -> Vec<u8> {
         Key::BackTab => b"\x1b[Z".to_vec(),
         Key::Backspace => b"\x7f".to_vec(),
         Key::Delete => b"\x1b[3~".to_vec(),
+        Key::F1 => b"\x1bOP".to_vec(),
     }
 }
 

@@ -174,7 +174,12 @@ impl Reader {
                 self.ground();
                 self.plain(byte);
             }
-            State::Function => self.ground(),
+            State::Function => {
+                self.ground();
+                if byte == b'A' {
+                    self.key(Key::F1);
+                }
+            }
             State::Single => {
                 self.ground();
                 if byte == b'M' {
@@ -263,6 +268,7 @@ impl Reader {
                 4 | 8 => self.key(Key::End),
                 5 => self.key(Key::PageUp),
                 6 => self.key(Key::PageDown),
+                11 => self.key(Key::F1),
                 200 => self.state = State::Paste,
                 _ => {}
             },
@@ -285,6 +291,7 @@ impl Reader {
             b'D' => Arrow::Left,
             b'H' => return self.key(Key::Home),
             b'F' => return self.key(Key::End),
+            b'P' => return self.key(Key::F1),
             _ => return,
         };
         self.key(if shifted {

@@ -5,6 +5,7 @@ use crate::imprint::Imprint;
 use crate::library::store::{Expected, Loaded, Origin};
 use crate::picture::Picture;
 use crate::tui::app::App;
+use crate::tui::commands::{Takes, wants_names};
 use crate::tui::dialog::{Dialog, Question};
 use crate::tui::document::{Document, StoredName};
 use crate::tui::form_dialog::FormDialog;
@@ -16,11 +17,26 @@ use crate::tui::request::{Effect, Request};
 /// Takes an answer.
 pub(super) fn take(app: &mut App, answer: Answer) -> Option<Effect> {
     match answer {
-        Answer::List(Ok(entries)) => {
-            if let Some(Dialog::List(list)) = app.dialogs.last_mut() {
+        Answer::List(Ok(entries)) => match app.dialogs.last_mut() {
+            Some(Dialog::List(list)) => {
                 *list = ListDialog::new(list.purpose(), entries);
+                return look(app);
             }
-            return look(app);
+            Some(Dialog::Command(command)) => {
+                let mut names = entries;
+                match wants_names(command.field.text()) {
+                    Some(Takes::Shape(Purpose::Load | Purpose::Picture)) => {}
+                    _ => names.retain(|entry| entry.origin == Origin::Own),
+                }
+                let names: Vec<String> = names.into_iter().map(|entry| entry.name).collect();
+                command.complete(&names);
+            }
+            _ => {}
+        },
+        Answer::Trash(Ok(names)) => {
+            if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
+                command.complete(&names);
+            }
         }
         Answer::Read(read) => {
             if let Some(Dialog::List(list)) = app.dialogs.last_mut() {
@@ -89,7 +105,9 @@ pub(super) fn take(app: &mut App, answer: Answer) -> Option<Effect> {
             app,
             "it cannot be moved into the trash, and is offered again",
         ),
-        Answer::Named(_, Err(text)) | Answer::Failed(text) => refuse(app, text),
+        Answer::Named(_, Err(text)) | Answer::Trash(Err(text)) | Answer::Failed(text) => {
+            refuse(app, text);
+        }
     }
     None
 }

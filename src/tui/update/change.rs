@@ -89,15 +89,21 @@ pub(super) fn movable(app: &mut App) -> Option<Source> {
 
 /// Moves the shape by a step.
 pub(super) fn nudge(app: &mut App, arrow: Arrow) {
-    let Some(source) = movable(app) else { return };
     let (dx, dy) = arrow.step();
-    let (parameter, direction) = if dx == 0 {
-        (Parameter::Y0, dy)
-    } else {
-        (Parameter::X0, dx)
-    };
-    let value = source.get(parameter).unwrap_or(0.0) + f64::from(direction) * app.step.length();
-    set(app, source, &[(parameter, tidy(value))]);
+    let length = app.step.length();
+    shift(app, f64::from(dx) * length, f64::from(dy) * length);
+}
+
+/// Moves the shape by so many cells.
+pub(super) fn shift(app: &mut App, dx: f64, dy: f64) {
+    let Some(source) = movable(app) else { return };
+    let ways = [(Parameter::X0, dx), (Parameter::Y0, dy)];
+    let moved: Vec<(Parameter, f64)> = ways
+        .into_iter()
+        .filter(|(_, by)| *by != 0.0)
+        .map(|(parameter, by)| (parameter, tidy(source.get(parameter).unwrap_or(0.0) + by)))
+        .collect();
+    set(app, source, &moved);
 }
 
 /// Turns the shape, as seen.

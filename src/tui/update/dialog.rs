@@ -1,6 +1,6 @@
 //! What messages do in a dialog. The dialog was taken off the stack, and goes back unless it is done with.
 
-use tui_input::InputRequest;
+use ratatui::layout::Rect;
 
 use super::answer::{choose, look};
 use super::change::{refuse, replace};
@@ -8,18 +8,24 @@ use super::matrix;
 use crate::tui::app::App;
 use crate::tui::command::read;
 use crate::tui::command_dialog::CommandDialog;
-use crate::tui::dialog::{Dialog, Question};
+use crate::tui::commands::{Takes, wants_names};
+use crate::tui::dialog::{Dialog, Help, Question};
 use crate::tui::form_dialog::FormDialog;
 use crate::tui::key::Arrow;
-use crate::tui::keymap::help_lines;
+use crate::tui::layout::Panes;
 use crate::tui::list::ListDialog;
-use crate::tui::message::{End, Erase, Message};
+use crate::tui::message::{End, Message};
 use crate::tui::name_dialog::NameDialog;
-use crate::tui::request::Effect;
+use crate::tui::request::{Effect, Request};
 
 /// Does what a message says.
 pub(super) fn act(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> {
     if matches!(message, Message::Cancel | Message::Quit) {
+        return None;
+    }
+    if message == Message::Help {
+        let help = Help::new(dialog.context());
+        app.dialogs.extend([dialog, Dialog::Help(help)]);
         return None;
     }
     match dialog {
@@ -28,17 +34,19 @@ pub(super) fn act(app: &mut App, dialog: Dialog, message: Message) -> Option<Eff
         Dialog::Name(name) => return in_name(app, name, message),
         Dialog::Command(command) => return in_command(app, command, message),
         Dialog::Question(question) => return at_question(app, question, &message),
-        Dialog::Help(top) => {
-            let top = match message {
-                Message::Scroll(lines) => top
-                    .saturating_add_signed(isize::from(lines))
-                    .min(help_lines() - 1),
-                _ => top,
-            };
-            app.dialogs.push(Dialog::Help(top));
-        }
+        Dialog::Help(help) => in_help(app, help, &message),
     }
     None
+}
+
+fn in_help(app: &mut App, mut help: Help, message: &Message) {
+    if let Message::Scroll(lines) = message {
+        let (columns, rows) = app.screen;
+        let screen = Rect::new(0, 0, columns, rows);
+        let room = Panes::of(screen, &app.seen().imprint).map_or(0, |panes| panes.body.height);
+        help.scroll(*lines, room.into());
+    }
+    app.dialogs.push(Dialog::Help(help));
 }
 
 fn at_question(app: &mut App, question: Question, message: &Message) -> Option<Effect> {
@@ -67,14 +75,7 @@ fn in_form(app: &mut App, mut dialog: FormDialog, message: Message) {
         Message::Choose(arrow) => dialog.choose(arrow),
         Message::Type(character) => dialog.insert(character),
         Message::Step(direction) => dialog.edit(|form| form.step(direction)),
-        Message::Erase(erase) => dialog.edit(|form| form.erase(erase)),
-        Message::ToEdge(end) => dialog.edit(|form| form.to_edge(end)),
-        Message::Paste(text) => {
-            text.trim()
-                .chars()
-                .for_each(|character| dialog.edit(|form| form.insert(character)));
-        }
-        _ => {}
+        other => dialog.edit(|form| form.take(&other)),
     }
     app.dialogs.push(Dialog::Form(Box::new(dialog)));
 }
@@ -85,72 +86,50 @@ fn in_list(app: &mut App, mut list: ListDialog, message: Message) -> Option<Effe
         Message::Scroll(lines) => list.go(lines),
         Message::ScrollTo(End::First) => list.select(0),
         Message::ScrollTo(End::Last) => list.select(usize::MAX),
-        Message::Type(character) => list.insert(character),
-        Message::Paste(text) => text
-            .trim()
-            .chars()
-            .for_each(|character| list.insert(character)),
-        Message::Erase(Erase::All) => list.edit(InputRequest::DeleteLine),
-        Message::Erase(_) => list.edit(InputRequest::DeletePrevChar),
-        _ => {}
+        other => list.edit(&other),
     }
     app.dialogs.push(Dialog::List(list));
     look(app)
 }
 
-/// What a message means in a line of text.
-fn editing(message: &Message) -> Option<InputRequest> {
-    Some(match message {
-        Message::Choose(Arrow::Left) => InputRequest::GoToPrevChar,
-        Message::Choose(Arrow::Right) => InputRequest::GoToNextChar,
-        Message::ToEdge(End::First) => InputRequest::GoToStart,
-        Message::ToEdge(End::Last) => InputRequest::GoToEnd,
-        Message::Erase(Erase::All) => InputRequest::DeleteLine,
-        Message::Erase(Erase::Before) => InputRequest::DeletePrevChar,
-        Message::Erase(Erase::Under) => InputRequest::DeleteNextChar,
-        _ => return None,
-    })
-}
-
 fn in_command(app: &mut App, mut dialog: CommandDialog, message: Message) -> Option<Effect> {
     match message {
         Message::Accept => {
-            let line = dialog.text().trim().to_owned();
+            let line = dialog.field.text().trim().to_owned();
             if line.is_empty() {
                 return None;
             }
             match read(&line, app) {
                 Ok(message) => {
-                    app.commands.push(line);
+                    if app.commands.last() != Some(&line) {
+                        app.commands.push(line);
+                    }
                     return match message {
                         Message::Redraw => Some(Effect::Redraw),
+                        Message::Suspend => Some(Effect::Suspend),
                         other => matrix::act(app, other),
                     };
                 }
                 Err(error) => refuse(app, error),
             }
         }
-        Message::Field(_) => dialog.complete(),
-        Message::Choose(Arrow::Up | Arrow::Down) => {
-            let now = app.commands.iter().rposition(|line| line == dialog.text());
-            let next = match (&message, now) {
-                (Message::Choose(Arrow::Up), None) => app.commands.len().checked_sub(1),
-                (Message::Choose(Arrow::Up), Some(now)) => Some(now.saturating_sub(1)),
-                (_, now) => now.map(|now| now + 1),
-            };
-            dialog.recall(
-                next.and_then(|next| app.commands.get(next))
-                    .map_or("", String::as_str),
-            );
+        Message::Field(_) => {
+            let wanted = wants_names(dialog.field.text());
+            if wanted.is_none() {
+                dialog.complete(&[]);
+            }
+            app.dialogs.push(Dialog::Command(dialog));
+            // The names are completed when they are known.
+            return wanted.map(|names| {
+                Effect::Library(match names {
+                    Takes::Deleted => Request::Trash,
+                    _ => Request::List,
+                })
+            });
         }
-        Message::Type(character) => dialog.insert(character),
-        Message::Paste(text) => text
-            .trim()
-            .chars()
-            .for_each(|character| dialog.insert(character)),
-        other => editing(&other)
-            .into_iter()
-            .for_each(|request| dialog.edit(request)),
+        Message::Choose(Arrow::Up) => dialog.earlier(&app.commands),
+        Message::Choose(Arrow::Down) => dialog.later(&app.commands),
+        other => dialog.edit(&other),
     }
     app.dialogs.push(Dialog::Command(dialog));
     None
@@ -164,14 +143,9 @@ fn in_name(app: &mut App, mut dialog: NameDialog, message: Message) -> Option<Ef
             }
             Err(error) => refuse(app, error.to_string()),
         },
-        Message::Type(character) => dialog.insert(character),
-        Message::Paste(text) => text
-            .trim()
-            .chars()
-            .for_each(|character| dialog.insert(character)),
-        other => editing(&other)
-            .into_iter()
-            .for_each(|request| dialog.edit(request)),
+        other => {
+            dialog.field.take(&other);
+        }
     }
     app.dialogs.push(Dialog::Name(dialog));
     None

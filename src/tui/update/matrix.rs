@@ -1,12 +1,14 @@
 //! What messages do while nothing lies over the matrix.
 
-use super::change::{begin, change, inform, movable, nudge, refuse, replace, travel, turn, zoom};
+use super::change::{
+    begin, change, inform, movable, nudge, refuse, replace, shift, travel, turn, zoom,
+};
 use crate::description::descriptor::DESCRIPTORS;
 use crate::formats::value;
 use crate::library::store::{Expected, Origin};
 use crate::tui::app::{App, Display, Mode, Page};
 use crate::tui::command_dialog::CommandDialog;
-use crate::tui::dialog::{Dialog, Question};
+use crate::tui::dialog::{Dialog, Help, Question};
 use crate::tui::document::{Document, History};
 use crate::tui::form_dialog::FormDialog;
 use crate::tui::key::Arrow;
@@ -81,7 +83,10 @@ pub(super) fn act(app: &mut App, message: Message) -> Option<Effect> {
             app.dialogs.push(Dialog::Question(question));
         }
         Message::Quit | Message::QuitNow => app.ended = true,
-        Message::Help => app.dialogs.push(Dialog::Help(0)),
+        Message::Help => {
+            let help = Help::new(app.context());
+            app.dialogs.push(Dialog::Help(help));
+        }
         Message::Undo if app.removed.is_some() => {
             return app
                 .removed
@@ -98,6 +103,9 @@ fn edit(app: &mut App, message: &Message) {
     let sensor = app.history.present().sensor;
     match *message {
         Message::Cursor(arrow) => move_cursor(app, arrow),
+        Message::PointAt(column, row) => {
+            app.cursor = (column.min(sensor.columns() - 1), row.min(sensor.rows() - 1));
+        }
         Message::ToColumn(end) => app.cursor.0 = at_end(end, sensor.columns()),
         Message::ToRow(end) => app.cursor.1 = at_end(end, sensor.rows()),
         Message::Toggle => {
@@ -124,6 +132,7 @@ fn edit(app: &mut App, message: &Message) {
         Message::Grab if app.mode == Mode::Grab => app.mode = Mode::Draw,
         Message::Grab if movable(app).is_some() => app.mode = Mode::Grab,
         Message::Nudge(arrow) => nudge(app, arrow),
+        Message::Move(dx, dy) => shift(app, dx, dy),
         Message::Turn(degrees) => turn(app, degrees),
         Message::Zoom(direction) => zoom(app, direction),
         Message::NudgeStep(direction) => app.step = app.step.other(direction),

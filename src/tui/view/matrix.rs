@@ -67,7 +67,7 @@ pub fn draw(app: &App, seen: &Seen, buffer: &mut Buffer, area: Rect) -> Option<P
 }
 
 /// A taxel: two characters, or more of the same where it is drawn larger. The first one is the cursor's, where that is
-/// here; the second one still tells the state.
+/// here; the second one still tells the state: a blank is an inactive taxel.
 fn draw_taxel(
     app: &App,
     seen: &Seen,
@@ -109,7 +109,6 @@ fn draw_taxel(
                 theme.style(Role::Cursor),
             ),
             (0, true) => (first, style),
-            (1, true) if here && second == ' ' => (theme.taxel(role)[0], style),
             (1, true) => (second, style),
             _ => (fill, style),
         };

@@ -61,7 +61,7 @@ pub fn view(app: &App, frame: &mut Frame<'_>) {
     menu::draw(app, buffer, panes.menu);
     let mut cursor = None;
     match (app.dialogs.last(), panes.panel) {
-        (Some(Dialog::Help(top)), _) => help::draw(app, *top, buffer, panes.body),
+        (Some(Dialog::Help(help)), _) => help::draw(app, help, buffer, panes.body),
         (Some(Dialog::List(dialog)), _) => cursor = list::draw(app, dialog, buffer, panes.body),
         (Some(Dialog::Form(dialog)), _) => {
             matrix::draw(app, &seen, buffer, panes.matrix);
@@ -77,8 +77,8 @@ pub fn view(app: &App, frame: &mut Frame<'_>) {
     status::draw(app, &seen, buffer, &panes);
     // A name and a command are typed in the line of notices.
     let typed = match app.dialogs.last() {
-        Some(Dialog::Name(dialog)) => Some(status::NAME_LABEL.len() + dialog.cursor()),
-        Some(Dialog::Command(dialog)) => Some(1 + dialog.cursor()),
+        Some(Dialog::Name(dialog)) => Some(status::NAME_LABEL.len() + dialog.field.cursor()),
+        Some(Dialog::Command(dialog)) => Some(1 + dialog.field.cursor()),
         _ => None,
     };
     if let Some(column) = typed {

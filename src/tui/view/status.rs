@@ -25,7 +25,7 @@ pub fn draw(app: &App, seen: &Seen, buffer: &mut Buffer, panes: &Panes) {
         theme,
         [(source(app, seen).as_str(), Role::Text)],
     );
-    let said = said(app);
+    let said = said(app, panes);
     if said.is_none() || panes.taxel != panes.notice {
         write::line(
             buffer,
@@ -44,11 +44,6 @@ pub fn draw(app: &App, seen: &Seen, buffer: &mut Buffer, panes: &Panes) {
 fn source(app: &App, seen: &Seen) -> String {
     let document = app.shown();
     let by_hand = document.turned.count();
-    let taxels = if by_hand == 1 {
-        "1 taxel".to_owned()
-    } else {
-        format!("{by_hand} taxels")
-    };
     let name = app.stored_name().map_or(String::new(), |stored| {
         let changed = if app.unsaved() { "*" } else { "" };
         format!("{stored}{changed}: ")
@@ -63,7 +58,7 @@ fn source(app: &App, seen: &Seen) -> String {
     };
     let mut text = name + &source.to_string();
     if by_hand > 0 {
-        text += &format!(" + {taxels} by hand");
+        text += &format!(" + {by_hand} by hand");
     }
     if seen.beyond {
         text += "; reaches beyond the sensor";
@@ -71,37 +66,38 @@ fn source(app: &App, seen: &Seen) -> String {
     text
 }
 
-/// The taxel under the cursor, and how the shape is held. Everything has a place of its own, whatever is before it: so
-/// little is sent over the line when the cursor moves.
+/// The taxel under the cursor, and how the shape is held. Everything has a place of its own, whatever is before it, and
+/// what changes together stands together: so little is sent over the line when the cursor moves.
 fn taxel(app: &App, seen: &Seen, panes: &Panes) -> String {
     let (column, row) = app.cursor;
-    let narrow = panes.taxel.width < 60;
-    let place = if narrow {
-        format!("{column}, {row}")
+    let wide = |side: u8| (side - 1).to_string().len();
+    let (across, down) = (wide(seen.imprint.columns()), wide(seen.imprint.rows()));
+    let place = if panes.taxel.width < 60 {
+        format!("{column:>across$}, {row:>down$}")
     } else {
-        format!("column {column}, row {row}")
+        format!("column {column:>across$}, row {row:>down$}")
+    };
+    let covered = match seen.coverage(column, row) {
+        Some(coverage) => format!("  covered {coverage:.6}"),
+        None => String::new(),
     };
     let state = if seen.imprint.get(column, row) {
         "active"
     } else {
         "inactive"
     };
-    let covered = match seen.coverage(column, row) {
-        Some(coverage) => format!("covered {coverage:.6}  "),
-        None => String::new(),
-    };
     let held = match app.mode {
         Mode::Grab => format!("  held, step {}", app.step.length()),
         Mode::Draw => String::new(),
     };
     format!(
-        "{place:<17}  {state:<8}  {covered}NA {} in all{held}",
+        "{place}{covered}  {state:>8}  NA {} in all{held}",
         seen.imprint.count()
     )
 }
 
-/// The question that is asked, or the notice.
-fn said(app: &App) -> Option<(String, Role)> {
+/// The question that is asked, or the notice, or what a dialog says of itself.
+fn said(app: &App, panes: &Panes) -> Option<(String, Role)> {
     match app.dialogs.last() {
         Some(Dialog::Question(question)) => {
             let answers = if question.no.is_some() { "" } else { " (y/n)" };
@@ -112,15 +108,25 @@ fn said(app: &App) -> Option<(String, Role)> {
                 Ok(_) | Err(NameError::Empty) => (String::new(), Role::Quiet),
                 Err(error) => (format!("  ! {error}"), Role::Error),
             };
-            return Some((format!("{NAME_LABEL}{}{text}", dialog.text()), role));
+            return Some((format!("{NAME_LABEL}{}{text}", dialog.field.text()), role));
         }
         Some(Dialog::Command(dialog)) if app.notice.is_none() => {
-            let candidates = if dialog.candidates.is_empty() {
-                String::new()
-            } else {
-                format!("   {}", dialog.candidates.join(" "))
+            let line = format!(":{}", dialog.field.text());
+            let room = usize::from(panes.notice.width).saturating_sub(line.chars().count());
+            let line = line + &as_many_as_fit(&dialog.candidates, room);
+            return Some((line, Role::Text));
+        }
+        Some(Dialog::Help(help)) if app.notice.is_none() => {
+            let room = usize::from(panes.body.height);
+            let (lines, top) = help.lines(room);
+            let last = lines.len().min(top + room);
+            let more = match (top, last == lines.len()) {
+                (0, true) => return None,
+                (_, true) => "the end",
+                (_, false) => "more below: Down, PageDown",
             };
-            return Some((format!(":{}{candidates}", dialog.text()), Role::Text));
+            let text = format!("lines {}-{last} of {}; {more}", top + 1, lines.len());
+            return Some((text, Role::Key));
         }
         _ => {}
     }
@@ -130,17 +136,33 @@ fn said(app: &App) -> Option<(String, Role)> {
     })
 }
 
+/// Words after a gap, and how many more there are where not all of them fit.
+fn as_many_as_fit(words: &[String], room: usize) -> String {
+    let mut text = String::new();
+    for (index, word) in words.iter().enumerate() {
+        let gap = if index == 0 { "   " } else { " " };
+        let left = words.len() - index;
+        // The last one needs no room behind it for what is left then.
+        let behind = match left {
+            1 => String::new(),
+            _ => format!(" … {} more", left - 1),
+        };
+        let used = text.chars().count() + gap.len() + word.chars().count();
+        if used + behind.chars().count() > room {
+            return text + &format!("{gap}… {left} more");
+        }
+        text += gap;
+        text += word;
+    }
+    text
+}
+
 /// Keys that mean something now, as many as fit.
 fn hints(app: &App, buffer: &mut Buffer, panes: &Panes) {
     let mut rest = panes.hints;
     let here = |binding: &&Binding| binding.context == app.context() && !binding.hint.is_empty();
     // Where the descriptors are a page of their own, its key comes first; elsewhere it does nothing.
-    let page = |binding: &&Binding| {
-        binding
-            .keys
-            .iter()
-            .any(|(_, message)| *message == Message::Page)
-    };
+    let page = |binding: &&Binding| binding.does(&Message::Page);
     let first = KEYMAP
         .iter()
         .filter(here)

@@ -36,7 +36,7 @@ fn keys_of_many_terminals() {
         ),
         ("\x1bOM\x1b[27u\x1b[9;2u\x1b[13u", "<CR><Esc><S-Tab><CR>"),
         // Function keys, keys let go, keys and bytes that nobody knows.
-        ("\x1b[[A\x1b[15~\x1bOP\x1b[2~\x1b[1;1:3Aq\0\x1c\x1f", "q"),
+        ("\x1b[[B\x1b[15~\x1bOQ\x1b[2~\x1b[1;1:3Aq\0\x1c\x1f", "q"),
         ("\x1b", "<Esc>"),
         ("\x1b\x1b", "<Esc>"),
         ("\x1b\x1b[A", "<Up>"),

@@ -1,0 +1,115 @@
+//! A line of text that is typed and edited: the same in a form, a list, a name and the command line.
+
+use tui_input::{Input, InputRequest};
+
+use super::key::Arrow;
+use super::message::{End, Erase, Message};
+
+/// A line of text with a cursor in it.
+#[derive(Clone, Debug)]
+pub struct TextField {
+    input: Input,
+    longest: usize,
+}
+
+impl TextField {
+    /// A field that starts with a text, its cursor at the end. No more than `longest` characters are typed into it.
+    pub fn new(text: impl Into<String>, longest: usize) -> Self {
+        Self {
+            input: Input::new(text.into()),
+            longest,
+        }
+    }
+
+    /// What stands in it.
+    pub fn text(&self) -> &str {
+        self.input.value()
+    }
+
+    /// Where its cursor stands, in columns.
+    pub fn cursor(&self) -> usize {
+        self.input.visual_cursor()
+    }
+
+    /// Puts another text in its place, the cursor at the end.
+    pub fn set(&mut self, text: impl Into<String>) {
+        self.input = Input::new(text.into());
+    }
+
+    /// Does what a message means in a line of text; answers whether it means anything there.
+    pub fn take(&mut self, message: &Message) -> bool {
+        let request = match message {
+            Message::Type(character) => {
+                self.insert(*character);
+                return true;
+            }
+            Message::Paste(text) => {
+                text.trim()
+                    .chars()
+                    .for_each(|character| self.insert(character));
+                return true;
+            }
+            Message::Choose(Arrow::Left) => InputRequest::GoToPrevChar,
+            Message::Choose(Arrow::Right) => InputRequest::GoToNextChar,
+            Message::ToEdge(End::First) => InputRequest::GoToStart,
+            Message::ToEdge(End::Last) => InputRequest::GoToEnd,
+            Message::Erase(Erase::All) => InputRequest::DeleteLine,
+            Message::Erase(Erase::Before) => InputRequest::DeletePrevChar,
+            Message::Erase(Erase::Under) => InputRequest::DeleteNextChar,
+            _ => return false,
+        };
+        self.edit(request);
+        true
+    }
+
+    /// Control characters have no place in a line.
+    fn insert(&mut self, character: char) {
+        if !character.is_control() && self.text().chars().count() < self.longest {
+            self.edit(InputRequest::InsertChar(character));
+        }
+    }
+
+    fn edit(&mut self, request: InputRequest) {
+        // What the library answers is only whether anything changed, which the view sees by itself.
+        let _ = self.input.handle(request);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn after(messages: &[Message]) -> (String, usize) {
+        let mut field = TextField::new("abc", 6);
+        for message in messages {
+            assert!(field.take(message), "{message:?}");
+        }
+        (field.text().to_owned(), field.cursor())
+    }
+
+    #[test]
+    fn a_line_is_edited_at_its_cursor() {
+        let (left, typed) = (Message::Choose(Arrow::Left), Message::Type('x'));
+        let erase = |what| Message::Erase(what);
+        assert_eq!(after(&[]), ("abc".to_owned(), 3));
+        assert_eq!(
+            after(&[left.clone(), typed.clone()]),
+            ("abxc".to_owned(), 3)
+        );
+        assert_eq!(
+            after(&[Message::ToEdge(End::First), erase(Erase::Under)]),
+            ("bc".to_owned(), 0)
+        );
+        assert_eq!(after(&[left, erase(Erase::Before)]), ("ac".to_owned(), 1));
+        assert_eq!(after(&[erase(Erase::All), typed]), ("x".to_owned(), 1));
+    }
+
+    #[test]
+    fn it_takes_no_more_than_it_has_room_for_and_nothing_that_steers_a_terminal() {
+        let pasted = Message::Paste("  d\u{1b}\te f g\n".to_owned());
+        assert_eq!(after(&[pasted]), ("abcde ".to_owned(), 6));
+        let mut field = TextField::new("abc", 6);
+        assert!(!field.take(&Message::Accept));
+        assert!(!field.take(&Message::Choose(Arrow::Up)));
+    }
+}
