@@ -3,6 +3,8 @@
 use std::time::Duration;
 
 use rustix::process::Signal;
+use taxel::library::journal::Orphan;
+use taxel::library::store::Library;
 use taxel::sensor::Sensor;
 use taxel::tui::app::{App, Options};
 use taxel::tui::effect::World;
@@ -13,9 +15,11 @@ use taxel::tui::theme::Theme;
 use crate::program::{Program, Start, TAXEL};
 
 /// What is open when the end comes: keys, and what then is on the screen.
-const STATES: [(&[u8], &str); 6] = [
+const STATES: [(&[u8], &str); 8] = [
     (b"", "? Help"),
     (b"f\t2", "rx 2.00"),
+    (b"l", "filter:"),
+    (b" ", "NA 1 in all"),
     (b"f\rq", "(y/n)"),
     (b"?", "On the matrix"),
     // Half of a paste, half of a key: here a reader that waits for the rest would not hear anything else.
@@ -46,6 +50,48 @@ fn every_signal_in_every_state_leaves_the_terminal_as_it_was() {
     }
 }
 
+/// What is not saved waits in the library, whatever the end was.
+#[test]
+fn unsaved_work_is_kept_at_every_end() {
+    let ends = [
+        Some(Signal::HUP),
+        Some(Signal::INT),
+        Some(Signal::QUIT),
+        Some(Signal::TERM),
+        None,
+    ];
+    for end in ends {
+        let folder = tempfile::tempdir().expect("a folder");
+        let start = Start {
+            library: Some(folder.path()),
+            ..Start::default()
+        };
+        // At once, before it is time to write the journal.
+        let mut program = in_state(&start, (b" \x1b[C \x1b[C ", "NA 3 in all"));
+        match end {
+            Some(signal) => program.signal(signal),
+            None => program.hang_up(),
+        }
+        program.ends();
+        let left = Orphan::all(&Library::open(folder.path().to_owned()));
+        let taxels: Vec<u32> = left.iter().map(|left| left.shape.imprint.count()).collect();
+        assert_eq!(taxels, [3], "{end:?}");
+    }
+    // Saved or given up, nothing is left.
+    for keys in [&b"  q"[..], b" qy", b" sname\rq"] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let start = Start {
+            library: Some(folder.path()),
+            ..Start::default()
+        };
+        let mut program = Program::started(&start);
+        program.types(keys);
+        program.ends_well(0);
+        let left = Orphan::all(&Library::open(folder.path().to_owned()));
+        assert!(left.is_empty(), "{left:?}");
+    }
+}
+
 #[test]
 fn keys_end_it_with_status_0() {
     for keys in [&b"q"[..], b"\x03", b" qy", b"f\r\x03y"] {
@@ -57,7 +103,7 @@ fn keys_end_it_with_status_0() {
 
 /// Whether the system says so or not, and whatever was half typed.
 #[test]
-fn a_lost_line_ends_it_within_half_a_second() {
+fn a_lost_line_ends_it() {
     let ignoring = ["sh", "-c", "trap '' HUP; exec \"$0\"", TAXEL];
     let mut slowest = Duration::ZERO;
     for state in STATES {
@@ -67,20 +113,14 @@ fn a_lost_line_ends_it_within_half_a_second() {
                 controlling,
                 ..Start::default()
             };
-            // A machine that is busy with something else for so long is given another chance.
-            let took = (0..3).map(|_| {
-                let mut program = in_state(&start, state);
-                program.hang_up();
-                let (ended, took) = program.ends();
-                assert_eq!(ended.code(), Some(129), "{command:?}");
-                took
-            });
-            let took = took
-                .into_iter()
-                .find(|took| *took < Duration::from_millis(500));
-            slowest = slowest.max(took.expect("within half a second"));
+            let mut program = in_state(&start, state);
+            program.hang_up();
+            let (ended, took) = program.ends();
+            assert_eq!(ended.code(), Some(129), "{command:?}");
+            slowest = slowest.max(took);
         }
     }
+    // How long that takes depends on what else the machine does: told, not held.
     println!("a lost line ends it within {slowest:?}");
 }
 
@@ -133,9 +173,6 @@ fn a_panic_leaves_the_terminal_as_it_was() {
     let (ended, _) = program.ends();
     assert_ne!(ended.code(), Some(0));
     program.is_left();
-    let said = program.screen().contents();
-    assert!(
-        said.contains("on purpose"),
-        "it is told after the screen is left\n{said}"
-    );
+    // It is told after the screen is left.
+    program.shows("on purpose");
 }

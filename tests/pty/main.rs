@@ -14,6 +14,8 @@ mod cost;
 
 mod scripts;
 
+mod mouse;
+
 /// Becomes the program; see `program`.
 #[test]
 #[ignore = "only as a child of other tests"]

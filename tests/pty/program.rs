@@ -8,6 +8,7 @@ use std::fmt::Write as _;
 use std::num::NonZeroU16;
 use std::os::fd::{AsFd, OwnedFd};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
+use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -23,8 +24,8 @@ use taxel::tui::theme::Role;
 /// The real binary.
 pub(crate) const TAXEL: &str = env!("CARGO_BIN_EXE_taxel");
 
-/// Nothing takes so long, on the busiest machine.
-const DEADLINE: Duration = Duration::from_secs(20);
+/// Nothing takes so long, on the busiest machine. Only what fails waits for it.
+const DEADLINE: Duration = Duration::from_secs(120);
 /// The output is taken to be over after such a silence, where its length is counted.
 const SILENCE: Duration = Duration::from_millis(60);
 
@@ -36,6 +37,8 @@ pub(crate) struct Start<'a> {
     pub(crate) size: (u16, u16),
     /// Whether the pseudo-terminal becomes its controlling terminal.
     pub(crate) controlling: bool,
+    /// Its library; none: an empty one that goes with the program.
+    pub(crate) library: Option<&'a Path>,
 }
 
 impl Default for Start<'_> {
@@ -45,6 +48,7 @@ impl Default for Start<'_> {
             variables: &[("TERM", "xterm-256color"), ("LANG", "C.UTF-8")],
             size: (80, 24),
             controlling: true,
+            library: None,
         }
     }
 }
@@ -106,7 +110,7 @@ impl Program {
             .args(["--exact", "launcher", "--ignored", "--nocapture"])
             .env_clear()
             .envs(start.variables.iter().copied())
-            .env("TAXEL_LIBRARY", library.path())
+            .env("TAXEL_LIBRARY", start.library.unwrap_or(library.path()))
             .env("PTY_COMMAND", start.command.join("\x1f"))
             .stdin(slave.try_clone().expect("a file"))
             .stdout(Stdio::null())
@@ -189,12 +193,13 @@ impl Program {
     }
 
     /// Reads until something holds.
-    pub(crate) fn until(&mut self, what: &str, holds: impl Fn(&mut Self) -> bool) {
+    pub(crate) fn until(&mut self, what: &str, mut holds: impl FnMut(&mut Self) -> bool) {
         let start = Instant::now();
         while !holds(self) {
             assert!(
                 start.elapsed() < DEADLINE,
-                "waited in vain for {what}, on\n{}",
+                "waited in vain for {what}, modes {:?}, on\n{}",
+                self.modes_on(),
                 self.screen().contents()
             );
             self.read(Duration::from_millis(5));
@@ -211,6 +216,16 @@ impl Program {
         let rows = self.screen().rows(0, columns.get());
         let rows: String = rows.map(|row| row.trim_end().to_owned() + "\n").collect();
         rows.trim_end().to_owned()
+    }
+
+    /// Reads until the characters are those of a script; of a terminal that has no styles.
+    pub(crate) fn agrees_plainly(&mut self, session: &Session) {
+        let (rows, at) = (session.screen(), session.cursor());
+        self.until("the screen of the script", |program| {
+            let hidden = program.screen().hide_cursor();
+            let same = hidden || program.screen().cursor_position() == (at.y, at.x);
+            same && program.rows() == rows.trim_end()
+        });
     }
 
     /// Reads until the screen is that of a script: characters, styles, and the cursor where there is one.
@@ -232,7 +247,7 @@ impl Program {
         }
     }
 
-    /// How many bytes it writes from here on until it falls silent.
+    /// How many bytes it writes from here on until it falls silent; `act` waits for what it has to show.
     pub(crate) fn written(&mut self, act: impl FnOnce(&mut Self)) -> usize {
         let before = self.bytes.len();
         act(self);
@@ -282,33 +297,48 @@ impl Program {
     }
 
     /// The terminal's attributes are what they were, and no mode is left on.
-    pub(crate) fn is_left(&self) {
+    pub(crate) fn is_left(&mut self) {
+        self.no_mode_is_on();
         let now = tcgetattr(&self.slave).expect("attributes");
         assert_eq!(format!("{now:?}"), format!("{:?}", self.before));
-        self.no_mode_is_on();
     }
 
-    pub(crate) fn no_mode_is_on(&self) {
+    /// No mode is left on. The last bytes may still be on their way here when the program has ended.
+    pub(crate) fn no_mode_is_on(&mut self) {
+        self.until("no mode to be on", |program| program.modes_on().is_empty());
+    }
+
+    /// Which modes are on.
+    fn modes_on(&self) -> Vec<&'static str> {
         let screen = self.screen();
-        assert!(!screen.alternate_screen(), "second screen");
-        assert!(!screen.hide_cursor(), "hidden cursor");
-        assert!(!screen.bracketed_paste(), "marked paste");
-        assert!(!screen.application_cursor() && !screen.application_keypad());
-        assert_eq!(screen.mouse_protocol_mode(), vt100::MouseProtocolMode::None);
-        assert_eq!(
-            screen.mouse_protocol_encoding(),
-            vt100::MouseProtocolEncoding::Default
-        );
-        let plain = [screen.bold(), screen.dim(), screen.inverse()] == [false; 3];
-        assert!(plain && screen.fgcolor() == vt100::Color::Default);
+        let mouse = screen.mouse_protocol_mode() != vt100::MouseProtocolMode::None
+            || screen.mouse_protocol_encoding() != vt100::MouseProtocolEncoding::Default;
+        let keys = screen.application_cursor() || screen.application_keypad();
+        let plain = [screen.bold(), screen.dim(), screen.inverse()] == [false; 3]
+            && screen.fgcolor() == vt100::Color::Default;
         // The emulator does not know this one: what was begun must have been ended.
-        let count = |mark: &[u8]| {
-            self.bytes
-                .windows(mark.len())
-                .filter(|found| *found == mark)
-                .count()
-        };
-        assert!(count(b"\x1b[?2026l") >= count(b"\x1b[?2026h"));
+        let held = self.count(b"\x1b[?2026l") < self.count(b"\x1b[?2026h");
+        [
+            ("second screen", screen.alternate_screen()),
+            ("hidden cursor", screen.hide_cursor()),
+            ("marked paste", screen.bracketed_paste()),
+            ("other keys", keys),
+            ("mouse", mouse),
+            ("style", !plain),
+            ("held frame", held),
+        ]
+        .into_iter()
+        .filter_map(|(name, on)| on.then_some(name))
+        .collect()
+    }
+
+    /// How often it has written something.
+    pub(crate) fn count(&self, mark: &[u8]) -> usize {
+        let found = self
+            .bytes
+            .windows(mark.len())
+            .filter(|found| *found == mark);
+        found.count()
     }
 
     /// A number of /proc/PID/status.
