@@ -5,6 +5,13 @@ use std::time::{Duration, Instant};
 use crate::program::{Program, Start};
 use crate::screens::session;
 
+/// Most bytes of a move of the cursor.
+const MOVE: usize = 60;
+/// Of a toggle: a dozen descriptors change, at a dozen places.
+const TOGGLE: usize = 170;
+/// Of the first one on an empty matrix: all descriptors appear.
+const FIRST_TOGGLE: usize = 225;
+
 #[test]
 fn bytes_at_80_x_24() {
     for variables in [
@@ -30,31 +37,63 @@ fn bytes_at_80_x_24() {
             let written = program.written(|program| {
                 program.types(bytes);
                 script.keys(notation).expect("keys");
-                let rows = script.screen();
-                program.until(name, |program| program.rows() == rows.trim_end());
+                if variables.contains(&("TERM", "dumb")) {
+                    program.agrees_plainly(&script);
+                } else {
+                    program.agrees(&script);
+                }
             });
             println!("  {name}: {written} bytes");
+            if std::env::var_os("PTY_SHOW").is_some() {
+                let sent = &program.bytes[program.bytes.len() - written..];
+                println!("    {}", String::from_utf8_lossy(sent).escape_debug());
+            }
             assert!(written <= most, "{name}: {written} bytes, at most {most}");
         };
-        press("cursor right", "<Right>", b"\x1b[C", 60);
-        press("cursor down", "<Down>", b"\x1b[B", 60);
-        press("cursor left", "<Left>", b"\x1b[D", 60);
-        press("cursor up", "<Up>", b"\x1b[A", 60);
-        press("nothing", "<Esc>", b"\x1b\x1b", 0);
+        let arrows: [(&str, &str, &[u8]); 4] = [
+            ("left", "<Left>", b"\x1b[D"),
+            ("up", "<Up>", b"\x1b[A"),
+            ("right", "<Right>", b"\x1b[C"),
+            ("down", "<Down>", b"\x1b[B"),
+        ];
+        for (name, notation, bytes) in arrows {
+            press(name, notation, bytes, MOVE);
+        }
+        // Esc says nothing here; what it had written would be counted with the move.
+        press(
+            "nothing, then right",
+            "<Esc><Right>",
+            b"\x1b\x1b\x1b[C",
+            MOVE,
+        );
         press("a figure", "f<CR>", b"f\r", 4000);
-        press("cursor up on a figure", "<Up>", b"\x1b[A", 60);
-        press("cursor left on a figure", "<Left>", b"\x1b[D", 60);
-        // These change eight and more descriptors, and two lines at the foot.
-        press("toggle that makes a hole", "<Space>", b" ", 200);
-        press("toggle back", "<Space>", b" ", 200);
+        // Over all of it, its edges and the corners of the matrix.
+        for (turns, index) in [(10, 0), (5, 1), (10, 2), (6, 3), (12, 0), (7, 1)] {
+            let (name, notation, bytes) = arrows[index];
+            for turn in 0..turns {
+                press(&format!("{name} {turn} on a figure"), notation, bytes, MOVE);
+            }
+        }
+        press("first column", "<Home>", b"\x1b[H", MOVE);
+        press("last row", "<PageDown>", b"\x1b[6~", MOVE);
+        press("last column", "<End>", b"\x1b[F", MOVE);
+        press("first row", "<PageUp>", b"\x1b[5~", MOVE);
+        press(
+            "to the middle",
+            "<8x:Left><8x:Down>",
+            &b"\x1b[D\x1b[B".repeat(8),
+            8 * 2 * MOVE,
+        );
+        press("toggle that makes a hole", "<Space>", b" ", TOGGLE);
+        press("toggle back", "<Space>", b" ", TOGGLE);
         press("help", "?", b"?", 2500);
         press("help closed", "<Esc>", b"\x1b\x1b", 2500);
         press("empty", "n", b"n", 2500);
-        press("first toggle", "<Space>", b" ", 1000);
-        press("cursor from active to inactive", "<Right>", b"\x1b[C", 80);
-        press("second toggle", "<Space>", b" ", 200);
-        press("cursor from active to inactive", "<Right>", b"\x1b[C", 80);
-        press("third toggle", "<Space>", b" ", 200);
+        press("first toggle", "<Space>", b" ", FIRST_TOGGLE);
+        for name in ["second toggle", "third toggle"] {
+            press("right, off an active taxel", "<Right>", b"\x1b[C", MOVE);
+            press(name, "<Space>", b" ", TOGGLE);
+        }
     }
 }
 
@@ -63,7 +102,13 @@ fn nothing_is_done_for_nothing() {
     let mut program = Program::start(&Start::default());
     program.written(|program| program.shows("? Help"));
     let switches = |program: &Program| (program.status("voluntary_ctxt_switches"), program.cpu());
-    let before = switches(&program);
+    // On a busy machine it may still be on its way to sleep.
+    let mut before = switches(&program);
+    program.until("sleep", |program| {
+        program.read(Duration::from_millis(500));
+        let now = switches(program);
+        std::mem::replace(&mut before, now) == now
+    });
     let written = program.bytes.len();
     let end = Instant::now() + Duration::from_secs(10);
     while let Some(left) = end.checked_duration_since(Instant::now()) {

@@ -109,7 +109,7 @@ impl<'a> Talk<'a> {
         mailbox: Mailbox,
     ) -> Self {
         let size = size(&device, &settings);
-        let screen = Screen::new(size, settings.styles, settings.synchronized);
+        let screen = Screen::new(size, settings.abilities);
         // A buffer in memory cannot fail: its error type has no values.
         let Ok(screen) = Terminal::new(screen);
         Self {

@@ -4,7 +4,8 @@
 //! settings   environment and flags -> what this terminal is sent
 //! input      bytes -> key, paste, mouse
 //! pen        styles -> few bytes
-//! screen     changed cells -> few bytes
+//! writer     changed cells -> few bytes
+//! screen     what has changed, frame by frame
 //! device     the terminal's two files
 //! session    one way in, one way out
 //! signals    what the system says
@@ -22,6 +23,8 @@ pub mod settings;
 pub mod input;
 
 mod pen;
+
+mod writer;
 
 pub mod screen;
 

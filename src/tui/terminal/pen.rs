@@ -113,8 +113,22 @@ fn color(color: Color, base: u8) -> String {
         Color::LightCyan => numbered(66),
         Color::White => numbered(67),
         Color::Indexed(index) => format!("{};5;{index}", base + 8),
-        Color::Rgb(red, green, blue) => format!("{};2;{red};{green};{blue}", base + 8),
+        Color::Rgb(red, green, blue) => match cube(red, green, blue) {
+            Some(index) => format!("{};5;{index}", base + 8),
+            None => format!("{};2;{red};{green};{blue}", base + 8),
+        },
     }
+}
+
+/// The number of a colour in the table of 256, where its cube of 6 x 6 x 6 has just this one: shorter to say.
+fn cube(red: u8, green: u8, blue: u8) -> Option<u8> {
+    let step = |part: u8| {
+        [0, 95, 135, 175, 215, 255]
+            .iter()
+            .position(|&level| level == part)
+    };
+    let index = 16 + 36 * step(red)? + 6 * step(green)? + step(blue)?;
+    u8::try_from(index).ok()
 }
 
 #[cfg(test)]
@@ -148,5 +162,9 @@ mod tests {
             change(PLAIN, pen(Modifier::empty(), Color::Indexed(114))),
             "\x1b[38;5;114m"
         );
+        let rgb = |red, green, blue| pen(Modifier::empty(), Color::Rgb(red, green, blue));
+        assert_eq!(change(PLAIN, rgb(1, 2, 3)), "\x1b[38;2;1;2;3m");
+        assert_eq!(change(PLAIN, rgb(135, 215, 135)), "\x1b[38;5;114m");
+        assert_eq!(change(PLAIN, rgb(255, 255, 255)), "\x1b[38;5;231m");
     }
 }

@@ -1,25 +1,24 @@
-//! The screen of a terminal, kept up to date with few bytes.
+//! The screen of a terminal behind ratatui, kept up to date with few bytes.
 //!
-//! It knows what the terminal shows, so that it can write over characters in between where that is shorter than a
-//! move, and erase the end of a line at once. Moves are the shortest of several, styles are told by their difference,
-//! and a frame that changes nothing is no bytes.
-//!
-//! What is taken for granted is what a VT100 does: a character in the last column leaves the cursor there, and a line
-//! feed keeps the column (in raw mode). Characters that some terminals may show wider than others are followed by a
-//! move that says exactly where the next one stands.
+//! It gathers what has changed until the frame is taken, and writes it in that order of two which needs fewer bytes:
+//! as one reads, or first what is near the cursor. A frame that changes nothing is no bytes.
 
 use std::convert::Infallible;
 
 use ratatui::backend::{Backend, ClearType, WindowSize};
 use ratatui::buffer::Cell;
 use ratatui::layout::{Position, Size};
-use ratatui::text::Span;
 
 use super::pen::{PLAIN, Pen};
+use super::settings::Abilities;
+use super::writer::{Run, Writer, columns, is_narrow};
 
 /// A frame of fewer bytes is one packet of a network or less: it arrives in one piece anyhow, and goes without the
 /// marks that keep it together.
 const SMALL_FRAME: usize = 256;
+
+/// With more pieces than these, their order does not matter any more.
+const FEW: usize = 64;
 
 const BEGIN_SYNCHRONIZED: &[u8] = b"\x1b[?2026h";
 const END_SYNCHRONIZED: &[u8] = b"\x1b[?2026l";
@@ -44,15 +43,13 @@ pub struct Screen {
     wanted: Option<Position>,
     /// The position that ratatui reads back.
     asked: Position,
-    styles: bool,
-    synchronized: bool,
+    abilities: Abilities,
     out: Vec<u8>,
 }
 
 impl Screen {
-    /// An empty screen with a visible cursor. `styles` is whether it has any, `synchronized` whether it knows marks
-    /// that keep a frame together.
-    pub fn new(size: Size, styles: bool, synchronized: bool) -> Self {
+    /// An empty screen with a visible cursor.
+    pub fn new(size: Size, abilities: Abilities) -> Self {
         let mut screen = Self {
             size,
             cells: Vec::new(),
@@ -62,8 +59,7 @@ impl Screen {
             visible: true,
             wanted: None,
             asked: Position::ORIGIN,
-            styles,
-            synchronized,
+            abilities,
             out: Vec::new(),
         };
         screen.resize(size);
@@ -89,13 +85,10 @@ impl Screen {
 
     /// The bytes of the frame, to be written at once; none where nothing has changed.
     pub fn take_frame(&mut self) -> Vec<u8> {
-        if let Some(wanted) = self.wanted {
-            self.go(wanted.x, wanted.y);
-        }
         let shown = self.wanted.is_some();
-        let mut out = std::mem::take(&mut self.out);
+        let mut out = self.write();
         let large = out.len() > SMALL_FRAME;
-        if large && shown && self.visible && !self.synchronized {
+        if large && shown && self.visible && !self.abilities.synchronized {
             // Else it could be seen running about.
             out.splice(0..0, HIDE_CURSOR.iter().copied());
             self.visible = false;
@@ -104,11 +97,42 @@ impl Screen {
             out.extend(if shown { SHOW_CURSOR } else { HIDE_CURSOR });
             self.visible = shown;
         }
-        if large && self.synchronized {
+        if large && self.abilities.synchronized {
             out.splice(0..0, BEGIN_SYNCHRONIZED.iter().copied());
             out.extend(END_SYNCHRONIZED);
         }
         out
+    }
+
+    /// Brings the terminal up to date.
+    fn write(&mut self) -> Vec<u8> {
+        let runs = Run::all(&self.stale, self.size.width);
+        let writer = Writer {
+            size: self.size,
+            abilities: self.abilities,
+            cells: &self.cells,
+            stale: std::mem::take(&mut self.stale),
+            at: self.at,
+            pen: self.pen,
+            out: std::mem::take(&mut self.out),
+        };
+        let mut near = runs.clone();
+        near.sort_by_key(
+            |run| match (run.distance(self.at), run.distance(self.wanted)) {
+                (Some(distance), _) => (0, distance),
+                (_, Some(distance)) => (1, distance),
+                _ => (2, 0),
+            },
+        );
+        let other = (runs.len() <= FEW && near != runs)
+            .then(|| writer.clone().write_all(&near, self.wanted));
+        let read = writer.write_all(&runs, self.wanted);
+        let best = match other {
+            Some(other) if other.out.len() < read.out.len() => other,
+            _ => read,
+        };
+        (self.stale, self.at, self.pen) = (best.stale, best.at, best.pen);
+        best.out
     }
 
     fn index(&self, x: u16, y: u16) -> usize {
@@ -130,158 +154,6 @@ impl Screen {
             self.stale[row].fill(true);
         }
     }
-
-    fn update_row(&mut self, y: u16) {
-        let width = self.size.width;
-        let row = self.row(y);
-        let blank = |cell: &Cell| cell.symbol() == " " && Pen::of(cell).leaves_blanks_plain();
-        let ink = self.cells[row.clone()]
-            .iter()
-            .rposition(|cell| !blank(cell));
-        let end = row.start + ink.map_or(0, |last| last + 1);
-        for index in row.clone() {
-            if !self.stale[index] {
-                continue;
-            }
-            let x = u16::try_from(index - row.start).unwrap_or(width);
-            self.go(x, y);
-            let rest = self.stale[index..row.end].iter().filter(|stale| **stale);
-            if index >= end && rest.count() > b"\x1b[K".len() {
-                if !self.pen.leaves_blanks_plain() {
-                    self.take(PLAIN);
-                }
-                self.out.extend(b"\x1b[K");
-                self.stale[index..row.end].fill(false);
-                return;
-            }
-            self.write(index);
-            let end = index + columns(&self.cells[index]);
-            self.stale[index..end.min(row.end)].fill(false);
-        }
-    }
-
-    fn take(&mut self, pen: Pen) {
-        if self.styles {
-            pen.change(self.pen, &mut self.out);
-        }
-        self.pen = pen;
-    }
-
-    /// Writes a cell where the cursor is.
-    fn write(&mut self, index: usize) {
-        let cell = &self.cells[index];
-        let pen = Pen::of(cell);
-        let (narrow, symbol) = (is_narrow(cell.symbol()), cell.symbol().to_owned());
-        let any_pen = symbol == " " && self.pen.leaves_blanks_plain() && pen.leaves_blanks_plain();
-        if !any_pen {
-            self.take(pen);
-        }
-        self.out.extend(symbol.as_bytes());
-        self.at = self
-            .at
-            .filter(|_| narrow)
-            .map(|at| Position { x: at.x + 1, ..at });
-    }
-
-    /// Brings the cursor to a place, the shortest way.
-    fn go(&mut self, x: u16, y: u16) {
-        let target = Position { x, y };
-        if self.at == Some(target) {
-            return;
-        }
-        let mut way = absolute(target);
-        if let Some(at) = self.at {
-            let down = usize::from(y.saturating_sub(at.y));
-            let vertical = match at.y.checked_sub(y) {
-                Some(up) if up > 0 => csi(up, 'A'),
-                _ => shorter(b"\n".repeat(down), csi(y - at.y.min(y), 'B')),
-            };
-            let returned = [vec![b'\r'], vertical.clone(), self.forward(0, x, y)].concat();
-            way = shorter(way, returned);
-            // After the last column only a return or a full move is sure.
-            if at.x < self.size.width {
-                let horizontal = match at.x.checked_sub(x) {
-                    Some(left) => shorter(b"\x08".repeat(usize::from(left)), csi(left, 'D')),
-                    None => self.forward(at.x, x, y),
-                };
-                way = shorter(way, [vertical, horizontal].concat());
-            }
-        }
-        self.out.extend(way);
-        self.at = Some(target);
-    }
-
-    /// From column `from` to column `to` of a row: by a move, or over what stands between if that looks the same now.
-    fn forward(&self, from: u16, to: u16, y: u16) -> Vec<u8> {
-        let moved = csi(to - from, 'C');
-        let between = self.index(from, y)..self.index(to, y);
-        // The first cell may be the second half of a wide character.
-        let half = from > 0 && !is_narrow(self.cells[between.start - 1].symbol());
-        if between.len() > moved.len() || half {
-            return moved;
-        }
-        let mut over = Vec::new();
-        for index in between {
-            let cell = &self.cells[index];
-            let pen = Pen::of(cell);
-            let blank =
-                cell.symbol() == " " && pen.leaves_blanks_plain() && self.pen.leaves_blanks_plain();
-            let same = !self.styles || pen == self.pen;
-            if self.stale[index] || !is_narrow(cell.symbol()) || !(same || blank) {
-                return moved;
-            }
-            over.extend(cell.symbol().as_bytes());
-        }
-        shorter(over, moved)
-    }
-}
-
-/// The shorter one, the first of equals.
-fn shorter(first: Vec<u8>, second: Vec<u8>) -> Vec<u8> {
-    if second.len() < first.len() {
-        second
-    } else {
-        first
-    }
-}
-
-/// `ESC [ count final`, the count left out where it is one, all where it is none.
-fn csi(count: u16, last: char) -> Vec<u8> {
-    match count {
-        0 => Vec::new(),
-        1 => format!("\x1b[{last}").into_bytes(),
-        _ => format!("\x1b[{count}{last}").into_bytes(),
-    }
-}
-
-fn absolute(target: Position) -> Vec<u8> {
-    let (row, column) = (u32::from(target.y) + 1, u32::from(target.x) + 1);
-    match (row, column) {
-        (1, 1) => "\x1b[H".to_owned(),
-        (_, 1) => format!("\x1b[{row}H"),
-        _ => format!("\x1b[{row};{column}H"),
-    }
-    .into_bytes()
-}
-
-/// How many columns a cell takes.
-fn columns(cell: &Cell) -> usize {
-    match cell.symbol() {
-        narrow if is_narrow(narrow) => 1,
-        other => Span::raw(other).width().max(1),
-    }
-}
-
-/// Whether every terminal gives it one column.
-fn is_narrow(symbol: &str) -> bool {
-    let mut characters = symbol.chars();
-    let first = characters.next();
-    // Latin and Greek; dashes and dots; lines, blocks and shades.
-    characters.next().is_none()
-        && first.is_some_and(|first| {
-            matches!(first, ' '..='~' | '\u{a1}'..='\u{ac}' | '\u{ae}'..='\u{2ff}' | '\u{370}'..='\u{3ff}'
-                | '\u{2010}'..='\u{2027}' | '\u{2190}'..='\u{2193}' | '\u{2500}'..='\u{259f}')
-        })
 }
 
 impl Backend for Screen {
@@ -308,7 +180,6 @@ impl Backend for Screen {
         }
         for y in (0..self.size.height).filter(|&y| rows[usize::from(y)]) {
             self.renew_wide_row(y);
-            self.update_row(y);
         }
         Ok(())
     }
@@ -343,7 +214,7 @@ impl Backend for Screen {
         self.out.clear();
         self.pen = PLAIN;
         self.out.extend(
-            if self.styles {
+            if self.abilities.styles {
                 "\x1b[m\x1b[H\x1b[2J"
             } else {
                 "\x1b[H\x1b[2J"

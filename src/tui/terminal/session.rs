@@ -79,10 +79,10 @@ pub(super) fn leave() -> io::Result<()> {
         return Ok(());
     };
     let mut goodbye = String::new();
-    if found.settings.synchronized {
+    if found.settings.abilities.synchronized {
         goodbye += SHOW_FRAME;
     }
-    if found.settings.styles {
+    if found.settings.abilities.styles {
         goodbye += PLAIN;
     }
     if found.mouse {

@@ -52,12 +52,19 @@ pub struct Flags {
     pub size: Option<(u16, u16)>,
 }
 
+/// What a terminal can do beyond moving its cursor and clearing its screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Abilities {
+    /// Bold, reversed, colours.
+    pub styles: bool,
+    /// It holds a frame that is marked until all of it is there.
+    pub synchronized: bool,
+    /// It erases so many characters in the middle of a row (ECH), as all since the VT220 do.
+    pub erases: bool,
+}
+
 /// What the terminal is sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "each is a switch by itself, with any of the others"
-)]
 pub struct Settings {
     /// What it is.
     pub kind: Kind,
@@ -73,10 +80,8 @@ pub struct Settings {
     pub palette: Palette,
     /// ASCII characters only.
     pub ascii: bool,
-    /// Whether a frame is marked, so that the terminal shows it all at once.
-    pub synchronized: bool,
-    /// Whether bold, reversed and colours are sent at all.
-    pub styles: bool,
+    /// What else it is sent.
+    pub abilities: Abilities,
 }
 
 impl Settings {
@@ -113,8 +118,11 @@ impl Settings {
                 .palette
                 .unwrap_or_else(|| background(&text("COLORFGBG"))),
             ascii: flags.ascii || kind <= Kind::Serial,
-            synchronized: kind == Kind::Window,
-            styles: kind > Kind::Dumb || color != ColorDepth::Never,
+            abilities: Abilities {
+                styles: kind > Kind::Dumb || color != ColorDepth::Never,
+                synchronized: kind == Kind::Window,
+                erases: kind >= Kind::Console,
+            },
         }
     }
 
@@ -180,9 +188,11 @@ mod tests {
             let settings = term(name);
             assert_eq!(settings.kind, kind, "{name}");
             assert_eq!(settings.mouse, kind == Kind::Window, "{name}");
-            assert_eq!(settings.synchronized, kind == Kind::Window, "{name}");
+            let abilities = settings.abilities;
+            assert_eq!(abilities.synchronized, kind == Kind::Window, "{name}");
+            assert_eq!(abilities.erases, kind >= Kind::Console, "{name}");
             assert_eq!(settings.ascii, kind <= Kind::Serial, "{name}");
-            assert_eq!(settings.styles, kind != Kind::Dumb, "{name}");
+            assert_eq!(abilities.styles, kind != Kind::Dumb, "{name}");
         }
         assert_eq!(settings(&[], Flags::default()), term("dumb"));
     }
@@ -207,7 +217,7 @@ mod tests {
         };
         let forced = settings(&[("TERM", "dumb"), ("NO_COLOR", "1")], asked);
         assert_eq!(
-            (forced.color, forced.styles),
+            (forced.color, forced.abilities.styles),
             (ColorDepth::Sixteen, true),
             "the command line wins"
         );

@@ -22,8 +22,13 @@ fn emulator(size: Size) -> vt100::Parser {
 type Cursor = Option<(u16, u16)>;
 
 /// Draws frames, each made of writings and a cursor; after each the emulator must show what ratatui drew.
-fn check(frames: &[(Vec<Writing>, Cursor)], synchronized: bool) {
-    let Ok(mut terminal) = Terminal::new(Screen::new(SIZE, true, synchronized));
+fn check(frames: &[(Vec<Writing>, Cursor)], synchronized: bool, erases: bool) {
+    let abilities = Abilities {
+        styles: true,
+        synchronized,
+        erases,
+    };
+    let Ok(mut terminal) = Terminal::new(Screen::new(SIZE, abilities));
     let mut emulator = emulator(SIZE);
     for (index, (writings, cursor)) in frames.iter().enumerate() {
         if index % 7 == 6 {
@@ -31,8 +36,12 @@ fn check(frames: &[(Vec<Writing>, Cursor)], synchronized: bool) {
         }
         let Ok(drawn) = terminal.draw(|frame| {
             for &(x, y, text, style) in writings {
-                let room = usize::from(SIZE.width - x);
-                frame.buffer_mut().set_stringn(x, y, text, room, style);
+                let (room, buffer) = (usize::from(SIZE.width - x), frame.buffer_mut());
+                // A buffer with half of a wide character is none that ratatui promises to draw.
+                if x > 0 && columns(&buffer[(x - 1, y)]) > 1 {
+                    buffer[(x - 1, y)].set_symbol(" ");
+                }
+                buffer.set_stringn(x, y, text, room, style);
             }
             if let Some(cursor) = cursor {
                 frame.set_cursor_position(*cursor);
@@ -138,24 +147,35 @@ proptest! {
             1..12,
         ),
         synchronized: bool,
+        erases: bool,
     ) {
-        check(&frames, synchronized);
+        check(&frames, synchronized, erases);
     }
 }
 
+const EVERYTHING: Abilities = Abilities {
+    styles: true,
+    synchronized: true,
+    erases: true,
+};
+
 fn frame(before: &[&str], after: &[&str]) -> String {
+    frame_at(before, after, (0, 0))
+}
+
+fn frame_at(before: &[&str], after: &[&str], cursor: (u16, u16)) -> String {
     let size = Size {
         width: 80,
         height: 24,
     };
-    let Ok(mut terminal) = Terminal::new(Screen::new(size, true, true));
+    let Ok(mut terminal) = Terminal::new(Screen::new(size, EVERYTHING));
     let mut last = Vec::new();
     for rows in [before, after] {
         let Ok(_) = terminal.draw(|frame| {
             for (y, row) in (0..).zip(rows) {
                 frame.buffer_mut().set_string(0, y, row, Style::new());
             }
-            frame.set_cursor_position((0, 0));
+            frame.set_cursor_position(cursor);
         });
         last = terminal.backend_mut().take_frame();
     }
@@ -172,4 +192,13 @@ fn the_shortest_way_is_taken() {
     assert_eq!(frame(&["a", "b"], &["A", "B"]), "A\r\nB\x1b[H");
     assert_eq!(frame(&["ab"], &["a"]), "a \r");
     assert_eq!(frame(&["a long line"], &["a"]), "a \x1b[K\r");
+    // Blanks in the middle are erased where that is shorter.
+    assert_eq!(frame(&["abcdefg h"], &["a       h"]), "a\x1b[6X\r");
+    assert_eq!(frame(&["abcd h"], &["a    h"]), "a   \r");
+    assert_eq!(frame(&["abcdefghijk x"], &["a        jk x"]), "a\x1b[8X\r");
+    // What is near the cursor first, though it is below.
+    assert_eq!(
+        frame_at(&["ab", "", "ab"], &["xb", "", "xb"], (0, 2)),
+        "x\x1b[Hx\r\n\n"
+    );
 }
