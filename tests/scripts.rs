@@ -3,6 +3,7 @@
 //! `INSTA_UPDATE=always cargo test --test scripts` writes them anew; then read the difference. The same scripts run on the
 //! real program in a pseudo-terminal (`tests/pty`).
 
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use taxel::sensor::Sensor;
@@ -27,7 +28,11 @@ fn output(script: &str, json: bool) -> Result<String, Failure> {
     let settings = settings(true, json);
     let world = World::scratch().expect("there is a folder for temporary files");
     let mut printed = String::new();
-    run(script, &[], &settings, world, |text| printed.push_str(text)).map(|()| printed)
+    run(script, &[], &settings, world, |text| {
+        printed.push_str(text);
+        ControlFlow::Continue(())
+    })
+    .map(|()| printed)
 }
 
 #[test]
@@ -129,6 +134,27 @@ fn what_does_not_hold_is_told_with_its_line() {
         ),
         ("Wait now", "line 1: Wait stands alone"),
         ("Screen\nSize 10x10", "line 2: Size and Set come before"),
+        (
+            "Set ascii maybe",
+            "line 1: Set ascii takes one of on, off, found \"maybe\"",
+        ),
+        (
+            "Set theme pink",
+            "line 1: Set theme takes one of dark, light, mono, found \"pink\"",
+        ),
+        (
+            "Set seed 7",
+            "line 1: nothing to set is called \"seed\", expected one of ascii, color",
+        ),
+        (
+            "Size 80x24\nSet columns 65",
+            "line 2: columns: 65 is out of range",
+        ),
+        ("Set shape {}", "line 1: Set shape: format: missing"),
+        (
+            "Set library nowhere",
+            "line 1: expected a folder in double quotes, found nowhere",
+        ),
     ] {
         let found = told(script);
         assert!(found.starts_with(message), "{script:?}: {found}");
@@ -149,7 +175,7 @@ fn a_signal_keeps_unsaved_work() {
         &[],
         &settings,
         world(),
-        |_| {},
+        |_| ControlFlow::Continue(()),
     )
     .expect("it holds");
     run(
@@ -157,7 +183,64 @@ fn a_signal_keeps_unsaved_work() {
         &[],
         &settings,
         world(),
-        |_| {},
+        |_| ControlFlow::Continue(()),
     )
     .expect("it holds");
+}
+
+const PAIR: &str = "{\"format\":\"taxel-shape/1\",\"name\":\"pair\",\"sensor\":{\"columns\":4,\"rows\":3},\
+                    \"imprint\":[\"....\",\".##.\",\"....\"]}";
+
+/// A script says how the program starts and what it finds.
+#[test]
+fn a_script_sets_the_scene() {
+    let script = format!(
+        "Size 60x20\nSet ascii on\nSet columns 4\nSet rows 3\nSet threshold 0.75\nSet pitch 2\nSet shape {PAIR}\n\
+         Expect /column 2, row 1/\nState /document/sensor\nKeys lpair<Enter>\nExpect /pair loaded/\nScreen"
+    );
+    let printed = output(&script, false).expect("it holds");
+    assert!(printed.is_ascii(), "{printed}");
+    let sensor = printed.lines().next().expect("the state");
+    for part in [
+        "\"columns\":4",
+        "\"rows\":3",
+        "\"threshold\":0.75",
+        "\"pitch_mm\":2",
+    ] {
+        assert!(sensor.contains(part), "{sensor}");
+    }
+    let script = format!(
+        "Set leftover {PAIR}\nExpect /Unsaved work of 2 taxels of pair/\nKeys y\nExpect /brought back/\n\
+         Expect /NA 2 in all/"
+    );
+    output(&script, false).expect("it holds");
+    let both = format!("Set library \"/nowhere\"\nSet shape {PAIR}");
+    let told = output(&both, false).expect_err("it does not hold");
+    assert_eq!(
+        told.to_string(),
+        "line 1: a library that is named has its own shapes"
+    );
+}
+
+/// What is printed is there before the script is at its end.
+#[test]
+fn a_script_prints_as_it_goes() {
+    let world = World::scratch().expect("there is a folder for temporary files");
+    let mut printed = 0;
+    let stopped = run(
+        "Screen\nScreen\nScreen",
+        &[],
+        &settings(false, false),
+        world,
+        |_| {
+            printed += 1;
+            if printed == 2 {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        },
+    );
+    assert_eq!(stopped, Err(Failure::Stopped));
+    assert_eq!(printed, 2);
 }

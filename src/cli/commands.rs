@@ -263,7 +263,7 @@ fn terminal() -> [Arg; 5] {
         .long("record")
         .value_name("FILE")
         .value_parser(value_parser!(PathBuf))
-        .help("Write what is typed as a script");
+        .help("Write what is typed as a script, to a new file");
     let no_mouse = Arg::new("no-mouse")
         .long("no-mouse")
         .action(ArgAction::SetTrue)

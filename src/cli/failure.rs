@@ -80,8 +80,29 @@ pub(super) enum Failure {
         error: InputError,
     },
     /// A script did not hold.
-    #[error(transparent)]
-    Script(#[from] runner::Failure),
+    #[error("{}{failure}", name.as_ref().map_or_else(String::new, |name| format!("{name}: ")))]
+    Script {
+        /// Its name; none of keys that are no script.
+        name: Option<String>,
+        /// What did not.
+        failure: runner::Failure,
+    },
+    /// There is a file already where a record was to be.
+    #[error("{name} is there already, and a record does not replace it; {free} would be a new one")]
+    Recorded {
+        /// Its name.
+        name: String,
+        /// A name that is free.
+        free: String,
+    },
+    /// A record cannot be begun.
+    #[error("{name}: cannot record: {error}")]
+    Record {
+        /// Its file's name.
+        name: String,
+        /// Why not.
+        error: io::Error,
+    },
     /// There is no such grid.
     #[error(transparent)]
     Grid(#[from] GridError),
@@ -114,8 +135,15 @@ impl Failure {
     pub(super) fn status(&self) -> u8 {
         match self {
             _ if self.is_closed_pipe() => 0,
-            Self::Usage(_) | Self::NoScript { .. } | Self::Script(runner::Failure::Script(_)) => 2,
-            Self::Script(runner::Failure::Ended { .. }) => 3,
+            Self::Usage(_) | Self::NoScript { .. } => 2,
+            Self::Script {
+                failure: runner::Failure::Script(_),
+                ..
+            } => 2,
+            Self::Script {
+                failure: runner::Failure::Ended { .. },
+                ..
+            } => 3,
             // As a shell tells of a command that was interrupted.
             Self::Stopped => 130,
             _ => 1,
@@ -126,7 +154,7 @@ impl Failure {
     pub(super) fn message(&self, charset: Charset) -> Option<String> {
         match self {
             _ if self.is_closed_pipe() => None,
-            Self::Script(failure) => Some(charset.lines(&format!("error: {failure}\n"))),
+            Self::Script { .. } => Some(charset.lines(&format!("error: {self}\n"))),
             Self::Usage(error) => Some(charset.lines(&error.render().to_string())),
             _ => Some(format!("error: {}\n", charset.line(&self.to_string()))),
         }

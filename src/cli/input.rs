@@ -95,15 +95,6 @@ pub(super) fn read(place: &Place) -> Result<Content, InputError> {
     }
 }
 
-/// Any text; what is not UTF-8 is replaced.
-pub(super) fn text(place: &Place) -> Result<String, InputError> {
-    let bytes = match place {
-        Place::File(path) => bytes(File::open(path)?)?,
-        Place::Standard => bytes(io::stdin().lock())?,
-    };
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
-}
-
 fn bytes(source: impl Read) -> Result<Vec<u8>, InputError> {
     let mut bytes = Vec::new();
     let limit = u64::try_from(MAX_BYTES).unwrap_or(u64::MAX);

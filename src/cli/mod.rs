@@ -38,6 +38,8 @@ mod library;
 
 mod batch;
 
+mod screen;
+
 mod script;
 
 use std::ffi::OsString;
@@ -72,13 +74,9 @@ fn perform(arguments: Vec<OsString>, charset: Charset) -> Result<u8, Failure> {
     match request {
         Request::Help(text) => print(&charset.lines(&text))?,
         Request::Screen(sensor, flags, record) => {
-            return script::screen(sensor, flags, record, &shelf, charset);
+            return screen::screen(sensor, flags, record, &shelf, charset);
         }
-        Request::Script(asked) => {
-            let (printed, result) = script::run(&asked, &shelf, charset)?;
-            print(&printed)?;
-            result?;
-        }
+        Request::Script(asked) => script::run(&asked, &shelf, charset)?,
         Request::Figure(figure, sensor, form, saving) => {
             let touched = touch::touch(*figure, sensor, form, saving, &shelf, charset)?;
             answer(&touched, charset)?;

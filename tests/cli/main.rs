@@ -14,6 +14,8 @@ mod sweep;
 
 mod streams;
 
+mod script;
+
 use std::ffi::OsStr;
 use std::io::Write;
 use std::process::{Child, Command, Stdio};

@@ -16,6 +16,8 @@ mod scripts;
 
 mod mouse;
 
+mod record;
+
 /// Becomes the program; see `program`.
 #[test]
 #[ignore = "only as a child of other tests"]

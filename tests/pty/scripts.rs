@@ -6,6 +6,7 @@ use taxel::tui::key::{Arrow, Key};
 use taxel::tui::message::{Message, Mouse, MouseKind};
 use taxel::tui::script::Session;
 use taxel::tui::script::command::{Command, read};
+use taxel::tui::script::setting::Setting;
 
 use crate::program::{Program, Start};
 use crate::screens::session;
@@ -134,8 +135,9 @@ fn every_script_shows_its_screens_on_a_terminal() {
         let (mut size, mut ascii) = ((80, 24), false);
         for (_, command) in &commands {
             match command {
-                Command::Size(columns, rows) => size = (*columns, *rows),
-                Command::Ascii(on) => ascii = *on,
+                Command::Set(Setting::Size(columns, rows)) => size = (*columns, *rows),
+                Command::Set(Setting::Ascii(on)) => ascii = *on,
+                Command::Set(other) => panic!("{}: {other}", path.display()),
                 _ => {}
             }
         }

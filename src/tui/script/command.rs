@@ -1,7 +1,8 @@
 //! The commands of a script, one a line.
 //!
 //! ```text
-//! Size 80x24          Set ascii on        Resize 100x30
+//! Size 80x24          Resize 100x30       Set ascii on        Set theme light
+//! Set columns 8       Set threshold 0.6   Set library "DIR"   (all of them: [`super::setting`])
 //! Keys f<Down><Tab>4.00<Enter>            vim notation; <lt>; <3x:Down>
 //! Type "literal text" Paste "1.5"         Click 12,5   Click "Figure"   Drag 3,4 9,9   Scroll 12,5 -3
 //! Screen [name]       State [json-pointer]
@@ -9,9 +10,11 @@
 //! Signal HUP          Wait                Quit
 //! ```
 //! Places are column,row of the screen, from 0. `#` begins a comment line. `Quit` holds where the program has ended.
+//! A drag goes through its places and no others, as a terminal tells them.
 
 use regex_lite::Regex;
 
+use super::setting::{self, Setting};
 use crate::tui::key::{Key, parse};
 
 /// A place of the screen: column, row.
@@ -20,10 +23,8 @@ pub type Place = (u16, u16);
 /// What a line asks for.
 #[derive(Clone, Debug)]
 pub enum Command {
-    /// A screen of so many columns and rows; before the first key.
-    Size(u16, u16),
-    /// ASCII characters only, or not; before the first key.
-    Ascii(bool),
+    /// How the program starts, and on what; before all that needs a screen.
+    Set(Setting),
     /// Another size while the program runs.
     Resize(u16, u16),
     /// Keys.
@@ -122,13 +123,9 @@ fn command(line: &str) -> Result<Command, String> {
         }
     };
     match word {
-        "Size" => size(rest).map(|(columns, rows)| Command::Size(columns, rows)),
+        "Size" => size(rest).map(|(columns, rows)| Command::Set(Setting::Size(columns, rows))),
         "Resize" => size(rest).map(|(columns, rows)| Command::Resize(columns, rows)),
-        "Set" => match rest.split_whitespace().collect::<Vec<_>>()[..] {
-            ["ascii", "on"] => Ok(Command::Ascii(true)),
-            ["ascii", "off"] => Ok(Command::Ascii(false)),
-            _ => Err(format!("expected Set ascii on, or off; found {rest:?}")),
-        },
+        "Set" => setting::read(rest).map(Command::Set),
         "Keys" => parse(rest)
             .map(Command::Keys)
             .map_err(|error| error.to_string()),

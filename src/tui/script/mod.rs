@@ -3,6 +3,8 @@
 
 pub mod session;
 
+pub mod setting;
+
 pub mod command;
 
 pub mod runner;

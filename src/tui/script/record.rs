@@ -1,11 +1,17 @@
 //! Writes what comes in as a script: a bug report becomes a test.
 
+use std::fmt::Write;
+
+use super::setting::Setting;
 use crate::tui::message::{Mouse, MouseKind};
+use crate::tui::terminal::Outcome;
 use crate::tui::terminal::input::Input;
 
 /// Turns inputs into lines, one after another.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Recorder {
+    /// The lines that come before the first one, while they are not written.
+    head: String,
     /// Whether the first size is written already.
     sized: bool,
     /// Where the button went down, and where it was since.
@@ -13,29 +19,55 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// The line of an input; empty where it is part of a line to come.
-    pub fn line(&mut self, input: &Input) -> String {
-        match input {
-            Input::Size(columns, rows) => {
-                let word = if std::mem::replace(&mut self.sized, true) {
-                    "Resize"
-                } else {
-                    "Size"
-                };
-                format!("{word} {columns}x{rows}\n")
-            }
-            Input::Key(key) => format!("Keys {key}\n"),
-            Input::Paste(text) => format!("Paste {}\n", serde_json::Value::from(text.as_str())),
-            Input::Mouse(mouse) => self.mouse(*mouse),
+    /// A record that begins with how the program was started and what it found.
+    pub fn new(start: &[Setting]) -> Self {
+        let lines = start.iter().map(|setting| format!("{setting}\n"));
+        Self {
+            head: lines.collect(),
+            sized: false,
+            held: Vec::new(),
         }
+    }
+
+    /// The lines of an input; empty where it is part of a line to come.
+    pub fn lines(&mut self, input: &Input) -> String {
+        let mut lines = std::mem::take(&mut self.head);
+        if !matches!(input, Input::Mouse(_)) {
+            // What comes between press and release ends a drag.
+            lines += &self.let_go();
+        }
+        match input {
+            Input::Size(columns, rows) if !self.sized => {
+                self.sized = true;
+                lines += &format!("{}\n", Setting::Size(*columns, *rows));
+            }
+            Input::Size(columns, rows) => lines += &format!("Resize {columns}x{rows}\n"),
+            Input::Key(key) => lines += &format!("Keys {key}\n"),
+            Input::Paste(text) => {
+                lines += &format!("Paste {}\n", serde_json::Value::from(text.as_str()));
+            }
+            Input::Mouse(mouse) => lines += &self.mouse(*mouse),
+        }
+        lines
+    }
+
+    /// The lines of the end: what was under way, and the signal that ended it.
+    pub fn end(&mut self, outcome: Outcome) -> String {
+        let mut lines = self.let_go();
+        if let Some(name) = outcome.signal_name() {
+            // A string takes everything.
+            let _ = writeln!(lines, "Signal {name}");
+        }
+        lines
     }
 
     fn mouse(&mut self, Mouse { kind, column, row }: Mouse) -> String {
         let here = (column, row);
         match kind {
             MouseKind::Press => {
+                let before = self.let_go();
                 self.held = vec![here];
-                String::new()
+                before
             }
             MouseKind::Drag => {
                 if !self.held.is_empty() {
@@ -43,20 +75,23 @@ impl Recorder {
                 }
                 String::new()
             }
-            MouseKind::Release => {
-                let way = std::mem::take(&mut self.held);
-                let places: Vec<String> = way
-                    .iter()
-                    .map(|(column, row)| format!("{column},{row}"))
-                    .collect();
-                match places.len() {
-                    0 => String::new(),
-                    1 => format!("Click {}\n", places[0]),
-                    _ => format!("Drag {}\n", places.join(" ")),
-                }
-            }
+            MouseKind::Release => self.let_go(),
+            // Where the wheel does something a drag does nothing, and the other way round.
             MouseKind::ScrollUp => format!("Scroll {column},{row} -1\n"),
             MouseKind::ScrollDown => format!("Scroll {column},{row} 1\n"),
+        }
+    }
+
+    fn let_go(&mut self) -> String {
+        let way = std::mem::take(&mut self.held);
+        let places: Vec<String> = way
+            .iter()
+            .map(|(column, row)| format!("{column},{row}"))
+            .collect();
+        match places.len() {
+            0 => String::new(),
+            1 => format!("Click {}\n", places[0]),
+            _ => format!("Drag {}\n", places.join(" ")),
         }
     }
 }
@@ -75,6 +110,7 @@ mod tests {
             Input::Key(Key::Char(' ')),
             Input::Key(Key::Char('<')),
             Input::Key(Key::Char('#')),
+            Input::Key(Key::Char('\u{3000}')),
             Input::Key(Key::ShiftArrow(Arrow::Left)),
             Input::Paste("a \"b\"\n".to_owned()),
             mouse(MouseKind::Press, 3, 4),
@@ -83,13 +119,19 @@ mod tests {
             mouse(MouseKind::Drag, 9, 9),
             mouse(MouseKind::Release, 9, 9),
             mouse(MouseKind::ScrollUp, 1, 1),
+            mouse(MouseKind::Press, 5, 5),
+            Input::Key(Key::F1),
+            mouse(MouseKind::Drag, 6, 6),
+            mouse(MouseKind::Release, 6, 6),
             Input::Size(60, 20),
         ];
-        let mut recorder = Recorder::default();
-        let script: String = inputs.iter().map(|input| recorder.line(input)).collect();
-        let expected = "Size 80x24\nKeys <Space>\nKeys <lt>\nKeys #\nKeys <S-Left>\nPaste \"a \\\"b\\\"\\n\"\n\
-                        Click 3,4\nDrag 3,4 9,9\nScroll 1,1 -1\nResize 60x20\n";
+        let mut recorder = Recorder::new(&[Setting::Ascii(true)]);
+        let script: String = inputs.iter().map(|input| recorder.lines(input)).collect();
+        let script = script + &recorder.end(Outcome::Signal(15));
+        let expected = "Set ascii on\nSize 80x24\nKeys <Space>\nKeys <lt>\nKeys #\nKeys <U+3000>\nKeys <S-Left>\n\
+                        Paste \"a \\\"b\\\"\\n\"\nClick 3,4\nDrag 3,4 9,9\nScroll 1,1 -1\nClick 5,5\nKeys <F1>\n\
+                        Resize 60x20\nSignal TERM\n";
         assert_eq!(script, expected);
-        assert_eq!(read(&script).map(|commands| commands.len()), Ok(10));
+        assert_eq!(read(&script).map(|commands| commands.len()), Ok(15));
     }
 }

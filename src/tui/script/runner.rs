@@ -1,10 +1,14 @@
 //! Runs a script: does its commands one by one, prints what they ask for, and stops where an expectation fails.
 
+use std::ops::ControlFlow;
+
 use serde_json::{Value, json};
 
 use super::command::{Command, Place, ScriptError, read};
 use super::session::Session;
+use super::setting::Setting;
 use crate::formats::answer::Answer;
+use crate::library::store::Library;
 use crate::tui::app::Options;
 use crate::tui::effect::World;
 use crate::tui::key::Key;
@@ -40,6 +44,12 @@ pub enum Failure {
     /// A line is no command.
     #[error(transparent)]
     Script(#[from] ScriptError),
+    /// There is no folder for the script's own library, or its shapes cannot be put there.
+    #[error("the script's own library: {0}")]
+    World(String),
+    /// Nobody takes any more of what is printed.
+    #[error("stopped by whoever reads it")]
+    Stopped,
     /// The program ended before the script.
     #[error("line {line}: the program has ended before")]
     Ended {
@@ -48,35 +58,62 @@ pub enum Failure {
     },
 }
 
-/// Runs a script in a world, after some keys; `print` takes what it prints. Without a script the screen is printed.
+/// Runs a script in a world, after some keys; `print` takes what it prints, as it comes. Without a script the screen is
+/// printed. A script that sets a library or its shapes has a world of its own instead.
 ///
 /// # Errors
-/// The first line that is wrong or does not hold. A script with a wrong line is not run at all.
+/// The first line that is wrong or does not hold; or that `print` breaks it off. A script with a wrong line is not run at
+/// all.
 pub fn run(
     script: &str,
     keys: &[Key],
     settings: &Settings,
     world: World,
-    mut print: impl FnMut(&str),
+    mut print: impl FnMut(&str) -> ControlFlow<()>,
 ) -> Result<(), Failure> {
     let commands = read(script)?;
-    let mut settings = *settings;
-    // What describes the screen comes before it is made.
-    let mut rest = commands.as_slice();
-    while let [(_, command), others @ ..] = rest {
-        match command {
-            Command::Size(columns, rows) => settings.size = (*columns, *rows),
-            Command::Ascii(ascii) => settings.options.theme.ascii = *ascii,
-            _ => break,
+    let (mut settings, mut world) = (*settings, world);
+    // What describes the start comes before it.
+    let start = commands.iter().map_while(|(line, command)| match command {
+        Command::Set(setting) => Some((*line, setting)),
+        _ => None,
+    });
+    let (mut shapes, mut leftovers) = (Vec::new(), Vec::new());
+    for (line, setting) in start.clone() {
+        let options = &mut settings.options;
+        match setting {
+            Setting::Size(columns, rows) => settings.size = (*columns, *rows),
+            Setting::Ascii(ascii) => options.theme.ascii = *ascii,
+            Setting::Color(depth) => options.theme.depth = *depth,
+            Setting::Theme(palette) => options.theme.palette = *palette,
+            Setting::Sensor(parameter, value) => {
+                let sensor = options.sensor.with(*parameter, *value);
+                options.sensor = sensor.map_err(|error| wrong(line, error.to_string()))?;
+            }
+            Setting::Library(folder) => world = World::quiet(Library::open(folder.clone())),
+            Setting::Shape(shape) => shapes.push(shape.as_ref().clone()),
+            Setting::Leftover(shape) => leftovers.push(shape.as_ref().clone()),
         }
-        rest = others;
     }
+    if !shapes.is_empty() || !leftovers.is_empty() {
+        let library = start
+            .clone()
+            .find(|(_, setting)| matches!(setting, Setting::Library(_)));
+        if let Some((line, _)) = library {
+            return Err(wrong(
+                line,
+                "a library that is named has its own shapes".to_owned(),
+            ));
+        }
+        world = World::furnished(&shapes, &leftovers).map_err(Failure::World)?;
+    }
+    let rest = &commands[start.count()..];
     let mut session = Session::new(&settings.options, world, settings.size.0, settings.size.1);
     for &key in keys {
         session.press(key);
     }
     if commands.is_empty() {
-        print(&screen(&session, "", &settings));
+        printed(print(&screen(&session, "", &settings)))?;
     }
     for (line, command) in rest {
         if !look(&session, *line, command, &settings, &mut print)? {
@@ -114,13 +151,13 @@ fn act(session: &mut Session, line: usize, command: &Command) -> Result<(), Fail
             );
         }
         Command::Drag(places) => {
-            for (index, pair) in places.windows(2).enumerate() {
-                if index == 0 {
-                    mouse(session, MouseKind::Press, pair[0]);
-                }
-                for place in way(pair[0], pair[1]) {
-                    mouse(session, MouseKind::Drag, place);
-                }
+            for (index, &place) in places.iter().enumerate() {
+                let kind = if index == 0 {
+                    MouseKind::Press
+                } else {
+                    MouseKind::Drag
+                };
+                mouse(session, kind, place);
             }
             if let Some(&last) = places.last() {
                 mouse(session, MouseKind::Release, last);
@@ -138,8 +175,8 @@ fn act(session: &mut Session, line: usize, command: &Command) -> Result<(), Fail
         // What is not saved is in the journal already; the program ends without a question.
         Command::Signal(_) => session.send(Message::Killed),
         _ => {
-            let message = "Size and Set come before all that needs a screen".to_owned();
-            return Err(ScriptError { line, message }.into());
+            let message = "Size and Set come before all that needs a screen";
+            return Err(wrong(line, message.to_owned()));
         }
     }
     Ok(())
@@ -151,7 +188,7 @@ fn look(
     line: usize,
     command: &Command,
     settings: &Settings,
-    print: &mut impl FnMut(&str),
+    print: &mut impl FnMut(&str) -> ControlFlow<()>,
 ) -> Result<bool, Failure> {
     let fails = |message: String| Err(fails(session, line, message));
     let looks = !matches!(command, Command::Quit | Command::Wait);
@@ -159,9 +196,9 @@ fn look(
         return Err(Failure::Ended { line });
     }
     match command {
-        Command::Screen(name) => print(&screen(session, name, settings)),
+        Command::Screen(name) => printed(print(&screen(session, name, settings)))?,
         Command::State(pointer) => match state(session).pointer(pointer) {
-            Some(part) => print(&format!("{part}\n")),
+            Some(part) => printed(print(&format!("{part}\n")))?,
             None => return fails(format!("the state has no {pointer:?}")),
         },
         Command::Expect(pattern) => {
@@ -205,6 +242,17 @@ fn look(
     Ok(true)
 }
 
+fn printed(flow: ControlFlow<()>) -> Result<(), Failure> {
+    match flow {
+        ControlFlow::Continue(()) => Ok(()),
+        ControlFlow::Break(()) => Err(Failure::Stopped),
+    }
+}
+
+fn wrong(line: usize, message: String) -> Failure {
+    ScriptError { line, message }.into()
+}
+
 fn fails(session: &Session, line: usize, message: String) -> Failure {
     let screen = session
         .screen()
@@ -225,23 +273,6 @@ fn mouse(session: &mut Session, kind: MouseKind, (column, row): Place) {
 fn click(session: &mut Session, place: Place) {
     mouse(session, MouseKind::Press, place);
     mouse(session, MouseKind::Release, place);
-}
-
-/// The places from one to another, in a straight line, without the first.
-fn way(from: Place, to: Place) -> Vec<Place> {
-    let steps = from.0.abs_diff(to.0).max(from.1.abs_diff(to.1)).max(1);
-    let between = |a: u16, b: u16, step: u16| {
-        let (a, b, step, steps) = (
-            i64::from(a),
-            i64::from(b),
-            i64::from(step),
-            i64::from(steps),
-        );
-        u16::try_from(a + ((b - a) * step * 2 + steps) / (2 * steps)).unwrap_or(u16::MAX)
-    };
-    (1..=steps)
-        .map(|step| (between(from.0, to.0, step), between(from.1, to.1, step)))
-        .collect()
 }
 
 /// Where a text stands first.

@@ -1,5 +1,8 @@
 //! How the program ended, for the exit status.
 
+use signal_hook::consts::SIGHUP;
+use signal_hook::low_level::signal_name;
+
 /// How the program ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
@@ -17,7 +20,17 @@ impl Outcome {
         match self {
             Self::Quit => 0,
             Self::Signal(number) => 128_u8.saturating_add(u8::try_from(number).unwrap_or(127)),
-            Self::Hangup => Self::Signal(signal_hook::consts::SIGHUP).status(),
+            Self::Hangup => Self::Signal(SIGHUP).status(),
+        }
+    }
+
+    /// The signal that ended it, as scripts name it: `TERM`; a lost terminal counts as its signal. None where it was no
+    /// signal.
+    pub fn signal_name(self) -> Option<&'static str> {
+        match self {
+            Self::Quit => None,
+            Self::Signal(number) => signal_name(number)?.strip_prefix("SIG"),
+            Self::Hangup => Self::Signal(SIGHUP).signal_name(),
         }
     }
 }

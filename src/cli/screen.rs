@@ -1,0 +1,137 @@
+//! The screen on the terminal, recorded where that is asked for.
+
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use super::failure::Failure;
+use super::locale::Charset;
+use super::shelf::Shelf;
+use crate::library::journal::Orphan;
+use crate::library::store::{Library, Origin};
+use crate::sensor::Sensor;
+use crate::tui::app::{App, Options};
+use crate::tui::effect::World;
+use crate::tui::script::record::Recorder;
+use crate::tui::script::setting::{Setting, of_options};
+use crate::tui::terminal;
+use crate::tui::terminal::settings::{Flags, Settings};
+
+/// Runs the program on the terminal; the exit status tells how it ended.
+pub(super) fn screen(
+    sensor: Sensor,
+    flags: Flags,
+    record: Option<PathBuf>,
+    shelf: &Shelf,
+    charset: Charset,
+) -> Result<u8, Failure> {
+    let flags = Flags {
+        ascii: charset == Charset::Ascii,
+        ..flags
+    };
+    let settings = Settings::from_environment(std::env::var_os, &flags);
+    let options = Options {
+        sensor,
+        theme: settings.theme(),
+    };
+    let library = shelf.library()?;
+    let mut record = record
+        .map(|path| Record::begin(path, &options, &library))
+        .transpose()?;
+    let mut watch = |input: &terminal::input::Input| {
+        if let Some(record) = &mut record {
+            let lines = record.recorder.lines(input);
+            record.write(&lines);
+        }
+    };
+    let ended = terminal::run(
+        App::new(&options),
+        World::new(library),
+        &settings,
+        &mut watch,
+    );
+    if let Some(record) = record {
+        record.end(ended.as_ref().ok().copied());
+    }
+    Ok(ended.map_err(Failure::Screen)?.status())
+}
+
+/// A record that is being written.
+struct Record {
+    path: PathBuf,
+    file: File,
+    recorder: Recorder,
+    begun: bool,
+}
+
+impl Record {
+    /// A new file: one that is there may be the record of something else.
+    fn begin(path: PathBuf, options: &Options, library: &Library) -> Result<Self, Failure> {
+        let file = File::create_new(&path).map_err(|error| match error.kind() {
+            ErrorKind::AlreadyExists => Failure::Recorded {
+                name: path.to_string_lossy().into_owned(),
+                free: free(&path).to_string_lossy().into_owned(),
+            },
+            _ => Failure::Record {
+                name: path.to_string_lossy().into_owned(),
+                error,
+            },
+        })?;
+        let mut start = of_options(options);
+        start.extend(found(library)?);
+        Ok(Self {
+            path,
+            file,
+            recorder: Recorder::new(&start),
+            begun: false,
+        })
+    }
+
+    fn write(&mut self, lines: &str) {
+        self.begun |= !lines.is_empty();
+        // A disk that is full must not end the program; the record ends instead.
+        let _ = self.file.write_all(lines.as_bytes());
+    }
+
+    /// The last lines; a record of nothing goes again.
+    fn end(mut self, outcome: Option<terminal::Outcome>) {
+        let lines = outcome.map(|outcome| self.recorder.end(outcome));
+        self.write(&lines.unwrap_or_default());
+        if !self.begun {
+            // An empty file is left then, and told by nobody.
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
+/// What the program finds at its start: the user's shapes, but for those that cannot be read, and unsaved work.
+fn found(library: &Library) -> Result<Vec<Setting>, Failure> {
+    let own = library.list()?;
+    let own = own.iter().filter(|entry| entry.origin == Origin::Own);
+    let shapes = own.filter_map(|entry| library.load(&entry.name).ok());
+    let shapes = shapes.map(|loaded| Setting::Shape(Box::new(loaded.shape)));
+    let left = Orphan::all(library).into_iter();
+    let left = left.map(|orphan| Setting::Leftover(Box::new(orphan.shape)));
+    Ok(shapes.chain(left).collect())
+}
+
+/// A name like that of a file which is not there yet.
+fn free(path: &Path) -> PathBuf {
+    let part =
+        |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
+    let (stem, end) = (part(path.file_stem()), part(path.extension()));
+    let end = if end.is_empty() {
+        end
+    } else {
+        format!(".{end}")
+    };
+    let names = (2..).map(|number| path.with_file_name(format!("{stem}-{number}{end}")));
+    let is_free = |path: &PathBuf| {
+        let there = fs::symlink_metadata(path);
+        there.is_err_and(|error: io::Error| error.kind() == ErrorKind::NotFound)
+    };
+    names
+        .take(1000)
+        .find(is_free)
+        .unwrap_or_else(|| path.with_extension("new"))
+}

@@ -1,0 +1,180 @@
+//! What a script says before it begins: how the program is started, and what it finds.
+//!
+//! ```text
+//! Size 80x24         Set ascii on        Set theme light    Set color 256
+//! Set columns 8      Set rows 8          Set threshold 0.6  Set pitch 0.5
+//! Set library "DIR"  Set shape {...}     Set leftover {...}
+//! ```
+//! Shapes are those of the user's library, one a line, as the content of their files; leftover is what a program left
+//! when it died. Without a library that is named a script has one of its own, which goes with it.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use crate::formats::shape::Shape;
+use crate::parameter::{Parameter, ParameterError};
+use crate::sensor::{MAX_SIDE, SENSOR_PARAMETERS};
+use crate::tui::app::Options;
+use crate::tui::theme::{ColorDepth, Palette};
+
+/// One line of it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Setting {
+    /// A screen of so many columns and rows.
+    Size(u16, u16),
+    /// ASCII characters only, or not.
+    Ascii(bool),
+    /// How many colours.
+    Color(ColorDepth),
+    /// Which ones.
+    Theme(Palette),
+    /// A quantity of the sensor.
+    Sensor(Parameter, f64),
+    /// The library's folder.
+    Library(PathBuf),
+    /// A shape of the user's.
+    Shape(Box<Shape>),
+    /// Unsaved work that waits.
+    Leftover(Box<Shape>),
+}
+
+/// The names of the depths of colour, as of `--color`.
+pub const DEPTHS: [(&str, ColorDepth); 4] = [
+    ("never", ColorDepth::Never),
+    ("16", ColorDepth::Sixteen),
+    ("256", ColorDepth::TwoFiftySix),
+    ("true", ColorDepth::True),
+];
+
+/// The names of the palettes, as of `--theme`.
+pub const PALETTES: [(&str, Palette); 3] = [
+    ("dark", Palette::Dark),
+    ("light", Palette::Light),
+    ("mono", Palette::Mono),
+];
+
+const SWITCH: [(&str, bool); 2] = [("on", true), ("off", false)];
+
+/// What follows `Set`.
+///
+/// # Errors
+/// What is wrong with it, and what was expected.
+pub fn read(text: &str) -> Result<Setting, String> {
+    let (name, value) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+    let value = value.trim();
+    match name {
+        "ascii" => chosen(name, value, &SWITCH).map(Setting::Ascii),
+        "color" => chosen(name, value, &DEPTHS).map(Setting::Color),
+        "theme" => chosen(name, value, &PALETTES).map(Setting::Theme),
+        "library" => serde_json::from_str::<PathBuf>(value)
+            .map(Setting::Library)
+            .map_err(|_| format!("expected a folder in double quotes, found {value}")),
+        "shape" => shape(name, value).map(Setting::Shape),
+        "leftover" => shape(name, value).map(Setting::Leftover),
+        _ => match Parameter::from_flag(name).filter(|own| SENSOR_PARAMETERS.contains(own)) {
+            Some(parameter) => number(parameter, value).map_err(|error| error.to_string()),
+            None => Err(format!(
+                "nothing to set is called {name:?}, expected one of ascii, color, theme, columns, rows, threshold, \
+                 pitch, library, shape, leftover"
+            )),
+        },
+    }
+}
+
+fn chosen<T: Copy>(name: &str, value: &str, choices: &[(&str, T)]) -> Result<T, String> {
+    let choice = choices.iter().find(|(choice, _)| *choice == value);
+    choice.map(|(_, meaning)| *meaning).ok_or_else(|| {
+        let names: Vec<&str> = choices.iter().map(|(choice, _)| *choice).collect();
+        format!(
+            "Set {name} takes one of {}, found {value:?}",
+            names.join(", ")
+        )
+    })
+}
+
+fn number(parameter: Parameter, value: &str) -> Result<Setting, ParameterError> {
+    let value = parameter.read(value, MAX_SIDE)?;
+    Ok(Setting::Sensor(parameter, value))
+}
+
+fn shape(name: &str, value: &str) -> Result<Box<Shape>, String> {
+    Shape::read(value.as_bytes())
+        .map(Box::new)
+        .map_err(|error| format!("Set {name}: {error}"))
+}
+
+impl fmt::Display for Setting {
+    /// The line of a script.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Size(columns, rows) => write!(f, "Size {columns}x{rows}"),
+            Self::Ascii(ascii) => write!(f, "Set ascii {}", name_of(*ascii, &SWITCH)),
+            Self::Color(depth) => write!(f, "Set color {}", name_of(*depth, &DEPTHS)),
+            Self::Theme(palette) => write!(f, "Set theme {}", name_of(*palette, &PALETTES)),
+            Self::Sensor(parameter, value) => write!(f, "Set {} {value}", parameter.flag()),
+            Self::Library(folder) => {
+                let folder = serde_json::Value::from(folder.to_string_lossy());
+                write!(f, "Set library {folder}")
+            }
+            Self::Shape(shape) => write!(f, "Set shape {}", in_a_line(shape)),
+            Self::Leftover(shape) => write!(f, "Set leftover {}", in_a_line(shape)),
+        }
+    }
+}
+
+fn name_of<T: PartialEq>(value: T, choices: &[(&'static str, T)]) -> &'static str {
+    let choice = choices.iter().find(|(_, meaning)| *meaning == value);
+    choice.map_or("", |(name, _)| name)
+}
+
+fn in_a_line(shape: &Shape) -> String {
+    // A shape is plain text and numbers: there is nothing that JSON has no form for.
+    serde_json::to_string(shape).unwrap_or_default()
+}
+
+/// The lines that tell how the program was started: how it looks and its sensor.
+pub fn of_options(options: &Options) -> Vec<Setting> {
+    let (theme, sensor) = (options.theme, options.sensor);
+    let look = [
+        Setting::Ascii(theme.ascii),
+        Setting::Color(theme.depth),
+        Setting::Theme(theme.palette),
+    ];
+    let value = |parameter| Some(Setting::Sensor(parameter, sensor.get(parameter)?));
+    let values = SENSOR_PARAMETERS.into_iter().filter_map(value);
+    look.into_iter().chain(values).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sensor::Sensor;
+    use crate::tui::theme::Theme;
+
+    #[test]
+    fn what_is_written_is_read() {
+        let shape = b"{\"format\":\"taxel-shape/1\",\"name\":\"a b\",\"sensor\":{\"columns\":2,\"rows\":1,\"threshold\":0.1},\
+                      \"imprint\":[\"#.\"]}";
+        let shape = Box::new(Shape::read(shape).expect("a shape"));
+        let options = Options {
+            sensor: Sensor::default(),
+            theme: Theme {
+                ascii: false,
+                depth: ColorDepth::TwoFiftySix,
+                palette: Palette::Light,
+            },
+        };
+        let mut settings = of_options(&options);
+        settings.extend([
+            Setting::Library("a \"b\"/c".into()),
+            Setting::Sensor(Parameter::Threshold, 0.1),
+            Setting::Shape(shape.clone()),
+            Setting::Leftover(shape),
+        ]);
+        for setting in settings {
+            let line = setting.to_string();
+            let text = line.strip_prefix("Set ").expect("a line of this kind");
+            assert_eq!(read(text), Ok(setting), "{line}");
+        }
+    }
+}
