@@ -104,7 +104,13 @@ pub fn each_region(imprint: &Imprint, mut visit: impl FnMut(&Region)) {
     if is_stack(&region.filled, bounds, true) && holes_bounds.is_none_or(|at| is_runs(&holes, at)) {
         visit(&region);
     } else {
-        pieces(imprint, bounds, &mut region, &mut visit);
+        pieces(
+            imprint,
+            bounds,
+            holes_bounds.is_some(),
+            &mut region,
+            &mut visit,
+        );
     }
     if let Some(bounds) = holes_bounds {
         region.kind = Kind::Hole;
@@ -112,7 +118,7 @@ pub fn each_region(imprint: &Imprint, mut visit: impl FnMut(&Region)) {
             (region.taxels, region.filled, region.bounds) = (holes, holes, bounds);
             visit(&region);
         } else {
-            pieces(&holes, bounds, &mut region, &mut visit);
+            pieces(&holes, bounds, true, &mut region, &mut visit);
         }
     }
 }
@@ -169,8 +175,15 @@ fn rows(matrix: &Imprint, bounds: Bounds) -> &[u64] {
 }
 
 /// The connected components of a matrix in reading order: exteriors 8-connected, holes 4-connected. Each is put into
-/// `region`, of that kind, and shown.
-fn pieces(matrix: &Imprint, bounds: Bounds, region: &mut Region, visit: &mut impl FnMut(&Region)) {
+/// `region`, of that kind, and shown. `enclose` tells whether one of them may enclose anything: where a matrix has no
+/// hole none does, since what lies between a piece and another one inside of it would be one.
+fn pieces(
+    matrix: &Imprint,
+    bounds: Bounds,
+    enclose: bool,
+    region: &mut Region,
+    visit: &mut impl FnMut(&Region),
+) {
     let mut rest = *matrix;
     let mut top = bounds.top;
     while top < bounds.bottom {
@@ -181,25 +194,32 @@ fn pieces(matrix: &Imprint, bounds: Bounds, region: &mut Region, visit: &mut imp
         }
         let mut piece = Imprint::empty(matrix.columns(), matrix.rows());
         piece.set_word(usize::from(top), word & word.wrapping_neg());
-        flood(
-            &mut piece,
-            &rest,
-            Bounds { top, ..bounds },
-            region.kind == Kind::Exterior,
-        );
-        for row in usize::from(top)..usize::from(bounds.bottom) {
+        let below = Bounds { top, ..bounds };
+        let seeded = usize::from(top) + 1;
+        let diagonal = region.kind == Kind::Exterior;
+        let end = flood(&mut piece, &rest, below, seeded, diagonal);
+        for row in usize::from(top)..end {
             rest.set_word(row, rest.words()[row] & !piece.words()[row]);
         }
         if let Some(bounds) = piece.bounds() {
             (region.taxels, region.filled, region.bounds) = (piece, piece, bounds);
-            unite(&mut region.filled, &enclosed(&piece, bounds), bounds);
+            if enclose {
+                unite(&mut region.filled, &enclosed(&piece, bounds), bounds);
+            }
             visit(region);
         }
     }
 }
 
-/// Grows the seeds through the mask as far as they reach, inside of the bounds.
-fn flood(seeds: &mut Imprint, mask: &Imprint, bounds: Bounds, diagonal: bool) {
+/// Grows the seeds through the mask as far as they reach, inside of the bounds. From row `end` on there are none at
+/// first; the result is the row from which on there are none at last.
+fn flood(
+    seeds: &mut Imprint,
+    mask: &Imprint,
+    bounds: Bounds,
+    mut end: usize,
+    diagonal: bool,
+) -> usize {
     let (top, bottom) = (usize::from(bounds.top), usize::from(bounds.bottom));
     let enter = |seeds: &mut Imprint, row: usize, neighbour: u64| {
         let open = mask.words()[row];
@@ -226,13 +246,19 @@ fn flood(seeds: &mut Imprint, mask: &Imprint, bounds: Bounds, diagonal: bool) {
     loop {
         for row in top + 1..bottom {
             enter(seeds, row, seeds.words()[row - 1]);
+            if row >= end {
+                if seeds.words()[row] == 0 {
+                    break;
+                }
+                end = row + 1;
+            }
         }
         let mut changed = false;
-        for row in (top..bottom - 1).rev() {
+        for row in (top..end - 1).rev() {
             changed |= enter(seeds, row, seeds.words()[row + 1]);
         }
         if !changed {
-            return;
+            return end;
         }
     }
 }
@@ -269,7 +295,8 @@ fn enclosed(matrix: &Imprint, bounds: Bounds) -> Imprint {
         let reached = inner.words()[row] & (far(row.wrapping_sub(1)) | far(row + 1));
         outside.set_word(row, spread(reached, inner.words()[row]));
     }
-    flood(&mut outside, &inner, bounds, false);
+    let end = usize::from(bounds.bottom);
+    flood(&mut outside, &inner, bounds, end, false);
     for row in usize::from(bounds.top)..usize::from(bounds.bottom) {
         inner.set_word(row, inner.words()[row] & !outside.words()[row]);
     }

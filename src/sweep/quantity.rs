@@ -107,10 +107,9 @@ pub fn describe(imprint: &Imprint) -> Note {
         }
         note.pieces = note.pieces.saturating_add(1);
         // The main region: the piece with the largest filled area, the first of equals.
-        let description = Description::of(region);
-        let most = note.description.map_or(0, |best| best.nae);
-        if description.nae > most {
-            note.description = Some(description);
+        let best = note.description.as_ref();
+        if best.is_none_or(|best| region.filled().count() > best.nae) {
+            note.description = Some(Description::of(region));
         }
     });
     note
