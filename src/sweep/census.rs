@@ -74,6 +74,11 @@ impl Census {
         }
     }
 
+    /// Counts a known key more.
+    pub(super) fn count(&mut self, index: usize, count: u64) {
+        self.tallies[index].count += count;
+    }
+
     /// The index of a key.
     pub(super) fn find(&self, key: &[u64], hash: u64) -> Option<usize> {
         let mask = self.slots.len() - 1;

@@ -50,15 +50,10 @@ impl<'a> Events<'a> {
     }
 
     /// Taxels of a row that are active at the first step.
-    pub(super) fn start(&mut self, row: usize, mut taxels: u64) {
+    pub(super) fn start(&mut self, row: usize, taxels: u64) {
         let (word, shift) = self.layout.place(row);
         self.key[word] ^= taxels << shift;
-        let numbers = self.layout.numbers(row);
-        while taxels != 0 {
-            let column = taxels.trailing_zeros();
-            self.hash ^= numbers[usize::try_from(column).unwrap_or(0)];
-            taxels &= taxels - 1;
-        }
+        self.hash ^= self.layout.hash(row, taxels);
     }
 
     /// A taxel turns over at a step, 1 to the last.

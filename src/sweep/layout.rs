@@ -75,13 +75,52 @@ impl Layout {
         for (row, &bits) in imprint.words().iter().enumerate() {
             let (word, shift) = self.place(row);
             key[word] |= bits << shift;
-            for (column, number) in self.numbers(row).iter().enumerate() {
-                if bits >> column & 1 == 1 {
-                    hash ^= number;
-                }
-            }
+            hash ^= self.hash(row, bits);
         }
         (key, hash)
+    }
+
+    /// The key of an imprint after a half turn, and its hash: the coordinates of a taxel's centre and those of its image
+    /// sum up to `across` and `down`, which must keep all of it on the matrix.
+    pub(super) fn half_turned(
+        &self,
+        key: &[u64],
+        [across, down]: [i32; 2],
+        turned: &mut [u64],
+    ) -> u64 {
+        turned.fill(0);
+        let mut hash = 0;
+        for row in 0..usize::from(self.rows) {
+            let (word, shift) = self.place(row);
+            let bits = key[word] >> shift & u64::MAX >> (u64::BITS - u32::from(self.columns));
+            if bits == 0 {
+                continue;
+            }
+            // Column `i` goes to `across − 1 − i`; reversed it is at `63 − i`.
+            let reversed = bits.reverse_bits();
+            let apart = across - 64;
+            let bits = if apart < 0 {
+                reversed.unbounded_shr(apart.unsigned_abs())
+            } else {
+                reversed.unbounded_shl(apart.unsigned_abs())
+            };
+            let image = usize::try_from(down - 1).unwrap_or(0).saturating_sub(row);
+            let (word, shift) = self.place(image);
+            turned[word] |= bits << shift;
+            hash ^= self.hash(image, bits);
+        }
+        hash
+    }
+
+    /// What the taxels of a row add to a hash.
+    pub(super) fn hash(&self, row: usize, mut taxels: u64) -> u64 {
+        let numbers = self.numbers(row);
+        let mut hash = 0;
+        while taxels != 0 {
+            hash ^= numbers[taxels.trailing_zeros() as usize];
+            taxels &= taxels - 1;
+        }
+        hash
     }
 }
 

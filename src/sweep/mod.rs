@@ -10,6 +10,10 @@ mod boundary;
 
 pub mod grid;
 
+mod symmetry;
+
+mod mirror;
+
 pub mod plan;
 
 mod layout;
@@ -35,6 +39,8 @@ mod ellipse;
 mod events;
 
 mod mark;
+
+mod images;
 
 mod runs;
 

@@ -1,12 +1,7 @@
 //! How a grid is cut up: shards for several machines, and tasks for the threads of one.
 //!
 //! A shard is a piece of the list of rows, in their order. A task is a piece of one turn; turns whose figure looks the
-//! same share it. Nothing of a result depends on how the tasks are cut.
-//!
-//! **Symmetry.** (x0, y0) places the corner of the figure *before* it is turned, so the centre stays where it is, and
-//! two angles give the same shape when they differ by a symmetry of the figure: 180° for rectangles and ellipses, 90°
-//! for squares, 360°/n for regular polygons where that is a whole number of degrees (not the heptagon's), and any
-//! angle for circles. A picture that a half turn maps onto itself has 180°. Angles are compared as exact decimals.
+//! same share it ([`super::symmetry`]). Nothing of a result depends on how the tasks are cut.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -15,9 +10,8 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 use super::grid::Grid;
-use crate::figure::Kind;
-use crate::parameter::Parameter;
-use crate::source::Source;
+use super::mirror::Mirror;
+use super::symmetry::period;
 
 /// One of `of` nearly equal pieces of a grid, `number` from 1.
 ///
@@ -107,8 +101,10 @@ pub(super) struct Task {
     pub(super) rows: Range<u64>,
 }
 
-/// About so many poses make a task: enough to pay for its start, few enough to stop soon and to share out.
+/// About so many poses make a task: enough to pay for its start, few enough to share out.
 const TASK_POSES: u64 = 20_000;
+/// And so many at most where rows are images of each other.
+const MIRRORED_TASK_POSES: u64 = 1_000_000;
 /// A piece of work is cut into at least so many tasks, where it has as many rows.
 const TASKS: u64 = 16;
 
@@ -151,7 +147,14 @@ pub(super) fn tasks(grid: &Grid, shard: &Range<u64>, block: u64) -> Vec<Task> {
     }
     let width = grid.ranges().x0.count();
     let count = pieces.len() as u64;
-    let length = (TASK_POSES / width).min(height * count / TASKS).max(1);
+    // Only inside of one task can rows be images of each other.
+    let mirrored = width * height <= MIRRORED_TASK_POSES && Mirror::of(grid).is_some();
+    let most = if mirrored {
+        MIRRORED_TASK_POSES
+    } else {
+        TASK_POSES
+    };
+    let length = (most / width).min(height * count / TASKS).max(1);
     let turns = |angles: Vec<u64>, first: u64| angles.into_iter().map(move |angle| first + angle);
     let mut tasks = Vec::new();
     for (members, rows) in pieces {
@@ -167,35 +170,4 @@ pub(super) fn tasks(grid: &Grid, shard: &Range<u64>, block: u64) -> Vec<Task> {
         }
     }
     tasks
-}
-
-/// After how many degrees a shape looks the same again; none where any angle will do.
-fn period(source: &Source) -> Option<u32> {
-    let figure = match source {
-        Source::Figure(figure) => figure,
-        Source::Picture(picture) => {
-            let imprint = picture.imprint();
-            let half_turned = imprint.bounds().is_some_and(|bounds| {
-                let mirrored = |column: u8, row: u8| {
-                    imprint.get(
-                        bounds.left + bounds.right - 1 - column,
-                        bounds.top + bounds.bottom - 1 - row,
-                    )
-                };
-                imprint.active().all(|(column, row)| mirrored(column, row))
-            });
-            return Some(if half_turned { 180 } else { 360 });
-        }
-    };
-    let equal = |one: Parameter, other: Parameter| figure.get(one) == figure.get(other);
-    match figure.kind() {
-        Kind::Ellipse if equal(Parameter::RadiusX, Parameter::RadiusY) => None,
-        Kind::Rectangle if equal(Parameter::Length, Parameter::Width) => Some(90),
-        Kind::Ellipse | Kind::Rectangle => Some(180),
-        Kind::Triangle => Some(120),
-        Kind::Pentagon => Some(72),
-        Kind::Hexagon => Some(60),
-        Kind::Heptagon => Some(360),
-        Kind::Octagon => Some(45),
-    }
 }

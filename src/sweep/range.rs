@@ -81,10 +81,20 @@ impl DecimalRange {
         (0..self.count).map(|index| self.value(index))
     }
 
-    /// Value `index` modulo a whole number, in units of the last place: exact, for questions of symmetry.
+    /// First value and step in units of the last place: exact, for questions of symmetry.
+    pub(super) fn units(&self) -> [i128; 2] {
+        [i128::from(self.start), i128::from(self.step)]
+    }
+
+    /// One, in the same units.
+    pub(super) fn one(&self) -> i128 {
+        10_i128.pow(self.places)
+    }
+
+    /// Value `index` modulo a whole number, in units of the last place: exact as well.
     pub(super) fn residue(&self, index: u64, modulus: u32) -> i128 {
         let units = i128::from(self.start) + i128::from(index) * i128::from(self.step);
-        units.rem_euclid(i128::from(modulus) * 10_i128.pow(self.places))
+        units.rem_euclid(i128::from(modulus) * self.one())
     }
 }
 

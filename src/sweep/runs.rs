@@ -5,7 +5,8 @@
 //! and where along the range which taxel turns over. Between two such places the imprint is the same: one *run*.
 //!
 //! **Exactly as touching does.** Where a value of x0 lies within [`NEAR`] of the end of a span, or in a span that is in
-//! doubt, [`Exact`] decides for that taxel and that pose.
+//! doubt, [`Exact`] decides for that taxel and that pose. Rows that are images of rows gone through before
+//! ([`super::mirror`]) are not gone through themselves.
 
 use super::boundary::Boundary;
 use super::census::Census;
@@ -13,8 +14,10 @@ use super::ellipse::Elliptic;
 use super::events::Events;
 use super::exact::Exact;
 use super::grid::Grid;
+use super::images::{Images, Runs};
 use super::layout::Layout;
 use super::mark::{Marker, Steps};
+use super::mirror::Mirror;
 use super::plan::Task;
 use super::polygon::Polygonal;
 use super::span::Spans;
@@ -29,35 +32,62 @@ pub(super) struct Found {
     pub(super) census: Census,
     /// Poses of one turn that reach beyond the sensor.
     pub(super) partly_off: u64,
-    /// Index in the census and length of each run, row after row; only where asked for.
-    pub(super) runs: Vec<(u32, u32)>,
+    /// The runs of each row; only where asked for.
+    pub(super) runs: Runs,
 }
 
-/// Goes through the rows of a task.
-pub(super) fn go(grid: &Grid, layout: &Layout, task: &Task, keep_runs: bool) -> Found {
+/// After about so many poses of a turn the progress is told.
+const TOLD: u64 = 4_000;
+
+/// Goes through the rows of a task. `progress` is told of poses of one turn; where it answers `false` there is no result.
+pub(super) fn go(
+    grid: &Grid,
+    layout: &Layout,
+    task: &Task,
+    keep_runs: bool,
+    progress: impl Fn(u64) -> bool,
+) -> Option<Found> {
     let turn = task.turns[0];
     let mut sweeper = Sweeper::new(grid, layout, turn);
+    let mirror = Mirror::of(grid).filter(|_| sweeper.lies_inside());
+    let mut images = mirror.map(|mirror| Images::new(layout, mirror));
     let mut found = Found {
         census: Census::new(layout.words()),
         partly_off: 0,
-        runs: Vec::new(),
+        runs: Runs::default(),
     };
     let (width, height) = (grid.ranges().x0.count(), grid.ranges().y0.count());
+    let mut untold = 0;
     for y in task.rows.clone() {
-        sweeper.row(y);
-        found.partly_off += sweeper.beyond(y);
         let first = (turn * height + y) * width;
-        sweeper.events.play(|key, hash, from, to| {
-            let index = found.census.add(key, hash, to - from, first + from);
-            if keep_runs {
-                let (index, length) = (u32::try_from(index), u32::try_from(to - from));
-                found
-                    .runs
-                    .push((index.unwrap_or(u32::MAX), length.unwrap_or(u32::MAX)));
-            }
+        // The row of this task that it is the image of.
+        let known = images.as_mut().and_then(|images| {
+            let (source, round) = images.source(y);
+            let row = usize::try_from(source.checked_sub(task.rows.start)?).ok()?;
+            (source < y).then_some((images, (row, round)))
         });
+        found.runs.begin();
+        if let Some((images, source)) = known {
+            images.add(&mut found.census, &mut found.runs, source, first);
+        } else {
+            sweeper.row(y);
+            found.partly_off += sweeper.beyond(y);
+            sweeper.events.play(|key, hash, from, to| {
+                let index = found.census.add(key, hash, to - from, first + from);
+                if keep_runs || mirror.is_some() {
+                    found.runs.push(index, to - from);
+                }
+            });
+        }
+        untold += width;
+        if untold >= TOLD && !progress(std::mem::take(&mut untold)) {
+            return None;
+        }
     }
-    found
+    if !keep_runs {
+        found.runs = Runs::default();
+    }
+    progress(untold).then_some(found)
 }
 
 /// Either kind of shape.
@@ -134,6 +164,25 @@ impl<'a> Sweeper<'a> {
             events: Events::new(layout, grid.ranges().x0.count()),
             exact: Exact::new(grid, turn),
         }
+    }
+
+    /// Whether the shape lies inside of the sensor in every pose of the turn, and does not even touch its rim.
+    fn lies_inside(&self) -> bool {
+        let Some(extent) = &self.extent else {
+            return false;
+        };
+        let (ranges, sensor) = (self.grid.ranges(), self.grid.sensor());
+        let place = |x, y| self.grid.offset::<f64>(self.turn, x, y);
+        let (first, last) = (
+            place(0, 0),
+            place(ranges.x0.count() - 1, ranges.y0.count() - 1),
+        );
+        let beyond = |end: f64, side: u8| end > f64::from(side) - DOUBTFUL;
+        let off = extent.left + first.x < DOUBTFUL
+            || extent.top + first.y < DOUBTFUL
+            || beyond(extent.right + last.x, sensor.columns())
+            || beyond(extent.bottom + last.y, sensor.rows());
+        !off
     }
 
     /// How many poses of a row reach beyond the sensor.

@@ -86,8 +86,8 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// Goes through a shard of a grid. Where it is stopped early, what is complete is kept: whole rows, and all that
-    /// is said of them.
+    /// Goes through a shard of a grid. Where it is stopped early, what is complete is kept: whole turns or parts of them,
+    /// and all that is said of these. What was under way is not, some seconds' work at most.
     pub fn of(grid: &Grid, shard: Shard, watch: Watch<'_>) -> Self {
         let rows = shard.rows(grid.rows());
         let (width, height) = (grid.ranges().x0.count(), grid.ranges().y0.count());
@@ -103,9 +103,13 @@ impl Survey {
             watch,
         };
         let block_rows = grid.ranges().angle.count() * height;
-        let portion = 16 * rayon::current_num_threads();
         'all: for block in rows.start / block_rows..rows.end.div_ceil(block_rows) {
-            for tasks in tasks(grid, &rows, block).chunks(portion) {
+            let tasks = tasks(grid, &rows, block);
+            let longest = tasks
+                .iter()
+                .map(|task| task.rows.end - task.rows.start)
+                .max();
+            for tasks in tasks.chunks(portion(longest.unwrap_or(0) * width)) {
                 under_way.portion(tasks);
                 if under_way.stopped.load(Ordering::Relaxed) {
                     break 'all;
@@ -144,6 +148,15 @@ impl Survey {
     }
 }
 
+/// How many tasks make a portion, given the poses of the longest one: enough to keep all threads busy till the end of
+/// it, few enough for the memory, which holds what each of them found.
+fn portion(poses: u64) -> usize {
+    const POSES: u64 = 4_000_000;
+    let threads = rayon::current_num_threads();
+    let most = usize::try_from(POSES / poses.max(1)).unwrap_or(usize::MAX);
+    most.clamp(threads, 16 * threads)
+}
+
 /// A sweep under way.
 struct UnderWay<'a, 'w> {
     grid: &'a Grid,
@@ -179,14 +192,20 @@ impl UnderWay<'_, '_> {
                 if stopped.load(Ordering::Relaxed) {
                     return None;
                 }
-                let found = runs::go(grid, layout, task, keep_runs);
-                let rows = task.rows.end - task.rows.start;
-                if !progress(rows * width * task.turns.len() as u64) {
-                    stopped.store(true, Ordering::Relaxed);
-                }
-                Some(found)
+                let turns = task.turns.len() as u64;
+                let tell = |poses: u64| {
+                    if !progress(poses * turns) {
+                        stopped.store(true, Ordering::Relaxed);
+                    }
+                    !stopped.load(Ordering::Relaxed)
+                };
+                runs::go(grid, layout, task, keep_runs, tell)
             })
             .collect();
+        // Nothing of a portion that was stopped: describing what there is of it would take its time.
+        if self.stopped.load(Ordering::Relaxed) {
+            return;
+        }
         let done: Vec<(&Task, Found, Vec<u32>)> = tasks
             .iter()
             .zip(found)
@@ -223,14 +242,10 @@ impl UnderWay<'_, '_> {
 fn show_rows(grid: &Grid, task: &Task, found: &Found, ids: &[u32], show: &mut TakeRow<'_>) {
     let (width, height) = (grid.ranges().x0.count(), grid.ranges().y0.count());
     let width = usize::try_from(width).unwrap_or(usize::MAX);
-    let mut runs = found.runs.iter();
     let mut row = Vec::with_capacity(width);
-    for y in task.rows.clone() {
+    for (index, y) in task.rows.clone().enumerate() {
         row.clear();
-        while row.len() < width {
-            let Some(&(index, length)) = runs.next() else {
-                return;
-            };
+        for &(index, length) in found.runs.row(index) {
             let [index, length] = [index, length].map(|n| usize::try_from(n).unwrap_or(0));
             row.extend(std::iter::repeat_n(ids[index], length));
         }

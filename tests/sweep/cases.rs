@@ -1,4 +1,4 @@
-//! The figures and pictures whose sweeps are compared with touching, and the comparison.
+//! The figures and pictures whose sweeps are compared with touching and measured, and the comparison.
 
 use taxel::figure::{Figure, Kind};
 use taxel::parameter::Parameter;
@@ -11,6 +11,7 @@ use taxel::sweep::survey::{Survey, Watch};
 use taxel::touch::{Plane, reaches_beyond};
 
 /// What is swept, where, and how.
+#[derive(Clone)]
 pub(crate) struct Case {
     pub(crate) name: &'static str,
     pub(crate) source: Source,
@@ -37,7 +38,7 @@ pub(crate) fn picture(rows: &str) -> Source {
     Source::Picture(Picture::at_home(imprint))
 }
 
-fn sensor(columns: f64, rows: f64, threshold: f64) -> Sensor {
+pub(crate) fn sensor(columns: f64, rows: f64, threshold: f64) -> Sensor {
     let sensor = Sensor::new(columns, rows).expect("sides are in range");
     sensor
         .with(Parameter::Threshold, threshold)
@@ -63,8 +64,16 @@ pub(crate) fn cases() -> Vec<Case> {
             "rectangle 5.5 x 2.5 wall 1",
             figure(Kind::Rectangle, 5.5, 2.5, 1.0),
         ),
+        // At 5 its corners are beyond the sensor.
+        Case {
+            place: "2.5:3.49:0.01",
+            ..case(
+                "rectangle 10 x 8 wall 0.7",
+                figure(Kind::Rectangle, 10.0, 8.0, 0.7),
+            )
+        },
         case(
-            "rectangle 10 x 8 wall 0.7",
+            "rectangle 10 x 8 wall 0.7 beyond",
             figure(Kind::Rectangle, 10.0, 8.0, 0.7),
         ),
         case("rectangle 9 x 0.5", figure(Kind::Rectangle, 9.0, 0.5, 0.0)),
@@ -175,6 +184,7 @@ pub(crate) fn cases() -> Vec<Case> {
         case("picture: one taxel", picture("#")),
         case("picture: ring", picture("#### #..# #..# ####")),
         case("picture: scattered", picture("##.# .### ##.. #..#")),
+        case("picture: half turn", picture("##.# .##. #.##")),
         case("picture: cross", picture(".#. ### .#.")),
         case(
             "picture: letter",

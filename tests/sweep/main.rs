@@ -39,7 +39,7 @@ fn small(source: Source, place: &str, angles: &str) -> Grid {
 #[test]
 fn sweeps_equal_touches_at_all_sorts_of_angles() {
     for case in cases() {
-        let grid = case.grid("0:359:15", 7);
+        let grid = case.grid("0:359:15", 5);
         assert_eq!(differences(&grid), Ok(0), "{}", case.name);
         let grid = case.grid("1.37:359:61.03", 9);
         assert_eq!(differences(&grid), Ok(0), "{}", case.name);
@@ -143,6 +143,64 @@ fn threads_and_shards_do_not_matter() {
     }
 }
 
+/// Shards of one row each have no other row that one could be the image of.
+#[test]
+fn rows_that_are_images_equal_those_gone_through() {
+    let centred = |source, place: &str, angles: &str| {
+        let read = |text: &str| text.parse().expect("a range");
+        let ranges = Ranges {
+            x0: read(place),
+            y0: read("7.04:8.03:0.03"),
+            angle: read(angles),
+            ..Ranges::default()
+        };
+        Grid::new(source, Sensor::default(), Anchor::Centre, ranges).expect("a grid")
+    };
+    let tie = figure(Kind::Rectangle, 4.5, 2.5, 0.5);
+    for grid in [
+        small(
+            figure(Kind::Rectangle, 6.0, 3.0, 0.0),
+            "5:5.99:0.05",
+            "0:90:7.5",
+        ),
+        small(tie.clone(), "4:5.98:0.02", "0:180:45"),
+        small(
+            figure(Kind::Rectangle, 3.3, 3.3, 0.7),
+            "5.05:6.04:0.05",
+            "0:180:15",
+        ),
+        small(
+            figure(Kind::Ellipse, 5.0, 3.0, 1.0),
+            "2.5:3.49:0.05",
+            "0:90:30",
+        ),
+        small(picture("##.# .##. #.##"), "5:5.99:0.05", "0:180:45"),
+        centred(
+            figure(Kind::Hexagon, 3.0, 0.0, 1.0),
+            "7:7.99:0.03",
+            "0:59:10",
+        ),
+        centred(
+            figure(Kind::Octagon, 2.0, 0.0, 0.5),
+            "7.25:8.2:0.05",
+            "0:44:9",
+        ),
+        // At the rim of the sensor at some angles and beyond it at others: no images there.
+        small(tie, "0.5:1.48:0.02", "0:45:15"),
+    ] {
+        let whole = sweep(&grid);
+        let rows = u32::try_from(grid.rows()).expect("a small grid");
+        let one_by_one = (1..=rows).map(|number| {
+            let row = Shard::new(number, rows).expect("a shard");
+            Survey::of(&grid, row, Watch::nothing())
+        });
+        let merged = Survey::merge(one_by_one).expect("all shards");
+        assert_eq!(told(&whole), told(&merged), "{:?}", grid.source());
+        assert_eq!(differences(&grid), Ok(0), "{:?}", grid.source());
+        assert!(whole.atlas.len() > 50, "{:?}", grid.source());
+    }
+}
+
 #[test]
 fn shards_are_merged_only_if_all_are_there() {
     let grid = small(
@@ -187,19 +245,23 @@ fn a_stopped_sweep_keeps_what_is_complete() {
         "5:5.99:0.01",
         "0:100:1",
     );
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let pool = pool.expect("a pool");
     let done = AtomicU64::new(0);
-    let enough = |poses| done.fetch_add(poses, Ordering::Relaxed) + poses < 100_000;
-    let survey = Survey::of(
-        &grid,
-        Shard::WHOLE,
-        Watch {
+    let stopped_after = |most: u64| {
+        done.store(0, Ordering::Relaxed);
+        let enough = |poses| done.fetch_add(poses, Ordering::Relaxed) + poses < most;
+        let watch = Watch {
             progress: &enough,
             rows: None,
-        },
-    );
+        };
+        pool.install(|| Survey::of(&grid, Shard::WHOLE, watch))
+    };
+    let survey = stopped_after(500_000);
     assert!(!survey.complete());
-    assert_eq!(survey.poses, done.load(Ordering::Relaxed));
-    assert!((100_000..grid.poses()).contains(&survey.poses));
+    assert_eq!(done.load(Ordering::Relaxed), 500_000);
+    // Whole turns, and at most the last sixteen of them are lost.
+    assert!((340_000..500_000).contains(&survey.poses) && survey.poses % 10_000 == 0);
     assert_eq!(
         survey.atlas.entries().map(|entry| entry.count).sum::<u64>(),
         survey.poses
@@ -209,6 +271,10 @@ fn a_stopped_sweep_keeps_what_is_complete() {
         shard: Shard::WHOLE,
     };
     assert_eq!(Survey::merge([survey]).err(), Some(incomplete));
+    // Not even a turn is waited for.
+    let survey = stopped_after(1);
+    assert_eq!((survey.poses, survey.atlas.len()), (0, 0));
+    assert!(done.load(Ordering::Relaxed) <= 5_000);
 }
 
 /// Sum of squares about the mean over the number.
