@@ -1,7 +1,8 @@
 //! `taxel sweep` and `taxel merge`: a grid gone through, its atlas written, its statistics shown.
 //!
-//! Files are written under another name in the same folder and renamed when they are whole. An interrupt
-//! stops a sweep at its next task; a second one ends the program at once.
+//! Files are written under another name in the same folder and renamed when they are whole. An interrupt stops a
+//! sweep within some thousand poses and a file at its next block, and what is not whole is taken away; a second one
+//! ends the program at once.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
@@ -60,8 +61,14 @@ impl Table {
         Ok(Self { path, form })
     }
 
-    fn write(&self, survey: &Survey) -> Result<(), Failure> {
-        let mut file = Unfinished::new(&self.path)?;
+    /// Writes all of it under another name.
+    fn write(&self, survey: &Survey, stopped: &Arc<AtomicBool>) -> Result<Whole<'_>, Failure> {
+        let heeded = match self.form {
+            // Written in a moment, and its library complains aloud of a file that takes no more.
+            TableForm::Archive => Arc::default(),
+            TableForm::Csv | TableForm::JsonLines => Arc::clone(stopped),
+        };
+        let mut file = Unfinished::new(&self.path, heeded)?;
         let written = match self.form {
             TableForm::Csv => write_csv(survey, &mut file.output).map_err(ArchiveError::from),
             TableForm::JsonLines => {
@@ -69,8 +76,11 @@ impl Table {
             }
             TableForm::Archive => archive::write(survey, &mut file.output),
         };
+        if stopped.load(Ordering::Relaxed) {
+            return Err(Failure::Stopped);
+        }
         written.map_err(|error| refused(&self.path, error))?;
-        file.finish()
+        file.whole()
     }
 }
 
@@ -84,11 +94,36 @@ fn refused(path: &Path, error: impl Into<ArchiveError>) -> Failure {
 /// A file that has another name until it is whole.
 struct Unfinished<'a> {
     path: &'a Path,
-    output: BufWriter<NamedTempFile>,
+    output: BufWriter<Stoppable>,
+}
+
+/// A file that takes nothing more after an interrupt.
+struct Stoppable {
+    file: NamedTempFile,
+    stopped: Arc<AtomicBool>,
+}
+
+impl Write for Stoppable {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.stopped.load(Ordering::Relaxed) {
+            return Err(io::Error::other("interrupted"));
+        }
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Seek for Stoppable {
+    fn seek(&mut self, place: SeekFrom) -> io::Result<u64> {
+        self.file.seek(place)
+    }
 }
 
 impl<'a> Unfinished<'a> {
-    fn new(path: &'a Path) -> Result<Self, Failure> {
+    fn new(path: &'a Path, stopped: Arc<AtomicBool>) -> Result<Self, Failure> {
         let folder = match path.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
@@ -97,23 +132,40 @@ impl<'a> Unfinished<'a> {
             .prefix(".taxel-")
             .permissions(permissions())
             .tempfile_in(folder);
-        let output = BufWriter::new(file.map_err(|error| refused(path, error))?);
-        Ok(Self { path, output })
+        let file = Stoppable {
+            file: file.map_err(|error| refused(path, error))?,
+            stopped,
+        };
+        Ok(Self {
+            path,
+            output: BufWriter::new(file),
+        })
     }
 
-    fn finish(self) -> Result<(), Failure> {
+    fn whole(self) -> Result<Whole<'a>, Failure> {
         let path = self.path;
-        let file = self
-            .output
-            .into_inner()
-            .map_err(io::IntoInnerError::into_error);
-        let file = file.map_err(|error| refused(path, error))?;
+        let output = self.output.into_inner();
+        let file = output
+            .map_err(|error| refused(path, error.into_error()))?
+            .file;
         file.as_file()
             .sync_all()
             .map_err(|error| refused(path, error))?;
-        file.persist(path)
-            .map_err(|error| refused(path, error.error))?;
-        Ok(())
+        Ok(Whole { path, file })
+    }
+}
+
+/// A file that only its name is missing of.
+struct Whole<'a> {
+    path: &'a Path,
+    file: NamedTempFile,
+}
+
+impl Whole<'_> {
+    fn keep(self) -> Result<(), Failure> {
+        let path = self.path;
+        let kept = self.file.persist(path);
+        kept.map(drop).map_err(|error| refused(path, error.error))
     }
 }
 
@@ -132,11 +184,11 @@ pub(super) fn sweep(
     charset: Charset,
 ) -> Result<String, Failure> {
     let start = Instant::now();
-    let stopped = interrupts().map_err(Failure::Screen)?;
+    let stopped = interrupts()?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
     let pool = pool.map_err(|error| Failure::Screen(io::Error::other(error)))?;
     let mut poses = match &wanted.poses {
-        Some(path) => Some(PoseFile::new(path, grid)?),
+        Some(path) => Some(PoseFile::new(path, grid, &stopped)?),
         None => None,
     };
     let rows = shard.rows(grid.rows());
@@ -160,13 +212,11 @@ pub(super) fn sweep(
     };
     let survey = pool.install(|| Survey::of(grid, shard, watch));
     progress.finish();
-    if let Some(file) = poses {
-        file.finish(survey.complete())?;
-    }
-    if !survey.complete() {
+    let poses = poses.map(PoseFile::whole).transpose()?.flatten();
+    if !survey.complete() || stopped.load(Ordering::Relaxed) {
         return Err(Failure::Stopped);
     }
-    leave(&survey, start, wanted, charset)
+    leave(&survey, start, wanted, poses, charset, &stopped)
 }
 
 /// Puts shards together, and gives what is to be printed.
@@ -183,17 +233,25 @@ pub(super) fn merge(
         surveys.push(survey.map_err(|error| refused(path, error))?);
     }
     let survey = Survey::merge(surveys)?;
-    leave(&survey, start, wanted, charset)
+    // Until here an interrupt ends the program, which has left nothing.
+    leave(&survey, start, wanted, None, charset, &interrupts()?)
 }
 
 fn leave(
     survey: &Survey,
     start: Instant,
     wanted: &Wanted,
+    poses: Option<Whole<'_>>,
     charset: Charset,
+    stopped: &Arc<AtomicBool>,
 ) -> Result<String, Failure> {
-    if let Some(table) = &wanted.atlas {
-        table.write(survey)?;
+    let table = wanted.atlas.as_ref();
+    let table = table
+        .map(|table| table.write(survey, stopped))
+        .transpose()?;
+    // All files or none, as far as a machine can be asked for that.
+    for file in table.into_iter().chain(poses) {
+        file.keep()?;
     }
     let summary = Summary::new(survey, start.elapsed());
     Ok(if wanted.json {
@@ -204,12 +262,14 @@ fn leave(
 }
 
 /// Set by an interrupt or a request to end; a second one ends the program as if nobody listened.
-fn interrupts() -> io::Result<Arc<AtomicBool>> {
+fn interrupts() -> Result<Arc<AtomicBool>, Failure> {
     use signal_hook::consts::{SIGINT, SIGTERM};
+    use signal_hook::flag::{register, register_conditional_shutdown};
     let stopped = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM] {
-        signal_hook::flag::register_conditional_shutdown(signal, 130, Arc::clone(&stopped))?;
-        signal_hook::flag::register(signal, Arc::clone(&stopped))?;
+        register_conditional_shutdown(signal, 130, Arc::clone(&stopped))
+            .map_err(Failure::Screen)?;
+        register(signal, Arc::clone(&stopped)).map_err(Failure::Screen)?;
     }
     Ok(stopped)
 }
@@ -224,8 +284,8 @@ struct PoseFile<'a> {
 }
 
 impl<'a> PoseFile<'a> {
-    fn new(path: &'a Path, grid: &Grid) -> Result<Self, Failure> {
-        let mut file = Unfinished::new(path)?;
+    fn new(path: &'a Path, grid: &Grid, stopped: &Arc<AtomicBool>) -> Result<Self, Failure> {
+        let mut file = Unfinished::new(path, Arc::clone(stopped))?;
         let ranges = grid.ranges();
         let mut shape = [
             ranges.zoom_y,
@@ -252,7 +312,8 @@ impl<'a> PoseFile<'a> {
     }
 
     fn take(&mut self, row: u64, ids: &[u32], stopped: &AtomicBool) {
-        if self.error.is_some() {
+        // What is refused after an interrupt is no error.
+        if stopped.load(Ordering::Relaxed) {
             return;
         }
         self.bytes.clear();
@@ -263,17 +324,19 @@ impl<'a> PoseFile<'a> {
         let written = output
             .seek(SeekFrom::Start(place))
             .and_then(|_| output.write_all(&self.bytes));
-        if let Err(error) = written {
+        if let Err(error) = written
+            && !stopped.swap(true, Ordering::Relaxed)
+        {
             self.error = Some(error);
-            stopped.store(true, Ordering::Relaxed);
         }
     }
 
-    fn finish(self, complete: bool) -> Result<(), Failure> {
+    /// None after an interrupt.
+    fn whole(self) -> Result<Option<Whole<'a>>, Failure> {
         match self.error {
             Some(error) => Err(refused(self.file.path, error)),
-            None if complete => self.file.finish(),
-            None => Ok(()),
+            None if self.file.output.get_ref().stopped.load(Ordering::Relaxed) => Ok(None),
+            None => self.file.whole().map(Some),
         }
     }
 }
