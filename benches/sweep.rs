@@ -1,24 +1,24 @@
 //! The paper's grid of 3.6 million poses: swept, touched pose by pose, and by what one would write without taxel
-//! ([`peer`]), side by side in one run. All descriptors of each imprint's main region, and all statistics, included.
+//! ([`peer`]), side by side in one run; and how the time of a sweep grows with the sensor, the figure and the step. All
+//! descriptors of each imprint's main region, and all statistics, included.
 //!
-//! `cargo bench --bench sweep` prints a table; the name of a figure after `--` restricts it. Pose by pose, 20,000 poses
-//! spread over the grid are taken and the time extrapolated. The figures are gone through in turn, several
-//! rounds of them, and each number is the median of its rounds: what else the machine does falls on all alike.
+//! `cargo bench --bench sweep` prints two tables; a part of a row's name after `--` restricts them. Pose by pose, 20,000
+//! poses spread over the grid are taken and the time extrapolated. Each row is gone through in several rounds, all ways
+//! in turn, and each number is the least of its rounds: that with the least of what else the machine does.
 
 use std::hint::black_box;
 use std::time::Instant;
 
-use taxel::figure::{Figure, Kind};
+use taxel::figure::Kind;
 use taxel::parameter::Parameter;
-use taxel::picture::Picture;
-use taxel::sensor::Sensor;
 use taxel::source::Source;
-use taxel::sweep::grid::{Anchor, Grid, Pose, Ranges};
+use taxel::sweep::grid::{Grid, Pose};
 use taxel::sweep::plan::Shard;
 use taxel::sweep::quantity::{describe, values};
 use taxel::sweep::survey::{Survey, Watch};
 use taxel::touch::Plane;
 
+use cases::{Case, cases, figure, sensor};
 use peer::{Outline, Peer};
 
 #[expect(
@@ -30,148 +30,52 @@ use peer::{Outline, Peer};
 #[expect(dead_code, reason = "another benchmark looks at more of it")]
 mod peer;
 
+#[path = "../tests/sweep/cases.rs"]
+#[expect(
+    dead_code,
+    reason = "compares with touching, which is no matter of time"
+)]
+mod cases;
+
 /// Poses that are taken pose by pose.
 const SAMPLE: u64 = 20_000;
-const ROUNDS: usize = 5;
+const ROUNDS: usize = 7;
 
-/// A row of the table.
-struct Case {
-    name: &'static str,
-    grid: Grid,
-    /// Sizes and wall, for the peer; none of what the peer cannot do.
-    peer: Option<(Kind, [f32; 2], Option<f32>)>,
-}
+/// Of the shapes that are compared with touching, those that are measured.
+const MEASURED: [&str; 11] = [
+    "rectangle 6 x 3",
+    "triangle 6",
+    "hexagon 3 wall 1",
+    "heptagon 3 wall 1",
+    "octagon 3 wall 1.5",
+    "rectangle 10 x 8 wall 0.7",
+    "ellipse 5 x 3",
+    "ellipse 5 x 3 wall 1",
+    "circle 4 wall 2",
+    "picture: scattered",
+    "picture: ring",
+];
 
-fn grid(source: Source, sensor: Sensor, place: &str, angles: &str) -> Grid {
-    let read = |text: &str| text.parse().expect("a range");
-    let ranges = Ranges {
-        x0: read(place),
-        y0: read(place),
-        angle: read(angles),
-        ..Ranges::default()
-    };
-    Grid::new(source, sensor, Anchor::Corner, ranges).expect("a grid")
-}
-
-fn figure(kind: Kind, sizes: [f32; 2], wall: Option<f32>) -> Source {
-    // Through the decimal, so that 0.7 is 0.7.
-    let decimal = |number: f32| number.to_string().parse::<f64>().expect("a number");
-    let figure = Figure::new(kind, 64, |parameter| match parameter {
-        Parameter::RadiusX | Parameter::Length | Parameter::Side => Some(decimal(sizes[0])),
-        Parameter::RadiusY | Parameter::Width => Some(decimal(sizes[1])),
-        Parameter::Thickness => wall.map(decimal),
-        _ => Some(0.0),
-    });
-    Source::Figure(figure.expect("a figure in range"))
-}
-
-#[expect(clippy::too_many_lines, reason = "a list")]
-fn cases() -> Vec<Case> {
-    let paper = |name, kind, sizes, wall, place| Case {
+/// A hexagon with a wall of 1, each row in another respect than the first one; its angles, none of which repeats.
+fn growing() -> Vec<Case> {
+    let case = |name, side: f64, on: f64, place| Case {
         name,
-        grid: grid(
-            figure(kind, sizes, wall),
-            Sensor::default(),
-            place,
-            "0:359:1",
-        ),
-        peer: Some((kind, sizes, wall)),
+        source: figure(Kind::Hexagon, side, 0.0, 1.0),
+        sensor: sensor(on, on, 0.5),
+        place,
+        ..cases().swap_remove(0)
     };
     let cell = "5:5.99:0.01";
-    let picture = |name, rows: &str| Case {
-        name,
-        grid: grid(
-            Source::Picture(Picture::at_home(rows.parse().expect("rows"))),
-            Sensor::default(),
-            cell,
-            "0:359:1",
-        ),
-        peer: None,
-    };
-    let sized = |name, side: f64, figure_side: f32, place, angles| Case {
-        name,
-        grid: grid(
-            figure(Kind::Hexagon, [figure_side, 0.0], Some(1.0)),
-            Sensor::new(side, side).expect("a side in range"),
-            place,
-            angles,
-        ),
-        peer: None,
-    };
     vec![
-        paper("rectangle 6 x 3", Kind::Rectangle, [6.0, 3.0], None, cell),
-        paper("triangle 6", Kind::Triangle, [6.0, 0.0], None, cell),
-        paper(
-            "hexagon 3 wall 1",
-            Kind::Hexagon,
-            [3.0, 0.0],
-            Some(1.0),
-            cell,
-        ),
-        paper(
-            "heptagon 3 wall 1",
-            Kind::Heptagon,
-            [3.0, 0.0],
-            Some(1.0),
-            cell,
-        ),
-        paper(
-            "octagon 3 wall 1.5",
-            Kind::Octagon,
-            [3.0, 0.0],
-            Some(1.5),
-            cell,
-        ),
-        // The peer does not cut off what lies beyond the sensor: at 5 the rectangle's corners do.
-        paper(
-            "rectangle 10 x 8 wall 0.7",
-            Kind::Rectangle,
-            [10.0, 8.0],
-            Some(0.7),
-            "2.5:3.49:0.01",
-        ),
-        paper(
-            "ellipse 5 x 3",
-            Kind::Ellipse,
-            [5.0, 3.0],
-            None,
-            "2.5:3.49:0.01",
-        ),
-        paper(
-            "ellipse 5 x 3 wall 1",
-            Kind::Ellipse,
-            [5.0, 3.0],
-            Some(1.0),
-            "2.5:3.49:0.01",
-        ),
-        paper(
-            "circle 4 wall 2",
-            Kind::Ellipse,
-            [4.0, 4.0],
-            Some(2.0),
-            "1:1.99:0.01",
-        ),
-        picture("picture of 9 taxels", "##.#\n.###\n##..\n#..#"),
-        picture("picture of a ring", "####\n#..#\n#..#\n####"),
-        sized("hexagon 3 on 16 x 16", 16.0, 3.0, cell, "1:59:2"),
-        sized("hexagon 3 on 32 x 32", 32.0, 3.0, cell, "1:59:2"),
-        sized("hexagon 3 on 64 x 64", 64.0, 3.0, cell, "1:59:2"),
-        sized("hexagon 6 on 32 x 32", 32.0, 6.0, cell, "1:59:2"),
-        sized("hexagon 12 on 64 x 64", 64.0, 12.0, cell, "1:59:2"),
-        sized(
-            "hexagon 3, steps of 0.02",
-            16.0,
-            3.0,
-            "5:5.98:0.02",
-            "1:59:2",
-        ),
-        sized(
-            "hexagon 3, steps of 0.005",
-            16.0,
-            3.0,
-            "5:5.995:0.005",
-            "1:59:2",
-        ),
+        case("side 3, 16 x 16, step 0.01", 3.0, 16.0, cell),
+        case("on 32 x 32", 3.0, 32.0, cell),
+        case("on 64 x 64", 3.0, 64.0, cell),
+        case("side 6, on 32 x 32", 6.0, 32.0, cell),
+        case("side 12, on 64 x 64", 12.0, 64.0, cell),
+        case("step 0.04", 3.0, 16.0, "5:5.96:0.04"),
+        case("step 0.02", 3.0, 16.0, "5:5.98:0.02"),
+        case("step 0.005", 3.0, 16.0, "5:5.995:0.005"),
+        case("step 0.0025", 3.0, 16.0, "5:5.9975:0.0025"),
     ]
 }
 
@@ -182,9 +86,8 @@ fn seconds(work: impl FnOnce()) -> f64 {
     start.elapsed().as_secs_f64()
 }
 
-fn median(mut times: Vec<f64>) -> f64 {
-    times.sort_by(f64::total_cmp);
-    times[times.len() / 2]
+fn least(times: &[f64]) -> f64 {
+    times.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
 /// Poses spread over the grid.
@@ -251,80 +154,133 @@ fn touch_peer(peer: &mut Peer, kind: Kind, sizes: [f32; 2], wall: Option<f32>, p
     }
 }
 
-/// Times of one row, in seconds for the whole grid.
+/// Kind, sizes and wall of a figure, for the peer; none of a picture.
+fn sizes(source: &Source) -> Option<(Kind, [f32; 2], Option<f32>)> {
+    let Source::Figure(figure) = source else {
+        return None;
+    };
+    #[expect(clippy::cast_possible_truncation, reason = "the peer computes in f32")]
+    let get = |parameter| figure.get(parameter).map(|value| value as f32);
+    let size = |index: usize| figure.kind().sizes().get(index).copied().and_then(get);
+    let sizes = [size(0)?, size(1).unwrap_or(0.0)];
+    Some((figure.kind(), sizes, get(Parameter::Thickness)))
+}
+
+/// Times of one row, in seconds for the whole grid, and the number of distinct imprints.
 #[derive(Default)]
 struct Times {
     one: Vec<f64>,
     two: Vec<f64>,
     touch: Vec<f64>,
     peer: Vec<f64>,
+    distinct: usize,
+}
+
+/// One thread, and two.
+struct Pools([rayon::ThreadPool; 2]);
+
+impl Pools {
+    fn new() -> Self {
+        let pool = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            pool.expect("a pool of threads")
+        };
+        Self([pool(1), pool(2)])
+    }
+
+    /// Sweeps on one and on two threads.
+    fn sweep(&self, grid: &Grid, times: &mut Times) {
+        let [one, two] = self.0.each_ref().map(|pool| {
+            seconds(|| {
+                let survey = pool.install(|| Survey::of(grid, Shard::WHOLE, Watch::nothing()));
+                times.distinct = black_box(survey).atlas.len();
+            })
+        });
+        times.one.push(one);
+        times.two.push(two);
+    }
 }
 
 #[expect(clippy::cast_precision_loss, reason = "for reading")]
+fn measure(pools: &Pools, grid: &Grid) -> Times {
+    let poses: Vec<Pose> = sample(grid).collect();
+    let sources = placed(grid);
+    let mut plane = Plane::new(*grid.sensor());
+    let mut peer = Peer::new(grid.sensor().columns(), grid.sensor().rows());
+    let scale = grid.poses() as f64 / poses.len() as f64;
+    let mut times = Times::default();
+    for _ in 0..ROUNDS {
+        pools.sweep(grid, &mut times);
+        let touch = seconds(|| touch_all(&mut plane, &sources));
+        times.touch.push(scale * touch);
+        if let Some((kind, sizes, wall)) = sizes(grid.source()) {
+            let work = || touch_peer(&mut peer, kind, sizes, wall, &poses);
+            times.peer.push(scale * seconds(work));
+        }
+    }
+    times
+}
+
+#[expect(clippy::cast_precision_loss, reason = "for reading")]
+fn per_pose(times: &[f64], grid: &Grid) -> f64 {
+    least(times) * 1e9 / grid.poses() as f64
+}
+
+/// A row of the table of the paper's grid.
+fn print(name: &str, grid: &Grid, times: &Times) {
+    let (own, two) = (per_pose(&times.one, grid), per_pose(&times.two, grid));
+    let touch = per_pose(&times.touch, grid);
+    let (peer, ratio) = if times.peer.is_empty() {
+        ("-".to_owned(), "-".to_owned())
+    } else {
+        let peer = per_pose(&times.peer, grid);
+        (format!("{peer:.0}"), format!("{:.0}", peer / own))
+    };
+    println!(
+        "{name:<26} {:>8} {:>7.0} {own:>8.2} {:>7.2} {touch:>8.0} {peer:>8} {:>7.0} {ratio:>7}",
+        times.distinct,
+        least(&times.one) * 1e3,
+        own / two,
+        touch / own,
+    );
+}
+
 fn main() {
     let only = std::env::args()
         .skip(1)
-        .find(|argument| !argument.starts_with('-'));
-    let mut cases = cases();
-    cases.retain(|case| {
-        only.as_ref()
-            .is_none_or(|only| case.name.contains(only.as_str()))
-    });
-    let pool = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.expect("a pool of threads")
-    };
-    let (one, two) = (pool(1), pool(2));
+        .find(|argument| !argument.starts_with('-'))
+        .unwrap_or_default();
+    let pools = Pools::new();
     println!(
-        "{:<27} {:>9} {:>9} {:>8} {:>7} {:>8} {:>8} {:>8} {:>8}",
-        "", "poses", "distinct", "sweep", "2 thr.", "touch", "peer", "touch:", "peer:"
+        "3,600,000 poses    distinct      ms  ns/pose  2 thr.    touch     peer  touch:   peer:"
     );
     println!(
-        "{:<27} {:>9} {:>9} {:>8} {:>7} {:>8} {:>8} {:>8} {:>8}",
-        "", "", "", "ns/pose", "times", "ns/pose", "ns/pose", "sweep", "sweep"
+        "                                               times  ns/pose  ns/pose   sweep   sweep"
     );
-    for case in &cases {
-        let grid = &case.grid;
-        let poses: Vec<Pose> = sample(grid).collect();
-        let sources = placed(grid);
-        let mut plane = Plane::new(*grid.sensor());
-        let mut peer = Peer::new(grid.sensor().columns(), grid.sensor().rows());
-        let scale = grid.poses() as f64 / poses.len() as f64;
+    let cases = cases();
+    for name in MEASURED.iter().filter(|name| name.contains(&only)) {
+        let case = cases.iter().find(|case| case.name == *name);
+        let grid = case.expect("it is in the list").grid("0:359:1", 1);
+        print(name, &grid, &measure(&pools, &grid));
+    }
+    println!();
+    println!("hexagon wall 1, 30 angles   poses  distinct       ms  ns/pose   times the first row");
+    let mut first = None;
+    for case in growing().iter().filter(|case| case.name.contains(&only)) {
+        let grid = case.grid("1:59:2", 1);
         let mut times = Times::default();
-        let mut distinct = 0;
-        let mut sweep = |pool: &rayon::ThreadPool| {
-            seconds(|| {
-                let survey = pool.install(|| Survey::of(grid, Shard::WHOLE, Watch::nothing()));
-                distinct = black_box(survey).atlas.len();
-            })
-        };
         for _ in 0..ROUNDS {
-            times.one.push(sweep(&one));
-            times.two.push(sweep(&two));
-            times
-                .touch
-                .push(scale * seconds(|| touch_all(&mut plane, &sources)));
-            if let Some((kind, sizes, wall)) = case.peer {
-                let work = || touch_peer(&mut peer, kind, sizes, wall, &poses);
-                times.peer.push(scale * seconds(work));
-            }
+            pools.sweep(&grid, &mut times);
         }
-        let per_pose = |times: Vec<f64>| median(times) * 1e9 / grid.poses() as f64;
-        let (own, two) = (per_pose(times.one), per_pose(times.two));
-        let touch = per_pose(times.touch);
-        let (peer, ratio) = if times.peer.is_empty() {
-            ("-".to_owned(), "-".to_owned())
-        } else {
-            let peer = per_pose(times.peer);
-            (format!("{peer:.0}"), format!("{:.0}", peer / own))
-        };
+        let time = least(&times.one);
         println!(
-            "{:<27} {:>9} {:>9} {own:>8.2} {:>7.2} {touch:>8.0} {peer:>8} {:>8.0} {ratio:>8}",
+            "{:<26} {:>7} {:>8} {:>8.1} {:>8.1} {:>8.2}",
             case.name,
             grid.poses(),
-            distinct,
-            own / two,
-            touch / own,
+            times.distinct,
+            time * 1e3,
+            per_pose(&times.one, &grid),
+            time / *first.get_or_insert(time),
         );
     }
 }
