@@ -135,8 +135,9 @@ impl Failure {
     pub(super) fn status(&self) -> u8 {
         match self {
             _ if self.is_closed_pipe() => 0,
-            Self::Usage(_) | Self::NoScript { .. } => 2,
-            Self::Script {
+            Self::Usage(_)
+            | Self::NoScript { .. }
+            | Self::Script {
                 failure: runner::Failure::Script(_),
                 ..
             } => 2,

@@ -122,7 +122,7 @@ impl fmt::Display for Setting {
     }
 }
 
-fn name_of<T: PartialEq>(value: T, choices: &[(&'static str, T)]) -> &'static str {
+fn name_of<T: Copy + PartialEq>(value: T, choices: &[(&'static str, T)]) -> &'static str {
     let choice = choices.iter().find(|(_, meaning)| *meaning == value);
     choice.map_or("", |(name, _)| name)
 }
