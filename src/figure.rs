@@ -9,6 +9,9 @@ use crate::geometry::outline::{Ellipse, Pen, Point, Side, Solid, Turn};
 use crate::geometry::real::Real;
 use crate::parameter::{Parameter, ParameterError};
 
+/// What is said of a thickness that leaves no room for a hole.
+pub const NO_ROOM: &str = "no room for a hole: solid";
+
 /// The kinds of figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
@@ -213,6 +216,22 @@ impl Figure {
         }
     }
 
+    /// Whether it has a hole: it has a thickness, and that leaves room for one.
+    ///
+    /// ```
+    /// use taxel::{figure::{Figure, Kind}, parameter::Parameter};
+    /// let square = Figure::default_of(Kind::Rectangle, 16).with(Parameter::Width, 6.0, 16)?;
+    /// assert!(!square.has_hole());
+    /// assert!(square.with(Parameter::Thickness, 2.99, 16)?.has_hole());
+    /// assert!(!square.with(Parameter::Thickness, 3.0, 16)?.has_hole());
+    /// # Ok::<(), taxel::parameter::ParameterError>(())
+    /// ```
+    pub fn has_hole(&self) -> bool {
+        let mut pen = HolePen(false);
+        self.draw(&mut pen);
+        pen.0
+    }
+
     /// Draws an ellipse or a rectangle, given half of its extent, about the centre; a hole is smaller by the wall.
     fn draw_round_or_square<T: Real>(&self, half: Point<T>, pen: &mut impl Pen<T>) {
         let centre = Point::new(T::decimal(self.x0), T::decimal(self.y0)).moved(half);
@@ -305,6 +324,21 @@ impl Solid for Figure {
     }
 }
 
+/// Draws nothing and remembers whether there was a hole: so the rule for one is that of drawing.
+struct HolePen(bool);
+
+impl Pen<f64> for HolePen {
+    fn edge(&mut self, _from: Point<f64>, _to: Point<f64>) {}
+
+    fn ellipse(&mut self, _ellipse: &Ellipse<f64>, material: Side) {
+        self.0 |= material == Side::Outside;
+    }
+
+    fn ring(&mut self, _points: &[Point<f64>], material: Side) {
+        self.0 |= material == Side::Outside;
+    }
+}
+
 impl std::fmt::Display for Figure {
     /// What made the imprint, in one line.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -318,9 +352,14 @@ impl std::fmt::Display for Figure {
             " at {x0}, {y0}, {}°",
             Parameter::Angle.format(self.angle)
         )?;
-        match self.thickness {
-            Some(wall) => write!(f, ", wall {}", Parameter::Thickness.format(wall)),
-            None => Ok(()),
+        let Some(wall) = self.thickness else {
+            return Ok(());
+        };
+        write!(f, ", wall {}", Parameter::Thickness.format(wall))?;
+        if self.has_hole() {
+            Ok(())
+        } else {
+            write!(f, " ({NO_ROOM})")
         }
     }
 }

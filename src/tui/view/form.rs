@@ -4,7 +4,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use super::write;
-use crate::figure::Kind;
+use crate::figure::{Kind, NO_ROOM};
+use crate::source::Source;
 use crate::tui::app::App;
 use crate::tui::form::Field;
 use crate::tui::form_dialog::FormDialog;
@@ -45,7 +46,7 @@ pub fn draw(app: &App, dialog: &FormDialog, buffer: &mut Buffer, area: Rect) -> 
             .map(|error| error.expected());
         let marked = focus == Some(index);
         let at = draw_field(app, field, marked, buffer, write::row(area, row));
-        let range = range(field, dialog.form().side());
+        let remark = remark(field, dialog).filter(|_| error.is_none());
         let beside = write::right_of(write::row(area, row), area.x + narrow(LABEL + INPUT + 1));
         let under = write::right_of(write::row(area, row + 1), area.x + 2);
         let (error_at, range_at) = match (rows.spacing, area.width >= WIDE) {
@@ -54,7 +55,9 @@ pub fn draw(app: &App, dialog: &FormDialog, buffer: &mut Buffer, area: Rect) -> 
             _ => (beside, error.is_none().then_some(beside)),
         };
         if let Some(range_at) = range_at {
-            write::line(buffer, range_at, theme, [(range.as_str(), Role::Quiet)]);
+            let under = (rows.spacing == 2 && range_at == beside).then_some(under);
+            let taken = (field, dialog.form().side());
+            draw_range(app, taken, remark, buffer, range_at, under);
         }
         if let Some(error) = error {
             write::line(
@@ -119,17 +122,54 @@ fn draw_field(app: &App, field: &Field, focused: bool, buffer: &mut Buffer, row:
     Position::new(row.x + narrow(LABEL + field.cursor() - hidden), row.y)
 }
 
-/// What the field takes: range and unit.
-fn range(field: &Field, side: u8) -> String {
-    let parameter = field.parameter();
-    if field.optional() && field.text().is_empty() {
-        return "empty: solid".to_owned();
+/// What else there is to know about a field that may be empty, and whether that is about the value it has now.
+fn remark(field: &Field, dialog: &FormDialog) -> Option<(&'static str, bool)> {
+    if !field.optional() {
+        return None;
     }
-    format!(
-        "{} {}",
-        parameter.form_range(side),
-        parameter.row().unit.symbol()
-    )
+    match &dialog.shown().source {
+        Some(Source::Figure(figure))
+            if figure.get(field.parameter()).is_some() && !figure.has_hole() =>
+        {
+            Some((NO_ROOM, true))
+        }
+        _ => Some(("empty: solid", field.text().is_empty())),
+    }
+}
+
+/// What the field takes, and the remark under it or else behind it. Where there is no room for all of it the unit gives
+/// way first, then the remark, or the range where the remark is about the present value.
+fn draw_range(
+    app: &App,
+    (field, side): (&Field, u8),
+    remark: Option<(&str, bool)>,
+    buffer: &mut Buffer,
+    area: Rect,
+    under: Option<Rect>,
+) {
+    let bare = field.parameter().form_range(side).to_string();
+    let unit = field.parameter().row().unit.symbol();
+    let range = format!("{bare} {unit}").trim_end().to_owned();
+    let mut write = |area: Rect, texts: &[&str]| {
+        let text = write::first_fitting(texts, usize::from(area.width));
+        write::line(buffer, area, app.theme(), [(text, Role::Quiet)]);
+    };
+    match (remark, under) {
+        (None, _) => write(area, &[&range, &bare]),
+        (Some((remark, _)), Some(under)) => {
+            write(area, &[&range, &bare]);
+            write(under, &[remark]);
+        }
+        (Some((remark, of_value)), None) => {
+            let (both, barely) = (format!("{range}; {remark}"), format!("{bare}; {remark}"));
+            let (first, second) = if of_value {
+                (remark, remark)
+            } else {
+                (&*range, &*bare)
+            };
+            write(area, &[&both, &barely, first, second]);
+        }
+    }
 }
 
 fn narrow(columns: usize) -> u16 {
