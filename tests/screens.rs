@@ -80,3 +80,109 @@ fn ascii_screens_are_ascii() {
         assert!(screen.is_ascii(), "{keys}\n{screen}");
     }
 }
+
+/// The lines of a screen as one text, as a reader puts a broken line together.
+fn joined(screen: &str) -> String {
+    let lines: Vec<&str> = screen.lines().map(str::trim).collect();
+    lines.join(" ")
+}
+
+#[test]
+fn questions_and_notices_are_read_to_their_end_on_narrow_screens() {
+    for (keys, text) in [
+        (
+            "<Space>q",
+            "The imprint is not saved. Quit all the same? (y/n)",
+        ),
+        (
+            "g",
+            "! nothing to move: this was drawn by hand; f touches a figure, p a stored shape",
+        ),
+        (
+            "<Space>s/",
+            "! '/' cannot be in a name, only letters, digits, space, - _ .",
+        ),
+    ] {
+        for size in [(80, 24), (60, 24), (40, 24), (40, 12), (24, 20)] {
+            let screen = session(size, false, keys).screen();
+            assert!(joined(&screen).contains(text), "{keys} {size:?}\n{screen}");
+        }
+    }
+}
+
+#[test]
+fn what_does_not_fit_ends_in_an_ellipsis() {
+    let touched = "f<6x:Tab>2<Enter><Space>";
+    let whole = "wall 2.00 + 1 taxel by hand";
+    let screen = session((80, 24), false, touched).screen();
+    assert!(screen.contains(whole), "{screen}");
+    for (ascii, end) in [(false, "…"), (true, "...")] {
+        let screen = session((60, 24), ascii, touched).screen();
+        let line = screen.lines().find(|line| line.starts_with("ellipse rx"));
+        let line = line.expect("what made it is said");
+        assert!(line.ends_with(end), "{line}");
+        assert_eq!(line.chars().count(), 60, "{line}");
+    }
+    // That something is cut off is said whatever is before it.
+    for ascii in [false, true] {
+        let screen = session((60, 24), ascii, "f<6x:Tab>2<Enter>g++<5x:Left>").screen();
+        assert!(screen.contains("; reaches beyond the sensor\n"), "{screen}");
+    }
+    // Of the taxel under the cursor what matters most comes first, and no word is cut.
+    let screen = session((40, 24), false, "f<Enter>").screen();
+    assert!(
+        screen.contains("\n8, 8    active    1.000000  step 0.01\n"),
+        "{screen}"
+    );
+    let screen = session((36, 24), false, "f<Enter>g").screen();
+    assert!(
+        screen.contains("\n8, 8    active    held, step 0.01\n"),
+        "{screen}"
+    );
+}
+
+#[test]
+fn a_long_name_is_typed_and_told_in_whole() {
+    let name = format!("{}end", "abcdefgh".repeat(8));
+    for (size, seen) in [((80, 24), 71), ((40, 24), 31), ((30, 8), 21)] {
+        let screen = session(size, false, &format!("<Space>s{name}")).screen();
+        let end = &name[(name.len() + 1).saturating_sub(seen)..];
+        assert!(screen.contains(&format!("Save as: {end}\n")), "{screen}");
+        let error = "! a name has at most 64 characters, this has 67";
+        assert!(joined(&screen).contains(error), "{size:?}\n{screen}");
+    }
+}
+
+#[test]
+fn a_list_tells_what_is_out_of_sight() {
+    let name = "a name of more than twenty-four characters";
+    let mut session = session((80, 24), false, &format!("<Space>s{name}<Enter>l"));
+    let screen = session.screen();
+    assert!(screen.contains("\n  0 above, 12 below"), "{screen}");
+    assert!(
+        screen.contains("> a name of more than twe… 16 x 16"),
+        "{screen}"
+    );
+    assert!(joined(&screen).contains(" a name of more than twenty-four"));
+    session.keys("<End>").expect("keys");
+    let screen = session.screen();
+    assert!(screen.contains("\n  12 above, 0 below"), "{screen}");
+    session.keys("<C-u>washer").expect("keys");
+    let screen = session.screen();
+    assert!(
+        !screen.contains(" above, "),
+        "all of it is in sight\n{screen}"
+    );
+    // What made it is longer than the preview is wide, and is broken.
+    let whole = "ellipse rx 4.00 ry 4.00 at 1.99,";
+    assert!(screen.contains(whole), "{screen}");
+    assert!(screen.contains("1.47, 0°, wall 2.00"), "{screen}");
+    session.resize(40, 24);
+    session.keys("<C-u>").expect("keys");
+    let screen = session.screen();
+    assert!(
+        screen.lines().all(|line| !line.contains("shippe…")),
+        "{screen}"
+    );
+    assert!(screen.contains(" shipped\n"), "{screen}");
+}

@@ -13,8 +13,14 @@ use crate::tui::list::ListDialog;
 use crate::tui::purpose::Purpose;
 use crate::tui::theme::Role;
 
-/// Columns of a name.
-const NAME: usize = 24;
+/// Columns of a row beside the name: its sign, its size, where it comes from.
+const BESIDE: usize = 18;
+
+/// The fewest columns of a name that tell shapes apart; on a screen that is narrower still the others give way.
+const SHORTEST: usize = 8;
+
+/// Columns of a name are not more than this without need, so that what follows stays near.
+const USUAL: usize = 24;
 
 /// Draws the list; answers where the text cursor is.
 pub fn draw(app: &App, dialog: &ListDialog, buffer: &mut Buffer, body: Rect) -> Option<Position> {
@@ -51,6 +57,12 @@ pub fn draw(app: &App, dialog: &ListDialog, buffer: &mut Buffer, body: Rect) -> 
     }
     let first = list_first(area, dialog.rows().len(), dialog.selected());
     let lines = usize::from(area.height.saturating_sub(LIST_HEAD));
+    let below = dialog.rows().len().saturating_sub(first + lines);
+    if first + below > 0 {
+        let hidden = format!("  {first} above, {below} below");
+        let row = write::row(area, usize::from(LIST_HEAD) - 1);
+        write::line(buffer, row, theme, [(hidden.as_str(), Role::Quiet)]);
+    }
     for (index, (entry, read)) in dialog.rows().enumerate().skip(first).take(lines) {
         let row = write::row(area, index - first + usize::from(LIST_HEAD));
         draw_row(app, entry, read, index == dialog.selected(), buffer, row);
@@ -74,7 +86,11 @@ fn draw_row(
 ) {
     // A sign beside the reversed line, for terminals that cannot reverse.
     let sign = if selected { "> " } else { "  " };
-    let name = format!("{:NAME$} ", entry.name);
+    let columns = usize::from(row.width).saturating_sub(BESIDE);
+    let columns = columns.clamp(SHORTEST, USUAL);
+    let name = app.theme().text(&entry.name);
+    let name = write::fitted(&name, columns, app.theme());
+    let gap = " ".repeat(columns + 1 - write::width(&name).min(columns));
     let size = match read {
         Some(Ok(loaded)) => format!(
             "{:>2} x {:<2} ",
@@ -92,7 +108,8 @@ fn draw_row(
     let role = if selected { Role::Focus } else { Role::Text };
     let pieces = [
         (sign, Role::Key),
-        (name.as_str(), role),
+        (&name, role),
+        (&gap, role),
         (size.as_str(), Role::Quiet),
         (origin, Role::Quiet),
     ];
@@ -107,8 +124,12 @@ fn draw_preview(
     area: Rect,
 ) {
     let theme = app.theme();
-    write::line(buffer, area, theme, [(entry.name.as_str(), Role::Title)]);
-    let below = write::below(area, 2);
+    // The name may need two lines, what made the shape more.
+    let mut used = write::wrapped(buffer, area, theme, &entry.name, Role::Title);
+    let mut say = |text: &str, role: Role| {
+        used += write::wrapped(buffer, write::below(area, narrow(used)), theme, text, role);
+        narrow(used)
+    };
     match read {
         Ok(loaded) => {
             let imprint = &loaded.shape.imprint;
@@ -129,25 +150,20 @@ fn draw_preview(
                 .source
                 .as_ref()
                 .map_or("drawn by hand".to_owned(), ToString::to_string);
-            write::line(
-                buffer,
-                write::row(area, 1),
-                theme,
-                [(facts.as_str(), Role::Text)],
-            );
-            write::line(buffer, below, theme, [(source.as_str(), Role::Quiet)]);
-            draw_imprint(app, imprint, buffer, write::below(area, 4));
+            say(&facts, Role::Text);
+            // At the same height for most of them.
+            let end = say(&source, Role::Quiet).max(4);
+            draw_imprint(app, imprint, buffer, write::below(area, end));
         }
         Err(reason) => {
-            write::line(
-                buffer,
-                write::row(area, 1),
-                theme,
-                [("broken:", Role::Error)],
-            );
-            write::wrapped(buffer, below, theme, reason, Role::Text);
+            say("broken:", Role::Error);
+            say(reason, Role::Text);
         }
     }
+}
+
+fn narrow(lines: usize) -> u16 {
+    u16::try_from(lines).unwrap_or(u16::MAX)
 }
 
 /// Two rows in a line by half blocks; in ASCII a row a line, which a long imprint leaves at the bottom.

@@ -74,17 +74,8 @@ pub fn view(app: &App, frame: &mut Frame<'_>) {
         (_, None) if app.page == Page::Panel => panel::draw(app, &seen, buffer, panes.body),
         (_, None) => cursor = matrix::draw(app, &seen, buffer, panes.matrix),
     }
-    status::draw(app, &seen, buffer, &panes);
     // A name and a command are typed in the line of notices.
-    let typed = match app.dialogs.last() {
-        Some(Dialog::Name(dialog)) => Some(status::NAME_LABEL.len() + dialog.field.cursor()),
-        Some(Dialog::Command(dialog)) => Some(1 + dialog.field.cursor()),
-        _ => None,
-    };
-    if let Some(column) = typed {
-        let column = u16::try_from(column).unwrap_or(u16::MAX);
-        cursor = Some((panes.notice.x.saturating_add(column), panes.notice.y).into());
-    }
+    cursor = status::draw(app, &seen, buffer, &panes).or(cursor);
     // The terminal's own cursor shows the place where there are neither colours nor reversed characters.
     if let Some(position) = cursor.filter(|&position| area.contains(position)) {
         frame.set_cursor_position(position);

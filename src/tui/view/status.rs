@@ -1,6 +1,7 @@
 //! The lines at the foot: what made the imprint, the taxel under the cursor, notices and questions, hints.
 
 use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
 
 use super::write;
 use crate::formats::name::NameError;
@@ -14,34 +15,89 @@ use crate::tui::message::Message;
 use crate::tui::theme::Role;
 
 /// What stands before the name to store under.
-pub const NAME_LABEL: &str = "Save as: ";
+const NAME_LABEL: &str = "Save as: ";
 
-/// Draws all of them.
-pub fn draw(app: &App, seen: &Seen, buffer: &mut Buffer, panes: &Panes) {
+/// What is said where the shape is not wholly on the sensor. It stays where what is before it has to be shortened.
+const BEYOND: &str = "; reaches beyond the sensor";
+
+/// Draws all of them; answers where the cursor is, where a name or a command is typed.
+pub fn draw(app: &App, seen: &Seen, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
     let theme = app.theme();
+    let beyond = if seen.beyond { BEYOND } else { "" };
+    let room = usize::from(panes.source.width).saturating_sub(beyond.len());
+    let source = source(app);
+    let source = theme.text(&source);
+    let source = write::fitted(&source, room, theme);
+    let pieces = [&*source, beyond].map(|piece| (piece, Role::Text));
+    write::line(buffer, panes.source, theme, pieces);
     write::line(
         buffer,
-        panes.source,
+        panes.taxel,
         theme,
-        [(source(app, seen).as_str(), Role::Text)],
+        [(taxel(app, seen, panes).as_str(), Role::Text)],
     );
-    let said = said(app, panes);
-    if said.is_none() || panes.taxel != panes.notice {
-        write::line(
-            buffer,
-            panes.taxel,
-            theme,
-            [(taxel(app, seen, panes).as_str(), Role::Text)],
-        );
-    }
-    if let Some((text, role)) = said {
-        write::line(buffer, panes.notice, theme, [(text.as_str(), role)]);
-    }
     hints(app, buffer, panes);
+    let cursor = match app.dialogs.last() {
+        Some(Dialog::Name(dialog)) => {
+            let typed = (NAME_LABEL, dialog.field.text(), dialog.field.cursor());
+            Some(field(app, typed, "", buffer, panes.notice))
+        }
+        Some(Dialog::Command(dialog)) => {
+            let typed = (":", dialog.field.text(), dialog.field.cursor());
+            let used = 1 + write::width(dialog.field.text());
+            let room = usize::from(panes.notice.width).saturating_sub(used);
+            let candidates = as_many_as_fit(&dialog.candidates, room);
+            Some(field(app, typed, &candidates, buffer, panes.notice))
+        }
+        _ => None,
+    };
+    if let Some((text, role)) = said(app, panes) {
+        // What is typed keeps its line, and what is said about it stands above.
+        let last = Rect {
+            y: panes.notice.y - u16::from(cursor.is_some()),
+            ..panes.notice
+        };
+        let lines = write::broken(&theme.text(&text), usize::from(last.width)).len();
+        let room = last.bottom().saturating_sub(panes.body.y);
+        let height = u16::try_from(lines).unwrap_or(room).clamp(1, room.max(1));
+        let block = Rect {
+            y: last.bottom() - height,
+            height,
+            ..last
+        };
+        write::clear(buffer, block);
+        write::wrapped(buffer, block, theme, &text, role);
+    }
+    cursor
+}
+
+/// A label, what is typed and what follows; answers where the cursor is. Of a text that is too long the part before the
+/// cursor is shown.
+fn field(
+    app: &App,
+    (label, text, cursor): (&str, &str, usize),
+    after: &str,
+    buffer: &mut Buffer,
+    area: Rect,
+) -> Position {
+    write::clear(buffer, area);
+    let room = usize::from(area.width).saturating_sub(label.len());
+    let (mut shown, mut column) = (text, cursor);
+    while column >= room.max(1)
+        && let Some(first) = shown.chars().next()
+    {
+        let (hidden, rest) = shown.split_at(first.len_utf8());
+        column = column.saturating_sub(write::width(hidden));
+        shown = rest;
+    }
+    let pieces = [label, shown, after].map(|piece| (piece, Role::Text));
+    write::line(buffer, area, app.theme(), pieces);
+    let column = u16::try_from(label.len() + column).unwrap_or(u16::MAX);
+    Position::new(area.x.saturating_add(column), area.y)
 }
 
 /// What made the imprint.
-fn source(app: &App, seen: &Seen) -> String {
+fn source(app: &App) -> String {
     let document = app.shown();
     let by_hand = document.turned.count();
     let name = app.stored_name().map_or(String::new(), |stored| {
@@ -60,9 +116,6 @@ fn source(app: &App, seen: &Seen) -> String {
     if by_hand > 0 {
         text += &format!(" + {by_hand} by hand");
     }
-    if seen.beyond {
-        text += "; reaches beyond the sensor";
-    }
     text
 }
 
@@ -72,31 +125,45 @@ fn taxel(app: &App, seen: &Seen, panes: &Panes) -> String {
     let (column, row) = app.cursor;
     let wide = |side: u8| (side - 1).to_string().len();
     let (across, down) = (wide(seen.imprint.columns()), wide(seen.imprint.rows()));
-    let place = if panes.taxel.width < 60 {
-        format!("{column:>across$}, {row:>down$}")
-    } else {
-        format!("column {column:>across$}, row {row:>down$}")
-    };
-    let covered = match seen.coverage(column, row) {
-        Some(coverage) => format!("  covered {coverage:.6}"),
-        None => String::new(),
-    };
+    let place = format!("{column:>across$}, {row:>down$}");
     let state = if seen.imprint.get(column, row) {
         "active"
     } else {
         "inactive"
     };
-    let held = match app.mode {
-        Mode::Grab => format!("  held, step {}", app.step.length()),
-        Mode::Draw => String::new(),
+    let coverage = seen.coverage(column, row);
+    let all = format!("NA {} in all", seen.imprint.count());
+    // The step of what moves and zooms the shape, where there is one.
+    let step = match (app.shown().source, app.mode) {
+        (None, _) => String::new(),
+        (Some(_), Mode::Draw) => format!("step {}", app.step.length()),
+        (Some(_), Mode::Grab) => format!("held, step {}", app.step.length()),
     };
-    format!(
-        "{place}{covered}  {state:>8}  NA {} in all{held}",
-        seen.imprint.count()
-    )
+    let width = usize::from(panes.taxel.width);
+    if width >= if step.is_empty() { 60 } else { 80 } {
+        let place = format!("column {column:>across$}, row {row:>down$}");
+        let covered = coverage.map(|coverage| format!("  covered {coverage:.6}"));
+        let covered = covered.unwrap_or_default();
+        let gap = if step.is_empty() { "" } else { "  " };
+        return format!("{place}{covered}  {state:>8}  {all}{gap}{step}");
+    }
+    // What can be found elsewhere gives way first; no word is cut.
+    let coverage = coverage.map(|coverage| format!("{coverage:.6}"));
+    let coverage = coverage.unwrap_or_default();
+    let line = |pieces: &[&str]| {
+        let pieces = pieces.iter().filter(|piece| !piece.is_empty());
+        pieces.copied().collect::<Vec<_>>().join("  ")
+    };
+    let state = format!("{state:>8}");
+    let lines = [
+        line(&[&place, &coverage, &state, &step, &all]),
+        line(&[&place, &coverage, &state, &step]),
+        line(&[&place, &state, &step]),
+    ];
+    write::first_fitting(&lines.each_ref().map(String::as_str), width).to_owned()
 }
 
-/// The question that is asked, or the notice, or what a dialog says of itself.
+/// The question that is asked, what is wrong with a name, or the notice.
 fn said(app: &App, panes: &Panes) -> Option<(String, Role)> {
     match app.dialogs.last() {
         Some(Dialog::Question(question)) => {
@@ -104,17 +171,9 @@ fn said(app: &App, panes: &Panes) -> Option<(String, Role)> {
             return Some((format!("{}{answers}", question.text), Role::Error));
         }
         Some(Dialog::Name(dialog)) if app.notice.is_none() => {
-            let (text, role) = match dialog.name() {
-                Ok(_) | Err(NameError::Empty) => (String::new(), Role::Quiet),
-                Err(error) => (format!("  ! {error}"), Role::Error),
-            };
-            return Some((format!("{NAME_LABEL}{}{text}", dialog.field.text()), role));
-        }
-        Some(Dialog::Command(dialog)) if app.notice.is_none() => {
-            let line = format!(":{}", dialog.field.text());
-            let room = usize::from(panes.notice.width).saturating_sub(line.chars().count());
-            let line = line + &as_many_as_fit(&dialog.candidates, room);
-            return Some((line, Role::Text));
+            let error = dialog.name().err();
+            let error = error.filter(|error| *error != NameError::Empty)?;
+            return Some((format!("! {error}"), Role::Error));
         }
         Some(Dialog::Help(help)) if app.notice.is_none() => {
             let room = usize::from(panes.body.height);

@@ -1,12 +1,15 @@
 //! Writing text into the screen's buffer: by role, cut at the edge, in the characters that the terminal has.
 
+use std::borrow::Cow;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
+use ratatui::text::Span;
 
 use crate::tui::theme::{Role, Theme};
 
-/// Writes pieces of text, each in its role, into the first line of an area; what does not fit is cut off.
-/// Answers where the text ends.
+/// Writes pieces of text, each in its role, into the first line of an area; the first that does not fit is shortened,
+/// which an ellipsis tells, and the others are left out. Answers where the text ends.
 pub fn line<'a>(
     buffer: &mut Buffer,
     area: Rect,
@@ -19,9 +22,56 @@ pub fn line<'a>(
     }
     for (text, role) in pieces {
         let room = usize::from(area.right().saturating_sub(x));
-        (x, _) = buffer.set_stringn(x, area.y, theme.text(text), room, theme.style(role));
+        let text = theme.text(text);
+        let fitting = fitted(&text, room, theme);
+        (x, _) = buffer.set_stringn(x, area.y, &fitting, room, theme.style(role));
+        if fitting != text {
+            break;
+        }
     }
     x
+}
+
+/// The columns that a text takes.
+pub fn width(text: &str) -> usize {
+    Span::raw(text).width()
+}
+
+/// A text in so many columns: as it is where it fits, but for spaces at its end, else shortened with an ellipsis.
+pub fn fitted<'a>(text: &'a str, room: usize, theme: &Theme) -> Cow<'a, str> {
+    if width(text) <= room {
+        return Cow::Borrowed(text);
+    }
+    let trimmed = text.trim_end();
+    if width(trimmed) <= room {
+        return Cow::Borrowed(head(text, room));
+    }
+    let ellipsis = theme.text("…");
+    let ellipsis = if width(&ellipsis) <= room {
+        ellipsis
+    } else {
+        Cow::Borrowed("")
+    };
+    let kept = head(trimmed, room - width(&ellipsis));
+    Cow::Owned(format!("{}{ellipsis}", kept.trim_end()))
+}
+
+/// The first of several texts that fits into so many columns; the last one where none does.
+pub fn first_fitting<'a>(texts: &[&'a str], room: usize) -> &'a str {
+    let fitting = texts.iter().find(|text| width(text) <= room);
+    fitting.or(texts.last()).copied().unwrap_or_default()
+}
+
+/// As much of the beginning of a text as fits into so many columns.
+fn head(text: &str, room: usize) -> &str {
+    let mut ends = text
+        .char_indices()
+        .map(|(at, character)| at + character.len_utf8());
+    let mut kept = "";
+    while let Some(end) = ends.next().filter(|&end| width(&text[..end]) <= room) {
+        kept = &text[..end];
+    }
+    kept
 }
 
 /// The line of an area that lies `index` below its top; empty where the area ends before.
@@ -62,14 +112,86 @@ pub fn below(area: Rect, lines: u16) -> Rect {
     }
 }
 
-/// Writes a text over as many lines as it needs, broken anywhere: paths have no spaces.
-pub fn wrapped(buffer: &mut Buffer, area: Rect, theme: &Theme, text: &str, role: Role) {
-    let characters: Vec<char> = text.chars().collect();
-    for (index, piece) in characters
-        .chunks(usize::from(area.width).max(1))
-        .enumerate()
-    {
-        let piece: String = piece.iter().collect();
-        line(buffer, row(area, index), theme, [(piece.as_str(), role)]);
+/// Writes a text over as many lines as it needs, and answers how many these are. Where the area has fewer, an ellipsis
+/// tells.
+pub fn wrapped(buffer: &mut Buffer, area: Rect, theme: &Theme, text: &str, role: Role) -> usize {
+    let text = theme.text(text);
+    let room = usize::from(area.width);
+    let lines = broken(&text, room);
+    let last = usize::from(area.height).min(lines.len()).saturating_sub(1);
+    for (index, &piece) in lines.iter().enumerate().take(last) {
+        line(buffer, row(area, index), theme, [(piece, role)]);
+    }
+    if let Some(&piece) = lines.get(last) {
+        // What is left over makes the last line too long, which shortens it.
+        let rest = if last + 1 < lines.len() {
+            lines[last..].join(" ")
+        } else {
+            piece.to_owned()
+        };
+        line(buffer, row(area, last), theme, [(rest.as_str(), role)]);
+    }
+    lines.len()
+}
+
+/// A text in lines of at most so many columns, broken at spaces, and inside words that are longer: paths have no spaces.
+pub fn broken(text: &str, room: usize) -> Vec<&str> {
+    let mut lines = Vec::new();
+    let mut rest = text.trim();
+    while !rest.is_empty() {
+        let fits = head(rest, room.max(1));
+        let end = if fits.len() == rest.len() {
+            rest.len()
+        } else {
+            // A character that is wider than the room goes into a line all the same.
+            let first = rest.chars().next().map_or(1, char::len_utf8);
+            let space =
+                rest[..fits.len() + usize::from(rest[fits.len()..].starts_with(' '))].rfind(' ');
+            space.filter(|&at| at > 0).unwrap_or(fits.len()).max(first)
+        };
+        let (piece, after) = rest.split_at(end);
+        lines.push(piece.trim_end());
+        rest = after.trim_start();
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_too_long_is_shortened_and_says_so() {
+        let (unicode, ascii) = (Theme::plain(false), Theme::plain(true));
+        for (text, room, expected) in [
+            ("washer", 6, "washer"),
+            ("washer", 5, "wash…"),
+            ("a  washer", 3, "a…"),
+            ("washer  ", 7, "washer "),
+            ("字字字", 5, "字字…"),
+            ("字字字", 4, "字…"),
+            ("washer", 1, "…"),
+            ("washer", 0, ""),
+            ("", 0, ""),
+        ] {
+            let fitting = fitted(text, room, &unicode);
+            assert_eq!(fitting, expected, "{text} in {room}");
+            assert!(width(&fitting) <= room);
+        }
+        assert_eq!(fitted("washer", 5, &ascii), "wa...");
+        assert_eq!(fitted("washer", 2, &ascii), "wa");
+    }
+
+    #[test]
+    fn lines_break_at_spaces_and_inside_long_words() {
+        assert_eq!(
+            broken("one two  three", 7),
+            ["one two", "three"],
+            "at the space that just fits no more"
+        );
+        assert_eq!(broken("one two", 6), ["one", "two"]);
+        assert_eq!(broken("/a/long/path x", 5), ["/a/lo", "ng/pa", "th x"]);
+        assert_eq!(broken("字字", 1), ["字", "字"]);
+        assert!(broken("  ", 4).is_empty());
     }
 }
