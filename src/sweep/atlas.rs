@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::canonical::Classes;
 use super::census::Census;
 use super::layout::Layout;
-use super::quantity::{Note, describe};
+use super::quantity::{Note, describe, values};
 use crate::imprint::Imprint;
 
 /// Distinct imprints, counted and described.
@@ -88,7 +88,7 @@ impl Atlas {
     }
 
     /// How often the imprints occur, in their order.
-    pub(super) fn counts(&self) -> impl Iterator<Item = u64> + '_ {
+    pub fn counts(&self) -> impl Iterator<Item = u64> + '_ {
         self.census.tallies().iter().map(|tally| tally.count)
     }
 
@@ -127,9 +127,32 @@ impl Atlas {
             return None;
         }
         let (key, hash) = self.layout.key(imprint);
-        self.census
-            .find(&key, hash)
-            .and_then(|index| u32::try_from(index).ok())
+        self.number(&key, hash)
+    }
+
+    /// The number of the imprint that has a key.
+    pub(super) fn number(&self, key: &[u64], hash: u64) -> Option<u32> {
+        let index = self.census.find(key, hash)?;
+        u32::try_from(index).ok()
+    }
+
+    /// A number of [`quantities`](super::quantity::quantities) of every imprint, in their order; none where it does not
+    /// exist.
+    pub fn values(&self, quantity: usize) -> Vec<Option<f64>> {
+        let value = |note: &Note| {
+            let mut found = None;
+            values(note.description.as_ref()?, |index, value| {
+                if index == quantity {
+                    found = Some(value);
+                }
+            });
+            found
+        };
+        self.notes
+            .par_iter()
+            .with_min_len(1024)
+            .map(value)
+            .collect()
     }
 
     /// How many poses leave no imprint.

@@ -276,7 +276,7 @@ impl Solid for Placed {
 }
 
 /// Where the centre of a shape lies that is not turned.
-fn centre<T: Real>(upright: &Source) -> Point<T> {
+pub(super) fn centre<T: Real>(upright: &Source) -> Point<T> {
     let boundary = Boundary::of(upright);
     match upright {
         Source::Figure(_) => boundary.mean(),

@@ -62,4 +62,14 @@ mod ideal;
 
 pub mod survey;
 
+pub mod place;
+
+pub mod window;
+
+pub mod sample;
+
+pub mod order;
+
+pub mod histogram;
+
 pub mod parts;

@@ -76,6 +76,25 @@ impl DecimalRange {
         scaled(self.step, self.places)
     }
 
+    /// Some neighbouring values of it as a range of their own; none where there are none, or fewer than that.
+    ///
+    /// ```
+    /// use taxel::sweep::range::DecimalRange;
+    /// let range: DecimalRange = "5:5.99:0.01".parse()?;
+    /// assert_eq!(range.part(10..20).map(|part| part.to_string()).as_deref(), Some("5.1:5.19:0.01"));
+    /// assert_eq!(range.part(90..101), None);
+    /// # Ok::<(), taxel::sweep::range::RangeError>(())
+    /// ```
+    pub fn part(&self, indices: std::ops::Range<u64>) -> Option<Self> {
+        let count = indices.end.checked_sub(indices.start)?;
+        let way = i64::try_from(indices.start).ok()?.checked_mul(self.step)?;
+        (count > 0 && indices.end <= self.count).then_some(Self {
+            start: self.start + way,
+            count,
+            ..*self
+        })
+    }
+
     /// All values in order.
     pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
         (0..self.count).map(|index| self.value(index))

@@ -1,0 +1,89 @@
+//! A small part of a grid that tells by its time how long the whole will take.
+
+use std::collections::HashSet;
+
+use super::grid::Grid;
+use super::symmetry::period;
+
+/// About so many poses are enough to measure by.
+const POSES: u64 = 20_000;
+
+/// A part of a grid, and how many times its work the whole is.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// The part: neighbouring poses at one angle and one pair of zooms, from the middle of their ranges.
+    pub grid: Grid,
+    /// How many times as long the whole grid takes, or somewhat less: imprints that are known already need not be
+    /// described again, and in the whole these are more.
+    pub times: f64,
+}
+
+impl Sample {
+    /// The sample of a grid.
+    #[expect(clippy::cast_precision_loss, reason = "an estimate")]
+    pub fn of(grid: &Grid) -> Self {
+        let [width, height, angles, zooms_x, zooms_y] = grid.counts();
+        let width = width.min(POSES);
+        let height = height.min(POSES / width).max(1);
+        let middle = [0, 0, angles / 2, zooms_x / 2, zooms_y / 2];
+        let part = grid.part(middle, [width, height, 1, 1, 1]);
+        let part = part.unwrap_or_else(|| grid.clone());
+        let turns = distinct_angles(grid) as f64 / angles as f64;
+        Self {
+            times: grid.poses() as f64 * turns / part.poses() as f64,
+            grid: part,
+        }
+    }
+}
+
+/// How many angles are gone through: of those that look the same, one.
+fn distinct_angles(grid: &Grid) -> u64 {
+    let angle = grid.ranges().angle;
+    let Some(period) = period(grid.source()) else {
+        return 1;
+    };
+    let classes: HashSet<i128> = (0..angle.count())
+        .map(|index| angle.residue(index, period))
+        .collect();
+    classes.len() as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Figure, Kind};
+    use crate::sensor::Sensor;
+    use crate::source::Source;
+    use crate::sweep::grid::{Anchor, Ranges};
+
+    fn sample(kind: Kind, ranges: Ranges) -> (u64, f64) {
+        let source = Source::Figure(Figure::default_of(kind, 16));
+        let grid = Grid::new(source, Sensor::default(), Anchor::Corner, ranges);
+        let sample = Sample::of(&grid.expect("in range"));
+        (sample.grid.poses(), sample.times)
+    }
+
+    #[test]
+    fn a_sample_is_small_and_symmetries_count() {
+        let default = Ranges::default();
+        assert_eq!(sample(Kind::Heptagon, default), (10_000, 360.0));
+        assert_eq!(sample(Kind::Octagon, default), (10_000, 45.0));
+        // The default ellipse is a circle.
+        assert_eq!(sample(Kind::Ellipse, default), (10_000, 1.0));
+        let range = |text: &str| text.parse().expect("a range");
+        let long = Ranges {
+            x0: range("0:10:0.001"),
+            y0: range("0:10:0.001"),
+            ..default
+        };
+        let (poses, times) = sample(Kind::Heptagon, long);
+        assert_eq!((poses, times), (10_001, 360.0 * 10_001.0));
+        let single = Ranges {
+            x0: range("5"),
+            y0: range("5"),
+            angle: range("0"),
+            ..default
+        };
+        assert_eq!(sample(Kind::Triangle, single), (1, 1.0));
+    }
+}
