@@ -10,9 +10,10 @@ use super::commands;
 use super::failure::Failure;
 use super::flags::{self, Given};
 use super::input::Place;
-use super::sweep::{Table, Wanted};
+use super::sweep::Wanted;
 use crate::figure::Kind;
 use crate::formats::name::Name;
+use crate::formats::sweep_file::AtlasFile;
 use crate::parameter::Parameter;
 use crate::sensor::Sensor;
 use crate::source::Source;
@@ -265,7 +266,7 @@ fn sweep(matches: &ArgMatches, command: &mut clap::Command) -> Result<Sweep, Fai
 fn wanted(matches: &ArgMatches) -> Wanted {
     let poses = matches.try_get_one::<PathBuf>("poses");
     Wanted {
-        atlas: matches.get_one::<Table>("atlas").cloned(),
+        atlas: matches.get_one::<AtlasFile>("atlas").cloned(),
         poses: poses.ok().flatten().cloned(),
         json: matches.get_flag("json"),
         quiet: matches.get_flag("quiet"),

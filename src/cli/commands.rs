@@ -13,9 +13,9 @@ use super::examples::{
     SWEEP_EXAMPLES,
 };
 use super::flags;
-use super::sweep::Table;
 use crate::figure::Kind;
 use crate::formats::name::{Name, NameError};
+use crate::formats::sweep_file::AtlasFile;
 use crate::parameter::Parameter;
 use crate::picture::PICTURE_PARAMETERS;
 use crate::sensor::SENSOR_PARAMETERS;
@@ -176,7 +176,7 @@ fn atlas() -> Arg {
     Arg::new("atlas")
         .long("atlas")
         .value_name("FILE")
-        .value_parser(Table::parse)
+        .value_parser(parse_atlas)
         .help("Write the atlas, as .csv, .jsonl or .npz")
 }
 
@@ -185,6 +185,10 @@ fn quiet() -> Arg {
         .long("quiet")
         .action(ArgAction::SetTrue)
         .help("Show no progress")
+}
+
+fn parse_atlas(text: &str) -> Result<AtlasFile, &'static str> {
+    AtlasFile::new(text)
 }
 
 fn parse_range(text: &str) -> Result<DecimalRange, RangeError> {

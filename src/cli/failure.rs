@@ -5,6 +5,7 @@ use std::io;
 use super::input::{InputError, shortened};
 use super::locale::Charset;
 use crate::formats::archive::ArchiveError;
+use crate::formats::sweep_file::SweepFileError;
 use crate::library::error::LibraryError;
 use crate::sweep::grid::GridError;
 use crate::sweep::survey::MergeError;
@@ -106,7 +107,7 @@ pub(super) enum Failure {
     /// There is no such grid.
     #[error(transparent)]
     Grid(#[from] GridError),
-    /// An atlas, or the numbers of all poses.
+    /// An atlas that cannot be read.
     #[error("{name}: {error}")]
     Atlas {
         /// The file's name.
@@ -114,6 +115,9 @@ pub(super) enum Failure {
         /// What is wrong with it.
         error: ArchiveError,
     },
+    /// An atlas or the numbers of all poses that cannot be written.
+    #[error(transparent)]
+    SweepFile(#[from] SweepFileError),
     /// Shards that do not make a whole.
     #[error(transparent)]
     Merge(#[from] MergeError),

@@ -22,3 +22,5 @@ pub mod npy;
 pub mod atlas;
 
 pub mod archive;
+
+pub mod sweep_file;

@@ -39,12 +39,16 @@ impl Survey {
             turns: Arc::from([0]),
             rows: 0..rows,
         };
-        let found = runs::go(&part, self.atlas.layout(), &task, true);
+        let Some(found) = runs::go(&part, self.atlas.layout(), &task, true, |_| true) else {
+            return Vec::new();
+        };
         let census = &found.census;
         let ids: Vec<Option<u32>> = (0..census.len())
             .map(|index| self.atlas.number(census.key(index), census.hash(index)))
             .collect();
-        let runs = found.runs.iter().flat_map(|&(index, length)| {
+        let rows = 0..usize::try_from(rows).unwrap_or(0);
+        let runs = rows.flat_map(|row| found.runs.row(row));
+        let runs = runs.flat_map(|&(index, length)| {
             let index = usize::try_from(index).unwrap_or(usize::MAX);
             let length = usize::try_from(length).unwrap_or(0);
             std::iter::repeat_n(ids.get(index).copied().flatten(), length)

@@ -1,0 +1,398 @@
+//! What a sweep leaves as files: its atlas, in the form that the name's ending tells, and the atlas number of every
+//! pose.
+//!
+//! A file is written under another name in the same folder and renamed when it is whole: at every time there is all of
+//! it or what was there before.
+
+use std::fs::Permissions;
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use tempfile::NamedTempFile;
+
+use super::archive::{self, ArchiveError};
+use super::atlas::{write_csv, write_jsonl};
+use super::npy::{self, Kind};
+use crate::sweep::grid::Grid;
+use crate::sweep::survey::Survey;
+
+/// What happens to a file that is there already.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Existing {
+    /// It is replaced.
+    Replaced,
+    /// It stays, and nothing is written.
+    Kept,
+}
+
+/// Why a file was not written.
+#[derive(Debug, thiserror::Error)]
+#[error("{name}: {error}")]
+pub struct SweepFileError {
+    /// The file's name.
+    pub name: String,
+    /// What went wrong.
+    pub error: ArchiveError,
+}
+
+impl SweepFileError {
+    fn new(path: &Path, error: impl Into<ArchiveError>) -> Self {
+        Self {
+            name: path.to_string_lossy().into_owned(),
+            error: error.into(),
+        }
+    }
+
+    /// Whether a file of that name is there already, and was to be kept.
+    pub fn exists(&self) -> bool {
+        matches!(&self.error, ArchiveError::Io(error) if error.kind() == io::ErrorKind::AlreadyExists)
+    }
+}
+
+/// Where an atlas goes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AtlasFile {
+    path: PathBuf,
+    form: Form,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Form {
+    Csv,
+    JsonLines,
+    Archive,
+}
+
+impl AtlasFile {
+    /// A file of that name.
+    ///
+    /// # Errors
+    /// What was expected, where its ending is that of no form.
+    pub fn new(path: impl Into<PathBuf>) -> Result<Self, &'static str> {
+        let path = path.into();
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        let form = match ending {
+            Some("csv") => Form::Csv,
+            Some("jsonl") => Form::JsonLines,
+            Some("npz") => Form::Archive,
+            _ => return Err("expected a name that ends in .csv, .jsonl or .npz"),
+        };
+        Ok(Self { path, form })
+    }
+
+    /// Writes the atlas of a survey; nothing of it is left where `stopped` becomes true on the way.
+    ///
+    /// # Errors
+    /// Those of the system, with the file's name.
+    pub fn write(
+        &self,
+        survey: &Survey,
+        existing: Existing,
+        stopped: &AtomicBool,
+    ) -> Result<(), SweepFileError> {
+        self.whole(survey, existing, stopped)?.keep()
+    }
+
+    /// The same without its name yet, so that several files can appear together.
+    ///
+    /// # Errors
+    /// Those of the system, with the file's name.
+    pub fn whole(
+        &self,
+        survey: &Survey,
+        existing: Existing,
+        stopped: &AtomicBool,
+    ) -> Result<Whole, SweepFileError> {
+        let mut file = Unfinished::new(&self.path, existing)?;
+        let mut output = Latch::new(&mut file.output, stopped);
+        let written = match self.form {
+            Form::Csv => write_csv(survey, &mut output).map_err(ArchiveError::from),
+            Form::JsonLines => write_jsonl(survey, &mut output).map_err(ArchiveError::from),
+            Form::Archive => archive::write(survey, &mut output),
+        };
+        let written = match output.error {
+            Some(error) => Err(error.into()),
+            None => written,
+        };
+        written.map_err(|error| SweepFileError::new(&self.path, error))?;
+        file.whole()
+    }
+}
+
+/// The atlas number of every pose, `uint32` in an array shaped angles × y0 × x0, before that zooms (y, then x) where
+/// there are several.
+#[derive(Debug)]
+pub struct PoseFile {
+    file: Unfinished,
+    start: u64,
+    /// What went wrong first.
+    error: Option<io::Error>,
+    bytes: Vec<u8>,
+}
+
+impl PoseFile {
+    /// Begins a file for the poses of a grid.
+    ///
+    /// # Errors
+    /// Those of the system, with the file's name.
+    pub fn new(
+        path: impl Into<PathBuf>,
+        grid: &Grid,
+        existing: Existing,
+    ) -> Result<Self, SweepFileError> {
+        let mut file = Unfinished::new(&path.into(), existing)?;
+        let ranges = grid.ranges();
+        let mut shape = [
+            ranges.zoom_y,
+            ranges.zoom_x,
+            ranges.angle,
+            ranges.y0,
+            ranges.x0,
+        ]
+        .map(|range| range.count())
+        .to_vec();
+        if shape[..2] == [1, 1] {
+            shape.drain(..2);
+        }
+        let header = npy::header(Kind::U32, &shape);
+        if let Err(error) = file.output.write_all(&header) {
+            return Err(SweepFileError::new(&file.path, error));
+        }
+        Ok(Self {
+            file,
+            start: header.len() as u64,
+            error: None,
+            bytes: Vec::new(),
+        })
+    }
+
+    /// Takes a row: its number in the grid and the atlas numbers of its poses, which are as many for each. Where it
+    /// cannot be written, `stopped` becomes true.
+    pub fn take(&mut self, row: u64, ids: &[u32], stopped: &AtomicBool) {
+        if self.error.is_some() {
+            return;
+        }
+        self.bytes.clear();
+        self.bytes
+            .extend(ids.iter().flat_map(|id| id.to_le_bytes()));
+        let place = self.start + row * self.bytes.len() as u64;
+        let output = &mut self.file.output;
+        let written = output
+            .seek(SeekFrom::Start(place))
+            .and_then(|_| output.write_all(&self.bytes));
+        if let Err(error) = written {
+            self.error = Some(error);
+            stopped.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// The file without its name yet, when all rows were taken. Dropped in place of this, nothing is left of it.
+    ///
+    /// # Errors
+    /// What went wrong first, with the file's name.
+    pub fn whole(self) -> Result<Whole, SweepFileError> {
+        match self.error {
+            Some(error) => Err(SweepFileError::new(&self.file.path, error)),
+            None => self.file.whole(),
+        }
+    }
+}
+
+/// A file that lacks only its name. Dropped, nothing is left of it.
+#[derive(Debug)]
+pub struct Whole {
+    path: PathBuf,
+    existing: Existing,
+    file: NamedTempFile,
+}
+
+impl Whole {
+    /// The file takes its name.
+    ///
+    /// # Errors
+    /// Those of the system, with the file's name.
+    pub fn keep(self) -> Result<(), SweepFileError> {
+        let named = match self.existing {
+            Existing::Replaced => self.file.persist(&self.path),
+            Existing::Kept => self.file.persist_noclobber(&self.path),
+        };
+        named
+            .map(drop)
+            .map_err(|failed| SweepFileError::new(&self.path, failed.error))
+    }
+}
+
+/// A file that has another name until it is whole.
+#[derive(Debug)]
+struct Unfinished {
+    path: PathBuf,
+    existing: Existing,
+    output: BufWriter<NamedTempFile>,
+}
+
+impl Unfinished {
+    fn new(path: &Path, existing: Existing) -> Result<Self, SweepFileError> {
+        let error = |error: io::Error| SweepFileError::new(path, error);
+        // Said before the work rather than after it.
+        if existing == Existing::Kept && path.symlink_metadata().is_ok() {
+            return Err(error(io::ErrorKind::AlreadyExists.into()));
+        }
+        let folder = match path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        let file = tempfile::Builder::new()
+            .prefix(".taxel-")
+            // As files usually have them; those of temporary files are tighter.
+            .permissions(Permissions::from_mode(0o666))
+            .tempfile_in(folder);
+        Ok(Self {
+            path: path.to_owned(),
+            existing,
+            output: BufWriter::new(file.map_err(error)?),
+        })
+    }
+
+    fn whole(self) -> Result<Whole, SweepFileError> {
+        let error = |error: io::Error| SweepFileError::new(&self.path, error);
+        let file = self.output.into_inner();
+        let file = file.map_err(|failed| error(failed.into_error()))?;
+        file.as_file().sync_all().map_err(error)?;
+        Ok(Whole {
+            path: self.path,
+            existing: self.existing,
+            file,
+        })
+    }
+}
+
+/// Writes until something goes wrong or it is to stop; from then on it only takes note of what would have been written,
+/// since a zip whose writer fails complains on standard error, where the screen is.
+struct Latch<'a, W> {
+    output: W,
+    stopped: &'a AtomicBool,
+    /// What went wrong first.
+    error: Option<io::Error>,
+    place: u64,
+    end: u64,
+}
+
+impl<'a, W: Write + Seek> Latch<'a, W> {
+    fn new(output: W, stopped: &'a AtomicBool) -> Self {
+        Self {
+            output,
+            stopped,
+            error: None,
+            place: 0,
+            end: 0,
+        }
+    }
+
+    fn attempt<T>(&mut self, act: impl FnOnce(&mut W) -> io::Result<T>) -> Option<T> {
+        if self.stopped.load(Ordering::Relaxed) && self.error.is_none() {
+            self.error = Some(io::Error::other("stopped"));
+        }
+        if self.error.is_some() {
+            return None;
+        }
+        act(&mut self.output)
+            .map_err(|error| self.error = Some(error))
+            .ok()
+    }
+}
+
+impl<W: Write + Seek> Write for Latch<'_, W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let _ = self.attempt(|output| output.write_all(bytes));
+        self.place += bytes.len() as u64;
+        self.end = self.end.max(self.place);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let _ = self.attempt(Write::flush);
+        Ok(())
+    }
+}
+
+impl<W: Write + Seek> Seek for Latch<'_, W> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let _ = self.attempt(|output| output.seek(to));
+        let place = match to {
+            SeekFrom::Start(place) => Some(place),
+            SeekFrom::End(by) => self.end.checked_add_signed(by),
+            SeekFrom::Current(by) => self.place.checked_add_signed(by),
+        };
+        self.place = place.ok_or(io::ErrorKind::InvalidInput)?;
+        Ok(self.place)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Figure, Kind as Figures};
+    use crate::sensor::Sensor;
+    use crate::source::Source;
+    use crate::sweep::grid::{Anchor, Ranges};
+    use crate::sweep::plan::Shard;
+    use crate::sweep::survey::Watch;
+
+    fn survey() -> Survey {
+        let ranges = Ranges {
+            angle: "0".parse().expect("a range"),
+            ..Ranges::default()
+        };
+        let source = Source::Figure(Figure::default_of(Figures::Hexagon, 16));
+        let grid = Grid::new(source, Sensor::default(), Anchor::Corner, ranges);
+        Survey::of(&grid.expect("in range"), Shard::WHOLE, Watch::nothing())
+    }
+
+    fn files(folder: &Path) -> Vec<String> {
+        let names = std::fs::read_dir(folder).expect("a folder").flatten();
+        names
+            .map(|file| file.file_name().to_string_lossy().into_owned())
+            .collect()
+    }
+
+    #[test]
+    fn a_file_is_whole_or_not_there() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let survey = survey();
+        for name in ["a.csv", "a.jsonl", "a.npz"] {
+            let path = folder.path().join(name);
+            let file = AtlasFile::new(&path).expect("a form");
+            let stopped = AtomicBool::new(true);
+            let refused = file.write(&survey, Existing::Kept, &stopped);
+            let refused = refused.expect_err("stopped").to_string();
+            assert!(refused.contains("stopped"), "{refused}");
+            assert_eq!(files(folder.path()), [""; 0], "nothing is left");
+            let going = AtomicBool::new(false);
+            file.write(&survey, Existing::Kept, &going)
+                .expect("written");
+            let first = std::fs::read(&path).expect("it is there");
+            let again = file.write(&survey, Existing::Kept, &going);
+            assert!(again.expect_err("it is there").exists());
+            file.write(&survey, Existing::Replaced, &going)
+                .expect("written again");
+            assert_eq!(std::fs::read(&path).ok(), Some(first));
+            std::fs::remove_file(&path).expect("it is there");
+        }
+        assert!(AtlasFile::new("a.txt").is_err() && AtlasFile::new("csv").is_err());
+    }
+
+    #[test]
+    fn a_file_that_came_meanwhile_is_kept() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("poses.npy");
+        let survey = survey();
+        let file = PoseFile::new(&path, &survey.grid, Existing::Kept).expect("begun");
+        std::fs::write(&path, "mine").expect("written");
+        let whole = file.whole().expect("written");
+        assert!(whole.keep().expect_err("it is there").exists());
+        assert_eq!(std::fs::read(&path).ok().as_deref(), Some(&b"mine"[..]));
+        assert_eq!(files(folder.path()), ["poses.npy"]);
+    }
+}
