@@ -6,7 +6,7 @@ use std::time::Duration;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use super::locale::Charset;
-use crate::sweep::statistics::Statistic;
+use crate::sweep::statistics::{COLUMNS, Column, Statistic};
 use crate::sweep::survey::Survey;
 
 /// A survey, and how long it took.
@@ -75,19 +75,17 @@ impl<'a> Summary<'a> {
             self.took.as_secs_f64()
         ));
         line("");
-        let heads = [
-            "min", "mean", "max", "sd", "cv", "ideal", "sd pos", "sd angle",
-        ];
         let mut row = format!("{:<16}", "");
-        for head in heads {
+        for column in &COLUMNS {
             // Cannot fail: a String takes everything.
-            let _ = write!(row, "{head:>11}");
+            let _ = write!(row, "{:>11}", column.title);
         }
         line(&row);
         for statistic in statistics {
             let mut row = format!("{:<16}", statistic.quantity.key);
-            for (_, value) in values(statistic) {
-                let value = value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
+            for column in &COLUMNS {
+                let value = (column.value)(statistic)
+                    .map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
                 let value = charset.line(&value).into_owned();
                 let _ = write!(row, "{value:>11}");
             }
@@ -95,19 +93,6 @@ impl<'a> Summary<'a> {
         }
         text
     }
-}
-
-fn values(statistic: &Statistic) -> [(&'static str, Option<f64>); 8] {
-    [
-        ("min", statistic.min),
-        ("mean", statistic.mean),
-        ("max", statistic.max),
-        ("sd", statistic.sd),
-        ("cv", statistic.cv),
-        ("ideal", statistic.ideal),
-        ("sd_position", statistic.sd_position),
-        ("sd_angle", statistic.sd_angle),
-    ]
 }
 
 impl Serialize for Summary<'_> {
@@ -139,6 +124,7 @@ struct Row<'a>(&'a Statistic);
 
 impl Serialize for Row<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(values(self.0))
+        let value = |column: &Column| (column.key, (column.value)(self.0));
+        serializer.collect_map(COLUMNS.iter().map(value))
     }
 }

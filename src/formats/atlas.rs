@@ -24,7 +24,7 @@ pub(super) fn place(grid: &Grid) -> impl Iterator<Item = Parameter> {
 }
 
 /// One value of a pose.
-pub(super) fn value(pose: &Pose, parameter: Parameter) -> f64 {
+pub fn value(pose: &Pose, parameter: Parameter) -> f64 {
     match parameter {
         Parameter::X0 => pose.x0,
         Parameter::Y0 => pose.y0,
@@ -36,7 +36,7 @@ pub(super) fn value(pose: &Pose, parameter: Parameter) -> f64 {
 
 /// How many of all poses show an imprint.
 #[expect(clippy::cast_precision_loss, reason = "the nearest f64 is wanted")]
-pub(super) fn share(survey: &Survey, entry: &Entry) -> f64 {
+pub fn share(survey: &Survey, entry: &Entry) -> f64 {
     entry.count as f64 / survey.poses as f64
 }
 

@@ -243,6 +243,8 @@ impl Unfinished {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
         };
+        // A folder that is not there is told of without the name that the file would have had in it.
+        folder.metadata().map_err(error)?;
         let file = tempfile::Builder::new()
             .prefix(".taxel-")
             // As files usually have them; those of temporary files are tighter.
@@ -381,6 +383,15 @@ mod tests {
             std::fs::remove_file(&path).expect("it is there");
         }
         assert!(AtlasFile::new("a.txt").is_err() && AtlasFile::new("csv").is_err());
+        let nowhere = folder.path().join("nowhere/a.csv");
+        let nowhere = AtlasFile::new(nowhere).expect("a form");
+        let going = AtomicBool::new(false);
+        let error = nowhere.write(&survey, Existing::Kept, &going);
+        let error = error.expect_err("there is no such folder").to_string();
+        assert!(
+            error.ends_with("a.csv: No such file or directory (os error 2)"),
+            "{error}"
+        );
     }
 
     #[test]

@@ -49,6 +49,39 @@ pub fn times(value: Value, factor: f64, decimals: usize) -> Option<String> {
     }
 }
 
+/// A number with as many decimals as fit into `width` characters, at most four, and no zeros at their end; longer where
+/// it does not fit without any.
+///
+/// ```
+/// use taxel::formats::value::fitting;
+/// assert_eq!([23.656_854, 123.456_78, 131_072.5].map(|number| fitting(number, 7)), ["23.6569", "123.457", "131072"]);
+/// ```
+pub fn fitting(number: f64, width: usize) -> String {
+    let texts = (0..=4).rev().map(|decimals| decimal(number, decimals));
+    texts
+        .into_iter()
+        .find(|text| text.len() <= width)
+        .unwrap_or_else(|| decimal(number, 0))
+}
+
+/// A large count, its digits in groups of three.
+///
+/// ```
+/// use taxel::formats::value::grouped;
+/// assert_eq!([7, 999, 1000, 3_600_000].map(grouped), ["7", "999", "1,000", "3,600,000"]);
+/// ```
+pub fn grouped(count: u64) -> String {
+    let digits = count.to_string();
+    let mut text = String::with_capacity(digits.len() * 4 / 3);
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
 /// With at most so many decimals, no zeros at their end, and no minus before a zero.
 fn decimal(number: f64, decimals: usize) -> String {
     let text = format!("{number:.decimals$}");

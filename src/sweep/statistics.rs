@@ -47,6 +47,37 @@ pub struct Statistic {
     pub sd_angle: Option<f64>,
 }
 
+/// A column of the statistics.
+#[derive(Clone, Copy, Debug)]
+pub struct Column {
+    /// Its name in JSON.
+    pub key: &'static str,
+    /// Its heading.
+    pub title: &'static str,
+    /// What stands in it.
+    pub value: fn(&Statistic) -> Option<f64>,
+}
+
+/// All of them, in their order.
+pub const COLUMNS: [Column; 8] = [
+    column("min", "min", |row| row.min),
+    column("mean", "mean", |row| row.mean),
+    column("max", "max", |row| row.max),
+    column("sd", "sd", |row| row.sd),
+    column("cv", "cv", |row| row.cv),
+    column("ideal", "ideal", |row| row.ideal),
+    column("sd_position", "sd pos", |row| row.sd_position),
+    column("sd_angle", "sd angle", |row| row.sd_angle),
+];
+
+const fn column(
+    key: &'static str,
+    title: &'static str,
+    value: fn(&Statistic) -> Option<f64>,
+) -> Column {
+    Column { key, title, value }
+}
+
 /// What is summed up over all imprints.
 #[derive(Clone, Copy, Debug)]
 struct Total {

@@ -3,6 +3,7 @@
 use super::binding::Context;
 use super::dialog::Dialog;
 use super::document::{Document, History, Seen, StoredName};
+use super::explore::results::Results;
 use super::theme::Theme;
 use crate::formats::name::Name;
 use crate::formats::shape::Shape;
@@ -103,6 +104,10 @@ pub struct App {
     pub(super) notice: Option<Notice>,
     /// The shape that was removed last, until something else is done: undo brings it back.
     pub(super) removed: Option<String>,
+    /// What the last sweep found, while it is not looked at.
+    pub(super) results: Option<Box<Results>>,
+    /// How many pieces of work were begun.
+    pub(super) works: u64,
     /// The commands that were given, the last one last.
     pub(super) commands: Vec<String>,
     /// Whether the mouse is wanted.
@@ -132,6 +137,8 @@ impl App {
             dialogs: Vec::new(),
             notice: None,
             removed: None,
+            results: None,
+            works: 0,
             commands: Vec::new(),
             mouse: true,
             paint: None,
@@ -149,6 +156,11 @@ impl App {
             (None, Mode::Grab) => Context::Grab,
             (None, Mode::Draw) => Context::Matrix,
         }
+    }
+
+    /// The dialog that has the pane; none where the matrix has it.
+    pub fn pane(&self) -> Option<&Dialog> {
+        self.dialogs.iter().rev().find(|dialog| dialog.has_pane())
     }
 
     /// The document that the matrix shows: what an open form would make of it, or the present one.

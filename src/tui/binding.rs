@@ -24,17 +24,41 @@ pub enum Context {
     Help,
     /// At a question.
     Question,
+    /// In the form of ranges.
+    Ranges,
+    /// While something is under way.
+    Running,
+    /// On any page of what a sweep found.
+    Explore,
+    /// In the list of imprints.
+    Imprints,
+    /// In the statistics.
+    Statistics,
+    /// At the histogram.
+    Histogram,
+    /// On the map.
+    Map,
+    /// In the field for the name of a file.
+    Export,
 }
 
 impl Context {
     /// All of them, in the order of help.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 17] = [
         Self::Matrix,
         Self::Grab,
         Self::Form,
         Self::List,
         Self::Name,
         Self::Command,
+        Self::Ranges,
+        Self::Running,
+        Self::Explore,
+        Self::Imprints,
+        Self::Statistics,
+        Self::Histogram,
+        Self::Map,
+        Self::Export,
         Self::Question,
         Self::Help,
         Self::Everywhere,
@@ -52,6 +76,14 @@ impl Context {
             Self::Command => "In the command line",
             Self::Help => "In this list",
             Self::Question => "At a question",
+            Self::Ranges => "Ranges of a sweep",
+            Self::Running => "While a sweep runs",
+            Self::Explore => "Exploring, on every page",
+            Self::Imprints => "In the list of imprints",
+            Self::Statistics => "In the statistics",
+            Self::Histogram => "At the histogram",
+            Self::Map => "On the map",
+            Self::Export => "Exporting",
         }
     }
 
@@ -60,13 +92,24 @@ impl Context {
         match self {
             Self::Everywhere => None,
             Self::Grab => Some(Self::Matrix),
-            _ => Some(Self::Everywhere),
+            _ => self.screen().or(Some(Self::Everywhere)),
+        }
+    }
+
+    /// The screen that this is a page of, where it is one: the keys of both are hinted at.
+    pub fn screen(self) -> Option<Self> {
+        match self {
+            Self::Imprints | Self::Statistics | Self::Histogram | Self::Map => Some(Self::Explore),
+            _ => None,
         }
     }
 
     /// Whether characters that are no command are typed into a field.
     pub(super) fn takes_text(self) -> bool {
-        matches!(self, Self::Form | Self::List | Self::Name | Self::Command)
+        matches!(
+            self,
+            Self::Form | Self::List | Self::Name | Self::Command | Self::Ranges | Self::Export
+        )
     }
 }
 

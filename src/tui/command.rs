@@ -3,6 +3,8 @@
 //! Names and flags are those of the program's own command line: `figure hexagon --side 3 --angle 17`,
 //! `load washer`, `sensor --columns 32 --rows 32`. What is not given is as it is now, or the default.
 
+mod explore;
+
 use super::app::App;
 use super::commands::{Command, Takes, find};
 use super::document::Document;
@@ -51,6 +53,7 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
         (Takes::Name, _) => Ok(app.storing(name_of(rest)?)),
         (Takes::Figure, [kind, pairs @ ..]) => figure(kind, pairs, app),
         (Takes::Sensor, pairs) => sensor(pairs, app),
+        (Takes::Ranges, pairs) => explore::read(pairs, app),
         (Takes::Degrees, _) => match rest.parse() {
             Ok(degrees) if (-360..=360).contains(&degrees) => Ok(Message::Turn(degrees)),
             _ => Err(format!(

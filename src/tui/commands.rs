@@ -1,11 +1,13 @@
 //! The table of commands: what a line at the foot of the screen may say, what it means, and how it is completed.
 
+use super::exploring::Exploring;
 use super::key::Arrow;
 use super::message::{Copied, End, Message};
 use super::purpose::Purpose;
 use crate::figure::Kind;
 use crate::parameter::Parameter;
 use crate::sensor::SENSOR_PARAMETERS;
+use crate::sweep::grid::Ranges;
 
 /// What may follow the name of a command, beside its words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,6 +24,8 @@ pub enum Takes {
     Figure,
     /// Numbers of the sensor.
     Sensor,
+    /// Ranges of a sweep.
+    Ranges,
     /// Whole degrees.
     Degrees,
     /// Column and row of a taxel.
@@ -38,6 +42,7 @@ impl Takes {
             Self::Shape(_) | Self::Deleted | Self::Name => "NAME",
             Self::Figure => "KIND --side 3 ...",
             Self::Sensor => "--columns 32 ...",
+            Self::Ranges => "--x0 5:5.99:0.01 ...",
             Self::Degrees => "DEGREES",
             Self::Taxel => "COLUMN ROW",
             Self::Way => "DX DY",
@@ -99,6 +104,11 @@ pub const COMMANDS: &[Command] = &[
         "delete",
         &[("", Message::Delete)],
         Takes::Shape(Purpose::Delete),
+    ),
+    command(
+        "explore",
+        &[("", Message::Explore(Exploring::Open))],
+        Takes::Ranges,
     ),
     command("figure", &[("", Message::Figure)], Takes::Figure),
     command("grab", &[("", Message::Grab)], Takes::Nothing),
@@ -223,17 +233,20 @@ pub fn complete(line: &str, names: &[String]) -> (String, Vec<String>) {
 /// The words that may come next in a line whose words so far are known.
 fn next_words(command: &Command, before: &str) -> Vec<String> {
     let said: Vec<&str> = before.split_whitespace().collect();
-    let flags = |parameters: Vec<Parameter>, said: &[&str]| {
-        // A flag is followed by its number.
+    let words = |flags: Vec<String>, said: &[&str]| {
+        // A flag is followed by its value.
         if said.len() % 2 == 1 {
             return Vec::new();
         }
-        let flags = parameters
-            .iter()
-            .map(|parameter| format!("--{}", parameter.flag()));
-        flags
+        let unsaid = flags.into_iter();
+        unsaid
             .filter(|flag| !said.contains(&flag.as_str()))
             .collect()
+    };
+    let flags = |parameters: Vec<Parameter>, said: &[&str]| {
+        let flags = parameters.iter();
+        let flags = flags.map(|parameter| format!("--{}", parameter.flag()));
+        words(flags.collect(), said)
     };
     match (command.takes, &said[..]) {
         (Takes::Figure, []) => Kind::ALL.map(|kind| kind.name().to_owned()).to_vec(),
@@ -241,6 +254,11 @@ fn next_words(command: &Command, before: &str) -> Vec<String> {
             .map(|kind| flags(kind.parameters().collect(), said))
             .unwrap_or_default(),
         (Takes::Sensor, said) => flags(SENSOR_PARAMETERS.to_vec(), said),
+        (Takes::Ranges, said) => {
+            let rows = Ranges::default().rows();
+            let ranges = rows.map(|(parameter, _)| format!("--{}", parameter.flag()));
+            words([&ranges[..], &["--anchor".to_owned()]].concat(), said)
+        }
         (_, []) => {
             let words = command.words.iter().filter(|(word, _)| !word.is_empty());
             words.map(|(word, _)| (*word).to_owned()).collect()

@@ -1,8 +1,13 @@
-//! What lies over the matrix: a form, the list of shapes, a name, a question, the list of keys. They are a stack; the
-//! top one gets the keys.
+//! What lies over the matrix: a form, the list of shapes, a name, a question, the list of keys, what a sweep found. They
+//! are a stack; the top one gets the keys.
 
 use super::binding::Context;
 use super::command_dialog::CommandDialog;
+use super::explore::export::ExportDialog;
+use super::explore::ranges::RangesForm;
+use super::explore::results::Results;
+use super::explore::running::Running;
+use super::exploring::ExplorePage;
 use super::form_dialog::FormDialog;
 use super::keymap::{HelpLine, help};
 use super::list::ListDialog;
@@ -24,6 +29,14 @@ pub enum Dialog {
     Question(Question),
     /// The list of keys.
     Help(Help),
+    /// The ranges of a sweep.
+    Ranges(Box<RangesForm>),
+    /// Work under way.
+    Running(Running),
+    /// What a sweep found.
+    Results(Box<Results>),
+    /// The name of a file to write that to.
+    Export(ExportDialog),
 }
 
 /// A question, and what happens at each answer; leaving it open is none.
@@ -86,6 +99,23 @@ impl Dialog {
             Self::Command(_) => Context::Command,
             Self::Question(_) => Context::Question,
             Self::Help(_) => Context::Help,
+            Self::Ranges(_) => Context::Ranges,
+            Self::Running(_) => Context::Running,
+            Self::Results(results) => match results.page() {
+                ExplorePage::Imprints => Context::Imprints,
+                ExplorePage::Statistics => Context::Statistics,
+                ExplorePage::Histogram => Context::Histogram,
+                ExplorePage::Map => Context::Map,
+            },
+            Self::Export(_) => Context::Export,
         }
+    }
+
+    /// Whether it is drawn in a pane; the others have the line of notices, over whatever lies below.
+    pub fn has_pane(&self) -> bool {
+        !matches!(
+            self,
+            Self::Name(_) | Self::Command(_) | Self::Question(_) | Self::Export(_)
+        )
     }
 }

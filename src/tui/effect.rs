@@ -1,4 +1,8 @@
-//! The only place of the screen that touches the world: the library, and the journal of unsaved work.
+//! The only place of the screen that touches the world: the library, the journal of unsaved work, and workers.
+
+mod workers;
+
+pub use workers::Post;
 
 use std::io;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -6,6 +10,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
+use workers::Workers;
 
 use super::app::App;
 use super::message::{Answer, Message};
@@ -23,6 +28,7 @@ pub struct World {
     library: Library,
     orphan: Option<Orphan>,
     keeper: Keeper,
+    workers: Workers,
     /// The library's folder where that is one for the time being. The last field: it goes after the keeper has written.
     _scratch: Option<TempDir>,
 }
@@ -35,6 +41,7 @@ impl World {
             library,
             orphan: None,
             keeper,
+            workers: Workers::default(),
             _scratch: None,
         };
         world.orphan = world.newest_orphan();
@@ -48,6 +55,7 @@ impl World {
             library,
             orphan: None,
             keeper: Keeper::idle(),
+            workers: Workers::default(),
             _scratch: None,
         }
     }
@@ -91,6 +99,14 @@ impl World {
         })
     }
 
+    /// Has long work done beside the program, and what it tells sent by `post`. Without this, such work is done at once
+    /// and nothing is told of how far it is or how long it takes: scripts show the same every time.
+    #[must_use]
+    pub fn with_workers(mut self, post: Post) -> Self {
+        self.workers = Workers::beside(post);
+        self
+    }
+
     /// What there is to say at the start: that a program left work when it died.
     pub fn greeting(&self) -> Option<Message> {
         let shape = &self.orphan.as_ref()?.shape;
@@ -108,6 +124,13 @@ impl World {
         loop {
             match update(app, next) {
                 Some(Effect::Library(request)) => next = self.perform(request),
+                Some(Effect::Work(work)) => {
+                    let Some(told) = self.workers.perform(work) else {
+                        self.keeper.note(app);
+                        return None;
+                    };
+                    next = Message::Told(told);
+                }
                 other => {
                     self.keeper.note(app);
                     return other;

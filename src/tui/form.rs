@@ -1,6 +1,6 @@
 //! A form: a text field a parameter. It knows the table of parameters and no shapes.
 
-use super::message::{End, Message};
+use super::message::Message;
 use super::text_field::TextField;
 use crate::parameter::{Parameter, ParameterError};
 
@@ -17,8 +17,6 @@ pub struct Field {
     /// than the form's own.
     initial: Option<f64>,
     initial_text: String,
-    /// The field was just entered: the first character replaces everything.
-    fresh: bool,
 }
 
 impl Field {
@@ -27,13 +25,14 @@ impl Field {
         let text = value
             .map(|value| parameter.format(value))
             .unwrap_or_default();
+        let mut input = TextField::new(text.clone(), LONGEST);
+        input.enter();
         Self {
             parameter,
             optional,
-            input: TextField::new(text.clone(), LONGEST),
+            input,
             initial: value,
             initial_text: text,
-            fresh: true,
         }
     }
 
@@ -59,7 +58,7 @@ impl Field {
 
     /// Whether the next character replaces the text.
     pub fn fresh(&self) -> bool {
-        self.fresh
+        self.input.fresh()
     }
 
     /// The value in the text; none of an empty field that may be empty.
@@ -83,19 +82,6 @@ impl Field {
         }
     }
 
-    fn take(&mut self, message: &Message) {
-        let replaces = matches!(
-            message,
-            Message::Type(_) | Message::Paste(_) | Message::Erase(_)
-        );
-        if self.fresh && replaces {
-            self.input.set("");
-        }
-        if self.input.take(message) {
-            self.fresh = false;
-        }
-    }
-
     fn step(&mut self, direction: i8, side: u8) {
         let value = match self.value(side) {
             Ok(Some(value)) => self.parameter.step(value, i32::from(direction), side),
@@ -106,7 +92,7 @@ impl Field {
             Err(_) => return,
         };
         self.input.set(self.parameter.format(value));
-        self.fresh = true;
+        self.input.enter();
     }
 }
 
@@ -152,8 +138,7 @@ impl Form {
     pub fn set_focus(&mut self, focus: Option<usize>) {
         self.focus = focus.map(|index| index.min(self.fields.len().saturating_sub(1)));
         if let Some(field) = self.focused() {
-            field.input.take(&Message::ToEdge(End::Last));
-            field.fresh = true;
+            field.input.enter();
         }
     }
 
@@ -179,7 +164,7 @@ impl Form {
     /// Types, moves or deletes in the field that has the focus.
     pub fn take(&mut self, message: &Message) {
         if let Some(field) = self.focused() {
-            field.take(message);
+            field.input.take(message);
         }
     }
 

@@ -4,6 +4,8 @@ use ratatui::layout::{Position, Rect};
 
 use super::app::App;
 use super::dialog::Dialog;
+use super::explore_layout::point;
+use super::explore_layout::ranges::RangeRows;
 use super::layout::{FormRows, Grid, LIST_HEAD, Panes, list, list_first, menu};
 use super::message::Message;
 
@@ -22,6 +24,8 @@ pub enum Target {
     Field(usize),
     /// A row of the list.
     Row(usize),
+    /// Something that means what a key would.
+    Means(Message),
 }
 
 /// What is at a place of the screen; nothing on a screen that is too small.
@@ -58,6 +62,11 @@ pub fn at(app: &App, column: u16, row: u16) -> Option<Target> {
             let index =
                 list_first(area, dialog.rows().len(), dialog.selected()) + usize::from(line);
             (index < dialog.rows().len()).then_some(Target::Row(index))
+        }
+        Some(Dialog::Results(results)) => point::at(&panes, results, place).map(Target::Means),
+        Some(Dialog::Ranges(form)) if inside(panes.form) => {
+            let rows = RangeRows::of(panes.form, form);
+            rows.row(row - panes.form.y).map(Target::Field)
         }
         None if panes.panel.is_some_and(inside) => Some(Target::Panel),
         None if inside(panes.matrix) => {

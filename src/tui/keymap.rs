@@ -3,10 +3,15 @@
 //! The arrows move the cursor, not `hjkl`: `l` is Load, as in the paper's menu.
 
 use super::binding::{Binding, Context, bind};
+use super::exploring::{ExplorePage, Exploring, Zoom};
 use super::key::{Arrow, Key};
 use super::message::{Copied, End, Erase, Message};
+use crate::sweep::order::SortKey;
 
-use Context::{Command, Everywhere, Form, Grab, Help, List, Matrix, Name, Question};
+use Context::{
+    Command, Everywhere, Explore, Export, Form, Grab, Help, Histogram, Imprints, List, Map, Matrix,
+    Name, Question, Ranges, Running, Statistics,
+};
 use Key::Char;
 
 const LEFT: Key = Key::Arrow(Arrow::Left);
@@ -125,6 +130,12 @@ pub const KEYMAP: &[Binding] = &[
         &[(Char('g'), Message::Grab)],
         "grab",
         "hold the shape, to move it with the arrows",
+    ),
+    bind(
+        Matrix,
+        &[(Char('e'), Message::Explore(Exploring::Open))],
+        "explore",
+        "Explore: all imprints of the shape, over all poses",
     ),
     bind(
         Matrix,
@@ -482,6 +493,381 @@ pub const KEYMAP: &[Binding] = &[
         "do nothing",
     ),
     bind(Command, &[(Key::F1, Message::Help)], "help", "these keys"),
+    bind(
+        Ranges,
+        &[
+            (Key::Tab, Message::Field(1)),
+            (Key::BackTab, Message::Field(-1)),
+        ],
+        "field",
+        "next, previous field",
+    ),
+    bind(
+        Ranges,
+        &[
+            (LEFT, Message::Choose(Arrow::Left)),
+            (RIGHT, Message::Choose(Arrow::Right)),
+            (UP, Message::Choose(Arrow::Up)),
+            (DOWN, Message::Choose(Arrow::Down)),
+        ],
+        "",
+        "move in a field, to other fields; the other anchor",
+    ),
+    bind(
+        Ranges,
+        &[
+            (Key::Backspace, Message::Erase(Erase::Before)),
+            (Key::Delete, Message::Erase(Erase::Under)),
+        ],
+        "",
+        "delete a character",
+    ),
+    bind(
+        Ranges,
+        &[(Key::Ctrl('u'), Message::Erase(Erase::All))],
+        "clear",
+        "clear the field",
+    ),
+    bind(
+        Ranges,
+        &[
+            (Key::Home, Message::ToEdge(End::First)),
+            (Key::End, Message::ToEdge(End::Last)),
+        ],
+        "",
+        "to the start, the end of the field",
+    ),
+    bind(
+        Ranges,
+        &[(Key::Enter, Message::Accept)],
+        "start",
+        "go through all poses; refused while a range is wrong",
+    ),
+    bind(
+        Ranges,
+        &[
+            (Key::Esc, Message::Cancel),
+            (Key::Ctrl('g'), Message::Cancel),
+        ],
+        "cancel",
+        "leave everything as it was",
+    ),
+    bind(
+        Running,
+        &[
+            (Key::Esc, Message::Explore(Exploring::Stop)),
+            (Char('s'), Message::Explore(Exploring::Stop)),
+            (Key::Ctrl('g'), Message::Explore(Exploring::Stop)),
+        ],
+        "stop",
+        "stop, and keep what is complete",
+    ),
+    bind(
+        Running,
+        &[(Key::Ctrl('c'), Message::Killed)],
+        "quit",
+        "quit at once; unsaved work is offered next time",
+    ),
+    bind(
+        Explore,
+        &[
+            (
+                Char('1'),
+                Message::Explore(Exploring::Page(ExplorePage::Imprints)),
+            ),
+            (
+                Char('2'),
+                Message::Explore(Exploring::Page(ExplorePage::Statistics)),
+            ),
+            (
+                Char('3'),
+                Message::Explore(Exploring::Page(ExplorePage::Histogram)),
+            ),
+            (
+                Char('4'),
+                Message::Explore(Exploring::Page(ExplorePage::Map)),
+            ),
+        ],
+        "",
+        "imprints, statistics, histogram, map",
+    ),
+    bind(
+        Explore,
+        &[
+            (Key::Tab, Message::Explore(Exploring::NextPage(1))),
+            (Key::BackTab, Message::Explore(Exploring::NextPage(-1))),
+        ],
+        "page",
+        "next, previous page",
+    ),
+    bind(
+        Explore,
+        &[
+            (Char('d'), Message::Explore(Exploring::Quantity(1))),
+            (Char('D'), Message::Explore(Exploring::Quantity(-1))),
+        ],
+        "descriptor",
+        "next, previous descriptor",
+    ),
+    bind(
+        Explore,
+        &[(Char('x'), Message::Explore(Exploring::Export))],
+        "export",
+        "write a file: .csv .jsonl .npz imprints, .npy poses",
+    ),
+    bind(
+        Explore,
+        &[(Char('e'), Message::Explore(Exploring::Ranges))],
+        "ranges",
+        "explore other ranges",
+    ),
+    bind(Explore, &[(Char('?'), Message::Help)], "help", "all keys"),
+    bind(
+        Explore,
+        &[
+            (Key::Esc, Message::Cancel),
+            (Key::Ctrl('g'), Message::Cancel),
+            (Char('q'), Message::Cancel),
+        ],
+        "close",
+        "back to the matrix; e comes back here",
+    ),
+    bind(
+        Imprints,
+        &[(UP, Message::Scroll(-1)), (DOWN, Message::Scroll(1))],
+        "",
+        "previous, next imprint",
+    ),
+    bind(
+        Imprints,
+        &[
+            (Key::PageUp, Message::Scroll(-10)),
+            (Key::PageDown, Message::Scroll(10)),
+        ],
+        "",
+        "ten imprints back, on",
+    ),
+    bind(
+        Imprints,
+        &[
+            (Key::Home, Message::ScrollTo(End::First)),
+            (Key::End, Message::ScrollTo(End::Last)),
+        ],
+        "",
+        "first, last imprint",
+    ),
+    bind(
+        Imprints,
+        &[(Key::Enter, Message::Accept)],
+        "to matrix",
+        "put it onto the matrix, in its first pose",
+    ),
+    bind(
+        Imprints,
+        &[
+            (Char('n'), Message::Explore(Exploring::Sort(SortKey::Poses))),
+            (
+                Char('f'),
+                Message::Explore(Exploring::Sort(SortKey::FirstPose)),
+            ),
+            (Char('v'), Message::Explore(Exploring::Sort(SortKey::Value))),
+            (
+                Char('c'),
+                Message::Explore(Exploring::Sort(SortKey::Pieces)),
+            ),
+            (Char('h'), Message::Explore(Exploring::Sort(SortKey::Holes))),
+        ],
+        "sort",
+        "by poses, first pose, value, pieces, holes; or back",
+    ),
+    bind(
+        Imprints,
+        &[(Char('j'), Message::Explore(Exploring::Find))],
+        "find",
+        "jump to the imprint that is on the matrix",
+    ),
+    bind(
+        Imprints,
+        &[(Char('g'), Message::Explore(Exploring::Follow))],
+        "map",
+        "go to its first pose on the map",
+    ),
+    bind(
+        Statistics,
+        &[
+            (UP, Message::Scroll(-1)),
+            (DOWN, Message::Scroll(1)),
+            (Key::PageUp, Message::Scroll(-10)),
+            (Key::PageDown, Message::Scroll(10)),
+        ],
+        "",
+        "choose a descriptor",
+    ),
+    bind(
+        Statistics,
+        &[
+            (Key::Home, Message::ScrollTo(End::First)),
+            (Key::End, Message::ScrollTo(End::Last)),
+        ],
+        "",
+        "first, last descriptor",
+    ),
+    bind(
+        Statistics,
+        &[
+            (LEFT, Message::Explore(Exploring::Columns(-1))),
+            (RIGHT, Message::Explore(Exploring::Columns(1))),
+        ],
+        "columns",
+        "earlier, later columns",
+    ),
+    bind(
+        Statistics,
+        &[(
+            Key::Enter,
+            Message::Explore(Exploring::Page(ExplorePage::Histogram)),
+        )],
+        "histogram",
+        "its histogram",
+    ),
+    bind(
+        Histogram,
+        &[
+            (UP, Message::Scroll(-1)),
+            (DOWN, Message::Scroll(1)),
+            (Key::PageUp, Message::Scroll(-10)),
+            (Key::PageDown, Message::Scroll(10)),
+        ],
+        "",
+        "choose a descriptor",
+    ),
+    bind(
+        Histogram,
+        &[
+            (Key::Home, Message::ScrollTo(End::First)),
+            (Key::End, Message::ScrollTo(End::Last)),
+        ],
+        "",
+        "first, last descriptor",
+    ),
+    bind(
+        Map,
+        &[
+            (LEFT, Message::Cursor(Arrow::Left)),
+            (RIGHT, Message::Cursor(Arrow::Right)),
+            (UP, Message::Cursor(Arrow::Up)),
+            (DOWN, Message::Cursor(Arrow::Down)),
+        ],
+        "",
+        "to the next pose",
+    ),
+    bind(
+        Map,
+        &[
+            (Key::PageUp, Message::Scroll(-10)),
+            (Key::PageDown, Message::Scroll(10)),
+        ],
+        "",
+        "ten poses up, down",
+    ),
+    bind(
+        Map,
+        &[
+            (Key::Home, Message::ScrollTo(End::First)),
+            (Key::End, Message::ScrollTo(End::Last)),
+        ],
+        "",
+        "to the first, the last x0",
+    ),
+    bind(
+        Map,
+        &[
+            (Char('<'), Message::Explore(Exploring::Angle(-1))),
+            (Char('>'), Message::Explore(Exploring::Angle(1))),
+        ],
+        "angle",
+        "previous, next angle",
+    ),
+    bind(
+        Map,
+        &[
+            (Char('('), Message::Explore(Exploring::Angle(-10))),
+            (Char(')'), Message::Explore(Exploring::Angle(10))),
+        ],
+        "",
+        "ten angles back, on",
+    ),
+    bind(
+        Map,
+        &[
+            (Char('z'), Message::Explore(Exploring::Zoomed(Zoom::X, 1))),
+            (Char('Z'), Message::Explore(Exploring::Zoomed(Zoom::X, -1))),
+            (Char('w'), Message::Explore(Exploring::Zoomed(Zoom::Y, 1))),
+            (Char('W'), Message::Explore(Exploring::Zoomed(Zoom::Y, -1))),
+        ],
+        "",
+        "next, previous zoom x, zoom y of a picture",
+    ),
+    bind(
+        Map,
+        &[(Key::Enter, Message::Accept)],
+        "to matrix",
+        "put this pose onto the matrix",
+    ),
+    bind(
+        Map,
+        &[(Char('g'), Message::Explore(Exploring::Follow))],
+        "list",
+        "go to its imprint in the list",
+    ),
+    bind(
+        Export,
+        &[(Key::Enter, Message::Accept)],
+        "write",
+        "write the file",
+    ),
+    bind(
+        Export,
+        &[
+            (LEFT, Message::Choose(Arrow::Left)),
+            (RIGHT, Message::Choose(Arrow::Right)),
+        ],
+        "",
+        "move in the name",
+    ),
+    bind(
+        Export,
+        &[
+            (Key::Home, Message::ToEdge(End::First)),
+            (Key::End, Message::ToEdge(End::Last)),
+        ],
+        "",
+        "to its start, its end",
+    ),
+    bind(
+        Export,
+        &[
+            (Key::Backspace, Message::Erase(Erase::Before)),
+            (Key::Delete, Message::Erase(Erase::Under)),
+        ],
+        "",
+        "delete a character",
+    ),
+    bind(
+        Export,
+        &[(Key::Ctrl('u'), Message::Erase(Erase::All))],
+        "clear",
+        "clear the name",
+    ),
+    bind(
+        Export,
+        &[
+            (Key::Esc, Message::Cancel),
+            (Key::Ctrl('g'), Message::Cancel),
+        ],
+        "cancel",
+        "write nothing",
+    ),
     bind(
         Help,
         &[

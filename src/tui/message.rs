@@ -1,6 +1,7 @@
 //! What a key means: the only things that change the program.
 
 use super::document::Document;
+use super::exploring::{Exploring, Told};
 use super::key::Arrow;
 use super::purpose::Purpose;
 use crate::formats::shape::Shape;
@@ -119,6 +120,10 @@ pub enum Message {
     Copy(Copied),
     /// Have the mouse reported, or leave it to the terminal.
     MouseOnOff,
+    /// Something about the imprints of all poses.
+    Explore(Exploring),
+    /// What a worker tells.
+    Told(Told),
     /// Draw everything anew.
     Redraw,
     /// Give the terminal back to the shell until it calls again.

@@ -15,6 +15,8 @@ pub mod document;
 
 pub mod purpose;
 
+pub mod exploring;
+
 pub mod message;
 
 pub mod text_field;
@@ -37,6 +39,8 @@ pub mod commands;
 
 pub mod command_dialog;
 
+pub mod explore;
+
 pub mod dialog;
 
 pub mod app;
@@ -44,6 +48,8 @@ pub mod app;
 pub mod command;
 
 pub mod layout;
+
+pub mod explore_layout;
 
 pub mod hit;
 

@@ -1,8 +1,13 @@
 //! What the state wishes of the world outside.
 
+use std::sync::Arc;
+
+use super::exploring::Findings;
 use super::purpose::Purpose;
 use crate::formats::shape::Shape;
+use crate::formats::sweep_file::Existing;
 use crate::library::store::Expected;
+use crate::sweep::grid::Grid;
 
 /// What the world outside shall do.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +22,21 @@ pub enum Effect {
     Copy(String),
     /// Ask the library; what it answers is the next message.
     Library(Request),
+    /// Have a worker do something.
+    Work(Work),
+}
+
+/// What a worker does. Each piece of work has a number.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Work {
+    /// To find out how long a grid will take, about.
+    Measure(Box<Grid>),
+    /// To go through a grid.
+    Sweep(u64, Box<Grid>),
+    /// To write what was found into a file of that name.
+    Write(u64, Arc<Findings>, String, Existing),
+    /// To stop.
+    Stop,
 }
 
 /// What is asked of the library.

@@ -10,6 +10,8 @@ use super::message::{End, Erase, Message};
 pub struct TextField {
     input: Input,
     longest: usize,
+    /// The field was just entered: what is typed replaces everything.
+    fresh: bool,
 }
 
 impl TextField {
@@ -18,7 +20,19 @@ impl TextField {
         Self {
             input: Input::new(text.into()),
             longest,
+            fresh: false,
         }
+    }
+
+    /// The cursor comes to this field: it stands at the end, and what is typed next replaces everything.
+    pub fn enter(&mut self) {
+        self.edit(InputRequest::GoToEnd);
+        self.fresh = true;
+    }
+
+    /// Whether the next character replaces the text.
+    pub fn fresh(&self) -> bool {
+        self.fresh
     }
 
     /// What stands in it.
@@ -34,10 +48,24 @@ impl TextField {
     /// Puts another text in its place, the cursor at the end.
     pub fn set(&mut self, text: impl Into<String>) {
         self.input = Input::new(text.into());
+        self.fresh = false;
     }
 
     /// Does what a message means in a line of text; answers whether it means anything there.
     pub fn take(&mut self, message: &Message) -> bool {
+        let replaces = matches!(
+            message,
+            Message::Type(_) | Message::Paste(_) | Message::Erase(_)
+        );
+        if self.fresh && replaces {
+            self.set("");
+        }
+        let taken = self.does(message);
+        self.fresh &= !taken;
+        taken
+    }
+
+    fn does(&mut self, message: &Message) -> bool {
         let request = match message {
             Message::Type(character) => {
                 self.insert(*character);
@@ -102,6 +130,30 @@ mod tests {
         );
         assert_eq!(after(&[left, erase(Erase::Before)]), ("ac".to_owned(), 1));
         assert_eq!(after(&[erase(Erase::All), typed]), ("x".to_owned(), 1));
+    }
+
+    #[test]
+    fn what_is_typed_into_a_field_that_was_just_entered_replaces_everything() {
+        let entered = |messages: &[Message]| {
+            let mut field = TextField::new("abc", 6);
+            field.enter();
+            assert!(field.fresh());
+            for message in messages {
+                field.take(message);
+            }
+            (field.text().to_owned(), field.fresh())
+        };
+        let (left, typed) = (Message::Choose(Arrow::Left), Message::Type('x'));
+        assert_eq!(entered(&[Message::Accept]), ("abc".to_owned(), true));
+        assert_eq!(
+            entered(&[typed.clone(), typed.clone()]),
+            ("xx".to_owned(), false)
+        );
+        assert_eq!(entered(&[left, typed]), ("abxc".to_owned(), false));
+        assert_eq!(
+            entered(&[Message::Erase(Erase::Before)]),
+            (String::new(), false)
+        );
     }
 
     #[test]

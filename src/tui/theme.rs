@@ -112,6 +112,24 @@ fn tone(role: Role, palette: Palette) -> Option<Tone> {
     }
 }
 
+/// Colours of things side by side.
+const DARK_TINTS: [Tone; 6] = [
+    (Color::Cyan, 80, [95, 215, 215]),
+    (Color::Yellow, 221, [255, 215, 95]),
+    (Color::Blue, 75, [95, 175, 255]),
+    (Color::Green, 114, [135, 215, 135]),
+    (Color::Magenta, 176, [215, 135, 215]),
+    (Color::Red, 203, [255, 95, 95]),
+];
+const LIGHT_TINTS: [Tone; 6] = [
+    (Color::Cyan, 31, [0, 135, 175]),
+    (Color::Magenta, 130, [175, 95, 0]),
+    (Color::Blue, 25, [0, 95, 175]),
+    (Color::Green, 28, [0, 135, 0]),
+    (Color::Magenta, 127, [175, 0, 175]),
+    (Color::Red, 160, [215, 0, 0]),
+];
+
 impl Theme {
     /// No colours.
     pub const fn plain(ascii: bool) -> Self {
@@ -130,15 +148,29 @@ impl Theme {
             Role::Cursor | Role::Focus => Style::new().add_modifier(Modifier::REVERSED),
             Role::Text | Role::Active | Role::Chosen | Role::Hole => Style::new(),
         };
-        let Some((named, index, [red, green, blue])) = tone(role, self.palette) else {
-            return style;
-        };
+        match tone(role, self.palette) {
+            Some(tone) => self.coloured(style, tone),
+            None => style,
+        }
+    }
+
+    fn coloured(self, style: Style, (named, index, [red, green, blue]): Tone) -> Style {
         match self.depth {
             ColorDepth::Never => style,
             ColorDepth::Sixteen => style.fg(named),
             ColorDepth::TwoFiftySix => style.fg(Color::Indexed(index)),
             ColorDepth::True => style.fg(Color::Rgb(red, green, blue)),
         }
+    }
+
+    /// The style of one of many things that lie side by side, by a number: the same colour comes back after six.
+    pub fn tint(&self, number: usize) -> Style {
+        let tints = match self.palette {
+            Palette::Dark => &DARK_TINTS,
+            Palette::Light => &LIGHT_TINTS,
+            Palette::Mono => return Style::new(),
+        };
+        self.coloured(Style::new(), tints[number % tints.len()])
     }
 
     /// The characters of a taxel, by its role.
@@ -170,6 +202,25 @@ impl Theme {
             _ => 4,
         };
         [shades[shade], if shade == 0 { ' ' } else { shades[shade] }]
+    }
+
+    /// The characters of a bar: full, half full, empty.
+    pub fn bar(&self) -> [char; 3] {
+        if self.ascii {
+            ['#', '=', '.']
+        } else {
+            ['█', '▌', '░']
+        }
+    }
+
+    /// What marks the heading that rows are sorted by, from the largest on or from the smallest.
+    pub fn sorted(&self, descending: bool) -> char {
+        match (self.ascii, descending) {
+            (true, true) => 'v',
+            (true, false) => '^',
+            (false, true) => '↓',
+            (false, false) => '↑',
+        }
     }
 
     /// What stands for a value that does not exist.

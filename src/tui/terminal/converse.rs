@@ -250,8 +250,8 @@ impl<'a> Talk<'a> {
 
     fn update(&mut self, message: Message) -> io::Result<()> {
         match self.world.handle(&mut self.app, message) {
-            // What is asked of the library was answered on the way.
-            None | Some(Effect::Library(_)) => {}
+            // What is asked of the library and of workers was seen to on the way.
+            None | Some(Effect::Library(_) | Effect::Work(_)) => {}
             Some(Effect::Redraw) => self.redraw(),
             Some(Effect::Suspend) => self.suspend()?,
             Some(Effect::Mouse(on)) => {

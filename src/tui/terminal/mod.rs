@@ -43,12 +43,14 @@ mod outcome;
 mod converse;
 
 use std::io;
+use std::sync::Arc;
 
 pub use outcome::Outcome;
 pub use settings::Settings;
 
 use super::app::App;
 use super::effect::World;
+use super::message::Message;
 use input::Input;
 
 /// Runs the program until it ends. The terminal is left as it was, after an error, a signal and a panic too, and
@@ -62,6 +64,7 @@ pub fn run(
     settings: &Settings,
     watch: &mut dyn FnMut(&Input),
 ) -> io::Result<Outcome> {
-    let (_, mailbox) = mailbox::new()?;
+    let (sender, mailbox) = mailbox::new()?;
+    let world = world.with_workers(Arc::new(move |told| sender.send(Message::Told(told))));
     converse::run(app, world, settings, mailbox, watch)
 }

@@ -4,7 +4,7 @@ use ratatui::layout::Rect;
 
 use super::answer::{choose, look};
 use super::change::{refuse, replace};
-use super::matrix;
+use super::{explore, matrix};
 use crate::tui::app::App;
 use crate::tui::command::read;
 use crate::tui::command_dialog::CommandDialog;
@@ -21,6 +21,7 @@ use crate::tui::request::{Effect, Request};
 /// Does what a message says.
 pub(super) fn act(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> {
     if matches!(message, Message::Cancel | Message::Quit) {
+        explore::put_away(app, dialog);
         return None;
     }
     if message == Message::Help {
@@ -35,6 +36,10 @@ pub(super) fn act(app: &mut App, dialog: Dialog, message: Message) -> Option<Eff
         Dialog::Command(command) => return in_command(app, command, message),
         Dialog::Question(question) => return at_question(app, question, &message),
         Dialog::Help(help) => in_help(app, help, &message),
+        Dialog::Ranges(form) => return explore::in_ranges(app, form, message),
+        Dialog::Running(running) => return explore::in_running(app, running, &message),
+        Dialog::Results(results) => return explore::in_results(app, results, message),
+        Dialog::Export(dialog) => return explore::in_export(app, dialog, &message),
     }
     None
 }

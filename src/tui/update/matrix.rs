@@ -3,6 +3,7 @@
 use super::change::{
     begin, change, inform, movable, nudge, refuse, replace, shift, travel, turn, zoom,
 };
+use super::explore;
 use crate::description::descriptor::DESCRIPTORS;
 use crate::formats::value;
 use crate::library::store::{Expected, Origin};
@@ -83,6 +84,7 @@ pub(super) fn act(app: &mut App, message: Message) -> Option<Effect> {
             app.dialogs.push(Dialog::Question(question));
         }
         Message::Quit | Message::QuitNow => app.ended = true,
+        Message::Explore(asked) => return explore::act(app, asked),
         Message::Help => {
             let help = Help::new(app.context());
             app.dialogs.push(Dialog::Help(help));

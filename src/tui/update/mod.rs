@@ -4,6 +4,8 @@ mod change;
 
 mod answer;
 
+mod explore;
+
 mod matrix;
 
 mod dialog;
@@ -29,6 +31,7 @@ pub fn update(app: &mut App, message: Message) -> Option<Effect> {
             return None;
         }
         Message::Answer(answer) => return answer::take(app, answer),
+        Message::Told(told) => return explore::hear(app, told),
         Message::Mouse(mouse) => {
             let meant = mouse::act(app, mouse)?;
             return update(app, meant);

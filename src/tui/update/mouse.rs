@@ -44,6 +44,7 @@ pub(super) fn act(app: &mut App, mouse: Mouse) -> Option<Message> {
         (MouseKind::Press, Some(Target::Kind)) => point_at_field(app, None),
         (MouseKind::Press, Some(Target::Field(index))) => point_at_field(app, Some(index)),
         (MouseKind::Press, Some(Target::Row(index))) => return point_at_row(app, index),
+        (MouseKind::Press, Some(Target::Means(message))) => return Some(message),
         _ => {}
     }
     None
@@ -75,7 +76,10 @@ fn paint(app: &mut App, active: bool, from: (u8, u8), to: (u8, u8)) {
 }
 
 fn scroll(app: &App, lines: i16) -> Option<Message> {
-    let scrolls = matches!(app.dialogs.last(), Some(Dialog::List(_) | Dialog::Help(_)));
+    let scrolls = matches!(
+        app.dialogs.last(),
+        Some(Dialog::List(_) | Dialog::Help(_) | Dialog::Results(_))
+    );
     scrolls.then_some(Message::Scroll(lines))
 }
 
@@ -87,6 +91,9 @@ fn point_at_field(app: &mut App, field: Option<usize>) {
         if field.is_none() && was_there {
             dialog.choose(Arrow::Right);
         }
+    }
+    if let (Some(Dialog::Ranges(form)), Some(row)) = (app.dialogs.last_mut(), field) {
+        form.point(row);
     }
 }
 

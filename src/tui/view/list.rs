@@ -3,9 +3,8 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use super::write;
+use super::{thumbnail, write};
 use crate::description::region::{Kind, regions};
-use crate::imprint::Imprint;
 use crate::library::store::{Entry, Loaded, Origin};
 use crate::tui::app::App;
 use crate::tui::layout::{LIST_HEAD, list, list_first};
@@ -153,7 +152,7 @@ fn draw_preview(
             say(&facts, Role::Text);
             // At the same height for most of them.
             let end = say(&source, Role::Quiet).max(4);
-            draw_imprint(app, imprint, buffer, write::below(area, end));
+            thumbnail::draw(app, imprint, buffer, write::below(area, end));
         }
         Err(reason) => {
             say("broken:", Role::Error);
@@ -164,30 +163,4 @@ fn draw_preview(
 
 fn narrow(lines: usize) -> u16 {
     u16::try_from(lines).unwrap_or(u16::MAX)
-}
-
-/// Two rows in a line by half blocks; in ASCII a row a line, which a long imprint leaves at the bottom.
-fn draw_imprint(app: &App, imprint: &Imprint, buffer: &mut Buffer, area: Rect) {
-    let theme = app.theme();
-    let rows = if theme.ascii { 1 } else { 2 };
-    for (line, top) in (0..imprint.rows()).step_by(rows).enumerate() {
-        let half = |column: u8| match (
-            imprint.get(column, top),
-            rows == 2 && imprint.get(column, top + 1),
-        ) {
-            (true, true) => '█',
-            (true, false) if theme.ascii => '#',
-            (true, false) => '▀',
-            (false, true) => '▄',
-            (false, false) if theme.ascii => '.',
-            (false, false) => '·',
-        };
-        let text: String = (0..imprint.columns()).map(half).collect();
-        write::line(
-            buffer,
-            write::row(area, line),
-            theme,
-            [(text.as_str(), Role::Chosen)],
-        );
-    }
 }

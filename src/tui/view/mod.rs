@@ -18,6 +18,8 @@
 
 pub mod write;
 
+pub mod thumbnail;
+
 pub mod menu;
 
 pub mod matrix;
@@ -29,6 +31,8 @@ pub mod form;
 pub mod list;
 
 pub mod help;
+
+pub mod explore;
 
 pub mod status;
 
@@ -60,12 +64,22 @@ pub fn view(app: &App, frame: &mut Frame<'_>) {
     };
     menu::draw(app, buffer, panes.menu);
     let mut cursor = None;
-    match (app.dialogs.last(), panes.panel) {
+    match (app.pane(), panes.panel) {
         (Some(Dialog::Help(help)), _) => help::draw(app, help, buffer, panes.body),
         (Some(Dialog::List(dialog)), _) => cursor = list::draw(app, dialog, buffer, panes.body),
         (Some(Dialog::Form(dialog)), _) => {
             matrix::draw(app, &seen, buffer, panes.matrix);
             cursor = form::draw(app, dialog, buffer, panes.form);
+        }
+        (Some(Dialog::Ranges(form)), _) => {
+            matrix::draw(app, &seen, buffer, panes.matrix);
+            cursor = explore::ranges::draw(app, form, buffer, panes.form);
+        }
+        (Some(Dialog::Running(running)), _) => {
+            explore::running::draw(app, running, buffer, panes.body);
+        }
+        (Some(Dialog::Results(results)), _) => {
+            cursor = explore::draw(app, results, buffer, &panes);
         }
         (_, Some(panel)) => {
             cursor = matrix::draw(app, &seen, buffer, panes.matrix);

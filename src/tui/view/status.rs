@@ -17,25 +17,31 @@ use crate::tui::theme::Role;
 /// What stands before the name to store under.
 const NAME_LABEL: &str = "Save as: ";
 
+/// What stands before the name of a file to write.
+const EXPORT_LABEL: &str = "Export to: ";
+
 /// What is said where the shape is not wholly on the sensor. It stays where what is before it has to be shortened.
 const BEYOND: &str = "; reaches beyond the sensor";
 
 /// Draws all of them; answers where the cursor is, where a name or a command is typed.
 pub fn draw(app: &App, seen: &Seen, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
     let theme = app.theme();
-    let beyond = if seen.beyond { BEYOND } else { "" };
-    let room = usize::from(panes.source.width).saturating_sub(beyond.len());
-    let source = source(app);
-    let source = theme.text(&source);
-    let source = write::fitted(&source, room, theme);
-    let pieces = [&*source, beyond].map(|piece| (piece, Role::Text));
-    write::line(buffer, panes.source, theme, pieces);
-    write::line(
-        buffer,
-        panes.taxel,
-        theme,
-        [(taxel(app, seen, panes).as_str(), Role::Text)],
-    );
+    // Results have the place of what is said of the matrix.
+    if !matches!(app.pane(), Some(Dialog::Results(_))) {
+        let beyond = if seen.beyond { BEYOND } else { "" };
+        let room = usize::from(panes.source.width).saturating_sub(beyond.len());
+        let source = source(app);
+        let source = theme.text(&source);
+        let source = write::fitted(&source, room, theme);
+        let pieces = [&*source, beyond].map(|piece| (piece, Role::Text));
+        write::line(buffer, panes.source, theme, pieces);
+        write::line(
+            buffer,
+            panes.taxel,
+            theme,
+            [(taxel(app, seen, panes).as_str(), Role::Text)],
+        );
+    }
     hints(app, buffer, panes);
     let cursor = match app.dialogs.last() {
         Some(Dialog::Name(dialog)) => {
@@ -48,6 +54,10 @@ pub fn draw(app: &App, seen: &Seen, buffer: &mut Buffer, panes: &Panes) -> Optio
             let room = usize::from(panes.notice.width).saturating_sub(used);
             let candidates = as_many_as_fit(&dialog.candidates, room);
             Some(field(app, typed, &candidates, buffer, panes.notice))
+        }
+        Some(Dialog::Export(dialog)) => {
+            let typed = (EXPORT_LABEL, dialog.field.text(), dialog.field.cursor());
+            Some(field(app, typed, "", buffer, panes.notice))
         }
         _ => None,
     };
@@ -219,15 +229,17 @@ fn as_many_as_fit(words: &[String], room: usize) -> String {
 /// Keys that mean something now, as many as fit.
 fn hints(app: &App, buffer: &mut Buffer, panes: &Panes) {
     let mut rest = panes.hints;
-    let here = |binding: &&Binding| binding.context == app.context() && !binding.hint.is_empty();
+    let context = app.context();
+    let screen = context.screen().unwrap_or(context);
+    let hinted = |context| {
+        let here = move |binding: &&Binding| binding.context == context && !binding.hint.is_empty();
+        KEYMAP.iter().filter(here)
+    };
+    let own = || hinted(context).chain(hinted(screen).filter(move |_| screen != context));
     // Where the descriptors are a page of their own, its key comes first; elsewhere it does nothing.
     let page = |binding: &&Binding| binding.does(&Message::Page);
-    let first = KEYMAP
-        .iter()
-        .filter(here)
-        .filter(page)
-        .filter(|_| panes.panel.is_none());
-    let bindings = first.chain(KEYMAP.iter().filter(here).filter(|binding| !page(binding)));
+    let first = own().filter(page).filter(|_| panes.panel.is_none());
+    let bindings = first.chain(own().filter(|binding| !page(binding)));
     for (index, binding) in bindings.enumerate() {
         let gap = if index == 0 { "" } else { "  " };
         let keys = binding.short_labels();

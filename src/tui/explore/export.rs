@@ -1,0 +1,70 @@
+//! The field for the name of a file that what was found is written to.
+
+use crate::formats::sweep_file::AtlasFile;
+use crate::tui::text_field::TextField;
+
+/// No name is longer: that of a Linux file with its folders.
+const LONGEST: usize = 4096;
+
+/// The field.
+#[derive(Clone, Debug)]
+pub struct ExportDialog {
+    /// What was typed.
+    pub field: TextField,
+}
+
+impl ExportDialog {
+    /// A field that starts with a name.
+    pub fn new(name: &str) -> Self {
+        Self {
+            field: TextField::new(name, LONGEST),
+        }
+    }
+
+    /// The name of the file.
+    ///
+    /// # Errors
+    /// What is wrong with it, and what was expected.
+    pub fn name(&self) -> Result<String, String> {
+        let name = self.field.text().trim();
+        if is_poses(name) || AtlasFile::new(name).is_ok() {
+            return Ok(name.to_owned());
+        }
+        let found = if name.is_empty() {
+            String::new()
+        } else {
+            format!("{name:?}: ")
+        };
+        Err(format!(
+            "{found}expected a name that ends in .csv, .jsonl or .npz (the imprints) or .npy (the poses)"
+        ))
+    }
+}
+
+/// Whether a file of that name holds the atlas number of every pose.
+pub fn is_poses(name: &str) -> bool {
+    std::path::Path::new(name)
+        .extension()
+        .is_some_and(|ending| ending == "npy")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ending_tells_the_form() {
+        let name = |text: &str| ExportDialog::new(text).name();
+        for good in ["a.csv", " a/b.jsonl ", "./c.npz", "poses.npy"] {
+            assert_eq!(name(good).as_deref(), Ok(good.trim()));
+        }
+        for bad in ["", "a", "a.txt", ".csv", "csv", "npy"] {
+            let error = name(bad).expect_err("no form");
+            assert!(
+                error.contains("expected a name that ends in .csv"),
+                "{error}"
+            );
+        }
+        assert!(is_poses("a.npy") && !is_poses("a.csv") && !is_poses("npy"));
+    }
+}

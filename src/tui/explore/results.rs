@@ -1,0 +1,336 @@
+//! What a sweep found, and what of it is looked at: a page, a descriptor, an order, a row, a place of the map.
+
+use std::sync::Arc;
+
+use crate::imprint::Imprint;
+use crate::sweep::atlas::Entry;
+use crate::sweep::order::{SortKey, sorted};
+use crate::sweep::place::Place;
+use crate::sweep::quantity::{Quantity, quantities};
+use crate::sweep::survey::Survey;
+use crate::tui::exploring::{ExplorePage, Findings, Zoom};
+use crate::tui::key::Arrow;
+use crate::tui::message::End;
+
+/// The results, as they are looked at.
+#[derive(Clone, Debug)]
+pub struct Results {
+    findings: Arc<Findings>,
+    page: ExplorePage,
+    /// The number of the chosen descriptor, and its value of each imprint.
+    quantity: usize,
+    values: Vec<Option<f64>>,
+    sort: (SortKey, bool),
+    /// The imprints' numbers, sorted.
+    rows: Vec<u32>,
+    selected: usize,
+    /// The first column of statistics that is shown.
+    column: usize,
+    place: Place,
+}
+
+impl Results {
+    /// What was found, the most frequent imprint first.
+    pub fn new(findings: Arc<Findings>) -> Self {
+        let mut results = Self {
+            page: ExplorePage::Imprints,
+            quantity: 0,
+            values: findings.survey.atlas.values(0),
+            findings,
+            sort: (SortKey::Poses, true),
+            rows: Vec::new(),
+            selected: 0,
+            column: 0,
+            place: [0; 5],
+        };
+        results.arrange();
+        results
+    }
+
+    /// All of it.
+    pub fn findings(&self) -> &Arc<Findings> {
+        &self.findings
+    }
+
+    /// The sweep.
+    pub fn survey(&self) -> &Survey {
+        &self.findings.survey
+    }
+
+    /// The page.
+    pub fn page(&self) -> ExplorePage {
+        self.page
+    }
+
+    /// Goes to a page.
+    pub fn turn_to(&mut self, page: ExplorePage) {
+        self.page = page;
+    }
+
+    /// Goes to another page, the first after the last.
+    pub fn next_page(&mut self, by: i8) {
+        let now = ExplorePage::ALL.iter().position(|&page| page == self.page);
+        let next = around(now.unwrap_or(0), by, ExplorePage::ALL.len());
+        self.page = ExplorePage::ALL[next];
+    }
+
+    /// The number of the chosen descriptor.
+    pub fn quantity_number(&self) -> usize {
+        self.quantity
+    }
+
+    /// The chosen descriptor.
+    pub fn quantity(&self) -> &'static Quantity {
+        &quantities()[self.quantity]
+    }
+
+    /// Its value of each imprint, by the imprints' numbers.
+    pub fn values(&self) -> &[Option<f64>] {
+        &self.values
+    }
+
+    /// Chooses another descriptor, the first after the last.
+    pub fn next_quantity(&mut self, by: i8) {
+        self.choose_quantity(around(self.quantity, by, quantities().len()));
+    }
+
+    /// Chooses a descriptor, or the last one. The selected imprint stays selected.
+    pub fn choose_quantity(&mut self, number: usize) {
+        self.quantity = number.min(quantities().len() - 1);
+        self.values = self.survey().atlas.values(self.quantity);
+        if self.sort.0 == SortKey::Value {
+            self.arrange();
+        }
+    }
+
+    /// What the imprints are sorted by, and whether from the largest on.
+    pub fn sort_key(&self) -> (SortKey, bool) {
+        self.sort
+    }
+
+    /// Sorts by something, the largest first but for the first poses; again, the other way. The first row is selected.
+    pub fn sort(&mut self, by: SortKey) {
+        self.sort = if self.sort.0 == by {
+            (by, !self.sort.1)
+        } else {
+            (by, by != SortKey::FirstPose)
+        };
+        self.arrange();
+        self.selected = 0;
+    }
+
+    /// Sorts, and keeps the selected imprint selected.
+    fn arrange(&mut self) {
+        let selected = self.rows.get(self.selected).copied();
+        let (by, descending) = self.sort;
+        self.rows = sorted(&self.survey().atlas, &self.values, by, descending);
+        if let Some(id) = selected {
+            self.find(id);
+        }
+    }
+
+    /// How many rows the list of imprints has.
+    pub fn row_count(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Some of the imprints, from a row on.
+    pub fn rows_from(&self, first: usize) -> impl Iterator<Item = (usize, Entry)> + '_ {
+        let rows = self.rows.iter().enumerate().skip(first);
+        rows.filter_map(|(index, &id)| Some((index, self.survey().atlas.entry(id)?)))
+    }
+
+    /// Which row is selected.
+    pub fn selected(&self) -> usize {
+        self.selected
+    }
+
+    /// Selects a row, or the last one.
+    pub fn select(&mut self, row: usize) {
+        self.selected = row.min(self.rows.len().saturating_sub(1));
+    }
+
+    /// Selects an imprint; false where there is none of that number.
+    pub fn find(&mut self, id: u32) -> bool {
+        let row = self.rows.iter().position(|&row| row == id);
+        self.selected = row.unwrap_or(self.selected);
+        row.is_some()
+    }
+
+    /// The first column of statistics that is shown.
+    pub fn column(&self) -> usize {
+        self.column
+    }
+
+    /// Shows other columns, of so many.
+    pub fn move_columns(&mut self, by: i8, columns: usize) {
+        let moved = self.column.saturating_add_signed(isize::from(by));
+        self.column = moved.min(columns.saturating_sub(1));
+    }
+
+    /// Goes so many rows on: in the list, in the statistics and the histogram by descriptors, in the map along y0.
+    pub fn scroll(&mut self, lines: i16) {
+        let by = |now: usize| now.saturating_add_signed(isize::from(lines));
+        match self.page {
+            ExplorePage::Imprints => self.select(by(self.selected)),
+            ExplorePage::Statistics | ExplorePage::Histogram => {
+                self.choose_quantity(by(self.quantity));
+            }
+            ExplorePage::Map => self.move_along(1, i64::from(lines)),
+        }
+    }
+
+    /// To the first or the last row; in the map, along x0.
+    pub fn scroll_to(&mut self, end: End) {
+        let far = match end {
+            End::First => 0,
+            End::Last => usize::MAX,
+        };
+        match self.page {
+            ExplorePage::Imprints => self.select(far),
+            ExplorePage::Statistics | ExplorePage::Histogram => self.choose_quantity(far),
+            ExplorePage::Map => {
+                let last = self.survey().grid.counts()[0] - 1;
+                self.place[0] = if end == End::First { 0 } else { last };
+            }
+        }
+    }
+
+    /// Where the map's cursor is.
+    pub fn place(&self) -> Place {
+        self.place
+    }
+
+    /// Moves it by a pose.
+    pub fn move_cursor(&mut self, arrow: Arrow) {
+        let (dx, dy) = arrow.step();
+        self.move_along(0, dx.into());
+        self.move_along(1, dy.into());
+    }
+
+    /// Puts it at an x0 and a y0, or the last ones.
+    pub fn point(&mut self, x0: u64, y0: u64) {
+        let [width, height, ..] = self.survey().grid.counts();
+        self.place[0] = x0.min(width - 1);
+        self.place[1] = y0.min(height - 1);
+    }
+
+    /// Shows another angle.
+    pub fn turn(&mut self, by: i16) {
+        let count = self.survey().grid.counts()[2];
+        let by = i128::from(by) + i128::from(self.place[2]);
+        // All around, where the angles may go all around too.
+        self.place[2] = u64::try_from(by.rem_euclid(count.into())).unwrap_or(0);
+    }
+
+    /// Shows another zoom, up to the last one.
+    pub fn zoom(&mut self, zoom: Zoom, by: i8) {
+        let axis = match zoom {
+            Zoom::X => 3,
+            Zoom::Y => 4,
+        };
+        self.move_along(axis, by.into());
+    }
+
+    fn move_along(&mut self, axis: usize, by: i64) {
+        let last = self.survey().grid.counts()[axis] - 1;
+        self.place[axis] = self.place[axis].saturating_add_signed(by).min(last);
+    }
+
+    /// Puts the map's cursor where a pose is.
+    pub fn go_to_pose(&mut self, number: u64) {
+        self.place = self.survey().grid.place(number);
+    }
+
+    /// The pose that is looked at: of the map, or the first one of the selected imprint; its number.
+    pub fn pose(&self) -> Option<u64> {
+        if self.page == ExplorePage::Map {
+            return Some(self.survey().grid.number(self.place));
+        }
+        let (_, entry) = self.rows_from(self.selected).next()?;
+        Some(entry.first_pose)
+    }
+
+    /// The number of an imprint in the atlas.
+    pub fn id(&self, imprint: &Imprint) -> Option<u32> {
+        self.survey().atlas.find(imprint)
+    }
+}
+
+/// `by` further on among `count`, the first after the last.
+fn around(now: usize, by: i8, count: usize) -> usize {
+    let forward = usize::from(by.unsigned_abs()) % count;
+    let step = if by < 0 { count - forward } else { forward };
+    (now + step) % count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Figure, Kind};
+    use crate::sensor::Sensor;
+    use crate::source::Source;
+    use crate::sweep::grid::{Anchor, Grid, Ranges};
+    use crate::sweep::plan::Shard;
+    use crate::sweep::survey::Watch;
+
+    fn results() -> Results {
+        let ranges = Ranges {
+            x0: "5:5.9:0.1".parse().expect("a range"),
+            y0: "5:5.5:0.1".parse().expect("a range"),
+            angle: "0:80:20".parse().expect("a range"),
+            ..Ranges::default()
+        };
+        let source = Source::Figure(Figure::default_of(Kind::Heptagon, 16));
+        let grid = Grid::new(source, Sensor::default(), Anchor::Corner, ranges);
+        let survey = Survey::of(&grid.expect("in range"), Shard::WHOLE, Watch::nothing());
+        let classes = survey.atlas.distinct_classes();
+        Results::new(Arc::new(Findings { survey, classes }))
+    }
+
+    #[test]
+    fn the_selected_imprint_stays_selected_when_the_descriptor_changes() {
+        let mut results = results();
+        results.sort(SortKey::Value);
+        results.select(7);
+        let selected = |results: &Results| results.rows_from(results.selected()).next();
+        let before = selected(&results).map(|(_, entry)| entry.id);
+        results.next_quantity(3);
+        assert_eq!(selected(&results).map(|(_, entry)| entry.id), before);
+        results.sort(SortKey::Poses);
+        assert_eq!(results.selected(), 0);
+        let (_, most) = selected(&results).expect("a row");
+        assert!(
+            results
+                .rows_from(0)
+                .all(|(_, entry)| entry.count <= most.count)
+        );
+        results.sort(SortKey::Poses);
+        assert_eq!(results.sort_key(), (SortKey::Poses, false));
+    }
+
+    #[test]
+    fn the_cursor_of_the_map_stays_on_it() {
+        let mut results = results();
+        results.turn_to(ExplorePage::Map);
+        for (arrow, place) in [
+            (Arrow::Left, [0, 0, 0, 0, 0]),
+            (Arrow::Right, [1, 0, 0, 0, 0]),
+            (Arrow::Down, [1, 1, 0, 0, 0]),
+        ] {
+            results.move_cursor(arrow);
+            assert_eq!(results.place(), place);
+        }
+        results.point(u64::MAX, u64::MAX);
+        results.turn(-1);
+        results.zoom(Zoom::X, 1);
+        assert_eq!(results.place(), [9, 5, 4, 0, 0]);
+        results.scroll(-3);
+        results.scroll_to(End::First);
+        results.turn(1);
+        assert_eq!(results.place(), [0, 2, 0, 0, 0]);
+        assert_eq!(results.pose(), Some(20));
+        results.next_page(1);
+        assert_eq!(results.page(), ExplorePage::Imprints);
+    }
+}

@@ -1,0 +1,39 @@
+//! Lines, rows and widths that the pages have in common.
+
+use ratatui::layout::Rect;
+
+use crate::parameter::Parameter;
+use crate::sweep::grid::Grid;
+
+/// The first row that is visible, the selected one as near to the middle as the ends allow.
+pub(super) fn first(visible: usize, rows: usize, selected: usize) -> usize {
+    selected
+        .saturating_sub(visible / 2)
+        .min(rows.saturating_sub(visible))
+}
+
+/// The part of an area that begins so many lines below its top.
+pub(super) fn below(area: Rect, lines: u16) -> Rect {
+    let lines = lines.min(area.height);
+    Rect {
+        y: area.y + lines,
+        height: area.height - lines,
+        ..area
+    }
+}
+
+pub(super) fn narrow(length: usize) -> u16 {
+    u16::try_from(length).unwrap_or(u16::MAX)
+}
+
+/// Characters of the values of a range, and of its name.
+pub(super) fn width_of(grid: &Grid, parameter: Parameter) -> usize {
+    let rows = grid.ranges().rows();
+    let range = rows.iter().find(|(own, _)| *own == parameter);
+    let width = range.map_or(0, |(_, range)| {
+        let ends = [range.value(0), range.value(1), range.last()];
+        let widths = ends.map(|value| parameter.format(value).len());
+        widths.into_iter().max().unwrap_or(0)
+    });
+    width.max(parameter.row().short.len())
+}

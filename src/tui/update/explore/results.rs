@@ -1,0 +1,154 @@
+//! What keys do with what was found: pages, rows, the map, a shape back onto the matrix, a file.
+
+use super::act::act;
+use crate::formats::sweep_file::Existing;
+use crate::formats::value::grouped;
+use crate::sweep::statistics::COLUMNS;
+use crate::touch::Plane;
+use crate::tui::app::App;
+use crate::tui::dialog::Dialog;
+use crate::tui::document::{Document, Seen};
+use crate::tui::explore::export::{ExportDialog, is_poses};
+use crate::tui::explore::results::Results;
+use crate::tui::exploring::{ExplorePage, Exploring};
+use crate::tui::message::Message;
+use crate::tui::request::Effect;
+use crate::tui::update::change::{change, inform, refuse};
+
+/// Does what a message says over the results.
+pub(crate) fn in_results(
+    app: &mut App,
+    mut results: Box<Results>,
+    message: Message,
+) -> Option<Effect> {
+    match message {
+        Message::Accept => return put_onto_matrix(app, results),
+        Message::Scroll(lines) => results.scroll(lines),
+        Message::ScrollTo(end) => results.scroll_to(end),
+        Message::Cursor(arrow) => results.move_cursor(arrow),
+        Message::Paste(_) => inform(app, "pasted text goes into fields only"),
+        Message::Explore(Exploring::Export) => {
+            app.dialogs.push(Dialog::Results(results));
+            app.dialogs.push(Dialog::Export(ExportDialog::new("")));
+            return None;
+        }
+        Message::Explore(Exploring::Ranges) => {
+            app.dialogs.push(Dialog::Results(results));
+            return act(app, Exploring::Ranges);
+        }
+        Message::Explore(asked) => look(app, &mut results, &asked),
+        _ => {}
+    }
+    app.dialogs.push(Dialog::Results(results));
+    None
+}
+
+/// What changes only what is looked at.
+fn look(app: &mut App, results: &mut Results, asked: &Exploring) {
+    match *asked {
+        Exploring::Page(page) => results.turn_to(page),
+        Exploring::NextPage(by) => results.next_page(by),
+        Exploring::Quantity(by) => results.next_quantity(by),
+        Exploring::Columns(by) => results.move_columns(by, COLUMNS.len()),
+        Exploring::Sort(by) => results.sort(by),
+        Exploring::Find => match results.id(&app.seen().imprint) {
+            Some(id) => {
+                results.find(id);
+            }
+            None => refuse(app, "the imprint on the matrix is none of these"),
+        },
+        Exploring::Follow => follow(app, results),
+        Exploring::Select(row) if results.page() == ExplorePage::Imprints => results.select(row),
+        Exploring::Select(row) => results.choose_quantity(row),
+        Exploring::Point(x0, y0) => results.point(x0, y0),
+        Exploring::Angle(by) => results.turn(by),
+        Exploring::Zoomed(zoom, by) => results.zoom(zoom, by),
+        _ => {}
+    }
+}
+
+/// From the list to the first pose on the map, from the map to the imprint in the list.
+fn follow(app: &mut App, results: &mut Results) {
+    let Some(pose) = results.pose() else { return };
+    if results.page() != ExplorePage::Map {
+        results.go_to_pose(pose);
+        return results.turn_to(ExplorePage::Map);
+    }
+    let grid = &results.survey().grid;
+    let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(grid.pose(pose)));
+    match results.id(&imprint) {
+        Some(id) => {
+            results.find(id);
+            results.turn_to(ExplorePage::Imprints);
+        }
+        None => refuse(app, "this pose was not gone through: the sweep was stopped"),
+    }
+}
+
+/// The shape in the pose that is looked at, with just the imprint that the sweep found.
+fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
+    let grid = &results.survey().grid;
+    let Some(pose) = results.pose().map(|number| grid.pose(number)) else {
+        app.dialogs.push(Dialog::Results(results));
+        return None;
+    };
+    let source = match grid.source_at(pose) {
+        Ok(source) => source,
+        Err(error) => {
+            refuse(app, error.to_string());
+            app.dialogs.push(Dialog::Results(results));
+            return None;
+        }
+    };
+    let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(pose));
+    let mut document = Document::touched(app.history.present().sensor, source);
+    document.turned = Seen::of(&document).imprint.differing(&imprint);
+    let number = results.id(&imprint).map(|id| format!("imprint {id} "));
+    change(app, document);
+    app.chosen = None;
+    inform(
+        app,
+        format!(
+            "{}on the matrix; u takes it back, e goes on exploring",
+            number.unwrap_or_default()
+        ),
+    );
+    app.results = Some(results);
+    None
+}
+
+/// The name of a file; `request` is what the message means in a line of text.
+pub(crate) fn in_export(
+    app: &mut App,
+    mut dialog: ExportDialog,
+    message: &Message,
+) -> Option<Effect> {
+    if *message == Message::Accept {
+        match dialog.name() {
+            Ok(name) => match missing(app, &name) {
+                None => return act(app, Exploring::Write(name, Existing::Kept)),
+                Some(missing) => refuse(app, missing),
+            },
+            Err(error) => refuse(app, error),
+        }
+    } else {
+        dialog.field.take(message);
+    }
+    app.dialogs.push(Dialog::Export(dialog));
+    None
+}
+
+/// Why the poses cannot be written.
+fn missing(app: &App, name: &str) -> Option<String> {
+    let Some(Dialog::Results(results)) = app.dialogs.last() else {
+        return None;
+    };
+    let survey = results.survey();
+    (is_poses(name) && !survey.complete()).then(|| {
+        format!(
+            "only {} of {} poses were gone through: .npy needs all of them",
+            grouped(survey.poses),
+            grouped(survey.grid.poses())
+        )
+    })
+}

@@ -1,0 +1,178 @@
+//! The form of ranges: a line a field with what it may hold, errors under or beside it, how many poses there are and how
+//! long they take.
+
+use std::time::Duration;
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::formats::value::grouped;
+use crate::sweep::grid::Anchor;
+use crate::tui::app::App;
+use crate::tui::explore::ranges::{RangeField, RangesForm};
+use crate::tui::explore_layout::ranges::RangeRows;
+use crate::tui::theme::Role;
+use crate::tui::view::write;
+
+const LABEL: usize = 8;
+const INPUT: usize = 14;
+
+/// A pane from this width on has room for what is allowed beside the field.
+const WIDE: u16 = 40;
+
+/// Draws the form; answers where the text cursor is.
+pub fn draw(app: &App, form: &RangesForm, buffer: &mut Buffer, area: Rect) -> Option<Position> {
+    let theme = app.theme();
+    write::clear(buffer, area);
+    let title = form.title();
+    write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
+    let rows = RangeRows::of(area, form);
+    let mut cursor = None;
+    for (index, line) in rows.lines() {
+        let row = write::row(area, line.into());
+        let Some(field) = form.fields().get(index) else {
+            let at = draw_anchor(app, form, buffer, row);
+            cursor = cursor.or(form.focus().is_none().then_some(at));
+            continue;
+        };
+        let marked = form.focus() == Some(index);
+        let at = draw_field(app, field, marked, buffer, row);
+        cursor = cursor.or(marked.then_some(at));
+        let under = write::right_of(write::row(area, usize::from(line) + 1), area.x + 2);
+        let beside = write::right_of(row, area.x.saturating_add(narrow(LABEL + INPUT + 1)));
+        let allowed = format!(
+            "{} {}",
+            form.allowed(field),
+            field.parameter().row().unit.symbol()
+        );
+        let allowed = (allowed, Role::Quiet);
+        let error = form.trouble(index);
+        let error = error.map(|trouble| (format!("! {}", trouble.brief), Role::Error));
+        let (first, second) = match (rows.spacing, area.width >= WIDE) {
+            (2, true) => (Some((beside, allowed)), error.map(|error| (under, error))),
+            (2, false) => (Some((under, error.unwrap_or(allowed))), None),
+            _ => (Some((beside, error.unwrap_or(allowed))), None),
+        };
+        for (place, (text, role)) in [first, second].into_iter().flatten() {
+            write::line(buffer, place, theme, [(text.as_str(), role)]);
+        }
+    }
+    draw_summary(app, form, buffer, write::below(area, rows.end()));
+    cursor
+}
+
+/// Label and text; answers where the text cursor would be.
+fn draw_field(
+    app: &App,
+    field: &RangeField,
+    focused: bool,
+    buffer: &mut Buffer,
+    row: Rect,
+) -> Position {
+    let label = format!("{:LABEL$}", field.parameter().row().label);
+    // A text that is longer than the field shows the part around its cursor.
+    let hidden = (field.cursor() + 1).saturating_sub(INPUT);
+    let shown: String = field.text().chars().skip(hidden).take(INPUT).collect();
+    let padded = format!("{shown:INPUT$}");
+    let role = if focused { Role::Focus } else { Role::Text };
+    let pieces = [(label.as_str(), Role::Text), (padded.as_str(), role)];
+    write::line(buffer, row, app.theme(), pieces);
+    let column = narrow(LABEL + field.cursor() - hidden);
+    Position::new(row.x.saturating_add(column), row.y)
+}
+
+/// The anchor between angle brackets.
+fn draw_anchor(app: &App, form: &RangesForm, buffer: &mut Buffer, row: Rect) -> Position {
+    let label = format!("{:LABEL$}", "Anchor");
+    let (name, meaning) = match form.anchor() {
+        Anchor::Corner => ("corner", "its upright top left"),
+        Anchor::Centre => ("centre", "what it turns about"),
+    };
+    let role = if form.focus().is_none() {
+        Role::Focus
+    } else {
+        Role::Text
+    };
+    let meaning = if row.width >= WIDE { meaning } else { "" };
+    let pieces = [
+        (label.as_str(), Role::Text),
+        ("< ", Role::Quiet),
+        (name, role),
+        (" >     ", Role::Quiet),
+        (meaning, Role::Quiet),
+    ];
+    write::line(buffer, row, app.theme(), pieces);
+    Position::new(row.x.saturating_add(narrow(LABEL)), row.y)
+}
+
+/// How many poses there are, or why there are none; and what is left out.
+fn draw_summary(app: &App, form: &RangesForm, buffer: &mut Buffer, area: Rect) {
+    let theme = app.theme();
+    let (text, role) = match form.grid() {
+        Ok(grid) => {
+            let poses = format!("{} poses", grouped(grid.poses()));
+            let time = form.estimate().map(|time| format!(", {}", about(time)));
+            (poses + time.as_deref().unwrap_or(""), Role::Text)
+        }
+        // A wrong field says so itself.
+        Err(trouble) if trouble.field.is_some() => (String::new(), Role::Text),
+        Err(trouble) => (format!("! {}", trouble.full), Role::Error),
+    };
+    if role == Role::Error {
+        write::wrapped(buffer, area, theme, &text, role);
+        return;
+    }
+    write::line(buffer, write::row(area, 0), theme, [(text.as_str(), role)]);
+    if form.by_hand() > 0 {
+        let taxels = if form.by_hand() == 1 {
+            "taxel"
+        } else {
+            "taxels"
+        };
+        let text = format!("without {} {taxels} set by hand", form.by_hand());
+        let row = write::row(area, 1);
+        write::line(buffer, row, theme, [(text.as_str(), Role::Quiet)]);
+    }
+}
+
+/// A time as people say it.
+pub fn about(time: Duration) -> String {
+    let seconds = time.as_secs();
+    let (number, unit) = match seconds {
+        0 => return "under a second".to_owned(),
+        1..100 => (seconds, "second"),
+        100..6_000 => (seconds / 60, "minute"),
+        6_000..172_800 => (seconds / 3_600, "hour"),
+        _ => (seconds / 86_400, "day"),
+    };
+    let plural = if number == 1 { "" } else { "s" };
+    format!("about {} {unit}{plural}", grouped(number))
+}
+
+fn narrow(columns: usize) -> u16 {
+    u16::try_from(columns).unwrap_or(u16::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_said_in_the_unit_that_fits() {
+        let said = [0, 1, 99, 100, 5_999, 7_300, 172_800, 400_000_000];
+        let said = said.map(|seconds| about(Duration::from_secs(seconds)));
+        assert_eq!(
+            said,
+            [
+                "under a second",
+                "about 1 second",
+                "about 99 seconds",
+                "about 1 minute",
+                "about 99 minutes",
+                "about 2 hours",
+                "about 2 days",
+                "about 4,629 days"
+            ]
+        );
+    }
+}
