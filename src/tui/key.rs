@@ -208,3 +208,27 @@ fn named(name: &str) -> Option<Key> {
         .find(|(known, _)| known.eq_ignore_ascii_case(name));
     listed.map(|&(_, key)| key).or_else(ctrl).or_else(numbered)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_is_read() {
+        let named = NAMES.iter().map(|&(_, key)| key);
+        let others = [
+            'a', '<', '>', '#', '"', '\u{3000}', '\u{2028}', '\t', '\u{7f}', '你',
+        ];
+        let keys: Vec<Key> = named
+            .chain(others.map(Key::Char))
+            .chain([Key::Ctrl('r')])
+            .collect();
+        for &key in &keys {
+            let written = key.to_string();
+            assert_eq!(parse(&written), Ok(vec![key]), "{written}");
+            assert_eq!(written.trim(), written, "blanks at an end may be lost");
+        }
+        assert_eq!(Key::Char('\u{3000}').to_string(), "<U+3000>");
+        assert!(parse("<U+110000>").is_err() && parse("<U+>").is_err());
+    }
+}

@@ -273,6 +273,8 @@ impl Reader {
                 _ => {}
             },
             b'Z' => self.key(Key::BackTab),
+            // The Delete of st; the F1 of others has numbers here, or comes after ESC O.
+            b'P' if parameters.is_empty() => self.key(Key::Delete),
             b'u' => match (u8::try_from(first), shifted) {
                 (Ok(27), _) => self.key(Key::Esc),
                 (Ok(b'\t'), true) => self.key(Key::BackTab),

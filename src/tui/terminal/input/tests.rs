@@ -34,6 +34,10 @@ fn keys_of_many_terminals() {
             "\x1b[3~\x1b[5~\x1b[6~\x1b[Z",
             "<Del><PageUp><PageDown><S-Tab>",
         ),
+        (
+            "\x1bOP\x1b[11~\x1b[[A\x1b[1;2P\x1b[P",
+            "<F1><F1><F1><F1><Del>",
+        ),
         ("\x1bOM\x1b[27u\x1b[9;2u\x1b[13u", "<CR><Esc><S-Tab><CR>"),
         // Function keys, keys let go, keys and bytes that nobody knows.
         ("\x1b[[B\x1b[15~\x1bOQ\x1b[2~\x1b[1;1:3Aq\0\x1c\x1f", "q"),
