@@ -247,3 +247,16 @@ pub enum RangeError {
         count: u64,
     },
 }
+
+impl RangeError {
+    /// What was expected, for a place that shows the text beside it.
+    pub fn expected(&self) -> String {
+        match self {
+            Self::Form { .. } => "expected a number or start:end:step".to_owned(),
+            Self::Number { .. } => format!("not decimals of at most {MAX_PLACES} places"),
+            Self::Step => "expected a step above 0".to_owned(),
+            Self::Backwards { start, .. } => format!("expected an end from {start} on"),
+            Self::Many { .. } => self.to_string(),
+        }
+    }
+}

@@ -110,7 +110,12 @@ impl Pair {
                 };
                 (0..turns.unsigned_abs()).for_each(|_| self.mouse(kind, *place));
             }
-            Command::Screen(_) if !self.session.app().ended() => self.program.agrees(&self.session),
+            // How long a sweep will take is shown on a terminal only.
+            Command::Screen(name) if name.starts_with("timed") => {}
+            // A script's work is done before the next key; the program has to be waited for.
+            Command::Screen(_) | Command::Wait if !self.session.app().ended() => {
+                self.program.agrees(&self.session);
+            }
             _ => {}
         }
     }

@@ -36,7 +36,7 @@ impl ExportDialog {
             format!("{name:?}: ")
         };
         Err(format!(
-            "{found}expected a name that ends in .csv, .jsonl or .npz (the imprints) or .npy (the poses)"
+            "{found}expected a name that ends in .csv, .jsonl, .npz or .npy"
         ))
     }
 }

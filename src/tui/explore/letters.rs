@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// So many letters there are.
-pub const LETTERS: u8 = 26;
+/// So many letters there are, small and large ones.
+pub const LETTERS: u8 = 52;
 
 /// The letter of each cell, from 0, of a map of rows that are `width` cells wide; none where there is no imprint.
 /// Cells that touch, at a corner too, have different letters where they have different imprints; only more than
@@ -12,8 +12,8 @@ pub const LETTERS: u8 = 26;
 ///
 /// ```
 /// use taxel::tui::explore::letters::letters;
-/// // 26 would have the letter of 0, its neighbour.
-/// assert_eq!(letters(&[Some(0), Some(26), None, Some(3)], 2), [Some(0), Some(1), None, Some(3)]);
+/// // 52 would have the letter of 0, its neighbour.
+/// assert_eq!(letters(&[Some(0), Some(52), None, Some(3)], 2), [Some(0), Some(1), None, Some(3)]);
 /// ```
 pub fn letters(ids: &[Option<u32>], width: usize) -> Vec<Option<u8>> {
     let width = width.max(1);
@@ -58,6 +58,16 @@ pub fn letters(ids: &[Option<u32>], width: usize) -> Vec<Option<u8>> {
         .collect()
 }
 
+/// The letter of that number.
+pub fn letter(number: u8) -> char {
+    let (first, number) = if number < 26 {
+        (b'a', number)
+    } else {
+        (b'A', number - 26)
+    };
+    char::from(first + number.min(25))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -68,7 +78,7 @@ mod tests {
         for (width, height) in [(1, 9), (9, 1), (7, 8), (40, 30)] {
             let id = |x: usize, y: usize| {
                 let block = (x / 3 * 7 + y / 2 * 5) % 23;
-                (block % 6 != 5).then(|| u32::try_from(block * 26).expect("small"))
+                (block % 6 != 5).then(|| u32::try_from(block * 52).expect("small"))
             };
             let places = || (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
             let ids: Vec<_> = places().map(|(x, y)| id(x, y)).collect();

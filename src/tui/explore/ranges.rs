@@ -5,11 +5,12 @@
 
 use std::time::Duration;
 
+use crate::formats::value::grouped;
 use crate::parameter::{Parameter, Range};
 use crate::picture::Picture;
 use crate::sensor::Sensor;
 use crate::source::Source;
-use crate::sweep::grid::{Anchor, Grid, GridError, Ranges};
+use crate::sweep::grid::{Anchor, Grid, GridError, MAX_POSES, Ranges};
 use crate::sweep::range::DecimalRange;
 use crate::tui::document::{Document, Seen};
 use crate::tui::key::Arrow;
@@ -48,7 +49,7 @@ impl RangeField {
 pub struct Trouble {
     /// The field's number.
     pub field: Option<usize>,
-    /// For a place that shows the field beside it.
+    /// For a place that shows the field beside it; in lines, where it is wrong with all of them.
     pub brief: String,
     /// With the field's name.
     pub full: String,
@@ -188,9 +189,8 @@ impl RangesForm {
         let range: DecimalRange = match field.text().parse() {
             Ok(range) => range,
             Err(error) => {
-                let brief = format!("{error}");
-                let full = format!("{}: {brief}", field.parameter.row().key);
-                return Some(wrong(brief, full));
+                let full = format!("{}: {error}", field.parameter.row().key);
+                return Some(wrong(error.expected(), full));
             }
         };
         let ends = [range.value(0), range.last()];
@@ -225,7 +225,14 @@ impl RangesForm {
         let grid = Grid::new(self.source.clone(), self.sensor, self.anchor, ranges);
         grid.map_err(|error: GridError| Trouble {
             field: None,
-            brief: error.to_string(),
+            brief: match &error {
+                GridError::Poses { poses } => {
+                    let poses = u64::try_from(*poses).unwrap_or(u64::MAX);
+                    let most = grouped(MAX_POSES);
+                    format!("{} poses\nexpected at most {most}", grouped(poses))
+                }
+                _ => error.to_string(),
+            },
             full: error.to_string(),
         })
     }

@@ -77,11 +77,7 @@ impl ImprintList {
                 height: page.height.min(1),
                 ..table
             },
-            first: first(
-                usize::from(rows.height),
-                results.row_count(),
-                results.selected(),
-            ),
+            first: first(usize::from(rows.height), results.selected()),
             rows,
             detail: Rect {
                 height: u16::from(page.height > 1),

@@ -5,11 +5,9 @@ use ratatui::layout::Rect;
 use crate::parameter::Parameter;
 use crate::sweep::grid::Grid;
 
-/// The first row that is visible, the selected one as near to the middle as the ends allow.
-pub(super) fn first(visible: usize, rows: usize, selected: usize) -> usize {
-    selected
-        .saturating_sub(visible / 2)
-        .min(rows.saturating_sub(visible))
+/// The first row that is visible: rows are shown page by page, so that what is clicked on stays where it is.
+pub(super) fn first(visible: usize, selected: usize) -> usize {
+    selected - selected % visible.max(1)
 }
 
 /// The part of an area that begins so many lines below its top.

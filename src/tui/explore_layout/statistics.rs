@@ -46,11 +46,7 @@ impl StatisticsTable {
                 height: table.height.min(1),
                 ..table
             },
-            first: first(
-                usize::from(rows.height),
-                quantities().len(),
-                results.quantity_number(),
-            ),
+            first: first(usize::from(rows.height), results.quantity_number()),
             rows,
             name,
             column,

@@ -10,7 +10,7 @@ use crate::parameter::Parameter;
 use crate::sweep::grid::Grid;
 use crate::touch::Plane;
 use crate::tui::app::App;
-use crate::tui::explore::letters::letters;
+use crate::tui::explore::letters::{letter, letters};
 use crate::tui::explore::results::Results;
 use crate::tui::explore_layout::map::MapPane;
 use crate::tui::theme::Role;
@@ -45,11 +45,7 @@ fn heading(results: &Results) -> String {
                 ""
             };
             let which = if counts[axis] > 1 {
-                format!(
-                    " ({} of {})",
-                    grouped(place[axis] + 1),
-                    grouped(counts[axis])
-                )
+                format!(" {}/{}", grouped(place[axis] + 1), grouped(counts[axis]))
             } else {
                 String::new()
             };
@@ -81,15 +77,15 @@ fn draw_cells(
             pane.cells.y + step(y, at_y),
         )
     });
-    for (place, letter) in pane
+    for (place, number) in pane
         .cells
         .rows()
         .flat_map(Rect::columns)
         .filter(|place| (place.x - pane.cells.x).is_multiple_of(pane.cell))
         .zip(letters)
     {
-        let (text, style) = match letter {
-            Some(letter) => (char::from(b'a' + letter), theme.tint(letter.into())),
+        let (text, style) = match number {
+            Some(number) => (letter(number), theme.tint(number.into())),
             None => (' ', theme.style(Role::Quiet)),
         };
         for column in 0..pane.cell {

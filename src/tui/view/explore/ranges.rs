@@ -116,12 +116,14 @@ fn draw_summary(app: &App, form: &RangesForm, buffer: &mut Buffer, area: Rect) {
         }
         // A wrong field says so itself.
         Err(trouble) if trouble.field.is_some() => (String::new(), Role::Text),
-        Err(trouble) => (format!("! {}", trouble.full), Role::Error),
+        Err(trouble) => {
+            for (index, line) in trouble.brief.lines().enumerate() {
+                let pieces = [("! ", Role::Error), (line, Role::Error)];
+                write::line(buffer, write::row(area, index), theme, pieces);
+            }
+            return;
+        }
     };
-    if role == Role::Error {
-        write::wrapped(buffer, area, theme, &text, role);
-        return;
-    }
     write::line(buffer, write::row(area, 0), theme, [(text.as_str(), role)]);
     if form.by_hand() > 0 {
         let taxels = if form.by_hand() == 1 {
