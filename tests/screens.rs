@@ -34,6 +34,13 @@ fn every_size_of_every_screen_is_drawn() {
         "?<PageDown>",
         "f<Enter>i",
         "<Space>q",
+        "fr<Enter>e",
+        "fr<Enter>e9<Enter>",
+        "<Space>:explore --x0 5:6:0.1 --y0 5 --angle 0<Enter>",
+        "fr<Enter>:explore --x0 5:6:0.1 --y0 0:16:0.1 --angle 0<Enter>2",
+        "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>3",
+        "fr<Enter>:explore --x0 0:16:0.1 --y0 0:16:0.1 --angle 0<Enter>4<99x:Right>",
+        "fr<Enter>:explore --x0 5 --y0 5 --angle 0<Enter>x/tmp",
     ];
     for keys in screens {
         for side in [1.0, 16.0, 64.0] {
@@ -75,6 +82,13 @@ fn ascii_screens_are_ascii() {
         "?<9x:PageDown>",
         "f<Enter>q",
         "g",
+        "fr<Enter>e",
+        "fr<Enter>e5:<Enter>",
+        "fr<Enter>e<Enter>",
+        "fr<Enter>e<Enter>2",
+        "fr<Enter>e<Enter>3<End>",
+        "fr<Enter>e<Enter>4>",
+        "fr<Enter>e<Enter>x",
     ] {
         let screen = session((80, 24), true, keys).screen();
         assert!(screen.is_ascii(), "{keys}\n{screen}");

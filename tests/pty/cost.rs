@@ -125,6 +125,28 @@ fn nothing_is_done_for_nothing() {
     assert!(program.status("VmHWM") <= 8 * 1024);
 }
 
+/// A sweep wakes the program about ten times a second, and when it is stopped nothing does.
+#[test]
+fn a_stopped_sweep_leaves_nothing_awake() {
+    let mut program = Program::started(&Start::default());
+    program.types(b"fr\r:explore --x0 0:9.999:0.001 --y0 0:9.999:0.001\r");
+    program.shows("poses a second");
+    program.types(b"\x1b\x1b");
+    program.shows("a part: ");
+    while program.written(|_| {}) > 0 {}
+    let count = |program: &Program| (program.wake_ups(), program.bytes.len());
+    let before = count(&program);
+    let end = Instant::now() + Duration::from_secs(3);
+    while let Some(left) = end.checked_duration_since(Instant::now()) {
+        program.read(left);
+    }
+    assert_eq!(
+        count(&program),
+        before,
+        "wake-ups of each thread, and bytes"
+    );
+}
+
 #[test]
 fn the_first_frame_comes_quickly() {
     let times = (0..7).map(|_| {

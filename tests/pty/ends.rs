@@ -15,13 +15,18 @@ use taxel::tui::theme::Theme;
 use crate::program::{Program, Start, TAXEL};
 
 /// What is open when the end comes: keys, and what then is on the screen.
-const STATES: [(&[u8], &str); 8] = [
+const STATES: [(&[u8], &str); 9] = [
     (b"", "? Help"),
     (b"f\t2", "rx 2.00"),
     (b"l", "filter:"),
     (b" ", "NA 1 in all"),
     (b"f\rq", "(y/n)"),
     (b"?", "On the matrix"),
+    // Running work: a sweep that takes minutes.
+    (
+        b"fr\r:explore --x0 0:9.999:0.001 --y0 0:9.999:0.001\r",
+        "poses a second",
+    ),
     // Half of a paste, half of a key: here a reader that waits for the rest would not hear anything else.
     (b" \x1b[200~12", "NA 1 in all"),
     (b" \x1b[1;", "NA 1 in all"),
@@ -99,6 +104,20 @@ fn keys_end_it_with_status_0() {
         program.types(keys);
         program.ends_well(0);
     }
+}
+
+/// Ctrl-C while a sweep runs: nobody waits for the sweep, and unsaved work is kept.
+#[test]
+fn a_running_sweep_does_not_hold_it() {
+    let took = (0..3).map(|_| {
+        let mut program = in_state(&Start::default(), STATES[6]);
+        program.types(b"\x03");
+        let (ended, took) = program.ends();
+        assert_eq!(ended.code(), Some(0));
+        program.is_left();
+        took
+    });
+    println!("ended within {:?}", took.min().expect("three times"));
 }
 
 /// Whether the system says so or not, and whatever was half typed.

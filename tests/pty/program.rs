@@ -352,6 +352,21 @@ impl Program {
             .expect("a number")
     }
 
+    /// How often each of its threads has given the processor up of itself.
+    pub(crate) fn wake_ups(&self) -> Vec<u64> {
+        let folder = format!("/proc/{}/task", self.child.id());
+        let tasks = std::fs::read_dir(folder).expect("it runs").flatten();
+        let switches = tasks.map(|task| {
+            let text = std::fs::read_to_string(task.path().join("status")).expect("it runs");
+            let line = text
+                .lines()
+                .find_map(|line| line.strip_prefix("voluntary_ctxt_switches:"));
+            let number = line.and_then(|number| number.trim().parse().ok());
+            number.expect("a number")
+        });
+        switches.collect()
+    }
+
     /// Its processor time in hundredths of a second.
     pub(crate) fn cpu(&self) -> u64 {
         let file = format!("/proc/{}/stat", self.child.id());

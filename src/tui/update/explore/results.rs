@@ -146,7 +146,7 @@ fn missing(app: &App, name: &str) -> Option<String> {
     let survey = results.survey();
     (is_poses(name) && !survey.complete()).then(|| {
         format!(
-            "only {} of {} poses were gone through: .npy needs all of them",
+            ".npy needs all poses: only {} of {} were gone through",
             grouped(survey.poses),
             grouped(survey.grid.poses())
         )
