@@ -94,7 +94,7 @@ fn work_is_shown_and_stopped_and_what_is_complete_is_kept() {
     );
     program.press("xposes.npy<Enter>");
     shows(&program.session, &[".npy needs all poses: only "]);
-    program.press("<Esc>4<30x:PageDown><End>");
+    program.press("<Esc>4))");
     shows(&program.session, &["not gone through"]);
     program.press("g");
     shows(&program.session, &["this pose was not gone through"]);
