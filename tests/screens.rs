@@ -127,7 +127,7 @@ fn questions_and_notices_are_read_to_their_end_on_narrow_screens() {
 #[test]
 fn what_does_not_fit_ends_in_an_ellipsis() {
     let touched = "f<6x:Tab>2<Enter><Space>";
-    let whole = "wall 2.00 + 1 taxel by hand";
+    let whole = "wall 2.00 + 1 by hand";
     let screen = session((80, 24), false, touched).screen();
     assert!(screen.contains(whole), "{screen}");
     for (ascii, end) in [(false, "…"), (true, "...")] {
@@ -145,12 +145,12 @@ fn what_does_not_fit_ends_in_an_ellipsis() {
     // Of the taxel under the cursor what matters most comes first, and no word is cut.
     let screen = session((40, 24), false, "f<Enter>").screen();
     assert!(
-        screen.contains("\n8, 8    active    1.000000  step 0.01\n"),
+        screen.contains("\n 8,  8  1.000000    active  step 0.01\n"),
         "{screen}"
     );
     let screen = session((36, 24), false, "f<Enter>g").screen();
     assert!(
-        screen.contains("\n8, 8    active    held, step 0.01\n"),
+        screen.contains("\n 8,  8    active  held, step 0.01\n"),
         "{screen}"
     );
 }

@@ -23,4 +23,6 @@ pub mod atlas;
 
 pub mod archive;
 
+mod latch;
+
 pub mod sweep_file;
