@@ -6,6 +6,8 @@
 //! own corner give the same imprint again. Source: the paper's option Picture; its order is a convention of this
 //! project.
 
+use std::sync::Arc;
+
 use crate::geometry::outline::{Pen, Point, Solid, Turn};
 use crate::geometry::real::Real;
 use crate::imprint::Imprint;
@@ -21,10 +23,21 @@ pub const PICTURE_PARAMETERS: [Parameter; 5] = [
 ];
 
 /// A stored imprint and where it goes. Its values are always finite, its zooms above 0.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// It may know the name that its imprint is stored under. That is a remark: it is shown, but neither compared nor
+/// written to files.
+#[derive(Clone, Debug)]
 pub struct Picture {
     imprint: Imprint,
     values: [f64; PICTURE_PARAMETERS.len()],
+    /// Shared, so that a picture is moved about without allocating.
+    name: Option<Arc<str>>,
+}
+
+impl PartialEq for Picture {
+    fn eq(&self, other: &Self) -> bool {
+        self.imprint == other.imprint && self.values == other.values
+    }
 }
 
 impl Picture {
@@ -36,6 +49,16 @@ impl Picture {
         Self {
             imprint,
             values: [f64::from(left), f64::from(top), 0.0, 1.0, 1.0],
+            name: None,
+        }
+    }
+
+    /// The same picture with the name that its imprint is stored under.
+    #[must_use]
+    pub fn named(self, name: &str) -> Self {
+        Self {
+            name: Some(name.into()),
+            ..self
         }
     }
 
@@ -157,9 +180,13 @@ impl std::fmt::Display for Picture {
     /// Where the picture was put, in one line.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let text = |index: usize| PICTURE_PARAMETERS[index].format(self.values[index]);
+        f.write_str("picture")?;
+        if let Some(name) = &self.name {
+            write!(f, " of {name}")?;
+        }
         write!(
             f,
-            "picture at {}, {}, {}°, zoom {} x {}",
+            " at {}, {}, {}°, zoom {} x {}",
             text(0),
             text(1),
             text(2),

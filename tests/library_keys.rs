@@ -144,21 +144,23 @@ fn a_picture_starts_where_it_is_and_follows() {
     press(&mut session, "2<Enter>");
     shows(
         &session,
-        &["picture at 2.00, 8.00, 0°, zoom 1.00 x 1.00", "NA 2 in all"],
+        &[
+            "picture of pair at 2.00, 8.00, 0°, zoom 1.00 x 1.00",
+            "NA 2 in all",
+        ],
     );
     press(&mut session, "g++<Down>");
-    shows(&session, &["picture at 2.00, 9.00"]);
+    shows(&session, &["picture of pair at 2.00, 9.00"]);
     press(&mut session, "z");
     shows(
         &session,
         &[
-            "zoom 2.00 x 2.00",
+            "pair*: picture of pair at 2.00, 9.00, 0°, zoom 2.00…; reaches beyond the sensor",
             "NA 0 in all",
-            "reaches beyond the sensor",
         ],
     );
     press(&mut session, "uu>");
-    shows(&session, &["picture at 2.00, 8.00, 359°"]);
+    shows(&session, &["picture of pair at 2.00, 8.00, 359°"]);
     press(&mut session, "f<Enter>z");
     shows(&session, &["a figure has sizes in place of a zoom"]);
 }

@@ -68,8 +68,11 @@ pub(super) fn picture(
     given: &Given,
     shelf: &Shelf,
 ) -> Result<(Source, Sensor), Failure> {
-    let (imprint, sensor) = match shelf.find(what)? {
-        Content::Shape(shape) => (shape.imprint, shape.sensor),
+    let (picture, sensor) = match shelf.find(what)? {
+        Content::Shape(shape) => {
+            let picture = Picture::at_home(shape.imprint);
+            (picture.named(shape.name.as_str()), shape.sensor)
+        }
         Content::Text(imprint) => {
             let paper = Sensor::default();
             let side = |own: u8, paper: u8| f64::from(own.max(paper));
@@ -79,10 +82,10 @@ pub(super) fn picture(
                     sensor.with(Parameter::Rows, side(imprint.rows(), paper.rows()))
                 });
             // Both are sides of an imprint or of a sensor: in range.
-            (imprint, sensor.unwrap_or(paper))
+            (Picture::at_home(imprint), sensor.unwrap_or(paper))
         }
     };
     let sensor = given.sensor(sensor)?;
-    let picture = given.picture(Picture::at_home(imprint), sensor.side())?;
+    let picture = given.picture(picture, sensor.side())?;
     Ok((Source::Picture(picture), sensor))
 }

@@ -181,8 +181,8 @@ impl FormDialog {
                 let figure = Figure::new(*kind, side, value)?;
                 Ok(Document::touched(sensor, Source::Figure(figure)))
             }
-            Subject::Picture(_, imprint) => {
-                let picture = Picture::new(**imprint, side, value)?;
+            Subject::Picture(name, imprint) => {
+                let picture = Picture::new(**imprint, side, value)?.named(name);
                 Ok(Document::touched(sensor, Source::Picture(picture)))
             }
             Subject::Sensor => {

@@ -12,7 +12,7 @@ fn without_flags_a_picture_is_the_shape_itself() {
         assert_eq!(shown, touched, "{name}");
     }
     let text = shelf.does("picture|washer", "");
-    assert!(text.contains("\npicture at 2.00, 2.00, 0°, zoom 1.00 x 1.00\n16 × 16 taxels, threshold 0.5, NA 36 in all\n"), "{text}");
+    assert!(text.contains("\npicture of washer at 2.00, 2.00, 0°, zoom 1.00 x 1.00\n16 × 16 taxels, threshold 0.5, NA 36 in all\n"), "{text}");
 }
 
 #[test]

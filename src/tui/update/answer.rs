@@ -154,7 +154,8 @@ pub(super) fn choose(app: &mut App, list: ListDialog) -> Option<Effect> {
 }
 
 fn open_picture(app: &mut App, imprint: &Imprint, name: String) {
-    let form = FormDialog::picture(app.history.present(), Picture::at_home(*imprint), name);
+    let picture = Picture::at_home(*imprint).named(&name);
+    let form = FormDialog::picture(app.history.present(), picture, name);
     app.dialogs.push(Dialog::Form(Box::new(form)));
 }
 
