@@ -78,7 +78,7 @@ fn a_figure_follows_while_it_is_typed_and_escape_restores() {
         "f<Tab>2<Tab>x<Enter>",
         &[
             "ellipse rx 2.00 ry 4.00",
-            "! radius_y: \"x\" is not a number",
+            "! Radius y: \"x\" is not a number",
             "! not a number",
         ],
     );

@@ -302,7 +302,7 @@ fn commands_do_what_keys_do() {
             "! figure: \"blob\" is unknown, expected one of ellipse,",
         ),
         ("figure hexagon --side", "! --side needs a number"),
-        ("figure hexagon --side 99", "! side: 99 is out of range"),
+        ("figure hexagon --side 99", "! Side: 99 is out of range"),
         (
             "figure hexagon --length 2",
             "! length: not a value of the hexagon",

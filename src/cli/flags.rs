@@ -75,8 +75,8 @@ fn arg_with(parameter: Parameter, default: &str) -> Arg {
         .value_parser(parse)
 }
 
-fn parse(text: &str) -> Result<Number, &'static str> {
-    let value = number::read(text).ok_or("not a number")?;
+fn parse(text: &str) -> Result<Number, String> {
+    let value = number::read(text).ok_or_else(|| number::complaint(text))?;
     let text = text.trim().to_owned();
     Ok(Number { text, value })
 }

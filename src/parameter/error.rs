@@ -1,15 +1,16 @@
 //! Why a number was refused: one text for forms, flags and files.
 
-use super::number::short;
+use std::fmt;
+
+use super::number::{complaint, short};
 use super::range::Range;
 use super::table::{Parameter, Unit};
 
 /// Why a number was refused. The message names the parameter, what was given and what was expected.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ParameterError {
     /// Not a number at all.
-    #[error("{key}: \"{text}\" is not a number", key = parameter.row().key)]
     Number {
         /// What was to be set.
         parameter: Parameter,
@@ -17,7 +18,6 @@ pub enum ParameterError {
         text: String,
     },
     /// A number outside of the allowed range.
-    #[error("{key}: {value} is out of range, expected {range}{whole}", key = parameter.row().key, value = short(*value), whole = whole(*parameter))]
     Range {
         /// What was to be set.
         parameter: Parameter,
@@ -27,7 +27,6 @@ pub enum ParameterError {
         range: Range,
     },
     /// More decimals than a form takes.
-    #[error("{key}: {value} has too many decimals, expected {}", decimals(*allowed), key = parameter.row().key, value = short(*value))]
     Decimals {
         /// What was to be set.
         parameter: Parameter,
@@ -37,7 +36,6 @@ pub enum ParameterError {
         allowed: usize,
     },
     /// Nothing was given where something must be.
-    #[error("{}: missing, expected a number {range}", parameter.row().key)]
     Missing {
         /// What was to be set.
         parameter: Parameter,
@@ -46,11 +44,61 @@ pub enum ParameterError {
     },
 }
 
+impl std::error::Error for ParameterError {}
+
+impl fmt::Display for ParameterError {
+    /// By the parameter's key, as in files and flags.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.about(self.parameter().row().key))
+    }
+}
+
 impl ParameterError {
+    /// What was to be set.
+    pub fn parameter(&self) -> Parameter {
+        match self {
+            Self::Number { parameter, .. }
+            | Self::Range { parameter, .. }
+            | Self::Decimals { parameter, .. }
+            | Self::Missing { parameter, .. } => *parameter,
+        }
+    }
+
+    /// The message by the parameter's label, for a screen that shows no key.
+    ///
+    /// ```
+    /// use taxel::parameter::Parameter;
+    /// let error = Parameter::ZoomX.read("65", 16).unwrap_err();
+    /// assert_eq!(error.to_string(), "zoom_x: 65 is out of range, expected above 0, up to 64");
+    /// assert_eq!(error.labelled(), "Zoom x: 65 is out of range, expected above 0, up to 64");
+    /// ```
+    pub fn labelled(&self) -> String {
+        self.about(self.parameter().row().label)
+    }
+
+    fn about(&self, name: &str) -> String {
+        match self {
+            Self::Number { text, .. } => format!("{name}: {text:?} is {}", complaint(text)),
+            Self::Range {
+                parameter,
+                value,
+                range,
+            } => {
+                let (value, whole) = (short(*value), whole(*parameter));
+                format!("{name}: {value} is out of range, expected {range}{whole}")
+            }
+            Self::Decimals { value, allowed, .. } => {
+                let (value, decimals) = (short(*value), decimals(*allowed));
+                format!("{name}: {value} has too many decimals, expected {decimals}")
+            }
+            Self::Missing { range, .. } => format!("{name}: missing, expected a number {range}"),
+        }
+    }
+
     /// What was expected, for a place that shows the field beside it.
     pub fn expected(&self) -> String {
         match self {
-            Self::Number { .. } => "not a number".to_owned(),
+            Self::Number { text, .. } => complaint(text),
             Self::Range {
                 parameter, range, ..
             } => format!("expected {range}{}", whole(*parameter)),

@@ -26,3 +26,18 @@ pub fn short(number: f64) -> String {
         format!("{number:e}")
     }
 }
+
+/// What is said of a text that is no number; of one that would be with a decimal point, how to write it.
+///
+/// ```
+/// use taxel::parameter::number::complaint;
+/// assert_eq!(complaint("wide"), "not a number");
+/// assert_eq!(complaint("2,5"), "not a number; write 2.5");
+/// ```
+pub fn complaint(text: &str) -> String {
+    let with_point = text.trim().replace(',', ".");
+    match read(&with_point) {
+        Some(_) if with_point != text.trim() => format!("not a number; write {with_point}"),
+        _ => "not a number".to_owned(),
+    }
+}

@@ -121,7 +121,7 @@ fn numbers(pairs: &[&str], side: u8) -> Result<Vec<(Parameter, f64)>, String> {
             .get(1)
             .ok_or_else(|| format!("{flag} needs a number"))?;
         let value = parameter.read(text, side);
-        numbers.push((parameter, value.map_err(|error| error.to_string())?));
+        numbers.push((parameter, value.map_err(|error| error.labelled())?));
     }
     Ok(numbers)
 }

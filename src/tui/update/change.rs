@@ -148,7 +148,7 @@ fn set(app: &mut App, source: Source, values: &[(Parameter, f64)]) {
         });
     match moved {
         Ok(source) => replace(app, Document::touched(sensor, source)),
-        Err(error) => refuse(app, error.to_string()),
+        Err(error) => refuse(app, error.labelled()),
     }
 }
 

@@ -73,7 +73,7 @@ fn in_form(app: &mut App, mut dialog: FormDialog, message: Message) {
             None => return replace(app, dialog.shown().clone()),
             Some((index, error)) => {
                 dialog.edit(|form| form.set_focus(Some(index)));
-                refuse(app, error.to_string());
+                refuse(app, error.labelled());
             }
         },
         Message::Field(by) => dialog.move_focus(by),
