@@ -89,6 +89,57 @@ fn a_figure_follows_while_it_is_typed_and_escape_restores() {
 }
 
 #[test]
+fn the_matrix_does_not_stay_at_the_beginning_of_a_wrong_number() {
+    shows("f<Tab>1", &["ellipse rx 1.00 ry 4.00"]);
+    shows(
+        "f<Tab>17",
+        &["ellipse rx 4.00 ry 4.00", "! expected above 0"],
+    );
+    shows(
+        "f<Tab>2,5",
+        &["ellipse rx 4.00 ry 4.00", "! not a number; write 2.5"],
+    );
+    shows("f<Tab>2,<BS>.5", &["ellipse rx 2.50 ry 4.00"]);
+    // What was reached by a step, or before the field was left, stays.
+    shows("f<Tab>++x", &["ellipse rx 4.02 ry 4.00"]);
+    shows("f<Tab>2<Tab>3<S-Tab>x", &["ellipse rx 2.00 ry 3.00"]);
+    shows(
+        "f<Tab>2<S-Tab>r<Tab>x",
+        &["rectangle length 6.00 width 3.00"],
+    );
+}
+
+#[test]
+fn a_form_says_what_a_thickness_means() {
+    shows(
+        "f",
+        &[
+            "Thickness           above 0, up to 16 cells",
+            "empty: solid",
+        ],
+    );
+    let figure = "ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0°, wall";
+    shows(
+        "f<6x:Tab>3.99",
+        &[&format!("{figure} 3.99"), "empty: solid"],
+    );
+    let solid = "no room for a hole: solid";
+    shows(
+        "f<6x:Tab>4",
+        &[&format!("{figure} 4.00 ({solid})"), &format!("  {solid}")],
+    );
+    shows("f<6x:Tab>4<Enter>", &[solid, "NA 52 in all"]);
+}
+
+#[test]
+fn the_step_is_told_where_there_is_something_to_move() {
+    assert!(!session("<Space>").screen().contains("step"));
+    shows("f<Enter>", &["NA 52 in all  step 0.01"]);
+    shows("f<Enter>g+", &["NA 52 in all  held, step 0.1"]);
+    shows("f<Enter>g++g", &["NA 52 in all  step 1"]);
+}
+
+#[test]
 fn kinds_are_chosen_by_arrow_and_by_letter() {
     shows("f<Down>", &["< rectangle >", "Length", "Width"]);
     shows("f<Up>", &["< octagon "]);

@@ -31,8 +31,11 @@ pub struct FormDialog {
     hidden: Vec<Field>,
     /// What is on the matrix without the form.
     before: Document,
-    /// What the last values that were right together make of it.
+    /// What the fields make of it, while all of them are right.
     shown: Document,
+    /// What they made of it before the field that has the focus was typed in. A field that becomes wrong may have been
+    /// right on the way, "1" on the way to "17": the matrix does not stay there.
+    settled: Document,
 }
 
 impl FormDialog {
@@ -72,6 +75,7 @@ impl FormDialog {
             form,
             hidden: Vec::new(),
             before: before.clone(),
+            settled: shown.clone(),
             shown,
         };
         dialog.fill();
@@ -166,6 +170,12 @@ impl FormDialog {
         change(&mut self.form);
         if let Ok(document) = self.made() {
             self.shown = document;
+            let typed = self.form.focus().and_then(|at| self.form.fields().get(at));
+            if typed.is_none_or(Field::fresh) {
+                self.settled = self.shown.clone();
+            }
+        } else {
+            self.shown = self.settled.clone();
         }
     }
 
@@ -209,7 +219,7 @@ impl FormDialog {
             .focus()
             .map_or(0, |index| i64::try_from(index).unwrap_or(0) + head);
         let next = (now + i64::from(by)).rem_euclid(rows);
-        self.form.set_focus(usize::try_from(next - head).ok());
+        self.edit(|form| form.set_focus(usize::try_from(next - head).ok()));
     }
 
     /// An arrow: chooses the kind, moves in a field or to another one.
