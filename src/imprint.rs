@@ -100,15 +100,16 @@ impl Imprint {
 
     /// The smallest rectangle of whole taxels around the active ones; none of an empty imprint.
     pub fn bounds(&self) -> Option<Bounds> {
-        let rows = self.words();
-        let top = rows.iter().position(|&word| word != 0)?;
-        let bottom = rows.iter().rposition(|&word| word != 0)? + 1;
-        let across = rows[top..bottom].iter().fold(0, |all, word| all | word);
-        Some(Bounds {
-            left: trailing(across),
-            top: narrow(top),
-            right: MAX_SIDE - narrow_bits(across.leading_zeros()),
-            bottom: narrow(bottom),
+        let (mut across, mut down) = (0, 0_u64);
+        for (row, &word) in self.words().iter().enumerate() {
+            across |= word;
+            down |= u64::from(word != 0) << row;
+        }
+        (across != 0).then(|| Bounds {
+            left: narrow(across.trailing_zeros()),
+            top: narrow(down.trailing_zeros()),
+            right: MAX_SIDE - narrow(across.leading_zeros()),
+            bottom: MAX_SIDE - narrow(down.leading_zeros()),
         })
     }
 
@@ -168,16 +169,8 @@ impl Bounds {
     }
 }
 
-fn narrow(index: usize) -> u8 {
-    u8::try_from(index).unwrap_or(MAX_SIDE)
-}
-
-fn narrow_bits(bits: u32) -> u8 {
+fn narrow(bits: u32) -> u8 {
     u8::try_from(bits).unwrap_or(MAX_SIDE)
-}
-
-fn trailing(word: u64) -> u8 {
-    narrow_bits(word.trailing_zeros())
 }
 
 impl fmt::Display for Imprint {
@@ -245,7 +238,7 @@ impl Imprint {
                 });
             }
             imprint.words[index] = word;
-            count = narrow(row);
+            count = u8::try_from(row).unwrap_or(MAX_SIDE);
         }
         imprint
             .map(|imprint| Self {

@@ -22,16 +22,14 @@ impl Steps {
     }
 }
 
-/// The windows with two neighbours, with three, and with just a diagonal, by their corners.
+/// The windows with three taxels or all four or just a diagonal, those with three, and those with a diagonal; by their
+/// corners.
 fn windows(upper_left: u64, upper_right: u64, lower_left: u64, lower_right: u64) -> [u64; 3] {
     let (upper, lower) = (upper_left & upper_right, lower_left & lower_right);
     let (either_upper, either_lower) = (upper_left ^ upper_right, lower_left ^ lower_right);
     let three = upper & either_lower | lower & either_upper;
-    let row_pair = upper & !(lower_left | lower_right) | lower & !(upper_left | upper_right);
-    let one_each = either_upper & either_lower;
-    let column_pair = one_each & !(upper_left ^ lower_left);
-    let across = one_each & (upper_left ^ lower_left);
-    [row_pair | column_pair, three, across]
+    let across = either_upper & either_lower & (upper_left ^ lower_left);
+    [three | across | upper & lower, three, across]
 }
 
 /// What is counted of a filled region.
@@ -66,7 +64,7 @@ impl Outline {
             let join = |word: u64, &row: &u64| word.unbounded_shl(BITS) | row >> bounds.left;
             rows.iter().rev().fold(0, join)
         });
-        let (mut taxels, mut outline, mut counts) = (0, 0, [0; 3]);
+        let (mut taxels, mut inner, mut counts) = (0, 0, [0; 3]);
         let (mut before, mut here) = (0, words.next().unwrap_or(0));
         // One word more where the last one is full: a window reaches below the last row.
         for _ in 0..=rows.len() / (u64::BITS / BITS) as usize {
@@ -74,12 +72,15 @@ impl Outline {
             let above = here.unbounded_shl(BITS) | before >> (u64::BITS - BITS);
             let below = here.unbounded_shr(BITS) | next << (u64::BITS - BITS);
             taxels += here.count_ones();
-            outline += (here & !(here << 1 & here >> 1 & above & below)).count_ones();
+            inner += (here & here << 1 & here >> 1 & above & below).count_ones();
             // Bit i of the four words: a window's corners. One window lies left of column 0, so shift up, not down;
             // a taxel in column 63 loses its window to the right, which is added by itself.
-            let mut add = |kinds: [u64; 3]| {
-                for (count, kind) in counts.iter_mut().zip(kinds) {
-                    *count += kind.count_ones();
+            let mut add = |[many, three, across]: [u64; 3]| {
+                counts[0] += many.count_ones();
+                counts[1] += three.count_ones();
+                // Rare.
+                if across != 0 {
+                    counts[2] += across.count_ones();
                 }
             };
             add(windows(above << 1, above, here << 1, here));
@@ -88,12 +89,15 @@ impl Outline {
             }
             (before, here) = (here, next);
         }
-        let [straight, three, across] = counts;
+        let [many, three, across] = counts;
         Self {
             taxels,
-            outline,
+            outline: taxels - inner,
             steps: Steps {
-                straight,
+                // Each taxel is a corner of four windows; and by Euler's formula there are four windows with one taxel
+                // more than there are with three and twice those with a diagonal. So those with two neighbours, which
+                // have one step each, follow from the other kinds.
+                straight: 2 * taxels.saturating_sub(1 + many),
                 diagonal: three + 2 * across,
             },
         }

@@ -7,6 +7,8 @@
 //!
 //! Floods work on whole rows: a run of taxels that is entered anywhere is filled at once by the carry of an addition.
 
+use std::borrow::Cow;
+
 use crate::imprint::{Bounds, Imprint};
 
 /// What a region is.
@@ -28,16 +30,35 @@ impl Kind {
     }
 }
 
-/// A piece or a hole; never empty.
+/// A piece or a hole; never empty. Its taxels may be borrowed: an imprint is half a kilobyte.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Region {
+pub struct Region<'a> {
     kind: Kind,
-    taxels: Imprint,
-    filled: Imprint,
+    taxels: Cow<'a, Imprint>,
+    filled: Cow<'a, Imprint>,
     bounds: Bounds,
 }
 
-impl Region {
+impl<'a> Region<'a> {
+    fn borrowed(kind: Kind, taxels: &'a Imprint, filled: &'a Imprint, bounds: Bounds) -> Self {
+        Self {
+            kind,
+            taxels: Cow::Borrowed(taxels),
+            filled: Cow::Borrowed(filled),
+            bounds,
+        }
+    }
+
+    /// The same with taxels of its own.
+    pub fn into_owned(self) -> Region<'static> {
+        Region {
+            kind: self.kind,
+            taxels: Cow::Owned(self.taxels.into_owned()),
+            filled: Cow::Owned(self.filled.into_owned()),
+            bounds: self.bounds,
+        }
+    }
+
     /// Whether it is a piece or a hole.
     pub fn kind(&self) -> Kind {
         self.kind
@@ -71,9 +92,9 @@ impl Region {
 /// assert_eq!(regions.iter().map(|region| region.kind()).collect::<Vec<_>>(), [Kind::Exterior, Kind::Hole]);
 /// assert_eq!(regions[1].taxels().to_string(), "....\n.##.\n....");
 /// ```
-pub fn regions(imprint: &Imprint) -> Vec<Region> {
+pub fn regions(imprint: &Imprint) -> Vec<Region<'static>> {
     let mut found = Vec::new();
-    each_region(imprint, |region| found.push(region.clone()));
+    each_region(imprint, |region| found.push(region.clone().into_owned()));
     found
 }
 
@@ -90,36 +111,26 @@ pub fn each_region(imprint: &Imprint, mut visit: impl FnMut(&Region)) {
     let Some(bounds) = imprint.bounds() else {
         return;
     };
-    let holes = enclosed(imprint, bounds);
-    let holes_bounds = holes.bounds();
-    let mut region = Region {
-        kind: Kind::Exterior,
-        taxels: *imprint,
-        filled: *imprint,
-        bounds,
-    };
-    if let Some(bounds) = holes_bounds {
-        unite(&mut region.filled, &holes, bounds);
-    }
-    if is_stack(&region.filled, bounds, true) && holes_bounds.is_none_or(|at| is_runs(&holes, at)) {
-        visit(&region);
-    } else {
-        pieces(
-            imprint,
-            bounds,
-            holes_bounds.is_some(),
-            &mut region,
-            &mut visit,
-        );
-    }
-    if let Some(bounds) = holes_bounds {
-        region.kind = Kind::Hole;
-        if is_stack(&holes, bounds, false) {
-            (region.taxels, region.filled, region.bounds) = (holes, holes, bounds);
-            visit(&region);
+    let mut holes = Imprint::empty(imprint.columns(), imprint.rows());
+    let Some(holes_bounds) = enclosed(imprint, bounds, &mut holes) else {
+        if is_stack(imprint, bounds, true) {
+            visit(&Region::borrowed(Kind::Exterior, imprint, imprint, bounds));
         } else {
-            pieces(&holes, bounds, true, &mut region, &mut visit);
+            pieces(imprint, bounds, Kind::Exterior, false, &mut visit);
         }
+        return;
+    };
+    let mut filled = *imprint;
+    unite(&mut filled, &holes, holes_bounds);
+    if is_stack(&filled, bounds, true) && is_runs(&holes, holes_bounds) {
+        visit(&Region::borrowed(Kind::Exterior, imprint, &filled, bounds));
+    } else {
+        pieces(imprint, bounds, Kind::Exterior, true, &mut visit);
+    }
+    if is_stack(&holes, holes_bounds, false) {
+        visit(&Region::borrowed(Kind::Hole, &holes, &holes, holes_bounds));
+    } else {
+        pieces(&holes, holes_bounds, Kind::Hole, true, &mut visit);
     }
 }
 
@@ -174,14 +185,14 @@ fn rows(matrix: &Imprint, bounds: Bounds) -> &[u64] {
     &matrix.words()[usize::from(bounds.top)..usize::from(bounds.bottom)]
 }
 
-/// The connected components of a matrix in reading order: exteriors 8-connected, holes 4-connected. Each is put into
-/// `region`, of that kind, and shown. `enclose` tells whether one of them may enclose anything: where a matrix has no
-/// hole none does, since what lies between a piece and another one inside of it would be one.
+/// Shows the connected components of a matrix in reading order: exteriors 8-connected, holes 4-connected. `enclose`
+/// tells whether one of them may enclose anything: where a matrix has no hole none does, since what lies between a piece
+/// and another one inside of it would be one.
 fn pieces(
     matrix: &Imprint,
     bounds: Bounds,
+    kind: Kind,
     enclose: bool,
-    region: &mut Region,
     visit: &mut impl FnMut(&Region),
 ) {
     let mut rest = *matrix;
@@ -196,17 +207,21 @@ fn pieces(
         piece.set_word(usize::from(top), word & word.wrapping_neg());
         let below = Bounds { top, ..bounds };
         let seeded = usize::from(top) + 1;
-        let diagonal = region.kind == Kind::Exterior;
-        let end = flood(&mut piece, &rest, below, seeded, diagonal);
+        let end = flood(&mut piece, &rest, below, seeded, kind == Kind::Exterior);
         for row in usize::from(top)..end {
             rest.set_word(row, rest.words()[row] & !piece.words()[row]);
         }
-        if let Some(bounds) = piece.bounds() {
-            (region.taxels, region.filled, region.bounds) = (piece, piece, bounds);
-            if enclose {
-                unite(&mut region.filled, &enclosed(&piece, bounds), bounds);
-            }
-            visit(region);
+        let Some(bounds) = piece.bounds() else {
+            continue;
+        };
+        let mut holes = Imprint::empty(matrix.columns(), matrix.rows());
+        let enclosed = enclose.then(|| enclosed(&piece, bounds, &mut holes));
+        if let Some(holes_bounds) = enclosed.flatten() {
+            let mut filled = piece;
+            unite(&mut filled, &holes, holes_bounds);
+            visit(&Region::borrowed(kind, &piece, &filled, bounds));
+        } else {
+            visit(&Region::borrowed(kind, &piece, &piece, bounds));
         }
     }
 }
@@ -270,37 +285,37 @@ fn spread(seeds: u64, open: u64) -> u64 {
     up(seeds, open) | up(seeds.reverse_bits(), open.reverse_bits()).reverse_bits()
 }
 
-/// The taxels outside of a matrix's active ones that these enclose: background that does not reach the rim.
-fn enclosed(matrix: &Imprint, bounds: Bounds) -> Imprint {
-    let mut inner = Imprint::empty(matrix.columns(), matrix.rows());
+/// Puts the taxels that a matrix's active ones enclose, background that does not reach the rim, into `inner`, which is
+/// empty and of the same size. Gives their bounds.
+fn enclosed(matrix: &Imprint, bounds: Bounds, inner: &mut Imprint) -> Option<Bounds> {
     // What lies left of a row's first active taxel or right of its last one is outside. Of the rest, what is next to
     // the outside is outside as well, and so on.
-    let (mut far_above, mut inner_above) = (u64::MAX, 0);
-    let (mut any, mut open) = (0, 0);
+    let inside = |word: u64| span(word) & !word;
+    if rows(matrix, bounds).iter().all(|&word| inside(word) == 0) {
+        return None;
+    }
+    let (mut far_above, mut inner_above, mut open) = (u64::MAX, 0, 0);
     for (row, &word) in (usize::from(bounds.top)..).zip(rows(matrix, bounds)) {
-        let far = !span(word);
-        let inside = !(far | word);
+        let (far, inside) = (!span(word), inside(word));
         inner.set_word(row, inside);
         open |= inside & far_above | inner_above & far;
-        any |= inside;
         (far_above, inner_above) = (far, inside);
     }
     // Below the last row everything is outside.
-    if any == 0 || open | inner_above == 0 {
-        return inner;
+    if open | inner_above != 0 {
+        let mut outside = Imprint::empty(matrix.columns(), matrix.rows());
+        for row in usize::from(bounds.top)..usize::from(bounds.bottom) {
+            let far = |row: usize| !span(*matrix.words().get(row).unwrap_or(&0));
+            let reached = inner.words()[row] & (far(row.wrapping_sub(1)) | far(row + 1));
+            outside.set_word(row, spread(reached, inner.words()[row]));
+        }
+        let end = usize::from(bounds.bottom);
+        flood(&mut outside, inner, bounds, end, false);
+        for row in usize::from(bounds.top)..usize::from(bounds.bottom) {
+            inner.set_word(row, inner.words()[row] & !outside.words()[row]);
+        }
     }
-    let mut outside = Imprint::empty(matrix.columns(), matrix.rows());
-    for row in usize::from(bounds.top)..usize::from(bounds.bottom) {
-        let far = |row: usize| !span(*matrix.words().get(row).unwrap_or(&0));
-        let reached = inner.words()[row] & (far(row.wrapping_sub(1)) | far(row + 1));
-        outside.set_word(row, spread(reached, inner.words()[row]));
-    }
-    let end = usize::from(bounds.bottom);
-    flood(&mut outside, &inner, bounds, end, false);
-    for row in usize::from(bounds.top)..usize::from(bounds.bottom) {
-        inner.set_word(row, inner.words()[row] & !outside.words()[row]);
-    }
-    inner
+    inner.bounds()
 }
 
 /// From the first set bit to the last, all set.

@@ -97,7 +97,7 @@ pub struct Seen {
     /// How much of each cell is covered, in reading order; none of a matrix that is only drawn on.
     pub coverages: Option<Vec<f64>>,
     /// Pieces and holes.
-    pub regions: Vec<Region>,
+    pub regions: Vec<Region<'static>>,
     /// What is described unless another region was chosen.
     pub main: Option<usize>,
     /// Whether the source reaches beyond the sensor.
@@ -137,7 +137,7 @@ impl Seen {
     }
 
     /// A region with its number, counted from 0: the chosen one where it exists, else the main one.
-    pub fn region(&self, chosen: Option<usize>) -> Option<(usize, &Region)> {
+    pub fn region(&self, chosen: Option<usize>) -> Option<(usize, &Region<'_>)> {
         let index = chosen
             .filter(|&index| index < self.regions.len())
             .or(self.main)?;
