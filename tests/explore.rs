@@ -7,6 +7,7 @@ use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 use proptest::prelude::*;
+use taxel::library::store::Library;
 use taxel::sensor::Sensor;
 use taxel::tui::app::Options;
 use taxel::tui::effect::World;
@@ -35,8 +36,12 @@ struct Beside {
 
 impl Beside {
     fn new(keys: &str) -> Self {
-        let (post, told) = channel();
         let world = World::scratch().expect("there is a folder for temporary files");
+        Self::within(world, keys)
+    }
+
+    fn within(world: World, keys: &str) -> Self {
+        let (post, told) = channel();
         let world = world.with_workers(Arc::new(move |told| {
             // The test may be over.
             let _ = post.send(told);
@@ -113,6 +118,21 @@ fn escape_stops_too_and_the_end_does_not_wait() {
     program.until("poses a second");
     program.press("<C-c>");
     assert!(program.session.app().ended());
+}
+
+/// Ctrl-C asks nothing; the work on the matrix is offered by the next program.
+#[test]
+fn ctrl_c_while_a_sweep_runs_keeps_unsaved_work() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let world = || World::new(Library::open(folder.path().to_owned()));
+    let mut program = Beside::within(world(), "fr<Enter>");
+    program.press(LONG);
+    program.until("poses a second");
+    program.press("<C-c>");
+    assert!(program.session.app().ended());
+    drop(program);
+    let next = Beside::within(world(), "");
+    shows(&next.session, &["Unsaved work of 18 taxels"]);
 }
 
 #[test]
