@@ -51,6 +51,8 @@
 //! - What follows from a document (coverage, imprint, regions, descriptors) is computed, never stored beside it.
 //! - No number that is not finite is ever shown or written: a value that does not exist is none.
 
+mod quote;
+
 pub mod geometry;
 
 pub mod parameter;

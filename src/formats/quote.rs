@@ -1,13 +1,4 @@
-//! What messages quote of their input, which may be a megabyte long: so much that it can be read.
-
-/// A foreign text, short enough for a message.
-pub(super) fn shortened(text: &str) -> String {
-    if text.chars().count() <= 40 {
-        text.to_owned()
-    } else {
-        text.chars().take(40).chain(['…']).collect()
-    }
-}
+//! What messages quote of JSON that is none, which may be a megabyte long: so much that it can be read.
 
 /// A JSON error's text without its place, which is told in another way. What it quotes may be a megabyte long.
 pub(super) fn message(error: &serde_json::Error) -> String {

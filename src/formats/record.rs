@@ -10,11 +10,12 @@ use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, MapAccess, SeqAcce
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use super::answer::Rows;
-use super::quote::{shortened, without_place};
+use super::quote::without_place;
 use crate::figure::{Figure, Kind};
 use crate::imprint::{Imprint, ImprintError};
 use crate::parameter::{PARAMETERS, Parameter, ParameterError};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
+use crate::quote::shortened;
 use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::source::Source;
 

@@ -4,6 +4,7 @@ use super::error::ParameterError;
 use super::number;
 use super::range::Range;
 use super::table::{Decimals, LENGTH, PARAMETERS, Parameter, Row, Unit};
+use crate::quote::shortened;
 
 impl Parameter {
     /// Its row of the table.
@@ -74,7 +75,7 @@ impl Parameter {
     fn number(self, text: &str) -> Result<f64, ParameterError> {
         number::read(text).ok_or_else(|| ParameterError::Number {
             parameter: self,
-            text: text.to_owned(),
+            text: shortened(text),
         })
     }
 
@@ -90,7 +91,7 @@ impl Parameter {
         if !plain {
             return Err(ParameterError::Number {
                 parameter: self,
-                text: text.to_owned(),
+                text: shortened(text),
             });
         }
         let value = self.number(text)?;

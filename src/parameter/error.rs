@@ -14,7 +14,7 @@ pub enum ParameterError {
     Number {
         /// What was to be set.
         parameter: Parameter,
-        /// What was given.
+        /// What was given, or its beginning.
         text: String,
     },
     /// A number outside of the allowed range.

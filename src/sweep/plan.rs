@@ -12,6 +12,7 @@ use std::sync::Arc;
 use super::grid::Grid;
 use super::mirror::Mirror;
 use super::symmetry::period;
+use crate::quote::shortened;
 
 /// One of `of` nearly equal pieces of a grid, `number` from 1.
 ///
@@ -70,7 +71,7 @@ impl FromStr for Shard {
 
     fn from_str(text: &str) -> Result<Self, ShardError> {
         let error = || ShardError {
-            text: text.to_owned(),
+            text: shortened(text),
         };
         let (number, of) = text.split_once('/').ok_or_else(error)?;
         let read = |text: &str| text.trim().parse().map_err(|_| error());

@@ -8,14 +8,17 @@
 use std::fmt;
 use std::str::FromStr;
 
+use crate::quote::shortened;
+
 /// The most values that one range may have.
 pub const MAX_VALUES: u64 = 1_000_000;
 
-/// More decimals are not taken: with them, a range's numbers would no longer be exact in an `f64`'s 53 bits.
+/// More decimals are not taken: in units of them, [`MAX_UNITS`] is just below 1000.
 const MAX_PLACES: usize = 12;
 
-/// The largest number of units of the last place.
-const MAX_UNITS: i64 = 1 << 53;
+/// The largest number of units of the last place: every decimal of 15 digits has an `f64` of its own, which is written
+/// as that decimal again.
+const MAX_UNITS: i64 = 999_999_999_999_999;
 
 /// Decimals from a start to an end in equal steps; never empty.
 ///
@@ -47,6 +50,22 @@ impl DecimalRange {
         Self {
             start,
             step: 1,
+            places,
+            count,
+        }
+    }
+
+    /// The same values in units of as few decimals as they need; the step of a single value is 1. Equal ranges are
+    /// equal in their fields then, however they were written.
+    fn shortest(mut start: i64, step: i64, places: usize, count: u64) -> Self {
+        let mut places = u32::try_from(places).unwrap_or(0);
+        let mut step = if count == 1 { 10_i64.pow(places) } else { step };
+        while places > 0 && start % 10 == 0 && step % 10 == 0 {
+            (start, step, places) = (start / 10, step / 10, places - 1);
+        }
+        Self {
+            start,
+            step,
             places,
             count,
         }
@@ -133,14 +152,14 @@ impl FromStr for DecimalRange {
             [start, end, step] => (start, end, step),
             _ => {
                 return Err(RangeError::Form {
-                    text: text.trim().to_owned(),
+                    text: shortened(text.trim()),
                 });
             }
         };
         let places = places(start).max(places(end)).max(places(step));
         let units = |text: &str| {
             units(text, places).ok_or_else(|| RangeError::Number {
-                text: text.to_owned(),
+                text: shortened(text),
             })
         };
         let (first, last, by) = (units(start)?, units(end)?, units(step)?);
@@ -149,21 +168,16 @@ impl FromStr for DecimalRange {
         }
         if last < first || by < 0 {
             return Err(RangeError::Backwards {
-                start: start.to_owned(),
-                end: end.to_owned(),
-                step: step.to_owned(),
+                start: shortened(start),
+                end: shortened(end),
+                step: shortened(step),
             });
         }
         let count = (last - first).unsigned_abs() / by.unsigned_abs() + 1;
         if count > MAX_VALUES {
             return Err(RangeError::Many { count });
         }
-        Ok(Self {
-            start: first,
-            step: by,
-            places: u32::try_from(places).unwrap_or(0),
-            count,
-        })
+        Ok(Self::shortest(first, by, places, count))
     }
 }
 
