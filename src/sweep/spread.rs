@@ -209,8 +209,6 @@ fn close(between: &mut [Wide], turn: &TurnSums) {
         } else {
             Wide::square_over(sum.total(), sum.poses)
         };
-        for _ in 0..turn.times {
-            *between += part;
-        }
+        *between += part.times(turn.times);
     }
 }

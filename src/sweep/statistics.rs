@@ -163,7 +163,9 @@ impl Total {
             signed_mean(self.sum.x, poses),
             signed_mean(self.sum.y, poses),
         );
-        let (own, turns) = (x.hypot(y).min(1.0), between.mean(poses).min(1.0));
+        // No vector is longer than its parts together: a file may say otherwise, and rounding may.
+        let own = x.hypot(y).min(1.0);
+        let turns = between.mean(poses).clamp(own, 1.0);
         // Vectors that cancel up to the rounding of their parts point nowhere.
         if own < 1e-11 {
             return;
@@ -172,7 +174,7 @@ impl Total {
         statistic.mean = Some(y.atan2(x).to_degrees() + 0.0);
         statistic.sd = Some(deviation(own));
         statistic.sd_position = Some(deviation(turns));
-        statistic.sd_angle = Some(deviation((own / turns).min(1.0)));
+        statistic.sd_angle = Some(deviation(own / turns));
     }
 }
 

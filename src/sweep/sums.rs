@@ -72,6 +72,15 @@ impl Wide {
         }
     }
 
+    /// This, so many times; what goes beyond 2¹⁹² is lost.
+    pub(super) fn times(self, times: u64) -> Self {
+        let low = Self::product(self.low, times);
+        Self {
+            high: low.high.wrapping_add(self.high.wrapping_mul(times)),
+            ..low
+        }
+    }
+
     /// `⌊sum² / count⌋`, for a sum of at most 2⁴⁰ numbers below 2⁵⁸.
     ///
     /// With `sum = count·m + r` it is `count·m² + 2·m·r + ⌊r²/count⌋`.
