@@ -12,9 +12,10 @@
 //! Places are column,row of the screen, from 0. `#` begins a comment line. `Quit` holds where the program has ended.
 //! A drag goes through its places and no others, as a terminal tells them.
 
-use regex_lite::Regex;
+use regex_lite::{Regex, RegexBuilder};
 
 use super::setting::{self, Setting};
+use crate::quote::shortened;
 use crate::tui::key::{Key, parse};
 
 /// A place of the screen: column, row.
@@ -119,7 +120,7 @@ fn command(line: &str) -> Result<Command, String> {
         if rest.is_empty() {
             Ok(command)
         } else {
-            Err(format!("{word} stands alone, found {rest:?}"))
+            Err(format!("{word} stands alone, found {:?}", shortened(rest)))
         }
     };
     match word {
@@ -139,7 +140,10 @@ fn command(line: &str) -> Result<Command, String> {
             .collect::<Result<Vec<_>, _>>()?
         {
             places if places.len() > 1 => Ok(Command::Drag(places)),
-            _ => Err(format!("expected two places or more, found {rest:?}")),
+            _ => Err(format!(
+                "expected two places or more, found {:?}",
+                shortened(rest)
+            )),
         },
         "Scroll" => {
             let (at, turns) = two(rest)?;
@@ -147,9 +151,16 @@ fn command(line: &str) -> Result<Command, String> {
                 .parse()
                 .ok()
                 .filter(|turns: &i16| turns.unsigned_abs() <= 1000)
-                .ok_or_else(|| format!("expected a whole number of turns, found {turns:?}"))?;
+                .ok_or_else(|| {
+                    let found = shortened(turns);
+                    format!("expected a whole number of turns, found {found:?}")
+                })?;
             Ok(Command::Scroll(place(at)?, turns))
         }
+        "Screen" if rest.contains(char::is_control) => Err(format!(
+            "a name for a screen has no control characters, found {:?}",
+            shortened(rest)
+        )),
         "Screen" => Ok(Command::Screen(rest.to_owned())),
         "State" => Ok(Command::State(rest.to_owned())),
         "Expect" => pattern(rest).map(Command::Expect),
@@ -167,19 +178,24 @@ fn command(line: &str) -> Result<Command, String> {
             let names = STYLES.map(|(style, _)| style).join(", ");
             Ok(Command::ExpectStyle(
                 place(at)?,
-                letter.ok_or(format!("style {name:?} is unknown, expected {names}"))?,
+                letter.ok_or_else(|| {
+                    let name = shortened(name);
+                    format!("style {name:?} is unknown, expected {names}")
+                })?,
             ))
         }
         "Signal" if SIGNALS.contains(&rest) => Ok(Command::Signal(rest.to_owned())),
         "Signal" => Err(format!(
-            "signal {rest:?} is unknown, expected one of {}",
+            "signal {:?} is unknown, expected one of {}",
+            shortened(rest),
             SIGNALS.join(", ")
         )),
         "Wait" => nothing(Command::Wait),
         "Quit" => nothing(Command::Quit),
         _ => Err(format!(
-            "{word:?} is unknown, expected one of Size, Set, Resize, Keys, Type, Paste, Click, Drag, Scroll, Screen, \
-             State, Expect, ExpectNot, ExpectAt, ExpectStyle, Signal, Wait, Quit"
+            "{:?} is unknown, expected one of Size, Set, Resize, Keys, Type, Paste, Click, Drag, Scroll, Screen, \
+             State, Expect, ExpectNot, ExpectAt, ExpectStyle, Signal, Wait, Quit",
+            shortened(word)
         )),
     }
 }
@@ -187,7 +203,7 @@ fn command(line: &str) -> Result<Command, String> {
 fn two(text: &str) -> Result<(&str, &str), String> {
     let (first, second) = text
         .split_once(char::is_whitespace)
-        .ok_or_else(|| format!("expected two things, found {text:?}"))?;
+        .ok_or_else(|| format!("expected two things, found {:?}", shortened(text)))?;
     Ok((first, second.trim()))
 }
 
@@ -200,7 +216,10 @@ pub(crate) fn size(text: &str) -> Result<(u16, u16), String> {
         .filter(|(columns, rows): &(u16, u16)| {
             (1..=1000).contains(columns) && (1..=1000).contains(rows)
         })
-        .ok_or_else(|| format!("expected a size like 80x24, from 1x1 to 1000x1000, found {text:?}"))
+        .ok_or_else(|| {
+            let found = shortened(text);
+            format!("expected a size like 80x24, from 1x1 to 1000x1000, found {found:?}")
+        })
 }
 
 fn place(text: &str) -> Result<Place, String> {
@@ -208,21 +227,44 @@ fn place(text: &str) -> Result<Place, String> {
         .split_once(',')
         .and_then(|(column, row)| Some((column.parse().ok()?, row.parse().ok()?)));
     let numbers = numbers.filter(|(column, row): &Place| *column < 1000 && *row < 1000);
-    numbers.ok_or_else(|| format!("expected column,row like 12,5, found {text:?}"))
+    numbers.ok_or_else(|| format!("expected column,row like 12,5, found {:?}", shortened(text)))
 }
 
 /// A text in quotes, with the escapes of JSON.
 fn quoted(text: &str) -> Result<String, String> {
-    serde_json::from_str(text)
-        .map_err(|_| format!("expected a text in double quotes, found {text}"))
+    serde_json::from_str(text).map_err(|_| {
+        format!(
+            "expected a text in double quotes, found {}",
+            shortened(text)
+        )
+    })
 }
+
+/// The most bytes that a pattern is compiled to: `.{1000}` and no more, since searching a screen takes as many times
+/// longer as this is larger.
+const LARGEST_PATTERN: usize = 1 << 16;
+
+/// The longest pattern: reading one takes a hundred times its length of memory.
+const LONGEST_PATTERN: usize = 1 << 14;
 
 /// A regular expression between slashes.
 fn pattern(text: &str) -> Result<Regex, String> {
     let inner = text
         .strip_prefix('/')
         .and_then(|text| text.strip_suffix('/'));
-    let inner =
-        inner.ok_or_else(|| format!("expected a pattern between slashes, found {text:?}"))?;
-    Regex::new(inner).map_err(|error| format!("pattern /{inner}/: {error}"))
+    let inner = inner.ok_or_else(|| {
+        format!(
+            "expected a pattern between slashes, found {:?}",
+            shortened(text)
+        )
+    })?;
+    if inner.len() > LONGEST_PATTERN {
+        return Err(format!(
+            "pattern /{}/: has {} bytes, expected at most {LONGEST_PATTERN}",
+            shortened(inner),
+            inner.len()
+        ));
+    }
+    let regex = RegexBuilder::new(inner).size_limit(LARGEST_PATTERN).build();
+    regex.map_err(|error| format!("pattern /{}/: {error}", shortened(inner)))
 }

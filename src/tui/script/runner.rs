@@ -9,6 +9,7 @@ use super::session::Session;
 use super::setting::Setting;
 use crate::formats::answer::Answer;
 use crate::library::store::Library;
+use crate::quote::shortened;
 use crate::tui::app::Options;
 use crate::tui::effect::World;
 use crate::tui::key::Key;
@@ -147,7 +148,10 @@ fn act(session: &mut Session, line: usize, command: &Command) -> Result<(), Fail
             let place = find(&session.screen(), text);
             click(
                 session,
-                place.ok_or_else(|| fails(session, line, format!("no {text:?} to click on")))?,
+                place.ok_or_else(|| {
+                    let text = shortened(text);
+                    fails(session, line, format!("no {text:?} to click on"))
+                })?,
             );
         }
         Command::Drag(places) => {
@@ -199,16 +203,22 @@ fn look(
         Command::Screen(name) => printed(print(&screen(session, name, settings)))?,
         Command::State(pointer) => match state(session).pointer(pointer) {
             Some(part) => printed(print(&format!("{part}\n")))?,
-            None => return fails(format!("the state has no {pointer:?}")),
+            None => return fails(format!("the state has no {:?}", shortened(pointer))),
         },
         Command::Expect(pattern) => {
             if !pattern.is_match(&session.screen()) {
-                return fails(format!("no /{pattern}/ on the screen"));
+                return fails(format!(
+                    "no /{}/ on the screen",
+                    shortened(pattern.as_str())
+                ));
             }
         }
         Command::ExpectNot(pattern) => {
             if pattern.is_match(&session.screen()) {
-                return fails(format!("/{pattern}/ is on the screen"));
+                return fails(format!(
+                    "/{}/ is on the screen",
+                    shortened(pattern.as_str())
+                ));
             }
         }
         Command::ExpectAt((column, row), text) => {
@@ -220,7 +230,9 @@ fn look(
                 .collect();
             if found != *text {
                 return fails(format!(
-                    "at {column},{row} stands {found:?}, expected {text:?}"
+                    "at {column},{row} stands {:?}, expected {:?}",
+                    shortened(&found),
+                    shortened(text)
                 ));
             }
         }
