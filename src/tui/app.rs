@@ -165,11 +165,15 @@ impl App {
 
     /// The document that the matrix shows: what an open form would make of it, or the present one.
     pub fn shown(&self) -> Document {
+        self.on_matrix().clone()
+    }
+
+    fn on_matrix(&self) -> &Document {
         let form = self.dialogs.iter().rev().find_map(|dialog| match dialog {
             Dialog::Form(form) => Some(form.shown()),
             _ => None,
         });
-        form.unwrap_or_else(|| self.history.present()).clone()
+        form.unwrap_or_else(|| self.history.present())
     }
 
     /// What can be seen of it.
@@ -193,9 +197,10 @@ impl App {
         (shown != self.history.origin().saved).then(|| shown.to_shape(name))
     }
 
-    /// The taxel that the cursor is on: column, row.
+    /// The taxel that the cursor is on: column, row. While a form shows a smaller sensor, it stands at the rim of that.
     pub fn cursor(&self) -> (u8, u8) {
-        self.cursor
+        let (sensor, (column, row)) = (&self.on_matrix().sensor, self.cursor);
+        (column.min(sensor.columns() - 1), row.min(sensor.rows() - 1))
     }
 
     /// The region that was chosen, by its number from 0; none: the main one.

@@ -70,7 +70,7 @@ pub fn at(app: &App, column: u16, row: u16) -> Option<Target> {
         }
         None if panes.panel.is_some_and(inside) => Some(Target::Panel),
         None if inside(panes.matrix) => {
-            let grid = Grid::of(panes.matrix, &imprint, app.cursor);
+            let grid = Grid::of(panes.matrix, &imprint, app.cursor());
             grid.taxel(column, row)
                 .map(|(column, row)| Target::Taxel(column, row, grid.whole))
         }

@@ -15,7 +15,7 @@ use crate::tui::theme::Role;
 pub fn draw(app: &App, seen: &Seen, buffer: &mut Buffer, area: Rect) -> Option<Position> {
     let imprint = &seen.imprint;
     let theme = app.theme();
-    let grid = Grid::of(area, imprint, app.cursor);
+    let grid = Grid::of(area, imprint, app.cursor());
     let (cell, columns, rows) = (grid.cell, grid.columns, grid.rows);
     // A number wants four characters with the space before the next one.
     let every = match cell {
@@ -49,7 +49,7 @@ pub fn draw(app: &App, seen: &Seen, buffer: &mut Buffer, area: Rect) -> Option<P
                 width: cell,
                 height: grid.lines,
             };
-            let here = (column, row) == app.cursor;
+            let here = (column, row) == app.cursor();
             draw_taxel(
                 app,
                 seen,
@@ -82,7 +82,7 @@ fn draw_taxel(
         Display::Shades => theme.shade(coverage(seen, column, row)),
         Display::Percent => percent(app, coverage(seen, column, row)),
     };
-    let here = (column, row) == app.cursor;
+    let here = (column, row) == app.cursor();
     // Numbers side by side are told apart by their weight.
     let heavy = app.display == Display::Percent && column % 2 == 1 && first.is_ascii_digit();
     let style = theme.style(role);

@@ -132,7 +132,7 @@ fn source(app: &App) -> String {
 /// The taxel under the cursor, and how the shape is held. Everything has a place of its own, whatever is before it, and
 /// what changes together stands together: so little is sent over the line when the cursor moves.
 fn taxel(app: &App, seen: &Seen, panes: &Panes) -> String {
-    let (column, row) = app.cursor;
+    let (column, row) = app.cursor();
     let wide = |side: u8| (side - 1).to_string().len();
     let (across, down) = (wide(seen.imprint.columns()), wide(seen.imprint.rows()));
     let place = format!("{column:>across$}, {row:>down$}");
