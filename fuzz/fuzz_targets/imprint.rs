@@ -3,8 +3,8 @@
 
 use libfuzzer_sys::fuzz_target;
 
-#[path = "../../tests/hostile/bodies.rs"]
+#[path = "../../tests/hostile/bodies/mod.rs"]
 #[allow(dead_code, reason = "every target has one of the bodies")]
 mod bodies;
 
-fuzz_target!(|bytes: &[u8]| bodies::imprint(bytes));
+fuzz_target!(|bytes: &[u8]| bodies::body("imprint")(bytes));

@@ -3,42 +3,31 @@
 
 mod bodies;
 
+mod found;
+
 mod malice;
 
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
+use bodies::{BODIES, body};
 use proptest::collection::vec;
 use proptest::prelude::*;
+use taxel::tui::message::Message;
 
-/// A body with what it usually gets.
-type Body = (&'static str, fn(&[u8]), &'static [&'static str]);
-
-const SHAPE: &str = r###"{"format":"taxel-shape/1","name":"washer","sensor":{"columns":3,"rows":2,"pitch_mm":1.0,"threshold":0.5},"imprint":["##.","#.."],"source":{"figure":"ellipse","radius_x":1.0,"radius_y":1.0,"x0":1.99,"y0":-1.47,"angle":0,"thickness":2.0}}"###;
-const PICTURED: &str = r###"{"format":"taxel-shape/1","name":"é","sensor":{"columns":1,"rows":1},"imprint":["#"],"source":{"picture":["##","#."],"x0":0,"y0":1,"angle":10,"zoom_x":0.84,"zoom_y":0.75}}"###;
-
-const BODIES: [Body; 4] = [
-    ("shape", bodies::shape, &[SHAPE, PICTURED]),
-    (
-        "job",
-        bodies::job,
-        &[
-            r#"{"figure":"hexagon","side":3.0,"x0":2.1,"y0":1.35,"angle":17,"thickness":1.0}"#,
-            r###"{"picture":["##","#."],"x0":5.75,"y0":3.87,"angle":10,"zoom_x":0.84,"zoom_y":0.75}"###,
-            r#"{"picture":"washer","x0":2.0,"y0":2.0,"angle":0,"zoom_x":1.0,"zoom_y":1.0}"#,
-            r##"{"imprint":["..","#."],"sensor":{"columns":32,"rows":32,"threshold":0.5}}"##,
-        ],
-    ),
-    ("imprint", bodies::imprint, &[".##.\n#..#\n.##.\n", "#\r\n"]),
-    (
-        "keys",
-        bodies::keys,
-        &["f<3x:Down><Tab>4.00<C-u><lt>>é<Enter>", "<S-Left><gt>"],
-    ),
-];
-
-fn body(index: usize) -> Body {
-    BODIES[index]
+/// The usual inputs of a body.
+fn seeds(folder: &str) -> Vec<Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/hostile/seeds")
+        .join(folder);
+    let files = std::fs::read_dir(folder).expect("every body has usual inputs");
+    let mut files: Vec<_> = files
+        .map(|file| file.expect("the folder can be read").path())
+        .collect();
+    files.sort();
+    let read = |path| std::fs::read(path).expect("a file that can be read");
+    files.into_iter().map(read).collect()
 }
 
 /// A change of some bytes: where, how many go, what comes.
@@ -57,19 +46,19 @@ fn changes() -> impl Strategy<Value = Vec<(usize, usize, Vec<u8>)>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig::with_cases(3000))]
 
     #[test]
     fn random_bytes_are_refused(index in 0..BODIES.len(), bytes in vec(any::<u8>(), 0..200)) {
-        body(index).1(&bytes);
+        BODIES[index].2(&bytes);
     }
 
     #[test]
     fn mutated_bytes_are_read_or_refused(
         index in 0..BODIES.len(), seed in any::<usize>(), changes in changes()
     ) {
-        let (_, read, seeds) = body(index);
-        let mut bytes = seeds[seed % seeds.len()].as_bytes().to_vec();
+        let (_, folder, read) = BODIES[index];
+        let mut bytes = seeds(folder).swap_remove(seed % seeds(folder).len());
         for (at, gone, new) in changes {
             let at = at % (bytes.len() + 1);
             let end = (at + gone).min(bytes.len());
@@ -81,13 +70,39 @@ proptest! {
 
 #[test]
 fn what_is_usual_is_read() {
-    for (_, read, seeds) in BODIES {
-        for seed in seeds {
-            read(seed.as_bytes());
+    for (_, folder, read) in BODIES {
+        for seed in seeds(folder) {
+            read(&seed);
         }
     }
-    assert!(taxel::formats::shape::Shape::read(SHAPE.as_bytes()).is_ok());
-    assert!(taxel::formats::shape::Shape::read(PICTURED.as_bytes()).is_ok());
+    for seed in seeds("shape") {
+        assert!(taxel::formats::shape::Shape::read(&seed).is_ok());
+    }
+}
+
+/// Wherever text can be pasted, so much of it is taken as there is room for, and the program goes on.
+#[test]
+fn a_mebibyte_is_pasted_everywhere() {
+    for (opens, leaves) in [
+        ("", "q"),
+        ("f<Tab>", "<Esc>q"),
+        ("S", "<Esc>q"),
+        ("l", "<Esc>q"),
+        (":", "<Esc>q"),
+        (" s", "<Esc>qy"),
+        ("?", "<Esc>q"),
+    ] {
+        let mut session = bodies::session_of(opens);
+        for text in ["7", "a\n", "\u{301}", "\x1b[2J"] {
+            let times = malice::SIZE / text.len();
+            session.send(Message::Paste(text.repeat(times)));
+            let screen = session.screen();
+            assert_eq!(screen.lines().count(), 24, "{opens:?}, {text:?}");
+            assert!(!screen.contains('\x1b'), "{opens:?}, {text:?}: {screen}");
+        }
+        session.keys(leaves).expect("the keys are right");
+        assert!(session.app().ended(), "{opens:?}: {}", session.screen());
+    }
 }
 
 const VARIABLE: &str = "TAXEL_HOSTILE";
@@ -99,15 +114,11 @@ fn one() {
         return;
     };
     let (name, malice) = asked.split_once(':').expect("a body and a malice");
-    let (_, read, _) = BODIES
-        .into_iter()
-        .find(|(own, ..)| *own == name)
-        .expect("known");
     let index: usize = malice.parse().expect("a number");
     let bytes = malice::all(name)[index].1();
     assert!(bytes.len() >= malice::SIZE / 2 && bytes.len() <= malice::SIZE);
     let start = Instant::now();
-    read(&bytes);
+    body(name)(&bytes);
     println!("TOOK {} µs", start.elapsed().as_micros());
     // The most memory that this process has ever had.
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

@@ -19,7 +19,13 @@ pub(crate) fn all(body: &str) -> Vec<Malice> {
         "shape" => &SHAPES,
         "job" => &JOBS,
         "imprint" => &IMPRINTS,
-        _ => &KEYS,
+        "range" => &RANGES,
+        "npy" => &ARRAYS,
+        "keys" => &KEYS,
+        "terminal" => &TERMINALS,
+        "script" | "play" => &SCRIPTS,
+        // What is general is all that these can be told at such length.
+        _ => &[],
     };
     [&general[..], own].concat()
 }
@@ -140,4 +146,58 @@ const KEYS: [Malice; 5] = [
     ("a long name", || filled("<", "a", ">")),
     ("long numbers", || filled("<", "9", "x:Down>")),
     ("nothing so often", || filled("", "<0x:Down>", "")),
+];
+
+const RANGES: [Malice; 6] = [
+    ("a long number", || filled("", "7", "")),
+    ("a long fraction", || filled("0.", "3", "")),
+    ("zeros in front", || filled("", "0", "1:2:1")),
+    ("zeros behind", || filled("1.", "0", ":2:1")),
+    ("many parts", || filled("", ":", "")),
+    ("a long shard", || filled("1/", "9", "")),
+];
+
+const ARRAYS: [Malice; 2] = [
+    ("a long header", || {
+        let header = "{'descr': '<u8', 'fortran_order': False,";
+        let mut bytes = filled(&format!("0123456789{header}"), " ", "");
+        bytes[..10].copy_from_slice(b"\x93NUMPY\x01\x00\xff\xff");
+        bytes
+    }),
+    ("a header that is not there", || {
+        let mut bytes = filled("0123456789", "\0", "");
+        bytes[..10].copy_from_slice(b"\x93NUMPY\x01\x00\x00\x00");
+        bytes
+    }),
+];
+
+const TERMINALS: [Malice; 9] = [
+    ("escapes", || filled("", "\x1b", "")),
+    ("a long sequence", || filled("\x1b[", "1;", "A")),
+    ("a long number", || filled("\x1b[", "9", "~")),
+    ("a long answer", || filled("\x1b]", "a", "\x07")),
+    ("an answer of escapes", || filled("\x1b]", "\x1b", "")),
+    ("a paste", || filled("\x1b[200~", "a\r\n", "\x1b[201~")),
+    ("a paste without an end", || {
+        filled("\x1b[200~", "\x1b[201", "")
+    }),
+    ("pastes", || filled("", "\x1b[200~a\x1b[201~", "")),
+    ("mouse reports", || filled("", "\x1b[<0;99999;3M", "")),
+];
+
+const SCRIPTS: [Malice; 12] = [
+    ("a long word", || filled("", "a", "")),
+    ("a long size", || filled("Size ", "8", "x24")),
+    ("long keys", || filled("Keys ", "<9999x:Down>", "")),
+    ("a long text", || filled("Type \"", "a", "")),
+    ("a long text in escapes", || {
+        filled("Type \"", "\\u0007", "x")
+    }),
+    ("a long name", || filled("Screen ", "a", "\u{7}")),
+    ("a long pointer", || filled("State ", "/a", "")),
+    ("a long pattern", || filled("Expect /", "a", "/")),
+    ("a deep pattern", || filled("Expect /", "(", "/")),
+    ("a pattern that repeats", || filled("Expect /a", "{9}", "/")),
+    ("a long way", || filled("Drag ", "0,0 9,9 ", "")),
+    ("many screens", || filled("", "Screen\n", "Quit now")),
 ];

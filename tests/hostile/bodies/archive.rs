@@ -1,0 +1,183 @@
+//! Archives of an atlas, which `taxel merge` reads: any bytes, and sound archives with arrays that are not.
+
+use std::cell::LazyCell;
+use std::io::{Cursor, Read, Write};
+
+use taxel::figure::{Figure, Kind};
+use taxel::formats::archive::{read, write};
+use taxel::formats::atlas::{write_csv, write_jsonl};
+use taxel::formats::npy;
+use taxel::imprint::Imprint;
+use taxel::picture::Picture;
+use taxel::sensor::Sensor;
+use taxel::source::Source;
+use taxel::sweep::grid::{Anchor, Grid, Ranges};
+use taxel::sweep::plan::Shard;
+use taxel::sweep::survey::{Survey, Watch};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipArchive, ZipWriter};
+
+use super::is_short;
+
+/// Any bytes.
+pub(crate) fn archive(bytes: &[u8]) {
+    match read(Cursor::new(bytes)) {
+        Ok(survey) => is_sound(survey),
+        Err(error) => is_short(&error.to_string()),
+    }
+}
+
+/// A survey that was read: it can be written, in every form, and is the same when it is read again.
+fn is_sound(survey: Survey) {
+    let written = bytes_of(&survey);
+    let again = read(Cursor::new(&written)).expect("what was read can be read again");
+    assert_eq!(again.grid, survey.grid);
+    assert_eq!(again.shard, survey.shard);
+    assert_eq!(again.parts(), survey.parts());
+    assert_eq!(bytes_of(&again), written);
+    for statistic in &survey.statistics {
+        let all = [
+            statistic.min,
+            statistic.mean,
+            statistic.max,
+            statistic.sd,
+            statistic.cv,
+            statistic.sd_position,
+            statistic.sd_angle,
+        ];
+        assert!(
+            all.into_iter().flatten().all(f64::is_finite),
+            "{}: {all:?}",
+            statistic.quantity.key
+        );
+    }
+    let (shifted, turned) = survey.atlas.distinct_classes();
+    assert!(turned <= shifted && shifted <= survey.atlas.len());
+    let mut lines = Vec::new();
+    write_jsonl(&survey, &mut lines).expect("it goes into memory");
+    for line in lines.split(|&byte| byte == b'\n') {
+        let line: Result<serde_json::Value, _> = serde_json::from_slice(line);
+        assert!(line.is_ok_and(|line| line.is_object()) || lines.ends_with(b"\n"));
+    }
+    let mut table = Vec::new();
+    write_csv(&survey, &mut table).expect("it goes into memory");
+    let table = String::from_utf8(table).expect("it is a text");
+    assert_eq!(table.lines().count(), survey.atlas.len() + 1);
+    assert!(!table.contains("NaN") && !table.contains("inf"));
+    if let Err(error) = Survey::merge([survey]) {
+        is_short(&error.to_string());
+    }
+}
+
+fn bytes_of(survey: &Survey) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    write(survey, &mut bytes).expect("it goes into memory");
+    bytes.into_inner()
+}
+
+/// Some bytes of an array in place of others: a byte for the array, two for the place, one for how many go, one for
+/// how many come, and these. The first byte of all chooses the archive that is changed.
+///
+/// The archive's own sums are those of what is in it, so that readers get to see the arrays.
+pub(crate) fn arrays(bytes: &[u8]) {
+    thread_local! {
+        static SOUND: LazyCell<Vec<Arrays>> = const { LazyCell::new(sound) };
+    }
+    let Some((&choice, mut rest)) = bytes.split_first() else {
+        return;
+    };
+    let mut arrays = SOUND.with(|sound| sound[usize::from(choice) % sound.len()].clone());
+    while let [which, low, high, gone, come, more @ ..] = rest {
+        let (new, more) = more.split_at(more.len().min((*come).into()));
+        let index = usize::from(*which) % arrays.len();
+        let content = &mut arrays[index].1;
+        let at = usize::from(u16::from_le_bytes([*low, *high])) % (content.len() + 1);
+        let end = (at + usize::from(*gone)).min(content.len());
+        content.splice(at..end, new.iter().copied());
+        rest = more;
+    }
+    archive(&packed(&arrays));
+}
+
+/// One of the sound archives, its sums about the turns in place of which `change` puts others.
+pub(crate) fn with_spread(choice: usize, change: impl FnOnce(&mut Vec<u64>)) -> Vec<u8> {
+    let mut arrays = sound().swap_remove(choice);
+    let (_, content) = arrays.last_mut().expect("the sums are the last array");
+    let mut words = npy::words(content).expect("they are words");
+    change(&mut words);
+    let length = u64::try_from(words.len()).expect("it is in memory");
+    *content = npy::header(npy::Kind::U64, &[length]);
+    content.extend(words.into_iter().flat_map(u64::to_le_bytes));
+    packed(&arrays)
+}
+
+/// The arrays of an archive: name and content.
+type Arrays = Vec<(String, Vec<u8>)>;
+
+/// The arrays that are read; the others are for people.
+const READ: [&str; 5] = [
+    "header.npy",
+    "rows.npy",
+    "count.npy",
+    "first_pose.npy",
+    "spread.npy",
+];
+
+/// A figure's whole grid, a part of one with turns that are not complete, and a picture's grid.
+fn sound() -> Vec<Arrays> {
+    let sensor = Sensor::new(5.0, 4.0).expect("a sensor in range");
+    let range = |text: &str| text.parse().expect("a range");
+    let ranges = Ranges {
+        x0: range("0:1:0.25"),
+        y0: range("0.5:1:0.5"),
+        angle: range("0:90:45"),
+        ..Ranges::default()
+    };
+    let rectangle = Figure::new(Kind::Rectangle, sensor.side(), |parameter| {
+        Some(match parameter.row().key {
+            "length" => 3.0,
+            "width" => 2.0,
+            "thickness" => 0.5,
+            _ => 0.0,
+        })
+    });
+    let rectangle = Source::Figure(rectangle.expect("a rectangle in range"));
+    let picture = Imprint::from_rows(["##", "#."]).expect("rows of # and .");
+    let picture = Source::Picture(Picture::at_home(picture));
+    let grid = |source: &Source, anchor| {
+        Grid::new(source.clone(), sensor, anchor, ranges).expect("a grid in range")
+    };
+    let figures = grid(&rectangle, Anchor::Corner);
+    let pictures = grid(&picture, Anchor::Centre);
+    let part = Shard::new(1, 4).expect("a shard");
+    [
+        (&figures, Shard::WHOLE),
+        (&figures, part),
+        (&pictures, part),
+    ]
+    .map(|(grid, shard)| unpacked(&bytes_of(&Survey::of(grid, shard, Watch::nothing()))))
+    .to_vec()
+}
+
+fn unpacked(bytes: &[u8]) -> Arrays {
+    let mut archive = ZipArchive::new(Cursor::new(bytes)).expect("a sound archive");
+    let array = |name: &str| {
+        let mut content = Vec::new();
+        let mut file = archive.by_name(name).expect("it is there");
+        file.read_to_end(&mut content).expect("it can be read");
+        (name.to_owned(), content)
+    };
+    READ.map(array).to_vec()
+}
+
+fn packed(arrays: &Arrays) -> Vec<u8> {
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+    for (name, content) in arrays {
+        archive
+            .start_file(name, options)
+            .expect("it goes into memory");
+        archive.write_all(content).expect("it goes into memory");
+    }
+    archive.finish().expect("it goes into memory").into_inner()
+}

@@ -1,0 +1,96 @@
+//! Texts and arrays: shapes, jobs, imprints, ranges, headers of numpy.
+
+use taxel::formats::answer::Answer;
+use taxel::formats::job::Job;
+use taxel::formats::npy::{Kind, content, header, words};
+use taxel::formats::shape::Shape;
+use taxel::imprint::Imprint;
+use taxel::sensor::Sensor;
+use taxel::sweep::plan::Shard;
+use taxel::sweep::range::{DecimalRange, MAX_VALUES};
+use taxel::touch::Plane;
+
+use super::is_short;
+
+/// A file of the library.
+pub(crate) fn shape(bytes: &[u8]) {
+    match Shape::read(bytes) {
+        Ok(shape) => {
+            let again = Shape::read(shape.write().as_bytes());
+            assert_eq!(again.as_ref(), Ok(&shape));
+        }
+        Err(error) => is_short(&error.to_string()),
+    }
+}
+
+/// A line of `taxel batch`.
+pub(crate) fn job(bytes: &[u8]) {
+    let lookup = |name: &str| match name {
+        "washer" => Ok(Imprint::empty(16, 16)),
+        _ => Err("no shape is called so".to_owned()),
+    };
+    match Job::read(bytes, Sensor::default(), &lookup) {
+        Ok(job) => {
+            let mut plane = Plane::new(Sensor::default());
+            let imprint = job.imprint(&mut plane);
+            let answer = serde_json::to_string(&Answer(&imprint)).expect("every number is finite");
+            assert!(!answer.contains('\n'));
+        }
+        Err(error) => is_short(&error.to_string()),
+    }
+}
+
+/// An imprint as text.
+pub(crate) fn imprint(bytes: &[u8]) {
+    let Ok(text) = str::from_utf8(bytes) else {
+        return;
+    };
+    match text.parse::<Imprint>() {
+        Ok(imprint) => assert_eq!(imprint.to_string().parse(), Ok(imprint)),
+        Err(error) => is_short(&error.to_string()),
+    }
+}
+
+/// A range `start:end:step`, and a shard `K/N`.
+pub(crate) fn range(bytes: &[u8]) {
+    let Ok(text) = str::from_utf8(bytes) else {
+        return;
+    };
+    match text.parse::<DecimalRange>() {
+        Ok(range) => {
+            assert_eq!(range.to_string().parse().as_ref(), Ok(&range), "{text:?}");
+            assert!((1..=MAX_VALUES).contains(&range.count()));
+            assert!(range.step() > 0.0 && range.last().is_finite());
+            // Every value is another one, and none is beyond the last.
+            let middle = range.count() / 2;
+            let some = [0, 1, middle, middle + 1, range.count() - 1];
+            for index in some {
+                assert_eq!(index == 0, range.value(index) == range.value(0));
+                assert!(index >= range.count() || range.value(index) <= range.last());
+            }
+        }
+        Err(error) => is_short(&error.to_string()),
+    }
+    match text.parse::<Shard>() {
+        Ok(shard) => {
+            assert_eq!(shard.to_string().parse().as_ref(), Ok(&shard));
+            let rows = shard.rows(u64::MAX);
+            assert!(rows.start < rows.end, "some of so many are in each shard");
+        }
+        Err(error) => is_short(&error.to_string()),
+    }
+}
+
+/// A file of numpy.
+pub(crate) fn npy(bytes: &[u8]) {
+    for kind in [Kind::U8, Kind::U16, Kind::U32, Kind::U64, Kind::F64] {
+        if let Some(numbers) = content(bytes, kind) {
+            let length = u64::try_from(numbers.len()).expect("it is in memory");
+            let again = [&header(kind, &[length]), numbers].concat();
+            assert_eq!(content(&again, kind), Some(numbers));
+        }
+    }
+    let numbers = content(bytes, Kind::U64).map(<[u8]>::len);
+    let words = words(bytes).map(|words| words.len() * 8);
+    assert_eq!(words, numbers.filter(|length| length.is_multiple_of(8)));
+}

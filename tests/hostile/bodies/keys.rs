@@ -1,0 +1,47 @@
+//! Keys in notation, and the bytes that a terminal sends.
+
+use taxel::tui::key::parse;
+use taxel::tui::terminal::input::{Input, Reader};
+
+use super::is_short;
+
+/// Keys in notation.
+pub(crate) fn keys(bytes: &[u8]) {
+    let Ok(text) = str::from_utf8(bytes) else {
+        return;
+    };
+    match parse(text) {
+        // The way back takes longer, and is no other where there are more.
+        Ok(keys) if keys.len() > 10_000 => {}
+        Ok(keys) => {
+            let written: String = keys.iter().map(ToString::to_string).collect();
+            assert_eq!(parse(&written).as_ref(), Ok(&keys), "{written:?}");
+        }
+        Err(error) => is_short(&error.to_string()),
+    }
+}
+
+/// What a terminal sends: the same keys in one piece and byte by byte.
+pub(crate) fn terminal(bytes: &[u8]) {
+    let mut reader = Reader::default();
+    let mut whole = reader.read(bytes);
+    let patience = reader.patience();
+    whole.extend(reader.settle());
+    assert_eq!(reader.patience(), None, "nothing is waited for any more");
+
+    let mut reader = Reader::default();
+    let mut pieces = Vec::new();
+    for byte in bytes.chunks(1) {
+        pieces.extend(reader.read(byte));
+    }
+    assert_eq!(reader.patience(), patience);
+    pieces.extend(reader.settle());
+    assert_eq!(pieces, whole);
+
+    for input in whole {
+        if let Input::Paste(text) = input {
+            // Bytes that are no text become a character of three.
+            assert!(text.len() <= 3 * bytes.len() && !text.contains('\r'));
+        }
+    }
+}
