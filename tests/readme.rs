@@ -5,6 +5,8 @@ use taxel::description::descriptor::{DESCRIPTORS, Unit};
 use taxel::tui::binding::Context;
 use taxel::tui::keymap::KEYMAP;
 
+#[path = "readme/dependencies.rs"]
+mod dependencies;
 #[path = "../examples/positions.rs"]
 #[expect(dead_code, reason = "its main prints the report")]
 mod positions;
@@ -67,6 +69,7 @@ fn screen_and_tables_are_those_of_the_program() {
         ("tour", tour()),
         ("keys", keys()),
         ("positions", positions::report()),
+        ("dependencies", dependencies::block()),
     ] {
         let (start, end) = (format!("<!-- {name} -->\n"), format!("<!-- /{name} -->"));
         let (before, rest) = wanted.split_once(&start).expect("the README has the mark");

@@ -1,0 +1,145 @@
+//! The README's section about dependencies: from the comments of `Cargo.toml`, what cargo says, and `deny.toml`.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::process::Command;
+
+const MANIFEST: &str = include_str!("../../Cargo.toml");
+const DENY: &str = include_str!("../../deny.toml");
+
+/// The whole block.
+pub(crate) fn block() -> String {
+    let tree = tree("normal");
+    let (own, tests) = (direct("dependencies"), direct("dev-dependencies"));
+    let skipped: String = skipped()
+        .into_iter()
+        .map(|(name, reason)| format!("- `{name}`: {reason}.\n"))
+        .collect();
+    format!(
+        "The program is made of {} crates, itself and what runs at build time only among them \
+         (`cargo tree -e normal --prefix none --no-dedupe | sort -u | wc -l`).\n\
+         It names {} of them:\n\n{}\n\
+         Twice, in an older version too, because others have not moved yet:\n\n{skipped}\n\
+         Tests and benchmarks use beside these:\n\n{}",
+        tree.len(),
+        own.len(),
+        table(&own),
+        table(&tests),
+    )
+}
+
+fn table(rows: &[(&str, String)]) -> String {
+    let rows: String = rows
+        .iter()
+        .map(|(name, reason)| format!("| `{name}` | {reason} |\n"))
+        .collect();
+    format!("| crate | what for |\n|---|---|\n{rows}")
+}
+
+/// The crates of a section of the manifest, each with the comment above it.
+fn direct(section: &str) -> Vec<(&'static str, String)> {
+    let (_, rest) = MANIFEST
+        .split_once(&format!("\n[{section}]\n"))
+        .expect("the manifest has the section");
+    let lines = rest.lines().take_while(|line| !line.starts_with('['));
+    let mut reason: Vec<&str> = Vec::new();
+    let mut found = Vec::new();
+    for line in lines {
+        if let Some(comment) = line.strip_prefix('#') {
+            reason.push(comment.trim());
+        } else if let Some((name, _)) = line.split_once(" = ") {
+            assert!(!reason.is_empty(), "Cargo.toml says why it uses {name}");
+            found.push((name, std::mem::take(&mut reason).join(" ")));
+        }
+    }
+    found
+}
+
+/// Names and versions of what the program is made of, by the kinds of dependencies.
+fn tree(kinds: &str) -> BTreeSet<String> {
+    let cargo = std::env::var_os("CARGO").unwrap_or("cargo".into());
+    let output = Command::new(cargo)
+        .args(["tree", "--offline", "--locked", "--no-dedupe"])
+        .args(["--edges", kinds, "--prefix", "none"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("cargo can be started");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "cargo tree: {said}");
+    let text = String::from_utf8(output.stdout).expect("names are text");
+    text.lines().map(str::to_owned).collect()
+}
+
+/// What `deny.toml` lets stand twice, and why.
+fn skipped() -> Vec<(&'static str, &'static str)> {
+    let quoted = |line: &'static str, key: &str| {
+        let (_, rest) = line.split_once(&format!("{key} = \""))?;
+        Some(rest.split_once('"')?.0)
+    };
+    DENY.lines()
+        .filter(|line| line.trim_start().starts_with("{ crate = "))
+        .map(|line| {
+            let both = (quoted(line, "crate"), quoted(line, "reason"));
+            let (Some(name), Some(reason)) = both else {
+                panic!("deny.toml: no name or no reason in {line}");
+            };
+            (name, reason)
+        })
+        .collect()
+}
+
+/// The limit that this project has given itself.
+#[test]
+fn the_program_is_made_of_few_crates() {
+    let crates = tree("normal");
+    assert!(
+        crates.iter().any(|line| line.starts_with("clap ")),
+        "the tree is that of the program"
+    );
+    assert!(crates.len() <= 140, "{} crates", crates.len());
+}
+
+#[test]
+fn only_what_deny_toml_names_is_there_twice() {
+    let mut versions: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for line in tree("normal,build,dev") {
+        let mut words = line.split_whitespace();
+        let (Some(name), Some(version)) = (words.next(), words.next()) else {
+            continue;
+        };
+        let version = version.trim_start_matches('v').to_owned();
+        versions.entry(name.to_owned()).or_default().insert(version);
+    }
+    let mut twice = Vec::new();
+    for (name, versions) in versions {
+        // All but the newest, as `cargo deny` counts.
+        let newest = versions.iter().max_by_key(|version| numbers(version));
+        let older = versions.iter().filter(|&version| Some(version) != newest);
+        twice.extend(older.map(|version| format!("{name}@{version}")));
+    }
+    let named: Vec<_> = skipped().into_iter().map(|(name, _)| name).collect();
+    let covers = |name: &str, found: &str| {
+        found == name
+            || found
+                .strip_prefix(name)
+                .is_some_and(|rest| rest.starts_with('.'))
+    };
+    for found in &twice {
+        assert!(
+            named.iter().any(|name| covers(name, found)),
+            "{found} is not the only one of its name, and deny.toml does not say why"
+        );
+    }
+    for name in named {
+        assert!(
+            twice.iter().any(|found| covers(name, found)),
+            "{name} is not there twice any more; deny.toml needs no reason for it"
+        );
+    }
+}
+
+fn numbers(version: &str) -> Vec<u64> {
+    let numbers = version
+        .split(['.', '-', '+'])
+        .map_while(|part| part.parse().ok());
+    numbers.collect()
+}
