@@ -27,7 +27,7 @@ use crate::tui::script::command;
 /// All commands.
 pub(super) fn all() -> Command {
     Command::new("taxel")
-        .version(env!("CARGO_PKG_VERSION"))
+        .version(env!("TAXEL_VERSION"))
         .about(ABOUT)
         .after_help(EXAMPLES)
         .args(sensor())

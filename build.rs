@@ -1,0 +1,92 @@
+//! What `taxel --version` says: the version, and for an optimised build the commit that it was made from.
+//!
+//! The commit is that of `TAXEL_COMMIT` where a packager sets it, that of the published package, or that of git; where
+//! there is none of these, the version stands alone. A build for tests goes without: it would have to be made anew after
+//! each commit.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::{env, fs};
+
+/// What git would have to report as changed for the program to be another one.
+const SOURCES: [&str; 5] = ["src", "library", "build.rs", "Cargo.toml", "Cargo.lock"];
+
+/// Characters of a commit's name: enough for a repository of this size.
+const LENGTH: usize = 9;
+
+fn main() {
+    println!("cargo:rerun-if-changed=build.rs");
+    println!("cargo:rerun-if-env-changed=TAXEL_COMMIT");
+    let version = env::var("CARGO_PKG_VERSION").unwrap_or_default();
+    let folder = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default());
+    let optimised = env::var("PROFILE").is_ok_and(|profile| profile == "release");
+    let named = env::var("TAXEL_COMMIT").ok().filter(|name| is_plain(name));
+    let commit = named.or_else(|| optimised.then(|| commit(&folder)).flatten());
+    if optimised {
+        watch(&folder);
+    }
+    let shown = match commit {
+        Some(commit) => format!("{version} ({commit})"),
+        None => version,
+    };
+    println!("cargo:rustc-env=TAXEL_VERSION={shown}");
+}
+
+/// The commit that a folder with a package holds, and whether its sources were changed since.
+pub(crate) fn commit(folder: &Path) -> Option<String> {
+    packaged(folder).or_else(|| {
+        // A repository around the package, of which this is no part, says nothing about it.
+        let top = fs::canonicalize(git(folder, &["rev-parse", "--show-toplevel"])?).ok()?;
+        if top != fs::canonicalize(folder).ok()? {
+            return None;
+        }
+        let commit = git(folder, &["rev-parse", "HEAD"])?;
+        let commit = commit.get(..LENGTH)?;
+        let status = ["status", "--porcelain", "--untracked-files=no", "--"];
+        let changed = git(folder, &[&status[..], &SOURCES].concat())?;
+        let changed = if changed.is_empty() { "" } else { ", changed" };
+        Some(format!("{commit}{changed}"))
+    })
+}
+
+/// The commit that `cargo package` has noted.
+fn packaged(folder: &Path) -> Option<String> {
+    let noted = fs::read_to_string(folder.join(".cargo_vcs_info.json")).ok()?;
+    let (_, rest) = noted.split_once("\"sha1\"")?;
+    let commit = rest.split('"').nth(1)?;
+    is_plain(commit)
+        .then(|| commit.get(..LENGTH).map(str::to_owned))
+        .flatten()
+}
+
+/// Letters and digits only, so that nothing else can get into the program's words.
+fn is_plain(name: &str) -> bool {
+    !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_alphanumeric())
+}
+
+/// Has cargo come back when another commit is checked out or the sources change.
+fn watch(folder: &Path) {
+    let paths = SOURCES.map(|source| folder.join(source));
+    let branch = git(folder, &["rev-parse", "--symbolic-full-name", "HEAD"]);
+    let of_git = ["HEAD", "packed-refs", branch.as_deref().unwrap_or("HEAD")]
+        .map(|name| git(folder, &["rev-parse", "--git-path", name]))
+        .into_iter()
+        .flatten()
+        .map(|path| folder.join(path));
+    // Of a file that is not there cargo thinks that it changes all the time.
+    for path in paths.into_iter().chain(of_git).filter(|path| path.exists()) {
+        println!("cargo:rerun-if-changed={}", path.display());
+    }
+}
+
+/// What git answers; none where it does not know, or is not there.
+fn git(folder: &Path, arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git")
+        .arg("-C")
+        .arg(folder)
+        .args(arguments)
+        .output()
+        .ok()?;
+    let answer = String::from_utf8(output.stdout).ok()?;
+    output.status.success().then(|| answer.trim().to_owned())
+}
