@@ -4,8 +4,9 @@ use taxel::sensor::Sensor;
 use taxel::tui::app::Options;
 use taxel::tui::binding::Context;
 use taxel::tui::effect::World;
-use taxel::tui::keymap::{KEYMAP, help};
+use taxel::tui::keymap::KEYMAP;
 use taxel::tui::message::Message;
+use taxel::tui::remap::{Keymap, help};
 use taxel::tui::script::Session;
 use taxel::tui::theme::Theme;
 
@@ -308,7 +309,7 @@ fn the_screen_of_a_lone_or_full_or_empty_matrix_has_no_impossible_numbers() {
 /// Every row of the table of keys is in help, fits its line, and does something where it says so.
 #[test]
 fn every_key_is_in_help() {
-    let pages = help(Context::Matrix).len().div_ceil(10);
+    let pages = help(Context::Matrix, &Keymap::default()).len().div_ceil(10);
     let help: String = (0..pages)
         .map(|page| session(&format!("?<{page}x:PageDown>")).screen())
         .collect();

@@ -4,6 +4,8 @@ use super::binding::Context;
 use super::dialog::Dialog;
 use super::document::{Document, History, Seen, StoredName};
 use super::explore::results::Results;
+use super::message::Message;
+use super::remap::Keymap;
 use super::theme::Theme;
 use crate::formats::name::Name;
 use crate::formats::shape::Shape;
@@ -117,6 +119,7 @@ pub struct App {
     /// Columns and rows of the screen.
     pub(super) screen: (u16, u16),
     pub(super) theme: Theme,
+    pub(super) keymap: Keymap,
     pub(super) ended: bool,
     /// It ends without having asked: what is not saved stays in the journal.
     pub(super) killed: bool,
@@ -144,9 +147,26 @@ impl App {
             paint: None,
             screen: (80, 24),
             theme: options.theme,
+            keymap: Keymap::default(),
             ended: false,
             killed: false,
         }
+    }
+
+    /// The same with other keys.
+    #[must_use]
+    pub fn with_keymap(self, keymap: Keymap) -> Self {
+        Self { keymap, ..self }
+    }
+
+    /// What each key means.
+    pub fn keymap(&self) -> &Keymap {
+        &self.keymap
+    }
+
+    /// The key of something that can be done on the matrix, as notices name it.
+    pub(super) fn key_of(&self, action: &Message) -> String {
+        self.keymap.label(Context::Matrix, action)
     }
 
     /// Where keys are looked up.

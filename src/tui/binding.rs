@@ -1,5 +1,7 @@
 //! Rows of the table of keys: where, which keys, what they mean, how they are shown.
 
+use std::borrow::Cow;
+
 use super::key::{Arrow, Key};
 use super::message::Message;
 
@@ -87,6 +89,29 @@ impl Context {
         }
     }
 
+    /// Its name where a user changes keys.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Everywhere => "everywhere",
+            Self::Matrix => "matrix",
+            Self::Grab => "grab",
+            Self::Form => "form",
+            Self::List => "list",
+            Self::Name => "name",
+            Self::Command => "command",
+            Self::Help => "help",
+            Self::Question => "question",
+            Self::Ranges => "ranges",
+            Self::Running => "running",
+            Self::Explore => "explore",
+            Self::Imprints => "imprints",
+            Self::Statistics => "statistics",
+            Self::Histogram => "histogram",
+            Self::Map => "map",
+            Self::Export => "export",
+        }
+    }
+
     /// Where a key is looked up next that means nothing here.
     pub(super) fn outer(self) -> Option<Self> {
         match self {
@@ -119,7 +144,7 @@ pub struct Binding {
     /// Where.
     pub context: Context,
     /// Any of these keys, each with the message it gives.
-    pub keys: &'static [(Key, Message)],
+    pub keys: Cow<'static, [(Key, Message)]>,
     /// A word or two for the line of hints; empty where it does not stand there.
     pub hint: &'static str,
     /// What it does, for help.
@@ -134,29 +159,33 @@ impl Binding {
 
     /// Its keys as people write them: "Home End"; the four arrows as one word.
     pub fn labels(&self) -> String {
-        let arrows = |shown: fn(Arrow) -> Key| {
-            let all = [Arrow::Left, Arrow::Right, Arrow::Up, Arrow::Down];
-            all.iter()
-                .all(|&arrow| self.keys.iter().any(|(key, _)| *key == shown(arrow)))
+        let mut labels = Vec::new();
+        for (key, _) in self.keys.iter() {
+            let label = self.all_arrows(*key).map_or(key.label(), str::to_owned);
+            if !labels.contains(&label) {
+                labels.push(label);
+            }
+        }
+        labels.join(" ")
+    }
+
+    /// What the four arrows are called together, where the key is one of them and all are there.
+    fn all_arrows(&self, key: Key) -> Option<&'static str> {
+        let (shown, label): (fn(Arrow) -> Key, _) = match key {
+            Key::Arrow(_) => (Key::Arrow, "arrows"),
+            Key::ShiftArrow(_) => (Key::ShiftArrow, "Shift-arrows"),
+            _ => return None,
         };
-        if arrows(Key::Arrow) {
-            return "arrows".to_owned();
-        }
-        if arrows(Key::ShiftArrow) {
-            return "Shift-arrows".to_owned();
-        }
-        self.keys
-            .iter()
-            .map(|(key, _)| key.label())
-            .collect::<Vec<_>>()
-            .join(" ")
+        let all = [Arrow::Left, Arrow::Right, Arrow::Up, Arrow::Down];
+        let bound = |arrow: &Arrow| self.keys.iter().any(|(key, _)| *key == shown(*arrow));
+        all.iter().all(bound).then_some(label)
     }
 
     /// The same in short, for hints: one key, or a pair of opposite ones where these are short.
     pub fn short_labels(&self) -> String {
-        let all = self.labels();
-        let (Some((first, message)), true) = (self.keys.first(), all.contains(' ')) else {
-            return all;
+        let arrows = self.keys.iter().find_map(|(key, _)| self.all_arrows(*key));
+        let (Some((first, message)), None) = (self.keys.first(), arrows) else {
+            return arrows.unwrap_or_default().to_owned();
         };
         let opposite = self
             .keys
@@ -180,7 +209,7 @@ pub(super) const fn bind(
 ) -> Binding {
     Binding {
         context,
-        keys,
+        keys: Cow::Borrowed(keys),
         hint,
         help,
     }

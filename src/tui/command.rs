@@ -6,6 +6,7 @@
 mod explore;
 
 use super::app::App;
+use super::binding::Context;
 use super::commands::{Command, Takes, find};
 use super::document::Document;
 use super::message::Message;
@@ -25,8 +26,10 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
     let (name, rest) = line
         .split_once(' ')
         .map_or((line, ""), |(name, rest)| (name, rest.trim()));
-    let command =
-        find(name).ok_or_else(|| format!("{name:?} is unknown; Tab shows the commands"))?;
+    let command = find(name).ok_or_else(|| {
+        let complete = app.keymap().label(Context::Command, &Message::Field(1));
+        format!("{name:?} is unknown; {complete} shows the commands")
+    })?;
     let words: Vec<&str> = rest.split_whitespace().collect();
     if let Some((_, message)) = command.words.iter().find(|(word, _)| *word == rest) {
         return Ok(message.clone());

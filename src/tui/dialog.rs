@@ -9,10 +9,10 @@ use super::explore::results::Results;
 use super::explore::running::Running;
 use super::exploring::ExplorePage;
 use super::form_dialog::FormDialog;
-use super::keymap::{HelpLine, help};
 use super::list::ListDialog;
 use super::message::Message;
 use super::name_dialog::NameDialog;
+use super::remap::{HelpLine, Keymap, help};
 
 /// One of them.
 #[derive(Clone, Debug)]
@@ -75,17 +75,17 @@ impl Help {
     }
 
     /// Its lines, and which of them stands first where there is room for so many.
-    pub fn lines(&self, room: usize) -> (Vec<HelpLine>, usize) {
-        let lines = help(self.context);
+    pub fn lines<'a>(&self, keymap: &'a Keymap, room: usize) -> (Vec<HelpLine<'a>>, usize) {
+        let lines = help(self.context, keymap);
         let last_top = lines.len().saturating_sub(room);
         (lines, self.top.min(last_top))
     }
 
     /// Goes on by lines, where there is room for so many.
-    pub fn scroll(&mut self, lines: i16, room: usize) {
-        let (_, top) = self.lines(room);
+    pub fn scroll(&mut self, lines: i16, keymap: &Keymap, room: usize) {
+        let (_, top) = self.lines(keymap, room);
         self.top = top.saturating_add_signed(isize::from(lines));
-        (_, self.top) = self.lines(room);
+        (_, self.top) = self.lines(keymap, room);
     }
 }
 

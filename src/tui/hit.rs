@@ -36,11 +36,9 @@ pub fn at(app: &App, column: u16, row: u16) -> Option<Target> {
     let place = Position::new(column, row);
     let inside = |area: Rect| area.contains(place);
     if inside(panes.menu) {
-        let mut items = menu(panes.menu).into_iter();
-        let option = items
-            .find(|item| inside(item.area))
-            .and_then(|item| item.binding.keys.first());
-        return option.map(|(_, message)| Target::Option(message.clone()));
+        let mut items = menu(panes.menu, app.keymap()).into_iter();
+        let option = items.find(|item| inside(item.area));
+        return option.map(|item| Target::Option(item.message.clone()));
     }
     match app.dialogs.last() {
         Some(Dialog::Form(dialog)) if inside(panes.form) => {

@@ -1,4 +1,5 @@
-//! The table of keys. Help, hints and the menu are made from it; a key that is not in it does nothing.
+//! The table of keys as it is unless a user changes it: [`super::remap`]. Help, hints and the menu are made from it; a
+//! key that is not in it does nothing.
 //!
 //! The arrows move the cursor, not `hjkl`: `l` is Load, as in the paper's menu.
 
@@ -920,51 +921,3 @@ pub const KEYMAP: &[Binding] = &[
 
 /// How many rows at the head of the table make the menu.
 pub const MENU: usize = 7;
-
-/// A line of help.
-#[derive(Clone, Copy, Debug)]
-pub enum HelpLine {
-    /// The heading of a place.
-    Place(Context),
-    /// A row of the table.
-    Keys(&'static Binding),
-}
-
-/// The lines of help in a place: on the matrix, where one begins, all of the table; elsewhere what means something
-/// there.
-pub fn help(context: Context) -> Vec<HelpLine> {
-    let places = match context {
-        Matrix => Context::ALL.to_vec(),
-        inner => std::iter::successors(Some(inner), |place| place.outer()).collect(),
-    };
-    let rows = |place: Context| {
-        KEYMAP
-            .iter()
-            .filter(move |binding| binding.context == place)
-    };
-    places
-        .into_iter()
-        .flat_map(|place| {
-            std::iter::once(HelpLine::Place(place)).chain(rows(place).map(HelpLine::Keys))
-        })
-        .collect()
-}
-
-/// What a key means where it is pressed.
-pub fn lookup(context: Context, key: Key) -> Option<Message> {
-    let mut place = Some(context);
-    while let Some(here) = place {
-        let rows = KEYMAP.iter().filter(|binding| binding.context == here);
-        if let Some((_, message)) = rows
-            .flat_map(|binding| binding.keys)
-            .find(|(bound, _)| *bound == key)
-        {
-            return Some(message.clone());
-        }
-        place = here.outer();
-    }
-    match key {
-        Char(character) if context.takes_text() => Some(Message::Type(character)),
-        _ => None,
-    }
-}

@@ -6,6 +6,7 @@ use super::binding::{Binding, Context};
 use super::form_dialog::FormDialog;
 use super::keymap::{KEYMAP, MENU};
 use super::message::Message;
+use super::remap::Keymap;
 use crate::imprint::Imprint;
 
 /// Columns of the row ruler.
@@ -133,11 +134,13 @@ fn matrix_width(imprint: &Imprint, cell: u16) -> u16 {
 
 /// An option of the menu, and where it stands.
 #[derive(Clone, Copy, Debug)]
-pub struct MenuItem {
+pub struct MenuItem<'a> {
     /// Its place.
     pub area: Rect,
-    /// Its key, and what that does.
-    pub binding: &'static Binding,
+    /// Its key now, if it has one.
+    pub binding: &'a Binding,
+    /// What it does.
+    pub message: &'static Message,
     /// Its name, which begins with its key but for Help.
     pub name: &'static str,
     /// Whether there is room for the key beside the name.
@@ -145,19 +148,23 @@ pub struct MenuItem {
 }
 
 /// The options of the menu; those that do not fit are left out.
-pub fn menu(area: Rect) -> Vec<MenuItem> {
+pub fn menu(area: Rect, keymap: &Keymap) -> Vec<MenuItem<'_>> {
     let with_key = area.width >= 70;
-    let help = KEYMAP
-        .iter()
-        .filter(|binding| binding.context == Context::Matrix && binding.does(&Message::Help));
+    let rows = || KEYMAP.iter().zip(keymap.rows());
+    let help = rows().filter(|(row, _)| row.context == Context::Matrix && row.does(&Message::Help));
     let mut x = area.x;
     let mut items = Vec::new();
-    for binding in KEYMAP.iter().take(MENU).chain(help) {
+    for (row, binding) in rows().take(MENU).chain(help) {
+        let Some((_, message)) = row.keys.first() else {
+            continue;
+        };
         let name = binding.help.split([':', ',']).next().unwrap_or_default();
-        let key = if with_key || !name.to_lowercase().starts_with(&binding.labels()) {
-            binding.labels().len() + 1
-        } else {
+        let label = binding.short_labels();
+        // An option without a key can still be clicked on.
+        let key = if label.is_empty() || !with_key && name.to_lowercase().starts_with(&label) {
             0
+        } else {
+            label.chars().count() + 1
         };
         let width = narrow(key + name.len());
         if x + width > area.right() {
@@ -166,6 +173,7 @@ pub fn menu(area: Rect) -> Vec<MenuItem> {
         items.push(MenuItem {
             area: Rect { x, width, ..area },
             binding,
+            message,
             name,
             with_key: key > 0,
         });

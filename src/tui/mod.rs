@@ -3,7 +3,7 @@
 //! The way of one keystroke:
 //! ```text
 //! terminal   crossterm event -> Key
-//! keymap     lookup(context, key) -> Message       one table: context, keys, message, help
+//! remap      lookup(context, key) -> Message       one table: context, keys, message, help
 //! update     update(&mut App, Message) -> Effect   the only writer
 //! view       view(&App, &mut Frame)                reads only; one pane per file
 //! ```
@@ -24,6 +24,10 @@ pub mod text_field;
 pub mod binding;
 
 pub mod keymap;
+
+pub mod action;
+
+pub mod remap;
 
 pub mod theme;
 

@@ -19,7 +19,6 @@ use ratatui::layout::Position;
 use crate::tui::app::{App, Options};
 use crate::tui::effect::World;
 use crate::tui::key::{Key, KeyError, parse};
-use crate::tui::keymap::lookup;
 use crate::tui::message::Message;
 use crate::tui::theme::Role;
 use crate::tui::view::view;
@@ -35,10 +34,15 @@ pub struct Session {
 impl Session {
     /// Starts the program in a world, on a screen of `width × height` characters.
     pub fn new(options: &Options, world: World, width: u16, height: u16) -> Self {
+        Self::of(App::new(options), world, width, height)
+    }
+
+    /// The same of a program that is made ready already.
+    pub fn of(app: App, world: World, width: u16, height: u16) -> Self {
         // A buffer in memory cannot fail: its error type has no values.
         let Ok(terminal) = Terminal::new(TestBackend::new(width, height));
         let mut session = Self {
-            app: App::new(options),
+            app,
             world,
             terminal,
         };
@@ -65,7 +69,7 @@ impl Session {
 
     /// Presses a key and draws the screen.
     pub fn press(&mut self, key: Key) {
-        if let Some(message) = lookup(self.app.context(), key) {
+        if let Some(message) = self.app.keymap().lookup(self.app.context(), key) {
             self.send(message);
         }
     }

@@ -20,7 +20,6 @@ use super::signals::{Said, Signals};
 use super::{job, session};
 use crate::tui::app::App;
 use crate::tui::effect::World;
-use crate::tui::keymap::lookup;
 use crate::tui::message::Message;
 use crate::tui::request::Effect;
 use crate::tui::view::view;
@@ -233,7 +232,7 @@ impl<'a> Talk<'a> {
             (self.watch)(&input);
             let message = match input {
                 // Each key where the one before has led.
-                Input::Key(key) => lookup(self.app.context(), key),
+                Input::Key(key) => self.app.keymap().lookup(self.app.context(), key),
                 Input::Paste(text) => Some(Message::Paste(text)),
                 Input::Mouse(mouse) => Some(Message::Mouse(mouse)),
                 Input::Size(columns, rows) => Some(Message::Resized(columns, rows)),

@@ -68,7 +68,8 @@ pub(super) fn take(app: &mut App, answer: Answer) -> Option<Effect> {
             )));
         }
         Answer::Removed(name) => {
-            inform(app, format!("{name} deleted; u brings it back"));
+            let undo = app.key_of(&Message::Undo);
+            inform(app, format!("{name} deleted; {undo} brings it back"));
             app.removed = Some(name);
         }
         Answer::Restored(name) => {
@@ -87,7 +88,8 @@ pub(super) fn take(app: &mut App, answer: Answer) -> Option<Effect> {
         Answer::Recovered(shape) => {
             begin(app, Document::empty(shape.sensor), None);
             change(app, Document::of_shape(&shape));
-            inform(app, "brought back; s saves it");
+            let save = app.key_of(&Message::Save);
+            inform(app, format!("brought back; {save} saves it"));
         }
         Answer::List(Err(text)) => {
             app.dialogs
@@ -95,9 +97,10 @@ pub(super) fn take(app: &mut App, answer: Answer) -> Option<Effect> {
             refuse(app, text);
         }
         Answer::GivenUp(Some(name)) => {
+            let undo = app.key_of(&Message::Undo);
             inform(
                 app,
-                format!("it is in the trash as {name}; u brings it back"),
+                format!("it is in the trash as {name}; {undo} brings it back"),
             );
             app.removed = Some(name);
         }
@@ -170,8 +173,9 @@ fn place(app: &mut App, loaded: &Loaded) -> Result<(), String> {
     } else {
         let imprint = shape.imprint.resized(here.0, here.1);
         if imprint.count() < shape.imprint.count() {
+            let change = app.key_of(&Message::Sensor);
             return Err(format!(
-                "{} is {} x {} and does not fit on {} x {} taxels; S changes the sensor",
+                "{} is {} x {} and does not fit on {} x {} taxels; {change} changes the sensor",
                 shape.name, own.0, own.1, here.0, here.1
             ));
         }

@@ -5,6 +5,7 @@ use crate::source::Source;
 use crate::tui::app::{App, Mode, Notice};
 use crate::tui::document::{Document, History, Origin, StoredName};
 use crate::tui::key::Arrow;
+use crate::tui::message::Message;
 
 /// Says something.
 pub(super) fn inform(app: &mut App, text: impl Into<String>) {
@@ -64,17 +65,21 @@ pub(super) fn replace(app: &mut App, document: Document) {
     change(app, document);
     if dropped > 0 {
         let taxels = if dropped == 1 { "taxel" } else { "taxels" };
+        let undo = app.key_of(&Message::Undo);
         inform(
             app,
-            format!("{dropped} {taxels} set by hand dropped; u brings back what was"),
+            format!("{dropped} {taxels} set by hand dropped; {undo} brings back what was"),
         );
     }
 }
 
 fn refuse_to_move(app: &mut App) {
+    let (figure, picture) = (app.key_of(&Message::Figure), app.key_of(&Message::Picture));
     refuse(
         app,
-        "nothing to move: this was drawn by hand; f touches a figure, p a stored shape",
+        format!(
+            "nothing to move: this was drawn by hand; {figure} touches a figure, {picture} a stored shape"
+        ),
     );
 }
 
@@ -122,7 +127,9 @@ pub(super) fn zoom(app: &mut App, direction: i8) {
     let Some(source) = movable(app) else { return };
     let by = f64::from(direction) * app.step.length();
     let (Some(x), Some(y)) = (source.get(Parameter::ZoomX), source.get(Parameter::ZoomY)) else {
-        return refuse(app, "a figure has sizes in place of a zoom: f changes them");
+        let figure = app.key_of(&Message::Figure);
+        let text = format!("a figure has sizes in place of a zoom: {figure} changes them");
+        return refuse(app, text);
     };
     set(
         app,

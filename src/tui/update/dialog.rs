@@ -49,7 +49,7 @@ fn in_help(app: &mut App, mut help: Help, message: &Message) {
         let (columns, rows) = app.screen;
         let screen = Rect::new(0, 0, columns, rows);
         let room = Panes::of(screen, &app.seen().imprint).map_or(0, |panes| panes.body.height);
-        help.scroll(*lines, room.into());
+        help.scroll(*lines, app.keymap(), room.into());
     }
     app.dialogs.push(Dialog::Help(help));
 }

@@ -58,12 +58,13 @@ pub(super) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::Copy(what) => return Some(copy(app, what)),
         Message::MouseOnOff => {
             app.mouse = !app.mouse;
+            let key = app.key_of(&Message::MouseOnOff);
             inform(
                 app,
                 if app.mouse {
-                    "the mouse points at taxels; m gives it back"
+                    format!("the mouse points at taxels; {key} gives it back")
                 } else {
-                    "the mouse selects text; m takes it again"
+                    format!("the mouse selects text; {key} takes it again")
                 },
             );
             return Some(Effect::Mouse(app.mouse));

@@ -1,4 +1,4 @@
-//! The list of the keys that mean something in a place, from the table of keys.
+//! The list of the keys that mean something in a place, as they are now.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -6,7 +6,7 @@ use ratatui::layout::Rect;
 use super::write;
 use crate::tui::app::App;
 use crate::tui::dialog::Help;
-use crate::tui::keymap::HelpLine;
+use crate::tui::remap::HelpLine;
 use crate::tui::theme::Role;
 
 /// Columns of the keys.
@@ -17,7 +17,7 @@ pub fn draw(app: &App, help: &Help, buffer: &mut Buffer, area: Rect) {
     let theme = app.theme();
     write::clear(buffer, area);
     let room = usize::from(area.height);
-    let (lines, top) = help.lines(room);
+    let (lines, top) = help.lines(app.keymap(), room);
     for (index, line) in lines.into_iter().skip(top).take(room).enumerate() {
         let row = write::row(area, index);
         match line {

@@ -10,14 +10,16 @@ use crate::tui::theme::Role;
 
 /// Draws the options: key and name, from the table of keys.
 pub fn draw(app: &App, buffer: &mut Buffer, area: Rect) {
-    for item in menu(area) {
-        let label = item.binding.labels();
+    for item in menu(area, app.keymap()) {
+        let label = item.binding.short_labels();
         let pieces = if item.with_key {
             [
                 (label.as_str(), Role::Key),
                 (" ", Role::Text),
                 (item.name, Role::Text),
             ]
+        } else if label.is_empty() {
+            [(item.name, Role::Text), ("", Role::Text), ("", Role::Text)]
         } else {
             // The key is the first letter.
             let (first, rest) = item.name.split_at(1);

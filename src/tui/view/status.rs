@@ -9,7 +9,6 @@ use crate::tui::app::{App, Mode, Notice};
 use crate::tui::binding::Binding;
 use crate::tui::dialog::Dialog;
 use crate::tui::document::Seen;
-use crate::tui::keymap::KEYMAP;
 use crate::tui::layout::Panes;
 use crate::tui::message::Message;
 use crate::tui::theme::Role;
@@ -117,7 +116,8 @@ fn source(app: &App) -> String {
     let Some(source) = &document.source else {
         return name
             + &if by_hand == 0 {
-                "empty: Space draws, f touches a figure".to_owned()
+                let (draw, figure) = (app.key_of(&Message::Toggle), app.key_of(&Message::Figure));
+                format!("empty: {draw} draws, {figure} touches a figure")
             } else {
                 "drawn by hand".to_owned()
             };
@@ -187,7 +187,7 @@ fn said(app: &App, panes: &Panes) -> Option<(String, Role)> {
         }
         Some(Dialog::Help(help)) if app.notice.is_none() => {
             let room = usize::from(panes.body.height);
-            let (lines, top) = help.lines(room);
+            let (lines, top) = help.lines(app.keymap(), room);
             let last = lines.len().min(top + room);
             let more = match (top, last == lines.len()) {
                 (0, true) => return None,
@@ -231,10 +231,8 @@ fn hints(app: &App, buffer: &mut Buffer, panes: &Panes) {
     let mut rest = panes.hints;
     let context = app.context();
     let screen = context.screen().unwrap_or(context);
-    let hinted = |context| {
-        let here = move |binding: &&Binding| binding.context == context && !binding.hint.is_empty();
-        KEYMAP.iter().filter(here)
-    };
+    let here = |binding: &&Binding| !binding.hint.is_empty() && !binding.keys.is_empty();
+    let hinted = |context| app.keymap().of(context).filter(here);
     let own = || hinted(context).chain(hinted(screen).filter(move |_| screen != context));
     // Where the descriptors are a page of their own, its key comes first; elsewhere it does nothing.
     let page = |binding: &&Binding| binding.does(&Message::Page);
