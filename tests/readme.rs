@@ -88,6 +88,16 @@ fn screen_and_tables_are_those_of_the_program() {
     );
 }
 
+/// The settings that it shows are ones, and say something of everything.
+#[test]
+fn the_file_of_settings_is_one() {
+    let text = std::fs::read_to_string(README).expect("the README is there");
+    let (_, rest) = text.split_once("```toml\n").expect("a file of settings");
+    let (file, _) = rest.split_once("```").expect("its end");
+    let config = taxel::cli::config::Config::read(file).expect("right");
+    assert_eq!((config.sensor().len(), config.changes().len()), (4, 2));
+}
+
 #[test]
 fn the_two_commands_come_first() {
     let text = std::fs::read_to_string(README).expect("the README is there");

@@ -9,6 +9,7 @@ use std::path::Path;
 use taxel::sensor::Sensor;
 use taxel::tui::app::Options;
 use taxel::tui::effect::World;
+use taxel::tui::remap::Keymap;
 use taxel::tui::script::runner::{Failure, Settings, run};
 use taxel::tui::theme::Theme;
 
@@ -21,6 +22,7 @@ fn settings(styles: bool, json: bool) -> Settings {
         size: (80, 24),
         styles,
         json,
+        keymap: Keymap::default(),
     }
 }
 

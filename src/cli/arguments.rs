@@ -7,6 +7,8 @@ use clap::ArgMatches;
 use clap::error::ErrorKind;
 
 use super::commands;
+use super::completions::Shell;
+use super::effective::{Chosen, Effective, Loaded};
 use super::failure::Failure;
 use super::flags::{self, Given};
 use super::input::Place;
@@ -20,14 +22,15 @@ use crate::source::Source;
 use crate::sweep::grid::{Anchor, Ranges};
 use crate::sweep::plan::Shard;
 use crate::sweep::range::DecimalRange;
-use crate::tui::terminal::settings::Flags;
 use crate::tui::theme::{ColorDepth, Palette};
 
-/// What is asked for, and the library's folder where one is named.
+/// What is asked for, and with which settings.
 #[derive(Clone, Debug)]
 pub(super) struct Asked {
     pub(super) request: Request,
-    pub(super) library: Option<PathBuf>,
+    /// Whether the arguments name the library's folder.
+    pub(super) library_named: bool,
+    pub(super) settings: Effective,
 }
 
 /// What is to be done.
@@ -35,8 +38,8 @@ pub(super) struct Asked {
 pub(super) enum Request {
     /// To print this text.
     Help(String),
-    /// The screen, with this sensor, on a terminal that is told about, and recorded or not.
-    Screen(Sensor, Flags, Option<PathBuf>),
+    /// The screen, of so many columns and rows whatever the terminal says, and recorded or not.
+    Screen(Option<(u16, u16)>, Option<PathBuf>),
     /// To drive the screen without a terminal.
     Script(Script),
     /// To touch a figure.
@@ -53,6 +56,12 @@ pub(super) enum Request {
     Merge(Vec<PathBuf>, Wanted),
     /// Something about the library.
     Library(Chore),
+    /// To print the settings.
+    Settings,
+    /// To print completions.
+    Completions(Shell),
+    /// To print the program's page of the manual, or to write all pages into a folder.
+    Man(Option<PathBuf>),
 }
 
 /// A grid and how it is gone through.
@@ -132,43 +141,82 @@ pub(super) fn read(arguments: Vec<OsString>) -> Result<Asked, Failure> {
         Ok(matches) => matches,
         Err(error) if error.use_stderr() => return Err(error.into()),
         Err(help) => {
-            let request = Request::Help(help.render().to_string());
-            let library = None;
-            return Ok(Asked { request, library });
+            let none = Chosen::default();
+            return Ok(Asked {
+                request: Request::Help(help.render().to_string()),
+                library_named: false,
+                settings: Effective::new(Loaded::default(), none, |_| None)?,
+            });
         }
     };
-    let library = matches.get_one::<PathBuf>("library").cloned();
-    let screen = Given::of(&matches);
+    let asked = || matches.get_one::<PathBuf>("config").cloned();
+    let library_named = matches.contains_id("library");
     let Some((name, own)) = matches.subcommand() else {
+        let settings = settings(Loaded::find(asked())?, &matches)?;
+        let size = matches.get_one("size").copied();
         let record = matches.get_one::<PathBuf>("record").cloned();
-        let request = Request::Screen(
-            screen.sensor(Sensor::default())?,
-            terminal(&matches),
-            record,
-        );
-        return Ok(Asked { request, library });
+        return Ok(Asked {
+            request: Request::Screen(size, record),
+            library_named,
+            settings,
+        });
     };
-    if let Some(flag) = screen.first() {
+    if let Some(flag) = Given::of(&matches).first() {
         let message = format!(
             "the subcommand '{name}' cannot be used with '--{flag}', which is the screen's"
         );
         return Err(command.error(ErrorKind::ArgumentConflict, message).into());
     }
-    let request = match name {
-        "figure" => figure(own, &mut command)?,
+    let loaded = match (name, asked()) {
+        // What these print is the same for everybody.
+        ("completions" | "man", _) | ("script", None) => Loaded::default(),
+        (_, asked) => Loaded::find(asked)?,
+    };
+    let settings = settings(loaded, own)?;
+    let request = request(name, own, &mut command, &settings)?;
+    Ok(Asked {
+        request,
+        library_named,
+        settings,
+    })
+}
+
+/// What a command asks for.
+fn request(
+    name: &str,
+    own: &ArgMatches,
+    command: &mut clap::Command,
+    settings: &Effective,
+) -> Result<Request, Failure> {
+    Ok(match name {
+        "figure" => {
+            let (figure, sensor) = source(own, command, "figure", settings)?;
+            let form = match form(own)? {
+                Form::Table(pitch) => Form::Table(pitch.or(settings.pitch())),
+                Form::Json => Form::Json,
+            };
+            Request::Figure(Box::new(figure), sensor, form, saving(own))
+        }
+        "config" => Request::Settings,
         "picture" => Request::Picture(what(own), Given::of(own), form(own)?, saving(own)),
         "describe" => Request::Describe(what(own), form(own)?),
         "library" => Request::Library(chore(own)?),
         "script" => Request::Script(script(own)),
-        "sweep" => Request::Sweep(Box::new(sweep(own, &mut command)?)),
+        "completions" => {
+            let name = own.get_one::<String>("shell");
+            let shell = name.and_then(|name| Shell::from_name(name));
+            // Required, and one of the names: there is always one.
+            Request::Completions(shell.unwrap_or(Shell::Bash))
+        }
+        "man" => Request::Man(own.get_one::<PathBuf>("folder").cloned()),
+        "sweep" => Request::Sweep(Box::new(sweep(own, command, settings)?)),
         "merge" => {
             let files = own.get_many::<PathBuf>("files");
             let files = files.map(|files| files.cloned().collect());
             Request::Merge(files.unwrap_or_default(), wanted(own))
         }
-        _ => Request::Batch(Given::of(own).sensor(Sensor::default())?),
-    };
-    Ok(Asked { request, library })
+        _ => Request::Batch(settings.sensor()),
+    })
 }
 
 fn script(matches: &ArgMatches) -> Script {
@@ -195,36 +243,38 @@ fn script(matches: &ArgMatches) -> Script {
     }
 }
 
-/// What the arguments say of the terminal; whether it has ASCII only is known elsewhere.
-fn terminal(matches: &ArgMatches) -> Flags {
-    let chosen = |name: &str| matches.get_one::<String>(name).map(String::as_str);
-    Flags {
-        color: match chosen("color") {
-            Some("never") => Some(ColorDepth::Never),
-            Some("16") => Some(ColorDepth::Sixteen),
-            Some("256") => Some(ColorDepth::TwoFiftySix),
-            Some("true") => Some(ColorDepth::True),
-            _ => None,
-        },
-        palette: match chosen("theme") {
-            Some("dark") => Some(Palette::Dark),
-            Some("light") => Some(Palette::Light),
-            Some("mono") => Some(Palette::Mono),
-            _ => None,
-        },
-        ascii: false,
-        no_mouse: matches.get_flag("no-mouse"),
-        size: matches.get_one("size").copied(),
-    }
+/// The settings with what a command's flags say; it needs not have all the flags.
+fn settings(loaded: Loaded, matches: &ArgMatches) -> Result<Effective, Failure> {
+    let chosen = |name: &str| {
+        let chosen = matches.try_get_one::<String>(name).ok().flatten();
+        chosen.map(String::as_str)
+    };
+    let switched = |name: &str| {
+        let switch = matches.try_get_one::<bool>(name).ok().flatten();
+        switch.copied().unwrap_or(false)
+    };
+    let chosen = Chosen {
+        theme: chosen("theme").map(|name| value_of(&Palette::NAMES, name)),
+        color: chosen("color").map(|name| value_of(&ColorDepth::NAMES, name)),
+        ascii: switched("ascii"),
+        no_mouse: switched("no-mouse"),
+        library: matches.get_one::<PathBuf>("library").cloned(),
+        sensor: Given::of(matches),
+    };
+    Effective::new(loaded, chosen, std::env::var_os)
 }
 
-fn figure(matches: &ArgMatches, command: &mut clap::Command) -> Result<Request, Failure> {
-    let (figure, sensor) = source(matches, command, "figure")?;
-    let (form, saving) = (form(matches)?, saving(matches));
-    Ok(Request::Figure(Box::new(figure), sensor, form, saving))
+/// What a name stands for; nothing for `auto`.
+fn value_of<T: Copy>(names: &[(&'static str, T)], name: &str) -> Option<T> {
+    let found = names.iter().find(|(own, _)| *own == name);
+    found.map(|(_, value)| *value)
 }
 
-fn sweep(matches: &ArgMatches, command: &mut clap::Command) -> Result<Sweep, Failure> {
+fn sweep(
+    matches: &ArgMatches,
+    command: &mut clap::Command,
+    settings: &Effective,
+) -> Result<Sweep, Failure> {
     let given = Given::of(matches);
     let mut ranges = Ranges::default();
     let read = |parameter: Parameter, range: &mut DecimalRange| {
@@ -244,7 +294,7 @@ fn sweep(matches: &ArgMatches, command: &mut clap::Command) -> Result<Sweep, Fai
         }
         Swept::Picture(picture.clone(), given)
     } else {
-        let (figure, sensor) = source(matches, command, "sweep")?;
+        let (figure, sensor) = source(matches, command, "sweep", settings)?;
         Swept::Figure(figure, sensor)
     };
     let anchor = match matches.get_one::<String>("anchor").map(String::as_str) {
@@ -287,6 +337,7 @@ fn source(
     matches: &ArgMatches,
     command: &mut clap::Command,
     name: &str,
+    settings: &Effective,
 ) -> Result<(Source, Sensor), Failure> {
     // Required, and one of the names: there is always one.
     let kind = matches.get_one::<String>("kind");
@@ -303,7 +354,7 @@ fn source(
         );
         return Err(misused(command, name, &message));
     }
-    let sensor = given.sensor(Sensor::default())?;
+    let sensor = settings.sensor();
     let figure = Source::Figure(given.figure(kind, sensor.side())?);
     Ok((figure, sensor))
 }

@@ -6,11 +6,13 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, Command, value_parser};
 
+use super::completions::Shell;
+use super::config::AUTO;
 use super::examples::{
-    ABOUT, BATCH_EXAMPLES, CHECK_EXAMPLES, DELETE_EXAMPLES, DESCRIBE_EXAMPLES, EXAMPLES,
-    FIGURE_EXAMPLES, LIBRARY_EXAMPLES, LIST_EXAMPLES, MERGE_EXAMPLES, PATH_EXAMPLES,
-    PICTURE_EXAMPLES, RESTORE_EXAMPLES, SAVE_EXAMPLES, SCRIPT_EXAMPLES, SHOW_EXAMPLES,
-    SWEEP_EXAMPLES,
+    ABOUT, BATCH_EXAMPLES, CHECK_EXAMPLES, COMPLETIONS_EXAMPLES, CONFIG_EXAMPLES, DELETE_EXAMPLES,
+    DESCRIBE_EXAMPLES, EXAMPLES, FIGURE_EXAMPLES, LIBRARY_EXAMPLES, LIST_EXAMPLES, MAN_EXAMPLES,
+    MERGE_EXAMPLES, PATH_EXAMPLES, PICTURE_EXAMPLES, RESTORE_EXAMPLES, SAVE_EXAMPLES,
+    SCRIPT_EXAMPLES, SHOW_EXAMPLES, SWEEP_EXAMPLES,
 };
 use super::flags;
 use crate::figure::Kind;
@@ -23,6 +25,7 @@ use crate::sweep::grid::Ranges;
 use crate::sweep::plan::{Shard, ShardError};
 use crate::sweep::range::{DecimalRange, RangeError};
 use crate::tui::script::command;
+use crate::tui::theme::{ColorDepth, Palette};
 
 /// All commands.
 pub(super) fn all() -> Command {
@@ -31,8 +34,9 @@ pub(super) fn all() -> Command {
         .about(ABOUT)
         .after_help(EXAMPLES)
         .args(sensor())
-        .args(terminal())
-        .args([folder(), ascii()].map(|arg| arg.global(true)))
+        .args(look())
+        .args([size(), record()].map(|arg| arg.help_heading("Terminal")))
+        .args([folder(), config_file(), ascii()].map(|arg| arg.global(true)))
         .subcommand(figure())
         .subcommand(picture())
         .subcommand(describe())
@@ -41,6 +45,9 @@ pub(super) fn all() -> Command {
         .subcommand(merge())
         .subcommand(library())
         .subcommand(script())
+        .subcommand(config())
+        .subcommand(completions())
+        .subcommand(man())
 }
 
 fn figure() -> Command {
@@ -252,38 +259,84 @@ fn script() -> Command {
         .args([file, keys, size(), styles, json])
 }
 
-/// What the terminal is like, where the environment does not say it well.
-fn terminal() -> [Arg; 5] {
-    let choice = |name: &'static str, values: &'static [&'static str], help: &'static str| {
-        let parser = PossibleValuesParser::new(values);
+fn completions() -> Command {
+    let shell = Arg::new("shell")
+        .value_name("SHELL")
+        .required(true)
+        .value_parser(PossibleValuesParser::new(Shell::ALL.map(Shell::name)))
+        .hide_possible_values(true)
+        .help("bash, zsh or fish");
+    Command::new("completions")
+        .about("Print what a shell completes after 'taxel'")
+        .after_help(COMPLETIONS_EXAMPLES)
+        .arg(shell)
+}
+
+fn man() -> Command {
+    let folder = Arg::new("folder")
+        .value_name("DIR")
+        .value_parser(value_parser!(PathBuf))
+        .help("Write the pages of all commands into this folder");
+    Command::new("man")
+        .about("Print the manual's page, or write all of its pages")
+        .after_help(MAN_EXAMPLES)
+        .arg(folder)
+}
+
+/// How the screen looks, where the environment does not say it well.
+fn look() -> [Arg; 3] {
+    let choice = |name: &'static str, values: Vec<&'static str>, help: &'static str| {
+        let values = std::iter::once(AUTO).chain(values);
         Arg::new(name)
             .long(name)
             .value_name(name.to_ascii_uppercase())
-            .value_parser(parser)
+            .value_parser(PossibleValuesParser::new(values))
             .hide_possible_values(true)
             .help(help)
     };
-    let record = Arg::new("record")
-        .long("record")
-        .value_name("FILE")
-        .value_parser(value_parser!(PathBuf))
-        .help("Write what is typed as a script, to a new file");
     let no_mouse = Arg::new("no-mouse")
         .long("no-mouse")
         .action(ArgAction::SetTrue)
         .help("Leave the mouse to the terminal");
+    let (depths, palettes) = (ColorDepth::NAMES, Palette::NAMES);
     [
         choice(
             "color",
-            &["auto", "never", "16", "256", "true"],
+            depths.map(|(name, _)| name).to_vec(),
             "Colours: auto, never, 16, 256 or true",
         ),
-        choice("theme", &["dark", "light", "mono"], "Dark, light or mono"),
-        size(),
+        choice(
+            "theme",
+            palettes.map(|(name, _)| name).to_vec(),
+            "Auto, dark, light or mono",
+        ),
         no_mouse,
-        record,
     ]
     .map(|arg| arg.help_heading("Terminal"))
+}
+
+fn record() -> Arg {
+    Arg::new("record")
+        .long("record")
+        .value_name("FILE")
+        .value_parser(value_parser!(PathBuf))
+        .help("Write what is typed as a script")
+}
+
+fn config() -> Command {
+    Command::new("config")
+        .about("Print the settings and where each comes from")
+        .after_help(CONFIG_EXAMPLES)
+        .args(sensor())
+        .args(look())
+}
+
+fn config_file() -> Arg {
+    Arg::new("config")
+        .long("config")
+        .value_name("FILE")
+        .value_parser(value_parser!(PathBuf))
+        .help("Settings in place of your own")
 }
 
 fn size() -> Arg {

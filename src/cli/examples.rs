@@ -7,6 +7,9 @@ Touches figures with a matrix of tactile sensors, computes the exact imprint and
 describes it. Without a command the screen opens, where all of this is live.";
 
 pub(super) const EXAMPLES: &str = "\
+All lengths are in sides of a sensory cell, x to the right, y down.
+Exit status: 0 done, 1 the input was wrong, 2 the command was.
+
 Examples:
   taxel
   taxel figure ellipse --x0 1.99 --y0 1.47 --thickness 2
@@ -14,10 +17,7 @@ Examples:
   taxel picture washer --x0 6 --angle 30 --save \"turned washer\"
   taxel library list
   taxel describe imprint.txt
-  taxel batch < poses.jsonl > answers.jsonl
-
-Exit status: 0 done, 1 the input was wrong, 2 the command was.
-All lengths are in sides of a sensory cell, x to the right, y down.";
+  taxel batch < poses.jsonl > answers.jsonl";
 
 pub(super) const FIGURE_EXAMPLES: &str = "\
 Ranges are those of the 16 x 16 sensor: on another one its larger side takes the
@@ -86,6 +86,52 @@ Examples:
   taxel script test.taxel
   taxel script -k 'f<Enter>' --size 60x20 --styles
   echo 'State /regions/0/f' | taxel script -k 'fh<Enter>' -"#;
+
+pub(super) const CONFIG_EXAMPLES: &str = r#"What is printed is a file of settings itself. Yours is config.toml in the folder
+taxel among your settings, or the file that --config or TAXEL_CONFIG names:
+  theme = "light"               # as --theme, --color; charset = "ascii"
+  library = "~/shapes"
+  [sensor]
+  columns = 32
+  [keys.matrix]                 # place, key, action; "none" frees a key
+  "x" = "toggle"
+  "<C-n>" = "new"
+A flag goes before the environment, that before the file. A file with anything
+unknown in it is refused with line and column, and nothing is started. Scripts
+heed --config only, so that they are the same for everybody.
+
+Examples:
+  taxel config
+  taxel config --theme light --columns 32 | grep flag
+  TAXEL_CONFIG=/dev/null taxel config | grep keys"#;
+
+pub(super) const COMPLETIONS_EXAMPLES: &str = "\
+Examples:
+  taxel completions bash > ~/.local/share/bash-completion/completions/taxel
+  taxel completions zsh > ~/.zfunc/_taxel    # a folder of your fpath
+  taxel completions fish > ~/.config/fish/completions/taxel.fish";
+
+pub(super) const MAN_EXAMPLES: &str = "\
+Examples:
+  taxel man | man -l -
+  taxel man ~/.local/share/man/man1 && man taxel-figure";
+
+/// Of the manual only.
+pub(super) const ENVIRONMENT: &str = "\
+  TAXEL_LIBRARY    the library's folder
+  TAXEL_CONFIG     the file of settings
+  NO_COLOR         no colours, where it is not empty
+  TERM, COLORTERM  what the terminal can show
+  LC_ALL, LC_CTYPE, LANG
+                   ASCII only, unless the locale is UTF-8
+  COLUMNS, LINES   the size of a terminal that does not tell it";
+
+/// Of the manual only.
+pub(super) const FILES: &str = "\
+  ~/.config/taxel/config.toml
+                   settings; 'taxel config' shows what it can say
+  ~/.local/share/taxel/library
+                   the shapes, one JSON file each";
 
 pub(super) const SWEEP_EXAMPLES: &str = "\
 A range is START:END:STEP with the end included, or one number; decimals are

@@ -49,6 +49,14 @@ pub(super) enum Failure {
     /// The answer cannot be written.
     #[error("cannot write: {0}")]
     Write(io::Error),
+    /// A page of the manual cannot be written.
+    #[error("{name}: cannot write: {error}")]
+    Page {
+        /// The file's name, or the folder's.
+        name: String,
+        /// Why not.
+        error: io::Error,
+    },
     /// The library refuses.
     #[error("{}", shortened(&.0.to_string()))]
     Library(#[from] LibraryError),
@@ -71,6 +79,14 @@ pub(super) enum Failure {
         broken: usize,
         /// Of how many.
         shapes: usize,
+    },
+    /// The file of settings cannot be read, or says something wrong.
+    #[error("{place}: {message}")]
+    Settings {
+        /// Its name, with line and column where these are known.
+        place: String,
+        /// What is wrong.
+        message: String,
     },
     /// A script cannot be read.
     #[error("{name}: {error}")]
@@ -140,6 +156,7 @@ impl Failure {
         match self {
             _ if self.is_closed_pipe() => 0,
             Self::Usage(_)
+            | Self::Settings { .. }
             | Self::NoScript { .. }
             | Self::Script {
                 failure: runner::Failure::Script(_),

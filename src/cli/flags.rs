@@ -108,7 +108,7 @@ pub(super) fn wrapped(text: &str, width: usize) -> String {
 }
 
 /// The values that were given by flags, not checked yet.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Given(Vec<(Parameter, Number)>);
 
 impl Given {

@@ -1,5 +1,5 @@
 //! The command line: `taxel figure`, `picture`, `describe`, `batch`, `sweep`, `merge`, `library`, and the screen where
-//! no command is given.
+//! no command is given; `script`, `config`, `completions` and `man` beside them.
 //!
 //! Answers go to standard output, messages to standard error, one line each, and what went wrong starts with `error:`.
 //! The exit status is 0 where all was done, 1 where the input was wrong, 2 where the command was, 3 where the program
@@ -9,6 +9,8 @@
 mod locale;
 
 mod input;
+
+pub mod config;
 
 mod failure;
 
@@ -22,7 +24,13 @@ mod flags;
 
 mod examples;
 
+mod completions;
+
 mod commands;
+
+mod manual;
+
+mod effective;
 
 mod arguments;
 
@@ -56,8 +64,8 @@ use crate::sweep::grid::Grid;
 /// Does what the arguments ask for, the first of which is the program's own name, and gives the exit status.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let charset = Charset::of(&arguments, std::env::var_os);
-    let failure = match perform(arguments, charset) {
+    let mut charset = Charset::of(&arguments, std::env::var_os);
+    let failure = match perform(arguments, &mut charset) {
         Ok(status) => return status,
         Err(failure) => failure,
     };
@@ -68,15 +76,23 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     failure.status()
 }
 
-fn perform(arguments: Vec<OsString>, charset: Charset) -> Result<u8, Failure> {
-    let Asked { request, library } = arguments::read(arguments)?;
-    let shelf = Shelf::new(library);
+/// Does it; the characters that may be written are those of the settings once these are known.
+fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, Failure> {
+    let Asked {
+        request,
+        library_named,
+        settings,
+    } = arguments::read(arguments)?;
+    let charset = settings.charset(*characters);
+    *characters = charset;
+    let shelf = Shelf::new(settings.library().cloned(), library_named);
     match request {
+        Request::Settings => print(&settings.text(charset))?,
         Request::Help(text) => print(&charset.lines(&text))?,
-        Request::Screen(sensor, flags, record) => {
-            return screen::screen(sensor, flags, record, &shelf, charset);
+        Request::Screen(size, record) => {
+            return screen::screen(&settings, size, record, &shelf, charset);
         }
-        Request::Script(asked) => script::run(&asked, &shelf, charset)?,
+        Request::Script(asked) => script::run(&asked, &settings, &shelf, charset)?,
         Request::Figure(figure, sensor, form, saving) => {
             let touched = touch::touch(*figure, sensor, form, saving, &shelf, charset)?;
             answer(&touched, charset)?;
@@ -102,6 +118,9 @@ fn perform(arguments: Vec<OsString>, charset: Charset) -> Result<u8, Failure> {
             let (shard, jobs) = (asked.shard, asked.jobs);
             print(&sweep::sweep(&grid, shard, jobs, &asked.wanted, charset)?)?;
         }
+        Request::Completions(shell) => write(&completions::script(shell, commands::all()))?,
+        Request::Man(None) => write(&manual::main_page()?)?,
+        Request::Man(Some(folder)) => manual::write(&folder)?,
         Request::Merge(files, wanted) => print(&sweep::merge(&files, &wanted, charset)?)?,
         Request::Library(chore) => self::chore(chore, &shelf, charset)?,
     }

@@ -4,12 +4,12 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use super::effective::Effective;
 use super::failure::Failure;
 use super::locale::Charset;
 use super::shelf::Shelf;
 use crate::library::journal::Orphan;
 use crate::library::store::{Library, Origin};
-use crate::sensor::Sensor;
 use crate::tui::app::{App, Options};
 use crate::tui::effect::World;
 use crate::tui::script::record::Recorder;
@@ -19,20 +19,25 @@ use crate::tui::terminal::settings::{Flags, Settings};
 
 /// Runs the program on the terminal; the exit status tells how it ended.
 pub(super) fn screen(
-    sensor: Sensor,
-    flags: Flags,
+    settings: &Effective,
+    size: Option<(u16, u16)>,
     record: Option<PathBuf>,
     shelf: &Shelf,
     charset: Charset,
 ) -> Result<u8, Failure> {
+    // A locale without UTF-8 is as good as a flag; one with it does not speak for the terminal.
+    let ascii = (charset == Charset::Ascii).then_some(true);
     let flags = Flags {
-        ascii: charset == Charset::Ascii,
-        ..flags
+        color: settings.color(),
+        palette: settings.theme(),
+        ascii: settings.ascii().or(ascii),
+        no_mouse: !settings.mouse(),
+        size,
     };
-    let settings = Settings::from_environment(std::env::var_os, &flags);
+    let terminal = Settings::from_environment(std::env::var_os, &flags);
     let options = Options {
-        sensor,
-        theme: settings.theme(),
+        sensor: settings.sensor(),
+        theme: terminal.theme(),
     };
     let library = shelf.library()?;
     let mut record = record
@@ -44,12 +49,8 @@ pub(super) fn screen(
             record.write(&lines);
         }
     };
-    let ended = terminal::run(
-        App::new(&options),
-        World::new(library),
-        &settings,
-        &mut watch,
-    );
+    let app = App::new(&options).with_keymap(settings.keymap().clone());
+    let ended = terminal::run(app, World::new(library), &terminal, &mut watch);
     if let Some(record) = record {
         record.end(ended.as_ref().ok().copied());
     }

@@ -5,11 +5,11 @@ use std::io::{self, Write};
 use std::ops::ControlFlow;
 
 use super::arguments::Script;
+use super::effective::Effective;
 use super::failure::Failure;
 use super::input::Place;
 use super::locale::Charset;
 use super::shelf::Shelf;
-use crate::sensor::Sensor;
 use crate::tui::app::Options;
 use crate::tui::effect::World;
 use crate::tui::key::parse;
@@ -18,7 +18,12 @@ use crate::tui::script::runner::{self, Settings as Running};
 use crate::tui::theme::Theme;
 
 /// Runs a script, and prints what it asks for as it comes.
-pub(super) fn run(asked: &Script, shelf: &Shelf, charset: Charset) -> Result<(), Failure> {
+pub(super) fn run(
+    asked: &Script,
+    settings: &Effective,
+    shelf: &Shelf,
+    charset: Charset,
+) -> Result<(), Failure> {
     let name = asked.place.as_ref().map(Place::name);
     let script = match &asked.place {
         Some(place) => text(place).map_err(|error| Failure::NoScript {
@@ -39,7 +44,7 @@ pub(super) fn run(asked: &Script, shelf: &Shelf, charset: Charset) -> Result<(),
         None => World::scratch().map_err(Failure::Screen)?,
     };
     let options = Options {
-        sensor: Sensor::default(),
+        sensor: settings.sensor(),
         theme: Theme::plain(charset == Charset::Ascii),
     };
     let running = Running {
@@ -47,6 +52,7 @@ pub(super) fn run(asked: &Script, shelf: &Shelf, charset: Charset) -> Result<(),
         size: asked.size,
         styles: asked.styles,
         json: asked.json,
+        keymap: settings.keymap().clone(),
     };
     let (mut output, mut lost) = (io::stdout().lock(), None);
     let print = |text: &str| {

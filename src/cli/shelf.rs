@@ -11,22 +11,24 @@ use super::input::{self, Content, InputError, Place};
 use crate::formats::shape::Shape;
 use crate::imprint::Imprint;
 use crate::library::error::LibraryError;
-use crate::library::place;
 use crate::library::store::{Expected, Library};
 
 /// The library, opened when it is used first.
 #[derive(Debug)]
 pub(super) struct Shelf {
-    asked: Option<PathBuf>,
+    folder: Option<PathBuf>,
+    /// Whether the arguments name it.
+    asked: bool,
     library: RefCell<Option<Library>>,
     /// What [`Shelf::imprint`] has found. A run uses what a shape was when it was asked for first.
     found: RefCell<HashMap<String, Imprint>>,
 }
 
 impl Shelf {
-    /// The library in the folder asked for, or where it is otherwise.
-    pub(super) fn new(asked: Option<PathBuf>) -> Self {
+    /// The library in that folder, where there is a place for one; and whether the arguments name it.
+    pub(super) fn new(folder: Option<PathBuf>, asked: bool) -> Self {
         Self {
+            folder,
             asked,
             library: RefCell::default(),
             found: RefCell::default(),
@@ -37,16 +39,14 @@ impl Shelf {
     pub(super) fn library(&self) -> Result<Library, LibraryError> {
         let mut library = self.library.borrow_mut();
         if library.is_none() {
-            let variable = std::env::var_os(place::VARIABLE);
-            let folder = place::folder(self.asked.clone(), variable)?;
-            *library = Some(Library::open(folder));
+            *library = self.folder.clone().map(Library::open);
         }
         library.clone().ok_or(LibraryError::NoPlace)
     }
 
     /// The library that the arguments name, if they do.
     pub(super) fn named(&self) -> Result<Option<Library>, LibraryError> {
-        self.asked.is_some().then(|| self.library()).transpose()
+        self.asked.then(|| self.library()).transpose()
     }
 
     /// The shape of that name, else the content of that file; of standard input for `-`.

@@ -23,3 +23,11 @@ pub fn folder(asked: Option<PathBuf>, variable: Option<OsString>) -> Result<Path
     };
     named.or_else(own).ok_or(LibraryError::NoPlace)
 }
+
+/// A path that may start with `~/`, which stands for the user's home; none where that is not known.
+pub fn below_home(path: &str) -> Option<PathBuf> {
+    match path.strip_prefix("~/") {
+        Some(rest) => directories::BaseDirs::new().map(|own| own.home_dir().join(rest)),
+        None => Some(PathBuf::from(path)),
+    }
+}

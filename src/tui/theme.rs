@@ -76,6 +76,25 @@ pub enum Palette {
     Mono,
 }
 
+impl ColorDepth {
+    /// All of them by their names in flags and files.
+    pub const NAMES: [(&'static str, Self); 4] = [
+        ("never", Self::Never),
+        ("16", Self::Sixteen),
+        ("256", Self::TwoFiftySix),
+        ("true", Self::True),
+    ];
+}
+
+impl Palette {
+    /// All of them by their names in flags and files.
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("dark", Self::Dark),
+        ("light", Self::Light),
+        ("mono", Self::Mono),
+    ];
+}
+
 /// How much the terminal can show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Theme {

@@ -12,6 +12,10 @@ mod picture;
 
 mod sweep;
 
+mod settings;
+
+mod shell;
+
 mod streams;
 
 mod script;
@@ -28,6 +32,8 @@ fn program<A: AsRef<OsStr>>(arguments: &[A], locale: &str) -> Command {
         .env_remove("LC_CTYPE")
         .env_remove("LANG")
         .env("LC_ALL", locale)
+        // Nobody's settings.
+        .env("TAXEL_CONFIG", "/dev/null")
         // No library but the shapes that come with the program, whoever runs the tests.
         .env(
             "TAXEL_LIBRARY",

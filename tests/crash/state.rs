@@ -132,6 +132,7 @@ pub(crate) fn program(arguments: &[&str], folder: &Path) -> Command {
         .arg("--library")
         .arg(folder)
         .env("LC_ALL", "C.UTF-8")
+        .env("TAXEL_CONFIG", "/dev/null")
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped());

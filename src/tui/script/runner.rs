@@ -10,13 +10,14 @@ use super::setting::Setting;
 use crate::formats::answer::Answer;
 use crate::library::store::Library;
 use crate::quote::shortened;
-use crate::tui::app::Options;
+use crate::tui::app::{App, Options};
 use crate::tui::effect::World;
 use crate::tui::key::Key;
 use crate::tui::message::{Message, Mouse, MouseKind};
+use crate::tui::remap::Keymap;
 
 /// How a script is run.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Settings {
     /// How the program starts.
     pub options: Options,
@@ -26,6 +27,8 @@ pub struct Settings {
     pub styles: bool,
     /// Screens and states as JSON lines.
     pub json: bool,
+    /// What each key means.
+    pub keymap: Keymap,
 }
 
 /// How a script came to its end before the last line.
@@ -73,7 +76,7 @@ pub fn run(
     mut print: impl FnMut(&str) -> ControlFlow<()>,
 ) -> Result<(), Failure> {
     let commands = read(script)?;
-    let (mut settings, mut world) = (*settings, world);
+    let (mut settings, mut world) = (settings.clone(), world);
     // What describes the start comes before it.
     let start = commands.iter().map_while(|(line, command)| match command {
         Command::Set(setting) => Some((*line, setting)),
@@ -109,7 +112,8 @@ pub fn run(
         world = World::furnished(&shapes, &leftovers).map_err(Failure::World)?;
     }
     let rest = &commands[start.count()..];
-    let mut session = Session::new(&settings.options, world, settings.size.0, settings.size.1);
+    let app = App::new(&settings.options).with_keymap(settings.keymap.clone());
+    let mut session = Session::of(app, world, settings.size.0, settings.size.1);
     for &key in keys {
         session.press(key);
     }

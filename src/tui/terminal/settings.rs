@@ -44,8 +44,8 @@ pub struct Flags {
     pub color: Option<ColorDepth>,
     /// `--theme`.
     pub palette: Option<Palette>,
-    /// `--ascii`, or a locale that is not UTF-8.
-    pub ascii: bool,
+    /// Whether characters are ASCII only; none: where the terminal may have no others.
+    pub ascii: Option<bool>,
     /// `--no-mouse`.
     pub no_mouse: bool,
     /// `--size`: columns and rows.
@@ -117,7 +117,7 @@ impl Settings {
             palette: flags
                 .palette
                 .unwrap_or_else(|| background(&text("COLORFGBG"))),
-            ascii: flags.ascii || kind <= Kind::Serial,
+            ascii: flags.ascii.unwrap_or(kind <= Kind::Serial),
             abilities: Abilities {
                 styles: kind > Kind::Dumb || color != ColorDepth::Never,
                 synchronized: kind == Kind::Window,

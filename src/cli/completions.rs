@@ -1,0 +1,66 @@
+//! `taxel completions`: what a shell completes after `taxel`, from the commands themselves.
+
+use clap::Command;
+use clap::builder::PossibleValue;
+use clap_complete::generate;
+use clap_complete::shells::{Bash, Fish, Zsh};
+
+/// A shell that completions can be written for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Shell {
+    Bash,
+    Zsh,
+    Fish,
+}
+
+impl Shell {
+    /// All of them.
+    pub(super) const ALL: [Self; 3] = [Self::Bash, Self::Zsh, Self::Fish];
+
+    /// As it is called.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Bash => "bash",
+            Self::Zsh => "zsh",
+            Self::Fish => "fish",
+        }
+    }
+
+    /// The one of that name.
+    pub(super) fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|shell| shell.name() == name)
+    }
+}
+
+/// The completions of all commands as a script of that shell.
+pub(super) fn script(shell: Shell, mut all: Command) -> Vec<u8> {
+    let (mut script, name) = (Vec::new(), "taxel");
+    match shell {
+        Shell::Bash => generate(Bash, &mut all, name, &mut script),
+        Shell::Zsh => generate(Zsh, &mut all, name, &mut script),
+        Shell::Fish => {
+            generate(Fish, &mut all, name, &mut script);
+            script.extend(words_of_fish(&all).into_bytes());
+        }
+    }
+    script
+}
+
+/// For fish the words that a command takes are written here: what is generated knows commands and flags only.
+fn words_of_fish(all: &Command) -> String {
+    let mut lines = String::new();
+    for command in all.get_subcommands() {
+        for argument in command.get_positionals() {
+            let values = argument.get_possible_values();
+            let words: Vec<&str> = values.iter().map(PossibleValue::get_name).collect();
+            if !words.is_empty() {
+                lines += &format!(
+                    "complete -c taxel -n \"__fish_taxel_using_subcommand {}\" -f -a \"{}\"\n",
+                    command.get_name(),
+                    words.join(" ")
+                );
+            }
+        }
+    }
+    lines
+}

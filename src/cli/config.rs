@@ -1,0 +1,324 @@
+//! The file of settings, read from its text.
+//!
+//! It is TOML. All of it may be left out; what it does not know it refuses, and every refusal tells its place:
+//! ```
+//! use taxel::cli::config::Config;
+//! let config = Config::read("theme = 'light'\n[sensor]\ncolumns = 32\n[keys.matrix]\nx = 'toggle'\n").unwrap();
+//! assert_eq!(config.sensor()[0].line, 3);
+//! let error = Config::read("theme = 'light'\ncolour = 'never'\n").unwrap_err();
+//! assert_eq!(error.to_string(),
+//!     "2:1: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, keys");
+//! ```
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::input::shortened;
+use crate::parameter::{Parameter, ParameterError};
+use crate::sensor::Sensor;
+use crate::tui::action;
+use crate::tui::binding::Context;
+use crate::tui::key::{Key, parse};
+use crate::tui::remap::{Change, Keymap, RemapError};
+use crate::tui::theme::{ColorDepth, Palette};
+
+/// What stands for a choice that the program makes.
+pub(super) const AUTO: &str = "auto";
+
+/// The keys at the top of the file, in the order in which they are told.
+const TOP: [&str; 7] = [
+    "theme", "color", "charset", "mouse", "library", "sensor", "keys",
+];
+
+/// The parameters of a sensor, each under the name of its flag.
+pub(super) const SENSOR: [(&str, Parameter); 4] = [
+    ("columns", Parameter::Columns),
+    ("rows", Parameter::Rows),
+    ("threshold", Parameter::Threshold),
+    ("pitch", Parameter::Pitch),
+];
+
+/// Which characters may be written.
+pub(super) const CHARSETS: [(&str, bool); 2] = [("ascii", true), ("unicode", false)];
+
+/// Something that the file says, and on which line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Written<T> {
+    /// What.
+    pub value: T,
+    /// The line, from 1.
+    pub line: usize,
+}
+
+/// What the file says; nothing where it is silent. Of a choice none is `auto`.
+#[derive(Clone, Debug, Default)]
+pub struct Config {
+    pub(super) theme: Option<Written<Option<Palette>>>,
+    pub(super) color: Option<Written<Option<ColorDepth>>>,
+    /// Whether characters are ASCII only.
+    pub(super) charset: Option<Written<Option<bool>>>,
+    pub(super) mouse: Option<Written<bool>>,
+    /// An absolute path, or one below the user's home that starts with `~/`.
+    pub(super) library: Option<Written<String>>,
+    sensor: Vec<Written<(Parameter, f64)>>,
+    changes: Vec<Written<Change>>,
+    keymap: Keymap,
+}
+
+/// What is wrong with the file, and where: line and column, both from 1, the column in characters.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{line}:{column}: {wrong}")]
+pub struct ConfigError {
+    /// The line.
+    pub line: usize,
+    /// The column.
+    pub column: usize,
+    /// What.
+    pub wrong: Wrong,
+}
+
+/// What can be wrong with the file.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Wrong {
+    /// It is no TOML.
+    #[error("{0}")]
+    Syntax(String),
+    /// A key, or a place with keys, that there is none of.
+    #[error("unknown key {found:?}, expected one of {}", expected.join(", "))]
+    Unknown {
+        /// What stands there.
+        found: String,
+        /// What could.
+        expected: Vec<&'static str>,
+    },
+    /// A value that is not of the kind.
+    #[error("expected {expected}, found {found}")]
+    Value {
+        /// What could stand there.
+        expected: String,
+        /// What does.
+        found: String,
+    },
+    /// A number that no sensor has.
+    #[error(transparent)]
+    Sensor(#[from] ParameterError),
+    /// Not the notation of one key.
+    #[error("{0:?} is not one key, expected one as in x, <Tab>, <C-x>")]
+    Key(String),
+    /// A change of keys that cannot be made.
+    #[error(transparent)]
+    Remap(#[from] RemapError),
+}
+
+/// An entry of a table: its key and its value.
+type Entry<'t, 'i> = (&'t str, usize, &'t Spanned<DeValue<'i>>);
+
+/// What is wrong, and at which byte.
+type Refusal = (usize, Wrong);
+
+impl Config {
+    /// What a text says.
+    ///
+    /// # Errors
+    /// The first thing that is wrong.
+    pub fn read(text: &str) -> Result<Self, ConfigError> {
+        Self::of(text).map_err(|(byte, wrong)| {
+            let (line, column) = place(text, byte);
+            ConfigError {
+                line,
+                column,
+                wrong,
+            }
+        })
+    }
+
+    /// What it says of the sensor.
+    pub fn sensor(&self) -> &[Written<(Parameter, f64)>] {
+        &self.sensor
+    }
+
+    /// The keys that it changes.
+    pub fn changes(&self) -> &[Written<Change>] {
+        &self.changes
+    }
+
+    /// The keys as they are with its changes.
+    pub fn keymap(&self) -> &Keymap {
+        &self.keymap
+    }
+
+    fn of(text: &str) -> Result<Self, Refusal> {
+        let table = DeTable::parse(text).map_err(|error| {
+            let message = shortened(&error.message().replace('\n', "; "));
+            let byte = error.span().map_or(0, |span| span.start);
+            (byte, Wrong::Syntax(message))
+        })?;
+        let mut config = Self::default();
+        for entry in entries(table.get_ref()) {
+            config.take(text, entry)?;
+        }
+        Ok(config)
+    }
+
+    fn take(&mut self, text: &str, entry: Entry<'_, '_>) -> Result<(), Refusal> {
+        let (key, byte, value) = entry;
+        let line = place(text, byte).0;
+        match key {
+            "theme" => self.theme = Some(choice(&Palette::NAMES, value, line)?),
+            "color" => self.color = Some(choice(&ColorDepth::NAMES, value, line)?),
+            "charset" => self.charset = Some(choice(&CHARSETS, value, line)?),
+            "mouse" => {
+                let wanted = value.get_ref().as_bool();
+                let value = wanted.ok_or_else(|| other_kind("true or false", value))?;
+                self.mouse = Some(Written { value, line });
+            }
+            "library" => {
+                let path = string(value)?;
+                if !path.starts_with('/') && !path.starts_with("~/") {
+                    let expected = "a path that starts with / or ~/".to_owned();
+                    return Err(unfit(expected, path, value));
+                }
+                let value = path.to_owned();
+                self.library = Some(Written { value, line });
+            }
+            "sensor" => {
+                let mut sensor = Sensor::default();
+                for (key, byte, value) in entries(table(value)?) {
+                    let known = SENSOR.iter().find(|(name, _)| *name == key);
+                    let names = || SENSOR.map(|(name, _)| name);
+                    let (_, parameter) = known.ok_or_else(|| unknown(key, byte, &names()))?;
+                    let number = number(value)?;
+                    sensor = sensor
+                        .with(*parameter, number)
+                        .map_err(|error| (value.span().start, error.into()))?;
+                    self.sensor.push(Written {
+                        value: (*parameter, number),
+                        line: place(text, byte).0,
+                    });
+                }
+            }
+            "keys" => self.remap(text, value)?,
+            _ => return Err(unknown(key, byte, &TOP)),
+        }
+        Ok(())
+    }
+
+    fn remap(&mut self, text: &str, value: &Spanned<DeValue<'_>>) -> Result<(), Refusal> {
+        let mut spans = Vec::new();
+        for (name, byte, value) in entries(table(value)?) {
+            let known = Context::ALL.into_iter().find(|own| own.name() == name);
+            let context =
+                known.ok_or_else(|| unknown(name, byte, &Context::ALL.map(Context::name)))?;
+            for (key, byte, value) in entries(table(value)?) {
+                let action = match string(value)? {
+                    "none" => None,
+                    name => Some(action::named(name).cloned().ok_or_else(|| {
+                        let expected = "an action of 'taxel config', or \"none\"".to_owned();
+                        unfit(expected, name, value)
+                    })?),
+                };
+                let key = one_key(key).ok_or_else(|| (byte, Wrong::Key(shortened(key))))?;
+                spans.push((byte, value.span().start));
+                self.changes.push(Written {
+                    value: Change {
+                        context,
+                        key,
+                        action,
+                    },
+                    line: place(text, byte).0,
+                });
+            }
+        }
+        let changes: Vec<Change> = self.changes.iter().map(|own| own.value.clone()).collect();
+        self.keymap = Keymap::with(&changes).map_err(|(index, error)| {
+            let (key, value) = spans.get(index).copied().unwrap_or_default();
+            let byte = if matches!(error, RemapError::Elsewhere(_)) {
+                value
+            } else {
+                key
+            };
+            (byte, error.into())
+        })?;
+        Ok(())
+    }
+}
+
+/// The entries of a table in the order of the text.
+fn entries<'t, 'i>(table: &'t DeTable<'i>) -> Vec<Entry<'t, 'i>> {
+    let mut entries: Vec<Entry<'_, '_>> = table
+        .iter()
+        .map(|(key, value)| (&**key.get_ref(), key.span().start, value))
+        .collect();
+    entries.sort_by_key(|(_, byte, _)| *byte);
+    entries
+}
+
+/// Line and column of a byte.
+fn place(text: &str, byte: usize) -> (usize, usize) {
+    let before = text.get(..byte).unwrap_or(text);
+    let line = before.split('\n').count();
+    let column = before.rsplit('\n').next().unwrap_or_default();
+    (line, column.chars().count() + 1)
+}
+
+fn one_key(text: &str) -> Option<Key> {
+    match parse(text).ok()?[..] {
+        [key] => Some(key),
+        _ => None,
+    }
+}
+
+/// One of some names, or `auto`.
+fn choice<T: Copy, const N: usize>(
+    names: &[(&'static str, T); N],
+    value: &Spanned<DeValue<'_>>,
+    line: usize,
+) -> Result<Written<Option<T>>, Refusal> {
+    let text = string(value)?;
+    let known = names.iter().find(|(name, _)| *name == text);
+    if known.is_none() && text != AUTO {
+        let others: Vec<String> = names.iter().map(|(name, _)| format!("{name:?}")).collect();
+        let expected = format!("one of \"{AUTO}\", {}", others.join(", "));
+        return Err(unfit(expected, text, value));
+    }
+    let value = known.map(|(_, own)| *own);
+    Ok(Written { value, line })
+}
+
+fn string<'t>(value: &'t Spanned<DeValue<'_>>) -> Result<&'t str, Refusal> {
+    let text = value.get_ref().as_str();
+    text.ok_or_else(|| other_kind("text in quotes", value))
+}
+
+fn table<'t, 'i>(value: &'t Spanned<DeValue<'i>>) -> Result<&'t DeTable<'i>, Refusal> {
+    let table = value.get_ref().as_table();
+    table.ok_or_else(|| other_kind("a table", value))
+}
+
+/// What is no finite number is refused by the parameter.
+fn number(value: &Spanned<DeValue<'_>>) -> Result<f64, Refusal> {
+    let (text, decimal) = match value.get_ref() {
+        DeValue::Integer(number) => (number.as_str(), number.radix() == 10),
+        DeValue::Float(number) => (number.as_str(), true),
+        _ => return Err(other_kind("a number", value)),
+    };
+    let number = text.parse().ok().filter(|_| decimal);
+    number.ok_or_else(|| unfit("a decimal number".to_owned(), text, value))
+}
+
+fn unknown(found: &str, byte: usize, expected: &[&'static str]) -> Refusal {
+    let (found, expected) = (shortened(found), expected.to_vec());
+    (byte, Wrong::Unknown { found, expected })
+}
+
+fn unfit(expected: String, found: &str, value: &Spanned<DeValue<'_>>) -> Refusal {
+    let found = format!("{:?}", shortened(found));
+    (value.span().start, Wrong::Value { expected, found })
+}
+
+fn other_kind(expected: &str, value: &Spanned<DeValue<'_>>) -> Refusal {
+    let found = value.get_ref().type_str();
+    let (expected, found) = (expected.to_owned(), found.to_owned());
+    (value.span().start, Wrong::Value { expected, found })
+}

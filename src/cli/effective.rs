@@ -1,0 +1,368 @@
+//! The settings that hold: a flag before the environment, that before the file, that before the program's own.
+
+use std::ffi::OsString;
+use std::fmt;
+use std::fs::File;
+use std::io::{ErrorKind, Read};
+use std::path::PathBuf;
+
+use super::config::{AUTO, CHARSETS, Config, SENSOR, Written};
+use super::failure::Failure;
+use super::flags::Given;
+use super::locale::Charset;
+use crate::library::place;
+use crate::parameter::Parameter;
+use crate::sensor::Sensor;
+use crate::tui::action;
+use crate::tui::binding::Context;
+use crate::tui::remap::Keymap;
+use crate::tui::theme::{ColorDepth, Palette};
+
+/// The variable that names the file.
+pub(super) const VARIABLE: &str = "TAXEL_CONFIG";
+
+/// No file of settings is longer.
+const MAX_BYTES: usize = 1 << 20;
+
+/// The file of settings.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Loaded {
+    /// Where it is, or would be.
+    path: Option<PathBuf>,
+    there: bool,
+    config: Config,
+}
+
+impl Loaded {
+    /// The file asked for, else that of the variable, else the user's own, which may be missing.
+    pub(super) fn find(asked: Option<PathBuf>) -> Result<Self, Failure> {
+        let variable = std::env::var_os(VARIABLE).filter(|value| !value.is_empty());
+        if let Some(path) = asked.or_else(|| variable.map(PathBuf::from)) {
+            return Self::read(path, false);
+        }
+        let own = directories::ProjectDirs::from("", "", "taxel");
+        own.map_or_else(
+            || Ok(Self::default()),
+            |own| Self::read(own.config_dir().join("config.toml"), true),
+        )
+    }
+
+    fn read(path: PathBuf, may_be_missing: bool) -> Result<Self, Failure> {
+        let name = path.display();
+        let failure = |message: String| Failure::Settings {
+            place: name.to_string(),
+            message,
+        };
+        let mut bytes = Vec::new();
+        let limit = u64::try_from(MAX_BYTES).unwrap_or(u64::MAX);
+        let read = File::open(&path).and_then(|file| file.take(limit + 1).read_to_end(&mut bytes));
+        let there = match read {
+            Err(error) if error.kind() == ErrorKind::NotFound && may_be_missing => false,
+            Err(error) => return Err(failure(format!("cannot read: {error}"))),
+            Ok(_) => true,
+        };
+        if bytes.len() > MAX_BYTES {
+            return Err(failure("larger than 1 MiB".to_owned()));
+        }
+        let text = String::from_utf8(bytes).map_err(|_| failure("no UTF-8 text".to_owned()))?;
+        let config = Config::read(&text).map_err(|error| Failure::Settings {
+            place: format!("{name}:{}:{}", error.line, error.column),
+            message: error.wrong.to_string(),
+        })?;
+        Ok(Self {
+            path: Some(path),
+            there,
+            config,
+        })
+    }
+}
+
+/// What the flags say; nothing where they are silent.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Chosen {
+    pub(super) theme: Option<Option<Palette>>,
+    pub(super) color: Option<Option<ColorDepth>>,
+    pub(super) ascii: bool,
+    pub(super) no_mouse: bool,
+    pub(super) library: Option<PathBuf>,
+    pub(super) sensor: Given,
+}
+
+/// Where a value comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Origin {
+    Default,
+    File(usize),
+    Environment(&'static str),
+    Flag(String),
+}
+
+impl fmt::Display for Origin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Default => f.write_str("default"),
+            Self::File(line) => write!(f, "file, line {line}"),
+            Self::Environment(name) => write!(f, "environment, {name}"),
+            Self::Flag(name) => write!(f, "flag, --{name}"),
+        }
+    }
+}
+
+/// A value and where it comes from.
+#[derive(Clone, Debug)]
+struct Settled<T> {
+    value: T,
+    origin: Origin,
+}
+
+/// The first that says something: a flag, a variable of the environment, the file, the program.
+fn settled<T: Clone>(
+    flag: Option<(T, &str)>,
+    variable: Option<(T, &'static str)>,
+    file: Option<&Written<T>>,
+    default: T,
+) -> Settled<T> {
+    let flag = flag.map(|(value, name)| (value, Origin::Flag(name.to_owned())));
+    let variable = variable.map(|(value, name)| (value, Origin::Environment(name)));
+    let file = file.map(|own| (own.value.clone(), Origin::File(own.line)));
+    let (value, origin) = flag
+        .or(variable)
+        .or(file)
+        .unwrap_or((default, Origin::Default));
+    Settled { value, origin }
+}
+
+/// All settings. Of a choice none is `auto`.
+#[derive(Clone, Debug)]
+pub(super) struct Effective {
+    loaded: Loaded,
+    theme: Settled<Option<Palette>>,
+    color: Settled<Option<ColorDepth>>,
+    charset: Settled<Option<bool>>,
+    mouse: Settled<bool>,
+    library: Settled<Option<PathBuf>>,
+    sensor: Sensor,
+    of_sensor: Vec<(&'static str, Parameter, Origin)>,
+}
+
+impl Effective {
+    /// What holds with these flags, this environment and this file.
+    pub(super) fn new(
+        loaded: Loaded,
+        chosen: Chosen,
+        variable: impl Fn(&'static str) -> Option<OsString>,
+    ) -> Result<Self, Failure> {
+        let set = |name| variable(name).filter(|value| !value.is_empty());
+        let config = &loaded.config;
+        let written = config.library.as_ref().map(|own| Written {
+            value: place::below_home(&own.value),
+            line: own.line,
+        });
+        let mut sensor = Sensor::default();
+        let mut of_sensor = Vec::new();
+        for (name, parameter) in SENSOR {
+            let own = config.sensor().iter().find(|own| own.value.0 == parameter);
+            if let Some(Written {
+                value: (_, number), ..
+            }) = own
+            {
+                // The file was checked when it was read.
+                sensor = sensor.with(parameter, *number).unwrap_or(sensor);
+            }
+            let origin = match own {
+                _ if chosen.sensor.has(parameter) => Origin::Flag(name.to_owned()),
+                Some(own) => Origin::File(own.line),
+                None => Origin::Default,
+            };
+            of_sensor.push((name, parameter, origin));
+        }
+        Ok(Self {
+            theme: settled(
+                chosen.theme.map(|theme| (theme, "theme")),
+                None,
+                config.theme.as_ref(),
+                None,
+            ),
+            color: settled(
+                chosen.color.map(|color| (color, "color")),
+                // https://no-color.org
+                set("NO_COLOR").map(|_| (Some(ColorDepth::Never), "NO_COLOR")),
+                config.color.as_ref(),
+                None,
+            ),
+            charset: settled(
+                chosen.ascii.then_some((Some(true), "ascii")),
+                None,
+                config.charset.as_ref(),
+                None,
+            ),
+            mouse: settled(
+                chosen.no_mouse.then_some((false, "no-mouse")),
+                None,
+                config.mouse.as_ref(),
+                true,
+            ),
+            library: settled(
+                chosen.library.map(|folder| (Some(folder), "library")),
+                set(place::VARIABLE).map(|folder| (Some(folder.into()), place::VARIABLE)),
+                written.as_ref(),
+                place::folder(None, None).ok(),
+            ),
+            sensor: chosen.sensor.sensor(sensor)?,
+            of_sensor,
+            loaded,
+        })
+    }
+
+    /// What colours are chosen for.
+    pub(super) fn theme(&self) -> Option<Palette> {
+        self.theme.value
+    }
+
+    /// How many colours.
+    pub(super) fn color(&self) -> Option<ColorDepth> {
+        self.color.value
+    }
+
+    /// Whether the mouse is reported.
+    pub(super) fn mouse(&self) -> bool {
+        self.mouse.value
+    }
+
+    /// The library's folder, where there is one.
+    pub(super) fn library(&self) -> Option<&PathBuf> {
+        self.library.value.as_ref()
+    }
+
+    /// The sensor.
+    pub(super) fn sensor(&self) -> Sensor {
+        self.sensor
+    }
+
+    /// The pitch in mm, where one is set.
+    pub(super) fn pitch(&self) -> Option<f64> {
+        let set = |(_, parameter, origin): &&(_, Parameter, Origin)| {
+            *parameter == Parameter::Pitch && *origin != Origin::Default
+        };
+        let pitch = self.of_sensor.iter().find(set);
+        pitch.map(|_| self.sensor.pitch_mm())
+    }
+
+    /// The keys.
+    pub(super) fn keymap(&self) -> &Keymap {
+        self.loaded.config.keymap()
+    }
+
+    /// The characters that may be written: what is set, else those of the locale.
+    pub(super) fn charset(&self, locale: Charset) -> Charset {
+        match self.charset.value {
+            Some(true) => Charset::Ascii,
+            Some(false) => Charset::Unicode,
+            None => locale,
+        }
+    }
+
+    /// Whether the characters are ASCII only, where that is not left to the locale and the terminal.
+    pub(super) fn ascii(&self) -> Option<bool> {
+        self.charset.value
+    }
+
+    /// All of them as a file of settings, each with where it comes from.
+    pub(super) fn text(&self, charset: Charset) -> String {
+        let mut text = match &self.loaded.path {
+            Some(path) => {
+                let missing = if self.loaded.there {
+                    ""
+                } else {
+                    " (not there)"
+                };
+                let path = path.display().to_string();
+                format!("# {}{missing}\n", charset.line(&path))
+            }
+            None => "# no file\n".to_owned(),
+        };
+        let mut line = |entry: &str, origin: &Origin| text += &told(entry, origin);
+        let quoted = |text: &str| quoted(text, charset);
+        let theme = named(&Palette::NAMES, self.theme.value);
+        line(&format!("theme = \"{theme}\""), &self.theme.origin);
+        let color = named(&ColorDepth::NAMES, self.color.value);
+        line(&format!("color = \"{color}\""), &self.color.origin);
+        let characters = named(&CHARSETS, self.charset.value);
+        line(&format!("charset = \"{characters}\""), &self.charset.origin);
+        line(&format!("mouse = {}", self.mouse.value), &self.mouse.origin);
+        let library = match &self.library.value {
+            Some(folder) => format!("library = {}", quoted(&folder.to_string_lossy())),
+            None => "# no library: there is no home".to_owned(),
+        };
+        line(&library, &self.library.origin);
+        text + "\n[sensor]\n" + &self.sensor_text() + &self.keys_text(&quoted)
+    }
+
+    fn sensor_text(&self) -> String {
+        let value = |parameter| match parameter {
+            Parameter::Columns => f64::from(self.sensor.columns()),
+            Parameter::Rows => f64::from(self.sensor.rows()),
+            Parameter::Threshold => self.sensor.threshold(),
+            _ => self.sensor.pitch_mm(),
+        };
+        let line = |(name, parameter, origin): &(&str, Parameter, Origin)| {
+            let entry = match (parameter, origin) {
+                // A pitch that is set has lengths told in mm too.
+                (Parameter::Pitch, Origin::Default) => "# pitch is not set".to_owned(),
+                (parameter, _) => format!("{name} = {}", value(*parameter)),
+            };
+            told(&entry, origin)
+        };
+        self.of_sensor.iter().map(line).collect()
+    }
+
+    fn keys_text(&self, quoted: &impl Fn(&str) -> String) -> String {
+        let changes = self.loaded.config.changes();
+        let mut text = String::new();
+        for context in Context::ALL {
+            text += &format!("\n[keys.{}]\n", context.name());
+            let here = || changes.iter().filter(|own| own.value.context == context);
+            let bound = self.keymap().of(context).flat_map(|row| row.keys.iter());
+            let bound = bound.map(|(key, action)| (*key, action::name(action).unwrap_or_default()));
+            let freed = here().filter(|own| own.value.action.is_none());
+            let freed = freed.map(|own| (own.value.key, "none"));
+            for (key, action) in bound.chain(freed) {
+                let change = here().find(|own| own.value.key == key);
+                let origin = change.map_or(Origin::Default, |own| Origin::File(own.line));
+                let entry = format!("{} = \"{action}\"", quoted(&key.to_string()));
+                text += &told(&entry, &origin);
+            }
+        }
+        text
+    }
+}
+
+/// An entry and where it comes from, the latter in a column of its own.
+fn told(entry: &str, origin: &Origin) -> String {
+    format!("{entry:<37}  # {origin}\n")
+}
+
+/// The name of a choice.
+fn named<T: PartialEq>(names: &[(&'static str, T)], value: Option<T>) -> &'static str {
+    let found = names.iter().find(|(_, own)| Some(own) == value.as_ref());
+    found.map_or(AUTO, |(name, _)| name)
+}
+
+/// A text as TOML has it in quotes.
+fn quoted(text: &str, charset: Charset) -> String {
+    let mut quoted = String::from("\"");
+    for character in text.chars() {
+        let plain = match charset {
+            Charset::Ascii => matches!(character, ' '..='~'),
+            Charset::Unicode => {
+                charset.line(character.encode_utf8(&mut [0; 4])).len() == character.len_utf8()
+            }
+        };
+        match character {
+            '"' | '\\' => quoted.extend(['\\', character]),
+            _ if plain => quoted.push(character),
+            _ => quoted += &format!("\\U{:08X}", u32::from(character)),
+        }
+    }
+    quoted + "\""
+}

@@ -1,0 +1,121 @@
+//! `taxel man`: the help of every command as a page of the manual.
+//!
+//! A page is made from the same texts as the help. In what follows the flags, a line that is indented stands as it is,
+//! others are filled; `Examples:` is a heading of its own.
+
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use clap::Command;
+use clap_mangen::Man;
+use clap_mangen::roff::{Roff, roman};
+
+use super::commands;
+use super::examples::{ENVIRONMENT, FILES};
+use super::failure::Failure;
+
+/// The program's own page.
+pub(super) fn main_page() -> Result<Vec<u8>, Failure> {
+    page(&built()).map_err(Failure::Write)
+}
+
+/// Writes all pages into a folder, which is made where it is not there.
+pub(super) fn write(folder: &Path) -> Result<(), Failure> {
+    let failure = |path: &Path, error: io::Error| Failure::Page {
+        name: path.display().to_string(),
+        error,
+    };
+    fs::create_dir_all(folder).map_err(|error| failure(folder, error))?;
+    for command in all(&built()) {
+        let file = folder.join(format!("{}.1", name(command)));
+        page(command)
+            .and_then(|page| fs::write(&file, page))
+            .map_err(|error| failure(&file, error))?;
+    }
+    Ok(())
+}
+
+/// The commands with all that clap adds to them, but for its `help`, of which there is nothing to say.
+fn built() -> Command {
+    let mut all = commands::all().disable_help_subcommand(true);
+    all.build();
+    all
+}
+
+/// A command and all below it.
+fn all(command: &Command) -> Vec<&Command> {
+    let below = command.get_subcommands().flat_map(all);
+    std::iter::once(command).chain(below).collect()
+}
+
+/// "taxel-library-list".
+fn name(command: &Command) -> &str {
+    command
+        .get_display_name()
+        .unwrap_or_else(|| command.get_name())
+}
+
+fn page(command: &Command) -> io::Result<Vec<u8>> {
+    let mut page = Vec::new();
+    let about = command
+        .get_about()
+        .map(ToString::to_string)
+        .unwrap_or_default();
+    let (short, long) = about.split_once('\n').unwrap_or((&about, ""));
+    let man = Man::new(command.clone())
+        .source(concat!("taxel ", env!("CARGO_PKG_VERSION")))
+        .manual("taxel");
+    man.render_title(&mut page)?;
+    let mut roff = Roff::new();
+    roff.control("SH", ["NAME"])
+        .text([roman(format!("{} - {short}", name(command)))]);
+    let usage = command.clone().render_usage().to_string();
+    roff.control("SH", ["SYNOPSIS"]).control("nf", []);
+    for line in usage.lines() {
+        let line = line.strip_prefix("Usage: ").unwrap_or(line.trim_start());
+        roff.text([roman(line)]);
+    }
+    roff.control("fi", []).control("SH", ["DESCRIPTION"]);
+    filled(&mut roff, if long.is_empty() { short } else { long });
+    let after = command.get_after_help().map(ToString::to_string);
+    let after = after.unwrap_or_default();
+    let (notes, examples) = after.split_once("Examples:\n").unwrap_or((&after, ""));
+    filled(&mut roff, notes);
+    roff.to_writer(&mut page)?;
+    man.render_options_section(&mut page)?;
+    if command.has_subcommands() {
+        man.render_subcommands_section(&mut page)?;
+    }
+    let mut roff = Roff::new();
+    if name(command) == "taxel" {
+        for (heading, text) in [("ENVIRONMENT", ENVIRONMENT), ("FILES", FILES)] {
+            roff.control("SH", [heading]);
+            filled(&mut roff, text);
+        }
+    }
+    roff.control("SH", ["EXAMPLES"]);
+    filled(&mut roff, examples);
+    roff.to_writer(&mut page)?;
+    Ok(page)
+}
+
+/// Paragraphs, which an empty line ends, and lines that stand as they are.
+fn filled(roff: &mut Roff, text: &str) {
+    let mut as_it_is = false;
+    for line in text.trim_matches('\n').lines() {
+        let indented = line.starts_with(' ');
+        if indented != as_it_is {
+            roff.control(if indented { "nf" } else { "fi" }, []);
+            as_it_is = indented;
+        }
+        if line.is_empty() {
+            roff.control("PP", []);
+        } else {
+            roff.text([roman(line)]);
+        }
+    }
+    if as_it_is {
+        roff.control("fi", []);
+    }
+}

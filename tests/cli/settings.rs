@@ -1,0 +1,220 @@
+//! `taxel config`: which settings hold, and where each comes from.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use super::{Run, program};
+
+/// A file that says something of everything.
+const FILE: &str = "theme = \"light\"\ncolor = \"256\"\nmouse = false\nlibrary = \"~/shapes\"\n\n\
+[sensor]\ncolumns = 32\npitch = 2.5\n\n[keys.matrix]\nx = \"toggle\"\nd = \"none\"\n";
+
+fn run(command: &mut Command) -> Run {
+    super::finish(command.spawn().expect("it starts"), b"")
+}
+
+fn taxel(line: &str) -> Command {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    program(&words, "C.UTF-8")
+}
+
+/// A home with that file in its place.
+fn home(text: &str) -> tempfile::TempDir {
+    let home = tempfile::tempdir().expect("a folder");
+    let folder = home.path().join(".config/taxel");
+    fs::create_dir_all(&folder).expect("made");
+    fs::write(folder.join("config.toml"), text).expect("written");
+    home
+}
+
+fn at_home(line: &str, home: &Path) -> Command {
+    let mut command = taxel(line);
+    command
+        .env_remove("TAXEL_CONFIG")
+        .env_remove("TAXEL_LIBRARY")
+        .env_remove("NO_COLOR")
+        .env_remove("XDG_CONFIG_HOME")
+        .env_remove("XDG_DATA_HOME")
+        .env("HOME", home);
+    command
+}
+
+fn shows(command: &mut Command, lines: &[(&str, &str)]) {
+    let run = run(command);
+    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
+    for (entry, origin) in lines {
+        let line = format!("{entry:<37}  # {origin}\n");
+        assert!(run.stdout.contains(&line), "no {line} in\n{}", run.stdout);
+    }
+}
+
+#[test]
+fn each_value_tells_where_it_comes_from() {
+    let home = home(FILE);
+    let folder = home.path();
+    let shapes = format!("library = \"{}\"", folder.join("shapes").display());
+    shows(
+        &mut at_home("config", folder),
+        &[
+            ("theme = \"light\"", "file, line 1"),
+            ("color = \"256\"", "file, line 2"),
+            ("charset = \"auto\"", "default"),
+            ("mouse = false", "file, line 3"),
+            (&shapes, "file, line 4"),
+            ("columns = 32", "file, line 7"),
+            ("rows = 16", "default"),
+            ("pitch = 2.5", "file, line 8"),
+            ("\"x\" = \"toggle\"", "file, line 11"),
+            ("\"<Space>\" = \"toggle\"", "default"),
+            ("\"d\" = \"none\"", "file, line 12"),
+        ],
+    );
+    // A flag goes before a variable, that before the file.
+    shows(
+        at_home("config --theme mono --columns 8 --ascii", folder)
+            .env("NO_COLOR", "1")
+            .env("TAXEL_LIBRARY", "/shapes"),
+        &[
+            ("theme = \"mono\"", "flag, --theme"),
+            ("color = \"never\"", "environment, NO_COLOR"),
+            ("charset = \"ascii\"", "flag, --ascii"),
+            ("library = \"/shapes\"", "environment, TAXEL_LIBRARY"),
+            ("columns = 8", "flag, --columns"),
+            ("pitch = 2.5", "file, line 8"),
+        ],
+    );
+    shows(
+        at_home("config --color 16 --library /other", folder)
+            .env("NO_COLOR", "1")
+            .env("TAXEL_LIBRARY", "/shapes"),
+        &[
+            ("color = \"16\"", "flag, --color"),
+            ("library = \"/other\"", "flag, --library"),
+        ],
+    );
+    let empty = tempfile::tempdir().expect("a folder");
+    shows(
+        &mut at_home("config", empty.path()),
+        &[
+            ("theme = \"auto\"", "default"),
+            ("mouse = true", "default"),
+            ("# pitch is not set", "default"),
+            ("\"<C-c>\" = \"quit\"", "default"),
+        ],
+    );
+}
+
+/// What is printed is a file that says the same.
+#[test]
+fn the_settings_can_be_read_again() {
+    let home = home(&FILE.replace("~/shapes", "/a \\\"b\\\" \\\\ é"));
+    let values = |text: &str| -> Vec<String> {
+        let entries = text.lines().filter(|line| !line.starts_with('#'));
+        entries
+            .map(|line| {
+                line.split("  #")
+                    .next()
+                    .unwrap_or_default()
+                    .trim()
+                    .to_owned()
+            })
+            .collect()
+    };
+    for flag in ["", "--ascii"] {
+        let first = run(&mut at_home(&format!("config {flag}"), home.path()));
+        let file = home.path().join("printed.toml");
+        fs::write(&file, &first.stdout).expect("written");
+        let line = format!("config {flag} --config {}", file.display());
+        let second = run(&mut at_home(&line, home.path()));
+        assert_eq!(second.stderr, "");
+        assert_eq!(values(&first.stdout), values(&second.stdout));
+    }
+}
+
+#[test]
+fn the_file_holds_for_every_command_but_scripts() {
+    let home = home(FILE);
+    let folder = home.path();
+    let figure = run(&mut at_home("figure ellipse", folder)).stdout;
+    assert!(
+        figure.contains("32 x 16") || figure.contains("32 × 16"),
+        "{figure}"
+    );
+    assert!(figure.contains("mm"), "{figure}");
+    let explicit = run(&mut at_home("figure ellipse --columns 8", folder)).stdout;
+    assert!(explicit.contains("8 × 16"), "{explicit}");
+    let path = run(&mut at_home("library path", folder)).stdout;
+    assert_eq!(Path::new(path.trim_end()), folder.join("shapes"));
+    // A script is the same for everybody, unless it is told otherwise.
+    let script = |line: &str| {
+        let mut command = at_home("script -k x", folder);
+        command.args(line.split_whitespace());
+        run(&mut command).stdout
+    };
+    assert!(script("").contains("NA 0 in all"));
+    let file = folder.join(".config/taxel/config.toml");
+    let told = script(&format!("--config {}", file.display()));
+    assert!(told.contains("NA 1 in all"), "{told}");
+    let mut charset = taxel("library list");
+    let ascii = folder.join("ascii.toml");
+    fs::write(&ascii, "charset = 'unicode'\n").expect("written");
+    let unicode = run(charset.env("LC_ALL", "C").env("TAXEL_CONFIG", &ascii));
+    assert!(unicode.stdout.contains('×'), "{}", unicode.stdout);
+}
+
+#[test]
+fn a_broken_file_is_told_and_nothing_is_started() {
+    let home = home("theme = \"light\"\ncolour = \"never\"\n");
+    let folder = home.path();
+    let file = folder.join(".config/taxel/config.toml");
+    let message = format!(
+        "error: {}:2:1: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, keys\n",
+        file.display()
+    );
+    for line in [
+        "",
+        "config",
+        "figure ellipse",
+        "library save ring washer",
+        "batch",
+    ] {
+        let run = run(&mut at_home(line, folder));
+        assert_eq!(
+            (run.status, run.stdout.as_str(), run.stderr.as_str()),
+            (Some(2), "", message.as_str()),
+            "{line}"
+        );
+    }
+    assert!(!folder.join(".local").exists(), "nothing was stored");
+    // What is the same for everybody does not ask.
+    for line in [
+        "--help",
+        "--version",
+        "completions bash",
+        "man",
+        "script -k f",
+    ] {
+        assert_eq!(run(&mut at_home(line, folder)).status, Some(0), "{line}");
+    }
+}
+
+#[test]
+fn a_file_that_is_named_must_be_there_and_be_text() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("missing.toml");
+    let told = |message: &str| {
+        let mut command = taxel("config");
+        let run = run(command.env("TAXEL_CONFIG", &file));
+        let expected = format!("error: {}: {message}", file.display());
+        assert_eq!(run.status, Some(2));
+        assert!(run.stderr.starts_with(&expected), "{}", run.stderr);
+    };
+    told("cannot read: No such file or directory");
+    fs::write(&file, b"theme = '\xff'").expect("written");
+    told("no UTF-8 text");
+    fs::write(&file, vec![b'#'; (1 << 20) + 1]).expect("written");
+    told("larger than 1 MiB");
+    let run = run(taxel("config").env("TAXEL_CONFIG", "/dev/zero"));
+    assert_eq!(run.status, Some(2), "it comes to an end");
+}

@@ -1,0 +1,284 @@
+//! At home in the shell: completions, pages of the manual, and the examples of every help, each run.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use super::{misused, program, taxel};
+
+/// Every command that has a help.
+const COMMANDS: [&str; 19] = [
+    "",
+    "figure",
+    "picture",
+    "describe",
+    "batch",
+    "sweep",
+    "merge",
+    "library",
+    "library list",
+    "library show",
+    "library save",
+    "library delete",
+    "library restore",
+    "library path",
+    "library check",
+    "script",
+    "config",
+    "completions",
+    "man",
+];
+
+/// Whether a program is there; says so where it is not, since the test then shows less.
+fn has(name: &str) -> bool {
+    let there = Command::new(name).arg("--version").output().is_ok();
+    if !there {
+        eprintln!("SKIPPED: there is no {name}");
+    }
+    there
+}
+
+fn help(command: &str) -> String {
+    let run = taxel(&format!("{command} --help"), "");
+    assert_eq!(
+        (run.status, run.stderr.as_str()),
+        (Some(0), ""),
+        "{command}"
+    );
+    run.stdout
+}
+
+#[test]
+fn every_command_is_in_the_list_of_this_test() {
+    for command in COMMANDS {
+        let help = help(command);
+        let Some((_, below)) = help.split_once("\nCommands:\n") else {
+            continue;
+        };
+        for line in below.lines().take_while(|line| !line.is_empty()) {
+            let name = line.split_whitespace().next().expect("a name");
+            let path = format!("{command} {name}");
+            assert!(
+                name == "help" || COMMANDS.contains(&path.trim()),
+                "{path:?} is not tested"
+            );
+        }
+    }
+}
+
+#[test]
+fn every_help_fits_80_columns_and_ends_with_examples() {
+    for command in COMMANDS {
+        let help = help(command);
+        let (_, examples) = help.split_once("\nExamples:\n").expect(command);
+        assert!(
+            examples.lines().all(|line| line.starts_with("  ")),
+            "{command}: {examples}"
+        );
+        let widest = help.lines().map(|line| line.chars().count()).max();
+        assert!(widest <= Some(80), "{command}: {widest:?}\n{help}");
+    }
+}
+
+/// The examples of a help: a line each, or several where a line ends in a backslash.
+fn examples(help: &str) -> Vec<String> {
+    let (_, examples) = help.split_once("\nExamples:\n").expect("examples");
+    let examples = examples.replace("\\\n", "");
+    examples
+        .lines()
+        .map(|line| line.trim().to_owned())
+        .collect()
+}
+
+/// A folder with all that the examples take for given.
+fn furnished(folder: &Path) {
+    let write = |name: &str, text: &str| fs::write(folder.join(name), text).expect("written");
+    write("imprint.txt", ".##.\n#..#\n.##.\n");
+    write("washer.json", super::describe::SHAPE);
+    write("poses.jsonl", "{\"imprint\":[\"##\",\"#.\"]}\n");
+    write("test.taxel", "Keys f<Enter>\nExpect /ellipse/\n");
+    for folder_of in [
+        "shapes",
+        ".zfunc",
+        ".config/fish/completions",
+        ".local/share/bash-completion/completions",
+    ] {
+        fs::create_dir_all(folder.join(folder_of)).expect("made");
+    }
+    let grid = "sweep hexagon --side 3 --angle 0 --x0 1 --y0 1:1.03:0.01 --quiet";
+    for (shard, file) in [("1/2", "a.npz"), ("2/2", "b.npz")] {
+        let file = folder.join(file);
+        let line = format!("{grid} --shard {shard} --atlas {}", file.display());
+        assert_eq!(taxel(&line, "").status, Some(0), "{line}");
+        let twin = format!("hexagon-{}.npz", &shard[..1]);
+        fs::copy(&file, folder.join(twin)).expect("copied");
+    }
+}
+
+fn in_library(folder: &Path, arguments: &[&str]) {
+    let mut run = program(&[&["library"], arguments].concat(), "C.UTF-8");
+    let output = run.env("TAXEL_LIBRARY", folder.join("library")).output();
+    assert!(output.expect("it runs").status.success(), "{arguments:?}");
+}
+
+/// Those of one help come one after the other, in one folder: what the first stores the second may delete.
+#[test]
+fn every_example_of_every_help_does_what_it_says() {
+    let binary = Path::new(env!("CARGO_BIN_EXE_taxel"));
+    let mut path = binary.parent().expect("a folder").as_os_str().to_owned();
+    path.push(":");
+    path.push(std::env::var_os("PATH").unwrap_or_default());
+    let man = has("man");
+    let mut run = 0;
+    for command in COMMANDS {
+        let folder = tempfile::tempdir().expect("a folder");
+        let folder = folder.path();
+        furnished(folder);
+        if ["library delete", "library restore"].contains(&command) {
+            in_library(folder, &["save", "ring", "imprint.txt"]);
+        }
+        if command == "library show" {
+            in_library(folder, &["save", "my nut", "washer"]);
+        }
+        if command == "library restore" {
+            in_library(folder, &["delete", "ring"]);
+        }
+        for example in examples(&help(command)) {
+            // The screen has tests of its own, and millions of poses take their time.
+            if example == "taxel" || example == "taxel sweep rectangle --length 6 --width 3" {
+                continue;
+            }
+            if example.contains(" man ") && !man {
+                continue;
+            }
+            let output = Command::new("sh")
+                .args(["-c", &example])
+                .current_dir(folder)
+                .env("PATH", &path)
+                .env("HOME", folder)
+                .env("MANPATH", folder.join(".local/share/man"))
+                .env("TAXEL_LIBRARY", folder.join("library"))
+                .env("LC_ALL", "C.UTF-8")
+                .output()
+                .expect("there is a shell");
+            assert!(output.status.success(), "{example}: {output:?}");
+            run += 1;
+        }
+    }
+    assert!(run > 40, "only {run} examples");
+}
+
+#[test]
+fn shells_take_the_completions() {
+    for (shell, check) in [("bash", "-n"), ("zsh", "-n"), ("fish", "--no-execute")] {
+        let run = taxel(&format!("completions {shell}"), "");
+        assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""), "{shell}");
+        for word in ["figure", "hexagon", "restore", "--radius-x"] {
+            assert!(run.stdout.contains(word), "{shell}: no {word}");
+        }
+        // What is added to that of fish calls a function of it.
+        let helper = "function __fish_taxel_using_subcommand\n";
+        assert!(
+            shell != "fish" || run.stdout.contains(helper),
+            "{}",
+            run.stdout
+        );
+        if !has(shell) {
+            continue;
+        }
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("completions");
+        fs::write(&file, &run.stdout).expect("written");
+        let output = Command::new(shell).arg(check).arg(&file).output();
+        let output = output.expect("it runs");
+        assert!(output.status.success(), "{shell}: {output:?}");
+    }
+    misused("completions", "the following required arguments");
+    misused("completions csh", "invalid value 'csh'");
+}
+
+/// What bash offers after a line.
+#[test]
+fn bash_completes_commands_kinds_and_flags() {
+    if !has("bash") {
+        return;
+    }
+    let offered = |line: &str| {
+        let words: Vec<&str> = line.split(' ').collect();
+        let script = format!(
+            "source /dev/stdin; COMP_WORDS=({line}\"\"); COMP_CWORD={}; \
+             _taxel taxel \"${{COMP_WORDS[-1]}}\" \"${{COMP_WORDS[-2]}}\"; echo \"${{COMPREPLY[@]}}\"",
+            words.len() - 1
+        );
+        let mut bash = program(&["completions", "bash"], "C.UTF-8");
+        let completions = bash.output().expect("it runs").stdout;
+        let mut bash = Command::new("bash");
+        bash.args(["--norc", "-c", &script]);
+        let pipe = std::process::Stdio::piped;
+        let child = bash.stdin(pipe()).stdout(pipe()).stderr(pipe()).spawn();
+        super::finish(child.expect("it starts"), &completions).stdout
+    };
+    for (line, words) in [
+        ("taxel ", &["figure", "sweep", "man", "--theme"][..]),
+        ("taxel fig", &["figure"]),
+        ("taxel figure hex", &["hexagon"]),
+        ("taxel figure --radius-", &["--radius-x", "--radius-y"]),
+        ("taxel library re", &["restore"]),
+        ("taxel --theme ", &["dark", "light", "mono"]),
+    ] {
+        let found = offered(line);
+        for word in words {
+            assert!(
+                found.split_whitespace().any(|found| found == *word),
+                "{line}: no {word} in {found}"
+            );
+        }
+    }
+    assert_eq!(offered("taxel figure hex").trim(), "hexagon");
+}
+
+#[test]
+fn pages_of_the_manual_tell_what_the_help_tells() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pages = folder.path().join("share/man1");
+    let run = taxel(&format!("man {}", pages.display()), "");
+    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
+    assert_eq!(
+        taxel("man", "").stdout,
+        fs::read_to_string(pages.join("taxel.1")).expect("a page")
+    );
+    let groff = has("groff");
+    for command in COMMANDS {
+        let name = format!("taxel {command}").trim().replace(' ', "-");
+        let file = pages.join(format!("{name}.1"));
+        let page = fs::read_to_string(&file).expect("a page");
+        for heading in ["NAME", "SYNOPSIS", "DESCRIPTION", "EXAMPLES"] {
+            assert!(page.contains(&format!("\n.SH {heading}\n")), "{page}");
+        }
+        if !groff {
+            continue;
+        }
+        let output = Command::new("groff")
+            .args(["-man", "-Tutf8", "-ww", "-P-c", "-P-b", "-P-u"])
+            .arg(&file)
+            .output()
+            .expect("it runs");
+        let warnings = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && warnings.is_empty(), "{warnings}");
+        let shown = String::from_utf8_lossy(&output.stdout).replace('‐', "-");
+        for example in help(command)
+            .split_once("\nExamples:\n")
+            .expect(command)
+            .1
+            .lines()
+        {
+            assert!(shown.contains(example.trim()), "{example}\n{shown}");
+        }
+    }
+    let number = fs::read_dir(&pages).expect("a folder").count();
+    assert_eq!(number, COMMANDS.len(), "a page a command");
+    let taken = format!("man {}", pages.join("taxel.1").display());
+    let run = taxel(&taken, "");
+    assert_eq!(run.status, Some(1));
+    assert!(run.stderr.starts_with("error: "), "{}", run.stderr);
+}

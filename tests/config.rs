@@ -1,0 +1,225 @@
+//! The file of settings and the keys that it changes: what it may say, what it refuses and where, and what the screen
+//! then shows.
+
+use taxel::cli::config::Config;
+use taxel::sensor::Sensor;
+use taxel::tui::app::{App, Options};
+use taxel::tui::binding::Context;
+use taxel::tui::effect::World;
+use taxel::tui::keymap::KEYMAP;
+use taxel::tui::script::Session;
+use taxel::tui::theme::Theme;
+
+fn refused(text: &str, expected: &str) {
+    let error = Config::read(text).expect_err(text).to_string();
+    assert_eq!(error, expected, "{text}");
+}
+
+#[test]
+fn nothing_has_to_be_said() {
+    for text in ["", "\n# nothing\n", "[sensor]\n[keys]\n[keys.matrix]\n"] {
+        let config = Config::read(text).expect("a file of settings");
+        assert!(config.sensor().is_empty() && config.changes().is_empty());
+    }
+}
+
+#[test]
+fn what_is_unknown_or_unfit_is_refused_with_its_place() {
+    for (text, expected) in [
+        (
+            "# a comment\n  colour = 'never'\n",
+            "2:3: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, keys",
+        ),
+        (
+            "theme = 'blue'",
+            "1:9: expected one of \"auto\", \"dark\", \"light\", \"mono\", found \"blue\"",
+        ),
+        ("theme = 3", "1:9: expected text in quotes, found integer"),
+        ("color = 256", "1:9: expected text in quotes, found integer"),
+        ("mouse = 'no'", "1:9: expected true or false, found string"),
+        (
+            "library = 'shapes'",
+            "1:11: expected a path that starts with / or ~/, found \"shapes\"",
+        ),
+        ("sensor = 16", "1:10: expected a table, found integer"),
+        (
+            "[sensor]\ncolumns = 16\nzoom = 2\n",
+            "3:1: unknown key \"zoom\", expected one of columns, rows, threshold, pitch",
+        ),
+        (
+            "[sensor]\nrows = 65\n",
+            "2:8: rows: 65 is out of range, expected 1 to 64, a whole number",
+        ),
+        (
+            "[sensor]\npitch = nan\n",
+            "2:9: pitch_mm: NaN is out of range, expected 0.001 to 1000",
+        ),
+        (
+            "[sensor]\ncolumns = 0x10\n",
+            "2:11: expected a decimal number, found \"10\"",
+        ),
+        (
+            "[keys.matrx]\nx = 'toggle'\n",
+            "1:7: unknown key \"matrx\", expected one of matrix, grab, form, list, name, command, question, help, everywhere",
+        ),
+        (
+            "[keys.matrix]\nx = 'togle'\n",
+            "2:5: expected an action of 'taxel config', or \"none\", found \"togle\"",
+        ),
+        (
+            "[keys.matrix]\nxy = 'toggle'\n",
+            "2:1: \"xy\" is not one key, expected one as in x, <Tab>, <C-x>",
+        ),
+        (
+            "[keys.matrix]\n'<A-x>' = 'toggle'\n",
+            "2:1: \"<A-x>\" is not one key, expected one as in x, <Tab>, <C-x>",
+        ),
+    ] {
+        refused(text, expected);
+    }
+    for (text, place) in [
+        ("theme = \n", "1:"),
+        ("theme = 'dark'\ntheme = 'light'\n", "2:1: "),
+        ("é = 1 =\n", "1:"),
+        ("[sensor\n", "1:"),
+        ("x = 'a\n", "1:"),
+    ] {
+        let error = Config::read(text).expect_err(text).to_string();
+        assert!(error.starts_with(place), "{text}: {error}");
+    }
+}
+
+#[test]
+fn changes_of_keys_that_would_surprise_are_refused_where_they_stand() {
+    refused(
+        "[keys.matrix]\n'<CR>' = 'toggle'\n'<Enter>' = 'undo'\n",
+        "3:1: <Enter> has been given a meaning here already",
+    );
+    refused(
+        "[keys.matrix]\nx = 'undo'\nd = 'toggle'\n",
+        "3:1: d is the only key of \"delete\" here, which needs another one",
+    );
+    refused(
+        "keys.matrix.x = 'increase'\n",
+        "1:17: \"increase\" is no action of this place; 'taxel config' lists them",
+    );
+    refused(
+        "[keys.list]\nj = 'scroll-down'\n",
+        "2:1: j is typed as text here; a key like <C-x> is not",
+    );
+    refused(
+        "[keys.everywhere]\n'<C-c>' = 'none'\n",
+        "2:1: <C-c> always closes what is open and cannot be changed",
+    );
+}
+
+/// No message is longer than can be read, whatever the file holds.
+#[test]
+fn messages_are_short() {
+    let long = "x".repeat(100_000);
+    for text in [
+        format!("{long} = 1"),
+        format!("theme = '{long}'"),
+        format!("[keys.matrix]\n{long} = 'toggle'"),
+        format!("[keys.matrix]\nx = '{long}'"),
+        format!("[keys.{long}]\nx = 'toggle'"),
+        format!("theme = {long}"),
+        "[".repeat(100_000),
+        format!("a = {}", "[".repeat(100_000)),
+    ] {
+        let error = Config::read(&text).expect_err("nonsense").to_string();
+        assert!(error.chars().count() < 1000, "{}", error.len());
+    }
+}
+
+fn session(config: &str, keys: &str) -> Session {
+    let config = Config::read(config).expect("a file of settings");
+    let options = Options {
+        sensor: Sensor::default(),
+        theme: Theme::plain(false),
+    };
+    let app = App::new(&options).with_keymap(config.keymap().clone());
+    let world = World::scratch().expect("a folder");
+    let mut session = Session::of(app, world, 80, 24);
+    session.keys(keys).expect("the keys of a test are right");
+    session
+}
+
+const KEYS: &str = "[keys.matrix]\nx = 'toggle'\n'<C-n>' = 'new'\nn = 'none'\nh = 'cursor-left'\n'?' = 'undo'\nH = 'help'\nm = 'none'\n[keys.form]\n'<C-n>' = 'next'\n";
+
+fn shows(keys: &str, texts: &[&str]) {
+    let screen = session(KEYS, keys).screen();
+    for text in texts {
+        assert!(screen.contains(text), "{keys}: no {text:?} on\n{screen}");
+    }
+}
+
+#[test]
+fn keys_do_what_the_file_says() {
+    shows("x", &["NA 1 in all"]);
+    shows("x<Space>", &["NA 0 in all"]);
+    shows("hx", &["column 7, row 8    active"]);
+    shows("x?", &["NA 0 in all"]);
+    shows("x<C-n>", &["NA 0 in all"]);
+    shows("xn", &["NA 1 in all"]);
+    shows("f<C-n>2<Enter>", &["rx 2.00"]);
+}
+
+#[test]
+fn menu_hints_help_and_notices_name_the_keys_of_the_file() {
+    shows(
+        "",
+        &[
+            "Ctrl-N New   l Load",
+            "q Quit   H Help",
+            "empty: x draws, f touches a figure",
+            "x toggle  ? undo",
+        ],
+    );
+    shows(
+        "H",
+        &[
+            "Ctrl-N                  New: empty the matrix",
+            "h arrows                move the cursor",
+            "? u                     take back",
+        ],
+    );
+    shows("f<Enter>x>", &["by hand dropped; ? brings back"]);
+    shows(":mouse<Enter>", &[":mouse takes it again"]);
+    shows("f", &["Ctrl-N field"]);
+    shows(
+        ":nonsense<Enter>",
+        &["\"nonsense\" is unknown; Tab shows the commands"],
+    );
+}
+
+/// An option that has lost its key can still be clicked on.
+#[test]
+fn an_option_without_a_key_stays_in_the_menu() {
+    let mut session = session("[keys.matrix]\nf = 'none'\n", "f");
+    assert!(session.screen().contains("l Load   Figure   p Picture"));
+    assert!(!session.screen().contains("Kind"));
+    let column = session.screen().find("Figure").expect("an option");
+    let mouse = |kind| {
+        taxel::tui::message::Message::Mouse(taxel::tui::message::Mouse {
+            kind,
+            column: u16::try_from(column).expect("on the screen"),
+            row: 0,
+        })
+    };
+    session.send(mouse(taxel::tui::message::MouseKind::Press));
+    session.send(mouse(taxel::tui::message::MouseKind::Release));
+    assert!(session.screen().contains("Kind"), "{}", session.screen());
+}
+
+/// Whatever keys a file frees or adds, the table keeps its rows and its words.
+#[test]
+fn every_place_and_every_action_can_be_named() {
+    for context in Context::ALL {
+        for name in taxel::tui::remap::actions(context) {
+            let text = format!("[keys.{}]\n'<C-k>' = '{name}'\n", context.name());
+            let config = Config::read(&text).expect(&text);
+            assert_eq!(config.keymap().rows().len(), KEYMAP.len());
+        }
+    }
+}
