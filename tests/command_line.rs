@@ -20,7 +20,7 @@ fn every_action_has_a_command() {
     let actions = KEYMAP
         .iter()
         .filter(|binding| places.contains(&binding.context))
-        .flat_map(|binding| binding.keys)
+        .flat_map(|binding| binding.keys.iter())
         // The command line itself, and degrees, which are a number there.
         .filter(|(_, message)| !matches!(message, Message::Command | Message::Turn(_)));
     for (key, message) in actions {
@@ -82,7 +82,7 @@ fn restore_says_what_it_misses() {
         &session,
         &[
             "! restore needs the name of a deleted shape; Tab shows them",
-            "NA 1 in all",
+            "drawn by hand",
         ],
     );
     press(
@@ -206,7 +206,7 @@ fn help_is_everywhere() {
         ),
         (
             "<F1>",
-            "? help",
+            "? Help",
             "On the matrix",
             "empty the matrix",
             "In a form",

@@ -52,7 +52,7 @@ fn what_is_unknown_or_unfit_is_refused_with_its_place() {
         ),
         (
             "[sensor]\npitch = nan\n",
-            "2:9: pitch_mm: NaN is out of range, expected 0.001 to 1000",
+            "2:9: pitch_mm: NaN is out of range, expected above 0, up to 1000",
         ),
         (
             "[sensor]\ncolumns = 0x10\n",

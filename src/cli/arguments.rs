@@ -6,9 +6,10 @@ use std::path::PathBuf;
 use clap::ArgMatches;
 use clap::error::ErrorKind;
 
+use super::chosen::Chosen;
 use super::commands;
 use super::completions::Shell;
-use super::effective::{Chosen, Effective, Loaded};
+use super::effective::{Effective, Loaded};
 use super::failure::Failure;
 use super::flags::{self, Given};
 use super::input::Place;
@@ -22,7 +23,6 @@ use crate::source::Source;
 use crate::sweep::grid::{Anchor, Ranges};
 use crate::sweep::plan::Shard;
 use crate::sweep::range::DecimalRange;
-use crate::tui::theme::{ColorDepth, Palette};
 
 /// What is asked for, and with which settings.
 #[derive(Clone, Debug)]
@@ -152,7 +152,7 @@ pub(super) fn read(arguments: Vec<OsString>) -> Result<Asked, Failure> {
     let asked = || matches.get_one::<PathBuf>("config").cloned();
     let library_named = matches.contains_id("library");
     let Some((name, own)) = matches.subcommand() else {
-        let settings = settings(Loaded::find(asked())?, &matches)?;
+        let settings = effective(Loaded::find(asked())?, &matches)?;
         let size = matches.get_one("size").copied();
         let record = matches.get_one::<PathBuf>("record").cloned();
         return Ok(Asked {
@@ -172,13 +172,17 @@ pub(super) fn read(arguments: Vec<OsString>) -> Result<Asked, Failure> {
         ("completions" | "man", _) | ("script", None) => Loaded::default(),
         (_, asked) => Loaded::find(asked)?,
     };
-    let settings = settings(loaded, own)?;
+    let settings = effective(loaded, own)?;
     let request = request(name, own, &mut command, &settings)?;
     Ok(Asked {
         request,
         library_named,
         settings,
     })
+}
+
+fn effective(loaded: Loaded, matches: &ArgMatches) -> Result<Effective, Failure> {
+    Effective::new(loaded, Chosen::of(matches), std::env::var_os)
 }
 
 /// What a command asks for.
@@ -241,33 +245,6 @@ fn script(matches: &ArgMatches) -> Script {
         styles: matches.get_flag("styles"),
         json: matches.get_flag("json"),
     }
-}
-
-/// The settings with what a command's flags say; it needs not have all the flags.
-fn settings(loaded: Loaded, matches: &ArgMatches) -> Result<Effective, Failure> {
-    let chosen = |name: &str| {
-        let chosen = matches.try_get_one::<String>(name).ok().flatten();
-        chosen.map(String::as_str)
-    };
-    let switched = |name: &str| {
-        let switch = matches.try_get_one::<bool>(name).ok().flatten();
-        switch.copied().unwrap_or(false)
-    };
-    let chosen = Chosen {
-        theme: chosen("theme").map(|name| value_of(&Palette::NAMES, name)),
-        color: chosen("color").map(|name| value_of(&ColorDepth::NAMES, name)),
-        ascii: switched("ascii"),
-        no_mouse: switched("no-mouse"),
-        library: matches.get_one::<PathBuf>("library").cloned(),
-        sensor: Given::of(matches),
-    };
-    Effective::new(loaded, chosen, std::env::var_os)
-}
-
-/// What a name stands for; nothing for `auto`.
-fn value_of<T: Copy>(names: &[(&'static str, T)], name: &str) -> Option<T> {
-    let found = names.iter().find(|(own, _)| *own == name);
-    found.map(|(_, value)| *value)
 }
 
 fn sweep(

@@ -6,9 +6,9 @@ use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::PathBuf;
 
+use super::chosen::Chosen;
 use super::config::{AUTO, CHARSETS, Config, SENSOR, Written};
 use super::failure::Failure;
-use super::flags::Given;
 use super::locale::Charset;
 use crate::library::place;
 use crate::parameter::Parameter;
@@ -75,17 +75,6 @@ impl Loaded {
             config,
         })
     }
-}
-
-/// What the flags say; nothing where they are silent.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Chosen {
-    pub(super) theme: Option<Option<Palette>>,
-    pub(super) color: Option<Option<ColorDepth>>,
-    pub(super) ascii: bool,
-    pub(super) no_mouse: bool,
-    pub(super) library: Option<PathBuf>,
-    pub(super) sensor: Given,
 }
 
 /// Where a value comes from.

@@ -26,9 +26,13 @@ mod examples;
 
 mod completions;
 
+mod program;
+
 mod commands;
 
 mod manual;
+
+mod chosen;
 
 mod effective;
 

@@ -41,7 +41,7 @@ pub enum RemapError {
     #[error("{0:?} is no action of this place; 'taxel config' lists them")]
     Elsewhere(&'static str),
     /// No key would be left for what the key did.
-    #[error("{key} is the only key of {action:?} here: which needs another one")]
+    #[error("{key} is the only key of {action:?} here, which needs another one")]
     LastKey {
         /// The key.
         key: Key,
@@ -350,7 +350,7 @@ mod tests {
             ),
             (
                 change(Matrix, "d", "undo"),
-                "d is the only key of \"delete\" here: which needs another one",
+                "d is the only key of \"delete\" here, which needs another one",
             ),
         ] {
             let expected = (1, message.to_owned());

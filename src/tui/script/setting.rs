@@ -38,21 +38,6 @@ pub enum Setting {
     Leftover(Box<Shape>),
 }
 
-/// The names of the depths of colour, as of `--color`.
-pub const DEPTHS: [(&str, ColorDepth); 4] = [
-    ("never", ColorDepth::Never),
-    ("16", ColorDepth::Sixteen),
-    ("256", ColorDepth::TwoFiftySix),
-    ("true", ColorDepth::True),
-];
-
-/// The names of the palettes, as of `--theme`.
-pub const PALETTES: [(&str, Palette); 3] = [
-    ("dark", Palette::Dark),
-    ("light", Palette::Light),
-    ("mono", Palette::Mono),
-];
-
 const SWITCH: [(&str, bool); 2] = [("on", true), ("off", false)];
 
 /// What follows `Set`.
@@ -64,8 +49,8 @@ pub fn read(text: &str) -> Result<Setting, String> {
     let value = value.trim();
     match name {
         "ascii" => chosen(name, value, &SWITCH).map(Setting::Ascii),
-        "color" => chosen(name, value, &DEPTHS).map(Setting::Color),
-        "theme" => chosen(name, value, &PALETTES).map(Setting::Theme),
+        "color" => chosen(name, value, &ColorDepth::NAMES).map(Setting::Color),
+        "theme" => chosen(name, value, &Palette::NAMES).map(Setting::Theme),
         "library" => serde_json::from_str::<PathBuf>(value)
             .map(Setting::Library)
             .map_err(|_| format!("expected a folder in double quotes, found {value}")),
@@ -109,8 +94,8 @@ impl fmt::Display for Setting {
         match self {
             Self::Size(columns, rows) => write!(f, "Size {columns}x{rows}"),
             Self::Ascii(ascii) => write!(f, "Set ascii {}", name_of(*ascii, &SWITCH)),
-            Self::Color(depth) => write!(f, "Set color {}", name_of(*depth, &DEPTHS)),
-            Self::Theme(palette) => write!(f, "Set theme {}", name_of(*palette, &PALETTES)),
+            Self::Color(depth) => write!(f, "Set color {}", name_of(*depth, &ColorDepth::NAMES)),
+            Self::Theme(palette) => write!(f, "Set theme {}", name_of(*palette, &Palette::NAMES)),
             Self::Sensor(parameter, value) => write!(f, "Set {} {value}", parameter.flag()),
             Self::Library(folder) => {
                 let folder = serde_json::Value::from(folder.to_string_lossy());

@@ -14,6 +14,7 @@ use taxel::tui::commands::complete;
 use taxel::tui::effect::World;
 use taxel::tui::key::{Arrow, Key};
 use taxel::tui::message::{Message, Mouse, MouseKind};
+use taxel::tui::remap::Keymap;
 use taxel::tui::script::Session;
 use taxel::tui::script::command::{Command, read};
 use taxel::tui::script::runner::{Failure, Settings, run};
@@ -136,6 +137,7 @@ pub(crate) fn play(bytes: &[u8]) {
         return;
     }
     let settings = Settings {
+        keymap: Keymap::default(),
         options: options(),
         size: (80, 24),
         styles: true,

@@ -1,0 +1,47 @@
+//! What the flags say of the settings.
+
+use std::path::PathBuf;
+
+use clap::ArgMatches;
+
+use super::flags::Given;
+use crate::tui::theme::{ColorDepth, Palette};
+
+/// What the flags say; nothing where they are silent.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Chosen {
+    pub(super) theme: Option<Option<Palette>>,
+    pub(super) color: Option<Option<ColorDepth>>,
+    pub(super) ascii: bool,
+    pub(super) no_mouse: bool,
+    pub(super) library: Option<PathBuf>,
+    pub(super) sensor: Given,
+}
+
+impl Chosen {
+    /// Those of a command; it needs not have all the flags.
+    pub(super) fn of(matches: &ArgMatches) -> Self {
+        let chosen = |name: &str| {
+            let chosen = matches.try_get_one::<String>(name).ok().flatten();
+            chosen.map(String::as_str)
+        };
+        let switched = |name: &str| {
+            let switch = matches.try_get_one::<bool>(name).ok().flatten();
+            switch.copied().unwrap_or(false)
+        };
+        Self {
+            theme: chosen("theme").map(|name| value_of(&Palette::NAMES, name)),
+            color: chosen("color").map(|name| value_of(&ColorDepth::NAMES, name)),
+            ascii: switched("ascii"),
+            no_mouse: switched("no-mouse"),
+            library: matches.get_one::<PathBuf>("library").cloned(),
+            sensor: Given::of(matches),
+        }
+    }
+}
+
+/// What a name stands for; nothing for `auto`.
+fn value_of<T: Copy>(names: &[(&'static str, T)], name: &str) -> Option<T> {
+    let found = names.iter().find(|(own, _)| *own == name);
+    found.map(|(_, value)| *value)
+}
