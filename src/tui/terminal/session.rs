@@ -82,17 +82,21 @@ pub(super) fn leave() -> io::Result<()> {
     if found.settings.abilities.synchronized {
         goodbye += SHOW_FRAME;
     }
-    if found.settings.abilities.styles {
-        goodbye += PLAIN;
-    }
     if found.mouse {
         goodbye += MOUSE_OFF;
     }
     push(&mut goodbye, cursor::Show);
-    if found.settings.kind.has_modes() {
+    let has_modes = found.settings.kind.has_modes();
+    if has_modes {
         goodbye += PASTE_OFF;
         push(&mut goodbye, LeaveAlternateScreen);
-    } else {
+    }
+    if found.settings.abilities.styles {
+        // The first screen comes back with the style that it was left in: that of a frame, where the program was stopped in
+        // the middle of one and took the terminal anew.
+        goodbye += PLAIN;
+    }
+    if !has_modes {
         goodbye += BELOW;
     }
     let said = found.device.write_last(goodbye.as_bytes());
