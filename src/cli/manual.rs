@@ -81,6 +81,7 @@ fn page(command: &Command) -> io::Result<Vec<u8>> {
     let after = command.get_after_help().map(ToString::to_string);
     let after = after.unwrap_or_default();
     let (notes, examples) = after.split_once("Examples:\n").unwrap_or((&after, ""));
+    roff.control("PP", []);
     filled(&mut roff, notes);
     roff.to_writer(&mut page)?;
     man.render_options_section(&mut page)?;
