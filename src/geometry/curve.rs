@@ -10,14 +10,10 @@ use super::real::Real;
 /// An ellipse: its extreme points, where it meets horizontal and vertical lines, and what its chords cut off.
 #[derive(Clone, Debug)]
 pub struct Curve<T> {
-    /// Its centre.
-    pub centre: Point<T>,
-    /// How far it reaches from the centre along x and y.
-    pub reach: Point<T>,
-    /// By how much the middle of a chord along x moves per unit of y, and that of one along y per unit of x.
-    pub shear: Point<T>,
-    /// Half of a chord along x is this times √((R − d)(R + d)), with the reach in y as `R`; likewise along y.
-    pub scale: Point<T>,
+    centre: Point<T>,
+    reach: Point<T>,
+    shear: Point<T>,
+    scale: Point<T>,
     /// The area of the image of the unit square, positive.
     area: T,
     /// Half of the map back to the unit disc.
@@ -67,13 +63,8 @@ impl<T: Real> Curve<T> {
 
     /// Where the horizontal line at `y` meets it: left, right.
     pub fn xs_at(&self, y: T) -> [T; 2] {
-        let ends = self.ends_along_x(y - self.centre.y);
-        ends.map(|x| self.centre.x + x)
-    }
-
-    /// The same of the line `d` below the centre, and seen from there; `d` must not be beyond the reach.
-    pub fn ends_along_x(&self, d: T) -> [T; 2] {
-        let middle = self.shear.x * d;
+        let d = y - self.centre.y;
+        let middle = self.centre.x + self.shear.x * d;
         let root = self.scale.x * ((self.reach.y - d) * (self.reach.y + d)).sqrt();
         [middle - root, middle + root]
     }
@@ -81,9 +72,9 @@ impl<T: Real> Curve<T> {
     /// Where the vertical line at `x` meets it: above, below.
     pub fn ys_at(&self, x: T) -> [T; 2] {
         let d = x - self.centre.x;
-        let middle = self.shear.y * d;
+        let middle = self.centre.y + self.shear.y * d;
         let root = self.scale.y * ((self.reach.x - d) * (self.reach.x + d)).sqrt();
-        [middle - root, middle + root].map(|y| self.centre.y + y)
+        [middle - root, middle + root]
     }
 
     /// The square of half the chord between two points that lie so far apart, in the unit disc.

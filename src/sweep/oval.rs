@@ -6,16 +6,23 @@
 use std::f64::consts::FRAC_PI_4;
 
 use super::arc::angle;
-use crate::geometry::curve::Curve;
 use crate::geometry::outline::Ellipse;
 
 /// Bounds of sections are taken this much wider than computed.
 const SLACK: f64 = 1e-12;
 
-/// An ellipse prepared for bands; [`Curve`] has the formulas of its chords.
+/// An ellipse prepared for bands; see `Curve` in [`crate::geometry::overlap`] for the formulas.
 #[derive(Clone, Debug)]
 pub(super) struct Oval {
-    curve: Curve<f64>,
+    pub(super) x: f64,
+    y: f64,
+    pub(super) reach_x: f64,
+    reach_y: f64,
+    /// Slopes of the lines through the middles of the vertical and of the horizontal sections.
+    middle_y: f64,
+    middle_x: f64,
+    scale_y: f64,
+    scale_x: f64,
     /// The band, relative to the centre, and what is known of it.
     top: f64,
     stretches: [Stretch; 5],
@@ -49,8 +56,24 @@ pub(super) struct Place {
 
 impl Oval {
     pub(super) fn new(ellipse: &Ellipse<f64>) -> Self {
+        let Ellipse {
+            centre,
+            across: a,
+            along: b,
+        } = *ellipse;
+        let reach = ellipse.reach();
+        let (x_square, y_square) = (reach.x * reach.x, reach.y * reach.y);
+        let mixed = a.x * a.y + b.x * b.y;
+        let area = (a.x * b.y - a.y * b.x).abs();
         Self {
-            curve: Curve::of(ellipse),
+            x: centre.x,
+            y: centre.y,
+            reach_x: reach.x,
+            reach_y: reach.y,
+            middle_y: mixed / x_square,
+            middle_x: mixed / y_square,
+            scale_y: area / x_square,
+            scale_x: area / y_square,
             top: 0.0,
             stretches: [Stretch::default(); 5],
             count: 0,
@@ -60,32 +83,32 @@ impl Oval {
         }
     }
 
-    /// Half of the height at a distance from the centre, over `scale.y`.
+    /// Half of the height at a distance from the centre, over `scale_y`.
     fn half(&self, d: f64) -> f64 {
-        ((self.curve.reach.x - d) * (self.curve.reach.x + d))
-            .max(0.0)
-            .sqrt()
+        ((self.reach_x - d) * (self.reach_x + d)).max(0.0).sqrt()
     }
 
     /// The integral of [`Self::half`] from the centre on, given its value.
     fn round(&self, d: f64, half: f64) -> f64 {
-        let reach = self.curve.reach.x;
+        let reach = self.reach_x;
         0.5 * (d * half + reach * reach * angle(d / reach, half / reach))
     }
 
     /// Prepares the band from `top` to `top + 1`; false where the ellipse does not reach it.
     pub(super) fn cut(&mut self, top: f64) -> bool {
-        let (top, bottom) = (top - self.curve.centre.y, top - self.curve.centre.y + 1.0);
+        let (top, bottom) = (top - self.y, top - self.y + 1.0);
         (self.top, self.count, self.total, self.highest) = (top, 0, 0.0, -1.0);
-        if top >= self.curve.reach.y || bottom <= -self.curve.reach.y {
+        if top >= self.reach_y || bottom <= -self.reach_y {
             return false;
         }
         // The ends and the crossings with the lines, in order.
-        let mut places = [-self.curve.reach.x; 6];
+        let mut places = [-self.reach_x; 6];
         let mut last = 0;
         for line in [top, bottom] {
-            if line.abs() < self.curve.reach.y {
-                for place in self.curve.ends_along_x(line) {
+            if line.abs() < self.reach_y {
+                let root = self.scale_x * ((self.reach_y - line) * (self.reach_y + line)).sqrt();
+                let middle = self.middle_x * line;
+                for place in [middle - root, middle + root] {
                     let mut at = last + 1;
                     while at > 1 && places[at - 1] > place {
                         places[at] = places[at - 1];
@@ -97,13 +120,13 @@ impl Oval {
             }
         }
         last += 1;
-        places[last] = self.curve.reach.x;
-        let end = FRAC_PI_4 * self.curve.reach.x * self.curve.reach.x;
-        let (mut left, mut round) = (-self.curve.reach.x, -end);
+        places[last] = self.reach_x;
+        let end = FRAC_PI_4 * self.reach_x * self.reach_x;
+        let (mut left, mut round) = (-self.reach_x, -end);
         for &right in &places[1..=last] {
-            let right = right.min(self.curve.reach.x);
+            let right = right.min(self.reach_x);
             if right > left {
-                let next = if right < self.curve.reach.x {
+                let next = if right < self.reach_x {
                     self.round(right, self.half(right))
                 } else {
                     end
@@ -119,23 +142,20 @@ impl Oval {
     fn stretch(&mut self, (left, right): (f64, f64), (round, next): (f64, f64)) {
         let (top, bottom) = (self.top, self.top + 1.0);
         let middle = f64::midpoint(left, right);
-        let half = self.curve.scale.y * self.half(middle);
-        let (upper, lower) = (
-            self.curve.shear.y * middle - half,
-            self.curve.shear.y * middle + half,
-        );
+        let half = self.scale_y * self.half(middle);
+        let (upper, lower) = (self.middle_y * middle - half, self.middle_y * middle + half);
         if upper >= bottom || lower <= top {
             return;
         }
         // A line that does not cross the ellipse may touch it right here, so the middle tells nothing of it.
         let (upper, lower) = (
-            top <= -self.curve.reach.y || upper > top,
-            bottom >= self.curve.reach.y || lower < bottom,
+            top <= -self.reach_y || upper > top,
+            bottom >= self.reach_y || lower < bottom,
         );
         let (linear, square, arcs) = match (upper, lower) {
             (true, true) => (0.0, 0.0, 2.0),
-            (true, false) => (bottom, -0.5 * self.curve.shear.y, 1.0),
-            (false, true) => (-top, 0.5 * self.curve.shear.y, 1.0),
+            (true, false) => (bottom, -0.5 * self.middle_y, 1.0),
+            (false, true) => (-top, 0.5 * self.middle_y, 1.0),
             (false, false) => (1.0, 0.0, 0.0),
         };
         let mut stretch = Stretch {
@@ -144,13 +164,13 @@ impl Oval {
             area: 0.0,
             linear,
             square,
-            round: arcs * self.curve.scale.y,
+            round: arcs * self.scale_y,
         };
         stretch.area = self.total - stretch.grown(left, round);
         self.total = stretch.area + stretch.grown(right, next);
         // Between two lines the section is as high as can be all along, otherwise highest above or below an extreme
         // point of the ellipse, or at an end. `skew` is the place of the lowest point.
-        let skew = self.curve.shear.x * self.curve.reach.y;
+        let skew = self.middle_x * self.reach_y;
         let (from, to) = match (upper, lower) {
             (true, true) => (0.0, 0.0),
             (true, false) => (-skew, -skew),
@@ -159,15 +179,12 @@ impl Oval {
         };
         let (from, to) = (from.max(left).min(right), to.max(left).min(right));
         let height = if arcs > 0.0 {
-            self.height(self.curve.centre.x + from)
+            self.height(self.x + from)
         } else {
             1.0
         };
         if height > self.highest {
-            (self.highest, self.peak) = (
-                height,
-                (self.curve.centre.x + from, self.curve.centre.x + to),
-            );
+            (self.highest, self.peak) = (height, (self.x + from, self.x + to));
         }
         // An ellipse and two lines: at most four places strictly inside, so at most five stretches.
         if let Some(slot) = self.stretches.get_mut(self.count) {
@@ -178,14 +195,14 @@ impl Oval {
 
     /// The height of the section, given half of the ellipse's own.
     fn clipped(&self, d: f64, half: f64) -> f64 {
-        let (middle, half) = (self.curve.shear.y * d, self.curve.scale.y * half);
+        let (middle, half) = (self.middle_y * d, self.scale_y * half);
         ((middle + half).min(self.top + 1.0) - (middle - half).max(self.top)).max(0.0)
     }
 
     /// `w`.
     pub(super) fn height(&self, x: f64) -> f64 {
-        let d = x - self.curve.centre.x;
-        if d.abs() >= self.curve.reach.x {
+        let d = x - self.x;
+        if d.abs() >= self.reach_x {
             return 0.0;
         }
         self.clipped(d, self.half(d))
@@ -193,7 +210,7 @@ impl Oval {
 
     /// `w`, `W` and what goes with them.
     pub(super) fn at(&self, x: f64) -> Place {
-        let d = x - self.curve.centre.x;
+        let d = x - self.x;
         let stretches = &self.stretches[..self.count];
         let outside = |area: f64| Place {
             height: 0.0,
@@ -238,13 +255,13 @@ impl Oval {
     /// 0.7 of itself where `half² ≥ 4·R·way`. Near an end of the ellipse it changes by the root of `2·R·way` at most.
     /// Clipping by the band's lines makes a change smaller only.
     pub(super) fn change(&self, place: &Place, way: f64) -> f64 {
-        let reach = self.curve.reach.x;
+        let reach = self.reach_x;
         let half = if place.half * place.half >= 4.0 * reach * way {
             1.5 * reach / place.half * way
         } else {
             (2.0 * reach * way).sqrt()
         };
-        2.0 * self.curve.scale.y * half + self.curve.shear.y.abs() * way
+        2.0 * self.scale_y * half + self.middle_y.abs() * way
     }
 
     /// Bounds of `w` from `x` to `end`: it is concave where it is not 0, so least at an end.
@@ -274,11 +291,8 @@ impl Oval {
     pub(super) fn reach(&self) -> (f64, f64) {
         let stretches = &self.stretches[..self.count];
         match (stretches.first(), stretches.last()) {
-            (Some(first), Some(last)) => (
-                self.curve.centre.x + first.left,
-                self.curve.centre.x + last.right,
-            ),
-            _ => (self.curve.centre.x, self.curve.centre.x),
+            (Some(first), Some(last)) => (self.x + first.left, self.x + last.right),
+            _ => (self.x, self.x),
         }
     }
 
@@ -291,10 +305,7 @@ impl Oval {
     pub(super) fn full(&self) -> Option<(f64, f64)> {
         let full = |stretch: &&Stretch| stretch.round == 0.0 && stretch.right - stretch.left > 1.0;
         let stretch = self.stretches[..self.count].iter().find(full)?;
-        Some((
-            self.curve.centre.x + stretch.left,
-            self.curve.centre.x + stretch.right - 1.0,
-        ))
+        Some((self.x + stretch.left, self.x + stretch.right - 1.0))
     }
 }
 
