@@ -53,6 +53,12 @@ impl Plane {
         self.areas.clear();
         solid.draw(&mut self.areas);
         let mut imprint = Imprint::empty(self.sensor.columns(), self.sensor.rows());
+        self.activate(solid, &mut imprint);
+        imprint
+    }
+
+    /// Activates the taxels that are covered enough.
+    fn activate(&self, solid: &impl Solid, imprint: &mut Imprint) {
         let threshold = self.sensor.threshold();
         let areas = self.areas.grid();
         let rows = areas.rows();
@@ -61,17 +67,16 @@ impl Plane {
         let unused = u64::BITS - u32::try_from(columns.len()).unwrap_or(0);
         // Of a shape wholly right of the sensor the columns are none.
         if rows.is_empty() || columns.is_empty() {
-            return imprint;
+            return;
         }
         for pair in rows.start / 2..rows.end.div_ceil(2) {
             // The sign of what a cell has too little is its bit. Bits come in from the left: after the last one they
             // stand `unused` places too high.
             let (mut short, mut nearest) = ([0_u64; 2], [f64::MAX; 2]);
-            for areas in areas.pair(pair, &columns) {
+            for excess in areas.pair(pair, &columns, threshold) {
                 for lane in 0..2 {
-                    let excess = areas[lane] - threshold;
-                    short[lane] = short[lane] >> 1 | excess.to_bits() & 1 << 63;
-                    nearest[lane] = Real::min(Real::abs(excess), nearest[lane]);
+                    short[lane] = short[lane] >> 1 | excess[lane].to_bits() & 1 << 63;
+                    nearest[lane] = Real::min(Real::abs(excess[lane]), nearest[lane]);
                 }
             }
             let mut active = short.map(|short| (!short >> unused) << first);
@@ -84,7 +89,6 @@ impl Plane {
             }
             imprint.set_pair(pair, active);
         }
-        imprint
     }
 
     /// The active taxels of a row, those in doubt computed again.

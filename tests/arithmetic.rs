@@ -7,6 +7,8 @@ mod common;
 use common::figure;
 use taxel::geometry::overlap::cell;
 use taxel::geometry::real::{Double, Real};
+use taxel::sensor::Sensor;
+use taxel::touch::Plane;
 
 const PI: &str = "3.1415926535897932384626433832795";
 
@@ -271,26 +273,58 @@ fn sines_and_cosines_of_whole_degrees() {
 }
 
 #[test]
-fn segments_of_the_disc_follow_from_the_angle() {
-    // A chord of length 2·sin a cuts off a − sin a · cos a, over the sine of the whole angle, 2 sin a · cos a; the
-    // series holds to a square of 1/8, near 20°.
-    for degrees in 1..=20 {
-        let (sin, cos) = Double::whole(degrees).sin_cos_degrees();
-        let angle = number(PI) * Double::whole(degrees) / Double::whole(180);
-        let expected = (angle - sin * cos) / (Double::whole(2) * sin * cos);
-        let found = Double::segment_series(sin * sin);
-        assert_near(&format!("{degrees}°"), found, expected, 1e-30);
+fn angles_are_those_of_their_sines() {
+    for tenths in -900..=900 {
+        let degrees = Double::whole(tenths) / Double::whole(10);
+        let (sin, cos) = degrees.sin_cos_degrees();
+        let expected = number(PI) * degrees / Double::whole(180);
+        let text = format!("{}°", f64::from(tenths) / 10.0);
+        assert_near(&text, Double::angle(sin, cos), expected, 1e-31);
+        let plain = f64::angle(sin.to_f64(), cos.to_f64());
+        assert!((plain - expected.to_f64()).abs() < 4e-16, "{text}: {plain}");
     }
-    // Up to the very end of the series' range. The f64 polynomial is fitted to an absolute error, since it is
-    // multiplied by at most 100: the area of the largest ellipse times the sine of an arc inside one cell.
-    for part in 1..=1024 {
-        let squared = f64::from(part) / 8192.0;
-        let expected = Double::segment_series(Double::from(squared)).to_f64();
-        let found = f64::segment_series(squared);
-        assert!(
-            (found - expected).abs() < 6e-16,
-            "{squared}: {found:e}, expected {expected:e}"
-        );
+    // Near the ends, where the sine alone tells nothing, and in the middle, down to nothing.
+    for power in 0..300 {
+        let small = 0.1_f64.powi(power) * 0.5;
+        let large = ((1.0 - small) * (1.0 + small)).sqrt();
+        for (sin, cos) in [
+            (small, large),
+            (-small, large),
+            (large, small),
+            (-large, small),
+        ] {
+            let off = (f64::angle(sin, cos) - sin.atan2(cos)).abs();
+            assert!(off < 4e-16, "{sin}, {cos}: {off:e}");
+        }
+    }
+    assert_eq!(
+        Double::angle(Double::ONE, Double::ZERO),
+        Double::QUARTER_TURN
+    );
+}
+
+#[test]
+fn areas_in_f64_hold_twelve_digits() {
+    let mut plane = Plane::new(Sensor::new(64.0, 64.0).expect("a sensor"));
+    for text in [
+        "ellipse radius_x=31.9 radius_y=31.7 x0=0.13 y0=0.21",
+        "ellipse radius_x=63.9 radius_y=63.7 x0=-40.3 y0=-31.2 angle=33",
+        "ellipse radius_x=63.9 radius_y=1.7 x0=-31.3 y0=29.2 angle=41 thickness=0.3",
+        "ellipse radius_x=5.1 radius_y=60.3 x0=28.3 y0=-27.9 angle=88 thickness=5",
+        "ellipse radius_x=0.3 radius_y=0.2 x0=63.1 y0=62.7 angle=7",
+        "rectangle length=63 width=2.5 x0=0.3 y0=30.1 angle=29 thickness=1",
+        "octagon side=25 x0=1.3 y0=0.7 angle=17 thickness=20",
+    ] {
+        let figure = figure(text, 64);
+        plane.touch(&figure);
+        // Every seventh cell, each row beginning elsewhere.
+        for row in 0..64_u8 {
+            for column in (row % 7..64).step_by(7) {
+                let exact = cell::<Double>(&figure, column, row).to_f64();
+                let off = (plane.coverage(column, row) - exact).abs();
+                assert!(off < 1e-12, "{text} at {column}, {row}: {off:e}");
+            }
+        }
     }
 }
 

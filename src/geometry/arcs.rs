@@ -1,14 +1,15 @@
 //! An ellipse cut at the lines of a grid.
 //!
-//! The ellipse is cut at its four extreme points first. Between them it is monotone in x and in y, so it crosses each
-//! grid line at most once, and a piece's cell is known from the order of its crossings; nothing is classified by a
-//! midpoint, and an ellipse that merely touches a grid line is no special case. A piece counts as its chord plus the
-//! segment between the two.
+//! Each half is gone along from top to bottom, row by row. In a row it goes on in one direction until it comes to the
+//! column of its end, or first to that of its leftmost or rightmost point and then back: so the columns say which
+//! vertical lines a piece ends at, each point is reached once, and nothing depends on how two roundings compare. An
+//! ellipse that merely touches a grid line is no special case.
 //!
-//! Each half is gone along from top to bottom and its crossings noted; then all pieces are computed in one straight
-//! loop, which a compiler makes work on several of them at once.
+//! What a piece adds to its cell is the difference of two running sums ([`Sums`]), so each line is computed once for
+//! the cells on its two sides; and all lines are before the way down begins, since a processor then works on several of
+//! them at once.
 
-use super::curve::Curve;
+use super::curve::{Curve, Sums};
 use super::grid::{Grid, index};
 use super::outline::{Ellipse, Point, Side};
 use super::real::Real;
@@ -16,208 +17,157 @@ use super::real::Real;
 /// Draws ellipses, again and again without allocating.
 #[derive(Clone, Debug, Default)]
 pub struct Arcs<T> {
-    /// Where the ellipse meets the horizontal lines: left, right; and the vertical ones: above, below.
-    horizontal: Vec<[T; 2]>,
-    vertical: Vec<[T; 2]>,
-    /// The points at which a half is cut, from top to bottom.
-    cuts: Vec<Cut<T>>,
-    /// What the piece up to the next cut leaves in its cell: its share, at first the square of half its chord in the
-    /// unit disc.
-    shares: Vec<T>,
+    /// Where the ellipse meets the vertical lines: above, below.
+    vertical: Vec<[Sums<T>; 2]>,
+    /// Where it begins, meets the horizontal lines, and ends: left, right.
+    horizontal: Vec<[Way<T>; 2]>,
 }
 
-/// A point at which a half is cut, and the cell of the piece that ends there: its left side, entry and row.
+/// Where a half is on its way down.
 #[derive(Clone, Copy, Debug)]
-struct Cut<T> {
-    at: Point<T>,
-    left: T,
-    entry: usize,
-    row: usize,
+struct Way<T> {
+    sums: Sums<T>,
+    /// The column's place in a row of the grid, which is the number of the line on its right; and that as a number.
+    place: usize,
+    right: T,
 }
 
-/// Where a half is on its way: the last cut, and the cell after it.
-struct Place<T> {
+/// A row of the grid that a half goes along.
+struct Row<T> {
     row: usize,
-    /// The horizontal line below the row.
-    line: T,
-    /// The column's entry: 0 left of the grid.
-    entry: usize,
-    left: T,
+    start: usize,
+    /// Whether the way down adds or takes away.
+    sign: T,
+    quarter: T,
 }
 
 impl<T: Real> Arcs<T> {
     /// For grids of that size.
     pub fn new(columns: u8, rows: u8) -> Self {
-        let lines = |cells: u8| vec![[T::ZERO; 2]; usize::from(cells) + 1];
+        let sums = Sums {
+            height: T::ZERO,
+            moment: T::ZERO,
+        };
+        let way = Way {
+            sums,
+            place: 0,
+            right: T::ZERO,
+        };
         Self {
-            horizontal: lines(rows),
-            vertical: lines(columns),
-            cuts: Vec::new(),
-            shares: Vec::new(),
+            vertical: vec![[sums; 2]; usize::from(columns) + 1],
+            horizontal: vec![[way; 2]; usize::from(rows) + 1],
         }
     }
 
     /// Draws an ellipse on a grid of the size given at first.
     pub fn draw(&mut self, grid: &mut Grid<T>, ellipse: &Ellipse<T>, material: Side) {
-        let curve = Curve::of(ellipse);
+        let Some(curve) = Curve::of(ellipse) else {
+            return;
+        };
         let (top, end) = (curve.top.y.max(T::ZERO), curve.bottom.y.min(grid.bottom()));
         if top >= end {
             return;
         }
-        // A crossing may lie beyond the extreme points by a rounding.
-        let (low, high) = (curve.left.x - T::TIE, curve.right.x + T::TIE);
-        grid.draws(Point::new(low, top), Point::new(high, end));
-        between(&mut self.horizontal, top, end, |y| curve.xs_at(y));
-        between(&mut self.vertical, low, high, |x| curve.ys_at(x));
-        let ends = |y: T, extreme: Point<T>| {
-            if y == extreme.y {
-                [extreme.x; 2]
-            } else {
-                curve.xs_at(y)
-            }
-        };
-        let (first, last) = (ends(top, curve.top), ends(end, curve.bottom));
-        for right in [false, true] {
-            let side = usize::from(right);
-            let turning = if right { curve.right } else { curve.left };
-            let (from, to) = (Point::new(first[side], top), Point::new(last[side], end));
-            self.cut(grid, [from, turning, to], right);
-            self.measure(&curve, right);
-            self.leave(grid, right == (material == Side::Outside));
-        }
-    }
-
-    /// Cuts a half, between two points of it on the grid and with its turning point between them or not.
-    fn cut(&mut self, grid: &Grid<T>, [from, turning, to]: [Point<T>; 3], right: bool) {
-        let (row, column) = (
-            index(from.y.floor()),
-            from.x.max(-T::ONE).min(grid.right()).floor(),
+        grid.draws(
+            Point::new(curve.left.x, top),
+            Point::new(curve.right.x, end),
         );
-        let mut place = Place {
-            row,
-            line: T::ONE + T::whole(from.y.floor()),
-            entry: index(column + 1),
-            left: T::whole(column),
-        };
-        self.cuts.clear();
-        self.piece(grid, &place, from.x, from.y);
-        let turns = turning.y.max(from.y).min(to.y);
-        if from.y < turns {
-            let here = if turns < to.y { turning } else { to };
-            self.quarter(grid, &mut place, here, 0, right);
+        let (leftmost, mut line) = grid.place(curve.left.x);
+        let (rightmost, _) = grid.place(curve.right.x);
+        for vertical in &mut self.vertical[leftmost..rightmost] {
+            *vertical = curve.along(line);
+            line = line + T::ONE;
         }
-        if turns < to.y {
-            self.quarter(grid, &mut place, to, 1, !right);
+        let first = top.floor();
+        let rows = self.cross(grid, &curve, top, end);
+        let quarter = curve.quarter();
+        for side in 0..2 {
+            let (turn, far, sign) = if side == 0 {
+                (curve.left.y.floor(), leftmost, T::ONE)
+            } else {
+                (curve.right.y.floor(), rightmost, -T::ONE)
+            };
+            let sign = if material == Side::Inside {
+                sign
+            } else {
+                -sign
+            };
+            for (number, ends) in (first..).zip(self.horizontal[..=rows].windows(2)) {
+                let (mut way, goal) = (ends[0][side], ends[1][side]);
+                let row = Row {
+                    row: index(number),
+                    start: grid.start(index(number)),
+                    sign,
+                    quarter,
+                };
+                // Above its turning point a half goes away from the middle, below it back.
+                if number < turn {
+                    self.go(grid, &row, &mut way, goal.place, 0);
+                } else {
+                    if number == turn {
+                        self.go(grid, &row, &mut way, far, 0);
+                    }
+                    self.go(grid, &row, &mut way, goal.place, 1);
+                }
+                row.add(grid, &way, goal.sums);
+            }
         }
     }
 
-    /// Goes on to a point, above or below the turning point, which changes the column to the right or to the left.
-    fn quarter(
-        &mut self,
-        grid: &Grid<T>,
-        place: &mut Place<T>,
-        to: Point<T>,
-        below: usize,
-        rightwards: bool,
-    ) {
-        let side = usize::from(rightwards == (below == 0));
-        let far = grid.bottom() + T::ONE;
-        loop {
-            // The vertical line that is next.
-            let (line, x) = if rightwards {
-                (place.entry, place.left + T::ONE)
-            } else {
-                (place.entry.wrapping_sub(1), place.left)
-            };
-            let passes = if rightwards { x < to.x } else { x > to.x };
-            let y = match self.vertical.get(line) {
-                Some(ys) if passes => ys[below],
-                _ => far,
-            };
-            while place.line < to.y && place.line <= y {
-                let x = self.horizontal[place.row + 1][side];
-                self.piece(grid, place, x, place.line);
-                (place.row, place.line) = (place.row + 1, place.line + T::ONE);
-            }
-            if y == far {
+    /// Computes the ends of each row's pieces, from `top` to `end`. Gives the number of rows.
+    fn cross(&mut self, grid: &Grid<T>, curve: &Curve<T>, top: T, end: T) -> usize {
+        let meet = |y: T| {
+            curve.across(y).map(|(x, sums)| {
+                let x = x.max(curve.left.x).min(curve.right.x);
+                let (place, right) = grid.place(x);
+                Way { sums, place, right }
+            })
+        };
+        let mut line = T::whole(top.floor());
+        let mut rows = 0;
+        self.horizontal[0] = meet(top);
+        for ends in &mut self.horizontal[1..] {
+            rows += 1;
+            line = line + T::ONE;
+            *ends = meet(line.min(end));
+            if line >= end {
                 break;
             }
-            self.piece(grid, place, x, y.min(to.y));
-            if rightwards {
-                (place.entry, place.left) = (place.entry + 1, x);
-            } else {
-                (place.entry, place.left) = (place.entry - 1, x - T::ONE);
-            }
         }
-        self.piece(grid, place, to.x, to.y);
+        rows
     }
 
-    /// Notes the piece up to a point.
-    #[inline]
-    fn piece(&mut self, grid: &Grid<T>, place: &Place<T>, x: T, y: T) {
-        self.cuts.push(Cut {
-            at: Point::new(x, y),
-            left: place.left,
-            entry: grid.start(place.row) + place.entry,
-            row: place.row,
-        });
-    }
-
-    /// Computes the pieces' shares.
-    fn measure(&mut self, curve: &Curve<T>, right: bool) {
-        let pieces = self.cuts.len() - 1;
-        self.shares.resize(pieces, T::ZERO);
-        // Not the largest of them, which would have to be found one by one.
-        let mut long = false;
-        for (ends, share) in self.cuts.windows(2).zip(&mut self.shares) {
-            let (from, to) = (ends[0].at, ends[1].at);
-            *share = curve.squared_chord(Point::new(to.x - from.x, to.y - from.y));
-            long |= *share * T::whole(8) > T::ONE;
+    /// Goes on to a column within a row, above or below the turning point.
+    fn go(&self, grid: &mut Grid<T>, row: &Row<T>, way: &mut Way<T>, place: usize, below: usize) {
+        while way.place < place {
+            let mut sums = self.vertical[way.place][below];
+            sums.moment = sums.moment - row.quarter;
+            row.add(grid, way, sums);
+            *way = Way {
+                sums,
+                place: way.place + 1,
+                right: way.right + T::ONE,
+            };
         }
-        let pieces = self.cuts.windows(2).zip(&mut self.shares);
-        let chord = |from: Point<T>, to: &Cut<T>| {
-            (to.at.y - from.y) * ((from.x + to.at.x) * T::HALF - to.left)
-        };
-        if long {
-            for (ends, share) in pieces {
-                let (from, to) = (ends[0].at, &ends[1]);
-                *share = chord(from, to) + curve.segment(from, to.at, *share, right);
-            }
-        } else {
-            for (ends, share) in pieces {
-                let (from, to) = (ends[0].at, &ends[1]);
-                *share = chord(from, to) + curve.short_segment(from, to.at, *share);
-            }
-        }
-    }
-
-    /// Adds the pieces to the grid.
-    fn leave(&self, grid: &mut Grid<T>, added: bool) {
-        for (ends, &share) in self.cuts.windows(2).zip(&self.shares) {
-            let Cut { at, entry, row, .. } = ends[1];
-            let height = at.y - ends[0].at.y;
-            if added {
-                grid.add(entry, row, height, share);
-            } else {
-                grid.add(entry, row, -height, -share);
-            }
+        while way.place > place {
+            let mut sums = self.vertical[way.place - 1][below];
+            sums.moment = sums.moment + row.quarter;
+            row.add(grid, way, sums);
+            *way = Way {
+                sums,
+                place: way.place - 1,
+                right: way.right - T::ONE,
+            };
         }
     }
 }
 
-/// Computes the crossings with the lines from `low` to `high`, as far as there are such lines.
-fn between<T: Real>(crossings: &mut [[T; 2]], low: T, high: T, at: impl Fn(T) -> [T; 2]) {
-    let last = T::whole(i32::try_from(crossings.len()).unwrap_or(0) - 1);
-    if high < T::ZERO || low > last {
-        return;
-    }
-    let (first, last) = (
-        index(low.max(T::ZERO).floor()),
-        index(high.min(last).floor()),
-    );
-    let mut line = T::whole(low.max(T::ZERO).floor());
-    for crossing in &mut crossings[first..=last] {
-        *crossing = at(line);
-        line = line + T::ONE;
+impl<T: Real> Row<T> {
+    /// Adds the piece up to a point.
+    fn add(&self, grid: &mut Grid<T>, from: &Way<T>, to: Sums<T>) {
+        let height = self.sign * (to.height - from.sums.height);
+        let moment = self.sign * (to.moment - from.sums.moment);
+        let here = from.right * height - moment;
+        grid.add(self.start + from.place, self.row, here, height);
     }
 }

@@ -1,23 +1,28 @@
 //! An ellipse prepared for being cut at the lines of a grid.
 //!
-//! With `a`, `b` the images of the disc's axes, the reach in y is `R = √(a.y² + b.y²)`, and the line `y = c.y + d`
-//! meets the ellipse at `x = c.x + shear·d ± scale·√((R − d)(R + d))`, with `shear = (a·b products) / R²` and
-//! `scale = |det| / R²`; likewise for vertical lines.
+//! With `a`, `b` the images of the disc's axes, the reach in y is `R = √(a.y² + b.y²)`. The line `y = c.y + R·sin η`
+//! meets the ellipse at `x = c.x + shear·R·sin η ± extent·cos η`, with `shear = (a.x·a.y + b.x·b.y) / R²` and
+//! `extent = |det| / R`; likewise for vertical lines.
+//!
+//! **Moments.** Along an arc whose angle in the disc is `φ`, Green's theorem gives `∫ X dY = (X·Y + det·φ) / 2` about
+//! the centre. A horizontal line takes one angle `η` for the two points at which it meets the ellipse, since they lie
+//! as far from the topmost point on either side; so does a vertical line.
 
 use super::outline::{Ellipse, Point};
 use super::real::Real;
 
-/// An ellipse: its extreme points, where it meets horizontal and vertical lines, and what its chords cut off.
+/// An ellipse: its extreme points, and where it meets horizontal and vertical lines.
 #[derive(Clone, Debug)]
 pub struct Curve<T> {
     centre: Point<T>,
     reach: Point<T>,
+    inverse: Point<T>,
     shear: Point<T>,
-    scale: Point<T>,
-    /// The area of the image of the unit square, positive.
-    area: T,
-    /// Half of the map back to the unit disc.
-    to_disc: [Point<T>; 2],
+    extent: Point<T>,
+    /// Half the area of the image of the unit square, positive.
+    half_area: T,
+    /// By how much of an angle the rightmost point lies below the middle between the topmost and the bottommost one.
+    tilt: T,
     /// The leftmost point.
     pub left: Point<T>,
     /// The topmost point.
@@ -28,97 +33,96 @@ pub struct Curve<T> {
     pub bottom: Point<T>,
 }
 
+/// The sums that run along a half of an ellipse on the way down, at a point of it.
+///
+/// What they come to between two points is their difference.
+#[derive(Clone, Copy, Debug)]
+pub struct Sums<T> {
+    /// `∫ dy`: the height below the centre.
+    pub height: T,
+    /// `∫ x dy`, from the leftmost or rightmost point on.
+    pub moment: T,
+}
+
+/// Where a line meets an ellipse: the x, and what the way down the left or the right half comes to there.
+pub type Crossing<T> = (T, Sums<T>);
+
 impl<T: Real> Curve<T> {
-    /// Prepares an ellipse.
-    pub fn of(ellipse: &Ellipse<T>) -> Self {
+    /// Prepares an ellipse; none that is thinner than any tie.
+    pub fn of(ellipse: &Ellipse<T>) -> Option<Self> {
         let Ellipse {
             centre,
             across: a,
             along: b,
         } = *ellipse;
         let reach = ellipse.reach();
-        let determinant = a.x * b.y - a.y * b.x;
-        let area = determinant.abs();
-        let (x_inverse, y_inverse) = (T::ONE / (reach.x * reach.x), T::ONE / (reach.y * reach.y));
+        let area = (a.x * b.y - a.y * b.x).abs();
+        if area <= T::TIE * T::TIE {
+            return None;
+        }
+        let inverse = Point::new(T::ONE / reach.x, T::ONE / reach.y);
+        let extent = Point::new(area * inverse.y, area * inverse.x);
+        // How far the points of the extremes lie aside of the axes through the centre.
         let mixed = a.x * a.y + b.x * b.y;
-        let shear = Point::new(mixed * y_inverse, mixed * x_inverse);
-        let halved = T::HALF / determinant;
-        let skew = Point::new(shear.x * reach.y, shear.y * reach.x);
-        Self {
+        let skew = Point::new(mixed * inverse.y, mixed * inverse.x);
+        Some(Self {
             centre,
             reach,
-            shear,
-            scale: Point::new(area * y_inverse, area * x_inverse),
-            area,
-            to_disc: [
-                Point::new(b.y * halved, -(b.x * halved)),
-                Point::new(-(a.y * halved), a.x * halved),
-            ],
+            inverse,
+            shear: Point::new(skew.x * inverse.y, skew.y * inverse.x),
+            extent,
+            half_area: area * T::HALF,
+            tilt: T::angle(skew.y * inverse.y, extent.y * inverse.y),
             left: Point::new(centre.x - reach.x, centre.y - skew.y),
             top: Point::new(centre.x - skew.x, centre.y - reach.y),
             right: Point::new(centre.x + reach.x, centre.y + skew.y),
             bottom: Point::new(centre.x + skew.x, centre.y + reach.y),
-        }
+        })
     }
 
-    /// Where the horizontal line at `y` meets it: left, right.
-    pub fn xs_at(&self, y: T) -> [T; 2] {
-        let d = y - self.centre.y;
-        let middle = self.centre.x + self.shear.x * d;
-        let root = self.scale.x * ((self.reach.y - d) * (self.reach.y + d)).sqrt();
-        [middle - root, middle + root]
+    /// Where the horizontal line at `y` meets it: left, right. Where it passes by, the nearest extreme point, twice.
+    pub fn across(&self, y: T) -> [Crossing<T>; 2] {
+        let height = y - self.centre.y;
+        let (angle, half) = if height.abs() < self.reach.y {
+            let sin = height * self.inverse.y;
+            let cos = ((T::ONE - sin) * (T::ONE + sin)).sqrt();
+            (T::angle(sin, cos), self.extent.x * cos)
+        } else if height < T::ZERO {
+            (-T::QUARTER_TURN, T::ZERO)
+        } else {
+            (T::QUARTER_TURN, T::ZERO)
+        };
+        let middle = self.centre.x + self.shear.x * height;
+        let at = |x: T, angle: T| {
+            let moment = height * T::HALF * (x + self.centre.x) + self.half_area * angle;
+            (x, Sums { height, moment })
+        };
+        [
+            at(middle - half, -(angle + self.tilt)),
+            at(middle + half, angle - self.tilt),
+        ]
     }
 
-    /// Where the vertical line at `x` meets it: above, below.
-    pub fn ys_at(&self, x: T) -> [T; 2] {
-        let d = x - self.centre.x;
-        let middle = self.centre.y + self.shear.y * d;
-        let root = self.scale.y * ((self.reach.x - d) * (self.reach.x + d)).sqrt();
-        [middle - root, middle + root]
+    /// Where the vertical line at `x`, which meets it, does so: above, below. The moments are a quarter turn off, see
+    /// [`Self::quarter`].
+    pub fn along(&self, x: T) -> [Sums<T>; 2] {
+        let aside = x - self.centre.x;
+        let sin = aside * self.inverse.x;
+        let cos = ((T::ONE - sin) * (T::ONE + sin)).sqrt();
+        let sector = self.half_area * T::angle(sin, cos);
+        let middle = self.shear.y * aside;
+        let half = self.extent.y * cos;
+        let mean = (x + self.centre.x) * T::HALF;
+        let at = |height: T, sector: T| Sums {
+            height,
+            moment: height * mean + sector,
+        };
+        [at(middle - half, sector), at(middle + half, -sector)]
     }
 
-    /// The square of half the chord between two points that lie so far apart, in the unit disc.
-    pub fn squared_chord(&self, chord: Point<T>) -> T {
-        let [first, second] = &self.to_disc;
-        let (u, v) = (
-            first.x * chord.x + first.y * chord.y,
-            second.x * chord.x + second.y * chord.y,
-        );
-        u * u + v * v
+    /// A quarter turn's share of a moment. On a way down that goes to the right it is to be taken off what
+    /// [`Self::along`] gives, on one that goes to the left it is to be added.
+    pub fn quarter(&self) -> T {
+        self.half_area * T::QUARTER_TURN
     }
-
-    /// The area between an arc and its chord, whose square as above is `squared`, at most 1/8; positive where the arc
-    /// runs clockwise as seen.
-    ///
-    /// In the unit disc it is `(θ − sin θ) / 2`, and `sin θ` is the cross product of the arc's ends. Written as
-    /// `sin θ · series(sin²(θ/2))` it takes no root; the second sine is half of the chord.
-    pub fn short_segment(&self, from: Point<T>, to: Point<T>, squared: T) -> T {
-        let (x, y) = (to.x - from.x, to.y - from.y);
-        let cross = (from.x - self.centre.x) * y - (from.y - self.centre.y) * x;
-        cross * T::segment_series(squared)
-    }
-
-    /// The same of an arc of any length up to half the ellipse; `clockwise` has to say how it runs.
-    pub fn segment(&self, from: Point<T>, to: Point<T>, squared: T, clockwise: bool) -> T {
-        if squared * T::whole(8) <= T::ONE {
-            return self.short_segment(from, to, squared);
-        }
-        let area = self.area * long_segment(squared.min(T::ONE));
-        if clockwise { area } else { -area }
-    }
-}
-
-/// The area that a chord of length `2s` cuts off the unit disc, from `s²` in [1/8, 1].
-///
-/// Such chords are halved: it is twice what the chord of half the angle cuts off, plus the triangle
-/// `s·(1 − √(1 − s²))` between the three chords.
-fn long_segment<T: Real>(squared: T) -> T {
-    let (sin, versine) = (squared.sqrt(), T::ONE - (T::ONE - squared).sqrt());
-    let halved = versine * T::HALF;
-    let half = if halved * T::whole(8) <= T::ONE {
-        sin * T::segment_series(halved)
-    } else {
-        long_segment(halved)
-    };
-    T::whole(2) * half + sin * versine
 }

@@ -2,8 +2,9 @@
 //!
 //! By Green's theorem the area of a shape in a cell is a sum over the pieces of its boundary, each cut at the grid
 //! lines. A piece that climbs by `h` through a cell leaves `h` times its mean distance from the cell's right side in
-//! that cell and the whole of `h` in every cell to the right of it. So each piece adds to the entry of its own cell
-//! only, and the areas come from running sums of the rows: only cells that the boundary crosses are computed.
+//! that cell and the whole of `h` in every cell to the right of it. So each piece adds these two numbers to the entry
+//! of its own cell only, and the areas come from running sums of the rows: only cells that the boundary crosses are
+//! computed.
 //!
 //! What lies left of the grid is put into a column before the first one, where its height is all that counts, and
 //! what lies right of it into one behind the last: no piece is a special case.
@@ -29,20 +30,17 @@ pub struct Grid<T> {
     high: Point<T>,
 }
 
-/// Of a cell and the one below it: the sums of their pieces' heights, and of what lies between the pieces and the
-/// cell's left side.
-///
-/// The second belongs to the cells on the right, but is kept here: a piece then writes to one place only.
+/// What the pieces of boundary in a cell and in the one below it leave there, and in each cell further to the right.
 #[derive(Clone, Copy, Debug)]
 struct Entry<T> {
-    heights: [T; 2],
-    shares: [T; 2],
+    here: [T; 2],
+    beyond: [T; 2],
 }
 
 impl<T: Real> Entry<T> {
     const EMPTY: Self = Self {
-        heights: [T::ZERO; 2],
-        shares: [T::ZERO; 2],
+        here: [T::ZERO; 2],
+        beyond: [T::ZERO; 2],
     };
 }
 
@@ -65,12 +63,10 @@ impl<T: Real> Grid<T> {
     /// Wipes the grid.
     pub fn clear(&mut self) {
         let (rows, drawn) = (self.rows(), self.entries_drawn());
-        if !rows.is_empty() {
+        if !rows.is_empty() && !drawn.is_empty() {
             for pair in rows.start / 2..rows.end.div_ceil(2) {
-                // A piece on a line may have gone to the column on its left.
-                let drawn = drawn.start.saturating_sub(1)..drawn.end;
-                for entry in &mut self.entries[pair * self.stride..][drawn] {
-                    (entry.heights, entry.shares) = ([T::ZERO; 2], [T::ZERO; 2]);
+                for entry in &mut self.entries[pair * self.stride..][drawn.clone()] {
+                    *entry = Entry::EMPTY;
                 }
             }
         }
@@ -90,14 +86,15 @@ impl<T: Real> Grid<T> {
 
     /// The rows whose cells are not all empty for certain.
     pub fn rows(&self) -> Range<usize> {
-        let (top, bottom) = (self.low.y.floor(), self.high.y.floor());
-        index(top.min(self.rows))..index(bottom.saturating_add(1).min(self.rows))
+        let row = |y: T| y.max(T::ZERO).min(self.bottom()).cell().0;
+        let rows = usize::try_from(self.rows).unwrap_or(0);
+        row(self.low.y)..(row(self.high.y) + 1).min(rows)
     }
 
-    /// The entries of these rows that are not all zero for certain.
+    /// The entries of these rows that are not all zero for certain. Where pieces lie follows from [`Real::cell`] too, and
+    /// that never puts a larger number into a cell before.
     fn entries_drawn(&self) -> Range<usize> {
-        let entry = |x: T| index(x.floor().max(-1).min(self.columns) + 1);
-        entry(self.low.x)..entry(self.high.x) + 1
+        self.place(self.low.x).0..self.place(self.high.x).0 + 1
     }
 
     /// The columns whose cells are not all empty for certain.
@@ -107,33 +104,49 @@ impl<T: Real> Grid<T> {
         column(entries.start)..column(entries.end)
     }
 
-    /// The areas of rows `2 * pair` and `2 * pair + 1` in these columns, each in [0, 1] up to a rounding. `columns` is
-    /// [`Self::columns`], one of the rows at least lies in [`Self::rows`]; the other one may lie outside, all 0.
-    pub fn pair(&self, pair: usize, columns: &Range<usize>) -> impl Iterator<Item = [T; 2]> {
+    /// What the areas of rows `2 * pair` and `2 * pair + 1` in these columns are above a level; the areas are in [0, 1] up
+    /// to a rounding. `columns` is [`Self::columns`], one of the rows at least lies in [`Self::rows`]; the other one may
+    /// lie outside, all 0.
+    pub fn pair(
+        &self,
+        pair: usize,
+        columns: &Range<usize>,
+        level: T,
+    ) -> impl Iterator<Item = [T; 2]> {
         let entries = &self.entries[pair * self.stride..][columns.start..=columns.end];
         // Nothing left of these columns has a height, unless they begin with the first.
-        let mut heights = entries[0].heights;
+        let mut above = entries[0].beyond.map(|area| area - level);
         entries[1..].iter().map(move |entry| {
-            let [upper, lower] = entry.heights;
-            let areas = [
-                heights[0] + (upper - entry.shares[0]),
-                heights[1] + (lower - entry.shares[1]),
-            ];
-            heights = [heights[0] + upper, heights[1] + lower];
+            let areas = [above[0] + entry.here[0], above[1] + entry.here[1]];
+            above = [above[0] + entry.beyond[0], above[1] + entry.beyond[1]];
             areas
         })
     }
 
     /// The areas of one row.
     pub fn row(&self, row: usize, columns: &Range<usize>) -> impl Iterator<Item = T> {
-        self.pair(row / 2, columns).map(move |areas| areas[row % 2])
+        self.pair(row / 2, columns, T::ZERO)
+            .map(move |areas| areas[row % 2])
     }
 
     /// Whether a piece of boundary that is not horizontal runs through a cell. Neighbours in a row through which none
     /// runs have the same area.
     pub fn crosses(&self, row: usize, column: usize) -> bool {
-        let Entry { heights, shares } = self.entries[row / 2 * self.stride + column + 1];
-        (heights[row % 2], shares[row % 2]) != (T::ZERO, T::ZERO)
+        let Entry { here, beyond } = self.entries[row / 2 * self.stride + column + 1];
+        (here[row % 2], beyond[row % 2]) != (T::ZERO, T::ZERO)
+    }
+
+    /// The place in a row, from [`Self::start`] on, of the column that `x` lies in by [`Real::cell`], and that column's
+    /// right end.
+    pub fn place(&self, x: T) -> (usize, T) {
+        if x < T::ZERO {
+            (0, T::ZERO)
+        } else if x > self.right() {
+            (self.stride - 1, self.right() + T::ONE)
+        } else {
+            let (column, left) = x.cell();
+            (column + 1, left + T::ONE)
+        }
     }
 
     /// Where the entries of a row begin: that of the column left of the grid.
@@ -141,11 +154,12 @@ impl<T: Real> Grid<T> {
         row / 2 * self.stride
     }
 
-    /// Adds a piece of boundary to an entry, given from [`Self::start`] on.
-    pub fn add(&mut self, entry: usize, row: usize, height: T, share: T) {
-        if let Some(Entry { heights, shares }) = self.entries.get_mut(entry) {
+    /// Adds to an entry, given from [`Self::start`] on, what a piece of boundary leaves in its cell and beyond.
+    pub fn add(&mut self, entry: usize, row: usize, here: T, beyond: T) {
+        if let Some(entry) = self.entries.get_mut(entry) {
             let lane = row % 2;
-            (heights[lane], shares[lane]) = (heights[lane] + height, shares[lane] + share);
+            entry.here[lane] = entry.here[lane] + here;
+            entry.beyond[lane] = entry.beyond[lane] + beyond;
         }
     }
 

@@ -91,29 +91,25 @@ impl<T: Real> Overlap<T> {
         let (last, last_left) = to.x.cell();
         let start = self.grid.start(row) + 1;
         let height = edge.sign * (to.y - from.y);
+        let mut add = |column: usize, height: T, way: T| {
+            self.grid.add(start + column, row, height * way, height);
+        };
+        let last_right = last_left + T::ONE;
         if first == last {
-            let mean = (from.x + to.x) * T::HALF - first_left;
-            self.grid.add(start + first, row, height, height * mean);
+            add(last, height, last_right - (from.x + to.x) * T::HALF);
             return (last, last_left);
         }
         // What is left of the height after the first cell and the whole ones between goes to the last cell: a sum
         // that is too small in one cell by a rounding is too large in the next one.
         let way = first_left + T::ONE - from.x;
         let own = way * edge.climb;
-        self.grid
-            .add(start + first, row, own, own * (T::ONE - way * T::HALF));
+        add(first, own, way * T::HALF);
         let mut rest = height - own;
         for column in first + 1..last {
-            self.grid
-                .add(start + column, row, edge.climb, edge.climb * T::HALF);
+            add(column, edge.climb, T::HALF);
             rest = rest - edge.climb;
         }
-        self.grid.add(
-            start + last,
-            row,
-            rest,
-            rest * ((to.x - last_left) * T::HALF),
-        );
+        add(last, rest, last_right - (last_left + to.x) * T::HALF);
         (last, last_left)
     }
 
@@ -155,7 +151,7 @@ impl<T: Real> Overlap<T> {
             let next = T::whole(row + 1).min(end);
             let start = self.grid.start(index(row));
             self.grid
-                .add(start, index(row), sign * (next - here), T::ZERO);
+                .add(start, index(row), T::ZERO, sign * (next - here));
             (here, row) = (next, row + 1);
         }
     }

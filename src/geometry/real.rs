@@ -11,6 +11,7 @@
 //! Double-double arithmetic after T. J. Dekker, *A floating-point technique for extending the available
 //! precision*, Numerische Mathematik 18 (1971), and D. E. Knuth, *The Art of Computer Programming*, vol. 2, 4.2.2.
 
+use std::f64::consts::FRAC_PI_2;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -31,6 +32,8 @@ pub trait Real:
     const ONE: Self;
     /// One half.
     const HALF: Self;
+    /// A right angle in radians.
+    const QUARTER_TURN: Self;
     /// Two areas (in cells) that differ by less than this cannot be told apart in this number.
     const TIE: Self;
 
@@ -50,10 +53,8 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// Sine and cosine of an angle in degrees; exactly 0 and ±1 at the multiples of 90°.
     fn sin_cos_degrees(self) -> (Self, Self);
-    /// `(θ / sin θ − 1) / 2` from `sin²(θ/2)` in [0, 1/8]: what the chord of an arc `θ` cuts off the unit disc, over
-    /// `sin θ`. Its power series is `q/3 + 4q²/15 + 8q³/35 + …`, each coefficient `(2k + 2)/(2k + 3)` of the one before.
-    #[must_use]
-    fn segment_series(squared: Self) -> Self;
+    /// The angle in radians that has this sine and this cosine, from −π/2 to π/2: the cosine is not negative.
+    fn angle(sin: Self, cos: Self) -> Self;
 
     /// The smaller of two.
     #[must_use]
@@ -76,6 +77,7 @@ impl Real for f64 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
     const HALF: Self = 0.5;
+    const QUARTER_TURN: Self = FRAC_PI_2;
     const TIE: Self = 1e-12;
 
     fn decimal(value: f64) -> Self {
@@ -111,33 +113,76 @@ impl Real for f64 {
     }
     fn sin_cos_degrees(self) -> (Self, Self) {
         let (quarter, angle) = quarters(self);
-        let (sin, cos) = angle.to_radians().sin_cos();
+        let (sin, cos) = short_sin_cos(angle.to_radians());
         turn_by_quarters(quarter, sin, cos)
     }
-    fn segment_series(squared: Self) -> Self {
-        // Fitted to the series over [0, 1/8] (Chebyshev, in 40 digits), within 5e-16 of its first coefficient; cut
-        // short, the series would take 16 terms.
-        const FITTED: [f64; 10] = [
-            0.333_333_333_333_332_9,
-            0.266_666_666_667_355_8,
-            0.228_571_428_390_047_04,
-            0.203_174_621_641_487_52,
-            0.184_703_233_116_290_23,
-            0.170_524_206_501_430_26,
-            0.158_630_337_026_788_93,
-            0.155_212_174_431_306,
-            0.106_842_362_314_137_64,
-            0.253_071_850_031_495_9,
-        ];
-        // In pairs (Estrin), so that a processor can work on several at once.
-        let [c0, c1, c2, c3, c4, c5, c6, c7, c8, c9] = FITTED;
-        let q = squared;
-        let (q2, q4) = (q * q, q * q * (q * q));
-        let low = (c0 + c1 * q) + (c2 + c3 * q) * q2;
-        let middle = (c4 + c5 * q) + (c6 + c7 * q) * q2;
-        let high = c8 + c9 * q;
-        q * (low + (middle + high * q4) * q4)
+    fn angle(sin: Self, cos: Self) -> Self {
+        // Turned back by the angle of a table that is nearly the same, there is so little left that its arc sine is
+        // a short series. How much the sine is above the cosine tells which one: it nearly grows with the angle.
+        let size = f64::abs(sin);
+        let (node, number) = Real::cell((size - cos + 1.0) * (0.5 * LAST_NODE) + 0.5);
+        let [node_sin, node_cos] = NODES[node % NODES.len()];
+        let rest = size * node_cos - cos * node_sin;
+        let square = rest * rest;
+        // Cut short where |rest| < 0.05 leaves less than 2e-16.
+        let series =
+            1.0 / 6.0 + square * (3.0 / 40.0 + square * (5.0 / 112.0 + square * (35.0 / 1152.0)));
+        (number * NODE_STEP + (rest + rest * square * series)).copysign(sin)
     }
+}
+
+/// Sine and cosine of an angle of at most half a right one, by Taylor's series: the same on every machine.
+fn short_sin_cos(angle: f64) -> (f64, f64) {
+    // 1/n! for odd and for even n.
+    const ODD: [f64; 8] = inverse_factorials(1.0);
+    const EVEN: [f64; 9] = inverse_factorials(0.0);
+    let square = -angle * angle;
+    let sum = |terms: &[f64]| {
+        terms
+            .iter()
+            .rev()
+            .fold(0.0, |sum, term| sum * square + term)
+    };
+    (angle * sum(&ODD), sum(&EVEN))
+}
+
+/// Of `first`, which is 0 or 1, and of every second number after it.
+const fn inverse_factorials<const TERMS: usize>(first: f64) -> [f64; TERMS] {
+    let mut terms = [1.0; TERMS];
+    let (mut term, mut number) = (1, first);
+    while term < TERMS {
+        terms[term] = terms[term - 1] / ((number + 1.0) * (number + 2.0));
+        (term, number) = (term + 1, number + 2.0);
+    }
+    terms
+}
+
+/// The sines and cosines of equally spaced angles from 0 to a right angle.
+static NODES: [[f64; 2]; 64] = nodes();
+
+/// The number of the last one.
+const LAST_NODE: f64 = 63.0;
+
+/// The angle between two of them.
+const NODE_STEP: f64 = FRAC_PI_2 / LAST_NODE;
+
+const fn nodes() -> [[f64; 2]; 64] {
+    let mut nodes = [[0.0; 2]; 64];
+    let (mut node, mut angle) = (0, 0.0);
+    while node < nodes.len() {
+        // Taylor's series; from the 24th power on the terms are nought.
+        let (mut sin, mut cos, mut term, mut power) = (0.0, 0.0, 1.0, 0.0);
+        while power < 24.0 {
+            cos += term;
+            term *= angle * NODE_STEP / (power + 1.0);
+            sin += term;
+            term *= -angle * NODE_STEP / (power + 2.0);
+            power += 2.0;
+        }
+        nodes[node] = [sin, cos];
+        (node, angle) = (node + 1, angle + 1.0);
+    }
+    nodes
 }
 
 /// The nearest number of right angles, and the degrees left over, from −45 to 45. Both are exact.
@@ -173,6 +218,12 @@ pub struct Double {
 const PI: Double = Double {
     high: std::f64::consts::PI,
     low: 1.224_646_799_147_353_2e-16,
+};
+
+/// Half of it: halving is exact.
+const HALF_PI: Double = Double {
+    high: 0.5 * PI.high,
+    low: 0.5 * PI.low,
 };
 
 /// A sum and its rounding error.
@@ -277,6 +328,7 @@ impl Real for Double {
         high: 0.5,
         low: 0.0,
     };
+    const QUARTER_TURN: Self = HALF_PI;
     const TIE: Self = Self {
         high: 1e-20,
         low: 0.0,
@@ -338,22 +390,28 @@ impl Real for Double {
     fn sin_cos_degrees(self) -> (Self, Self) {
         let (quarter, angle) = quarters(self.high);
         let angle = (Self::from(angle) + Self::from(self.low)) * PI / Self::whole(180);
-        // Taylor's series: |angle| ≤ π/4, so the terms fall below 1e-33 before the 28th power.
-        let (mut sin, mut cos, mut term) = (Self::ZERO, Self::ZERO, Self::ONE);
-        for power in (0..30).step_by(2) {
-            cos = cos + term;
-            term = term * angle / Self::whole(power + 1);
-            sin = sin + term;
-            term = -(term * angle / Self::whole(power + 2));
-        }
+        let (sin, cos) = angle.sin_cos();
         turn_by_quarters(quarter, sin, cos)
     }
-    fn segment_series(squared: Self) -> Self {
-        let (mut sum, mut term) = (Self::ZERO, squared / Self::whole(3));
-        for k in 1..40 {
-            sum = sum + term;
-            term = term * squared * Self::whole(2 * k + 2) / Self::whole(2 * k + 3);
+    fn angle(sin: Self, cos: Self) -> Self {
+        // What the f64 angle is off by is so small that it is its own sine.
+        let near = Self::from(f64::atan2(sin.high, cos.high));
+        let (near_sin, near_cos) = near.sin_cos();
+        near + (sin * near_cos - cos * near_sin)
+    }
+}
+
+impl Double {
+    /// Sine and cosine of an angle in radians, up to a right one.
+    fn sin_cos(self) -> (Self, Self) {
+        // Taylor's series; the terms fall below 1e-33 before the 36th power.
+        let (mut sin, mut cos, mut term) = (Self::ZERO, Self::ZERO, Self::ONE);
+        for power in (0..36).step_by(2) {
+            cos = cos + term;
+            term = term * self / Self::whole(power + 1);
+            sin = sin + term;
+            term = -(term * self / Self::whole(power + 2));
         }
-        sum
+        (sin, cos)
     }
 }
