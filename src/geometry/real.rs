@@ -15,6 +15,8 @@ use std::f64::consts::FRAC_PI_2;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use super::circle;
+
 /// What geometry needs of a number. Total: no operation panics; the callers keep divisors away from zero.
 pub trait Real:
     Copy
@@ -113,76 +115,12 @@ impl Real for f64 {
     }
     fn sin_cos_degrees(self) -> (Self, Self) {
         let (quarter, angle) = quarters(self);
-        let (sin, cos) = short_sin_cos(angle.to_radians());
+        let (sin, cos) = circle::sin_cos(angle.to_radians());
         turn_by_quarters(quarter, sin, cos)
     }
     fn angle(sin: Self, cos: Self) -> Self {
-        // Turned back by the angle of a table that is nearly the same, there is so little left that its arc sine is
-        // a short series. How much the sine is above the cosine tells which one: it nearly grows with the angle.
-        let size = f64::abs(sin);
-        let (node, number) = Real::cell((size - cos + 1.0) * (0.5 * LAST_NODE) + 0.5);
-        let [node_sin, node_cos] = NODES[node % NODES.len()];
-        let rest = size * node_cos - cos * node_sin;
-        let square = rest * rest;
-        // Cut short where |rest| < 0.05 leaves less than 2e-16.
-        let series =
-            1.0 / 6.0 + square * (3.0 / 40.0 + square * (5.0 / 112.0 + square * (35.0 / 1152.0)));
-        (number * NODE_STEP + (rest + rest * square * series)).copysign(sin)
+        circle::angle(sin, cos)
     }
-}
-
-/// Sine and cosine of an angle of at most half a right one, by Taylor's series: the same on every machine.
-fn short_sin_cos(angle: f64) -> (f64, f64) {
-    // 1/n! for odd and for even n.
-    const ODD: [f64; 8] = inverse_factorials(1.0);
-    const EVEN: [f64; 9] = inverse_factorials(0.0);
-    let square = -angle * angle;
-    let sum = |terms: &[f64]| {
-        terms
-            .iter()
-            .rev()
-            .fold(0.0, |sum, term| sum * square + term)
-    };
-    (angle * sum(&ODD), sum(&EVEN))
-}
-
-/// Of `first`, which is 0 or 1, and of every second number after it.
-const fn inverse_factorials<const TERMS: usize>(first: f64) -> [f64; TERMS] {
-    let mut terms = [1.0; TERMS];
-    let (mut term, mut number) = (1, first);
-    while term < TERMS {
-        terms[term] = terms[term - 1] / ((number + 1.0) * (number + 2.0));
-        (term, number) = (term + 1, number + 2.0);
-    }
-    terms
-}
-
-/// The sines and cosines of equally spaced angles from 0 to a right angle.
-static NODES: [[f64; 2]; 64] = nodes();
-
-/// The number of the last one.
-const LAST_NODE: f64 = 63.0;
-
-/// The angle between two of them.
-const NODE_STEP: f64 = FRAC_PI_2 / LAST_NODE;
-
-const fn nodes() -> [[f64; 2]; 64] {
-    let mut nodes = [[0.0; 2]; 64];
-    let (mut node, mut angle) = (0, 0.0);
-    while node < nodes.len() {
-        // Taylor's series; from the 24th power on the terms are nought.
-        let (mut sin, mut cos, mut term, mut power) = (0.0, 0.0, 1.0, 0.0);
-        while power < 24.0 {
-            cos += term;
-            term *= angle * NODE_STEP / (power + 1.0);
-            sin += term;
-            term *= -angle * NODE_STEP / (power + 2.0);
-            power += 2.0;
-        }
-        nodes[node] = [sin, cos];
-        (node, angle) = (node + 1, angle + 1.0);
-    }
-    nodes
 }
 
 /// The nearest number of right angles, and the degrees left over, from −45 to 45. Both are exact.
