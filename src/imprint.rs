@@ -105,12 +105,7 @@ impl Imprint {
             across |= word;
             down |= u64::from(word != 0) << row;
         }
-        (across != 0).then(|| Bounds {
-            left: narrow(across.trailing_zeros()),
-            top: narrow(down.trailing_zeros()),
-            right: MAX_SIDE - narrow(across.leading_zeros()),
-            bottom: MAX_SIDE - narrow(down.leading_zeros()),
-        })
+        Bounds::around(across, down)
     }
 
     /// The active taxels, (column, row), in reading order.
@@ -158,6 +153,18 @@ pub struct Bounds {
 }
 
 impl Bounds {
+    /// Around the columns and the rows whose bits are set; none where no bit is.
+    pub fn around(across: u64, down: u64) -> Option<Self> {
+        let first = |bits: u64| u8::try_from(bits.trailing_zeros()).unwrap_or(MAX_SIDE);
+        let end = |bits: u64| MAX_SIDE - u8::try_from(bits.leading_zeros()).unwrap_or(MAX_SIDE);
+        (across != 0 && down != 0).then(|| Self {
+            left: first(across),
+            top: first(down),
+            right: end(across),
+            bottom: end(down),
+        })
+    }
+
     /// Its columns.
     pub fn columns(&self) -> Range<u8> {
         self.left..self.right
@@ -167,10 +174,6 @@ impl Bounds {
     pub fn rows(&self) -> Range<u8> {
         self.top..self.bottom
     }
-}
-
-fn narrow(bits: u32) -> u8 {
-    u8::try_from(bits).unwrap_or(MAX_SIDE)
 }
 
 impl fmt::Display for Imprint {

@@ -290,14 +290,16 @@ fn spread(seeds: u64, open: u64) -> u64 {
 fn enclosed(matrix: &Imprint, bounds: Bounds, inner: &mut Imprint) -> Option<Bounds> {
     // What lies left of a row's first active taxel or right of its last one is outside. Of the rest, what is next to
     // the outside is outside as well, and so on.
-    let inside = |word: u64| span(word) & !word;
-    if rows(matrix, bounds).iter().all(|&word| inside(word) == 0) {
-        return None;
-    }
     let (mut far_above, mut inner_above, mut open) = (u64::MAX, 0, 0);
+    let (mut across, mut down) = (0, 0);
     for (row, &word) in (usize::from(bounds.top)..).zip(rows(matrix, bounds)) {
-        let (far, inside) = (!span(word), inside(word));
-        inner.set_word(row, inside);
+        let far = !span(word);
+        let inside = !(far | word);
+        if inside != 0 {
+            inner.set_word(row, inside);
+            down |= 1 << row;
+        }
+        across |= inside;
         open |= inside & far_above | inner_above & far;
         (far_above, inner_above) = (far, inside);
     }
@@ -314,8 +316,9 @@ fn enclosed(matrix: &Imprint, bounds: Bounds, inner: &mut Imprint) -> Option<Bou
         for row in usize::from(bounds.top)..usize::from(bounds.bottom) {
             inner.set_word(row, inner.words()[row] & !outside.words()[row]);
         }
+        return inner.bounds();
     }
-    inner.bounds()
+    Bounds::around(across, down)
 }
 
 /// From the first set bit to the last, all set.
