@@ -48,6 +48,11 @@ impl Imprint {
         &self.words[..usize::from(self.rows)]
     }
 
+    /// The same, to be changed; whoever does so leaves bits beyond the last column at 0.
+    pub(crate) fn words_mut(&mut self) -> &mut [u64] {
+        &mut self.words[..usize::from(self.rows)]
+    }
+
     /// Sets a whole row; bits beyond the last column are dropped, rows beyond the last one ignored.
     pub fn set_word(&mut self, row: usize, word: u64) {
         let mask = self.mask();

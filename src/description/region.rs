@@ -195,82 +195,76 @@ fn pieces(
     enclose: bool,
     visit: &mut impl FnMut(&Region),
 ) {
-    let mut rest = *matrix;
-    let mut top = bounds.top;
-    while top < bounds.bottom {
-        let word = rest.words()[usize::from(top)];
-        if word == 0 {
+    let (mut rest, mut piece) = (*matrix, Imprint::empty(matrix.columns(), matrix.rows()));
+    let diagonal = kind == Kind::Exterior;
+    let (mut top, bottom) = (usize::from(bounds.top), usize::from(bounds.bottom));
+    while top < bottom {
+        let open = &mut rest.words_mut()[top..bottom];
+        let seeds = &mut piece.words_mut()[top..bottom];
+        if open[0] == 0 {
             top += 1;
             continue;
         }
-        let mut piece = Imprint::empty(matrix.columns(), matrix.rows());
-        piece.set_word(usize::from(top), word & word.wrapping_neg());
-        let below = Bounds { top, ..bounds };
-        let seeded = usize::from(top) + 1;
-        let end = flood(&mut piece, &rest, below, seeded, kind == Kind::Exterior);
-        for row in usize::from(top)..end {
-            rest.set_word(row, rest.words()[row] & !piece.words()[row]);
+        seeds[0] = open[0] & open[0].wrapping_neg();
+        let end = flood(seeds, open, 1, diagonal);
+        for (open, seeds) in open.iter_mut().zip(&*seeds).take(end) {
+            *open &= !seeds;
         }
-        let Some(bounds) = piece.bounds() else {
-            continue;
-        };
-        let mut holes = Imprint::empty(matrix.columns(), matrix.rows());
-        let enclosed = enclose.then(|| enclosed(&piece, bounds, &mut holes));
-        if let Some(holes_bounds) = enclosed.flatten() {
-            let mut filled = piece;
-            unite(&mut filled, &holes, holes_bounds);
-            visit(&Region::borrowed(kind, &piece, &filled, bounds));
-        } else {
-            visit(&Region::borrowed(kind, &piece, &piece, bounds));
+        if let Some(bounds) = piece.bounds() {
+            let mut holes = Imprint::empty(matrix.columns(), matrix.rows());
+            let enclosed = enclose.then(|| enclosed(&piece, bounds, &mut holes));
+            if let Some(holes_bounds) = enclosed.flatten() {
+                let mut filled = piece;
+                unite(&mut filled, &holes, holes_bounds);
+                visit(&Region::borrowed(kind, &piece, &filled, bounds));
+            } else {
+                visit(&Region::borrowed(kind, &piece, &piece, bounds));
+            }
         }
+        piece.words_mut()[top..top + end].fill(0);
     }
 }
 
-/// Grows the seeds through the mask as far as they reach, inside of the bounds. From row `end` on there are none at
+/// Grows the seeds through the open taxels as far as they reach, given row by row. From row `end` on there are none at
 /// first; the result is the row from which on there are none at last.
-fn flood(
-    seeds: &mut Imprint,
-    mask: &Imprint,
-    bounds: Bounds,
-    mut end: usize,
-    diagonal: bool,
-) -> usize {
-    let (top, bottom) = (usize::from(bounds.top), usize::from(bounds.bottom));
-    let enter = |seeds: &mut Imprint, row: usize, neighbour: u64| {
-        let open = mask.words()[row];
-        let old = seeds.words()[row];
+fn flood(seeds: &mut [u64], open: &[u64], mut end: usize, diagonal: bool) -> usize {
+    let rows = seeds.len().min(open.len());
+    let (seeds, open) = (&mut seeds[..rows], &open[..rows]);
+    let grown = |old: u64, neighbour: u64, open: u64| {
         let near = if diagonal {
             neighbour | neighbour << 1 | neighbour >> 1
         } else {
             neighbour
         };
         let entered = (old | near) & open;
-        if entered != old {
-            seeds.set_word(
-                row,
-                if entered == open {
-                    open
-                } else {
-                    spread(entered, open)
-                },
-            );
+        if entered == old || entered == open {
+            entered
+        } else {
+            spread(entered, open)
         }
-        entered != old
     };
-    seeds.set_word(top, spread(seeds.words()[top], mask.words()[top]));
+    let Some((first, &first_open)) = seeds.first_mut().zip(open.first()) else {
+        return 0;
+    };
+    *first = spread(*first, first_open);
     loop {
-        for row in top + 1..bottom {
-            enter(seeds, row, seeds.words()[row - 1]);
+        let mut above = seeds[0];
+        for (row, (seeds, &open)) in seeds.iter_mut().zip(open).enumerate().skip(1) {
+            *seeds = grown(*seeds, above, open);
+            above = *seeds;
             if row >= end {
-                if seeds.words()[row] == 0 {
+                if above == 0 {
                     break;
                 }
                 end = row + 1;
             }
         }
-        let mut changed = false;
-        for row in (top..end - 1).rev() {
-            changed |= enter(seeds, row, seeds.words()[row + 1]);
+        let (mut below, mut changed) = (0, false);
+        for (seeds, &open) in seeds[..end].iter_mut().zip(&open[..end]).rev() {
+            let old = *seeds;
+            *seeds = grown(old, below, open);
+            below = *seeds;
+            changed |= below != old;
         }
         if !changed {
             return end;
@@ -311,8 +305,9 @@ fn enclosed(matrix: &Imprint, bounds: Bounds, inner: &mut Imprint) -> Option<Bou
             let reached = inner.words()[row] & (far(row.wrapping_sub(1)) | far(row + 1));
             outside.set_word(row, spread(reached, inner.words()[row]));
         }
-        let end = usize::from(bounds.bottom);
-        flood(&mut outside, inner, bounds, end, false);
+        let rows = usize::from(bounds.top)..usize::from(bounds.bottom);
+        let seeds = &mut outside.words_mut()[rows.clone()];
+        flood(seeds, &inner.words()[rows.clone()], rows.len(), false);
         for row in usize::from(bounds.top)..usize::from(bounds.bottom) {
             inner.set_word(row, inner.words()[row] & !outside.words()[row]);
         }
