@@ -139,6 +139,10 @@ impl Plane {
         let mut all = vec![0.0; width * usize::from(self.sensor.rows())];
         let areas = self.areas.grid();
         let columns = areas.columns();
+        // Of a shape beside the sensor the columns are none.
+        if columns.is_empty() {
+            return all;
+        }
         for row in areas.rows() {
             let cells = &mut all[row * width..][columns.clone()];
             for (cell, area) in cells.iter_mut().zip(areas.row(row, &columns)) {
