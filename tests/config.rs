@@ -60,7 +60,7 @@ fn what_is_unknown_or_unfit_is_refused_with_its_place() {
         ),
         (
             "[keys.matrx]\nx = 'toggle'\n",
-            "1:7: unknown key \"matrx\", expected one of matrix, grab, form, list, name, command, question, help, everywhere",
+            "1:7: unknown key \"matrx\", expected one of matrix, grab, form, list, name, command, ranges, running, explore, imprints, statistics, histogram, map, export, question, help, everywhere",
         ),
         (
             "[keys.matrix]\nx = 'togle'\n",
@@ -158,7 +158,7 @@ fn shows(keys: &str, texts: &[&str]) {
 fn keys_do_what_the_file_says() {
     shows("x", &["NA 1 in all"]);
     shows("x<Space>", &["NA 0 in all"]);
-    shows("hx", &["column 7, row 8    active"]);
+    shows("hx", &["column  7, row  8    active"]);
     shows("x?", &["NA 0 in all"]);
     shows("x<C-n>", &["NA 0 in all"]);
     shows("xn", &["NA 1 in all"]);
