@@ -240,7 +240,9 @@ fn draw(raster: &mut Rasterizer, outline: &Outline, reversed: bool) {
             let along = (-grow * ry * sin, grow * ry * cos);
             let first = point(x + across.0, y + across.1);
             let (mut u, mut v, mut from) = (1.0_f32, 0.0_f32, first);
-            for _ in 1..chords as u32 {
+            let mut left = chords;
+            while left > 1.0 {
+                left -= 1.0;
                 (u, v) = (u * step_cos - v * step_sin, u * step_sin + v * step_cos);
                 let to = point(
                     x + u * across.0 + v * along.0,

@@ -9,6 +9,10 @@ use crate::tui::theme::{ColorDepth, Palette};
 
 /// What the flags say; nothing where they are silent.
 #[derive(Clone, Debug, Default)]
+#[expect(
+    clippy::option_option,
+    reason = "silent, auto, or one of them: the outer none is silence"
+)]
 pub(super) struct Chosen {
     pub(super) theme: Option<Option<Palette>>,
     pub(super) color: Option<Option<ColorDepth>>,

@@ -272,11 +272,11 @@ impl Effective {
         };
         let mut line = |entry: &str, origin: &Origin| text += &told(entry, origin);
         let quoted = |text: &str| quoted(text, charset);
-        let theme = named(&Palette::NAMES, self.theme.value);
+        let theme = named(&Palette::NAMES, self.theme.value.as_ref());
         line(&format!("theme = \"{theme}\""), &self.theme.origin);
-        let color = named(&ColorDepth::NAMES, self.color.value);
+        let color = named(&ColorDepth::NAMES, self.color.value.as_ref());
         line(&format!("color = \"{color}\""), &self.color.origin);
-        let characters = named(&CHARSETS, self.charset.value);
+        let characters = named(&CHARSETS, self.charset.value.as_ref());
         line(&format!("charset = \"{characters}\""), &self.charset.origin);
         line(&format!("mouse = {}", self.mouse.value), &self.mouse.origin);
         let library = match &self.library.value {
@@ -332,8 +332,8 @@ fn told(entry: &str, origin: &Origin) -> String {
 }
 
 /// The name of a choice.
-fn named<T: PartialEq>(names: &[(&'static str, T)], value: Option<T>) -> &'static str {
-    let found = names.iter().find(|(_, own)| Some(own) == value.as_ref());
+fn named<T: PartialEq>(names: &[(&'static str, T)], value: Option<&T>) -> &'static str {
+    let found = names.iter().find(|(_, own)| Some(own) == value);
     found.map_or(AUTO, |(name, _)| name)
 }
 

@@ -34,7 +34,7 @@ struct Way<T> {
 
 /// A row of the grid that a half goes along.
 struct Row<T> {
-    row: usize,
+    number: usize,
     start: usize,
     /// Whether the way down adds or takes away.
     sign: T,
@@ -95,7 +95,7 @@ impl<T: Real> Arcs<T> {
             for (number, ends) in (first..).zip(self.horizontal[..=rows].windows(2)) {
                 let (mut way, goal) = (ends[0][side], ends[1][side]);
                 let row = Row {
-                    row: index(number),
+                    number: index(number),
                     start: grid.start(index(number)),
                     sign,
                     quarter,
@@ -168,6 +168,6 @@ impl<T: Real> Row<T> {
         let height = self.sign * (to.height - from.sums.height);
         let moment = self.sign * (to.moment - from.sums.moment);
         let here = from.right * height - moment;
-        grid.add(self.start + from.place, self.row, here, height);
+        grid.add(self.start + from.place, self.number, here, height);
     }
 }

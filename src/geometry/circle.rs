@@ -86,7 +86,7 @@ const fn nodes() -> [Node; 128] {
         if number == 63 {
             to = FRAC_PI_2;
         }
-        nodes[number] = Node::at((from + to) / 2.0);
+        nodes[number] = Node::at(f64::midpoint(from, to));
         (number, from) = (number + 1, to);
     }
     nodes
