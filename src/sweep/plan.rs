@@ -110,15 +110,16 @@ const MIRRORED_TASK_POSES: u64 = 1_000_000;
 const TASKS: u64 = 16;
 
 /// The tasks of one block of turns (all angles at one pair of zooms) inside of the rows of a shard, in the order in
-/// which they meet a new imprint first.
-pub(super) fn tasks(grid: &Grid, shard: &Range<u64>, block: u64) -> Vec<Task> {
+/// which they meet a new imprint first. Made one by one as they are asked for: a large grid has millions.
+pub(super) fn tasks(
+    grid: &Grid,
+    shard: &Range<u64>,
+    block: u64,
+) -> impl Iterator<Item = Task> + use<> {
     let (angles, height) = (grid.ranges().angle.count(), grid.ranges().y0.count());
     let first_row = block * angles * height;
     let clipped = |row: u64| row.clamp(first_row, first_row + angles * height) - first_row;
     let rows = clipped(shard.start)..clipped(shard.end);
-    if rows.is_empty() {
-        return Vec::new();
-    }
     // Angles that the shard holds only a part of stand for themselves.
     let full = rows.start.div_ceil(height)..rows.end / height;
     let mut pieces: Vec<(Vec<u64>, Range<u64>)> = Vec::new();
@@ -156,19 +157,13 @@ pub(super) fn tasks(grid: &Grid, shard: &Range<u64>, block: u64) -> Vec<Task> {
         TASK_POSES
     };
     let length = (most / width).min(height * count / TASKS).max(1);
-    let turns = |angles: Vec<u64>, first: u64| angles.into_iter().map(move |angle| first + angle);
-    let mut tasks = Vec::new();
-    for (members, rows) in pieces {
-        let members: Arc<[u64]> = turns(members, block * angles).collect();
-        let mut start = rows.start;
-        while start < rows.end {
-            let end = rows.end.min(start + length);
-            tasks.push(Task {
-                turns: Arc::clone(&members),
-                rows: start..end,
-            });
-            start = end;
-        }
-    }
-    tasks
+    pieces.into_iter().flat_map(move |(members, rows)| {
+        let turns = members.into_iter().map(|angle| block * angles + angle);
+        let turns: Arc<[u64]> = turns.collect();
+        let starts = (0..(rows.end - rows.start).div_ceil(length)).map(move |task| task * length);
+        starts.map(move |start| Task {
+            turns: Arc::clone(&turns),
+            rows: rows.start + start..rows.end.min(rows.start + start + length),
+        })
+    })
 }

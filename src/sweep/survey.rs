@@ -104,13 +104,9 @@ impl Survey {
         };
         let block_rows = grid.ranges().angle.count() * height;
         'all: for block in rows.start / block_rows..rows.end.div_ceil(block_rows) {
-            let tasks = tasks(grid, &rows, block);
-            let longest = tasks
-                .iter()
-                .map(|task| task.rows.end - task.rows.start)
-                .max();
-            for tasks in tasks.chunks(portion(longest.unwrap_or(0) * width)) {
-                under_way.portion(tasks);
+            let mut tasks = tasks(grid, &rows, block).peekable();
+            while tasks.peek().is_some() {
+                under_way.portion(&portion(&mut tasks, width));
                 if under_way.stopped.load(Ordering::Relaxed) {
                     break 'all;
                 }
@@ -148,13 +144,19 @@ impl Survey {
     }
 }
 
-/// How many tasks make a portion, given the poses of the longest one: enough to keep all threads busy till the end of
-/// it, few enough for the memory, which holds what each of them found.
-fn portion(poses: u64) -> usize {
+/// The next tasks that run side by side: enough to keep all threads busy till the end of them, few enough for the
+/// memory, which holds what each of them found. `width` is the number of poses in a row.
+fn portion(tasks: &mut impl Iterator<Item = Task>, width: u64) -> Vec<Task> {
     const POSES: u64 = 4_000_000;
     let threads = rayon::current_num_threads();
-    let most = usize::try_from(POSES / poses.max(1)).unwrap_or(usize::MAX);
-    most.clamp(threads, 16 * threads)
+    let mut poses = 0;
+    let mut portion = Vec::new();
+    while portion.len() < threads || poses < POSES && portion.len() < 16 * threads {
+        let Some(task) = tasks.next() else { break };
+        poses += (task.rows.end - task.rows.start) * width;
+        portion.push(task);
+    }
+    portion
 }
 
 /// A sweep under way.
