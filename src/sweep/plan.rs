@@ -1,7 +1,7 @@
 //! How a grid is cut up: shards for several machines, and tasks for the threads of one.
 //!
 //! A shard is a piece of the list of rows, in their order. A task is a piece of one turn; turns whose figure looks the
-//! same share it ([`super::symmetry`]). Nothing of a result depends on how the tasks are cut.
+//! same share it (`symmetry`). Nothing of a result depends on how the tasks are cut.
 
 use std::collections::HashMap;
 use std::fmt;
