@@ -7,6 +7,25 @@ use clap::ArgMatches;
 use super::flags::Given;
 use crate::tui::theme::{ColorDepth, Palette};
 
+/// What a flag with several words says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Choice<T> {
+    /// `auto`: the program chooses, whatever the file says.
+    Auto,
+    /// One of the others.
+    Made(T),
+}
+
+impl<T> Choice<T> {
+    /// What was chosen, if it is not left to the program.
+    pub(super) fn made(self) -> Option<T> {
+        match self {
+            Self::Auto => None,
+            Self::Made(value) => Some(value),
+        }
+    }
+}
+
 /// What the flags say; nothing where they are silent.
 #[derive(Clone, Debug, Default)]
 #[expect(
@@ -14,8 +33,8 @@ use crate::tui::theme::{ColorDepth, Palette};
     reason = "silent, auto, or one of them: the outer none is silence"
 )]
 pub(super) struct Chosen {
-    pub(super) theme: Option<Option<Palette>>,
-    pub(super) color: Option<Option<ColorDepth>>,
+    pub(super) theme: Option<Choice<Palette>>,
+    pub(super) color: Option<Choice<ColorDepth>>,
     pub(super) ascii: bool,
     pub(super) no_mouse: bool,
     pub(super) library: Option<PathBuf>,
@@ -44,8 +63,8 @@ impl Chosen {
     }
 }
 
-/// What a name stands for; nothing for `auto`.
-fn value_of<T: Copy>(names: &[(&'static str, T)], name: &str) -> Option<T> {
+/// What a name stands for.
+fn value_of<T: Copy>(names: &[(&'static str, T)], name: &str) -> Choice<T> {
     let found = names.iter().find(|(own, _)| *own == name);
-    found.map(|(_, value)| *value)
+    found.map_or(Choice::Auto, |(_, value)| Choice::Made(*value))
 }

@@ -167,13 +167,13 @@ impl Effective {
         }
         Ok(Self {
             theme: settled(
-                chosen.theme.map(|theme| (theme, "theme")),
+                chosen.theme.map(|theme| (theme.made(), "theme")),
                 None,
                 config.theme.as_ref(),
                 None,
             ),
             color: settled(
-                chosen.color.map(|color| (color, "color")),
+                chosen.color.map(|color| (color.made(), "color")),
                 // https://no-color.org
                 set("NO_COLOR").map(|_| (Some(ColorDepth::Never), "NO_COLOR")),
                 config.color.as_ref(),
