@@ -28,10 +28,6 @@ impl<T> Choice<T> {
 
 /// What the flags say; nothing where they are silent.
 #[derive(Clone, Debug, Default)]
-#[expect(
-    clippy::option_option,
-    reason = "silent, auto, or one of them: the outer none is silence"
-)]
 pub(super) struct Chosen {
     pub(super) theme: Option<Choice<Palette>>,
     pub(super) color: Option<Choice<ColorDepth>>,
