@@ -134,21 +134,19 @@ fn a_stopped_sweep_leaves_nothing_awake() {
     program.types(b"\x1b\x1b");
     program.shows("a part: ");
     let count = |program: &Program| (program.wake_ups(), program.bytes.len());
-    // Threads take a moment to fall asleep, on a busy machine a longer one.
-    let mut before = count(&program);
-    program.until("sleep", |program| {
-        while program.read(Duration::from_millis(300)) {}
-        let earlier = std::mem::replace(&mut before, count(program));
-        earlier == before
+    // Threads take a moment to fall asleep, on a busy machine a longer one; then nothing happens for three seconds.
+    let still = (0..10).any(|_| {
+        let before = count(&program);
+        let end = Instant::now() + Duration::from_secs(3);
+        while let Some(left) = end.checked_duration_since(Instant::now()) {
+            program.read(left);
+        }
+        count(&program) == before
     });
-    let end = Instant::now() + Duration::from_secs(3);
-    while let Some(left) = end.checked_duration_since(Instant::now()) {
-        program.read(left);
-    }
-    assert_eq!(
-        count(&program),
-        before,
-        "wake-ups of each thread, and bytes"
+    assert!(
+        still,
+        "wake-ups of each thread, and bytes: {:?}",
+        count(&program)
     );
 }
 
