@@ -44,6 +44,20 @@
 //! that law. Only `tui` names ratatui and crossterm. Only `library`, `formats`, `cli`, `tui::effect`, `tui::terminal`
 //! and `main` touch the world; everything above them is total: no input or output, no panic on any input.
 //!
+//! # Features
+//!
+//! ```text
+//!                     brings                                           on top of
+//! (none)              all but what stands below: glam, serde, thiserror
+//! json                formats::shape, formats::job
+//! sweep               sweep, formats::atlas, formats::archive          json
+//! library             library                                          json
+//! tui                 tui                                              library, sweep
+//! cli (the default)   cli, and the program                             tui
+//! ```
+//!
+//! A controller that only touches and describes takes `default-features = false`.
+//!
 //! # Invariants
 //!
 //! - A coverage of exactly the threshold in real arithmetic is active ([`touch`]).
@@ -71,12 +85,16 @@ pub mod touch;
 
 pub mod description;
 
+#[cfg(feature = "sweep")]
 pub mod sweep;
 
 pub mod formats;
 
+#[cfg(feature = "library")]
 pub mod library;
 
+#[cfg(feature = "tui")]
 pub mod tui;
 
+#[cfg(feature = "cli")]
 pub mod cli;

@@ -11,16 +11,20 @@ mod quote;
 
 pub mod record;
 
+#[cfg(feature = "json")]
 pub mod job;
 
 pub mod name;
 
+#[cfg(feature = "json")]
 pub mod shape;
 
 pub mod npy;
 
+#[cfg(feature = "sweep")]
 pub mod atlas;
 
+#[cfg(feature = "sweep")]
 pub mod archive;
 
 mod latch;
