@@ -266,14 +266,12 @@ impl std::str::FromStr for Imprint {
 }
 
 /// Why rows of text are no imprint. Rows and columns count from 1.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ImprintError {
     /// No rows, or too many.
-    #[error("expected 1 to 64 rows")]
     Rows,
     /// A row that is empty or too long.
-    #[error("row {row} has {found} characters, expected 1 to 64")]
     Columns {
         /// Which row.
         row: usize,
@@ -281,7 +279,6 @@ pub enum ImprintError {
         found: usize,
     },
     /// A row that is not as long as the first.
-    #[error("row {row} has {found} characters, expected {expected} as in the first row")]
     Ragged {
         /// Which row.
         row: usize,
@@ -291,7 +288,6 @@ pub enum ImprintError {
         expected: u8,
     },
     /// Something else than `#` or `.`.
-    #[error("row {row}, column {column}: found {found:?}, expected '#' or '.'")]
     Character {
         /// Which row.
         row: usize,
@@ -301,3 +297,28 @@ pub enum ImprintError {
         found: char,
     },
 }
+
+impl fmt::Display for ImprintError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Rows => f.write_str("expected 1 to 64 rows"),
+            Self::Columns { row, found } => {
+                write!(f, "row {row} has {found} characters, expected 1 to 64")
+            }
+            Self::Ragged {
+                row,
+                found,
+                expected,
+            } => write!(
+                f,
+                "row {row} has {found} characters, expected {expected} as in the first row"
+            ),
+            Self::Character { row, column, found } => write!(
+                f,
+                "row {row}, column {column}: found {found:?}, expected '#' or '.'"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for ImprintError {}

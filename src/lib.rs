@@ -48,15 +48,21 @@
 //!
 //! ```text
 //!                     brings                                           on top of
-//! (none)              all but what stands below: glam, serde, thiserror
+//! (none)              all but what stands below; glam and serde only
 //! json                formats::shape, formats::job
 //! sweep               sweep, formats::atlas, formats::archive          json
+//! png                 formats::drawing::Drawing::png
 //! library             library                                          json
 //! tui                 tui                                              library, sweep
-//! cli (the default)   cli, and the program                             tui
+//! cli (the default)   cli, and the program                             tui, png
 //! ```
 //!
 //! A controller that only touches and describes takes `default-features = false`.
+//!
+//! # Stability
+//!
+//! From `geometry` to `library` the crate follows semantic versioning; what is likely to grow is non-exhaustive. `tui`
+//! and `cli` are the program: their items are public for tests and scripts, and follow the program.
 //!
 //! # Invariants
 //!

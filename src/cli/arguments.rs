@@ -1,7 +1,7 @@
 //! What the arguments ask for. Nothing below this module knows clap.
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::ArgMatches;
 use clap::error::ErrorKind;
@@ -10,9 +10,10 @@ use super::chosen::Chosen;
 use super::commands;
 use super::completions::Shell;
 use super::effective::{Effective, Loaded};
+use super::export::Export;
 use super::failure::Failure;
 use super::flags::{self, Given};
-use super::input::Place;
+use super::program::Script;
 use super::sweep::Wanted;
 use crate::figure::Kind;
 use crate::formats::name::Name;
@@ -43,11 +44,13 @@ pub(super) enum Request {
     /// To drive the screen without a terminal.
     Script(Script),
     /// To touch a figure.
-    Figure(Box<Source>, Sensor, Form, Option<Saving>),
+    Figure(Box<Source>, Sensor, Form, Kept),
     /// To touch a stored shape, moved as the values say.
-    Picture(OsString, Given, Form, Option<Saving>),
+    Picture(OsString, Given, Form, Kept),
     /// To describe a stored shape, or what a file holds.
     Describe(OsString, Form),
+    /// To write a shape of the library or of a file, in mm where a pitch is given.
+    Export(OsString, Export, Option<f64>),
     /// To answer lines.
     Batch(Sensor),
     /// To go through a grid.
@@ -86,18 +89,6 @@ pub(super) enum Swept {
     Picture(OsString, Given),
 }
 
-/// A script and how it is run.
-#[derive(Clone, Debug)]
-pub(super) struct Script {
-    /// Where its lines come from, where they do.
-    pub(super) place: Option<Place>,
-    /// Keys that are pressed before.
-    pub(super) keys: Option<String>,
-    pub(super) size: (u16, u16),
-    pub(super) styles: bool,
-    pub(super) json: bool,
-}
-
 /// What is to be done with the library.
 #[derive(Clone, Debug)]
 pub(super) enum Chore {
@@ -117,6 +108,13 @@ pub(super) enum Chore {
     Check,
 }
 
+/// What is to be kept of a touch.
+#[derive(Clone, Debug)]
+pub(super) struct Kept {
+    pub(super) saving: Option<Saving>,
+    pub(super) export: Option<Export>,
+}
+
 /// The name that a shape is to be stored under.
 #[derive(Clone, Debug)]
 pub(super) struct Saving {
@@ -128,8 +126,8 @@ pub(super) struct Saving {
 /// How an imprint and its descriptors are shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Form {
-    /// One line of JSON.
-    Json,
+    /// One line of JSON; what is drawn beside it is in mm too where a pitch is given.
+    Json(Option<f64>),
     /// The matrix and a table, in mm too where a pitch is given.
     Table(Option<f64>),
 }
@@ -197,15 +195,25 @@ fn request(
             let (figure, sensor) = source(own, command, "figure", settings)?;
             let form = match form(own)? {
                 Form::Table(pitch) => Form::Table(pitch.or(settings.pitch())),
-                Form::Json => Form::Json,
+                Form::Json(pitch) => Form::Json(pitch.or(settings.pitch())),
             };
-            Request::Figure(Box::new(figure), sensor, form, saving(own))
+            let kept = kept(own, command, "figure")?;
+            Request::Figure(Box::new(figure), sensor, form, kept)
         }
         "config" => Request::Settings,
-        "picture" => Request::Picture(what(own), Given::of(own), form(own)?, saving(own)),
+        "picture" => {
+            let kept = kept(own, command, "picture")?;
+            Request::Picture(what(own), Given::of(own), form(own)?, kept)
+        }
         "describe" => Request::Describe(what(own), form(own)?),
+        "export" => {
+            let pitch = Given::of(own).pitch()?;
+            let to = own.get_one::<PathBuf>("to").cloned();
+            let export = export(own, &to.unwrap_or_default(), command, "export")?;
+            Request::Export(what(own), export, pitch)
+        }
         "library" => Request::Library(chore(own)?),
-        "script" => Request::Script(script(own)),
+        "script" => Request::Script(Script::of(own)),
         "completions" => {
             let name = own.get_one::<String>("shell");
             let shell = name.and_then(|name| Shell::from_name(name));
@@ -221,30 +229,6 @@ fn request(
         }
         _ => Request::Batch(settings.sensor()),
     })
-}
-
-fn script(matches: &ArgMatches) -> Script {
-    let place = matches.get_one::<PathBuf>("file").map(|file| {
-        if file.as_os_str() == "-" {
-            Place::Standard
-        } else {
-            Place::File(file.clone())
-        }
-    });
-    let keys = matches.get_one::<String>("keys").cloned();
-    // Neither a file nor keys: the script comes on standard input.
-    let place = if keys.is_none() {
-        place.or(Some(Place::Standard))
-    } else {
-        place
-    };
-    Script {
-        place,
-        keys,
-        size: matches.get_one("size").copied().unwrap_or((80, 24)),
-        styles: matches.get_flag("styles"),
-        json: matches.get_flag("json"),
-    }
 }
 
 fn sweep(
@@ -362,6 +346,27 @@ fn what(matches: &ArgMatches) -> OsString {
     what.cloned().unwrap_or_default()
 }
 
+fn kept(matches: &ArgMatches, command: &mut clap::Command, name: &str) -> Result<Kept, Failure> {
+    let path = matches.get_one::<PathBuf>("export");
+    let export = path.map(|path| export(matches, path, command, name));
+    Ok(Kept {
+        saving: saving(matches),
+        export: export.transpose()?,
+    })
+}
+
+/// The file at the path, in the format that it has or that is given.
+fn export(
+    matches: &ArgMatches,
+    path: &Path,
+    command: &mut clap::Command,
+    name: &str,
+) -> Result<Export, Failure> {
+    let format = matches.get_one::<String>("format").map(String::as_str);
+    let export = Export::new(path, format, matches.get_flag("force"));
+    export.map_err(|message| misused(command, name, &message))
+}
+
 fn saving(matches: &ArgMatches) -> Option<Saving> {
     let name = matches.get_one::<Name>("save")?.clone();
     let force = matches.get_flag("force");
@@ -371,7 +376,7 @@ fn saving(matches: &ArgMatches) -> Option<Saving> {
 fn form(matches: &ArgMatches) -> Result<Form, Failure> {
     let pitch = Given::of(matches).pitch()?;
     Ok(if matches.get_flag("json") {
-        Form::Json
+        Form::Json(pitch)
     } else {
         Form::Table(pitch)
     })

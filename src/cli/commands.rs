@@ -4,13 +4,15 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
-use clap::{Arg, ArgAction, Command, value_parser};
+use clap::{Arg, ArgAction, ArgGroup, Command, value_parser};
 
 use super::examples::{
     ABOUT, BATCH_EXAMPLES, CHECK_EXAMPLES, DELETE_EXAMPLES, DESCRIBE_EXAMPLES, EXAMPLES,
-    FIGURE_EXAMPLES, LIBRARY_EXAMPLES, LIST_EXAMPLES, MERGE_EXAMPLES, PATH_EXAMPLES,
-    PICTURE_EXAMPLES, RESTORE_EXAMPLES, SAVE_EXAMPLES, SHOW_EXAMPLES, SWEEP_EXAMPLES,
+    EXPORT_EXAMPLES, FIGURE_EXAMPLES, LIBRARY_EXAMPLES, LIST_EXAMPLES, MERGE_EXAMPLES,
+    PATH_EXAMPLES, PICTURE_EXAMPLES, RESTORE_EXAMPLES, SAVE_EXAMPLES, SHOW_EXAMPLES,
+    SWEEP_EXAMPLES,
 };
+use super::export;
 use super::flags;
 use super::program::{ascii, completions, config, config_file, look, man, record, script, size};
 use crate::figure::Kind;
@@ -36,6 +38,7 @@ pub(super) fn all() -> Command {
         .subcommand(figure())
         .subcommand(picture())
         .subcommand(describe())
+        .subcommand(export())
         .subcommand(batch())
         .subcommand(sweep())
         .subcommand(merge())
@@ -61,7 +64,8 @@ fn figure() -> Command {
         .arg(kind)
         .args(parameters.map(|parameter| flags::arg(parameter).help_heading("Figure")))
         .args(sensor())
-        .args(saving())
+        .args(keeping())
+        .group(kept())
         .arg(json())
 }
 
@@ -75,7 +79,8 @@ fn picture() -> Command {
         ))
         .args(PICTURE_PARAMETERS.map(|parameter| own(parameter).help_heading("Picture")))
         .args(SENSOR_PARAMETERS.map(|parameter| own(parameter).help_heading("Sensor")))
-        .args(saving())
+        .args(keeping())
+        .group(kept())
         .arg(json())
 }
 
@@ -88,6 +93,38 @@ fn describe() -> Command {
         ))
         .args(of_sensor(&[Parameter::Pitch]))
         .arg(json())
+}
+
+fn export() -> Command {
+    let to = Arg::new("to")
+        .value_name("TO")
+        .required(true)
+        .value_parser(value_parser!(PathBuf))
+        .help("File to write; '-' for standard output");
+    Command::new("export")
+        .about("Write a shape for other programs, or draw it")
+        .after_help(EXPORT_EXAMPLES)
+        .arg(what(
+            "Shape of the library, or file; '-' for standard input",
+        ))
+        .arg(to)
+        .args(of_sensor(&[Parameter::Pitch]))
+        .arg(format())
+        .arg(force().help("Replace a file that is there already"))
+}
+
+fn format() -> Arg {
+    let names = export::names();
+    let help = format!(
+        "Its form, where its ending does not tell: {}",
+        names.join(", ")
+    );
+    Arg::new("format")
+        .long("format")
+        .value_name("FORMAT")
+        .value_parser(PossibleValuesParser::new(names))
+        .hide_possible_values(true)
+        .help(flags::wrapped(&help, 52))
 }
 
 fn batch() -> Command {
@@ -248,14 +285,36 @@ fn of_sensor(parameters: &[Parameter]) -> Vec<Arg> {
     parameters.iter().map(flag).collect()
 }
 
-fn saving() -> [Arg; 2] {
+/// What may be kept of a touch.
+fn kept() -> ArgGroup {
+    ArgGroup::new("kept")
+        .args(["save", "export"])
+        .multiple(true)
+}
+
+fn keeping() -> [Arg; 4] {
     let save = Arg::new("save")
         .long("save")
         .value_name("NAME")
         .value_parser(parse_name)
         .help_heading("Library")
         .help("Store the shape in the library too");
-    [save, force().help_heading("Library").requires("save")]
+    let export = Arg::new("export")
+        .long("export")
+        .value_name("FILE")
+        .value_parser(value_parser!(PathBuf))
+        .help_heading("Export")
+        .help(flags::wrapped(
+            "Write the imprint, or a drawing of it; '-' for standard output, in place of the table",
+            52,
+        ));
+    let force = force().help("Replace a shape or a file that is there already");
+    [
+        save,
+        export,
+        format().help_heading("Export").requires("export"),
+        force.requires("kept"),
+    ]
 }
 
 fn force() -> Arg {

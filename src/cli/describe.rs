@@ -8,7 +8,7 @@ use super::report;
 /// The imprint with what describes it. A stored shape says what made it; its pitch counts only where none is given.
 pub(super) fn content(content: &Content, form: Form, charset: Charset) -> String {
     let imprint = match content {
-        Content::Text(imprint) => imprint,
+        Content::Imprint(imprint) => imprint,
         Content::Shape(shape) => &shape.imprint,
     };
     let Form::Table(pitch) = form else {
@@ -16,7 +16,7 @@ pub(super) fn content(content: &Content, form: Form, charset: Charset) -> String
     };
     let mut made = Vec::new();
     match content {
-        Content::Text(_) => made.push(report::size(imprint, None, pitch)),
+        Content::Imprint(_) => made.push(report::size(imprint, None, pitch)),
         Content::Shape(shape) => {
             made.push(shape.name.to_string());
             if let Some(source) = &shape.source {

@@ -17,6 +17,7 @@ Examples:
   taxel picture washer --x0 6 --angle 30 --save \"turned washer\"
   taxel library list
   taxel describe imprint.txt
+  taxel export washer washer.svg
   taxel batch < poses.jsonl > answers.jsonl";
 
 pub(super) const FIGURE_EXAMPLES: &str = "\
@@ -27,13 +28,14 @@ Examples:
   taxel figure ellipse --x0 1.99 --y0 1.47 --thickness 2
   taxel figure rectangle --length 6 --width 3 --angle 30 --pitch 2.5
   taxel figure triangle --side 5 --x0 -0.8 --columns 32 --rows 8 --json
-  taxel figure hexagon --side 6 --thickness 2.5 --save \"my nut\"";
+  taxel figure hexagon --side 6 --thickness 2.5 --save \"my nut\"
+  taxel figure ellipse --angle 30 --radius-x 6 --export oval.svg";
 
 pub(super) const PICTURE_EXAMPLES: &str = "\
 A name of the library goes before a file of the same name. A file is a stored
-shape or an imprint as text. The sensor is that of the stored shape; an imprint
-as text lies on one of 16 x 16, or of its own size where that is larger. What is
-not given leaves the picture where it was: without flags it is the same again.
+shape or an imprint. The sensor is that of the stored shape; an imprint alone
+lies on one of 16 x 16, or of its own size where that is larger. What is not
+given leaves the picture where it was: without flags it is the same again.
 
 Examples:
   taxel picture washer --x0 6 --y0 4.5
@@ -42,14 +44,30 @@ Examples:
 
 pub(super) const DESCRIBE_EXAMPLES: &str = "\
 An imprint is text, a line a row, '#' for an active taxel and '.' for an
-inactive one, at most 64 x 64. A stored shape is a JSON file. A name of the
-library goes before a file of the same name.
+inactive one; or a bitmap (PBM), a table of 0 and 1 (CSV) or an array of numpy
+(NPY); at most 64 x 64. A stored shape is a JSON file. A name of the library
+goes before a file of the same name.
 
 Examples:
   taxel describe washer
   taxel describe imprint.txt --pitch 2.5
   taxel describe ./washer.json --json
   printf '.##.\\n#..#\\n.##.\\n' | taxel describe -";
+
+pub(super) const EXPORT_EXAMPLES: &str = "\
+The ending of TO tells the form:
+  .txt  rows of '#' and '.'         .svg  a drawing: matrix, outline where it is
+  .pbm  a bitmap, P4                      known, rectangle, CG, CD, axes, legend
+  .csv  a table of 0 and 1          .png  the same in pixels, 288 an inch
+  .npy  an array of numpy, bool
+Drawings are grey; with a pitch they are in mm. A file that is there already is
+replaced by --force only. Figures are exported by 'taxel figure ... --export'.
+
+Examples:
+  taxel export washer washer.svg --pitch 2.5
+  taxel export imprint.txt imprint.npy --force
+  taxel export key - --format pbm-plain
+  taxel figure hexagon --angle 17 --export hexagon.png";
 
 pub(super) const BATCH_EXAMPLES: &str = r###"Each line is a JSON object:
   {"figure":"hexagon","side":3,"x0":2.1,"y0":1.35,"angle":17,"thickness":1}
@@ -85,6 +103,7 @@ empty library of its own. Exit status: 0 all held, 1 an expectation failed,
 Examples:
   taxel script test.taxel
   taxel script -k 'f<Enter>' --size 60x20 --styles
+  taxel script test.taxel --svg . --force
   echo 'State /regions/0/f' | taxel script -k 'fh<Enter>' -"#;
 
 pub(super) const CONFIG_EXAMPLES: &str = r#"What is printed is a file of settings itself. Yours is config.toml in the folder
@@ -180,7 +199,7 @@ Examples:
   taxel library show key --json";
 
 pub(super) const SAVE_EXAMPLES: &str = "\
-A file is a stored shape or an imprint as text. A name of the library goes
+A file is a stored shape or an imprint. A name of the library goes
 before a file of the same name: so a shape is copied.
 
 Examples:

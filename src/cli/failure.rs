@@ -72,6 +72,14 @@ pub(super) enum Failure {
         /// The name.
         name: String,
     },
+    /// A file cannot be written.
+    #[error("{name}: cannot write: {error}")]
+    File {
+        /// Its name.
+        name: String,
+        /// Why not.
+        error: io::Error,
+    },
     /// Some shapes of the library are; each has been told.
     #[error("{broken} of {shapes} shapes cannot be read")]
     Shapes {

@@ -138,14 +138,14 @@ pub(super) fn show(
     Ok(describe::content(&Content::Shape(shape), form, charset))
 }
 
-/// Stores what is found under a name or in a file. An imprint as text is a whole matrix.
+/// Stores what is found under a name or in a file. An imprint alone is a whole matrix.
 pub(super) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String, Failure> {
     let shape = match shelf.find(what)? {
         Content::Shape(shape) => Shape {
             name: saving.name,
             ..shape
         },
-        Content::Text(imprint) => Shape {
+        Content::Imprint(imprint) => Shape {
             name: saving.name,
             sensor: [
                 (Parameter::Columns, imprint.columns()),

@@ -1,5 +1,5 @@
-//! The command line: `taxel figure`, `picture`, `describe`, `batch`, `sweep`, `merge`, `library`, and the screen where
-//! no command is given; `script`, `config`, `completions` and `man` beside them.
+//! The command line: `taxel figure`, `picture`, `describe`, `export`, `batch`, `sweep`, `merge`, `library`, and the
+//! screen where no command is given; `script`, `config`, `completions` and `man` beside them.
 //!
 //! Answers go to standard output, messages to standard error, one line each, and what went wrong starts with `error:`.
 //! The exit status is 0 where all was done, 1 where the input was wrong, 2 where the command was, 3 where the program
@@ -19,6 +19,10 @@ mod progress;
 mod summary;
 
 mod sweep;
+
+mod shelf;
+
+mod export;
 
 mod flags;
 
@@ -40,8 +44,6 @@ mod arguments;
 
 mod report;
 
-mod shelf;
-
 mod touch;
 
 mod describe;
@@ -58,6 +60,7 @@ use std::ffi::OsString;
 use std::io::{self, Write};
 
 use arguments::{Asked, Chore, Request, Swept};
+use export::Exported;
 use failure::Failure;
 use locale::Charset;
 use shelf::Shelf;
@@ -97,17 +100,23 @@ fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, Fai
             return screen::screen(&settings, size, record, &shelf, charset);
         }
         Request::Script(asked) => script::run(&asked, &settings, &shelf, charset)?,
-        Request::Figure(figure, sensor, form, saving) => {
-            let touched = touch::touch(*figure, sensor, form, saving, &shelf, charset)?;
+        Request::Figure(figure, sensor, form, kept) => {
+            let touched = touch::touch(*figure, sensor, form, kept, &shelf, charset)?;
             answer(&touched, charset)?;
         }
-        Request::Picture(what, given, form, saving) => {
+        Request::Picture(what, given, form, kept) => {
             let (picture, sensor) = touch::picture(&what, &given, &shelf)?;
-            let touched = touch::touch(picture, sensor, form, saving, &shelf, charset)?;
+            let touched = touch::touch(picture, sensor, form, kept, &shelf, charset)?;
             answer(&touched, charset)?;
         }
         Request::Describe(what, form) => {
             print(&describe::content(&shelf.find(&what)?, form, charset))?;
+        }
+        Request::Export(what, export, pitch) => {
+            match export::export(&shelf, &what, &export, pitch)? {
+                Exported::Content(content) => write(&content)?,
+                Exported::Said(said) => print(&(charset.line(&said).into_owned() + "\n"))?,
+            }
         }
         Request::Batch(sensor) => {
             let by_name = |name: &str| shelf.imprint(name).map_err(|error| error.to_string());
@@ -155,8 +164,8 @@ fn chore(chore: Chore, shelf: &Shelf, charset: Charset) -> Result<(), Failure> {
 }
 
 fn answer(touched: &Touched, charset: Charset) -> Result<(), Failure> {
-    print(&touched.answer)?;
-    if let Some(note) = &touched.note {
+    write(&touched.answer)?;
+    for note in &touched.notes {
         // Where it cannot be written, the exit status still tells.
         let _ = writeln!(io::stderr().lock(), "{}", charset.line(note));
     }

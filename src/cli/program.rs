@@ -3,13 +3,59 @@
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
-use clap::{Arg, ArgAction, Command, value_parser};
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
 use super::completions::Shell;
 use super::config::AUTO;
 use super::examples::{COMPLETIONS_EXAMPLES, CONFIG_EXAMPLES, MAN_EXAMPLES, SCRIPT_EXAMPLES};
+use super::input::Place;
 use crate::tui::script::command;
 use crate::tui::theme::{ColorDepth, Palette};
+
+/// A script and how it is run.
+#[derive(Clone, Debug)]
+pub(super) struct Script {
+    /// Where its lines come from, where they do.
+    pub(super) place: Option<Place>,
+    /// Keys that are pressed before.
+    pub(super) keys: Option<String>,
+    pub(super) size: (u16, u16),
+    pub(super) styles: bool,
+    pub(super) json: bool,
+    /// The folder that its screens are drawn into, if they are.
+    pub(super) drawings: Option<PathBuf>,
+    /// Whether drawings that are there already are replaced.
+    pub(super) force: bool,
+}
+
+impl Script {
+    /// What the arguments of [`script`] ask for.
+    pub(super) fn of(matches: &ArgMatches) -> Self {
+        let place = matches.get_one::<PathBuf>("file").map(|file| {
+            if file.as_os_str() == "-" {
+                Place::Standard
+            } else {
+                Place::File(file.clone())
+            }
+        });
+        let keys = matches.get_one::<String>("keys").cloned();
+        // Neither a file nor keys: the script comes on standard input.
+        let place = if keys.is_none() {
+            place.or(Some(Place::Standard))
+        } else {
+            place
+        };
+        Self {
+            place,
+            keys,
+            size: matches.get_one("size").copied().unwrap_or((80, 24)),
+            styles: matches.get_flag("styles"),
+            json: matches.get_flag("json"),
+            drawings: matches.get_one::<PathBuf>("svg").cloned(),
+            force: matches.get_flag("force"),
+        }
+    }
+}
 
 pub(super) fn script() -> Command {
     let file = Arg::new("file")
@@ -28,10 +74,20 @@ pub(super) fn script() -> Command {
         .long("json")
         .action(ArgAction::SetTrue)
         .help("Screens as lines of JSON");
+    let svg = Arg::new("svg")
+        .long("svg")
+        .value_name("DIR")
+        .value_parser(value_parser!(PathBuf))
+        .help("Draw each screen into this folder too, as NAME.svg");
+    let force = Arg::new("force")
+        .long("force")
+        .action(ArgAction::SetTrue)
+        .requires("svg")
+        .help("Replace drawings that are there already");
     Command::new("script")
         .about("Drive the screen without a terminal")
         .after_help(SCRIPT_EXAMPLES)
-        .args([file, keys, size(), styles, json])
+        .args([file, keys, size(), styles, json, svg, force])
 }
 
 pub(super) fn completions() -> Command {

@@ -4,18 +4,20 @@ use std::fs;
 use std::io::{self, Write};
 use std::ops::ControlFlow;
 
-use super::arguments::Script;
 use super::effective::Effective;
+use super::export;
 use super::failure::Failure;
 use super::input::Place;
 use super::locale::Charset;
+use super::program::Script;
 use super::shelf::Shelf;
+use crate::formats::name::Name;
 use crate::tui::app::Options;
 use crate::tui::effect::World;
 use crate::tui::key::parse;
 use crate::tui::script::command::ScriptError;
-use crate::tui::script::runner::{self, Settings as Running};
-use crate::tui::theme::Theme;
+use crate::tui::script::runner::{self, Settings as Running, Shown};
+use crate::tui::theme::{ColorDepth, Palette, Theme};
 
 /// Runs a script, and prints what it asks for as it comes.
 pub(super) fn run(
@@ -43,9 +45,18 @@ pub(super) fn run(
         Some(library) => World::quiet(library),
         None => World::scratch().map_err(Failure::Screen)?,
     };
+    let plain = Theme::plain(charset == Charset::Ascii);
     let options = Options {
         sensor: settings.sensor(),
-        theme: Theme::plain(charset == Charset::Ascii),
+        theme: match asked.drawings {
+            // Drawings have colours unless the script says otherwise. They change nothing of what is printed.
+            Some(_) => Theme {
+                depth: ColorDepth::True,
+                palette: Palette::Dark,
+                ..plain
+            },
+            None => plain,
+        },
     };
     let running = Running {
         options,
@@ -55,20 +66,48 @@ pub(super) fn run(
         keymap: settings.keymap().clone(),
     };
     let (mut output, mut lost) = (io::stdout().lock(), None);
-    let print = |text: &str| {
-        let written = output.write_all(text.as_bytes());
-        match written.and_then(|()| output.flush()) {
+    let mut screens = 0;
+    let mut show = |shown: Shown<'_>| {
+        let done = match (shown, &asked.drawings) {
+            (Shown::Text(text), _) => {
+                let written = output.write_all(text.as_bytes());
+                written
+                    .and_then(|()| output.flush())
+                    .map_err(Failure::Write)
+            }
+            (Shown::Screen(name, session), Some(folder)) => {
+                screens += 1;
+                let name = file_name(name, screens);
+                let path = folder.join(format!("{name}.svg"));
+                export::put(&path, session.svg(&name).as_bytes(), asked.force)
+            }
+            _ => Ok(()),
+        };
+        match done {
             Ok(()) => ControlFlow::Continue(()),
-            Err(error) => {
-                lost = Some(error);
+            Err(failure) => {
+                lost = Some(failure);
                 ControlFlow::Break(())
             }
         }
     };
-    let result = runner::run(&script, &keys, &running, world, print);
+    let result = runner::run_shown(&script, &keys, &running, world, &mut show);
     match lost {
-        Some(error) => Err(Failure::Write(error)),
+        Some(failure) => Err(failure),
         None => result.map_err(|failure| Failure::Script { name, failure }),
+    }
+}
+
+/// The name of a screen as that of a file: what cannot be in a name is a dash. One without a name has its number.
+fn file_name(name: &str, number: usize) -> String {
+    let fits = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
+    let name: String = name
+        .chars()
+        .map(|c| if fits(c) { c } else { '-' })
+        .collect();
+    match Name::new(&name) {
+        Ok(name) => name.to_string(),
+        Err(_) => format!("screen-{number}"),
     }
 }
 

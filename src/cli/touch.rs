@@ -1,8 +1,10 @@
-//! `taxel figure` and `taxel picture`: one touch, shown, and stored where that is asked for.
+//! `taxel figure` and `taxel picture`: one touch, shown, and stored or written to a file where that is
+//! asked for.
 
 use std::ffi::OsStr;
 
-use super::arguments::{Form, Saving};
+use super::arguments::{Form, Kept, Saving};
+use super::export::Exported;
 use super::failure::Failure;
 use super::flags::Given;
 use super::input::Content;
@@ -18,26 +20,35 @@ use crate::touch::Plane;
 
 /// What a touch has to say.
 pub(super) struct Touched {
-    /// The imprint with what describes it.
-    pub(super) answer: String,
-    /// What was done besides and the answer does not tell: a line.
-    pub(super) note: Option<String>,
+    /// The imprint with what describes it; or the file that is for standard output, in its place.
+    pub(super) answer: Vec<u8>,
+    /// What was done besides and the answer does not tell, a line each.
+    pub(super) notes: Vec<String>,
 }
 
-/// Touches a source, and stores the shape where that is asked for.
+/// Touches a source, and stores the shape or writes a file where that is asked for.
 pub(super) fn touch(
     source: Source,
     sensor: Sensor,
     form: Form,
-    saving: Option<Saving>,
+    Kept { saving, export }: Kept,
     shelf: &Shelf,
     charset: Charset,
 ) -> Result<Touched, Failure> {
     let imprint = Plane::new(sensor).touch(&source);
     let mut made = report::made(&source, &sensor);
-    let mut saved = None;
+    let mut notes = Vec::new();
+    let mut instead = None;
+    if let Some(export) = export {
+        let (Form::Json(pitch) | Form::Table(pitch)) = form;
+        let title = source.to_string();
+        match export.write(&imprint, Some(&source), Some(&title), pitch)? {
+            Exported::Content(content) => instead = Some(content),
+            Exported::Said(said) => notes.push(said),
+        }
+    }
     if let Some(Saving { name, force }) = saving {
-        saved = Some(format!("saved as {name}"));
+        notes.push(format!("saved as {name}"));
         let shape = Shape {
             name,
             sensor,
@@ -46,17 +57,18 @@ pub(super) fn touch(
         };
         shelf.save(&shape, force)?;
     }
-    Ok(match form {
-        Form::Json => Touched {
-            answer: report::json(&imprint),
-            note: saved,
+    Ok(match (instead, form) {
+        (Some(answer), _) => Touched { answer, notes },
+        (None, Form::Json(_)) => Touched {
+            answer: report::json(&imprint).into_bytes(),
+            notes,
         },
-        Form::Table(pitch) => {
-            made.extend(saved);
+        (None, Form::Table(pitch)) => {
+            made.extend(notes);
             made.push(report::size(&imprint, Some(&sensor), pitch));
             Touched {
-                answer: report::table(&imprint, &made, pitch, charset),
-                note: None,
+                answer: report::table(&imprint, &made, pitch, charset).into_bytes(),
+                notes: Vec::new(),
             }
         }
     })
@@ -73,7 +85,7 @@ pub(super) fn picture(
             let picture = Picture::at_home(shape.imprint);
             (picture.named(shape.name.as_str()), shape.sensor)
         }
-        Content::Text(imprint) => {
+        Content::Imprint(imprint) => {
             let paper = Sensor::default();
             let side = |own: u8, paper: u8| f64::from(own.max(paper));
             let sensor = paper

@@ -34,6 +34,7 @@ fn windows(upper_left: u64, upper_right: u64, lower_left: u64, lower_right: u64)
 
 /// What is counted of a filled region.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Outline {
     /// Its taxels.
     pub taxels: u32,

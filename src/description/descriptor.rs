@@ -15,6 +15,7 @@ use crate::imprint::{Bounds, Imprint};
 
 /// What is counted and summed up of one region; every descriptor follows from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Description {
     /// Whether a piece or a hole is described.
     pub kind: Kind,
@@ -152,6 +153,7 @@ pub enum Unit {
 
 /// A row of [`DESCRIPTORS`].
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Descriptor {
     /// Its name in JSON and CSV.
     pub key: &'static str,

@@ -9,6 +9,7 @@ use crate::touch::Plane;
 
 /// What a line asks for.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Job {
     /// To touch something with a sensor.
     Touch(Sensor, Source),

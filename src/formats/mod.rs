@@ -7,8 +7,10 @@ pub mod value;
 
 pub mod answer;
 
+#[cfg(feature = "json")]
 mod quote;
 
+#[cfg(feature = "json")]
 pub mod record;
 
 #[cfg(feature = "json")]
@@ -21,12 +23,31 @@ pub mod shape;
 
 pub mod npy;
 
+pub mod text;
+
+pub mod pbm;
+
+pub mod table;
+
+pub mod array;
+
+pub mod exchange;
+
+pub(crate) mod xml;
+
+pub mod drawing;
+
 #[cfg(feature = "sweep")]
 pub mod atlas;
 
 #[cfg(feature = "sweep")]
 pub mod archive;
 
+#[cfg(feature = "sweep")]
 mod latch;
 
+#[cfg(feature = "sweep")]
+pub mod unfinished;
+
+#[cfg(feature = "sweep")]
 pub mod sweep_file;

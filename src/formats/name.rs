@@ -14,28 +14,46 @@ const MOST_BYTES: usize = 200;
 pub struct Name(String);
 
 /// Why a text is no name.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum NameError {
     /// Nothing there.
-    #[error("a name is missing")]
     Empty,
     /// Too long.
-    #[error("a name has at most {LONGEST} characters, this has {0}")]
     Long(usize),
     /// Too long as a file's name, which is counted in bytes.
-    #[error("a name has at most {MOST_BYTES} bytes in UTF-8, this has {0}")]
     Bytes(usize),
     /// A character that not every file system takes.
-    #[error("{0:?} cannot be in a name, only letters, digits, space, - _ .")]
     Character(char),
     /// A hidden file.
-    #[error("a name cannot start with {0:?}")]
     Start(char),
     /// An invisible difference.
-    #[error("a name cannot end with a space")]
     End,
 }
+
+impl fmt::Display for NameError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => f.write_str("a name is missing"),
+            Self::Long(found) => write!(
+                f,
+                "a name has at most {LONGEST} characters, this has {found}"
+            ),
+            Self::Bytes(found) => write!(
+                f,
+                "a name has at most {MOST_BYTES} bytes in UTF-8, this has {found}"
+            ),
+            Self::Character(found) => write!(
+                f,
+                "{found:?} cannot be in a name, only letters, digits, space, - _ ."
+            ),
+            Self::Start(found) => write!(f, "a name cannot start with {found:?}"),
+            Self::End => f.write_str("a name cannot end with a space"),
+        }
+    }
+}
+
+impl std::error::Error for NameError {}
 
 impl Name {
     /// The name in a text.

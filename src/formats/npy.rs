@@ -1,7 +1,7 @@
 //! Arrays as numpy reads them: a header and the numbers, little-endian, the last axis fastest.
 //!
-//! Format version 1.0 of <https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>. Written are unsigned
-//! whole numbers and `f64`; read are one-dimensional or flat arrays of the same.
+//! Source: <https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>. Written are `bool`, unsigned whole
+//! numbers and `f64` in version 1.0; headers are read of any type and shape in versions 1 to 3.
 
 use std::fmt::Write;
 
@@ -11,7 +11,10 @@ const ALIGNMENT: usize = 64;
 
 /// What an array is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Kind {
+    /// `bool`, a byte each.
+    Bool,
     /// `uint8`.
     U8,
     /// `uint16`.
@@ -27,6 +30,7 @@ pub enum Kind {
 impl Kind {
     fn code(self) -> &'static str {
         match self {
+            Self::Bool => "|b1",
             Self::U8 => "|u1",
             Self::U16 => "<u2",
             Self::U32 => "<u4",
@@ -69,6 +73,106 @@ pub fn header(kind: Kind, shape: &[u64]) -> Vec<u8> {
     header.extend(u16::try_from(text.len()).unwrap_or(u16::MAX).to_le_bytes());
     header.extend(text.as_bytes());
     header
+}
+
+/// What a file says of its numbers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Header {
+    /// Their type, as numpy writes it: `<f8` and the like.
+    pub code: String,
+    /// Whether the first axis is the fastest.
+    pub fortran_order: bool,
+    /// The lengths of the axes.
+    pub shape: Vec<u64>,
+}
+
+/// The header of a file, and the numbers behind it; none of what is no array, or one of records.
+///
+/// ```
+/// use taxel::formats::npy::{Kind, header, parse};
+/// let file = [header(Kind::U8, &[1, 2]), vec![7, 8]].concat();
+/// let (header, numbers) = parse(&file).expect("just written");
+/// assert_eq!((header.code.as_str(), &header.shape[..], numbers), ("|u1", &[1, 2][..], &[7, 8][..]));
+/// ```
+pub fn parse(file: &[u8]) -> Option<(Header, &[u8])> {
+    let rest = file.strip_prefix(&MAGIC[..6])?;
+    let (length, rest) = match rest {
+        [1, _, low, high, rest @ ..] => (usize::from(u16::from_le_bytes([*low, *high])), rest),
+        [2 | 3, _, rest @ ..] => {
+            let (length, rest) = rest.split_first_chunk::<4>()?;
+            (usize::try_from(u32::from_le_bytes(*length)).ok()?, rest)
+        }
+        _ => return None,
+    };
+    let (text, numbers) = rest.split_at_checked(length)?;
+    let text = str::from_utf8(text).ok()?.trim();
+    Some((dictionary(text)?, numbers))
+}
+
+/// Python's notation of the three entries, each there once, in any order.
+fn dictionary(text: &str) -> Option<Header> {
+    let mut rest = text.strip_prefix('{')?.strip_suffix('}')?.trim();
+    let (mut code, mut fortran_order, mut shape) = (None, None, None);
+    while !rest.is_empty() {
+        let (key, after) = quoted(rest)?;
+        let after = after.trim_start().strip_prefix(':')?.trim_start();
+        let fresh;
+        (fresh, rest) = match key {
+            "descr" => {
+                let (text, after) = quoted(after)?;
+                (code.replace(text.to_owned()).is_none(), after)
+            }
+            "fortran_order" => {
+                let (value, after) = match after.strip_prefix("True") {
+                    Some(after) => (true, after),
+                    None => (false, after.strip_prefix("False")?),
+                };
+                (fortran_order.replace(value).is_none(), after)
+            }
+            "shape" => {
+                let (sides, after) = after.strip_prefix('(')?.split_once(')')?;
+                (shape.replace(tuple(sides)?).is_none(), after)
+            }
+            _ => return None,
+        };
+        rest = rest.trim_start();
+        // A comma may follow the last entry too.
+        rest = match rest.strip_prefix(',') {
+            Some(rest) => rest.trim_start(),
+            None if rest.is_empty() => rest,
+            None => return None,
+        };
+        if !fresh {
+            return None;
+        }
+    }
+    Some(Header {
+        code: code?,
+        fortran_order: fortran_order?,
+        shape: shape?,
+    })
+}
+
+/// A text in quotes of either kind, without escapes, and what comes after it.
+fn quoted(text: &str) -> Option<(&str, &str)> {
+    let quote = text
+        .chars()
+        .next()
+        .filter(|quote| matches!(quote, '\'' | '"'))?;
+    let (inner, after) = text[1..].split_once(quote)?;
+    (!inner.contains('\\')).then_some((inner, after))
+}
+
+/// The numbers between the brackets of a tuple; a comma may follow the last.
+fn tuple(text: &str) -> Option<Vec<u64>> {
+    let text = text.trim();
+    let text = text.strip_suffix(',').unwrap_or(text);
+    if text.is_empty() {
+        return Some(Vec::new());
+    }
+    let sides = text.split(',').map(|side| side.trim().parse().ok());
+    sides.collect()
 }
 
 /// The numbers of a file that [`header`] could have begun, with its kind; none of anything else.

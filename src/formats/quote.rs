@@ -1,7 +1,6 @@
 //! What messages quote of JSON that is none, which may be a megabyte long: so much that it can be read.
 
 /// A JSON error's text without its place, which is told in another way. What it quotes may be a megabyte long.
-#[cfg(feature = "json")]
 pub(super) fn message(error: &serde_json::Error) -> String {
     const LONGEST: usize = 400;
     let text = error.to_string();

@@ -1,32 +1,19 @@
 //! What a sweep leaves as files: its atlas, in the form that the name's ending tells, and the atlas number of every
 //! pose.
 //!
-//! A file is written under another name in the same folder and renamed when it is whole: at every time there is all of
-//! it or what was there before.
+//! At every time there is all of a file or what was there before ([`super::unfinished`]).
 
-use std::fs::Permissions;
-use std::io::{self, BufWriter, Seek, SeekFrom, Write};
-use std::os::unix::fs::PermissionsExt;
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-
-use tempfile::NamedTempFile;
 
 use super::archive::{self, ArchiveError};
 use super::atlas::{write_csv, write_jsonl};
 use super::latch::Latch;
 use super::npy::{self, Kind};
+use super::unfinished::{self, Existing, Unfinished};
 use crate::sweep::grid::Grid;
 use crate::sweep::survey::Survey;
-
-/// What happens to a file that is there already.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Existing {
-    /// It is replaced.
-    Replaced,
-    /// It stays, and nothing is written.
-    Kept,
-}
 
 /// Why a file was not written.
 #[derive(Debug, thiserror::Error)]
@@ -106,7 +93,7 @@ impl AtlasFile {
         existing: Existing,
         stopped: &AtomicBool,
     ) -> Result<Whole, SweepFileError> {
-        let mut file = Unfinished::new(&self.path, existing)?;
+        let mut file = begun(&self.path, existing)?;
         let mut output = Latch::new(&mut file.output, stopped);
         let written = match self.form {
             Form::Csv => write_csv(survey, &mut output).map_err(ArchiveError::from),
@@ -118,7 +105,7 @@ impl AtlasFile {
             None => written,
         };
         written.map_err(|error| SweepFileError::new(&self.path, error))?;
-        file.whole()
+        Whole::of(file)
     }
 }
 
@@ -143,7 +130,7 @@ impl PoseFile {
         grid: &Grid,
         existing: Existing,
     ) -> Result<Self, SweepFileError> {
-        let mut file = Unfinished::new(&path.into(), existing)?;
+        let mut file = begun(&path.into(), existing)?;
         let ranges = grid.ranges();
         let mut shape = [
             ranges.zoom_y,
@@ -159,7 +146,7 @@ impl PoseFile {
         }
         let header = npy::header(Kind::U32, &shape);
         if let Err(error) = file.output.write_all(&header) {
-            return Err(SweepFileError::new(&file.path, error));
+            return Err(SweepFileError::new(file.path(), error));
         }
         Ok(Self {
             file,
@@ -195,80 +182,38 @@ impl PoseFile {
     /// What went wrong first, with the file's name.
     pub fn whole(self) -> Result<Whole, SweepFileError> {
         match self.error {
-            Some(error) => Err(SweepFileError::new(&self.file.path, error)),
-            None => self.file.whole(),
+            Some(error) => Err(SweepFileError::new(self.file.path(), error)),
+            None => Whole::of(self.file),
         }
     }
 }
 
 /// A file that lacks only its name. Dropped, nothing is left of it.
 #[derive(Debug)]
-pub struct Whole {
-    path: PathBuf,
-    existing: Existing,
-    file: NamedTempFile,
-}
+pub struct Whole(unfinished::Whole);
 
 impl Whole {
+    fn of(file: Unfinished) -> Result<Self, SweepFileError> {
+        let path = file.path().to_owned();
+        let whole = file.whole();
+        whole
+            .map(Self)
+            .map_err(|error| SweepFileError::new(&path, error))
+    }
+
     /// The file takes its name.
     ///
     /// # Errors
     /// Those of the system, with the file's name.
     pub fn keep(self) -> Result<(), SweepFileError> {
-        let named = match self.existing {
-            Existing::Replaced => self.file.persist(&self.path),
-            Existing::Kept => self.file.persist_noclobber(&self.path),
-        };
-        named
-            .map(drop)
-            .map_err(|failed| SweepFileError::new(&self.path, failed.error))
+        let path = self.0.path().to_owned();
+        let kept = self.0.keep();
+        kept.map_err(|error| SweepFileError::new(&path, error))
     }
 }
 
-/// A file that has another name until it is whole.
-#[derive(Debug)]
-struct Unfinished {
-    path: PathBuf,
-    existing: Existing,
-    output: BufWriter<NamedTempFile>,
-}
-
-impl Unfinished {
-    fn new(path: &Path, existing: Existing) -> Result<Self, SweepFileError> {
-        let error = |error: io::Error| SweepFileError::new(path, error);
-        // Said before the work rather than after it.
-        if existing == Existing::Kept && path.symlink_metadata().is_ok() {
-            return Err(error(io::ErrorKind::AlreadyExists.into()));
-        }
-        let folder = match path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
-        };
-        // A folder that is not there is told of without the name that the file would have had in it.
-        folder.metadata().map_err(error)?;
-        let file = tempfile::Builder::new()
-            .prefix(".taxel-")
-            // As files usually have them; those of temporary files are tighter.
-            .permissions(Permissions::from_mode(0o666))
-            .tempfile_in(folder);
-        Ok(Self {
-            path: path.to_owned(),
-            existing,
-            output: BufWriter::new(file.map_err(error)?),
-        })
-    }
-
-    fn whole(self) -> Result<Whole, SweepFileError> {
-        let error = |error: io::Error| SweepFileError::new(&self.path, error);
-        let file = self.output.into_inner();
-        let file = file.map_err(|failed| error(failed.into_error()))?;
-        file.as_file().sync_all().map_err(error)?;
-        Ok(Whole {
-            path: self.path,
-            existing: self.existing,
-            file,
-        })
-    }
+fn begun(path: &Path, existing: Existing) -> Result<Unfinished, SweepFileError> {
+    Unfinished::new(path, existing).map_err(|error| SweepFileError::new(path, error))
 }
 
 #[cfg(test)]

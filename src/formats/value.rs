@@ -83,7 +83,7 @@ pub fn grouped(count: u64) -> String {
 }
 
 /// With at most so many decimals, no zeros at their end, and no minus before a zero.
-fn decimal(number: f64, decimals: usize) -> String {
+pub(super) fn decimal(number: f64, decimals: usize) -> String {
     let text = format!("{number:.decimals$}");
     let text = if text.contains('.') {
         text.trim_end_matches('0').trim_end_matches('.')

@@ -16,7 +16,7 @@ use super::real::Real;
 
 /// Draws ellipses, again and again without allocating.
 #[derive(Clone, Debug, Default)]
-pub struct Arcs<T> {
+pub(crate) struct Arcs<T> {
     /// Where the ellipse meets the vertical lines: above, below.
     vertical: Vec<[Sums<T>; 2]>,
     /// Where it begins, meets the horizontal lines, and ends: left, right.
@@ -43,7 +43,7 @@ struct Row<T> {
 
 impl<T: Real> Arcs<T> {
     /// For grids of that size.
-    pub fn new(columns: u8, rows: u8) -> Self {
+    pub(crate) fn new(columns: u8, rows: u8) -> Self {
         let sums = Sums {
             height: T::ZERO,
             moment: T::ZERO,
@@ -60,7 +60,7 @@ impl<T: Real> Arcs<T> {
     }
 
     /// Draws an ellipse on a grid of the size given at first.
-    pub fn draw(&mut self, grid: &mut Grid<T>, ellipse: &Ellipse<T>, material: Side) {
+    pub(crate) fn draw(&mut self, grid: &mut Grid<T>, ellipse: &Ellipse<T>, material: Side) {
         let Some(curve) = Curve::of(ellipse) else {
             return;
         };

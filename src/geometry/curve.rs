@@ -13,7 +13,7 @@ use super::real::Real;
 
 /// An ellipse: its extreme points, and where it meets horizontal and vertical lines.
 #[derive(Clone, Debug)]
-pub struct Curve<T> {
+pub(crate) struct Curve<T> {
     centre: Point<T>,
     reach: Point<T>,
     inverse: Point<T>,
@@ -24,20 +24,20 @@ pub struct Curve<T> {
     /// By how much of an angle the rightmost point lies below the middle between the topmost and the bottommost one.
     tilt: T,
     /// The leftmost point.
-    pub left: Point<T>,
+    pub(crate) left: Point<T>,
     /// The topmost point.
-    pub top: Point<T>,
+    pub(crate) top: Point<T>,
     /// The rightmost point.
-    pub right: Point<T>,
+    pub(crate) right: Point<T>,
     /// The bottommost point.
-    pub bottom: Point<T>,
+    pub(crate) bottom: Point<T>,
 }
 
 /// The sums that run along a half of an ellipse on the way down, at a point of it.
 ///
 /// What they come to between two points is their difference.
 #[derive(Clone, Copy, Debug)]
-pub struct Sums<T> {
+pub(crate) struct Sums<T> {
     /// `∫ dy`: the height below the centre.
     pub height: T,
     /// `∫ x dy`, from the leftmost or rightmost point on.
@@ -45,11 +45,11 @@ pub struct Sums<T> {
 }
 
 /// Where a line meets an ellipse: the x, and what the way down the left or the right half comes to there.
-pub type Crossing<T> = (T, Sums<T>);
+pub(crate) type Crossing<T> = (T, Sums<T>);
 
 impl<T: Real> Curve<T> {
     /// Prepares an ellipse; none that is thinner than any tie.
-    pub fn of(ellipse: &Ellipse<T>) -> Option<Self> {
+    pub(crate) fn of(ellipse: &Ellipse<T>) -> Option<Self> {
         let Ellipse {
             centre,
             across: a,
@@ -81,7 +81,7 @@ impl<T: Real> Curve<T> {
     }
 
     /// Where the horizontal line at `y` meets it: left, right. Where it passes by, the nearest extreme point, twice.
-    pub fn across(&self, y: T) -> [Crossing<T>; 2] {
+    pub(crate) fn across(&self, y: T) -> [Crossing<T>; 2] {
         let height = y - self.centre.y;
         let (angle, half) = if height.abs() < self.reach.y {
             let sin = height * self.inverse.y;
@@ -105,7 +105,7 @@ impl<T: Real> Curve<T> {
 
     /// Where the vertical line at `x`, which meets it, does so: above, below. The moments are a quarter turn off, see
     /// [`Self::quarter`].
-    pub fn along(&self, x: T) -> [Sums<T>; 2] {
+    pub(crate) fn along(&self, x: T) -> [Sums<T>; 2] {
         let aside = x - self.centre.x;
         let sin = aside * self.inverse.x;
         let cos = ((T::ONE - sin) * (T::ONE + sin)).sqrt();
@@ -122,7 +122,7 @@ impl<T: Real> Curve<T> {
 
     /// A quarter turn's share of a moment. On a way down that goes to the right it is to be taken off what
     /// [`Self::along`] gives, on one that goes to the left it is to be added.
-    pub fn quarter(&self) -> T {
+    pub(crate) fn quarter(&self) -> T {
         self.half_area * T::QUARTER_TURN
     }
 }

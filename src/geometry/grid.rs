@@ -19,7 +19,7 @@ use super::real::Real;
 
 /// A grid of `columns × rows` unit cells with its top left corner at the origin.
 #[derive(Clone, Debug)]
-pub struct Grid<T> {
+pub(crate) struct Grid<T> {
     columns: i32,
     rows: i32,
     /// The entries of a pair of rows: one before the first column, one a column, one behind the last.
@@ -46,7 +46,7 @@ impl<T: Real> Entry<T> {
 
 impl<T: Real> Grid<T> {
     /// An empty grid.
-    pub fn new(columns: u8, rows: u8) -> Self {
+    pub(crate) fn new(columns: u8, rows: u8) -> Self {
         let stride = usize::from(columns) + 2;
         let mut grid = Self {
             columns: columns.into(),
@@ -61,7 +61,7 @@ impl<T: Real> Grid<T> {
     }
 
     /// Wipes the grid.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         let (rows, drawn) = (self.rows(), self.entries_drawn());
         if !rows.is_empty() && !drawn.is_empty() {
             for pair in rows.start / 2..rows.end.div_ceil(2) {
@@ -75,17 +75,17 @@ impl<T: Real> Grid<T> {
     }
 
     /// Its lower end.
-    pub fn bottom(&self) -> T {
+    pub(crate) fn bottom(&self) -> T {
         T::whole(self.rows)
     }
 
     /// Its right end.
-    pub fn right(&self) -> T {
+    pub(crate) fn right(&self) -> T {
         T::whole(self.columns)
     }
 
     /// The rows whose cells are not all empty for certain.
-    pub fn rows(&self) -> Range<usize> {
+    pub(crate) fn rows(&self) -> Range<usize> {
         let row = |y: T| y.max(T::ZERO).min(self.bottom()).cell().0;
         let rows = usize::try_from(self.rows).unwrap_or(0);
         row(self.low.y)..(row(self.high.y) + 1).min(rows)
@@ -98,7 +98,7 @@ impl<T: Real> Grid<T> {
     }
 
     /// The columns whose cells are not all empty for certain.
-    pub fn columns(&self) -> Range<usize> {
+    pub(crate) fn columns(&self) -> Range<usize> {
         let entries = self.entries_drawn();
         let column = |entry: usize| entry.saturating_sub(1).min(self.stride - 2);
         column(entries.start)..column(entries.end)
@@ -107,7 +107,7 @@ impl<T: Real> Grid<T> {
     /// What the areas of rows `2 * pair` and `2 * pair + 1` in these columns are above a level; the areas are in [0, 1] up
     /// to a rounding. `columns` is [`Self::columns`], one of the rows at least lies in [`Self::rows`]; the other one may
     /// lie outside, all 0.
-    pub fn pair(
+    pub(crate) fn pair(
         &self,
         pair: usize,
         columns: &Range<usize>,
@@ -124,21 +124,21 @@ impl<T: Real> Grid<T> {
     }
 
     /// The areas of one row.
-    pub fn row(&self, row: usize, columns: &Range<usize>) -> impl Iterator<Item = T> {
+    pub(crate) fn row(&self, row: usize, columns: &Range<usize>) -> impl Iterator<Item = T> {
         self.pair(row / 2, columns, T::ZERO)
             .map(move |areas| areas[row % 2])
     }
 
     /// Whether a piece of boundary that is not horizontal runs through a cell. Neighbours in a row through which none
     /// runs have the same area.
-    pub fn crosses(&self, row: usize, column: usize) -> bool {
+    pub(crate) fn crosses(&self, row: usize, column: usize) -> bool {
         let Entry { here, beyond } = self.entries[row / 2 * self.stride + column + 1];
         (here[row % 2], beyond[row % 2]) != (T::ZERO, T::ZERO)
     }
 
     /// The place in a row, from [`Self::start`] on, of the column that `x` lies in by [`Real::cell`], and that column's
     /// right end.
-    pub fn place(&self, x: T) -> (usize, T) {
+    pub(crate) fn place(&self, x: T) -> (usize, T) {
         if x < T::ZERO {
             (0, T::ZERO)
         } else if x > self.right() {
@@ -150,12 +150,12 @@ impl<T: Real> Grid<T> {
     }
 
     /// Where the entries of a row begin: that of the column left of the grid.
-    pub fn start(&self, row: usize) -> usize {
+    pub(crate) fn start(&self, row: usize) -> usize {
         row / 2 * self.stride
     }
 
     /// Adds to an entry, given from [`Self::start`] on, what a piece of boundary leaves in its cell and beyond.
-    pub fn add(&mut self, entry: usize, row: usize, here: T, beyond: T) {
+    pub(crate) fn add(&mut self, entry: usize, row: usize, here: T, beyond: T) {
         if let Some(entry) = self.entries.get_mut(entry) {
             let lane = row % 2;
             entry.here[lane] = entry.here[lane] + here;
@@ -164,13 +164,13 @@ impl<T: Real> Grid<T> {
     }
 
     /// Remembers that something is drawn within a rectangle.
-    pub fn draws(&mut self, low: Point<T>, high: Point<T>) {
+    pub(crate) fn draws(&mut self, low: Point<T>, high: Point<T>) {
         self.low = Point::new(self.low.x.min(low.x), self.low.y.min(low.y));
         self.high = Point::new(self.high.x.max(high.x), self.high.y.max(high.y));
     }
 }
 
 /// A number that is not negative, as an index.
-pub fn index(value: i32) -> usize {
+pub(crate) fn index(value: i32) -> usize {
     usize::try_from(value).unwrap_or(0)
 }

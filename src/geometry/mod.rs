@@ -9,10 +9,10 @@ pub mod real;
 
 pub mod outline;
 
-pub mod curve;
+mod curve;
 
-pub mod grid;
+mod grid;
 
-pub mod arcs;
+mod arcs;
 
 pub mod overlap;

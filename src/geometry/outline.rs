@@ -107,6 +107,38 @@ pub trait Pen<T: Real> {
 }
 
 /// Anything with a boundary: figures, pictures, and outlines of one's own.
+///
+/// A type of one's own says how it is drawn, once, for every kind of number:
+///
+/// ```
+/// use taxel::geometry::outline::{Ellipse, Pen, Point, Side, Solid};
+/// use taxel::geometry::real::Real;
+/// use taxel::{sensor::Sensor, touch::Plane};
+///
+/// /// A square plate with a round hole in its middle.
+/// struct Flange { left: f64, top: f64, side: f64, bore: f64 }
+///
+/// impl Solid for Flange {
+///     fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
+///         let [left, top, side, bore] = [self.left, self.top, self.side, self.bore].map(T::decimal);
+///         let corner = |x: T, y: T| Point::new(left + x, top + y);
+///         let (none, half) = (T::ZERO, side * T::HALF);
+///         // Clockwise as seen.
+///         let plate = [corner(none, none), corner(side, none), corner(side, side), corner(none, side)];
+///         pen.ring(&plate, Side::Inside);
+///         let (across, along) = (Point::new(bore, none), Point::new(none, bore));
+///         pen.ellipse(&Ellipse { centre: corner(half, half), across, along }, Side::Outside);
+///     }
+/// }
+///
+/// let mut plane = Plane::new(Sensor::default());
+/// let imprint = plane.touch(&Flange { left: 2.0, top: 2.0, side: 6.0, bore: 1.5 });
+/// assert_eq!(imprint.count(), 6 * 6 - 4);
+/// let covered: f64 = plane.coverages().iter().sum();
+/// assert!((covered - (36.0 - std::f64::consts::PI * 1.5 * 1.5)).abs() < 1e-9);
+/// ```
+///
+/// [`Polygon`] takes vertices as they are.
 pub trait Solid {
     /// Draws the whole boundary. The numbers of the shape are to be taken through [`Real::decimal`].
     fn draw<T: Real>(&self, pen: &mut impl Pen<T>);
@@ -119,8 +151,15 @@ pub trait Solid {
 ///
 /// ```
 /// use taxel::geometry::outline::{Extent, Polygon};
+/// use taxel::{sensor::Sensor, touch::Plane};
+///
 /// let kite = Polygon::new([(3.0, 1.0), (1.0, 4.0), (3.0, 9.0), (5.0, 4.0)]);
 /// assert_eq!(Extent::of(&kite), Some(Extent { left: 1.0, top: 1.0, right: 5.0, bottom: 9.0 }));
+/// let mut plane = Plane::new(Sensor::default());
+/// let imprint = plane.touch(&kite);
+/// assert!(imprint.get(2, 4) && !imprint.get(1, 1));
+/// let covered: f64 = plane.coverages().iter().sum();
+/// assert!((covered - 16.0).abs() < 1e-9);
 /// ```
 #[derive(Clone, Debug)]
 pub struct Polygon {

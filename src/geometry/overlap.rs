@@ -34,7 +34,7 @@ impl<T: Real> Overlap<T> {
     }
 
     /// What has been drawn since.
-    pub fn grid(&self) -> &Grid<T> {
+    pub(crate) fn grid(&self) -> &Grid<T> {
         &self.grid
     }
 

@@ -14,6 +14,7 @@ use crate::formats::shape::Shape;
 
 /// Where a shape comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum Origin {
     /// The user's folder.
     Own,
@@ -23,6 +24,7 @@ pub enum Origin {
 
 /// A line of the list: what is known without opening the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Entry {
     /// The shape's name: its file's, without `.json`.
     pub name: String,
@@ -32,6 +34,7 @@ pub struct Entry {
 
 /// A shape with what its file held, to tell later whether somebody else has written it.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Loaded {
     /// The shape, under the name of its file.
     pub shape: Shape,
@@ -43,6 +46,7 @@ pub struct Loaded {
 
 /// What the writer believes to be in the place it writes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Expected {
     /// Nothing.
     Nothing,

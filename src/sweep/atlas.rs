@@ -22,6 +22,7 @@ pub struct Atlas {
 
 /// A row of an atlas.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Entry {
     /// From 0, in order of first occurrence.
     pub id: u32,

@@ -22,6 +22,7 @@ pub const MAX_POSES: u64 = 1_000_000_000_000;
 
 /// Which point of the shape the ranges of x0 and y0 place.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Anchor {
     /// The top left corner of the bounding rectangle before rotation.
     #[default]

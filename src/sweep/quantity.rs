@@ -13,6 +13,7 @@ use crate::imprint::Imprint;
 
 /// A number that describes an imprint's main region.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Quantity {
     /// Its name in JSON and CSV.
     pub key: String,
@@ -84,6 +85,7 @@ pub fn values(description: &Description, mut take: impl FnMut(usize, f64)) {
 
 /// What an atlas says of an imprint beside where it occurs.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Note {
     /// Number of its pieces, 8-connected.
     pub pieces: u16,

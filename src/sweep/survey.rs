@@ -69,6 +69,7 @@ impl Watch<'_> {
 /// # Ok::<(), taxel::sweep::range::RangeError>(())
 /// ```
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Survey {
     /// The grid.
     pub grid: Grid,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::formats::sweep_file::Existing;
+use crate::formats::unfinished::Existing;
 use crate::sweep::grid::Grid;
 use crate::sweep::order::SortKey;
 use crate::sweep::survey::Survey;

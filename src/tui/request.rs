@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::exploring::Findings;
 use super::purpose::Purpose;
 use crate::formats::shape::Shape;
-use crate::formats::sweep_file::Existing;
+use crate::formats::unfinished::Existing;
 use crate::library::store::Expected;
 use crate::sweep::grid::Grid;
 

@@ -250,7 +250,7 @@ fn wrong_usage_is_status_2() {
     );
     misused(
         "figure hexagon --force",
-        "the following required arguments were not provided:\n  --save <NAME>\n",
+        "the following required arguments were not provided:\n  <--save <NAME>|--export <FILE>>\n",
     );
     misused(
         "library list --library",

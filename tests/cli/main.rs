@@ -4,6 +4,10 @@ mod figure;
 
 mod describe;
 
+mod export;
+
+mod foreign;
+
 mod batch;
 
 mod library;

@@ -7,11 +7,12 @@ use std::process::Command;
 use super::{misused, program, taxel};
 
 /// Every command that has a help.
-const COMMANDS: [&str; 19] = [
+const COMMANDS: [&str; 20] = [
     "",
     "figure",
     "picture",
     "describe",
+    "export",
     "batch",
     "sweep",
     "merge",

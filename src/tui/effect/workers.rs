@@ -10,7 +10,8 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use crate::formats::sweep_file::{AtlasFile, Existing, PoseFile, SweepFileError};
+use crate::formats::sweep_file::{AtlasFile, PoseFile, SweepFileError};
+use crate::formats::unfinished::Existing;
 use crate::sweep::grid::Grid;
 use crate::sweep::plan::Shard;
 use crate::sweep::sample::Sample;

@@ -1,6 +1,8 @@
 //! The program without a terminal, driven by a script: keys in as text, screens out as text, the same bytes on every
 //! machine.
 
+mod drawing;
+
 pub mod session;
 
 pub mod setting;

@@ -75,6 +75,33 @@ pub fn run(
     world: World,
     mut print: impl FnMut(&str) -> ControlFlow<()>,
 ) -> Result<(), Failure> {
+    run_shown(script, keys, settings, world, &mut |shown| match shown {
+        Shown::Text(text) => print(text),
+        Shown::Screen(..) => ControlFlow::Continue(()),
+    })
+}
+
+/// What a script shows.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum Shown<'a> {
+    /// Text to print.
+    Text(&'a str),
+    /// The screen that is printed next, and its name, which may be empty.
+    Screen(&'a str, &'a Session),
+}
+
+/// The same where screens are wanted as they are too: [`Session::svg`] draws them.
+///
+/// # Errors
+/// As of [`run`].
+pub fn run_shown(
+    script: &str,
+    keys: &[Key],
+    settings: &Settings,
+    world: World,
+    show: &mut impl FnMut(Shown<'_>) -> ControlFlow<()>,
+) -> Result<(), Failure> {
     let commands = read(script)?;
     let (mut settings, mut world) = (settings.clone(), world);
     // What describes the start comes before it.
@@ -118,10 +145,10 @@ pub fn run(
         session.press(key);
     }
     if commands.is_empty() {
-        printed(print(&screen(&session, "", &settings)))?;
+        show_screen(&session, "", &settings, show)?;
     }
     for (line, command) in rest {
-        if !look(&session, *line, command, &settings, &mut print)? {
+        if !look(&session, *line, command, &settings, show)? {
             act(&mut session, *line, command)?;
         }
     }
@@ -196,7 +223,7 @@ fn look(
     line: usize,
     command: &Command,
     settings: &Settings,
-    print: &mut impl FnMut(&str) -> ControlFlow<()>,
+    show: &mut impl FnMut(Shown<'_>) -> ControlFlow<()>,
 ) -> Result<bool, Failure> {
     let fails = |message: String| Err(fails(session, line, message));
     let looks = !matches!(command, Command::Quit | Command::Wait);
@@ -204,9 +231,9 @@ fn look(
         return Err(Failure::Ended { line });
     }
     match command {
-        Command::Screen(name) => printed(print(&screen(session, name, settings)))?,
+        Command::Screen(name) => show_screen(session, name, settings, show)?,
         Command::State(pointer) => match state(session).pointer(pointer) {
-            Some(part) => printed(print(&format!("{part}\n")))?,
+            Some(part) => printed(show(Shown::Text(&format!("{part}\n"))))?,
             None => return fails(format!("the state has no {:?}", shortened(pointer))),
         },
         Command::Expect(pattern) => {
@@ -256,6 +283,16 @@ fn look(
         _ => return Ok(false),
     }
     Ok(true)
+}
+
+fn show_screen(
+    session: &Session,
+    name: &str,
+    settings: &Settings,
+    show: &mut impl FnMut(Shown<'_>) -> ControlFlow<()>,
+) -> Result<(), Failure> {
+    printed(show(Shown::Screen(name, session)))?;
+    printed(show(Shown::Text(&screen(session, name, settings))))
 }
 
 fn printed(flow: ControlFlow<()>) -> Result<(), Failure> {

@@ -16,6 +16,7 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::layout::Position;
 
+use super::drawing;
 use crate::tui::app::{App, Options};
 use crate::tui::effect::World;
 use crate::tui::key::{Key, KeyError, parse};
@@ -115,6 +116,12 @@ impl Session {
     /// The styles of the screen, a letter a character: `R` reversed, `B` bold, `D` dim, `.` plain.
     pub fn styles(&self) -> String {
         self.rows(|cell| Role::letter(&cell.style()).to_string())
+    }
+
+    /// The screen as SVG, with a title. Its colours are those of a theme that has all of them, as it is where
+    /// [`crate::tui::theme::ColorDepth::True`].
+    pub fn svg(&self, title: &str) -> String {
+        drawing::svg(self.terminal.backend().buffer(), *self.app.theme(), title)
     }
 
     fn rows(&self, show: impl Fn(&ratatui::buffer::Cell) -> String) -> String {

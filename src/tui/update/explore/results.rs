@@ -1,7 +1,7 @@
 //! What keys do with what was found: pages, rows, the map, a shape back onto the matrix, a file.
 
 use super::act::act;
-use crate::formats::sweep_file::Existing;
+use crate::formats::unfinished::Existing;
 use crate::formats::value::grouped;
 use crate::sweep::statistics::COLUMNS;
 use crate::touch::Plane;

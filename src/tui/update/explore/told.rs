@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::formats::sweep_file::Existing;
+use crate::formats::unfinished::Existing;
 use crate::formats::value::grouped;
 use crate::tui::app::App;
 use crate::tui::dialog::{Dialog, Question};

@@ -1,0 +1,54 @@
+//! Text in pixels: the letters of a typewriter face as the font's crate has drawn them, in one size.
+
+use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
+
+use super::ink::Ink;
+use super::scene::{Anchor, Place};
+
+const WEIGHT: FontWeight = FontWeight::Regular;
+/// Eight points at four pixels.
+const HEIGHT: RasterHeight = RasterHeight::Size32;
+/// The base line, in pixels from the top of a letter's field.
+const ABOVE: i32 = 26;
+
+/// Writes a line of text; the place, in pixels, is on its base line.
+pub(super) fn write(ink: &mut Ink, text: &str, place: Place, anchor: Anchor, upright: bool) {
+    let step = whole_of(get_raster_width(WEIGHT, HEIGHT));
+    let width = step.saturating_mul(whole_of(text.chars().count()));
+    let back = match anchor {
+        Anchor::Start => 0,
+        Anchor::Middle => width / 2,
+        Anchor::End => width,
+    };
+    let (x, y) = (rounded(place.0), rounded(place.1));
+    let mut along = -back;
+    for letter in text.chars() {
+        let raster = get_raster(letter, WEIGHT, HEIGHT);
+        // Every question mark is there; were it not, the letter would be a blank.
+        if let Some(raster) = raster.or_else(|| get_raster('?', WEIGHT, HEIGHT)) {
+            for (down, row) in (-ABOVE..).zip(raster.rows()) {
+                for (right, &dark) in (along..).zip(row.iter()) {
+                    let (across, below) = if upright {
+                        (x + down, y - right)
+                    } else {
+                        (x + right, y + down)
+                    };
+                    ink.darken(across, below, dark);
+                }
+            }
+        }
+        along = along.saturating_add(step);
+    }
+}
+
+fn whole_of(count: usize) -> i32 {
+    i32::try_from(count).unwrap_or(i32::MAX)
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "saturates far off the page"
+)]
+fn rounded(pixels: f64) -> i32 {
+    pixels.round() as i32
+}

@@ -1,0 +1,131 @@
+//! A drawing of a touch for papers and reports: the matrix, the true outline, the circumscribed rectangle, CG and CD.
+//!
+//! All of it is black, white and grey, and nothing is told by a shade alone, so it survives any printer. Both axes are
+//! labelled, in cell sides, or in mm where a pitch is given; a legend tells the values. Coordinates on the page are
+//! points of 1/72 inch; a matrix is at most four inches wide. As SVG, text stays text; as PNG the page has 288 dots an
+//! inch.
+//!
+//! ```
+//! use taxel::{figure::{Figure, Kind}, formats::drawing::Drawing, sensor::Sensor, touch::Plane};
+//! let figure = Figure::default_of(Kind::Ellipse, 16);
+//! let imprint = Plane::new(Sensor::default()).touch(&figure);
+//! let drawing = Drawing::new(&imprint).with_outline(&figure).with_pitch(2.5);
+//! assert!(drawing.svg().contains(">x / mm</text>"));
+//! ```
+
+mod scene;
+
+mod axis;
+
+mod page;
+
+mod outline;
+
+mod svg;
+
+#[cfg(feature = "png")]
+mod ink;
+
+#[cfg(feature = "png")]
+mod glyph;
+
+#[cfg(feature = "png")]
+mod png;
+
+use crate::description::descriptor::Description;
+use crate::description::region::{Region, main_region, regions};
+use crate::geometry::outline::Solid;
+use crate::imprint::Imprint;
+use crate::parameter::Parameter;
+use crate::sensor::MAX_SIDE;
+use page::{Page, Subject};
+use scene::Step;
+
+/// Wider ones would make the page wider than paper.
+const LONGEST_TITLE: usize = 100;
+
+/// What is drawn. A region of the imprint is described: the main one, unless another is chosen.
+#[derive(Clone, Debug)]
+pub struct Drawing {
+    imprint: Imprint,
+    regions: Vec<Region<'static>>,
+    chosen: Option<usize>,
+    /// In cell sides.
+    outline: Vec<Step>,
+    pitch_mm: Option<f64>,
+    title: Option<String>,
+}
+
+impl Drawing {
+    /// The matrix, with the rectangle, CG and CD of its main region, in cell sides.
+    pub fn new(imprint: &Imprint) -> Self {
+        let regions = regions(imprint);
+        Self {
+            imprint: *imprint,
+            chosen: main_region(&regions),
+            regions,
+            outline: Vec::new(),
+            pitch_mm: None,
+            title: None,
+        }
+    }
+
+    /// With the outline of what touched; what reaches beyond the sensor is cut off. Curves are drawn as cubic ones that
+    /// stray from the true ellipse by less than a hundred-thousandth of its size.
+    #[must_use]
+    pub fn with_outline(mut self, solid: &impl Solid) -> Self {
+        self.outline = outline::steps(solid);
+        self
+    }
+
+    /// With axes and values in mm for cells of this side; unchanged by one that is no sensor's pitch.
+    #[must_use]
+    pub fn with_pitch(mut self, mm: f64) -> Self {
+        if let Ok(mm) = Parameter::Pitch.check(mm, MAX_SIDE) {
+            self.pitch_mm = Some(mm);
+        }
+        self
+    }
+
+    /// With a line above; at most the first 100 characters of it.
+    #[must_use]
+    pub fn with_title(mut self, title: &str) -> Self {
+        self.title = Some(title.chars().take(LONGEST_TITLE).collect());
+        self
+    }
+
+    /// With another region described, by its place among [`regions`]; unchanged where there are not so many.
+    #[must_use]
+    pub fn with_region(mut self, index: usize) -> Self {
+        if index < self.regions.len() {
+            self.chosen = Some(index);
+        }
+        self
+    }
+
+    /// As SVG 1.1.
+    pub fn svg(&self) -> String {
+        svg::write(&self.page())
+    }
+
+    /// As PNG, 8 bits of grey. Characters beyond Latin-1 are shown as `?`.
+    ///
+    /// # Errors
+    /// Those of the encoder, which has none for a page in memory.
+    #[cfg(feature = "png")]
+    pub fn png(&self) -> std::io::Result<Vec<u8>> {
+        png::write(&self.page())
+    }
+
+    fn page(&self) -> Page {
+        let region = self.chosen.and_then(|index| self.regions.get(index));
+        let described = region.map(|region| (region.taxels(), Description::of(region)));
+        Page::of(&Subject {
+            imprint: &self.imprint,
+            described,
+            outline: &self.outline,
+            pitch_mm: self.pitch_mm,
+            title: self.title.as_deref(),
+        })
+    }
+}

@@ -1,0 +1,111 @@
+//! The boundary of a solid as a path, in cell sides.
+
+use std::collections::VecDeque;
+
+use super::scene::{self, Place, Step};
+use crate::geometry::outline::{Ellipse, Pen, Point, Side, Solid};
+
+/// The whole boundary. Edges that follow each other are one piece, so that their corners are whole.
+pub(super) fn steps(solid: &impl Solid) -> Vec<Step> {
+    let mut tracer = Tracer::default();
+    solid.draw(&mut tracer);
+    tracer.end(false);
+    tracer.steps
+}
+
+/// Writes down what is drawn.
+#[derive(Debug, Default)]
+struct Tracer {
+    steps: Vec<Step>,
+    /// The corners of the piece under way. It grows at its end, or at its start where a ring is drawn backwards.
+    piece: VecDeque<Place>,
+}
+
+impl Tracer {
+    /// Writes down the piece under way.
+    fn end(&mut self, closed: bool) {
+        let mut corners = self.piece.drain(..);
+        self.steps.extend(corners.next().map(Step::Move));
+        self.steps.extend(corners.map(Step::Line));
+        if closed {
+            self.steps.push(Step::Close);
+        }
+    }
+}
+
+impl Pen<f64> for Tracer {
+    fn edge(&mut self, from: Point<f64>, to: Point<f64>) {
+        let (from, to) = ((from.x, from.y), (to.x, to.y));
+        let follows = self.piece.back() == Some(&from);
+        let leads = self.piece.front() == Some(&to);
+        match (follows, leads) {
+            (true, true) => self.end(true),
+            (true, false) => self.piece.push_back(to),
+            (false, true) => self.piece.push_front(from),
+            (false, false) => {
+                self.end(false);
+                self.piece.extend([from, to]);
+            }
+        }
+    }
+
+    fn ellipse(&mut self, ellipse: &Ellipse<f64>, _material: Side) {
+        let pair = |point: Point<f64>| (point.x, point.y);
+        self.end(false);
+        self.steps.extend(scene::ellipse(
+            pair(ellipse.centre),
+            pair(ellipse.across),
+            pair(ellipse.along),
+        ));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Figure, Kind};
+    use crate::parameter::Parameter;
+
+    #[test]
+    fn rings_are_closed_pieces_in_either_sense() {
+        let frame = Figure::default_of(Kind::Rectangle, 16)
+            .with(Parameter::Thickness, 1.0, 16)
+            .expect("in range");
+        let steps = steps(&frame);
+        let count = |wanted: fn(&Step) -> bool| steps.iter().filter(|step| wanted(step)).count();
+        assert_eq!(count(|step| matches!(step, Step::Move(_))), 2, "{steps:?}");
+        assert_eq!(count(|step| matches!(step, Step::Line(_))), 6, "{steps:?}");
+        assert_eq!(count(|step| matches!(step, Step::Close)), 2, "{steps:?}");
+    }
+
+    #[test]
+    fn an_ellipse_keeps_its_distance() {
+        let circle = scene::ellipse((1.0, 2.0), (3.0, 0.0), (0.0, 3.0));
+        let mut from = (4.0, 2.0);
+        for step in circle {
+            let Step::Curve(a, b, to) = step else {
+                continue;
+            };
+            for part in 0..=10 {
+                let ahead = f64::from(part) / 10.0;
+                let mix = |p: f64, q: f64| p + (q - p) * ahead;
+                // De Casteljau's way: between the corners, between these, between these.
+                let bend = |corners: [f64; 4]| {
+                    let [start, first, second, end] = corners;
+                    let middle = mix(first, second);
+                    mix(
+                        mix(mix(start, first), middle),
+                        mix(middle, mix(second, end)),
+                    )
+                };
+                let (x, y) = (
+                    bend([from.0, a.0, b.0, to.0]),
+                    bend([from.1, a.1, b.1, to.1]),
+                );
+                let strays = ((x - 1.0).hypot(y - 2.0) - 3.0).abs();
+                assert!(strays < 3.0 * 1e-5, "{strays}");
+            }
+            from = to;
+        }
+    }
+}

@@ -1,0 +1,334 @@
+//! Where everything stands on the page: the plane with its axes, what is described on it, the legend below.
+
+use super::axis::Marks;
+use super::scene::{Anchor, Line, Mark, Place, Step, circle, rectangle};
+use crate::description::descriptor::{Description, Value};
+use crate::description::region::Kind;
+use crate::formats::value;
+use crate::imprint::Imprint;
+
+/// The size of all text, in points.
+pub(super) const TEXT: f64 = 8.0;
+/// The width of a character of a typewriter face, as a share of its size.
+pub(super) const ADVANCE: f64 = 0.6;
+/// The larger side of the plane, unless its cells would be too large.
+const PLANE: f64 = 288.0;
+const LARGEST_CELL: f64 = 24.0;
+const MARGIN: f64 = 8.0;
+/// A line of the title or the legend.
+const ROW: f64 = 13.0;
+/// What stands for a thing in the legend.
+const SWATCH: f64 = 16.0;
+
+/// Taxels of the region that is described, and others; the lines between cells.
+const DESCRIBED: u8 = 168;
+const OTHER: u8 = 220;
+const CELLS: Line = Line {
+    width: 0.4,
+    grey: 150,
+    dash: None,
+};
+const OUTLINE: Line = Line::black(1.3);
+const RECTANGLE: Line = Line {
+    width: 0.9,
+    grey: 0,
+    dash: Some([4.0, 2.5]),
+};
+const POINT: Line = Line::black(1.1);
+
+/// What a page shows.
+pub(super) struct Subject<'a> {
+    pub(super) imprint: &'a Imprint,
+    /// The taxels of a region and its description.
+    pub(super) described: Option<(&'a Imprint, Description)>,
+    /// In cell sides.
+    pub(super) outline: &'a [Step],
+    pub(super) pitch_mm: Option<f64>,
+    pub(super) title: Option<&'a str>,
+}
+
+/// A page: its size in points, where the plane is on it, and what it shows.
+pub(super) struct Page {
+    pub(super) size: Place,
+    /// Top left and bottom right corner of the sensory plane.
+    pub(super) plane: (Place, Place),
+    pub(super) title: String,
+    pub(super) marks: Vec<Mark>,
+}
+
+/// The page while it is laid out.
+struct Layout<'a> {
+    subject: &'a Subject<'a>,
+    marks: Vec<Mark>,
+    corner: Place,
+    cell: f64,
+    /// How far down and to the right something stands.
+    end: Place,
+}
+
+impl Page {
+    /// Lays out what is to be shown.
+    pub(super) fn of(subject: &Subject<'_>) -> Self {
+        let (columns, rows) = (subject.imprint.columns(), subject.imprint.rows());
+        let pitch = subject.pitch_mm.unwrap_or(1.0);
+        // In cells no mark stands between two of them.
+        let least = subject.pitch_mm.map_or(1.0, |_| 0.0);
+        let marks = |side: u8| Marks::new(f64::from(side) * pitch, least);
+        let (across, along) = (marks(columns), marks(rows));
+        let title = subject.title.map_or(0.0, |_| ROW);
+        let corner = (
+            MARGIN + TEXT * 2.0 + advance(along.width()) + 6.0,
+            MARGIN + title + TEXT * 3.0 + 4.0,
+        );
+        let mut layout = Layout {
+            subject,
+            marks: Vec::new(),
+            corner,
+            cell: LARGEST_CELL.min(PLANE / f64::from(columns.max(rows))),
+            end: corner,
+        };
+        let plane = (corner, layout.place((columns.into(), rows.into())));
+        layout.end = plane.1;
+        if let Some(title) = subject.title {
+            layout.text(title, (corner.0, MARGIN + TEXT), Anchor::Start);
+        }
+        layout.taxels();
+        layout.axes(&across, &along, plane);
+        layout.outline();
+        layout.described();
+        layout.legend();
+        Self {
+            size: (layout.end.0 + MARGIN, layout.end.1 + MARGIN),
+            plane,
+            title: subject.title.unwrap_or("imprint").to_owned(),
+            marks: layout.marks,
+        }
+    }
+}
+
+/// The width of a text.
+fn advance(characters: usize) -> f64 {
+    // No text is long enough for the difference.
+    TEXT * ADVANCE * f64::from(u16::try_from(characters).unwrap_or(u16::MAX))
+}
+
+impl Layout<'_> {
+    /// Where a point of the plane, in cell sides, is on the page.
+    fn place(&self, (x, y): Place) -> Place {
+        (self.corner.0 + x * self.cell, self.corner.1 + y * self.cell)
+    }
+
+    fn text(&mut self, text: &str, place: Place, anchor: Anchor) {
+        if anchor == Anchor::Start {
+            let end = place.0 + advance(text.chars().count());
+            self.end.0 = self.end.0.max(end);
+        }
+        self.marks.push(Mark::Text {
+            text: text.to_owned(),
+            place,
+            anchor,
+            upright: false,
+        });
+    }
+
+    fn filled(&mut self, what: &'static str, rectangles: Vec<(Place, Place)>, grey: u8) {
+        self.marks.push(Mark::Fill {
+            what,
+            rectangles,
+            grey,
+        });
+    }
+
+    fn line(&mut self, what: &'static str, steps: Vec<Step>, line: Line) {
+        self.marks.push(Mark::Line {
+            what,
+            steps,
+            line,
+            clipped: false,
+        });
+    }
+
+    /// The active taxels, those described darker, and the lines between all cells.
+    fn taxels(&mut self) {
+        let subject = self.subject;
+        let imprint = subject.imprint;
+        let none = Imprint::empty(imprint.columns(), imprint.rows());
+        let described = subject.described.as_ref();
+        let described = described.map_or(&none, |(taxels, _)| *taxels);
+        let mut others = *imprint;
+        for (row, taxels) in described.words().iter().enumerate() {
+            others.set_word(row, imprint.words()[row] & !taxels);
+        }
+        for (what, taxels, grey) in [
+            ("other-taxels", &others, OTHER),
+            ("described-taxels", described, DESCRIBED),
+        ] {
+            let cell = |(column, row): (u8, u8)| {
+                let (x, y) = (f64::from(column), f64::from(row));
+                (self.place((x, y)), self.place((x + 1.0, y + 1.0)))
+            };
+            let cells: Vec<_> = taxels.active().map(cell).collect();
+            if !cells.is_empty() {
+                self.filled(what, cells, grey);
+            }
+        }
+        let (columns, rows) = (f64::from(imprint.columns()), f64::from(imprint.rows()));
+        let mut lines = Vec::new();
+        for column in 0..=imprint.columns() {
+            let x = f64::from(column);
+            lines.push(Step::Move(self.place((x, 0.0))));
+            lines.push(Step::Line(self.place((x, rows))));
+        }
+        for row in 0..=imprint.rows() {
+            let y = f64::from(row);
+            lines.push(Step::Move(self.place((0.0, y))));
+            lines.push(Step::Line(self.place((columns, y))));
+        }
+        self.line("cells", lines, CELLS);
+    }
+
+    /// The frame, the marks of both axes, what they are and their unit.
+    fn axes(&mut self, across: &Marks, along: &Marks, (from, to): (Place, Place)) {
+        let scale = self.cell / self.subject.pitch_mm.unwrap_or(1.0);
+        let unit = self.unit();
+        let mut ticks = rectangle(from, to);
+        for (value, label) in &across.0 {
+            let x = from.0 + value * scale;
+            ticks.extend([Step::Move((x, from.1 - 3.0)), Step::Line((x, from.1))]);
+            self.text(label, (x, from.1 - 5.0), Anchor::Middle);
+        }
+        for (value, label) in &along.0 {
+            let y = from.1 + value * scale;
+            ticks.extend([Step::Move((from.0 - 3.0, y)), Step::Line((from.0, y))]);
+            self.text(label, (from.0 - 5.0, y + TEXT * 0.35), Anchor::End);
+        }
+        self.line("axes", ticks, Line::black(0.6));
+        let middle = (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1));
+        let above = from.1 - 5.0 - TEXT * 1.5;
+        self.text(&format!("x / {unit}"), (middle.0, above), Anchor::Middle);
+        self.marks.push(Mark::Text {
+            text: format!("y / {unit}"),
+            place: (MARGIN + TEXT, middle.1),
+            anchor: Anchor::Middle,
+            upright: true,
+        });
+    }
+
+    fn outline(&mut self) {
+        let place = |place| self.place(place);
+        let steps = self.subject.outline.iter().map(|step| step.map(place));
+        let steps: Vec<Step> = steps.collect();
+        if !steps.is_empty() {
+            self.marks.push(Mark::Line {
+                what: "outline",
+                steps,
+                line: OUTLINE,
+                clipped: true,
+            });
+        }
+    }
+
+    fn described(&mut self) {
+        let subject = self.subject;
+        let Some((_, description)) = &subject.described else {
+            return;
+        };
+        let rect = description.rect;
+        let low = self.place((rect.left.into(), rect.top.into()));
+        let high = self.place((rect.right.into(), rect.bottom.into()));
+        let (cg, cd) = (description.cg(), description.cd());
+        self.line("rectangle", rectangle(low, high), RECTANGLE);
+        let (cg, cd) = (self.place((cg.x, cg.y)), self.place((cd.x, cd.y)));
+        self.line("cd", circle(cd, 3.5), POINT);
+        self.line("cg", cross(cg, 3.5), POINT);
+    }
+
+    fn unit(&self) -> &'static str {
+        self.subject.pitch_mm.map_or("cells", |_| "mm")
+    }
+
+    /// What the signs mean, with the values of what is described.
+    fn legend(&mut self) {
+        let pitch = self.subject.pitch_mm.unwrap_or(1.0);
+        let told = |value: Value| value::times(value, pitch, 4).unwrap_or_default();
+        let unit = self.unit();
+        let mut y = self.end.1 + ROW * 1.4;
+        let mut row = |layout: &mut Self, text: &str, sign: &dyn Fn(&mut Self, Place)| {
+            sign(layout, (layout.corner.0 + SWATCH / 2.0, y - TEXT * 0.35));
+            let place = (layout.corner.0 + SWATCH + 6.0, y);
+            layout.text(text, place, Anchor::Start);
+            layout.end.1 = y + TEXT * 0.3;
+            y += ROW;
+        };
+        let box_of = |(x, y): Place| ((x - 6.0, y - 4.0), (x + 6.0, y + 4.0));
+        let all = self.subject.imprint.count();
+        let described = self.subject.described.as_ref().map(|(_, it)| *it);
+        let na = described.map_or(0, |description| description.na);
+        let what = match described.map(|description| description.kind) {
+            Some(Kind::Hole) => format!("taxels of the hole described: {na}"),
+            Some(Kind::Exterior) if na == all => format!("active taxels: {na}"),
+            Some(Kind::Exterior) => format!("active taxels of the region described: {na}"),
+            None => "no active taxels".to_owned(),
+        };
+        row(self, &what, &|layout, place| {
+            if na > 0 {
+                layout.filled("legend", vec![box_of(place)], DESCRIBED);
+            }
+            let (low, high) = box_of(place);
+            layout.line("legend", rectangle(low, high), CELLS);
+        });
+        let others = match described.map(|description| description.kind) {
+            Some(Kind::Hole) => all,
+            _ => all - na,
+        };
+        if others > 0 {
+            row(
+                self,
+                &format!("other active taxels: {others}"),
+                &|layout, place| {
+                    layout.filled("legend", vec![box_of(place)], OTHER);
+                    let (low, high) = box_of(place);
+                    layout.line("legend", rectangle(low, high), CELLS);
+                },
+            );
+        }
+        let stretch = |(x, y): Place| {
+            let half = SWATCH / 2.0;
+            vec![Step::Move((x - half, y)), Step::Line((x + half, y))]
+        };
+        if !self.subject.outline.is_empty() {
+            row(self, "outline", &|layout, place| {
+                layout.line("legend", stretch(place), OUTLINE);
+            });
+        }
+        let Some(description) = described else {
+            return;
+        };
+        let rect = told(Value::Rect(description.rect));
+        row(
+            self,
+            &format!("rectangle {rect} {unit}"),
+            &|layout, place| {
+                layout.line("legend", stretch(place), RECTANGLE);
+            },
+        );
+        let cg = told(Value::Point(description.cg()));
+        row(self, &format!("CG {cg} {unit}"), &|layout, place| {
+            layout.line("legend", cross(place, 3.5), POINT);
+        });
+        let cd = told(Value::Point(description.cd()));
+        row(self, &format!("CD {cd} {unit}"), &|layout, place| {
+            layout.line("legend", circle(place, 3.5), POINT);
+        });
+    }
+}
+
+/// An upright cross.
+fn cross((x, y): Place, arm: f64) -> Vec<Step> {
+    vec![
+        Step::Move((x - arm, y)),
+        Step::Line((x + arm, y)),
+        Step::Move((x, y - arm)),
+        Step::Line((x, y + arm)),
+    ]
+}

@@ -1,0 +1,80 @@
+//! A page as PNG: four pixels a point, 8 bits of grey.
+
+use std::io;
+
+use png::{BitDepth, ColorType, Encoder, PixelDimensions, Unit};
+
+use super::glyph;
+use super::ink::Ink;
+use super::page::Page;
+use super::scene::{Line, Mark, Place};
+
+/// Pixels a point.
+const SCALE: f64 = 4.0;
+/// 288 dots an inch.
+const DOTS_A_METRE: u32 = 11_339;
+
+/// The file.
+pub(super) fn write(page: &Page) -> io::Result<Vec<u8>> {
+    let place = |(x, y): Place| (x * SCALE, y * SCALE);
+    let plane = (place(page.plane.0), place(page.plane.1));
+    let mut ink = Ink::new(pixels(page.size.0), pixels(page.size.1));
+    for mark in &page.marks {
+        match mark {
+            Mark::Fill {
+                rectangles, grey, ..
+            } => {
+                let scaled = rectangles
+                    .iter()
+                    .map(|&(low, high)| (place(low), place(high)));
+                ink.fill(&scaled.collect::<Vec<_>>(), *grey);
+            }
+            Mark::Line {
+                steps,
+                line,
+                clipped,
+                ..
+            } => {
+                let steps: Vec<_> = steps.iter().map(|step| step.map(place)).collect();
+                let line = Line {
+                    width: line.width * SCALE,
+                    dash: line.dash.map(|dash| dash.map(|length| length * SCALE)),
+                    ..*line
+                };
+                ink.stroke(&steps, line, clipped.then_some(plane));
+            }
+            Mark::Text {
+                text,
+                place: at,
+                anchor,
+                upright,
+            } => glyph::write(&mut ink, text, place(*at), *anchor, *upright),
+        }
+    }
+    encode(&ink)
+}
+
+fn encode(ink: &Ink) -> io::Result<Vec<u8>> {
+    let mut file = Vec::new();
+    let mut encoder = Encoder::new(&mut file, ink.width(), ink.height());
+    encoder.set_color(ColorType::Grayscale);
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_pixel_dims(Some(PixelDimensions {
+        xppu: DOTS_A_METRE,
+        yppu: DOTS_A_METRE,
+        unit: Unit::Meter,
+    }));
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(ink.pixels())?;
+    writer.finish()?;
+    Ok(file)
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a page is above 0 and some thousand pixels at most: its texts are short"
+)]
+fn pixels(points: f64) -> u32 {
+    (points * SCALE).ceil() as u32
+}

@@ -1,0 +1,112 @@
+//! A page as SVG: one element a mark, text as text.
+
+use super::page::{Page, TEXT};
+use super::scene::{Anchor, Line, Mark, Place, Step, rectangle};
+use crate::formats::value::decimal;
+use crate::formats::xml::escaped;
+
+/// The file.
+pub(super) fn write(page: &Page) -> String {
+    let (width, height) = (number(page.size.0), number(page.size.1));
+    let title = escaped(&page.title);
+    let mut svg = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}pt\" height=\"{height}pt\" \
+         viewBox=\"0 0 {width} {height}\">\n\
+         <title>{title}</title>\n\
+         <rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>\n\
+         <g font-family=\"'Noto Sans Mono', 'DejaVu Sans Mono', monospace\" font-size=\"{TEXT}\" \
+         stroke-linecap=\"round\" stroke-linejoin=\"round\">\n"
+    );
+    for mark in &page.marks {
+        svg += &match mark {
+            Mark::Fill {
+                what,
+                rectangles,
+                grey,
+            } => {
+                let steps = rectangles
+                    .iter()
+                    .flat_map(|&(low, high)| rectangle(low, high));
+                let data = data(&steps.collect::<Vec<_>>());
+                let fill = paint(*grey);
+                format!("<path class=\"{what}\" fill=\"{fill}\" d=\"{data}\"/>\n")
+            }
+            Mark::Line {
+                what,
+                steps,
+                line,
+                clipped,
+            } => {
+                let (stroke, data) = (stroke(*line), data(steps));
+                let path = format!("<path class=\"{what}\" fill=\"none\"{stroke} d=\"{data}\"/>\n");
+                if *clipped {
+                    cut_off(&path, page.plane)
+                } else {
+                    path
+                }
+            }
+            Mark::Text {
+                text,
+                place,
+                anchor,
+                upright,
+            } => label(text, *place, *anchor, *upright),
+        };
+    }
+    svg + "</g>\n</svg>\n"
+}
+
+/// What is inside a rectangle of the page only. An inner viewport needs no name, which could be that of another
+/// drawing's on the same web page.
+fn cut_off(inner: &str, ((left, top), (right, bottom)): (Place, Place)) -> String {
+    let (x, y) = (number(left), number(top));
+    let (width, height) = (number(right - left), number(bottom - top));
+    format!(
+        "<svg x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" \
+         viewBox=\"{x} {y} {width} {height}\" overflow=\"hidden\">\n{inner}</svg>\n"
+    )
+}
+
+fn label(text: &str, (x, y): Place, anchor: Anchor, upright: bool) -> String {
+    let (x, y) = (number(x), number(y));
+    let anchor = match anchor {
+        Anchor::Start => "start",
+        Anchor::Middle => "middle",
+        Anchor::End => "end",
+    };
+    let turned = if upright {
+        format!(" transform=\"rotate(-90 {x} {y})\"")
+    } else {
+        String::new()
+    };
+    let text = escaped(text);
+    format!("<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\"{turned}>{text}</text>\n")
+}
+
+fn data(steps: &[Step]) -> String {
+    let at = |(x, y): Place| format!("{} {}", number(x), number(y));
+    let steps = steps.iter().map(|step| match step {
+        Step::Move(to) => format!("M{}", at(*to)),
+        Step::Line(to) => format!("L{}", at(*to)),
+        Step::Curve(a, b, to) => format!("C{} {} {}", at(*a), at(*b), at(*to)),
+        Step::Close => "Z".to_owned(),
+    });
+    steps.collect()
+}
+
+fn stroke(line: Line) -> String {
+    let dash = line.dash.map_or(String::new(), |[dash, gap]| {
+        format!(" stroke-dasharray=\"{dash} {gap}\"")
+    });
+    let (grey, width) = (paint(line.grey), line.width);
+    format!(" stroke=\"{grey}\" stroke-width=\"{width}\"{dash}")
+}
+
+fn paint(grey: u8) -> String {
+    format!("#{grey:02x}{grey:02x}{grey:02x}")
+}
+
+/// A thousandth of a point is finer than any printer.
+fn number(value: f64) -> String {
+    decimal(value, 3)
+}

@@ -1,0 +1,130 @@
+//! The forms in which an imprint alone goes to other programs and comes from them.
+//!
+//! Which form a file has is told by its first bytes when it is read, by the ending of its name when it is written.
+//!
+//! ```
+//! use taxel::formats::exchange::{Form, read};
+//! let cup = read(b"P1\n3 2\n101\n111\n")?;
+//! let form = Form::of_ending("csv").unwrap();
+//! assert_eq!(form.write(&cup), b"1,0,1\n1,1,1\n");
+//! for form in Form::ALL {
+//!     assert_eq!(read(&form.write(&cup))?, cup);
+//! }
+//! # Ok::<(), taxel::formats::exchange::ExchangeError>(())
+//! ```
+
+use std::fmt;
+
+use super::array::{self, ArrayError};
+use super::pbm::{self, PbmError};
+use super::table::{self, TableError};
+use super::text::{self, TextError};
+use crate::imprint::Imprint;
+
+/// No file of an imprint is larger; a larger one is refused unread. 1 MiB.
+pub const MAX_BYTES: usize = 1 << 20;
+
+/// How an imprint is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Form {
+    /// Rows of `#` and `.`.
+    Text,
+    /// A raw portable bitmap, `P4`.
+    Pbm,
+    /// A plain one, `P1`.
+    PlainPbm,
+    /// A table of 0 and 1.
+    Csv,
+    /// An array of numpy.
+    Npy,
+}
+
+impl Form {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Text, Self::Pbm, Self::PlainPbm, Self::Csv, Self::Npy];
+
+    /// What it is called on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Text => "txt",
+            Self::Pbm => "pbm",
+            Self::PlainPbm => "pbm-plain",
+            Self::Csv => "csv",
+            Self::Npy => "npy",
+        }
+    }
+
+    /// The form of a file whose name ends like this, in upper or lower case; none of another ending.
+    pub fn of_ending(ending: &str) -> Option<Self> {
+        // The plain bitmap has no ending of its own.
+        let forms = Self::ALL.into_iter();
+        forms
+            .filter(|form| *form != Self::PlainPbm)
+            .find(|form| form.name().eq_ignore_ascii_case(ending))
+    }
+
+    /// A file's content.
+    pub fn write(self, imprint: &Imprint) -> Vec<u8> {
+        match self {
+            Self::Text => text::write(imprint).into_bytes(),
+            Self::Pbm => pbm::raw(imprint),
+            Self::PlainPbm => pbm::plain(imprint).into_bytes(),
+            Self::Csv => table::write(imprint).into_bytes(),
+            Self::Npy => array::write(imprint),
+        }
+    }
+}
+
+/// Why bytes are no imprint.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ExchangeError {
+    /// Too many of them.
+    Large,
+    /// No text of `#` and `.`.
+    Text(TextError),
+    /// No bitmap.
+    Pbm(PbmError),
+    /// No table.
+    Table(TableError),
+    /// No array.
+    Array(ArrayError),
+}
+
+impl fmt::Display for ExchangeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Large => f.write_str("larger than 1 MiB, which no imprint is"),
+            Self::Text(error) => error.fmt(f),
+            Self::Pbm(error) => write!(f, "PBM: {error}"),
+            Self::Table(error) => write!(f, "CSV: {error}"),
+            Self::Array(error) => write!(f, "NPY: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for ExchangeError {}
+
+/// The imprint in any bytes, of any form.
+///
+/// A bitmap begins with `P`, an array with its magic bytes, a table with a digit, a quote, a sign or a word; all else is
+/// text.
+///
+/// # Errors
+/// What is wrong first, and where.
+pub fn read(bytes: &[u8]) -> Result<Imprint, ExchangeError> {
+    if bytes.len() > MAX_BYTES {
+        return Err(ExchangeError::Large);
+    }
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    match text.trim_ascii_start() {
+        _ if bytes.starts_with(b"\x93") => array::read(bytes).map_err(ExchangeError::Array),
+        [b'P', ..] => pbm::read(bytes).map_err(ExchangeError::Pbm),
+        [
+            b'0'..=b'9' | b'"' | b'+' | b'-' | b'T' | b't' | b'F' | b'f',
+            ..,
+        ] => table::read(bytes).map_err(ExchangeError::Table),
+        _ => text::read(bytes).map_err(ExchangeError::Text),
+    }
+}

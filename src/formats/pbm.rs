@@ -1,0 +1,297 @@
+//! An imprint as a portable bitmap: plain (`P1`, digits) or raw (`P4`, bits), black for an active taxel.
+//!
+//! Source: <https://netpbm.sourceforge.net/doc/pbm.html>. A comment runs from `#` to the end of its line; the digits of
+//! a plain one need no spaces between them. A file holds one bitmap, of at most 64 × 64. Bits that fill up the last byte
+//! of a row do not count. Lines and columns of errors count from 1, a column is a byte.
+
+use std::fmt;
+
+use crate::imprint::Imprint;
+use crate::sensor::MAX_SIDE;
+
+/// Why bytes are no bitmap, or none that is an imprint.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum PbmError {
+    /// Neither of the two kinds.
+    Magic,
+    /// No number where one must be, or none from 1 to 64.
+    Side {
+        /// Which line.
+        line: usize,
+        /// Which byte of it.
+        column: usize,
+        /// Width or height.
+        what: &'static str,
+    },
+    /// A digit that is none.
+    Digit {
+        /// Which line.
+        line: usize,
+        /// Which byte of it.
+        column: usize,
+        /// What stands there.
+        byte: u8,
+    },
+    /// The end comes too early.
+    Short {
+        /// How many there are.
+        found: usize,
+        /// How many there should be.
+        expected: usize,
+        /// What they are.
+        unit: &'static str,
+    },
+    /// Something comes after the end.
+    Long {
+        /// How many.
+        found: usize,
+    },
+}
+
+impl fmt::Display for PbmError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Magic => f.write_str("expected P1 or P4 at the start"),
+            Self::Side { line, column, what } => write!(
+                f,
+                "line {line}, column {column}: expected the {what}, 1 to 64"
+            ),
+            Self::Digit { line, column, byte } => write!(
+                f,
+                "line {line}, column {column}: found byte 0x{byte:02x}, expected 0 or 1"
+            ),
+            Self::Short {
+                found,
+                expected,
+                unit,
+            } => write!(f, "found {found} {unit}, expected {expected}"),
+            Self::Long { found } => write!(
+                f,
+                "found {found} bytes after the bitmap, expected one bitmap and no more"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for PbmError {}
+
+/// Reads any bytes.
+///
+/// # Errors
+/// What is wrong first, and where.
+///
+/// ```
+/// use taxel::formats::pbm::{plain, raw, read};
+/// let cup = read(b"P1 # a cup\n3 2\n101\n1 1 1\n")?;
+/// assert_eq!(cup.to_string(), "#.#\n###");
+/// assert_eq!(plain(&cup), "P1\n3 2\n101\n111\n");
+/// assert_eq!(raw(&cup), b"P4\n3 2\n\xa0\xe0");
+/// assert_eq!(read(&raw(&cup))?, cup);
+/// # Ok::<(), taxel::formats::pbm::PbmError>(())
+/// ```
+pub fn read(bytes: &[u8]) -> Result<Imprint, PbmError> {
+    let raw = match bytes.get(..2) {
+        Some(b"P1") => false,
+        Some(b"P4") => true,
+        _ => return Err(PbmError::Magic),
+    };
+    let mut cursor = Cursor { bytes, at: 2 };
+    let columns = cursor.side("width")?;
+    let rows = cursor.side("height")?;
+    let mut imprint = Imprint::empty(columns, rows);
+    let end = if raw {
+        cursor.bits(&mut imprint)?
+    } else {
+        cursor.digits(&mut imprint)?
+    };
+    // A line end after the last row is no second bitmap.
+    match bytes[end..].trim_ascii().len() {
+        0 => Ok(imprint),
+        found => Err(PbmError::Long { found }),
+    }
+}
+
+/// Where reading has come to.
+struct Cursor<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl Cursor<'_> {
+    /// Line and column of what comes next.
+    fn place(&self) -> (usize, usize) {
+        let before = &self.bytes[..self.at];
+        let start = before.iter().rposition(|&byte| byte == b'\n');
+        let line = before.split(|&byte| byte == b'\n').count();
+        (line, self.at - start.map_or(0, |start| start + 1) + 1)
+    }
+
+    /// The next byte that is neither space nor comment.
+    fn next(&mut self) -> Option<u8> {
+        loop {
+            match *self.bytes.get(self.at)? {
+                b'#' => {
+                    let rest = &self.bytes[self.at..];
+                    let comment = rest.iter().position(|&byte| matches!(byte, b'\n' | b'\r'));
+                    self.at += comment.unwrap_or(rest.len());
+                }
+                byte if byte.is_ascii_whitespace() => self.at += 1,
+                byte => return Some(byte),
+            }
+        }
+    }
+
+    fn side(&mut self, what: &'static str) -> Result<u8, PbmError> {
+        // A number stands apart from what is before it.
+        let start = self.at;
+        let _ = self.next();
+        let (line, column) = self.place();
+        let digits = self.bytes[self.at..]
+            .iter()
+            .take_while(|byte| byte.is_ascii_digit())
+            .count();
+        let text = str::from_utf8(&self.bytes[self.at..self.at + digits]).ok();
+        let side = text.and_then(|text| text.parse().ok());
+        let side = side.filter(|side| (1..=MAX_SIDE).contains(side) && self.at > start);
+        self.at += digits;
+        side.ok_or(PbmError::Side { line, column, what })
+    }
+
+    /// Digits, until all taxels have one; gives the place after the last.
+    fn digits(&mut self, imprint: &mut Imprint) -> Result<usize, PbmError> {
+        let expected = usize::from(imprint.columns()) * usize::from(imprint.rows());
+        let mut found = 0;
+        for row in 0..imprint.rows() {
+            for column in 0..imprint.columns() {
+                let unit = "taxels";
+                let short = PbmError::Short {
+                    found,
+                    expected,
+                    unit,
+                };
+                let active = match self.next().ok_or(short)? {
+                    b'0' => false,
+                    b'1' => true,
+                    byte => {
+                        let (line, column) = self.place();
+                        return Err(PbmError::Digit { line, column, byte });
+                    }
+                };
+                imprint.set(column, row, active);
+                found += 1;
+                self.at += 1;
+            }
+        }
+        // Comments after the last digit are none of a second bitmap.
+        let _ = self.next();
+        Ok(self.at)
+    }
+
+    /// Bytes of eight taxels, each row in bytes of its own; gives the place after the last.
+    fn bits(&mut self, imprint: &mut Imprint) -> Result<usize, PbmError> {
+        // Just one space parts the height from the bits, which may look like spaces.
+        let start = (self.at + 1).min(self.bytes.len());
+        let width = usize::from(imprint.columns()).div_ceil(8);
+        let expected = width * usize::from(imprint.rows());
+        let bits = &self.bytes[start..];
+        let bits = bits.get(..expected).ok_or(PbmError::Short {
+            found: bits.len(),
+            expected,
+            unit: "bytes of taxels",
+        })?;
+        for (row, bytes) in bits.chunks(width).enumerate() {
+            // The leftmost taxel is a byte's highest bit, and a word's lowest.
+            let word = bytes.iter().rev().fold(0, |word: u64, byte| {
+                word << 8 | u64::from(byte.reverse_bits())
+            });
+            imprint.set_word(row, word);
+        }
+        Ok(start + expected)
+    }
+}
+
+/// The plain bitmap: a line a row.
+pub fn plain(imprint: &Imprint) -> String {
+    let mut text = format!("P1\n{} {}\n", imprint.columns(), imprint.rows());
+    for row in 0..imprint.rows() {
+        let digit = |column| if imprint.get(column, row) { '1' } else { '0' };
+        text.extend((0..imprint.columns()).map(digit));
+        text.push('\n');
+    }
+    text
+}
+
+/// The raw bitmap.
+pub fn raw(imprint: &Imprint) -> Vec<u8> {
+    let mut bytes = format!("P4\n{} {}\n", imprint.columns(), imprint.rows()).into_bytes();
+    let width = usize::from(imprint.columns()).div_ceil(8);
+    for word in imprint.words() {
+        let row = word.to_le_bytes();
+        bytes.extend(row[..width].iter().map(|byte| byte.reverse_bits()));
+    }
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_wrong_is_told_with_its_place() {
+        let told = |bytes: &[u8]| read(bytes).map_err(|error| error.to_string());
+        let wrong = |bytes: &[u8], message: &str| assert_eq!(told(bytes), Err(message.to_owned()));
+        wrong(b"", "expected P1 or P4 at the start");
+        wrong(b"P5\n1 1\n255\n\0", "expected P1 or P4 at the start");
+        wrong(b"P1", "line 1, column 3: expected the width, 1 to 64");
+        // Not "P1" and 11 columns, but a number that does not stand apart.
+        wrong(b"P111 1 1", "line 1, column 3: expected the width, 1 to 64");
+        wrong(
+            b"P1\n65 1\n",
+            "line 2, column 1: expected the width, 1 to 64",
+        );
+        wrong(
+            b"P1\n1 # no height\n",
+            "line 3, column 1: expected the height, 1 to 64",
+        );
+        wrong(
+            b"P4\n1 0\n",
+            "line 2, column 3: expected the height, 1 to 64",
+        );
+        wrong(
+            b"P1\n2 2\n1\n0 2",
+            "line 4, column 3: found byte 0x32, expected 0 or 1",
+        );
+        wrong(b"P1\n2 2\n111", "found 3 taxels, expected 4");
+        wrong(
+            b"P4\n9 2\n\xff\xff\xff",
+            "found 3 bytes of taxels, expected 4",
+        );
+        wrong(b"P4\n9 2", "found 0 bytes of taxels, expected 4");
+        wrong(
+            b"P4\n8 1\n\xffP4",
+            "found 2 bytes after the bitmap, expected one bitmap and no more",
+        );
+        wrong(
+            b"P1\n1 1\n1 # one\n1",
+            "found 1 bytes after the bitmap, expected one bitmap and no more",
+        );
+    }
+
+    #[test]
+    fn bits_that_look_like_spaces_and_bits_that_fill_up_are_taken_rightly() {
+        let spaces = read(b"P4 8 2\n\n ").expect("0x0a and 0x20 are rows");
+        assert_eq!(spaces.to_string(), "....#.#.\n..#.....");
+        let filled = read(b"P4\n1 1\n\xff").expect("seven bits fill the byte up");
+        assert_eq!((filled.columns(), filled.count()), (1, 1));
+    }
+
+    #[test]
+    fn comments_may_stand_anywhere_in_a_plain_one() {
+        let text = b"P1#a\n# b\n2#c\n#d\n 2 #e\n1#f\n0 01# g\n# h\n";
+        assert_eq!(
+            read(text).map(|cup| cup.to_string()),
+            Ok("#.\n.#".to_owned())
+        );
+    }
+}

@@ -1,0 +1,164 @@
+//! An imprint as a text of its own: a line a row, `#` for an active taxel, `.` for an inactive one.
+//!
+//! Lines may end in CRLF, and blank ones may follow the last row. Lines and columns of errors count from 1.
+
+use std::fmt;
+
+use crate::imprint::{Imprint, ImprintError};
+
+/// Why bytes are no imprint as text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum TextError {
+    /// A byte that is no text.
+    Byte {
+        /// Which line.
+        line: usize,
+        /// Which character of it.
+        column: usize,
+        /// What stands there.
+        byte: u8,
+    },
+    /// A character that is no taxel.
+    Character {
+        /// Which line.
+        line: usize,
+        /// Which character of it.
+        column: usize,
+        /// What stands there.
+        found: char,
+    },
+    /// A line of another length than the first.
+    Ragged {
+        /// Which line.
+        line: usize,
+        /// Where it is too long, or ends too early.
+        column: usize,
+        /// Its length.
+        found: usize,
+        /// The first line's length.
+        expected: u8,
+    },
+    /// An empty line, or one with too many taxels.
+    Columns {
+        /// Which line.
+        line: usize,
+        /// Where it is too long, or ends too early.
+        column: usize,
+        /// Its length.
+        found: usize,
+    },
+    /// No lines, or too many.
+    Lines {
+        /// How many.
+        found: usize,
+    },
+}
+
+impl fmt::Display for TextError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Byte { line, column, byte } => write!(
+                f,
+                "line {line}, column {column}: found byte 0x{byte:02x}, expected '#' or '.'"
+            ),
+            Self::Character {
+                line,
+                column,
+                found,
+            } => write!(
+                f,
+                "line {line}, column {column}: found {found:?}, expected '#' or '.'"
+            ),
+            Self::Ragged {
+                line,
+                column,
+                found,
+                expected,
+            } => write!(
+                f,
+                "line {line}, column {column}: found {found} taxels, expected {expected} as in line 1"
+            ),
+            Self::Columns {
+                line,
+                column,
+                found,
+            } => write!(
+                f,
+                "line {line}, column {column}: found {found} taxels, expected 1 to 64"
+            ),
+            Self::Lines { found } => write!(f, "found {found} lines, expected 1 to 64"),
+        }
+    }
+}
+
+impl std::error::Error for TextError {}
+
+/// Reads any bytes.
+///
+/// # Errors
+/// What is wrong first, and where.
+///
+/// ```
+/// use taxel::formats::text::{read, write};
+/// let ring = read(b".##.\r\n#..#\r\n.##.\r\n\r\n")?;
+/// assert_eq!(write(&ring), ".##.\n#..#\n.##.\n");
+/// assert_eq!(
+///     read(b"##\n#x").map_err(|error| error.to_string()),
+///     Err("line 2, column 2: found 'x', expected '#' or '.'".to_owned())
+/// );
+/// # Ok::<(), taxel::formats::text::TextError>(())
+/// ```
+pub fn read(bytes: &[u8]) -> Result<Imprint, TextError> {
+    let text = str::from_utf8(bytes).map_err(|error| {
+        let valid = &bytes[..error.valid_up_to()];
+        let start = valid.iter().rposition(|&byte| byte == b'\n');
+        let before = &valid[start.map_or(0, |start| start + 1)..];
+        TextError::Byte {
+            line: valid.split(|&byte| byte == b'\n').count(),
+            column: 1 + String::from_utf8_lossy(before).chars().count(),
+            byte: bytes[error.valid_up_to()],
+        }
+    })?;
+    let rows = lines(text);
+    Imprint::from_rows(rows.iter().copied()).map_err(|error| match error {
+        ImprintError::Rows => TextError::Lines { found: rows.len() },
+        ImprintError::Columns { row, found } => TextError::Columns {
+            line: row,
+            column: found.min(64) + 1,
+            found,
+        },
+        ImprintError::Ragged {
+            row,
+            found,
+            expected,
+        } => TextError::Ragged {
+            line: row,
+            column: found.min(usize::from(expected)) + 1,
+            found,
+            expected,
+        },
+        ImprintError::Character { row, column, found } => TextError::Character {
+            line: row,
+            column,
+            found,
+        },
+    })
+}
+
+/// The lines without their ends, and without the blank ones after the last that is not.
+pub(super) fn lines(text: &str) -> Vec<&str> {
+    let mut lines: Vec<&str> = text
+        .split('\n')
+        .map(|line| line.strip_suffix('\r').unwrap_or(line))
+        .collect();
+    while lines.last().is_some_and(|line| line.trim_end().is_empty()) {
+        lines.pop();
+    }
+    lines
+}
+
+/// The text, with a line end after each row.
+pub fn write(imprint: &Imprint) -> String {
+    format!("{imprint}\n")
+}

@@ -1,0 +1,33 @@
+//! Text inside XML.
+
+/// The text with what has a meaning in XML escaped, and characters that XML does not have replaced. For the content of
+/// an element and for values in double quotes.
+pub(crate) fn escaped(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '&' => safe.push_str("&amp;"),
+            '<' => safe.push_str("&lt;"),
+            '>' => safe.push_str("&gt;"),
+            '"' => safe.push_str("&quot;"),
+            '\u{fffe}' | '\u{ffff}' => safe.push('\u{fffd}'),
+            control if control.is_control() => safe.push('\u{fffd}'),
+            other => safe.push(other),
+        }
+    }
+    safe
+}
+
+#[cfg(test)]
+mod tests {
+    use super::escaped;
+
+    #[test]
+    fn nothing_of_a_text_is_markup() {
+        let text = "a<b> & \"c\" \u{1b}\u{ffff}é";
+        assert_eq!(
+            escaped(text),
+            "a&lt;b&gt; &amp; &quot;c&quot; \u{fffd}\u{fffd}é"
+        );
+    }
+}

@@ -1,0 +1,233 @@
+//! The screen as SVG, for pages and papers: the same bytes on every machine.
+//!
+//! A character is 9 × 18 units. Block characters are drawn as rectangles, so that taxels join up in any font; all else is
+//! text, a run of one style in one element that is stretched to its columns. Colours are those of a theme with
+//! [`ColorDepth::True`]; without them the text is black, or light on the dark palette.
+
+use std::fmt::Write;
+
+use ratatui::buffer::Buffer;
+use ratatui::style::{Color, Modifier};
+
+use crate::formats::xml::escaped;
+use crate::tui::theme::{Palette, Theme};
+
+/// A character's field.
+const WIDTH: u32 = 9;
+const HEIGHT: u32 = 18;
+const FONT: u32 = 15;
+/// From the top of the field to the base line.
+const BASE: u32 = 14;
+/// Around the screen.
+const MARGIN: u32 = 12;
+
+/// How a run of characters looks.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Look {
+    ink: [u8; 3],
+    paper: [u8; 3],
+    bold: bool,
+    dim: bool,
+    underlined: bool,
+}
+
+/// Ink and paper of a palette.
+fn colors(palette: Palette) -> ([u8; 3], [u8; 3]) {
+    match palette {
+        Palette::Dark => ([212, 212, 212], [28, 28, 28]),
+        Palette::Light | Palette::Mono => ([32, 32, 32], [255, 255, 255]),
+    }
+}
+
+/// The drawing of a screen, with a title for those who cannot see it.
+pub(super) fn svg(buffer: &Buffer, theme: Theme, title: &str) -> String {
+    let (ink, paper) = colors(theme.palette);
+    let area = buffer.area;
+    let width = u32::from(area.width) * WIDTH + 2 * MARGIN;
+    let height = u32::from(area.height) * HEIGHT + 2 * MARGIN;
+    let (fore, back, title) = (hex(ink), hex(paper), escaped(title));
+    let mut svg = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+         viewBox=\"0 0 {width} {height}\" role=\"img\" shape-rendering=\"crispEdges\">\n<title>{title}</title>\n\
+         <rect width=\"{width}\" height=\"{height}\" rx=\"6\" fill=\"{back}\"/>\n\
+         <g transform=\"translate({MARGIN} {MARGIN})\" font-size=\"{FONT}\" fill=\"{fore}\" \
+         font-family=\"'DejaVu Sans Mono', 'Noto Sans Mono', Menlo, Consolas, monospace\">\n"
+    );
+    for row in 0..area.height {
+        let mut runs: Vec<(u16, Look, Vec<&str>)> = Vec::new();
+        for column in 0..area.width {
+            let cell = &buffer[(area.x + column, area.y + row)];
+            let look = Look::of(cell, ink, paper);
+            match runs.last_mut() {
+                Some((_, last, symbols)) if *last == look => symbols.push(cell.symbol()),
+                _ => runs.push((column, look, vec![cell.symbol()])),
+            }
+        }
+        for (column, look, symbols) in runs {
+            draw(&mut svg, (column, row), look, paper, &symbols);
+        }
+    }
+    svg + "</g>\n</svg>\n"
+}
+
+impl Look {
+    fn of(cell: &ratatui::buffer::Cell, ink: [u8; 3], paper: [u8; 3]) -> Self {
+        let color = |color: Color, other: [u8; 3]| match color {
+            Color::Rgb(red, green, blue) => [red, green, blue],
+            _ => other,
+        };
+        let (ink, paper) = (color(cell.fg, ink), color(cell.bg, paper));
+        let has = |modifier| cell.modifier.contains(modifier);
+        let (ink, paper) = if has(Modifier::REVERSED) {
+            (paper, ink)
+        } else {
+            (ink, paper)
+        };
+        Self {
+            ink,
+            paper,
+            bold: has(Modifier::BOLD),
+            dim: has(Modifier::DIM),
+            underlined: has(Modifier::UNDERLINED),
+        }
+    }
+}
+
+/// The paper where it differs, the blocks, then the text.
+fn draw(svg: &mut String, (column, row): (u16, u16), look: Look, paper: [u8; 3], symbols: &[&str]) {
+    let (x, y) = (u32::from(column) * WIDTH, u32::from(row) * HEIGHT);
+    let count = u32::try_from(symbols.len()).unwrap_or(u32::MAX);
+    if look.paper != paper {
+        rectangle(svg, (x, y), (count * WIDTH, HEIGHT), look.paper, 4);
+    }
+    let mut at = 0;
+    while let Some(symbol) = symbols.get(at) {
+        let alike = symbols[at..].iter().take_while(|other| *other == symbol);
+        let alike = alike.count();
+        if let Some((down, high, quarters)) = block(symbol) {
+            let (left, wide) = (
+                x + u32::try_from(at).unwrap_or(0) * WIDTH,
+                u32::try_from(alike).unwrap_or(0) * WIDTH,
+            );
+            let quarters = if look.dim { quarters.min(2) } else { quarters };
+            rectangle(svg, (left, y + down), (wide, high), look.ink, quarters);
+        }
+        at += alike;
+    }
+    let mut style = format!(" fill=\"{}\"", hex(look.ink));
+    for (wanted, attribute) in [
+        (look.bold, " font-weight=\"bold\""),
+        (look.dim, " opacity=\"0.6\""),
+        (look.underlined, " text-decoration=\"underline\""),
+    ] {
+        if wanted {
+            style += attribute;
+        }
+    }
+    for (from, text) in pieces(symbols) {
+        let length = text.chars().count();
+        let units = |columns: usize| u32::try_from(columns).unwrap_or(0) * WIDTH;
+        let (x, y, length) = (x + units(from), y + BASE, units(length));
+        // Cannot fail: a String takes everything.
+        let _ = writeln!(
+            svg,
+            "<text x=\"{x}\" y=\"{y}\" textLength=\"{length}\" lengthAdjust=\"spacingAndGlyphs\" \
+             xml:space=\"preserve\"{style}>{}</text>",
+            escaped(&text)
+        );
+    }
+}
+
+/// The texts of a run with the columns that they begin at. Two blanks part them: where a viewer has no font of one width
+/// and does not stretch, columns still stand below each other.
+fn pieces(symbols: &[&str]) -> Vec<(usize, String)> {
+    let mut pieces: Vec<(usize, String)> = Vec::new();
+    let mut blanks = usize::MAX;
+    for (column, &symbol) in symbols.iter().enumerate() {
+        if symbol.trim().is_empty() || block(symbol).is_some() {
+            blanks = blanks.saturating_add(1);
+            continue;
+        }
+        match pieces.last_mut() {
+            Some((_, text)) if blanks < 2 => {
+                text.extend((0..blanks).map(|_| ' '));
+                text.push_str(symbol);
+            }
+            _ => pieces.push((column, symbol.to_owned())),
+        }
+        blanks = 0;
+    }
+    pieces
+}
+
+/// A block character's rectangle: from the top, its height, and how much ink it has in quarters.
+fn block(symbol: &str) -> Option<(u32, u32, u8)> {
+    let half = HEIGHT / 2;
+    match symbol {
+        "█" => Some((0, HEIGHT, 4)),
+        "▓" => Some((0, HEIGHT, 3)),
+        "▒" => Some((0, HEIGHT, 2)),
+        "░" => Some((0, HEIGHT, 1)),
+        "▀" => Some((0, half, 4)),
+        "▄" => Some((half, half, 4)),
+        _ => None,
+    }
+}
+
+fn rectangle(
+    svg: &mut String,
+    (x, y): (u32, u32),
+    (width, height): (u32, u32),
+    color: [u8; 3],
+    quarters: u8,
+) {
+    let fill = hex(color);
+    let share = match quarters {
+        1 => " opacity=\"0.25\"",
+        2 => " opacity=\"0.5\"",
+        3 => " opacity=\"0.75\"",
+        _ => "",
+    };
+    // Cannot fail: a String takes everything.
+    let _ = writeln!(
+        svg,
+        "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"{fill}\"{share}/>"
+    );
+}
+
+fn hex([red, green, blue]: [u8; 3]) -> String {
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
+#[cfg(test)]
+mod tests {
+    use ratatui::layout::Rect;
+    use ratatui::style::Style;
+
+    use super::*;
+
+    #[test]
+    fn a_run_is_one_text_and_blocks_are_rectangles() {
+        let mut buffer = Buffer::empty(Rect::new(0, 0, 8, 2));
+        buffer.set_string(0, 0, " a<b", Style::new());
+        buffer.set_string(0, 1, "1   2 3", Style::new());
+        buffer.set_string(4, 0, "██▀", Style::new().fg(Color::Rgb(1, 2, 3)));
+        buffer.set_string(7, 0, "x", Style::new().add_modifier(Modifier::REVERSED));
+        let svg = svg(&buffer, Theme::plain(false), "a & b");
+        for part in [
+            "<title>a &amp; b</title>",
+            "<text x=\"9\" y=\"14\" textLength=\"27\" lengthAdjust=\"spacingAndGlyphs\" xml:space=\"preserve\" \
+             fill=\"#202020\">a&lt;b</text>",
+            "<rect x=\"36\" y=\"0\" width=\"18\" height=\"18\" fill=\"#010203\"/>",
+            "<rect x=\"54\" y=\"0\" width=\"9\" height=\"9\" fill=\"#010203\"/>",
+            "<rect x=\"63\" y=\"0\" width=\"9\" height=\"18\" fill=\"#202020\"/>",
+            "fill=\"#ffffff\">x</text>",
+            "<text x=\"0\" y=\"32\" textLength=\"9\" ",
+            "<text x=\"36\" y=\"32\" textLength=\"27\" ",
+            ">2 3</text>",
+        ] {
+            assert!(svg.contains(part), "no {part}\n{svg}");
+        }
+        assert_eq!(svg.matches("<text").count(), 4);
+    }
+}

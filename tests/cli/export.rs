@@ -1,0 +1,243 @@
+//! `taxel export` and `--export`: every form out and in again, where it goes, and what is refused.
+
+use tempfile::TempDir;
+
+use super::{RING, Run, misused, program, refused, taxel};
+
+/// A folder that commands run in.
+struct Folder(TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().expect("there is a folder for temporary files"))
+    }
+
+    fn run(&self, line: &str) -> Run {
+        let arguments: Vec<&str> = line.split_whitespace().collect();
+        let mut command = program(&arguments, "C.UTF-8");
+        let child = command.current_dir(self.0.path()).spawn();
+        super::finish(child.expect("the program starts"), b"")
+    }
+
+    fn read(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.0.path().join(name)).expect("the file is there")
+    }
+
+    fn write(&self, name: &str, content: &[u8]) {
+        std::fs::write(self.0.path().join(name), content).expect("written");
+    }
+
+    /// The names in it.
+    fn names(&self) -> Vec<String> {
+        let files = std::fs::read_dir(self.0.path())
+            .expect("a folder")
+            .flatten();
+        let names = files.map(|file| file.file_name().into_string().expect("text"));
+        let mut names: Vec<String> = names.collect();
+        names.sort();
+        names
+    }
+}
+
+fn said(text: &str) -> Run {
+    Run {
+        status: Some(0),
+        stdout: text.to_owned(),
+        stderr: String::new(),
+    }
+}
+
+#[test]
+fn every_form_of_an_imprint_is_described_like_the_first() {
+    let folder = Folder::new();
+    assert_eq!(
+        folder.run("export washer a.txt"),
+        said("written to a.txt\n")
+    );
+    let expected = folder.run("describe a.txt --json");
+    assert_eq!(expected.status, Some(0));
+    assert!(expected.stdout.contains("\"nae\":"));
+    for name in [
+        "a.pbm",
+        "a.csv",
+        "a.npy",
+        "A.CSV",
+        "plain --format pbm-plain",
+    ] {
+        assert_eq!(
+            folder.run(&format!("export a.txt {name}")).status,
+            Some(0),
+            "{name}"
+        );
+        let file = name.split(' ').next().expect("a name");
+        assert_eq!(
+            folder.run(&format!("describe {file} --json")),
+            expected,
+            "{name}"
+        );
+        let saved = folder.run(&format!("--library lib library save same {file} --force"));
+        assert_eq!(saved, said("saved as same\n"));
+    }
+    assert!(folder.read("plain").starts_with(b"P1\n16 16\n"));
+    assert!(folder.read("a.pbm").starts_with(b"P4\n16 16\n"));
+    let stored = folder.run("--library lib library show same --json");
+    assert_eq!(stored.stdout, expected.stdout);
+}
+
+#[test]
+fn a_figure_leaves_its_drawing_beside_its_table() {
+    let folder = Folder::new();
+    let table = taxel(RING, "").stdout;
+    let run = folder.run(&format!("{RING} --export ring.svg"));
+    let line = "wall 2.00\n";
+    assert_eq!(
+        run,
+        said(&table.replace(line, &format!("{line}written to ring.svg\n")))
+    );
+    let drawing = String::from_utf8(folder.read("ring.svg")).expect("text");
+    assert!(drawing.starts_with("<svg ") && drawing.contains(">x / cells<"));
+    assert!(drawing.contains(">CG 6, 5.5 cells<") && drawing.contains("class=\"outline\""));
+    // In mm where a pitch is given, with JSON too.
+    let run = folder.run(&format!(
+        "{RING} --pitch 2 --json --export ring.svg --force"
+    ));
+    assert_eq!(run.stdout, include_str!("ring.json"));
+    let drawing = String::from_utf8(folder.read("ring.svg")).expect("text");
+    assert!(drawing.contains(">x / mm<") && drawing.contains(">CG 12, 11 mm<"));
+    let run = folder.run("picture washer --angle 30 --export turned.png");
+    assert_eq!(run.status, Some(0), "{}", run.stderr);
+    assert!(folder.read("turned.png").starts_with(b"\x89PNG\r\n\x1a\n"));
+}
+
+#[test]
+fn a_stored_shape_is_drawn_with_its_outline_and_name() {
+    let folder = Folder::new();
+    assert_eq!(folder.run("export washer washer.svg").status, Some(0));
+    let drawing = String::from_utf8(folder.read("washer.svg")).expect("text");
+    assert!(drawing.contains("<title>washer: ellipse rx "), "{drawing}");
+    assert!(drawing.contains("class=\"outline\""));
+    assert_eq!(folder.run("export key key.svg").status, Some(0));
+    let drawing = String::from_utf8(folder.read("key.svg")).expect("text");
+    assert!(drawing.contains("<title>key</title>") && !drawing.contains("outline"));
+}
+
+#[test]
+fn standard_streams_take_part() {
+    let plain = "P1\n3 2\n101\n111\n";
+    let run = taxel("export - - --format pbm-plain", "1,0,1\n1,1,1\n");
+    assert_eq!(run, said(plain));
+    assert_eq!(taxel("export - - --format txt", plain), said("#.#\n###\n"));
+    let run = taxel(
+        "figure hexagon --export - --format csv --columns 4 --rows 1",
+        "",
+    );
+    assert_eq!(run, said("0,0,0,0\n"));
+}
+
+#[test]
+fn nothing_is_overwritten_unless_asked_for() {
+    let folder = Folder::new();
+    folder.write("old.svg", b"mine");
+    let there = "\"old.svg\" is there already; --force replaces it";
+    refused(&folder.run("export washer old.svg"), 1, there);
+    refused(&folder.run(&format!("{RING} --export old.svg")), 1, there);
+    assert_eq!(folder.read("old.svg"), b"mine");
+    assert_eq!(
+        folder.run("export washer old.svg --force"),
+        said("written to old.svg\n")
+    );
+    assert!(folder.read("old.svg").starts_with(b"<svg"));
+    // Only a file is replaced, and no half of one is left.
+    std::fs::create_dir(folder.0.path().join("folder.svg")).expect("made");
+    refused(
+        &folder.run("export washer folder.svg --force"),
+        1,
+        "folder.svg: cannot write: not a regular file, and only such a one is replaced",
+    );
+    refused(
+        &folder.run("export washer no/such.svg"),
+        1,
+        "no/such.svg: cannot write: No such file or directory (os error 2)",
+    );
+    assert_eq!(folder.names(), ["folder.svg", "old.svg"]);
+}
+
+#[test]
+fn a_refusal_says_what_is_expected() {
+    misused(
+        "export washer washer.bmp",
+        "'washer.bmp': expected a name that ends in .txt, .pbm, .csv, .npy, .svg or .png, or a '--format'",
+    );
+    misused(
+        "export washer -",
+        "what goes to standard output needs a '--format'",
+    );
+    misused(
+        "export washer a.svg --format gif",
+        "invalid value 'gif' for '--format <FORMAT>'",
+    );
+    misused(
+        "figure hexagon --format svg",
+        "the following required arguments were not provided",
+    );
+    misused(
+        "figure hexagon --force",
+        "the following required arguments were not provided",
+    );
+    refused(
+        &taxel("export nowhere a.svg", ""),
+        1,
+        "no shape is called \"nowhere\", and no file either",
+    );
+    refused(
+        &taxel("export - - --format csv", "P1 2 1 2"),
+        1,
+        "standard input: PBM: line 1, column 8: found byte 0x32, expected 0 or 1",
+    );
+}
+
+#[test]
+fn screens_of_a_script_are_drawn() {
+    let folder = Folder::new();
+    folder.write(
+        "tour.taxel",
+        b"Size 60x20\nScreen\nKeys f<Enter>\nScreen ../a figure!\nState /na\n",
+    );
+    let plain = folder.run("script tour.taxel");
+    assert_eq!(plain.status, Some(0));
+    let drawn = folder.run("script tour.taxel --svg .");
+    assert_eq!(drawn, plain, "what is printed is the same");
+    assert_eq!(
+        folder.names(),
+        ["screen-1.svg", "screen-2.svg", "tour.taxel"]
+    );
+}
+
+#[test]
+fn a_drawn_screen_has_its_theme_and_is_not_overwritten() {
+    let folder = Folder::new();
+    let line = "script -k f<Enter> --size 60x20 --svg .";
+    assert_eq!(folder.run(line).status, Some(0));
+    let dark = String::from_utf8(folder.read("screen-1.svg")).expect("text");
+    // 60 × 20 characters of 9 × 18, and the margin.
+    assert!(
+        dark.starts_with("<svg ") && dark.contains("viewBox=\"0 0 564 384\""),
+        "{dark}"
+    );
+    assert!(dark.contains("fill=\"#1c1c1c\"/>") && dark.contains("fill=\"#87d787\"/>"));
+    assert!(dark.contains("NA 52 in all</text>"));
+    let there = "\"./screen-1.svg\" is there already; --force replaces it";
+    refused(&folder.run(line), 1, there);
+    folder.write(
+        "light.taxel",
+        b"Set theme light\nSize 60x20\nKeys f<Enter>\nScreen screen-1\n",
+    );
+    let light = folder.run("script light.taxel --svg . --force");
+    assert_eq!((light.status, light.stderr.as_str()), (Some(0), ""));
+    let light = String::from_utf8(folder.read("screen-1.svg")).expect("text");
+    assert!(light.contains("fill=\"#ffffff\"/>") && light.contains("fill=\"#008700\"/>"));
+    misused(
+        "script --theme light -k f",
+        "unexpected argument '--theme' found",
+    );
+}

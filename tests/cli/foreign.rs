@@ -1,0 +1,159 @@
+//! Files that other programs read, and files of theirs: numpy, Pillow and netpbm, where they are there.
+//!
+//! With `TAXEL_NUMPY` set, numpy and Pillow must be there.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use tempfile::TempDir;
+
+use super::{finish, program};
+
+/// What the washer is, as rows of `#` and `.`, and its files in a folder.
+fn washer() -> (String, TempDir) {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    for name in [
+        "a.txt",
+        "a.npy",
+        "a.csv",
+        "a.pbm",
+        "a.png",
+        "a.svg",
+        "plain.pbm --format pbm-plain",
+    ] {
+        export(folder.path(), &format!("washer {name}"));
+    }
+    let text = std::fs::read_to_string(folder.path().join("a.txt")).expect("written");
+    (text, folder)
+}
+
+fn export(folder: &Path, line: &str) {
+    let arguments: Vec<&str> = "export".split(' ').chain(line.split(' ')).collect();
+    let mut command = program(&arguments, "C.UTF-8");
+    let child = command.current_dir(folder).spawn();
+    let run = finish(child.expect("the program starts"), b"");
+    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""), "{line}");
+}
+
+/// Runs a program of others in a folder; none where it is not there.
+fn others(folder: &Path, name: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(name)
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .output()
+        .ok()?;
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    let wrong = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        output.status.success(),
+        "{name} {arguments:?}: {said}{wrong}"
+    );
+    Some(said)
+}
+
+/// Python, where it has a module.
+fn python(module: &str) -> Option<&'static str> {
+    let found = Command::new("python3")
+        .args(["-c", &format!("import {module}")])
+        .stderr(Stdio::null())
+        .status();
+    if found.is_ok_and(|status| status.success()) {
+        return Some("python3");
+    }
+    assert!(std::env::var_os("TAXEL_NUMPY").is_none(), "no {module}");
+    eprintln!("SKIPPED: no {module} in python3");
+    None
+}
+
+#[test]
+fn numpy_reads_and_is_read() {
+    let Some(python) = python("numpy") else {
+        return;
+    };
+    let (text, folder) = washer();
+    let script = "
+import numpy as np
+a = np.load('a.npy')
+assert a.dtype == bool and a.shape == (16, 16), (a.dtype, a.shape)
+b = np.loadtxt('a.csv', delimiter=',')
+assert (a == b).all()
+np.save('int.npy', a.astype('>i4'))
+np.save('fortran.npy', np.asfortranarray(a.astype('<f8')))
+np.savetxt('default.csv', a, delimiter=',')
+np.savetxt('short.csv', a, delimiter=';', fmt='%d')
+for row in a:
+    print(''.join('#' if cell else '.' for cell in row))
+";
+    let said = others(folder.path(), python, &["-c", script]);
+    assert_eq!(said.as_ref(), Some(&text));
+    for name in ["int.npy", "fortran.npy", "default.csv", "short.csv"] {
+        export(folder.path(), &format!("{name} back.txt --force"));
+        let back = std::fs::read_to_string(folder.path().join("back.txt"));
+        assert_eq!(back.expect("written"), text, "{name}");
+    }
+}
+
+#[test]
+fn pillow_reads_and_is_read() {
+    let Some(python) = python("PIL.Image") else {
+        return;
+    };
+    let (text, folder) = washer();
+    // Black is an active taxel; Pillow's own bitmaps have 0 for black.
+    let script = "
+from PIL import Image
+a, b = Image.open('a.pbm'), Image.open('plain.pbm')
+assert a.mode == b.mode == '1' and a.size == (16, 16)
+assert a.tobytes() == b.tobytes()
+a.save('pillow.pbm')
+page = Image.open('a.png')
+page.load()
+assert page.mode == 'L' and round(page.info['dpi'][0]) == 288, (page.mode, page.info)
+for y in range(16):
+    print(''.join('.' if a.getpixel((x, y)) else '#' for x in range(16)))
+";
+    let said = others(folder.path(), python, &["-c", script]);
+    assert_eq!(said.as_ref(), Some(&text));
+    export(folder.path(), "pillow.pbm back.txt");
+    let back = std::fs::read_to_string(folder.path().join("back.txt"));
+    assert_eq!(back.expect("written"), text);
+}
+
+#[test]
+fn python_parses_the_drawing_as_xml() {
+    let Some(python) = python("xml.dom.minidom") else {
+        return;
+    };
+    let (_, folder) = washer();
+    let script = "
+import xml.dom.minidom
+page = xml.dom.minidom.parse('a.svg').documentElement
+print(page.tagName, page.namespaceURI, len(page.getElementsByTagName('path')) > 5)
+";
+    let said = others(folder.path(), python, &["-c", script]);
+    assert_eq!(
+        said.as_deref(),
+        Some("svg http://www.w3.org/2000/svg True\n")
+    );
+}
+
+#[test]
+fn netpbm_reads_and_is_read() {
+    let (text, folder) = washer();
+    let path = folder.path();
+    if others(path, "pamfile", &["a.pbm"]).is_none() {
+        eprintln!("SKIPPED: no netpbm");
+        return;
+    }
+    let plain = others(path, "pnmtoplainpnm", &["a.pbm"]);
+    let plain = plain.or_else(|| others(path, "pamtopnm", &["-plain", "a.pbm"]));
+    std::fs::write(path.join("theirs.pbm"), plain.expect("one of the two")).expect("written");
+    for name in ["theirs.pbm", "plain.pbm"] {
+        export(path, &format!("{name} back.txt --force"));
+        let back = std::fs::read_to_string(path.join("back.txt"));
+        assert_eq!(back.expect("written"), text, "{name}");
+    }
+    let compared = others(path, "pamfile", &["plain.pbm"]).expect("it is there");
+    assert!(compared.contains("16 by 16"), "{compared}");
+}
