@@ -50,6 +50,9 @@ pub struct Written<T> {
     pub line: usize,
 }
 
+/// No file of settings is longer, in bytes: 64 KiB. Of a mebibyte of malice the parser would make seventy.
+pub const MAX_BYTES: usize = 64 << 10;
+
 /// What the file says; nothing where it is silent. Of a choice none is `auto`.
 #[derive(Clone, Debug, Default)]
 pub struct Config {
@@ -81,6 +84,9 @@ pub struct ConfigError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Wrong {
+    /// It is longer than [`MAX_BYTES`].
+    #[error("larger than 64 KiB, which no file of settings is")]
+    Large,
     /// It is no TOML.
     #[error("{0}")]
     Syntax(String),
@@ -149,6 +155,9 @@ impl Config {
     }
 
     fn of(text: &str) -> Result<Self, Refusal> {
+        if text.len() > MAX_BYTES {
+            return Err((0, Wrong::Large));
+        }
         let table = DeTable::parse(text).map_err(|error| {
             let message = shortened(&error.message().replace('\n', "; "));
             let byte = error.span().map_or(0, |span| span.start);

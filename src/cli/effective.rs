@@ -7,7 +7,7 @@ use std::io::{ErrorKind, Read};
 use std::path::PathBuf;
 
 use super::chosen::Chosen;
-use super::config::{AUTO, CHARSETS, Config, SENSOR, Written};
+use super::config::{AUTO, CHARSETS, Config, MAX_BYTES, SENSOR, Written, Wrong};
 use super::failure::Failure;
 use super::locale::Charset;
 use crate::library::place;
@@ -20,9 +20,6 @@ use crate::tui::theme::{ColorDepth, Palette};
 
 /// The variable that names the file.
 pub(super) const VARIABLE: &str = "TAXEL_CONFIG";
-
-/// No file of settings is longer.
-const MAX_BYTES: usize = 1 << 20;
 
 /// The file of settings.
 #[derive(Clone, Debug, Default)]
@@ -62,7 +59,7 @@ impl Loaded {
             Ok(_) => true,
         };
         if bytes.len() > MAX_BYTES {
-            return Err(failure("larger than 1 MiB".to_owned()));
+            return Err(failure(Wrong::Large.to_string()));
         }
         let text = String::from_utf8(bytes).map_err(|_| failure("no UTF-8 text".to_owned()))?;
         let config = Config::read(&text).map_err(|error| Failure::Settings {

@@ -19,6 +19,8 @@ pub(crate) fn all(body: &str) -> Vec<Malice> {
         "shape" => &SHAPES,
         "job" => &JOBS,
         "imprint" => &IMPRINTS,
+        "exchange" => &EXCHANGES,
+        "config" => &CONFIGS,
         "range" => &RANGES,
         "npy" => &ARRAYS,
         "keys" => &KEYS,
@@ -138,6 +140,36 @@ const IMPRINTS: [Malice; 4] = [
     ("many rows", || filled("", "#\n", "")),
     ("returns", || filled("#", "\r", "")),
     ("long rows", || filled("", &("#".repeat(16_000) + "\n"), "")),
+];
+
+const EXCHANGES: [Malice; 9] = [
+    ("a comment", || filled("P1", "#", "\n1 1 1")),
+    ("comments", || filled("P1", "# a\n", "1 1 1")),
+    ("a long width", || filled("P1 ", "9", " 1 1")),
+    ("many bits", || filled("P4 1 1 ", "a", "")),
+    ("a long row of numbers", || filled("", "1,", "1")),
+    ("many rows of numbers", || filled("", "1\n", "")),
+    ("a long number", || filled("0.", "0", "")),
+    ("a quote", || filled("\"", "1", "")),
+    ("a long shape", || {
+        let mut bytes = filled(
+            "0123456789ab{'descr': '|b1', 'fortran_order': False, 'shape': (",
+            "1,",
+            ")}\n",
+        );
+        bytes[..12].copy_from_slice(b"\x93NUMPY\x02\x00\xf4\xff\x0f\x00");
+        bytes
+    }),
+];
+
+const CONFIGS: [Malice; 7] = [
+    ("deep lists", || filled("theme = ", "[", "")),
+    ("deep tables", || filled("theme = ", "{a=", "")),
+    ("deep keys", || filled("a", ".a", " = 1")),
+    ("a long text", || filled("theme = \"", "a", "\"")),
+    ("a long key", || filled("", "a", " = 1")),
+    ("tables", || filled("", "[sensor]\n", "")),
+    ("a long number", || filled("[sensor]\nrows = ", "7", "")),
 ];
 
 const KEYS: [Malice; 5] = [

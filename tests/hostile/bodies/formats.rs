@@ -1,11 +1,13 @@
-//! Texts and arrays: shapes, jobs, imprints, ranges, headers of numpy.
+//! Texts and arrays: shapes, jobs, imprints in every form, ranges, headers of numpy, settings.
 
+use taxel::cli::config::Config;
 use taxel::formats::answer::Answer;
+use taxel::formats::exchange::{self, Form};
 use taxel::formats::job::Job;
 use taxel::formats::npy::{Kind, content, header, words};
 use taxel::formats::shape::Shape;
 use taxel::imprint::Imprint;
-use taxel::sensor::Sensor;
+use taxel::sensor::{SENSOR_PARAMETERS, Sensor};
 use taxel::sweep::plan::Shard;
 use taxel::sweep::range::{DecimalRange, MAX_VALUES};
 use taxel::touch::Plane;
@@ -48,6 +50,33 @@ pub(crate) fn imprint(bytes: &[u8]) {
     match text.parse::<Imprint>() {
         Ok(imprint) => assert_eq!(imprint.to_string().parse(), Ok(imprint)),
         Err(error) => is_short(&error.to_string()),
+    }
+}
+
+/// An imprint as other programs write it: text, PBM, CSV, NPY.
+pub(crate) fn exchange(bytes: &[u8]) {
+    match exchange::read(bytes) {
+        Ok(imprint) => {
+            for form in Form::ALL {
+                assert_eq!(exchange::read(&form.write(&imprint)), Ok(imprint));
+            }
+        }
+        Err(error) => is_short(&error.to_string()),
+    }
+}
+
+/// The file of settings.
+pub(crate) fn config(bytes: &[u8]) {
+    let Ok(text) = str::from_utf8(bytes) else {
+        return;
+    };
+    match Config::read(text) {
+        Ok(config) => assert!(config.sensor().len() <= SENSOR_PARAMETERS.len()),
+        Err(error) => {
+            is_short(&error.to_string());
+            let lines = text.split('\n').count();
+            assert!((1..=lines).contains(&error.line), "{error}");
+        }
     }
 }
 

@@ -18,14 +18,16 @@ pub(crate) use screen::session_of;
 pub(crate) type Body = (&'static str, &'static str, fn(&[u8]));
 
 /// All of them.
-pub(crate) const BODIES: [Body; 13] = [
+pub(crate) const BODIES: [Body; 15] = [
     ("shape", "shape", formats::shape),
     ("job", "job", formats::job),
     ("imprint", "imprint", formats::imprint),
+    ("exchange", "exchange", formats::exchange),
     ("range", "range", formats::range),
     ("npy", "npy", formats::npy),
     ("archive", "archive", archive::archive),
     ("arrays", "arrays", archive::arrays),
+    ("config", "config", formats::config),
     ("keys", "keys", keys::keys),
     ("terminal", "terminal", keys::terminal),
     ("command", "command", screen::command),
