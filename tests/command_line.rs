@@ -246,3 +246,88 @@ fn a_long_help_says_that_there_is_more() {
     session.resize(60, 12);
     shows(&session, &["lines 1-9 of", "more below"]);
 }
+
+#[test]
+fn commands_do_what_keys_do() {
+    let mut session = session(":");
+    shows(&session, &["Enter do it"]);
+    press(
+        &mut session,
+        "figure hexagon --side 3 --x0 2.1 --angle 17 --thickness 1<Enter>",
+    );
+    shows(
+        &session,
+        &["hexagon side 3.00 at 2.10, 4.00, 17°, wall 1.00"],
+    );
+    press(
+        &mut session,
+        ":turn -20<Enter>:undo<Enter>:save mine<Enter>:new<Enter>:load mine<Enter>",
+    );
+    shows(&session, &["mine loaded", "hexagon side 3.00"]);
+    press(&mut session, ":picture mine<Enter>");
+    shows(&session, &["Picture: mine"]);
+    press(&mut session, "<Esc>:delete mine<Enter>");
+    shows(&session, &["Delete mine? (y/n)"]);
+    press(&mut session, "y:restore mine<Enter>");
+    shows(&session, &["mine is back"]);
+    press(
+        &mut session,
+        ":sensor --columns 8 --pitch 2.5<Enter>:undo<Enter>:redo<Enter>",
+    );
+    shows(&session, &["column 7,"]);
+    press(&mut session, ":copy descriptors<Enter>");
+    shows(&session, &["characters sent to your terminal's clipboard"]);
+    for (line, message) in [
+        ("fly", "! \"fly\" is unknown; Tab shows the commands"),
+        (
+            "figure blob",
+            "! figure: \"blob\" is unknown, expected one of ellipse,",
+        ),
+        ("figure hexagon --side", "! --side needs a number"),
+        ("figure hexagon --side 99", "! Side: 99 is out of range"),
+        (
+            "figure hexagon --length 2",
+            "! length: not a value of the hexagon",
+        ),
+        (
+            "figure hexagon side 2",
+            "! expected a flag like --side, found side",
+        ),
+        ("undo now", "! undo takes nothing, found \"now\""),
+        ("turn round", "! turn takes whole degrees from -360 to 360"),
+        ("zoom", "! zoom takes in or out"),
+        ("save a/b", "! '/' cannot be in a name"),
+        ("load nowhere", "! no shape is called \"nowhere\""),
+    ] {
+        press(&mut session, &format!(":{line}<Enter>"));
+        shows(&session, &[message]);
+        press(&mut session, "<Esc>");
+    }
+    press(&mut session, ":quit!<Enter>");
+    assert!(session.app().ended());
+}
+
+#[test]
+fn the_shape_is_turned_and_zoomed_by_commands() {
+    let mut session = session("f<Enter>:turn -20<Enter>");
+    shows(&session, &["340°"]);
+    press(
+        &mut session,
+        ":picture washer<Enter><Enter>:zoom in<Enter>:zoom in<Enter>:zoom out<Enter>",
+    );
+    shows(&session, &["zoom 1.01 x 1.01"]);
+}
+
+#[test]
+fn commands_are_completed_and_recalled() {
+    let mut session = session(":re<Tab>");
+    shows(&session, &[":re   redo redraw region restore"]);
+    press(&mut session, "g<Tab>");
+    shows(&session, &[":region"]);
+    press(&mut session, "<C-u>figure hex<Tab>--side 3<Enter>");
+    shows(&session, &["hexagon side 3.00"]);
+    press(&mut session, ":new<Enter>:<Up><Up>");
+    shows(&session, &[":figure hexagon --side 3"]);
+    press(&mut session, "<Down>");
+    shows(&session, &[":new"]);
+}

@@ -2,6 +2,8 @@
 //!
 //! Nothing waits a fixed time for something to be right: every wait is for a condition, with a long deadline.
 
+mod drawn;
+
 mod program;
 
 mod screens;

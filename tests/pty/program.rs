@@ -4,8 +4,6 @@
 //! fork and exec. So the test's own binary is started first, as [`launch`], and then replaced.
 
 use std::env;
-use std::fmt::Write as _;
-use std::num::NonZeroU16;
 use std::os::fd::{AsFd, OwnedFd};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::Path;
@@ -19,7 +17,8 @@ use rustix::process::{Pid, Signal, kill_process};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{Termios, Winsize, tcgetattr, tcsetwinsize};
 use taxel::tui::script::Session;
-use taxel::tui::theme::Role;
+
+use crate::drawn::{emulator, of_emulator, of_session, side};
 
 /// The real binary.
 pub(crate) const TAXEL: &str = env!("CARGO_BIN_EXE_taxel");
@@ -389,14 +388,6 @@ impl Drop for Program {
     }
 }
 
-fn emulator(columns: u16, rows: u16) -> vt100::Parser {
-    vt100::Parser::new(side(rows), side(columns), 0)
-}
-
-fn side(number: u16) -> NonZeroU16 {
-    NonZeroU16::new(number).expect("not empty")
-}
-
 fn set_size(master: &OwnedFd, (columns, rows): (u16, u16)) {
     let size = Winsize {
         ws_row: rows,
@@ -405,64 +396,4 @@ fn set_size(master: &OwnedFd, (columns, rows): (u16, u16)) {
         ws_ypixel: 0,
     };
     tcsetwinsize(master, size).expect("a size");
-}
-
-/// A screen as text: rows, the styles of all that is not blank, the cursor.
-fn of_session(session: &Session) -> String {
-    let mut text = String::new();
-    for (row, styles) in session.screen().lines().zip(session.styles().lines()) {
-        // Blanks at the end are cut off, but may be reversed.
-        let row = row.chars().chain(std::iter::repeat(' '));
-        let cells: Vec<(char, char)> = row.zip(styles.chars()).collect();
-        write_row(&mut text, &cells);
-    }
-    let cursor = session.cursor();
-    write!(text, "cursor {},{}", cursor.x, cursor.y).expect("a string");
-    text
-}
-
-fn of_emulator(screen: &vt100::Screen) -> String {
-    let (rows, columns) = screen.size();
-    let mut text = String::new();
-    for row in 0..rows.get() {
-        let cells: Vec<(char, char)> = (0..columns.get())
-            .filter_map(|column| screen.cell(row, column))
-            .map(|cell| (cell.contents().chars().next().unwrap_or(' '), letter(cell)))
-            .collect();
-        write_row(&mut text, &cells);
-    }
-    let (row, column) = screen.cursor_position();
-    write!(text, "cursor {column},{row}").expect("a string");
-    text
-}
-
-fn letter(cell: &vt100::Cell) -> char {
-    use ratatui::style::{Modifier, Style};
-    let attributes = [
-        (cell.inverse(), Modifier::REVERSED),
-        (cell.bold(), Modifier::BOLD),
-        (cell.underline(), Modifier::UNDERLINED),
-        (cell.dim(), Modifier::DIM),
-    ];
-    let set = attributes
-        .into_iter()
-        .filter(|(set, _)| *set)
-        .map(|(_, attribute)| attribute);
-    Role::letter(&Style::new().add_modifier(set.collect()))
-}
-
-/// A blank has no style that matters unless it is reversed.
-fn write_row(text: &mut String, cells: &[(char, char)]) {
-    let row: String = cells.iter().map(|(character, _)| *character).collect();
-    let styles: String = cells
-        .iter()
-        .map(|&(character, style)| {
-            if character == ' ' && style != 'R' {
-                '.'
-            } else {
-                style
-            }
-        })
-        .collect();
-    writeln!(text, "{}\n{}", row.trim_end(), styles.trim_end_matches('.')).expect("a string");
 }

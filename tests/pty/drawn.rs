@@ -1,0 +1,75 @@
+//! Screens as text that can be compared: what the program means to show, and what a terminal makes of its bytes.
+
+use std::fmt::Write as _;
+use std::num::NonZeroU16;
+
+use taxel::tui::script::Session;
+use taxel::tui::theme::Role;
+
+pub(crate) fn emulator(columns: u16, rows: u16) -> vt100::Parser {
+    vt100::Parser::new(side(rows), side(columns), 0)
+}
+
+pub(crate) fn side(number: u16) -> NonZeroU16 {
+    NonZeroU16::new(number).expect("not empty")
+}
+
+/// A screen as text: rows, the styles of all that is not blank, the cursor.
+pub(crate) fn of_session(session: &Session) -> String {
+    let mut text = String::new();
+    for (row, styles) in session.screen().lines().zip(session.styles().lines()) {
+        // Blanks at the end are cut off, but may be reversed.
+        let row = row.chars().chain(std::iter::repeat(' '));
+        let cells: Vec<(char, char)> = row.zip(styles.chars()).collect();
+        write_row(&mut text, &cells);
+    }
+    let cursor = session.cursor();
+    write!(text, "cursor {},{}", cursor.x, cursor.y).expect("a string");
+    text
+}
+
+pub(crate) fn of_emulator(screen: &vt100::Screen) -> String {
+    let (rows, columns) = screen.size();
+    let mut text = String::new();
+    for row in 0..rows.get() {
+        let cells: Vec<(char, char)> = (0..columns.get())
+            .filter_map(|column| screen.cell(row, column))
+            .map(|cell| (cell.contents().chars().next().unwrap_or(' '), letter(cell)))
+            .collect();
+        write_row(&mut text, &cells);
+    }
+    let (row, column) = screen.cursor_position();
+    write!(text, "cursor {column},{row}").expect("a string");
+    text
+}
+
+fn letter(cell: &vt100::Cell) -> char {
+    use ratatui::style::{Modifier, Style};
+    let attributes = [
+        (cell.inverse(), Modifier::REVERSED),
+        (cell.bold(), Modifier::BOLD),
+        (cell.underline(), Modifier::UNDERLINED),
+        (cell.dim(), Modifier::DIM),
+    ];
+    let set = attributes
+        .into_iter()
+        .filter(|(set, _)| *set)
+        .map(|(_, attribute)| attribute);
+    Role::letter(&Style::new().add_modifier(set.collect()))
+}
+
+/// A blank has no style that matters unless it is reversed.
+fn write_row(text: &mut String, cells: &[(char, char)]) {
+    let row: String = cells.iter().map(|(character, _)| *character).collect();
+    let styles: String = cells
+        .iter()
+        .map(|&(character, style)| {
+            if character == ' ' && style != 'R' {
+                '.'
+            } else {
+                style
+            }
+        })
+        .collect();
+    writeln!(text, "{}\n{}", row.trim_end(), styles.trim_end_matches('.')).expect("a string");
+}
