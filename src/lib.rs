@@ -40,9 +40,30 @@
 //!
 //! # Map
 //!
-//! A module uses only those above it, and the same holds inside each of them; a test reads the `use` lines and holds
-//! that law. Only `tui` names ratatui and crossterm. Only `library`, `formats`, `cli`, `tui::effect`, `tui::terminal`
-//! and `main` touch the world; everything above them is total: no input or output, no panic on any input.
+//! The modules as layers; each names only what stands above it, and the same holds inside each of them. A test reads the
+//! `use` lines and holds that law.
+//! ```text
+//!  geometry     the area of polygons and ellipses in each cell of a grid           plane, f64
+//!  parameter    what can be set: one table of keys, units, ranges, defaults
+//!  sensor       columns, rows, threshold, pitch
+//!  imprint      the matrix: a u64 a row
+//!  figure  picture  source        what touches: seven figures, a stored imprint
+//!  touch        shape + sensor -> coverage of each taxel -> imprint
+//!  description  imprint -> regions -> DESCRIPTORS
+//!  sweep        every pose of a grid -> its distinct imprints, statistics
+//!  ───────────  above: total, no input or output, no panic; below: the world
+//!  formats      text, PBM, CSV, NPY, JSON, atlases; drawings as SVG and PNG
+//!  library      the folder of stored shapes
+//!  tui          the screen                                                         ratatui, crossterm
+//!  cli          the command line over all of it                                    clap
+//! ```
+//! Files and streams are touched by `library`, `formats`, `cli`, `tui::effect`, `tui::terminal` and `main` only.
+//!
+//! The way of a pose:
+//! ```text
+//! form, flag or JSON line -> parameter (range) -> figure or picture -> outlines, placed
+//!   -> coverage -> imprint -> regions -> descriptors -> panel, table, JSON, drawing, sweep
+//! ```
 //!
 //! # Features
 //!
@@ -70,6 +91,11 @@
 //! - Every [`figure::Figure`], [`picture::Picture`] and [`sensor::Sensor`] is in range: checked when it is made.
 //! - What follows from a document (coverage, imprint, regions, descriptors) is computed, never stored beside it.
 //! - No number that is not finite is ever shown or written: a value that does not exist is none.
+
+// The examples of the README are compiled and run with those of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 mod quote;
 

@@ -1,27 +1,96 @@
 //! The README's screen and tables are what the program shows. `TAXEL_UPDATE=1 cargo test --test readme` writes them
 //! anew.
 
+use std::ops::ControlFlow;
+
 use taxel::description::descriptor::{DESCRIPTORS, Unit};
+use taxel::figure::{Figure, Kind};
+use taxel::formats::drawing::Drawing;
+use taxel::parameter::Parameter;
+use taxel::sensor::Sensor;
+use taxel::source::Source;
+use taxel::touch::Plane;
+use taxel::tui::app::Options;
 use taxel::tui::binding::Context;
+use taxel::tui::effect::World;
 use taxel::tui::keymap::KEYMAP;
+use taxel::tui::remap::Keymap;
+use taxel::tui::script::runner::{Settings, Shown, run_shown};
+use taxel::tui::theme::{ColorDepth, Palette, Theme};
 
 #[path = "readme/dependencies.rs"]
 mod dependencies;
 #[path = "../examples/positions.rs"]
 #[expect(dead_code, reason = "its main prints the report")]
 mod positions;
-#[path = "common/screen.rs"]
-mod screen;
-use screen::{press, session, shows};
 
 const README: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/README.md");
 
-/// The paper's Fig. 1.
-fn figure() -> String {
-    let mut session = session("");
-    press(&mut session, "f<3x:Tab>1.99<Tab>1.47<Tab><Tab>2<Enter>");
-    shows(&session, &["NA     36"]);
-    format!("\n```text\n{}```\n\n", session.screen())
+/// The paper's Fig. 1 on the screen, by a script: as text, and drawn.
+fn screen() -> (String, String) {
+    let settings = Settings {
+        options: Options {
+            sensor: Sensor::default(),
+            theme: Theme {
+                depth: ColorDepth::True,
+                palette: Palette::Dark,
+                ..Theme::plain(false)
+            },
+        },
+        size: (80, 24),
+        styles: false,
+        json: false,
+        keymap: Keymap::default(),
+    };
+    let world = World::scratch().expect("there is a folder for temporary files");
+    let (mut text, mut drawn) = (String::new(), String::new());
+    let script = include_str!("scripts/paper_figure.taxel");
+    run_shown(script, &[], &settings, world, &mut |shown| {
+        if let Shown::Screen(_, session) = shown {
+            text = session.screen();
+            drawn = session.svg("taxel: the imprint of a ring and what describes it");
+        }
+        ControlFlow::Continue(())
+    })
+    .expect("the script holds");
+    assert!(text.contains("NA     36"), "{text}");
+    (format!("\n```text\n{text}```\n\n"), drawn)
+}
+
+/// The same touch, drawn in millimetres.
+fn touch() -> String {
+    let figure = Figure::default_of(Kind::Ellipse, 16);
+    let figure = [
+        (Parameter::X0, 1.99),
+        (Parameter::Y0, 1.47),
+        (Parameter::Thickness, 2.0),
+    ]
+    .into_iter()
+    .try_fold(figure, |figure, (parameter, value)| {
+        figure.with(parameter, value, 16)
+    })
+    .expect("in range");
+    let imprint = Plane::new(Sensor::default()).touch(&figure);
+    Drawing::new(&imprint)
+        .with_outline(&figure)
+        .with_pitch(2.5)
+        .with_title(&Source::Figure(figure).to_string())
+        .svg()
+}
+
+#[test]
+fn pictures_are_those_of_the_program() {
+    for (name, drawn) in [("screen.svg", screen().1), ("touch.svg", touch())] {
+        let path = format!("{}/docs/{name}", env!("CARGO_MANIFEST_DIR"));
+        if std::env::var_os("TAXEL_UPDATE").is_some() {
+            std::fs::write(&path, &drawn).expect("the picture can be written");
+        }
+        let there = std::fs::read_to_string(&path).expect("the picture is there");
+        assert!(
+            there == drawn,
+            "docs/{name} is out of date: TAXEL_UPDATE=1 cargo test --test readme"
+        );
+    }
 }
 
 fn descriptors() -> String {
@@ -42,6 +111,7 @@ fn descriptors() -> String {
     format!("| key | symbol | meaning | unit |\n|---|---|---|---|\n{rows}")
 }
 
+/// All places, those beside the matrix folded together.
 fn keys() -> String {
     let mut text = String::new();
     for context in Context::ALL {
@@ -50,8 +120,11 @@ fn keys() -> String {
             text += &format!("| `{}` | {} |\n", binding.labels(), binding.help);
         }
         text.push('\n');
+        if context == Context::Matrix {
+            text += "<details><summary>In every other place</summary>\n\n";
+        }
     }
-    text.trim_end().to_owned() + "\n"
+    text + "</details>\n"
 }
 
 /// The script that `tests/scripts.rs` runs.
@@ -64,7 +137,7 @@ fn screen_and_tables_are_those_of_the_program() {
     let text = std::fs::read_to_string(README).expect("the README is there");
     let mut wanted = text.clone();
     for (name, block) in [
-        ("screen", figure()),
+        ("screen", screen().0),
         ("descriptors", descriptors()),
         ("tour", tour()),
         ("keys", keys()),

@@ -1,7 +1,7 @@
 //! The exact area of a shape inside each cell of a grid.
 //!
 //! **Method.** The boundary is cut at the grid lines, and each piece adds to its own cell what the areas follow from
-//! ([`super::grid`]): straight edges here, ellipses in [`super::arcs`].
+//! (`grid`): straight edges here, ellipses in `arcs`.
 //!
 //! **Error.** A few roundings of numbers below 64 per piece: under 1e-12 in `f64` for every shape of the program.
 //! Edges that are horizontal or vertical up to a rounding are harmless: what they contribute is as small as their
