@@ -12,7 +12,7 @@ use taxel::figure::{Figure, Kind};
 use taxel::parameter::Parameter;
 use taxel::sensor::Sensor;
 use taxel::touch::Plane;
-use taxel::tui::{app::Options, effect::World, script::Session, theme::Theme};
+use taxel::tui::{app::Options, effect::World, script::Session};
 
 use peer::{Outline, Peer};
 
@@ -186,10 +186,7 @@ fn stages(criterion: &mut Criterion) {
 
 /// From a keystroke to a finished frame of 80 × 24 in a test buffer: the cursor moved, a taxel turned over.
 fn frame(criterion: &mut Criterion) {
-    let options = Options {
-        sensor: Sensor::default(),
-        theme: Theme::plain(false),
-    };
+    let options = Options::plain(false);
     let mut group = criterion.benchmark_group("frame");
     // Two keys, two frames, and all is as before; undone, so that no history grows.
     for (name, keys) in [("move", "<Right><Left>"), ("toggle", "<Space>u")] {

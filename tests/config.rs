@@ -2,13 +2,11 @@
 //! then shows.
 
 use taxel::cli::config::Config;
-use taxel::sensor::Sensor;
 use taxel::tui::app::{App, Options};
 use taxel::tui::binding::Context;
 use taxel::tui::effect::World;
 use taxel::tui::keymap::KEYMAP;
 use taxel::tui::script::Session;
-use taxel::tui::theme::Theme;
 
 fn refused(text: &str, expected: &str) {
     let error = Config::read(text).expect_err(text).to_string();
@@ -134,10 +132,7 @@ fn messages_are_short() {
 
 fn session(config: &str, keys: &str) -> Session {
     let config = Config::read(config).expect("a file of settings");
-    let options = Options {
-        sensor: Sensor::default(),
-        theme: Theme::plain(false),
-    };
+    let options = Options::plain(false);
     let app = App::new(&options).with_keymap(config.keymap().clone());
     let world = World::scratch().expect("a folder");
     let mut session = Session::of(app, world, 80, 24);

@@ -8,13 +8,11 @@ use std::time::Duration;
 
 use proptest::prelude::*;
 use taxel::library::store::Library;
-use taxel::sensor::Sensor;
 use taxel::tui::app::Options;
 use taxel::tui::effect::World;
 use taxel::tui::exploring::Told;
 use taxel::tui::message::Message;
 use taxel::tui::script::Session;
-use taxel::tui::theme::Theme;
 
 #[path = "common/screen.rs"]
 mod screen;
@@ -46,10 +44,7 @@ impl Beside {
             // The test may be over.
             let _ = post.send(told);
         }));
-        let options = Options {
-            sensor: Sensor::default(),
-            theme: Theme::plain(false),
-        };
+        let options = Options::plain(false);
         let mut session = Session::new(&options, world, 80, 24);
         press(&mut session, keys);
         Self { session, told }

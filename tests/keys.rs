@@ -1,6 +1,5 @@
 //! What keys do: keys in, then what must and what must not be on the screen.
 
-use taxel::sensor::Sensor;
 use taxel::tui::app::Options;
 use taxel::tui::binding::Context;
 use taxel::tui::effect::World;
@@ -8,17 +7,13 @@ use taxel::tui::keymap::KEYMAP;
 use taxel::tui::message::Message;
 use taxel::tui::remap::{Keymap, help};
 use taxel::tui::script::Session;
-use taxel::tui::theme::Theme;
 
 fn world() -> World {
     World::scratch().expect("there is a folder for temporary files")
 }
 
 fn session(keys: &str) -> Session {
-    let options = Options {
-        sensor: Sensor::default(),
-        theme: Theme::plain(false),
-    };
+    let options = Options::plain(false);
     let mut session = Session::new(&options, world(), 80, 24);
     session.keys(keys).expect("the keys of a test are right");
     session

@@ -30,12 +30,12 @@ const README: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/README.md");
 fn screen() -> (String, String) {
     let settings = Settings {
         options: Options {
-            sensor: Sensor::default(),
             theme: Theme {
                 depth: ColorDepth::True,
                 palette: Palette::Dark,
                 ..Theme::plain(false)
             },
+            ..Options::plain(false)
         },
         size: (80, 24),
         styles: false,

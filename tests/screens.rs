@@ -11,10 +11,7 @@ fn world() -> World {
 }
 
 fn session(size: (u16, u16), ascii: bool, keys: &str) -> Session {
-    let options = Options {
-        sensor: Sensor::default(),
-        theme: Theme::plain(ascii),
-    };
+    let options = Options::plain(ascii);
     let mut session = Session::new(&options, world(), size.0, size.1);
     session.keys(keys).expect("the keys of a test are right");
     session
@@ -52,6 +49,7 @@ fn every_size_of_every_screen_is_drawn() {
                     depth: ColorDepth::TwoFiftySix,
                     palette: Palette::Dark,
                 },
+                mouse: true,
             };
             let mut session = Session::new(&options, world(), 80, 24);
             session.keys(keys).expect("the keys of a test are right");

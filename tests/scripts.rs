@@ -6,19 +6,14 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use taxel::sensor::Sensor;
 use taxel::tui::app::Options;
 use taxel::tui::effect::World;
 use taxel::tui::remap::Keymap;
 use taxel::tui::script::runner::{Failure, Settings, run};
-use taxel::tui::theme::Theme;
 
 fn settings(styles: bool, json: bool) -> Settings {
     Settings {
-        options: Options {
-            sensor: Sensor::default(),
-            theme: Theme::plain(false),
-        },
+        options: Options::plain(false),
         size: (80, 24),
         styles,
         json,

@@ -38,6 +38,7 @@ pub(super) fn screen(
     let options = Options {
         sensor: settings.sensor(),
         theme: terminal.theme(),
+        mouse: terminal.mouse,
     };
     let library = shelf.library()?;
     let mut record = record

@@ -57,6 +57,7 @@ pub(super) fn run(
             },
             None => plain,
         },
+        mouse: true,
     };
     let running = Running {
         options,

@@ -19,6 +19,19 @@ pub struct Options {
     pub sensor: Sensor,
     /// How it looks.
     pub theme: Theme,
+    /// Whether the terminal tells of its mouse, until the user says otherwise.
+    pub mouse: bool,
+}
+
+impl Options {
+    /// As scripts and tests have it: the sensor of the paper, no colours, a mouse.
+    pub fn plain(ascii: bool) -> Self {
+        Self {
+            sensor: Sensor::default(),
+            theme: Theme::plain(ascii),
+            mouse: true,
+        }
+    }
 }
 
 /// What the arrows do on the matrix.
@@ -143,7 +156,7 @@ impl App {
             results: None,
             works: 0,
             commands: Vec::new(),
-            mouse: true,
+            mouse: options.mouse,
             paint: None,
             screen: (80, 24),
             theme: options.theme,

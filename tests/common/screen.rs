@@ -1,10 +1,8 @@
 //! The program on a screen in memory, with a library of its own.
 
-use taxel::sensor::Sensor;
 use taxel::tui::app::Options;
 use taxel::tui::effect::World;
 use taxel::tui::script::Session;
-use taxel::tui::theme::Theme;
 
 /// 16 × 16 taxels at 80 × 24, an empty library that goes with the session.
 pub(crate) fn session(keys: &str) -> Session {
@@ -14,10 +12,7 @@ pub(crate) fn session(keys: &str) -> Session {
 
 /// The same in a world of its own.
 pub(crate) fn started(world: World, keys: &str) -> Session {
-    let options = Options {
-        sensor: Sensor::default(),
-        theme: Theme::plain(false),
-    };
+    let options = Options::plain(false);
     let mut session = Session::new(&options, world, 80, 24);
     press(&mut session, keys);
     session

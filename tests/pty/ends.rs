@@ -5,12 +5,10 @@ use std::time::Duration;
 use rustix::process::Signal;
 use taxel::library::journal::Orphan;
 use taxel::library::store::Library;
-use taxel::sensor::Sensor;
 use taxel::tui::app::{App, Options};
 use taxel::tui::effect::World;
 use taxel::tui::terminal::settings::{Flags, Settings};
 use taxel::tui::terminal::{self, input::Input};
-use taxel::tui::theme::Theme;
 
 use crate::program::{Program, Start, TAXEL};
 
@@ -167,10 +165,7 @@ fn panics() {
     let _ = rustix::process::setsid();
     let _ = rustix::process::ioctl_tiocsctty(std::io::stdin());
     let settings = Settings::from_environment(std::env::var_os, &Flags::default());
-    let app = App::new(&Options {
-        sensor: Sensor::default(),
-        theme: Theme::plain(true),
-    });
+    let app = App::new(&Options::plain(true));
     let world = World::scratch().expect("a folder");
     let outcome = terminal::run(app, world, &settings, &mut |input| {
         assert!(!matches!(input, Input::Key(_)), "on purpose");

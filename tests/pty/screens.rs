@@ -1,18 +1,17 @@
 //! What is on the screen: the same as in a script, on every kind of terminal.
 
-use taxel::sensor::Sensor;
 use taxel::tui::app::Options;
 use taxel::tui::message::Message;
 use taxel::tui::script::Session;
-use taxel::tui::theme::Theme;
 
 use crate::program::{Program, Start, TAXEL};
 
 pub(crate) fn session(ascii: bool, size: (u16, u16)) -> Session {
-    let options = Options {
-        sensor: Sensor::default(),
-        theme: Theme::plain(ascii),
-    };
+    started(Options::plain(ascii), size)
+}
+
+/// The same, started in another way.
+pub(crate) fn started(options: Options, size: (u16, u16)) -> Session {
     let world = taxel::tui::effect::World::scratch().expect("a folder");
     Session::new(&options, world, size.0, size.1)
 }

@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
+use taxel::tui::app::Options;
 use taxel::tui::key::{Arrow, Key};
 use taxel::tui::message::{Message, Mouse, MouseKind};
 use taxel::tui::script::Session;
 use taxel::tui::script::command::{Command, read};
 use taxel::tui::script::setting::Setting;
 
-use crate::program::{Program, Start};
-use crate::screens::session;
+use crate::program::{Program, Start, TAXEL};
+use crate::screens::started;
 
 /// What a terminal sends for a key.
 fn bytes(key: Key) -> Vec<u8> {
@@ -137,11 +138,12 @@ fn every_script_shows_its_screens_on_a_terminal() {
     for path in files.filter(|path| path.extension().is_some_and(|end| end == "taxel")) {
         let script = std::fs::read_to_string(&path).expect("a script can be read");
         let commands = read(&script).expect("the scripts are right");
-        let (mut size, mut ascii) = ((80, 24), false);
+        let (mut size, mut options) = ((80, 24), Options::plain(false));
         for (_, command) in &commands {
             match command {
                 Command::Set(Setting::Size(columns, rows)) => size = (*columns, *rows),
-                Command::Set(Setting::Ascii(on)) => ascii = *on,
+                Command::Set(Setting::Ascii(on)) => options.theme.ascii = *on,
+                Command::Set(Setting::Mouse(on)) => options.mouse = *on,
                 Command::Set(other) => panic!("{}: {other}", path.display()),
                 _ => {}
             }
@@ -149,16 +151,18 @@ fn every_script_shows_its_screens_on_a_terminal() {
         let variables = [
             ("TERM", "xterm-256color"),
             ("NO_COLOR", "1"),
-            ("LANG", if ascii { "C" } else { "C.UTF-8" }),
+            ("LANG", if options.theme.ascii { "C" } else { "C.UTF-8" }),
         ];
+        let command = [TAXEL, "--no-mouse"];
         let program = Program::start(&Start {
+            command: &command[..if options.mouse { 1 } else { 2 }],
             size,
             variables: &variables,
             ..Start::default()
         });
         let mut pair = Pair {
             program,
-            session: session(ascii, size),
+            session: started(options, size),
         };
         pair.program.agrees(&pair.session);
         for (_, command) in &commands {

@@ -117,6 +117,7 @@ pub fn run_shown(
             Setting::Ascii(ascii) => options.theme.ascii = *ascii,
             Setting::Color(depth) => options.theme.depth = *depth,
             Setting::Theme(palette) => options.theme.palette = *palette,
+            Setting::Mouse(on) => options.mouse = *on,
             Setting::Sensor(parameter, value) => {
                 let sensor = options.sensor.with(*parameter, *value);
                 options.sensor = sensor.map_err(|error| wrong(line, error.to_string()))?;

@@ -3,10 +3,8 @@
 //! Keys go through the same table, the same update and the same view as in a terminal.
 //!
 //! ```
-//! use taxel::tui::{app::Options, effect::World, script::Session, theme::Theme};
-//! use taxel::sensor::Sensor;
-//! let theme = Theme::plain(true);
-//! let mut session = Session::new(&Options { sensor: Sensor::default(), theme }, World::scratch()?, 80, 24);
+//! use taxel::tui::{app::Options, effect::World, script::Session};
+//! let mut session = Session::new(&Options::plain(true), World::scratch()?, 80, 24);
 //! session.keys("f<Enter>")?;
 //! assert!(session.screen().contains("ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0 deg"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -3,6 +3,7 @@
 //! ```text
 //! Size 80x24         Set ascii on        Set theme light    Set color 256
 //! Set columns 8      Set rows 8          Set threshold 0.6  Set pitch 0.5
+//! Set mouse off
 //! Set library "DIR"  Set shape {...}     Set leftover {...}
 //! ```
 //! Shapes are those of the user's library, one a line, as the content of their files; leftover is what a program left
@@ -28,6 +29,8 @@ pub enum Setting {
     Color(ColorDepth),
     /// Which ones.
     Theme(Palette),
+    /// Whether the terminal tells of its mouse.
+    Mouse(bool),
     /// A quantity of the sensor.
     Sensor(Parameter, f64),
     /// The library's folder.
@@ -51,6 +54,7 @@ pub fn read(text: &str) -> Result<Setting, String> {
         "ascii" => chosen(name, value, &SWITCH).map(Setting::Ascii),
         "color" => chosen(name, value, &ColorDepth::NAMES).map(Setting::Color),
         "theme" => chosen(name, value, &Palette::NAMES).map(Setting::Theme),
+        "mouse" => chosen(name, value, &SWITCH).map(Setting::Mouse),
         "library" => serde_json::from_str::<PathBuf>(value)
             .map(Setting::Library)
             .map_err(|_| format!("expected a folder in double quotes, found {value}")),
@@ -59,8 +63,8 @@ pub fn read(text: &str) -> Result<Setting, String> {
         _ => match Parameter::from_flag(name).filter(|own| SENSOR_PARAMETERS.contains(own)) {
             Some(parameter) => number(parameter, value).map_err(|error| error.to_string()),
             None => Err(format!(
-                "nothing to set is called {name:?}, expected one of ascii, color, theme, columns, rows, threshold, \
-                 pitch, library, shape, leftover"
+                "nothing to set is called {name:?}, expected one of ascii, color, theme, mouse, columns, rows, \
+                 threshold, pitch, library, shape, leftover"
             )),
         },
     }
@@ -96,6 +100,7 @@ impl fmt::Display for Setting {
             Self::Ascii(ascii) => write!(f, "Set ascii {}", name_of(*ascii, &SWITCH)),
             Self::Color(depth) => write!(f, "Set color {}", name_of(*depth, &ColorDepth::NAMES)),
             Self::Theme(palette) => write!(f, "Set theme {}", name_of(*palette, &Palette::NAMES)),
+            Self::Mouse(on) => write!(f, "Set mouse {}", name_of(*on, &SWITCH)),
             Self::Sensor(parameter, value) => write!(f, "Set {} {value}", parameter.flag()),
             Self::Library(folder) => {
                 let folder = serde_json::Value::from(folder.to_string_lossy());
@@ -124,6 +129,7 @@ pub fn of_options(options: &Options) -> Vec<Setting> {
         Setting::Ascii(theme.ascii),
         Setting::Color(theme.depth),
         Setting::Theme(theme.palette),
+        Setting::Mouse(options.mouse),
     ];
     let value = |parameter| Some(Setting::Sensor(parameter, sensor.get(parameter)?));
     let values = SENSOR_PARAMETERS.into_iter().filter_map(value);
@@ -148,6 +154,7 @@ mod tests {
                 depth: ColorDepth::TwoFiftySix,
                 palette: Palette::Light,
             },
+            mouse: false,
         };
         let mut settings = of_options(&options);
         settings.extend([

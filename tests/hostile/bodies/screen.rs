@@ -7,7 +7,6 @@ use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 use taxel::library::store::Library;
-use taxel::sensor::Sensor;
 use taxel::tui::app::{App, Options};
 use taxel::tui::command::read as read_command;
 use taxel::tui::commands::complete;
@@ -19,7 +18,6 @@ use taxel::tui::script::Session;
 use taxel::tui::script::command::{Command, read};
 use taxel::tui::script::runner::{Failure, Settings, run};
 use taxel::tui::script::setting::Setting;
-use taxel::tui::theme::Theme;
 use taxel::tui::update::update;
 use tempfile::TempDir;
 
@@ -42,10 +40,7 @@ fn world() -> World {
 }
 
 fn options() -> Options {
-    Options {
-        sensor: Sensor::default(),
-        theme: Theme::plain(false),
-    }
+    Options::plain(false)
 }
 
 /// The program on an empty screen of usual size, after some keys.
