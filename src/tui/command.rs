@@ -15,6 +15,7 @@ use crate::figure::{Figure, Kind};
 use crate::formats::name::Name;
 use crate::library::store::{Expected, Origin};
 use crate::parameter::Parameter;
+use crate::quote::shortened;
 use crate::source::Source;
 
 /// What a line asks for.
@@ -28,7 +29,10 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
         .map_or((line, ""), |(name, rest)| (name, rest.trim()));
     let command = find(name).ok_or_else(|| {
         let complete = app.keymap().label(Context::Command, &Message::Field(1));
-        format!("{name:?} is unknown; {complete} shows the commands")
+        format!(
+            "{:?} is unknown; {complete} shows the commands",
+            shortened(name)
+        )
     })?;
     let words: Vec<&str> = rest.split_whitespace().collect();
     if let Some((_, message)) = command.words.iter().find(|(word, _)| *word == rest) {
@@ -60,7 +64,8 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
         (Takes::Degrees, _) => match rest.parse() {
             Ok(degrees) if (-360..=360).contains(&degrees) => Ok(Message::Turn(degrees)),
             _ => Err(format!(
-                "turn takes whole degrees from -360 to 360, found {rest:?}"
+                "turn takes whole degrees from -360 to 360, found {:?}",
+                shortened(rest)
             )),
         },
         (Takes::Taxel, [column, row]) => {
@@ -99,7 +104,7 @@ fn unexpected(command: &Command, rest: &str) -> String {
     let found = if rest.is_empty() {
         String::new()
     } else {
-        format!(", found {rest:?}")
+        format!(", found {:?}", shortened(rest))
     };
     format!("{} takes {taken}{found}", command.name)
 }
@@ -115,8 +120,9 @@ fn numbers(pairs: &[&str], side: u8) -> Result<Vec<(Parameter, f64)>, String> {
         let flag = pair.first().copied().unwrap_or_default();
         let key = flag
             .strip_prefix("--")
-            .ok_or_else(|| format!("expected a flag like --side, found {flag}"))?;
-        let parameter = Parameter::from_flag(key).ok_or_else(|| format!("{flag} is unknown"))?;
+            .ok_or_else(|| format!("expected a flag like --side, found {}", shortened(flag)))?;
+        let parameter =
+            Parameter::from_flag(key).ok_or_else(|| format!("{} is unknown", shortened(flag)))?;
         if numbers.iter().any(|(given, _)| *given == parameter) {
             return Err(format!("{flag} is given twice"));
         }
@@ -133,7 +139,8 @@ fn figure(kind: &str, pairs: &[&str], app: &App) -> Result<Message, String> {
     let sensor = app.shown().sensor;
     let kind = Kind::from_name(kind).ok_or_else(|| {
         format!(
-            "figure: {kind:?} is unknown, expected one of {}",
+            "figure: {:?} is unknown, expected one of {}",
+            shortened(kind),
             Kind::ALL.map(Kind::name).join(", ")
         )
     })?;

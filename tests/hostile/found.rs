@@ -57,3 +57,11 @@ fn a_long_pattern_is_refused() {
     let error = taxel::tui::script::command::read(&pattern).expect_err("it is long");
     assert!(error.to_string().contains("has 20000 bytes"), "{error}");
 }
+
+/// By the fuzzer: what was quoted is longer than it was, where each character of it has to be escaped.
+#[test]
+fn unknown_words_are_quoted_in_short() {
+    body("command")(&[&b"x"[..], &[0x1e; 200]].concat());
+    body("script")(&[&b"Set "[..], &[0x05; 200]].concat());
+    body("script")(&[&b"Set ascii "[..], &[0x05; 200]].concat());
+}

@@ -2,6 +2,7 @@
 //! matrix.
 
 use crate::parameter::Parameter;
+use crate::quote::shortened;
 use crate::sweep::grid::{Anchor, Grid, Ranges};
 use crate::sweep::range::DecimalRange;
 use crate::tui::app::App;
@@ -22,8 +23,10 @@ pub(super) fn read(words: &[&str], app: &App) -> Result<Message, String> {
         let flag = pair.first().copied().unwrap_or_default();
         let name = flag
             .strip_prefix("--")
-            .ok_or_else(|| format!("expected a flag like --x0, found {flag}"))?;
-        let text = pair.get(1).ok_or_else(|| format!("{flag} needs a value"))?;
+            .ok_or_else(|| format!("expected a flag like --x0, found {}", shortened(flag)))?;
+        let text = pair
+            .get(1)
+            .ok_or_else(|| format!("{} needs a value", shortened(flag)))?;
         if given.contains(&flag) {
             return Err(format!("{flag} is given twice"));
         }
@@ -32,7 +35,12 @@ pub(super) fn read(words: &[&str], app: &App) -> Result<Message, String> {
             anchor = match *text {
                 "corner" => Anchor::Corner,
                 "centre" => Anchor::Centre,
-                _ => return Err(format!("--anchor takes corner or centre, found {text}")),
+                _ => {
+                    return Err(format!(
+                        "--anchor takes corner or centre, found {}",
+                        shortened(text)
+                    ));
+                }
             };
             continue;
         }
@@ -41,7 +49,8 @@ pub(super) fn read(words: &[&str], app: &App) -> Result<Message, String> {
         let mut own = known.filter(|parameter| flag_of(*parameter) == name);
         let parameter = own.next().ok_or_else(|| {
             format!(
-                "{flag} is unknown, expected --x0, --y0, --angle, --zoom-x, --zoom-y or --anchor"
+                "{} is unknown, expected --x0, --y0, --angle, --zoom-x, --zoom-y or --anchor",
+                shortened(flag)
             )
         })?;
         let range: DecimalRange = text.parse().map_err(|error| format!("{flag}: {error}"))?;

@@ -1,6 +1,7 @@
 //! The field for the name of a file that what was found is written to.
 
 use crate::formats::sweep_file::AtlasFile;
+use crate::quote::shortened;
 use crate::tui::text_field::TextField;
 
 /// No name is longer: that of a Linux file with its folders.
@@ -33,7 +34,7 @@ impl ExportDialog {
         let found = if name.is_empty() {
             String::new()
         } else {
-            format!("{name:?}: ")
+            format!("{:?}: ", shortened(name))
         };
         Err(format!(
             "{found}expected a name that ends in .csv, .jsonl, .npz or .npy"

@@ -14,6 +14,7 @@ use std::path::PathBuf;
 
 use crate::formats::shape::Shape;
 use crate::parameter::{Parameter, ParameterError};
+use crate::quote::shortened;
 use crate::sensor::{MAX_SIDE, SENSOR_PARAMETERS};
 use crate::tui::app::Options;
 use crate::tui::theme::{ColorDepth, Palette};
@@ -57,14 +58,20 @@ pub fn read(text: &str) -> Result<Setting, String> {
         "mouse" => chosen(name, value, &SWITCH).map(Setting::Mouse),
         "library" => serde_json::from_str::<PathBuf>(value)
             .map(Setting::Library)
-            .map_err(|_| format!("expected a folder in double quotes, found {value}")),
+            .map_err(|_| {
+                format!(
+                    "expected a folder in double quotes, found {}",
+                    shortened(value)
+                )
+            }),
         "shape" => shape(name, value).map(Setting::Shape),
         "leftover" => shape(name, value).map(Setting::Leftover),
         _ => match Parameter::from_flag(name).filter(|own| SENSOR_PARAMETERS.contains(own)) {
             Some(parameter) => number(parameter, value).map_err(|error| error.to_string()),
             None => Err(format!(
-                "nothing to set is called {name:?}, expected one of ascii, color, theme, mouse, columns, rows, \
-                 threshold, pitch, library, shape, leftover"
+                "nothing to set is called {:?}, expected one of ascii, color, theme, mouse, columns, rows, \
+                 threshold, pitch, library, shape, leftover",
+                shortened(name)
             )),
         },
     }
@@ -75,8 +82,9 @@ fn chosen<T: Copy>(name: &str, value: &str, choices: &[(&str, T)]) -> Result<T, 
     choice.map(|(_, meaning)| *meaning).ok_or_else(|| {
         let names: Vec<&str> = choices.iter().map(|(choice, _)| *choice).collect();
         format!(
-            "Set {name} takes one of {}, found {value:?}",
-            names.join(", ")
+            "Set {name} takes one of {}, found {:?}",
+            names.join(", "),
+            shortened(value)
         )
     })
 }
