@@ -2,7 +2,7 @@
 
 use proptest::collection::vec;
 use proptest::prelude::*;
-use taxel::formats::exchange::{ExchangeError, Form, MAX_BYTES, read};
+use taxel::formats::exchange::{ExchangeError, Format, MAX_BYTES, read};
 use taxel::imprint::Imprint;
 
 /// An imprint of any size; rows of few bits, of many, or of all.
@@ -23,8 +23,8 @@ fn imprints() -> impl Strategy<Value = Imprint> {
     })
 }
 
-fn form() -> impl Strategy<Value = Form> {
-    proptest::sample::select(&Form::ALL[..])
+fn form() -> impl Strategy<Value = Format> {
+    proptest::sample::select(&Format::ALL[..])
 }
 
 proptest! {
@@ -103,8 +103,8 @@ fn errors_name_the_form_and_the_place() {
 
 #[test]
 fn endings_tell_the_form() {
-    assert_eq!(Form::of_ending("PBM"), Some(Form::Pbm));
-    assert_eq!(Form::of_ending("npy"), Some(Form::Npy));
-    assert_eq!(Form::of_ending("pbm-plain"), None);
-    assert_eq!(Form::of_ending("svg"), None);
+    assert_eq!(Format::of_ending("PBM"), Some(Format::Pbm));
+    assert_eq!(Format::of_ending("npy"), Some(Format::Npy));
+    assert_eq!(Format::of_ending("pbm-plain"), None);
+    assert_eq!(Format::of_ending("svg"), None);
 }

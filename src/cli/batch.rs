@@ -7,11 +7,11 @@
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 
 use super::failure::Failure;
-use super::input::shortened;
 use super::report;
 use crate::formats::answer::Answer;
 use crate::formats::job::Job;
 use crate::imprint::Imprint;
+use crate::quote::legible;
 use crate::sensor::Sensor;
 use crate::touch::Plane;
 
@@ -39,7 +39,7 @@ pub(super) fn answer_lines(
             Line::Content(content) if content.trim_ascii().is_empty() => continue,
             Line::Content(content) => Job::read(content, sensor, lookup)
                 .map(|job| job.imprint(&mut plane))
-                .map_err(|error| shortened(&error.to_string())),
+                .map_err(|error| legible(&error.to_string())),
             Line::Long => Err("longer than 1 MiB, which no pose is".to_owned()),
         };
         answer.clear();

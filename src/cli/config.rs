@@ -13,8 +13,8 @@
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::input::shortened;
 use crate::parameter::{Parameter, ParameterError};
+use crate::quote::legible;
 use crate::sensor::Sensor;
 use crate::tui::action;
 use crate::tui::binding::Context;
@@ -159,7 +159,7 @@ impl Config {
             return Err((0, Wrong::Large));
         }
         let table = DeTable::parse(text).map_err(|error| {
-            let message = shortened(&error.message().replace('\n', "; "));
+            let message = legible(&error.message().replace('\n', "; "));
             let byte = error.span().map_or(0, |span| span.start);
             (byte, Wrong::Syntax(message))
         })?;
@@ -227,7 +227,7 @@ impl Config {
                         unfit(expected, name, value)
                     })?),
                 };
-                let key = one_key(key).ok_or_else(|| (byte, Wrong::Key(shortened(key))))?;
+                let key = one_key(key).ok_or_else(|| (byte, Wrong::Key(legible(key))))?;
                 spans.push((byte, value.span().start));
                 self.changes.push(Written {
                     value: Change {
@@ -317,12 +317,12 @@ fn number(value: &Spanned<DeValue<'_>>) -> Result<f64, Refusal> {
 }
 
 fn unknown(found: &str, byte: usize, expected: &[&'static str]) -> Refusal {
-    let (found, expected) = (shortened(found), expected.to_vec());
+    let (found, expected) = (legible(found), expected.to_vec());
     (byte, Wrong::Unknown { found, expected })
 }
 
 fn unfit(expected: String, found: &str, value: &Spanned<DeValue<'_>>) -> Refusal {
-    let found = format!("{:?}", shortened(found));
+    let found = format!("{:?}", legible(found));
     (value.span().start, Wrong::Value { expected, found })
 }
 

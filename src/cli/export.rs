@@ -8,7 +8,7 @@ use super::failure::Failure;
 use super::input::Content;
 use super::shelf::Shelf;
 use crate::formats::drawing::Drawing;
-use crate::formats::exchange::Form;
+use crate::formats::exchange::Format as ImprintFormat;
 use crate::formats::unfinished::{Existing, Unfinished};
 use crate::imprint::Imprint;
 use crate::source::Source;
@@ -17,7 +17,7 @@ use crate::source::Source;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Format {
     /// The imprint.
-    Imprint(Form),
+    Imprint(ImprintFormat),
     /// A drawing of it with its descriptors.
     Svg,
     /// The same in pixels.
@@ -29,24 +29,24 @@ impl Format {
         match name {
             "svg" => Some(Self::Svg),
             "png" => Some(Self::Png),
-            _ => Form::ALL
-                .into_iter()
-                .find(|form| form.name() == name)
-                .map(Self::Imprint),
+            _ => ImprintFormat::ALL
+                .iter()
+                .find(|format| format.name() == name)
+                .map(|&format| Self::Imprint(format)),
         }
     }
 
     fn of_ending(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
-        let form = Form::of_ending(&ending).map(Self::Imprint);
-        form.or_else(|| Self::of(&ending).filter(|format| !matches!(format, Self::Imprint(_))))
+        let format = ImprintFormat::of_ending(&ending).map(Self::Imprint);
+        format.or_else(|| Self::of(&ending).filter(|format| !matches!(format, Self::Imprint(_))))
     }
 }
 
 /// The names of all formats, as `--format` takes them.
 pub(super) fn names() -> Vec<&'static str> {
-    let forms = Form::ALL.iter().map(|form| form.name());
-    forms.chain(["svg", "png"]).collect()
+    let imprints = ImprintFormat::ALL.iter().map(|format| format.name());
+    imprints.chain(["svg", "png"]).collect()
 }
 
 /// A file that is to be written.
@@ -107,7 +107,7 @@ impl Export {
             }
         };
         let content = match self.format {
-            Format::Imprint(form) => form.write(imprint),
+            Format::Imprint(format) => format.write(imprint),
             Format::Svg => draw().svg().into_bytes(),
             Format::Png => draw().png().map_err(Failure::Write)?,
         };

@@ -2,11 +2,12 @@
 
 use std::io;
 
-use super::input::{InputError, shortened};
+use super::input::InputError;
 use super::locale::Charset;
 use crate::formats::archive::ArchiveError;
 use crate::formats::sweep_file::SweepFileError;
 use crate::library::error::LibraryError;
+use crate::quote::legible;
 use crate::sweep::grid::GridError;
 use crate::sweep::survey::MergeError;
 use crate::tui::script::runner;
@@ -58,7 +59,7 @@ pub(super) enum Failure {
         error: io::Error,
     },
     /// The library refuses.
-    #[error("{}", shortened(&.0.to_string()))]
+    #[error("{}", legible(&.0.to_string()))]
     Library(#[from] LibraryError),
     /// Neither a name nor a file.
     #[error("no shape is called {name:?}, and no file either")]

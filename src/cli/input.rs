@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use crate::formats::exchange::{self, ExchangeError};
 use crate::formats::shape::{MAX_BYTES, Shape, ShapeError};
 use crate::imprint::Imprint;
+use crate::quote::legible;
 
 /// Where input comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -50,7 +51,7 @@ pub(super) enum InputError {
     #[error(transparent)]
     Imprint(#[from] ExchangeError),
     /// JSON, but no shape.
-    #[error("{}", shortened(&.0.to_string()))]
+    #[error("{}", legible(&.0.to_string()))]
     Shape(#[from] ShapeError),
 }
 
@@ -60,10 +61,12 @@ pub(super) fn read(place: &Place) -> Result<Content, InputError> {
         Place::File(path) => bytes(File::open(path)?)?,
         Place::Standard => bytes(io::stdin().lock())?,
     };
+    // Some editors begin every text with a byte order mark.
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
     if bytes.trim_ascii_start().starts_with(b"{") {
-        Ok(Content::Shape(Shape::read(&bytes)?))
+        Ok(Content::Shape(Shape::read(bytes)?))
     } else {
-        Ok(Content::Imprint(exchange::read(&bytes)?))
+        Ok(Content::Imprint(exchange::read(bytes)?))
     }
 }
 
@@ -75,13 +78,4 @@ fn bytes(source: impl Read) -> Result<Vec<u8>, InputError> {
         return Err(InputError::Large);
     }
     Ok(bytes)
-}
-
-/// A message that quotes its input, which may be a megabyte long, at a length that can be read.
-pub(super) fn shortened(message: &str) -> String {
-    const LENGTH: usize = 400;
-    match message.char_indices().nth(LENGTH) {
-        Some((end, _)) => format!("{}…", &message[..end]),
-        None => message.to_owned(),
-    }
 }

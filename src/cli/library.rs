@@ -8,7 +8,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use super::arguments::{Form, Saving};
 use super::describe;
 use super::failure::Failure;
-use super::input::{Content, shortened};
+use super::input::Content;
 use super::locale::Charset;
 use super::report;
 use super::shelf::Shelf;
@@ -16,6 +16,7 @@ use crate::description::region::{Kind, regions};
 use crate::formats::shape::Shape;
 use crate::library::store::{Entry, Library, Origin};
 use crate::parameter::Parameter;
+use crate::quote::legible;
 use crate::sensor::Sensor;
 
 /// A line of the list.
@@ -41,7 +42,7 @@ impl Line {
         Self {
             found: found
                 .map(|loaded| Summary::of(&loaded.shape))
-                .map_err(|error| shortened(&error.to_string())),
+                .map_err(|error| legible(&error.to_string())),
             name: entry.name,
             origin: entry.origin,
         }

@@ -2,7 +2,7 @@
 //!
 //! Per imprint, in order: `rows` (a word per row of the sensor, bit `i` for column `i`; shaped imprints × rows),
 //! `count`, `first_pose` (its number in the grid), `first` (its values; imprints × parameters), `pieces`, `holes` and an
-//! array for each quantity, NaN where it does not exist, since arrays have no other word for that. Then `header`,
+//! array for each quantity, NaN where it does not exist, since arrays have no other word for that. Before them `header`,
 //! JSON as bytes: format, source, sensor, anchor, ranges, shard and how many poses there were; and `spread`, the sums
 //! that shards are merged by. The archive is a zip without compression and without dates: equal atlases are
 //! equal files.
@@ -17,6 +17,7 @@ use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 use super::atlas::{place, value};
 use super::npy::{self, Kind};
 use super::record::{Record, RecordError, Values};
+use crate::quote::shortened;
 use crate::sensor::Sensor;
 use crate::sweep::grid::{Anchor, Grid, GridError, Ranges};
 use crate::sweep::parts::{Parts, PartsError};
@@ -165,7 +166,7 @@ pub fn read(input: impl Read + Seek) -> Result<Survey, ArchiveError> {
     let header: Header<Record<'_>, Values> = serde_json::from_slice(header)
         .map_err(|error| ArchiveError::Header(super::quote::message(&error)))?;
     if header.format != FORMAT {
-        return Err(ArchiveError::Format(header.format));
+        return Err(ArchiveError::Format(shortened(&header.format)));
     }
     let sensor = header.sensor.sensor(Sensor::default())?;
     let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
@@ -173,7 +174,12 @@ pub fn read(input: impl Read + Seek) -> Result<Survey, ArchiveError> {
     let anchor = match header.anchor.as_str() {
         "corner" => Anchor::Corner,
         "centre" => Anchor::Centre,
-        _ => return Err(ArchiveError::Header("anchor".to_owned())),
+        other => {
+            return Err(ArchiveError::Header(format!(
+                "anchor {:?} is unknown, expected corner or centre",
+                shortened(other)
+            )));
+        }
     };
     let ranges = Ranges {
         x0: header.x0.parse()?,

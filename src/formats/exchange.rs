@@ -3,12 +3,12 @@
 //! Which form a file has is told by its first bytes when it is read, by the ending of its name when it is written.
 //!
 //! ```
-//! use taxel::formats::exchange::{Form, read};
+//! use taxel::formats::exchange::{Format, read};
 //! let cup = read(b"P1\n3 2\n101\n111\n")?;
-//! let form = Form::of_ending("csv").unwrap();
-//! assert_eq!(form.write(&cup), b"1,0,1\n1,1,1\n");
-//! for form in Form::ALL {
-//!     assert_eq!(read(&form.write(&cup))?, cup);
+//! let format = Format::of_ending("csv").unwrap();
+//! assert_eq!(format.write(&cup), b"1,0,1\n1,1,1\n");
+//! for format in Format::ALL {
+//!     assert_eq!(read(&format.write(&cup))?, cup);
 //! }
 //! # Ok::<(), taxel::formats::exchange::ExchangeError>(())
 //! ```
@@ -27,7 +27,7 @@ pub const MAX_BYTES: usize = 1 << 20;
 /// How an imprint is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
-pub enum Form {
+pub enum Format {
     /// Rows of `#` and `.`.
     Text,
     /// A raw portable bitmap, `P4`.
@@ -40,9 +40,9 @@ pub enum Form {
     Npy,
 }
 
-impl Form {
+impl Format {
     /// All of them.
-    pub const ALL: [Self; 5] = [Self::Text, Self::Pbm, Self::PlainPbm, Self::Csv, Self::Npy];
+    pub const ALL: &'static [Self] = &[Self::Text, Self::Pbm, Self::PlainPbm, Self::Csv, Self::Npy];
 
     /// What it is called on the command line.
     pub fn name(self) -> &'static str {
@@ -58,10 +58,10 @@ impl Form {
     /// The form of a file whose name ends like this, in upper or lower case; none of another ending.
     pub fn of_ending(ending: &str) -> Option<Self> {
         // The plain bitmap has no ending of its own.
-        let forms = Self::ALL.into_iter();
-        forms
-            .filter(|form| *form != Self::PlainPbm)
-            .find(|form| form.name().eq_ignore_ascii_case(ending))
+        let formats = Self::ALL.iter().copied();
+        formats
+            .filter(|format| *format != Self::PlainPbm)
+            .find(|format| format.name().eq_ignore_ascii_case(ending))
     }
 
     /// A file's content.
@@ -108,8 +108,8 @@ impl std::error::Error for ExchangeError {}
 
 /// The imprint in any bytes, of any form.
 ///
-/// A bitmap begins with `P`, an array with its magic bytes, a table with a digit, a quote, a sign or a word; all else is
-/// text.
+/// A bitmap begins with `P` and a digit, an array with its magic bytes, a table with a digit, a quote, a sign or a word;
+/// all else is text. A byte order mark before a table or a text is passed over.
 ///
 /// # Errors
 /// What is wrong first, and where.
@@ -118,13 +118,16 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ExchangeError> {
         return Err(ExchangeError::Large);
     }
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    match text.trim_ascii_start() {
-        _ if bytes.starts_with(b"\x93") => array::read(bytes).map_err(ExchangeError::Array),
-        [b'P', ..] => pbm::read(bytes).map_err(ExchangeError::Pbm),
-        [
-            b'0'..=b'9' | b'"' | b'+' | b'-' | b'T' | b't' | b'F' | b'f',
-            ..,
-        ] => table::read(bytes).map_err(ExchangeError::Table),
-        _ => text::read(bytes).map_err(ExchangeError::Text),
+    match (bytes, text.trim_ascii_start()) {
+        ([0x93, ..], _) => array::read(bytes).map_err(ExchangeError::Array),
+        ([b'P', b'0'..=b'9', ..], _) => pbm::read(bytes).map_err(ExchangeError::Pbm),
+        (
+            _,
+            [
+                b'0'..=b'9' | b'"' | b'+' | b'-' | b'T' | b't' | b'F' | b'f',
+                ..,
+            ],
+        ) => table::read(text).map_err(ExchangeError::Table),
+        _ => text::read(text).map_err(ExchangeError::Text),
     }
 }

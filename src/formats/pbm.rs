@@ -33,6 +33,13 @@ pub enum PbmError {
         /// What stands there.
         byte: u8,
     },
+    /// Something else than a space before the bits of a raw bitmap.
+    Space {
+        /// Which line.
+        line: usize,
+        /// Which byte of it.
+        column: usize,
+    },
     /// The end comes too early.
     Short {
         /// How many there are.
@@ -60,6 +67,10 @@ impl fmt::Display for PbmError {
             Self::Digit { line, column, byte } => write!(
                 f,
                 "line {line}, column {column}: found byte 0x{byte:02x}, expected 0 or 1"
+            ),
+            Self::Space { line, column } => write!(
+                f,
+                "line {line}, column {column}: expected one space or line end before the bits"
             ),
             Self::Short {
                 found,
@@ -153,8 +164,13 @@ impl Cursor<'_> {
             .count();
         let text = str::from_utf8(&self.bytes[self.at..self.at + digits]).ok();
         let side = text.and_then(|text| text.parse().ok());
-        let side = side.filter(|side| (1..=MAX_SIDE).contains(side) && self.at > start);
+        let stands_apart = self.at > start;
         self.at += digits;
+        let ends = match self.bytes.get(self.at) {
+            Some(byte) => byte.is_ascii_whitespace() || *byte == b'#',
+            None => true,
+        };
+        let side = side.filter(|side| (1..=MAX_SIDE).contains(side) && stands_apart && ends);
         side.ok_or(PbmError::Side { line, column, what })
     }
 
@@ -191,6 +207,10 @@ impl Cursor<'_> {
     /// Bytes of eight taxels, each row in bytes of its own; gives the place after the last.
     fn bits(&mut self, imprint: &mut Imprint) -> Result<usize, PbmError> {
         // Just one space parts the height from the bits, which may look like spaces.
+        if self.bytes.get(self.at) == Some(&b'#') {
+            let (line, column) = self.place();
+            return Err(PbmError::Space { line, column });
+        }
         let start = (self.at + 1).min(self.bytes.len());
         let width = usize::from(imprint.columns()).div_ceil(8);
         let expected = width * usize::from(imprint.rows());
@@ -261,6 +281,14 @@ mod tests {
         wrong(
             b"P1\n2 2\n1\n0 2",
             "line 4, column 3: found byte 0x32, expected 0 or 1",
+        );
+        wrong(
+            b"P4\n8 1X\xff",
+            "line 2, column 3: expected the height, 1 to 64",
+        );
+        wrong(
+            b"P4\n8 1#\xff",
+            "line 2, column 4: expected one space or line end before the bits",
         );
         wrong(b"P1\n2 2\n111", "found 3 taxels, expected 4");
         wrong(

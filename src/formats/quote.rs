@@ -1,14 +1,10 @@
-//! What messages quote of JSON that is none, which may be a megabyte long: so much that it can be read.
+//! What serde_json says, without the place that it says it of.
 
-/// A JSON error's text without its place, which is told in another way. What it quotes may be a megabyte long.
+use crate::quote::legible;
+
+/// A JSON error's text without its place, which is told in another way.
 pub(super) fn message(error: &serde_json::Error) -> String {
-    const LONGEST: usize = 400;
-    let text = error.to_string();
-    let text = without_place(&text);
-    match text.char_indices().nth(LONGEST) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.to_owned(),
-    }
+    legible(without_place(&error.to_string()))
 }
 
 /// An error's text without the place at its end.

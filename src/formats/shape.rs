@@ -9,6 +9,7 @@ use super::name::{Name, NameError};
 use super::quote::message;
 use super::record::{Content, Record, RecordError, Values};
 use crate::imprint::Imprint;
+use crate::quote::shortened;
 use crate::sensor::Sensor;
 use crate::source::Source;
 
@@ -170,7 +171,10 @@ impl<'de: 'a, 'a> Deserialize<'de> for File<'a> {
                 let mut seen: Vec<String> = Vec::new();
                 while let Some(key) = map.next_key::<String>()? {
                     if seen.contains(&key) {
-                        return Err(A::Error::custom(format_args!("key {key:?} stands twice")));
+                        return Err(A::Error::custom(format_args!(
+                            "key {:?} stands twice",
+                            shortened(&key)
+                        )));
                     }
                     match key.as_str() {
                         "format" => {
@@ -178,7 +182,8 @@ impl<'de: 'a, 'a> Deserialize<'de> for File<'a> {
                             if format != FORMAT {
                                 // What comes after it is that format's business: said before its keys are refused.
                                 return Err(A::Error::custom(format_args!(
-                                    "format: {format:?} is not known here, expected {FORMAT:?}"
+                                    "format: {:?} is not known here, expected {FORMAT:?}",
+                                    shortened(&format)
                                 )));
                             }
                             file.format = true;
@@ -189,7 +194,7 @@ impl<'de: 'a, 'a> Deserialize<'de> for File<'a> {
                         "source" => file.source = Some(map.next_value()?),
                         _ => {
                             let keys = &["format", "name", "sensor", "imprint", "source"];
-                            return Err(A::Error::unknown_field(&key, keys));
+                            return Err(A::Error::unknown_field(&shortened(&key), keys));
                         }
                     }
                     seen.push(key);

@@ -107,19 +107,14 @@ impl std::error::Error for TextError {}
 ///     read(b"##\n#x").map_err(|error| error.to_string()),
 ///     Err("line 2, column 2: found 'x', expected '#' or '.'".to_owned())
 /// );
+/// assert_eq!(
+///     read(b"##\n#x\xff").map_err(|error| error.to_string()),
+///     Err("line 2, column 2: found 'x', expected '#' or '.'".to_owned())
+/// );
 /// # Ok::<(), taxel::formats::text::TextError>(())
 /// ```
 pub fn read(bytes: &[u8]) -> Result<Imprint, TextError> {
-    let text = str::from_utf8(bytes).map_err(|error| {
-        let valid = &bytes[..error.valid_up_to()];
-        let start = valid.iter().rposition(|&byte| byte == b'\n');
-        let before = &valid[start.map_or(0, |start| start + 1)..];
-        TextError::Byte {
-            line: valid.split(|&byte| byte == b'\n').count(),
-            column: 1 + String::from_utf8_lossy(before).chars().count(),
-            byte: bytes[error.valid_up_to()],
-        }
-    })?;
+    let text = str::from_utf8(bytes).map_err(|error| no_text(bytes, error.valid_up_to()))?;
     let rows = lines(text);
     Imprint::from_rows(rows.iter().copied()).map_err(|error| match error {
         ImprintError::Rows => TextError::Lines { found: rows.len() },
@@ -144,6 +139,28 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, TextError> {
             found,
         },
     })
+}
+
+/// What is wrong first in bytes that are UTF-8 only up to an end.
+fn no_text(bytes: &[u8], end: usize) -> TextError {
+    let valid = String::from_utf8_lossy(&bytes[..end]);
+    let is_stray = |found: &(usize, char)| !matches!(found.1, '#' | '.' | '\r' | '\n');
+    let stray = valid.char_indices().find(is_stray);
+    let before = &valid[..stray.map_or(valid.len(), |(at, _)| at)];
+    let line = before.split('\n').count();
+    let column = 1 + before.rsplit('\n').next().unwrap_or("").chars().count();
+    match stray {
+        Some((_, found)) => TextError::Character {
+            line,
+            column,
+            found,
+        },
+        None => TextError::Byte {
+            line,
+            column,
+            byte: bytes[end],
+        },
+    }
 }
 
 /// The lines without their ends, and without the blank ones after the last that is not.

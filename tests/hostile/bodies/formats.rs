@@ -2,7 +2,7 @@
 
 use taxel::cli::config::Config;
 use taxel::formats::answer::Answer;
-use taxel::formats::exchange::{self, Form};
+use taxel::formats::exchange::{self, Format};
 use taxel::formats::job::Job;
 use taxel::formats::npy::{Kind, content, header, words};
 use taxel::formats::shape::Shape;
@@ -57,7 +57,7 @@ pub(crate) fn imprint(bytes: &[u8]) {
 pub(crate) fn exchange(bytes: &[u8]) {
     match exchange::read(bytes) {
         Ok(imprint) => {
-            for form in Form::ALL {
+            for form in Format::ALL {
                 assert_eq!(exchange::read(&form.write(&imprint)), Ok(imprint));
             }
         }
