@@ -24,7 +24,7 @@ fn imprints() -> impl Strategy<Value = Imprint> {
 }
 
 fn form() -> impl Strategy<Value = Format> {
-    proptest::sample::select(&Format::ALL[..])
+    proptest::sample::select(Format::ALL)
 }
 
 proptest! {

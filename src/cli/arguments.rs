@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ArgMatches;
 use clap::error::ErrorKind;
+use clap::parser::ValueSource;
 
 use super::chosen::Chosen;
 use super::commands;
@@ -13,6 +14,7 @@ use super::effective::{Effective, Loaded};
 use super::export::Export;
 use super::failure::Failure;
 use super::flags::{self, Given};
+use super::pitch::Pitch;
 use super::program::Script;
 use super::sweep::Wanted;
 use crate::figure::Kind;
@@ -50,7 +52,7 @@ pub(super) enum Request {
     /// To describe a stored shape, or what a file holds.
     Describe(OsString, Form),
     /// To write a shape of the library or of a file, in mm where a pitch is given.
-    Export(OsString, Export, Option<f64>),
+    Export(OsString, Export, Pitch),
     /// To answer lines.
     Batch(Sensor),
     /// To go through a grid.
@@ -126,10 +128,10 @@ pub(super) struct Saving {
 /// How an imprint and its descriptors are shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Form {
-    /// One line of JSON; what is drawn beside it is in mm too where a pitch is given.
-    Json(Option<f64>),
-    /// The matrix and a table, in mm too where a pitch is given.
-    Table(Option<f64>),
+    /// One line of JSON; what is drawn beside it is in mm where a pitch is known.
+    Json(Pitch),
+    /// The matrix and a table, in mm too where a pitch is known.
+    Table(Pitch),
 }
 
 /// What the arguments ask for; the first is the program's own name.
@@ -159,7 +161,7 @@ pub(super) fn read(arguments: Vec<OsString>) -> Result<Asked, Failure> {
             settings,
         });
     };
-    if let Some(flag) = Given::of(&matches).first() {
+    if let Some(flag) = Given::of(&matches).first().or(of_screen(&matches)) {
         let message = format!(
             "the subcommand '{name}' cannot be used with '--{flag}', which is the screen's"
         );
@@ -179,6 +181,13 @@ pub(super) fn read(arguments: Vec<OsString>) -> Result<Asked, Failure> {
     })
 }
 
+/// A flag of the screen that is given, as what comes before a command would be lost.
+fn of_screen(matches: &ArgMatches) -> Option<String> {
+    let flags = ["color", "theme", "no-mouse", "size", "record"];
+    let given = |flag: &&str| matches.value_source(flag) == Some(ValueSource::CommandLine);
+    flags.into_iter().find(given).map(str::to_owned)
+}
+
 fn effective(loaded: Loaded, matches: &ArgMatches) -> Result<Effective, Failure> {
     Effective::new(loaded, Chosen::of(matches), std::env::var_os)
 }
@@ -193,26 +202,22 @@ fn request(
     Ok(match name {
         "figure" => {
             let (figure, sensor) = source(own, command, "figure", settings)?;
-            let form = match form(own)? {
-                Form::Table(pitch) => Form::Table(pitch.or(settings.pitch())),
-                Form::Json(pitch) => Form::Json(pitch.or(settings.pitch())),
-            };
             let kept = kept(own, command, "figure")?;
-            Request::Figure(Box::new(figure), sensor, form, kept)
+            Request::Figure(Box::new(figure), sensor, form(own, settings)?, kept)
         }
         "config" => Request::Settings,
         "picture" => {
             let kept = kept(own, command, "picture")?;
-            Request::Picture(what(own), Given::of(own), form(own)?, kept)
+            Request::Picture(what(own), Given::of(own), form(own, settings)?, kept)
         }
-        "describe" => Request::Describe(what(own), form(own)?),
+        "describe" => Request::Describe(what(own), form(own, settings)?),
         "export" => {
-            let pitch = Given::of(own).pitch()?;
+            let pitch = pitch(own, settings)?;
             let to = own.get_one::<PathBuf>("to").cloned();
             let export = export(own, &to.unwrap_or_default(), command, "export")?;
             Request::Export(what(own), export, pitch)
         }
-        "library" => Request::Library(chore(own)?),
+        "library" => Request::Library(chore(own, settings)?),
         "script" => Request::Script(Script::of(own)),
         "completions" => {
             let name = own.get_one::<String>("shell");
@@ -279,6 +284,7 @@ fn wanted(matches: &ArgMatches) -> Wanted {
     Wanted {
         atlas: matches.get_one::<AtlasFile>("atlas").cloned(),
         poses: poses.ok().flatten().cloned(),
+        existing: flags::existing(matches),
         json: matches.get_flag("json"),
         quiet: matches.get_flag("quiet"),
     }
@@ -320,7 +326,7 @@ fn source(
     Ok((figure, sensor))
 }
 
-fn chore(matches: &ArgMatches) -> Result<Chore, Failure> {
+fn chore(matches: &ArgMatches, settings: &Effective) -> Result<Chore, Failure> {
     let Some((command, own)) = matches.subcommand() else {
         // Required: there is always one.
         return Ok(Chore::Path);
@@ -328,7 +334,7 @@ fn chore(matches: &ArgMatches) -> Result<Chore, Failure> {
     let name = own.try_get_one::<Name>("name").ok().flatten().cloned();
     Ok(match (command, name) {
         ("list", _) => Chore::List(own.get_flag("json")),
-        ("show", Some(name)) => Chore::Show(name, form(own)?),
+        ("show", Some(name)) => Chore::Show(name, form(own, settings)?),
         ("save", Some(name)) => {
             let force = own.get_flag("force");
             Chore::Save(Saving { name, force }, what(own))
@@ -363,7 +369,7 @@ fn export(
     name: &str,
 ) -> Result<Export, Failure> {
     let format = matches.get_one::<String>("format").map(String::as_str);
-    let export = Export::new(path, format, matches.get_flag("force"));
+    let export = Export::new(path, format, flags::existing(matches));
     export.map_err(|message| misused(command, name, &message))
 }
 
@@ -373,8 +379,15 @@ fn saving(matches: &ArgMatches) -> Option<Saving> {
     Some(Saving { name, force })
 }
 
-fn form(matches: &ArgMatches) -> Result<Form, Failure> {
-    let pitch = Given::of(matches).pitch()?;
+fn pitch(matches: &ArgMatches, settings: &Effective) -> Result<Pitch, Failure> {
+    Ok(Pitch {
+        given: Given::of(matches).pitch()?,
+        usual: settings.pitch(),
+    })
+}
+
+fn form(matches: &ArgMatches, settings: &Effective) -> Result<Form, Failure> {
+    let pitch = pitch(matches, settings)?;
     Ok(if matches.get_flag("json") {
         Form::Json(pitch)
     } else {

@@ -17,7 +17,7 @@ use super::flags;
 use super::program::{ascii, completions, config, config_file, look, man, record, script, size};
 use crate::figure::Kind;
 use crate::formats::name::{Name, NameError};
-use crate::formats::sweep_file::AtlasFile;
+use crate::formats::sweep_file::{AtlasFile, is_poses};
 use crate::parameter::Parameter;
 use crate::picture::PICTURE_PARAMETERS;
 use crate::sensor::SENSOR_PARAMETERS;
@@ -110,7 +110,7 @@ fn export() -> Command {
         .arg(to)
         .args(of_sensor(&[Parameter::Pitch]))
         .arg(format())
-        .arg(force().help("Replace a file that is there already"))
+        .arg(replace())
 }
 
 fn format() -> Arg {
@@ -174,7 +174,7 @@ fn sweep() -> Command {
     let poses = Arg::new("poses")
         .long("poses")
         .value_name("FILE.npy")
-        .value_parser(value_parser!(PathBuf))
+        .value_parser(parse_poses)
         .conflicts_with("shard")
         .help("Write the number of each pose's imprint");
     let jobs = Arg::new("jobs")
@@ -196,7 +196,7 @@ fn sweep() -> Command {
         .args(ranges)
         .arg(anchor)
         .args(sensor_of_imprints())
-        .args([atlas(), poses, jobs, shard, json(), quiet()])
+        .args([atlas(), poses, replace(), jobs, shard, json(), quiet()])
 }
 
 fn merge() -> Command {
@@ -209,7 +209,7 @@ fn merge() -> Command {
     Command::new("merge")
         .about("Put the shards of a sweep together")
         .after_help(MERGE_EXAMPLES)
-        .args([files, atlas().required(true), json(), quiet()])
+        .args([files, atlas().required(true), replace(), json(), quiet()])
 }
 
 fn atlas() -> Arg {
@@ -218,6 +218,11 @@ fn atlas() -> Arg {
         .value_name("FILE")
         .value_parser(parse_atlas)
         .help("Write the atlas, as .csv, .jsonl or .npz")
+}
+
+/// As [`force`], of files.
+fn replace() -> Arg {
+    force().help("Replace a file that is there already")
 }
 
 fn quiet() -> Arg {
@@ -229,6 +234,13 @@ fn quiet() -> Arg {
 
 fn parse_atlas(text: &str) -> Result<AtlasFile, &'static str> {
     AtlasFile::new(text)
+}
+
+fn parse_poses(text: &str) -> Result<PathBuf, &'static str> {
+    let path = PathBuf::from(text);
+    let fits = is_poses(&path);
+    fits.then_some(path)
+        .ok_or("expected a name that ends in .npy")
 }
 
 fn parse_range(text: &str) -> Result<DecimalRange, RangeError> {

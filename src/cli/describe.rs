@@ -5,7 +5,7 @@ use super::input::Content;
 use super::locale::Charset;
 use super::report;
 
-/// The imprint with what describes it. A stored shape says what made it; its pitch counts only where none is given.
+/// The imprint with what describes it. A stored shape says what made it.
 pub(super) fn content(content: &Content, form: Form, charset: Charset) -> String {
     let imprint = match content {
         Content::Imprint(imprint) => imprint,
@@ -14,6 +14,11 @@ pub(super) fn content(content: &Content, form: Form, charset: Charset) -> String
     let Form::Table(pitch) = form else {
         return report::json(imprint);
     };
+    let sensor = match content {
+        Content::Imprint(_) => None,
+        Content::Shape(shape) => Some(&shape.sensor),
+    };
+    let pitch = pitch.of(sensor);
     let mut made = Vec::new();
     match content {
         Content::Imprint(_) => made.push(report::size(imprint, None, pitch)),
@@ -22,8 +27,7 @@ pub(super) fn content(content: &Content, form: Form, charset: Charset) -> String
             if let Some(source) = &shape.source {
                 made.extend(report::made(source, &shape.sensor));
             }
-            let stored = Some(shape.sensor.pitch_mm());
-            made.push(report::size(imprint, Some(&shape.sensor), pitch.or(stored)));
+            made.push(report::size(imprint, sensor, pitch));
         }
     }
     report::table(imprint, &made, pitch, charset)

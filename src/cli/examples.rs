@@ -8,7 +8,8 @@ describes it. Without a command the screen opens, where all of this is live.";
 
 pub(super) const EXAMPLES: &str = "\
 All lengths are in sides of a sensory cell, x to the right, y down.
-Exit status: 0 done, 1 the input was wrong, 2 the command was.
+Exit status: 0 done, 1 the input was wrong, 2 the command was, 128 + n ended by
+signal n.
 
 Examples:
   taxel
@@ -137,7 +138,7 @@ Examples:
   taxel man ~/.local/share/man/man1 && man taxel-figure";
 
 /// Of the manual only.
-pub(super) const ENVIRONMENT: &str = "\
+pub(super) const ENVIRONMENT: &str = "
   TAXEL_LIBRARY    the library's folder
   TAXEL_CONFIG     the file of settings
   NO_COLOR         no colours, where it is not empty
@@ -147,7 +148,7 @@ pub(super) const ENVIRONMENT: &str = "\
   COLUMNS, LINES   the size of a terminal that does not tell it";
 
 /// Of the manual only.
-pub(super) const FILES: &str = "\
+pub(super) const FILES: &str = "
   ~/.config/taxel/config.toml
                    settings; 'taxel config' shows what it can say
   ~/.local/share/taxel/library
@@ -155,8 +156,10 @@ pub(super) const FILES: &str = "\
 
 pub(super) const SWEEP_EXAMPLES: &str = "\
 A range is START:END:STEP with the end included, or one number; decimals are
-exact. What is not given is the paper's own grid of 3.6 million poses, solid
-figures and the 16 x 16 sensor. The sensor of a picture is its own.
+exact. What is not given has the paper's resolution: one cell
+by hundredths and every whole degree, 3.6 million poses. Figures are solid, the
+sensor is 16 x 16; that of a picture is its own. --force replaces files that are
+there already.
 
 Examples:
   taxel sweep rectangle --length 6 --width 3

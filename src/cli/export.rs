@@ -1,15 +1,16 @@
 //! `taxel export`, and `--export` of a touch: an imprint in the forms of other programs, or drawn.
 
 use std::ffi::OsStr;
-use std::io::{ErrorKind, Write};
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use super::failure::Failure;
 use super::input::Content;
+use super::pitch::Pitch;
 use super::shelf::Shelf;
 use crate::formats::drawing::Drawing;
 use crate::formats::exchange::Format as ImprintFormat;
-use crate::formats::unfinished::{Existing, Unfinished};
+use crate::formats::unfinished::{Existing, Unfinished, Whole};
 use crate::imprint::Imprint;
 use crate::source::Source;
 
@@ -55,7 +56,7 @@ pub(super) struct Export {
     /// Standard output where there is none.
     path: Option<PathBuf>,
     format: Format,
-    force: bool,
+    existing: Existing,
 }
 
 impl Export {
@@ -63,7 +64,11 @@ impl Export {
     ///
     /// # Errors
     /// Where neither tells the format.
-    pub(super) fn new(path: &Path, format: Option<&str>, force: bool) -> Result<Self, String> {
+    pub(super) fn new(
+        path: &Path,
+        format: Option<&str>,
+        existing: Existing,
+    ) -> Result<Self, String> {
         let format = match format {
             Some(name) => Format::of(name),
             None => Format::of_ending(path),
@@ -81,29 +86,30 @@ impl Export {
         Ok(Self {
             path: (!is_standard).then(|| path.to_owned()),
             format,
-            force,
+            existing,
         })
     }
 
-    /// Writes an imprint, and gives what is to be said of it; or gives the content, where it is for standard output.
-    pub(super) fn write(
+    /// Writes an imprint, all but for the name of the file.
+    pub(super) fn begin(
         &self,
         imprint: &Imprint,
         source: Option<&Source>,
-        title: Option<&str>,
+        title: &str,
         pitch: Option<f64>,
-    ) -> Result<Exported, Failure> {
+    ) -> Result<Begun, Failure> {
         let draw = || {
             let mut drawing = Drawing::new(imprint);
             if let Some(source) = source {
                 drawing = drawing.with_outline(source);
             }
-            if let Some(title) = title {
-                drawing = drawing.with_title(title);
-            }
-            match pitch {
-                Some(pitch) => drawing.with_pitch(pitch),
-                None => drawing,
+            match (source, pitch) {
+                // What made it is told in cells, whatever the axes are in.
+                (Some(_), Some(pitch)) => drawing
+                    .with_pitch(pitch)
+                    .with_title(&format!("{title} (in cells)")),
+                (None, Some(pitch)) => drawing.with_pitch(pitch).with_title(title),
+                (_, None) => drawing.with_title(title),
             }
         };
         let content = match self.format {
@@ -111,11 +117,32 @@ impl Export {
             Format::Svg => draw().svg().into_bytes(),
             Format::Png => draw().png().map_err(Failure::Write)?,
         };
-        let Some(path) = &self.path else {
-            return Ok(Exported::Content(content));
-        };
-        put(path, &content, self.force)?;
-        Ok(Exported::Said(format!("written to {}", path.display())))
+        match &self.path {
+            None => Ok(Begun::Content(content)),
+            Some(path) => whole(path, &content, self.existing).map(Begun::File),
+        }
+    }
+}
+
+/// An export that lacks only its name. Dropped, nothing is left of it.
+#[derive(Debug)]
+pub(super) enum Begun {
+    /// It has none: it is for standard output.
+    Content(Vec<u8>),
+    /// A file.
+    File(Whole),
+}
+
+impl Begun {
+    /// Gives the file its name, and what is to be said of it; or gives the content.
+    pub(super) fn end(self) -> Result<Exported, Failure> {
+        match self {
+            Self::Content(content) => Ok(Exported::Content(content)),
+            Self::File(whole) => {
+                let said = format!("written to {}", whole.path().display());
+                keep(whole).map(|()| Exported::Said(said))
+            }
+        }
     }
 }
 
@@ -128,25 +155,30 @@ pub(super) enum Exported {
     Said(String),
 }
 
-/// Writes a file whole; over one that is there only by `force`.
-pub(super) fn put(path: &Path, content: &[u8], force: bool) -> Result<(), Failure> {
-    let existing = if force {
-        Existing::Replaced
-    } else {
-        Existing::Kept
-    };
-    let name = || path.to_string_lossy().into_owned();
+/// Writes a file whole.
+pub(super) fn put(path: &Path, content: &[u8], existing: Existing) -> Result<(), Failure> {
+    keep(whole(path, content, existing)?)
+}
+
+fn whole(path: &Path, content: &[u8], existing: Existing) -> Result<Whole, Failure> {
     let written = Unfinished::new(path, existing).and_then(|mut file| {
         file.output.write_all(content)?;
-        file.whole()?.keep()
+        file.whole()
     });
-    written.map_err(|error| match error.kind() {
-        ErrorKind::AlreadyExists => Failure::Taken { name: name() },
-        _ => Failure::File {
-            name: name(),
-            error,
-        },
-    })
+    written.map_err(|error| failure(path, error))
+}
+
+fn keep(whole: Whole) -> Result<(), Failure> {
+    let path = whole.path().to_owned();
+    whole.keep().map_err(|error| failure(&path, error))
+}
+
+fn failure(path: &Path, error: io::Error) -> Failure {
+    let name = path.to_string_lossy().into_owned();
+    match error.kind() {
+        ErrorKind::AlreadyExists => Failure::Taken { name },
+        _ => Failure::File { name, error },
+    }
 }
 
 /// Writes the shape of that name, else what is in that file. A stored shape is drawn with the outline that made it.
@@ -154,17 +186,25 @@ pub(super) fn export(
     shelf: &Shelf,
     what: &OsStr,
     export: &Export,
-    pitch: Option<f64>,
+    pitch: Pitch,
 ) -> Result<Exported, Failure> {
-    match shelf.find(what)? {
-        Content::Imprint(imprint) => export.write(&imprint, None, None, pitch),
+    let begun = match shelf.find(what)? {
+        Content::Imprint(imprint) => {
+            let title = Path::new(what)
+                .file_name()
+                .unwrap_or(what)
+                .to_string_lossy();
+            export.begin(&imprint, None, &title, pitch.of(None))
+        }
         Content::Shape(shape) => {
             let source = shape.source.as_ref();
             let title = match source {
                 Some(source) => format!("{}: {source}", shape.name),
                 None => shape.name.to_string(),
             };
-            export.write(&shape.imprint, source, Some(&title), pitch)
+            let pitch = pitch.of(Some(&shape.sensor));
+            export.begin(&shape.imprint, source, &title, pitch)
         }
-    }
+    };
+    begun?.end()
 }

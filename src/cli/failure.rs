@@ -50,14 +50,6 @@ pub(super) enum Failure {
     /// The answer cannot be written.
     #[error("cannot write: {0}")]
     Write(io::Error),
-    /// A page of the manual cannot be written.
-    #[error("{name}: cannot write: {error}")]
-    Page {
-        /// The file's name, or the folder's.
-        name: String,
-        /// Why not.
-        error: io::Error,
-    },
     /// The library refuses.
     #[error("{}", legible(&.0.to_string()))]
     Library(#[from] LibraryError),
@@ -76,7 +68,7 @@ pub(super) enum Failure {
     /// A file cannot be written.
     #[error("{name}: cannot write: {error}")]
     File {
-        /// Its name.
+        /// Its name, or that of its folder.
         name: String,
         /// Why not.
         error: io::Error,
@@ -142,16 +134,29 @@ pub(super) enum Failure {
     },
     /// An atlas or the numbers of all poses that cannot be written.
     #[error(transparent)]
-    SweepFile(#[from] SweepFileError),
+    SweepFile(SweepFileError),
     /// Shards that do not make a whole.
     #[error(transparent)]
     Merge(#[from] MergeError),
-    /// A sweep was.
+    /// By that signal.
     #[error("stopped; nothing was written")]
-    Stopped,
+    Stopped(u8),
+    /// The system refuses threads or signals.
+    #[error("{0}")]
+    System(io::Error),
     /// There is no screen.
     #[error("{0}")]
     Screen(io::Error),
+}
+
+impl From<SweepFileError> for Failure {
+    fn from(error: SweepFileError) -> Self {
+        if error.exists() {
+            Self::Taken { name: error.name }
+        } else {
+            Self::SweepFile(error)
+        }
+    }
 }
 
 impl Failure {
@@ -175,8 +180,8 @@ impl Failure {
                 failure: runner::Failure::Ended { .. },
                 ..
             } => 3,
-            // As a shell tells of a command that was interrupted.
-            Self::Stopped => 130,
+            // As a shell tells of a command that a signal has ended.
+            Self::Stopped(signal) => 128 + signal,
             _ => 1,
         }
     }

@@ -4,6 +4,7 @@ use clap::{Arg, ArgMatches};
 
 use super::failure::Failure;
 use crate::figure::{Figure, Kind};
+use crate::formats::unfinished::Existing;
 use crate::parameter::{PARAMETERS, Parameter, ParameterError, Unit, number};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
 use crate::sensor::{MAX_SIDE, SENSOR_PARAMETERS, Sensor};
@@ -184,5 +185,14 @@ impl Given {
         self.fold(&PICTURE_PARAMETERS, picture, |picture, parameter, value| {
             picture.with(parameter, value, side)
         })
+    }
+}
+
+/// What happens to files that are there, by `--force`.
+pub(super) fn existing(matches: &ArgMatches) -> Existing {
+    if matches.get_flag("force") {
+        Existing::Replaced
+    } else {
+        Existing::Kept
     }
 }

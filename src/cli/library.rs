@@ -142,10 +142,7 @@ pub(super) fn show(
 /// Stores what is found under a name or in a file. An imprint alone is a whole matrix.
 pub(super) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String, Failure> {
     let shape = match shelf.find(what)? {
-        Content::Shape(shape) => Shape {
-            name: saving.name,
-            ..shape
-        },
+        Content::Shape(shape) => shape.renamed(saving.name),
         Content::Imprint(imprint) => Shape {
             name: saving.name,
             sensor: [
@@ -161,8 +158,8 @@ pub(super) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String
             source: None,
         },
     };
-    shelf.save(&shape, saving.force)?;
-    Ok(format!("saved as {}\n", shape.name))
+    let name = shelf.save(&shape, saving.force)?;
+    Ok(format!("saved as {name}\n"))
 }
 
 /// Moves a shape into the trash.

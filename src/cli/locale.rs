@@ -29,12 +29,12 @@ impl Charset {
             .find(|value| !value.is_empty())
             .unwrap_or_default();
         let locale = locale.to_string_lossy().to_ascii_lowercase();
-        // language_COUNTRY.codeset@modifier
+        // language_COUNTRY.codeset@modifier, or the codeset alone, as macOS has it.
         let codeset = locale
             .split('@')
             .next()
             .and_then(|name| name.split_once('.'))
-            .map_or("", |(_, codeset)| codeset);
+            .map_or(&*locale, |(_, codeset)| codeset);
         let ascii = arguments.iter().any(|argument| argument == "--ascii");
         if ascii || !matches!(codeset, "utf-8" | "utf8") {
             Self::Ascii

@@ -13,7 +13,9 @@ use clap_mangen::roff::{Roff, roman};
 
 use super::commands;
 use super::examples::{ENVIRONMENT, FILES};
+use super::export;
 use super::failure::Failure;
+use crate::formats::unfinished::Existing;
 
 /// The program's own page.
 pub(super) fn main_page() -> Result<Vec<u8>, Failure> {
@@ -22,16 +24,15 @@ pub(super) fn main_page() -> Result<Vec<u8>, Failure> {
 
 /// Writes all pages into a folder, which is made where it is not there.
 pub(super) fn write(folder: &Path) -> Result<(), Failure> {
-    let failure = |path: &Path, error: io::Error| Failure::Page {
-        name: path.display().to_string(),
+    fs::create_dir_all(folder).map_err(|error| Failure::File {
+        name: folder.display().to_string(),
         error,
-    };
-    fs::create_dir_all(folder).map_err(|error| failure(folder, error))?;
+    })?;
     for command in all(&built()) {
         let file = folder.join(format!("{}.1", name(command)));
-        page(command)
-            .and_then(|page| fs::write(&file, page))
-            .map_err(|error| failure(&file, error))?;
+        let page = page(command).map_err(Failure::Write)?;
+        // Those of an earlier version go.
+        export::put(&file, &page, Existing::Replaced)?;
     }
     Ok(())
 }

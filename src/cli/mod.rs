@@ -2,9 +2,10 @@
 //! screen where no command is given; `script`, `config`, `completions` and `man` beside them.
 //!
 //! Answers go to standard output, messages to standard error, one line each, and what went wrong starts with `error:`.
-//! The exit status is 0 where all was done, 1 where the input was wrong, 2 where the command was, 3 where the program
-//! ended before its script. A pipe that is closed at its other end is no error: the program stops there. Nothing ever
-//! writes an escape code, but for the bar of a sweep on a terminal.
+//! The exit status is 0 where all was done, 1 where the input was wrong, 2 where the command, the settings or the script
+//! was, 3 where the program ended before its script, and 128 + n where signal n ended it. A pipe that is closed at its
+//! other end is no error: the program stops there. Apart from the screen nothing writes an escape code, but for the bar of
+//! a sweep on a terminal.
 
 mod locale;
 
@@ -21,6 +22,8 @@ mod summary;
 mod sweep;
 
 mod shelf;
+
+mod pitch;
 
 mod export;
 

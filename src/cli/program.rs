@@ -8,7 +8,9 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use super::completions::Shell;
 use super::config::AUTO;
 use super::examples::{COMPLETIONS_EXAMPLES, CONFIG_EXAMPLES, MAN_EXAMPLES, SCRIPT_EXAMPLES};
+use super::flags;
 use super::input::Place;
+use crate::formats::unfinished::Existing;
 use crate::tui::script::command;
 use crate::tui::theme::{ColorDepth, Palette};
 
@@ -24,8 +26,8 @@ pub(super) struct Script {
     pub(super) json: bool,
     /// The folder that its screens are drawn into, if they are.
     pub(super) drawings: Option<PathBuf>,
-    /// Whether drawings that are there already are replaced.
-    pub(super) force: bool,
+    /// What happens to drawings that are there already.
+    pub(super) existing: Existing,
 }
 
 impl Script {
@@ -52,7 +54,7 @@ impl Script {
             styles: matches.get_flag("styles"),
             json: matches.get_flag("json"),
             drawings: matches.get_one::<PathBuf>("svg").cloned(),
-            force: matches.get_flag("force"),
+            existing: flags::existing(matches),
         }
     }
 }

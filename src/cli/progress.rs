@@ -7,7 +7,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use super::locale::Charset;
 
@@ -34,15 +34,21 @@ impl Progress {
             Shown::Nothing
         } else if std::io::stderr().is_terminal() {
             let bar = ProgressBar::with_draw_target(Some(all), ProgressDrawTarget::stderr());
-            let template = "{bar:40} {percent} %  {per_sec}  {eta} left";
+            let template = "{bar:40} {percent} %  {rate}  {eta} left";
             let characters = match charset {
                 Charset::Ascii => "#>-",
                 Charset::Unicode => "█▌░",
             };
             let style = ProgressStyle::with_template(template);
+            // Millions a second: without the decimals that its library would show.
+            let rate = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
+                // A line too short is all that can happen.
+                let _ = write!(text, "{:.0} poses/s", state.per_sec());
+            };
             bar.set_style(
                 style
                     .unwrap_or_else(|_| ProgressStyle::default_bar())
+                    .with_key("rate", rate)
                     .progress_chars(characters),
             );
             Shown::Bar(bar)

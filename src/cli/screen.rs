@@ -53,7 +53,12 @@ pub(super) fn screen(
     let app = App::new(&options).with_keymap(settings.keymap().clone());
     let ended = terminal::run(app, World::new(library), &terminal, &mut watch);
     if let Some(record) = record {
-        record.end(ended.as_ref().ok().copied());
+        let name = record.path.to_string_lossy().into_owned();
+        if let Err(error) = record.end(ended.as_ref().ok().copied()) {
+            // The screen did what it should: its status stays.
+            let message = format!("error: {name}: the record ends early: {error}");
+            let _ = writeln!(io::stderr().lock(), "{}", charset.line(&message));
+        }
     }
     Ok(ended.map_err(Failure::Screen)?.status())
 }
@@ -61,7 +66,8 @@ pub(super) fn screen(
 /// A record that is being written.
 struct Record {
     path: PathBuf,
-    file: File,
+    /// Why nothing more is written, once something could not be.
+    file: io::Result<File>,
     recorder: Recorder,
     begun: bool,
 }
@@ -69,6 +75,9 @@ struct Record {
 impl Record {
     /// A new file: one that is there may be the record of something else.
     fn begin(path: PathBuf, options: &Options, library: &Library) -> Result<Self, Failure> {
+        // All that may fail before there is a file, which would be in the way of the next try.
+        let mut start = of_options(options);
+        start.extend(found(library)?);
         let file = File::create_new(&path).map_err(|error| match error.kind() {
             ErrorKind::AlreadyExists => Failure::Recorded {
                 name: path.to_string_lossy().into_owned(),
@@ -79,11 +88,9 @@ impl Record {
                 error,
             },
         })?;
-        let mut start = of_options(options);
-        start.extend(found(library)?);
         Ok(Self {
             path,
-            file,
+            file: Ok(file),
             recorder: Recorder::new(&start),
             begun: false,
         })
@@ -91,18 +98,23 @@ impl Record {
 
     fn write(&mut self, lines: &str) {
         self.begun |= !lines.is_empty();
-        // A disk that is full must not end the program; the record ends instead.
-        let _ = self.file.write_all(lines.as_bytes());
+        // A disk that is full must not end the program; the record ends instead, without a gap.
+        if let Ok(file) = &mut self.file
+            && let Err(error) = file.write_all(lines.as_bytes())
+        {
+            self.file = Err(error);
+        }
     }
 
     /// The last lines; a record of nothing goes again.
-    fn end(mut self, outcome: Option<terminal::Outcome>) {
+    fn end(mut self, outcome: Option<terminal::Outcome>) -> io::Result<()> {
         let lines = outcome.map(|outcome| self.recorder.end(outcome));
         self.write(&lines.unwrap_or_default());
         if !self.begun {
             // An empty file is left then, and told by nobody.
             let _ = fs::remove_file(&self.path);
         }
+        self.file.map(drop)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The screen driven by a script, without a terminal.
 
-use std::fs;
-use std::io::{self, Write};
+use std::fs::{self, File};
+use std::io::{self, Read, Write};
 use std::ops::ControlFlow;
 
 use super::effective::Effective;
@@ -11,13 +11,16 @@ use super::input::Place;
 use super::locale::Charset;
 use super::program::Script;
 use super::shelf::Shelf;
-use crate::formats::name::Name;
+use crate::formats::name::{Name, folded};
 use crate::tui::app::Options;
 use crate::tui::effect::World;
 use crate::tui::key::parse;
 use crate::tui::script::command::ScriptError;
 use crate::tui::script::runner::{self, Settings as Running, Shown};
 use crate::tui::theme::{ColorDepth, Palette, Theme};
+
+/// No script is longer.
+const MOST_BYTES: u64 = 16 << 20;
 
 /// Runs a script, and prints what it asks for as it comes.
 pub(super) fn run(
@@ -67,7 +70,13 @@ pub(super) fn run(
         keymap: settings.keymap().clone(),
     };
     let (mut output, mut lost) = (io::stdout().lock(), None);
-    let mut screens = 0;
+    if let Some(folder) = &asked.drawings {
+        fs::create_dir_all(folder).map_err(|error| Failure::File {
+            name: folder.to_string_lossy().into_owned(),
+            error,
+        })?;
+    }
+    let mut names = Names::default();
     let mut show = |shown: Shown<'_>| {
         let done = match (shown, &asked.drawings) {
             (Shown::Text(text), _) => {
@@ -77,10 +86,9 @@ pub(super) fn run(
                     .map_err(Failure::Write)
             }
             (Shown::Screen(name, session), Some(folder)) => {
-                screens += 1;
-                let name = file_name(name, screens);
+                let name = names.next(name);
                 let path = folder.join(format!("{name}.svg"));
-                export::put(&path, session.svg(&name).as_bytes(), asked.force)
+                export::put(&path, session.svg(&name).as_bytes(), asked.existing)
             }
             _ => Ok(()),
         };
@@ -99,28 +107,63 @@ pub(super) fn run(
     }
 }
 
-/// The name of a screen as that of a file: what cannot be in a name is a dash. One without a name has its number.
-fn file_name(name: &str, number: usize) -> String {
-    let fits = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
-    let name: String = name
-        .chars()
-        .map(|c| if fits(c) { c } else { '-' })
-        .collect();
-    match Name::new(&name) {
-        Ok(name) => name.to_string(),
-        Err(_) => format!("screen-{number}"),
+/// The names of drawings, each another one.
+#[derive(Debug, Default)]
+struct Names(Vec<String>);
+
+impl Names {
+    /// The name of a screen as that of a file: what cannot be in a name is a dash. One without a name has its number, one
+    /// that is there already another behind it.
+    fn next(&mut self, name: &str) -> String {
+        let fits = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
+        let name: String = name
+            .chars()
+            .map(|c| if fits(c) { c } else { '-' })
+            .collect();
+        let name = match Name::new(&name) {
+            Ok(name) => name.to_string(),
+            Err(_) => format!("screen-{}", self.0.len() + 1),
+        };
+        // Some file systems take upper and lower case for the same.
+        let is_free = |name: &String| !self.0.contains(&folded(name));
+        let others = (2..).map(|number| format!("{name}-{number}"));
+        let name = std::iter::once(name.clone()).chain(others).find(is_free);
+        let name = name.unwrap_or_default();
+        self.0.push(folded(&name));
+        name
     }
 }
 
-/// Any text, however long: a record of a library holds all of it. What is not UTF-8 is replaced.
+/// A long text: a record holds all of a library. What is not UTF-8 is replaced.
 fn text(place: &Place) -> io::Result<String> {
-    let bytes = match place {
-        Place::File(path) => fs::read(path)?,
-        Place::Standard => {
-            let mut bytes = Vec::new();
-            io::Read::read_to_end(&mut io::stdin().lock(), &mut bytes)?;
-            bytes
-        }
+    let mut bytes = Vec::new();
+    match place {
+        Place::File(path) => File::open(path)?
+            .take(MOST_BYTES + 1)
+            .read_to_end(&mut bytes)?,
+        Place::Standard => io::stdin()
+            .lock()
+            .take(MOST_BYTES + 1)
+            .read_to_end(&mut bytes)?,
     };
+    if bytes.len() as u64 > MOST_BYTES {
+        return Err(io::Error::other("larger than 16 MiB, which no script is"));
+    }
     Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Names;
+
+    #[test]
+    fn no_drawing_has_the_name_of_another() {
+        let mut names = Names::default();
+        let screens = ["a b", "", "a-b", "A b", "../x", ""];
+        let drawn = screens.map(|screen| names.next(screen));
+        assert_eq!(
+            drawn,
+            ["a-b", "screen-2", "a-b-2", "A-b-3", "screen-5", "screen-6"]
+        );
+    }
 }

@@ -68,7 +68,16 @@ impl Shelf {
             Some(Err(LibraryError::Unknown { name })) => Some(name),
             // What cannot be a name may be a path, and a path needs no library.
             Some(Err(LibraryError::Name(_) | LibraryError::NoPlace)) | None => None,
-            Some(Err(error)) => return Err(error.into()),
+            // A library that cannot be read is told of unless there is such a file.
+            Some(Err(error)) => {
+                return match read(&Place::File(what.into())) {
+                    Err(Failure::Input {
+                        error: InputError::Read(missing),
+                        ..
+                    }) if missing.kind() == ErrorKind::NotFound => Err(error.into()),
+                    content => content,
+                };
+            }
         };
         match (read(&Place::File(what.into())), nowhere) {
             (
@@ -94,8 +103,9 @@ impl Shelf {
         Ok(*found.entry(shape.name.to_string()).or_insert(shape.imprint))
     }
 
-    /// Stores a shape; in place of an own one of that name only by `force`.
-    pub(super) fn save(&self, shape: &Shape, force: bool) -> Result<(), Failure> {
+    /// Stores a shape, in place of an own one of that name only by `force`; answers the name that it has there, which may
+    /// differ in upper and lower case.
+    pub(super) fn save(&self, shape: &Shape, force: bool) -> Result<String, Failure> {
         let library = self.library()?;
         let saved = match library.save(shape, Expected::Nothing) {
             Err(LibraryError::Exists { stamp, .. }) if force => {
@@ -104,6 +114,7 @@ impl Shelf {
             Err(LibraryError::Exists { name, .. }) => return Err(Failure::Taken { name }),
             saved => saved,
         };
-        saved.map(drop).map_err(Failure::from)
+        saved?;
+        Ok(library.stored_name(&shape.name)?)
     }
 }

@@ -1,14 +1,15 @@
 //! `taxel sweep` and `taxel merge`: a grid gone through, its atlas written, its statistics shown.
 //!
-//! Files are written under another name in the same folder and renamed when all are whole. An interrupt stops a
-//! sweep within some thousand poses and a file at its next block, and what is not whole is taken away; a second one
-//! ends the program at once.
+//! Files are written under another name in the same folder and renamed when all are whole; one that is there already is
+//! replaced by `--force` only, which is found out before the work. An interrupt, a request to end and a lost terminal
+//! stop a sweep within a few thousand poses and a file at its next block, and what is not whole is taken away; a second
+//! one ends the program at once.
 
 use std::fs::File;
-use std::io;
+use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
 use super::failure::Failure;
@@ -27,6 +28,7 @@ use crate::sweep::survey::{Survey, Watch};
 pub(super) struct Wanted {
     pub(super) atlas: Option<AtlasFile>,
     pub(super) poses: Option<PathBuf>,
+    pub(super) existing: Existing,
     pub(super) json: bool,
     pub(super) quiet: bool,
 }
@@ -47,11 +49,15 @@ pub(super) fn sweep(
     charset: Charset,
 ) -> Result<String, Failure> {
     let start = Instant::now();
-    let stopped = interrupts().map_err(Failure::Screen)?;
+    let signals = Signals::heard().map_err(Failure::System)?;
+    let stopped = &signals.stopped;
+    if let Some(file) = &wanted.atlas {
+        file.check(wanted.existing)?;
+    }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
-    let pool = pool.map_err(|error| Failure::Screen(io::Error::other(error)))?;
+    let pool = pool.map_err(|error| Failure::System(io::Error::other(error)))?;
     let mut poses = match &wanted.poses {
-        Some(path) => Some(PoseFile::new(path, grid, Existing::Replaced)?),
+        Some(path) => Some(PoseFile::new(path, grid, wanted.existing)?),
         None => None,
     };
     let rows = shard.rows(grid.rows());
@@ -63,7 +69,7 @@ pub(super) fn sweep(
     };
     let mut take = |row: u64, ids: &[u32]| {
         if let Some(file) = &mut poses {
-            file.take(row, ids, &stopped);
+            file.take(row, ids, stopped);
         }
     };
     let watch = Watch {
@@ -77,9 +83,9 @@ pub(super) fn sweep(
     progress.finish();
     let poses = poses.map(PoseFile::whole).transpose()?;
     if !survey.complete() {
-        return Err(Failure::Stopped);
+        return Err(signals.failure());
     }
-    leave(&survey, start, wanted, poses, charset, &stopped)
+    leave(&survey, start, wanted, poses, charset, &signals)
 }
 
 /// Puts shards together, and gives what is to be printed.
@@ -89,6 +95,9 @@ pub(super) fn merge(
     charset: Charset,
 ) -> Result<String, Failure> {
     let start = Instant::now();
+    if let Some(file) = &wanted.atlas {
+        file.check(wanted.existing)?;
+    }
     let mut surveys = Vec::with_capacity(files.len());
     for path in files {
         let file = File::open(path).map_err(|error| refused(path, error))?;
@@ -97,8 +106,8 @@ pub(super) fn merge(
     }
     let survey = Survey::merge(surveys)?;
     // Until here an interrupt ends the program, which has left nothing.
-    let stopped = interrupts().map_err(Failure::Screen)?;
-    leave(&survey, start, wanted, None, charset, &stopped)
+    let signals = Signals::heard().map_err(Failure::System)?;
+    leave(&survey, start, wanted, None, charset, &signals)
 }
 
 fn leave(
@@ -107,13 +116,13 @@ fn leave(
     wanted: &Wanted,
     poses: Option<Whole>,
     charset: Charset,
-    stopped: &AtomicBool,
+    signals: &Signals,
 ) -> Result<String, Failure> {
     let atlas = match &wanted.atlas {
         Some(file) => {
-            let whole = file.whole(survey, Existing::Replaced, stopped);
-            if stopped.load(Ordering::Relaxed) {
-                return Err(Failure::Stopped);
+            let whole = file.whole(survey, wanted.existing, &signals.stopped);
+            if signals.stopped.load(Ordering::Relaxed) {
+                return Err(signals.failure());
             }
             Some(whole?)
         }
@@ -131,13 +140,32 @@ fn leave(
     })
 }
 
-/// Set by an interrupt or a request to end; a second one ends the program as if nobody listened.
-fn interrupts() -> io::Result<Arc<AtomicBool>> {
-    use signal_hook::consts::{SIGINT, SIGTERM};
-    let stopped = Arc::new(AtomicBool::new(false));
-    for signal in [SIGINT, SIGTERM] {
-        signal_hook::flag::register_conditional_shutdown(signal, 130, Arc::clone(&stopped))?;
-        signal_hook::flag::register(signal, Arc::clone(&stopped))?;
+/// Signals that stop the work; a second one ends the program as if nobody listened.
+struct Signals {
+    stopped: Arc<AtomicBool>,
+    /// Which came last; 0 where none has.
+    last: Arc<AtomicUsize>,
+}
+
+impl Signals {
+    /// Listens from now on.
+    fn heard() -> io::Result<Self> {
+        use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+        use signal_hook::flag;
+        let (stopped, last) = (Arc::default(), Arc::default());
+        // Where nobody looks on, `nohup` may have asked that a lost terminal does not matter.
+        let lost = io::stderr().is_terminal().then_some(SIGHUP);
+        for signal in [SIGINT, SIGTERM].into_iter().chain(lost) {
+            flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&stopped))?;
+            let number = usize::try_from(signal).unwrap_or_default();
+            flag::register_usize(signal, Arc::clone(&last), number)?;
+            flag::register(signal, Arc::clone(&stopped))?;
+        }
+        Ok(Self { stopped, last })
     }
-    Ok(stopped)
+
+    fn failure(&self) -> Failure {
+        let signal = self.last.load(Ordering::Relaxed);
+        Failure::Stopped(u8::try_from(signal).unwrap_or_default())
+    }
 }

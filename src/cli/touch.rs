@@ -4,7 +4,7 @@
 use std::ffi::OsStr;
 
 use super::arguments::{Form, Kept, Saving};
-use super::export::Exported;
+use super::export::{Begun, Exported};
 use super::failure::Failure;
 use super::flags::Given;
 use super::input::Content;
@@ -36,26 +36,30 @@ pub(super) fn touch(
     charset: Charset,
 ) -> Result<Touched, Failure> {
     let imprint = Plane::new(sensor).touch(&source);
+    let (Form::Json(pitch) | Form::Table(pitch)) = form;
+    let pitch = pitch.of(Some(&sensor));
     let mut made = report::made(&source, &sensor);
     let mut notes = Vec::new();
-    let mut instead = None;
+    let mut begun = None;
     if let Some(export) = export {
-        let (Form::Json(pitch) | Form::Table(pitch)) = form;
         let title = source.to_string();
-        match export.write(&imprint, Some(&source), Some(&title), pitch)? {
-            Exported::Content(content) => instead = Some(content),
-            Exported::Said(said) => notes.push(said),
-        }
+        begun = Some(export.begin(&imprint, Some(&source), &title, pitch)?);
     }
     if let Some(Saving { name, force }) = saving {
-        notes.push(format!("saved as {name}"));
         let shape = Shape {
             name,
             sensor,
             imprint,
             source: Some(source),
         };
-        shelf.save(&shape, force)?;
+        notes.push(format!("saved as {}", shelf.save(&shape, force)?));
+    }
+    let mut instead = None;
+    // Both or none: the file has been written all but for its name.
+    match begun.map(Begun::end).transpose()? {
+        Some(Exported::Content(content)) => instead = Some(content),
+        Some(Exported::Said(said)) => notes.push(said),
+        None => {}
     }
     Ok(match (instead, form) {
         (Some(answer), _) => Touched { answer, notes },
@@ -63,7 +67,7 @@ pub(super) fn touch(
             answer: report::json(&imprint).into_bytes(),
             notes,
         },
-        (None, Form::Table(pitch)) => {
+        (None, Form::Table(_)) => {
             made.extend(notes);
             made.push(report::size(&imprint, Some(&sensor), pitch));
             Touched {

@@ -36,7 +36,7 @@ impl Serialize for Answer<'_> {
 
 /// An imprint as a list of its rows.
 #[derive(Clone, Copy, Debug)]
-pub struct Rows<'a>(pub &'a Imprint);
+pub(super) struct Rows<'a>(pub &'a Imprint);
 
 impl Serialize for Rows<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -53,7 +53,7 @@ impl Serialize for Rows<'_> {
 
 /// A region by its descriptors.
 #[derive(Clone, Copy, Debug)]
-pub struct Entry(pub Description);
+pub(super) struct Entry(pub Description);
 
 impl Serialize for Entry {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

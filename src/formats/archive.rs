@@ -32,6 +32,9 @@ pub const FORMAT: &str = "taxel-atlas/1";
 /// No array of an archive may be larger; what is larger is not read.
 const MAX_BYTES: u64 = 1 << 34;
 
+/// No header is larger: a source of 64 × 64 taxels takes some thousand bytes.
+const MAX_HEADER: u64 = 1 << 20;
+
 /// What was swept: written from a source and a sensor, read as the records that they are checked from.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -153,8 +156,17 @@ impl<W: Write + Seek> Arrays<W> {
 pub fn read(input: impl Read + Seek) -> Result<Survey, ArchiveError> {
     let mut archive = ZipArchive::new(input)?;
     let mut array = |name: &'static str| {
-        let mut file = archive.by_name(&format!("{name}.npy"))?;
-        if file.size() > MAX_BYTES {
+        let file = archive.by_name(&format!("{name}.npy"));
+        let mut file = match file {
+            Err(ZipError::FileNotFound) => return Err(ArchiveError::Array(name)),
+            file => file?,
+        };
+        let most = if name == "header" {
+            MAX_HEADER
+        } else {
+            MAX_BYTES
+        };
+        if file.size() > most {
             return Err(ArchiveError::Array(name));
         }
         let mut bytes = Vec::new();

@@ -34,7 +34,7 @@ pub fn value(pose: &Pose, parameter: Parameter) -> f64 {
     }
 }
 
-/// How many of all poses show an imprint.
+/// The share of all poses that leave this imprint, above 0, up to 1.
 #[expect(clippy::cast_precision_loss, reason = "the nearest f64 is wanted")]
 pub fn share(survey: &Survey, entry: &Entry) -> f64 {
     entry.count as f64 / survey.poses as f64

@@ -11,7 +11,10 @@ pub mod answer;
 mod quote;
 
 #[cfg(feature = "json")]
-pub mod record;
+mod record;
+
+#[cfg(feature = "json")]
+pub use record::RecordError;
 
 #[cfg(feature = "json")]
 pub mod job;

@@ -1,4 +1,4 @@
-//! What serde_json says, without the place that it says it of.
+//! What `serde_json` says, without the place that it says it of.
 
 use crate::quote::legible;
 

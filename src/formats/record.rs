@@ -68,7 +68,7 @@ fn article(noun: &str) -> &'static str {
 
 /// Numbers by parameter.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Values([Option<f64>; PARAMETERS.len()]);
+pub(super) struct Values([Option<f64>; PARAMETERS.len()]);
 
 impl Values {
     fn index(parameter: Parameter) -> Option<usize> {
@@ -76,19 +76,12 @@ impl Values {
     }
 
     /// The value of a parameter, where one was given.
-    pub fn get(&self, parameter: Parameter) -> Option<f64> {
+    pub(super) fn get(&self, parameter: Parameter) -> Option<f64> {
         self.0[Self::index(parameter)?]
     }
 
-    /// Gives a parameter its value.
-    pub fn set(&mut self, parameter: Parameter, value: f64) {
-        if let Some(index) = Self::index(parameter) {
-            self.0[index] = Some(value);
-        }
-    }
-
     /// Refuses the first value that is not of the parameters expected.
-    pub(crate) fn only(
+    pub(super) fn only(
         &self,
         thing: &'static str,
         expected: &[Parameter],
@@ -119,7 +112,7 @@ impl Values {
     ///
     /// # Errors
     /// The first value that is missing, out of range, or not of this kind.
-    pub fn figure(&self, kind: Kind, side: u8) -> Result<Figure, RecordError> {
+    pub(super) fn figure(&self, kind: Kind, side: u8) -> Result<Figure, RecordError> {
         self.only(kind.name(), &kind.parameters().collect::<Vec<_>>())?;
         Ok(Figure::new(kind, side, |parameter| self.get(parameter))?)
     }
@@ -128,9 +121,9 @@ impl Values {
     ///
     /// # Errors
     /// The first value that is missing, out of range, or not of a picture.
-    pub fn picture(&self, imprint: Imprint, side: u8) -> Result<Picture, RecordError> {
+    fn picture(&self, imprint: &Imprint, side: u8) -> Result<Picture, RecordError> {
         self.only("picture", &PICTURE_PARAMETERS)?;
-        Ok(Picture::new(imprint, side, |parameter| {
+        Ok(Picture::new(*imprint, side, |parameter| {
             self.get(parameter)
         })?)
     }
@@ -139,7 +132,7 @@ impl Values {
     ///
     /// # Errors
     /// The first value that is out of range or not of a sensor.
-    pub fn sensor(&self, base: Sensor) -> Result<Sensor, RecordError> {
+    pub(super) fn sensor(&self, base: Sensor) -> Result<Sensor, RecordError> {
         self.only("sensor", &SENSOR_PARAMETERS)?;
         SENSOR_PARAMETERS
             .into_iter()
@@ -152,7 +145,7 @@ impl Values {
 
 /// Rows of text, or a name.
 #[derive(Clone, Debug)]
-pub enum Content<'a> {
+pub(super) enum Content<'a> {
     /// Rows of `#` and `.`, not checked yet.
     Rows(Vec<Cow<'a, str>>),
     /// A name.
@@ -164,7 +157,7 @@ impl Content<'_> {
     ///
     /// # Errors
     /// Where the rows are no imprint, or the name leads to none.
-    pub fn imprint(
+    pub(super) fn imprint(
         &self,
         key: &'static str,
         lookup: &dyn Fn(&str) -> Result<Imprint, String>,
@@ -179,17 +172,17 @@ impl Content<'_> {
 
 /// An object with any of the keys that occur in jobs, sensors and sources.
 #[derive(Clone, Debug, Default)]
-pub struct Record<'a> {
+pub(super) struct Record<'a> {
     /// A figure's name.
-    pub figure: Option<Cow<'a, str>>,
+    pub(super) figure: Option<Cow<'a, str>>,
     /// A picture's rows or name.
-    pub picture: Option<Content<'a>>,
+    pub(super) picture: Option<Content<'a>>,
     /// A whole matrix.
-    pub imprint: Option<Content<'a>>,
+    pub(super) imprint: Option<Content<'a>>,
     /// A sensor.
-    pub sensor: Option<Values>,
+    pub(super) sensor: Option<Values>,
     /// All keys that are parameters.
-    pub values: Values,
+    pub(super) values: Values,
 }
 
 impl Record<'_> {
@@ -197,7 +190,7 @@ impl Record<'_> {
     ///
     /// # Errors
     /// Any [`RecordError`].
-    pub fn source(
+    pub(super) fn source(
         &self,
         side: u8,
         lookup: &dyn Fn(&str) -> Result<Imprint, String>,
@@ -211,7 +204,7 @@ impl Record<'_> {
             }
             (None, Some(content), None) => {
                 let imprint = content.imprint("picture", lookup)?;
-                Ok(Source::Picture(self.values.picture(imprint, side)?))
+                Ok(Source::Picture(self.values.picture(&imprint, side)?))
             }
             _ => Err(RecordError::Which("figure, picture, imprint")),
         }

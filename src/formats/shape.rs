@@ -19,8 +19,9 @@ pub const FORMAT: &str = "taxel-shape/1";
 /// No shape file is larger; what is larger is not read.
 pub const MAX_BYTES: usize = 1 << 20;
 
-/// A shape as it is stored.
+/// A shape as it is stored; made by [`Shape::new`] or [`Shape::read`].
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Shape {
     /// Its name.
     pub name: Name,
@@ -75,6 +76,37 @@ pub enum ShapeError {
 }
 
 impl Shape {
+    /// A shape of these parts.
+    ///
+    /// # Errors
+    /// [`ShapeError::Size`] where the imprint has another number of columns or rows than the sensor.
+    pub fn new(
+        name: Name,
+        sensor: Sensor,
+        imprint: Imprint,
+        source: Option<Source>,
+    ) -> Result<Self, ShapeError> {
+        let (found, expected) = (
+            (imprint.columns(), imprint.rows()),
+            (sensor.columns(), sensor.rows()),
+        );
+        if found != expected {
+            return Err(ShapeError::Size { found, expected });
+        }
+        Ok(Self {
+            name,
+            sensor,
+            imprint,
+            source,
+        })
+    }
+
+    /// The same under another name.
+    #[must_use]
+    pub fn renamed(self, name: Name) -> Self {
+        Self { name, ..self }
+    }
+
     /// Reads a file's content.
     ///
     /// # Errors
@@ -102,13 +134,6 @@ impl Shape {
             .imprint
             .ok_or(ShapeError::Missing("imprint"))?
             .imprint("imprint", &no_name)?;
-        let (found, expected) = (
-            (imprint.columns(), imprint.rows()),
-            (sensor.columns(), sensor.rows()),
-        );
-        if found != expected {
-            return Err(ShapeError::Size { found, expected });
-        }
         let source = file
             .source
             .map(|source| {
@@ -116,12 +141,7 @@ impl Shape {
                 source.source(sensor.side(), &no_name)
             })
             .transpose();
-        Ok(Self {
-            name,
-            sensor,
-            imprint,
-            source: source.map_err(ShapeError::Source)?,
-        })
+        Self::new(name, sensor, imprint, source.map_err(ShapeError::Source)?)
     }
 
     /// The file's content, a line per row of the imprint.

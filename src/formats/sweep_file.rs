@@ -17,6 +17,7 @@ use crate::sweep::survey::Survey;
 
 /// Why a file was not written.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 #[error("{name}: {error}")]
 pub struct SweepFileError {
     /// The file's name.
@@ -43,11 +44,11 @@ impl SweepFileError {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AtlasFile {
     path: PathBuf,
-    form: Form,
+    format: Format,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Form {
+enum Format {
     Csv,
     JsonLines,
     Archive,
@@ -57,17 +58,26 @@ impl AtlasFile {
     /// A file of that name.
     ///
     /// # Errors
-    /// What was expected, where its ending is that of no form.
+    /// What was expected, where its ending is that of no format.
     pub fn new(path: impl Into<PathBuf>) -> Result<Self, &'static str> {
         let path = path.into();
         let ending = path.extension().and_then(|ending| ending.to_str());
-        let form = match ending {
-            Some("csv") => Form::Csv,
-            Some("jsonl") => Form::JsonLines,
-            Some("npz") => Form::Archive,
+        let ending = ending.map(str::to_ascii_lowercase);
+        let format = match ending.as_deref() {
+            Some("csv") => Format::Csv,
+            Some("jsonl") => Format::JsonLines,
+            Some("npz") => Format::Archive,
             _ => return Err("expected a name that ends in .csv, .jsonl or .npz"),
         };
-        Ok(Self { path, form })
+        Ok(Self { path, format })
+    }
+
+    /// Whether a file can be begun there: said before the work rather than after it.
+    ///
+    /// # Errors
+    /// Those of the system, with the file's name; where one is there and is to be kept.
+    pub fn check(&self, existing: Existing) -> Result<(), SweepFileError> {
+        begun(&self.path, existing).map(drop)
     }
 
     /// Writes the atlas of a survey; nothing of it is left where `stopped` becomes true on the way.
@@ -95,10 +105,10 @@ impl AtlasFile {
     ) -> Result<Whole, SweepFileError> {
         let mut file = begun(&self.path, existing)?;
         let mut output = Latch::new(&mut file.output, stopped);
-        let written = match self.form {
-            Form::Csv => write_csv(survey, &mut output).map_err(ArchiveError::from),
-            Form::JsonLines => write_jsonl(survey, &mut output).map_err(ArchiveError::from),
-            Form::Archive => archive::write(survey, &mut output),
+        let written = match self.format {
+            Format::Csv => write_csv(survey, &mut output).map_err(ArchiveError::from),
+            Format::JsonLines => write_jsonl(survey, &mut output).map_err(ArchiveError::from),
+            Format::Archive => archive::write(survey, &mut output),
         };
         let written = match output.error {
             Some(error) => Err(error.into()),
@@ -107,6 +117,12 @@ impl AtlasFile {
         written.map_err(|error| SweepFileError::new(&self.path, error))?;
         Whole::of(file)
     }
+}
+
+/// Whether a file of that name can hold the atlas number of every pose.
+pub fn is_poses(name: &Path) -> bool {
+    name.extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("npy"))
 }
 
 /// The atlas number of every pose, `uint32` in an array shaped angles × y0 × x0, before that zooms (y, then x) where

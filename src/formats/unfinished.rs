@@ -9,6 +9,7 @@ use tempfile::NamedTempFile;
 
 /// What happens to a file that is there already.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Existing {
     /// It is replaced. What is no regular file, a folder, a device or a link, never is.
     Replaced,
@@ -31,13 +32,17 @@ impl Unfinished {
     /// # Errors
     /// Those of the system; [`io::ErrorKind::AlreadyExists`] where a file is there and is kept.
     pub fn new(path: &Path, existing: Existing) -> io::Result<Self> {
+        // As files usually have them; those of temporary files are tighter.
+        let mut permissions = Permissions::from_mode(0o666);
         // Said before the work rather than after it.
         match (existing, path.symlink_metadata()) {
-            (Existing::Kept, Ok(_)) => return Err(io::ErrorKind::AlreadyExists.into()),
-            (Existing::Replaced, Ok(found)) if !found.file_type().is_file() => {
+            (_, Ok(found)) if !found.file_type().is_file() => {
                 let message = "not a regular file, and only such a one is replaced";
                 return Err(io::Error::other(message));
             }
+            (Existing::Kept, Ok(_)) => return Err(io::ErrorKind::AlreadyExists.into()),
+            // What others may not read they may not read afterwards either.
+            (Existing::Replaced, Ok(found)) => permissions = found.permissions(),
             _ => {}
         }
         let folder = match path.parent() {
@@ -48,9 +53,10 @@ impl Unfinished {
         folder.metadata()?;
         let file = tempfile::Builder::new()
             .prefix(".taxel-")
-            // As files usually have them; those of temporary files are tighter.
-            .permissions(Permissions::from_mode(0o666))
-            .tempfile_in(folder)?;
+            .permissions(permissions)
+            .tempfile_in(folder)
+            // Its message would name a file that nobody has asked for.
+            .map_err(|error| io::Error::from(error.kind()))?;
         Ok(Self {
             path: path.to_owned(),
             existing,

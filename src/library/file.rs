@@ -16,7 +16,7 @@ pub(super) fn system(doing: &'static str, path: &Path) -> impl FnOnce(io::Error)
 }
 
 /// What a file holds, in a number: two contents with the same number are taken for the same.
-pub fn stamp(content: &[u8]) -> u64 {
+pub(super) fn stamp(content: &[u8]) -> u64 {
     let mut hasher = DefaultHasher::new();
     content.hash(&mut hasher);
     hasher.finish()

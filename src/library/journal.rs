@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::LibraryError;
 use super::file::{self, system};
-use super::lock::Lock;
+use super::lock::{Found, Lock};
 use super::store::Library;
 use crate::formats::shape::Shape;
 
@@ -21,7 +21,8 @@ pub const UNNAMED: &str = "unsaved";
 #[derive(Debug)]
 pub struct Journal {
     folder: PathBuf,
-    open: Option<(PathBuf, Lock)>,
+    /// Its file with the lock, where there are locks.
+    open: Option<(PathBuf, Option<Lock>)>,
 }
 
 impl Journal {
@@ -38,8 +39,17 @@ impl Journal {
     /// # Errors
     /// What the system refuses. The shape kept before is still there.
     pub fn keep(&mut self, shape: &Shape) -> Result<(), LibraryError> {
+        let content = shape.write();
         let path = self.file()?;
-        file::write(&path, &temporary_of(&path), shape.write().as_bytes())
+        match file::write(&path, &temporary_of(&path), content.as_bytes()) {
+            // Somebody has removed the folder: another one is made.
+            Err(LibraryError::System { error, .. }) if error.kind() == ErrorKind::NotFound => {
+                self.open = None;
+                let path = self.file()?;
+                file::write(&path, &temporary_of(&path), content.as_bytes())
+            }
+            written => written,
+        }
     }
 
     /// The journal's own file, found a name for at the first use.
@@ -55,10 +65,15 @@ impl Journal {
             if path.exists() {
                 continue;
             }
-            if let Some(lock) = Lock::at(&lock_of(&path))? {
-                self.open = Some((path.clone(), lock));
-                return Ok(path);
-            }
+            let lock = match Lock::at(&lock_of(&path))? {
+                Found::Free(lock) => Some(lock),
+                Found::Held => continue,
+                // What is kept can be found in the folder; nobody can tell whether its program still runs, so it is
+                // not offered.
+                Found::Unknown => None,
+            };
+            self.open = Some((path.clone(), lock));
+            return Ok(path);
         }
         let none = io::Error::other("no journal could be locked");
         Err(system("begin a journal", &self.folder)(none))
@@ -162,10 +177,10 @@ fn temporary_of(path: &Path) -> PathBuf {
 }
 
 /// The lock goes last, so that nobody finds the file without it.
-fn remove(path: &Path, lock: Lock) {
+fn remove(path: &Path, lock: impl Into<Option<Lock>>) {
     // What cannot be removed is offered again: better twice than never.
     let _ = fs::remove_file(temporary_of(path));
     let _ = fs::remove_file(path);
     let _ = fs::remove_file(lock_of(path));
-    drop(lock);
+    drop(lock.into());
 }

@@ -39,36 +39,53 @@ impl Lock {
                     let busy = io::Error::other("another program has held it for five seconds");
                     return Err(system("lock it", &path)(busy));
                 }
-                Err(TryLockError::Error(error)) => match error.kind() {
-                    ErrorKind::Interrupted => {}
-                    ErrorKind::Unsupported => return Ok(None),
-                    _ => return Err(system("lock it", &path)(error)),
-                },
+                Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Interrupted => {}
+                Err(TryLockError::Error(error)) if knows_none(&error) => return Ok(None),
+                Err(TryLockError::Error(error)) => return Err(system("lock it", &path)(error)),
             }
         }
     }
 
-    /// The lock at a path; none where somebody else has it, or the file system knows no locks.
-    pub(super) fn at(path: &Path) -> Result<Option<Self>, LibraryError> {
+    /// The lock at a path, if it is to be had.
+    pub(super) fn at(path: &Path) -> Result<Found, LibraryError> {
         let file = open(path)?;
         loop {
             match file.try_lock() {
                 // Whoever had it may have removed the file: then this is the lock of nothing.
-                Ok(()) => return Ok(is_at(&file, path).then_some(Self { _file: file })),
-                Err(TryLockError::WouldBlock) => return Ok(None),
-                Err(TryLockError::Error(error)) => match error.kind() {
-                    ErrorKind::Interrupted => {}
-                    ErrorKind::Unsupported => return Ok(None),
-                    _ => return Err(system("lock it", path)(error)),
-                },
+                Ok(()) if is_at(&file, path) => return Ok(Found::Free(Self { _file: file })),
+                Ok(()) | Err(TryLockError::WouldBlock) => return Ok(Found::Held),
+                Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Interrupted => {}
+                Err(TryLockError::Error(error)) if knows_none(&error) => return Ok(Found::Unknown),
+                Err(TryLockError::Error(error)) => return Err(system("lock it", path)(error)),
             }
         }
     }
 
     /// The lock at a path; none where it cannot be had, for whatever reason.
     pub(super) fn if_free(path: &Path) -> Option<Self> {
-        Self::at(path).ok().flatten()
+        match Self::at(path) {
+            Ok(Found::Free(lock)) => Some(lock),
+            _ => None,
+        }
     }
+}
+
+/// What became of a try to lock.
+#[derive(Debug)]
+pub(super) enum Found {
+    /// It was free, and is ours.
+    Free(Lock),
+    /// Somebody else has it.
+    Held,
+    /// The file system knows no locks.
+    Unknown,
+}
+
+/// Whether the file system knows no locks. NFS without its lock daemon says that none are left.
+fn knows_none(error: &io::Error) -> bool {
+    // ENOLCK, for which the standard library has no kind.
+    let none_left = if cfg!(target_os = "macos") { 77 } else { 37 };
+    error.kind() == ErrorKind::Unsupported || error.raw_os_error() == Some(none_left)
 }
 
 /// Where a folder's lock is.

@@ -20,7 +20,7 @@ pub mod error;
 
 pub mod place;
 
-pub mod file;
+mod file;
 
 mod lock;
 
@@ -32,4 +32,4 @@ pub mod trash;
 
 pub mod journal;
 
-pub mod leftover;
+mod leftover;

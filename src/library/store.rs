@@ -151,13 +151,18 @@ impl Library {
         let shape = Shape::read(&content).map_err(|error| LibraryError::Broken { path, error })?;
         // A file that was renamed by hand goes by its new name.
         Ok(Loaded {
-            shape: Shape {
-                name: Name::new(&own)?,
-                ..shape
-            },
+            shape: shape.renamed(Name::new(&own)?),
             stamp: stamp(&content),
             origin: Origin::Own,
         })
+    }
+
+    /// The name under which a shape of that name is stored: that of its file, which may differ in upper and lower case.
+    ///
+    /// # Errors
+    /// Where the folder cannot be read.
+    pub fn stored_name(&self, name: &Name) -> Result<String, LibraryError> {
+        Ok(self.own_name(name)?.unwrap_or_else(|| name.to_string()))
     }
 
     /// Stores a shape under its name; answers what its file holds now.
@@ -200,11 +205,7 @@ impl Library {
         // A file that differs in case only is the same name: it is replaced, not doubled.
         let name = own.map_or_else(|| Ok(name.clone()), |own| Name::new(&own))?;
         let path = self.path(name.as_str());
-        let content = Shape {
-            name,
-            ..shape.clone()
-        }
-        .write();
+        let content = shape.clone().renamed(name).write();
         let temporary = match lock {
             Some(_) => TEMPORARY.to_owned(),
             // Without locks, another program may be writing too.

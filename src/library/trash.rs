@@ -10,7 +10,7 @@ use super::file::{self, system};
 use super::lock::Lock;
 use super::shipped;
 use super::store::Library;
-use crate::formats::name::Name;
+use crate::formats::name::{Name, folded};
 
 /// How many deleted shapes are kept.
 pub const KEPT: usize = 50;
@@ -80,7 +80,10 @@ impl Library {
     pub fn in_trash(&self) -> Result<Vec<String>, LibraryError> {
         let mut names: Vec<String> = Vec::new();
         for deleted in self.deleted()?.into_iter().rev() {
-            if !names.contains(&deleted.name) {
+            if !names
+                .iter()
+                .any(|name| folded(name) == folded(&deleted.name))
+            {
                 names.push(deleted.name);
             }
         }

@@ -134,7 +134,7 @@ the figure reaches beyond the sensor
 ";
     assert!(run.stdout.starts_with(&expected[1..]), "{}", run.stdout);
     assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
-    assert!(!run.stdout.contains("in mm"), "mm are asked for by a flag");
+    assert!(run.stdout.contains("in mm²"), "it has a pitch of its own");
     let run = taxel("describe - --pitch 4", SHAPE);
     assert!(run.stdout.contains("\n3 × 2 taxels of 4 mm, "));
     assert!(run.stdout.contains("in mm²"));

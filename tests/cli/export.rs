@@ -241,3 +241,70 @@ fn a_drawn_screen_has_its_theme_and_is_not_overwritten() {
         "unexpected argument '--theme' found",
     );
 }
+
+#[test]
+fn a_file_and_a_name_come_together_or_not_at_all() {
+    let folder = Folder::new();
+    let run = folder.run(&format!("{RING} --export ring.txt --save washer"));
+    assert_eq!(run.status, Some(1), "{}", run.stderr);
+    assert_eq!(folder.names(), [""; 0], "{}", run.stderr);
+}
+
+#[cfg(unix)]
+#[test]
+fn what_others_may_not_read_they_may_not_read_afterwards() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = Folder::new();
+    folder.write("own.svg", b"mine");
+    let path = folder.0.path().join("own.svg");
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o600)).expect("set");
+    assert_eq!(folder.run("export washer own.svg --force").status, Some(0));
+    let mode = std::fs::metadata(&path)
+        .expect("there")
+        .permissions()
+        .mode();
+    assert_eq!(mode & 0o777, 0o600);
+}
+
+/// What editors put before a text is no taxel.
+#[test]
+fn a_byte_order_mark_is_passed_over() {
+    let folder = Folder::new();
+    for (name, content) in [("a.txt", ".#\n##\n"), ("a.csv", "0,1\n1,1\n")] {
+        folder.write(name, format!("\u{feff}{content}").as_bytes());
+        let run = folder.run(&format!("describe {name} --json"));
+        assert!(
+            run.stdout.starts_with(r###"{"imprint":[".#","##"],"###),
+            "{run:?}"
+        );
+    }
+    let shape = folder.run("export washer - --format txt").stdout;
+    folder.write("P.txt", shape.as_bytes());
+    folder.write("w.npz", b"PK\x03\x04");
+    refused(
+        &folder.run("describe w.npz"),
+        1,
+        "w.npz: line 1, column 1: found 'P', expected '#' or '.'",
+    );
+}
+
+/// A drawing is in the mm of the flag, else of the shape's own sensor.
+#[test]
+fn a_stored_pitch_counts() {
+    let folder = Folder::new();
+    let line = format!("{RING} --pitch 2.5 --save pit --library .");
+    assert_eq!(folder.run(&line).status, Some(0));
+    let drawn = folder.run("export pit - --format svg --library .").stdout;
+    assert!(drawn.contains(">x / mm</text>") && drawn.contains("(in cells)</text>"));
+    let told = folder.run("describe pit --library .").stdout;
+    assert!(
+        told.contains("of 2.5 mm") && told.contains("in mm²"),
+        "{told}"
+    );
+    let drawn = folder.run("export washer - --format svg").stdout;
+    assert!(drawn.contains(">x / cells</text>"));
+    let tiny = folder
+        .run("export washer - --format svg --pitch 5e-324")
+        .stdout;
+    assert!(tiny.contains("<svg") && !tiny.contains("NaN"));
+}

@@ -74,7 +74,7 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
     );
     assert!(list.contains("\nsmile          shipped  16 × 16  102       4      1\n"));
     let shown = shelf.does("library|show|MY RING", "");
-    assert!(shown.contains("\nmy ring\n4 × 3 taxels of 1 mm, threshold 0.5, NA 6 in all\n"));
+    assert!(shown.contains("\nmy ring\n4 × 3 taxels, threshold 0.5, NA 6 in all\n"));
     let json = shelf.does("library|show|my ring|--json", "");
     assert!(json.starts_with(r##"{"imprint":[".##.","#..#",".##."],"na":6,"##));
     assert!(

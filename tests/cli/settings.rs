@@ -218,3 +218,21 @@ fn a_file_that_is_named_must_be_there_and_be_text() {
     let run = run(taxel("config").env("TAXEL_CONFIG", "/dev/zero"));
     assert_eq!(run.status, Some(2), "it comes to an end");
 }
+
+/// A flag of the screen before a command would be lost: it is refused.
+#[test]
+fn flags_of_the_screen_do_not_stand_before_a_command() {
+    for flag in [
+        "--theme light",
+        "--record r.taxel",
+        "--size 80x24",
+        "--no-mouse",
+        "--columns 8",
+    ] {
+        let run = run(&mut taxel(&format!("{flag} library list")));
+        assert_eq!(run.status, Some(2), "{flag}");
+        let name = flag.split(' ').next().expect("a flag");
+        let expected = format!("cannot be used with '{name}', which is the screen's");
+        assert!(run.stderr.contains(&expected), "{flag}: {}", run.stderr);
+    }
+}

@@ -1,7 +1,7 @@
 //! `taxel sweep` and `taxel merge`: summaries, files, shards, interrupts, refusals.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
@@ -13,11 +13,8 @@ use super::{finish, program, refused, taxel};
 const RING: &str = "sweep ellipse --radius-x 4 --radius-y 4 --thickness 2 --angle 0 --x0 1:1.99:0.01 --y0 1:1.99:0.01";
 
 /// A folder of a test's own, empty.
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("sweep-{name}"));
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder can be made");
-    folder
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a folder can be made")
 }
 
 fn names(folder: &Path) -> Vec<String> {
@@ -84,7 +81,8 @@ fn a_summary_for_people_fits_their_eyes() {
 
 #[test]
 fn tables_hold_every_imprint() {
-    let folder = folder("tables");
+    let scratch = folder();
+    let folder = scratch.path();
     let path = |name: &str| folder.join(name).display().to_string();
     let csv = json(&format!("{RING} --json --atlas {}", path("ring.csv")));
     json(&format!("{RING} --json --atlas {}", path("ring.jsonl")));
@@ -127,12 +125,13 @@ fn tables_hold_every_imprint() {
             assert_eq!(line["main"], answer["regions"][0]);
         }
     }
-    assert_eq!(names(&folder), ["ring.csv", "ring.jsonl"]);
+    assert_eq!(names(folder), ["ring.csv", "ring.jsonl"]);
 }
 
 #[test]
 fn shards_merge_into_the_same_bytes() {
-    let folder = folder("shards");
+    let scratch = folder();
+    let folder = scratch.path();
     let path = |name: &str| folder.join(name).display().to_string();
     let sweep = "sweep pentagon --side 3 --thickness 0.8 --x0 4:6:0.05 --y0 4:5:0.05 --angle 0:359:3 --quiet";
     let whole = json(&format!(
@@ -182,7 +181,8 @@ fn shards_merge_into_the_same_bytes() {
 
 #[test]
 fn damaged_archives_are_refused() {
-    let folder = folder("damaged");
+    let scratch = folder();
+    let folder = scratch.path();
     let path = |name: &str| folder.join(name).display().to_string();
     json(&format!("{RING} --json --atlas {}", path("ring.npz")));
     let good = fs::read(path("ring.npz")).expect("the archive");
@@ -221,7 +221,8 @@ fn damaged_archives_are_refused() {
 /// How long it takes is printed, not judged: `cargo test --release --test cli interrupt -- --nocapture`.
 #[test]
 fn an_interrupt_stops_at_once_and_leaves_nothing() {
-    let folder = folder("interrupted");
+    let scratch = folder();
+    let folder = scratch.path();
     let path = |name: &str| folder.join(name).display().to_string();
     // Hours of work.
     let line = format!(
@@ -235,7 +236,7 @@ fn an_interrupt_stops_at_once_and_leaves_nothing() {
         .expect("the program starts");
     let id = i32::try_from(child.id()).expect("a process");
     // It listens to signals before it opens a file.
-    while names(&folder).is_empty() {
+    while names(folder).is_empty() {
         std::thread::sleep(Duration::from_millis(5));
     }
     // Somewhere on its way.
@@ -246,7 +247,48 @@ fn an_interrupt_stops_at_once_and_leaves_nothing() {
     let run = finish(child, b"");
     println!("stopped after {:?}", start.elapsed());
     refused(&run, 130, "stopped; nothing was written");
-    assert_eq!(names(&folder), [""; 0]);
+    assert_eq!(names(folder), [""; 0]);
+}
+
+/// Hours of work are not lost to a slip of the hand, and not done in vain either: it is told before.
+#[test]
+fn files_are_replaced_by_force_only() {
+    let scratch = folder();
+    let path = |name: &str| scratch.path().join(name);
+    let sweep = |files: &str| {
+        let line = format!("sweep hexagon --x0 5 --y0 5 --angle 0:2:1 --quiet {files}");
+        taxel(&line, "")
+    };
+    let (atlas, poses) = (path("a.NPZ"), path("p.npy"));
+    let (atlas, poses) = (atlas.display(), poses.display());
+    assert_eq!(
+        sweep(&format!("--atlas {atlas} --poses {poses}")).status,
+        Some(0)
+    );
+    let first = fs::read(path("a.NPZ")).expect("written");
+    fs::write(path("a.NPZ"), "mine").expect("written");
+    let there = format!("{:?} is there already; --force replaces it", path("a.NPZ"));
+    refused(&sweep(&format!("--atlas {atlas}")), 1, &there);
+    let there = format!("{:?} is there already; --force replaces it", path("p.npy"));
+    refused(&sweep(&format!("--poses {poses}")), 1, &there);
+    assert_eq!(fs::read(path("a.NPZ")).ok().as_deref(), Some(&b"mine"[..]));
+    assert_eq!(sweep(&format!("--atlas {atlas} --force")).status, Some(0));
+    assert_eq!(fs::read(path("a.NPZ")).ok(), Some(first));
+    // Neither does a merge replace its own shard.
+    let run = taxel(&format!("merge {atlas} --atlas {atlas} --quiet"), "");
+    refused(
+        &run,
+        1,
+        &format!("{:?} is there already; --force replaces it", path("a.NPZ")),
+    );
+    let run = sweep(&format!("--poses {atlas}"));
+    assert_eq!(run.status, Some(2));
+    assert!(
+        run.stderr.contains("expected a name that ends in .npy"),
+        "{}",
+        run.stderr
+    );
+    assert_eq!(names(scratch.path()), ["a.NPZ", "p.npy"]);
 }
 
 #[test]
@@ -331,7 +373,8 @@ fn numpy_reads_atlas_and_poses() {
         eprintln!("SKIPPED: no python3 with numpy");
         return;
     }
-    let folder = folder("numpy");
+    let scratch = folder();
+    let folder = scratch.path();
     let path = |name: &str| folder.join(name).display().to_string();
     json(&format!(
         "sweep rectangle --length 4 --width 4 --x0 5:5.9:0.1 --y0 5:5.4:0.2 --angle 0:180:45 --json --poses {} --atlas {}",

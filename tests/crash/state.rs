@@ -25,12 +25,8 @@ pub(crate) fn shape(name: &str, version: u32) -> Shape {
         // Every row tells the number, so that no part of another file passes for it.
         imprint.set_word(row, u64::from(version >> (row % 2 * 16) & 0xffff));
     }
-    Shape {
-        name: Name::new(name).expect("a name"),
-        sensor: Sensor::default(),
-        imprint,
-        source: None,
-    }
+    let name = Name::new(name).expect("a name");
+    Shape::new(name, Sensor::default(), imprint, None).expect("16 x 16 both")
 }
 
 /// The number that a shape carries.

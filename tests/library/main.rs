@@ -97,12 +97,8 @@ fn files(folder: &Path) -> Vec<String> {
 fn shape(name: &str, number: usize) -> Shape {
     let mut imprint = Imprint::empty(16, 16);
     imprint.set_word(0, u64::try_from(number).expect("small"));
-    Shape {
-        name: Name::new(name).expect("a name"),
-        sensor: Sensor::default(),
-        imprint,
-        source: None,
-    }
+    let name = Name::new(name).expect("a name");
+    Shape::new(name, Sensor::default(), imprint, None).expect("16 x 16 both")
 }
 
 /// The message of a refusal, without the folder.

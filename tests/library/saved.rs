@@ -69,11 +69,9 @@ fn shapes() -> impl Strategy<Value = Shape> {
             let name = "[A-Za-z0-9_é字-][A-Za-z0-9_. é字-]{0,30}[A-Za-z0-9_.é字-]";
             (name, Just(imprint), Just(sensor), sources(sensor.side()))
         })
-        .prop_map(|(name, imprint, sensor, source)| Shape {
-            name: Name::new(&name).expect("by the rules"),
-            sensor,
-            imprint,
-            source,
+        .prop_map(|(name, imprint, sensor, source)| {
+            let name = Name::new(&name).expect("by the rules");
+            Shape::new(name, sensor, imprint, source).expect("of one size")
         })
 }
 
@@ -88,7 +86,7 @@ proptest! {
         prop_assert_eq!(&loaded.shape, &first);
         prop_assert_eq!((loaded.stamp, loaded.origin), (stamp, Origin::Own));
         // Another in its place, then through the trash.
-        let second = Shape { name: first.name.clone(), ..second };
+        let second = second.renamed(first.name.clone());
         scratch.library.save(&second, Expected::Stamp(stamp)).expect("replaced");
         scratch.library.delete(second.name.as_str()).expect("deleted");
         scratch.library.restore(second.name.as_str()).expect("restored");

@@ -220,7 +220,7 @@ proptest! {
             }
         };
         let name = taxel::formats::name::Name::new(&name).expect("the names of the test are right");
-        let shape = Shape { name, sensor, imprint, source };
+        let shape = Shape::new(name, sensor, imprint, source).expect("of one size");
         prop_assert_eq!(Shape::read(shape.write().as_bytes()), Ok(shape));
     }
 

@@ -44,6 +44,9 @@ use scene::Step;
 /// Wider ones would make the page wider than paper.
 const LONGEST_TITLE: usize = 100;
 
+/// In mm: smaller than any atom.
+const LEAST_PITCH: f64 = 1e-9;
+
 /// What is drawn. A region of the imprint is described: the main one, unless another is chosen.
 #[derive(Clone, Debug)]
 pub struct Drawing {
@@ -78,10 +81,13 @@ impl Drawing {
         self
     }
 
-    /// With axes and values in mm for cells of this side; unchanged by one that is no sensor's pitch.
+    /// With axes and values in mm for cells of this side; unchanged by one that is no sensor's pitch, and by one below a
+    /// picometre (1e-9 mm), whose axis could not be labelled.
     #[must_use]
     pub fn with_pitch(mut self, mm: f64) -> Self {
-        if let Ok(mm) = Parameter::Pitch.check(mm, MAX_SIDE) {
+        if let Ok(mm) = Parameter::Pitch.check(mm, MAX_SIDE)
+            && mm >= LEAST_PITCH
+        {
             self.pitch_mm = Some(mm);
         }
         self
