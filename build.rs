@@ -54,9 +54,10 @@ fn packaged(folder: &Path) -> Option<String> {
     let noted = fs::read_to_string(folder.join(".cargo_vcs_info.json")).ok()?;
     let (_, rest) = noted.split_once("\"sha1\"")?;
     let commit = rest.split('"').nth(1)?;
-    is_plain(commit)
-        .then(|| commit.get(..LENGTH).map(str::to_owned))
-        .flatten()
+    let short = commit.get(..LENGTH).filter(|_| is_plain(commit))?;
+    // Packed up by `--allow-dirty`.
+    let changed = noted.contains("\"dirty\": true");
+    Some(format!("{short}{}", if changed { ", changed" } else { "" }))
 }
 
 /// Letters and digits only, so that nothing else can get into the program's words.

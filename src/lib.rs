@@ -32,7 +32,7 @@
 //!   0   1   2   3 → x        The taxel in column i, row j (both from 0) covers
 //! 0 +---+---+---+            [i, i+1] × [j, j+1]; its coordinates are those of its
 //!   |0,0|1,0|2,0|            centre, (i + ½, j + ½). Directions are degrees
-//! 1 +---+---+---+            counter-clockwise as seen from +x, in (−180, 180].
+//! 1 +---+---+---+            counter-clockwise from +x as seen, in (−180, 180].
 //!   |0,1|1,1|2,1|            Figures turn clockwise as seen, pictures
 //! 2 +---+---+---+            counter-clockwise. With a pitch, lengths and areas
 //! ↓ y                        are told in mm and mm² too.
@@ -71,7 +71,8 @@
 //!                     brings                                           on top of
 //! (none)              all but what stands below; glam and serde only
 //! json                formats::shape, formats::job
-//! sweep               sweep, formats::atlas, formats::archive          json
+//! sweep               sweep; formats::atlas, archive, sweep_file,      json
+//!                     unfinished
 //! png                 formats::drawing::Drawing::png
 //! library             library                                          json
 //! tui                 tui                                              library, sweep
@@ -88,9 +89,11 @@
 //! # Invariants
 //!
 //! - A coverage of exactly the threshold in real arithmetic is active ([`touch`]).
-//! - Every [`figure::Figure`], [`picture::Picture`] and [`sensor::Sensor`] is in range: checked when it is made.
+//! - Every [`figure::Figure`], [`picture::Picture`] and [`sensor::Sensor`] is in range for the sensor that it is made for;
+//!   a picture at home lies where its imprint does.
 //! - What follows from a document (coverage, imprint, regions, descriptors) is computed, never stored beside it.
-//! - No number that is not finite is ever shown or written: a value that does not exist is none.
+//! - No number that is not finite is ever shown or written: a value that does not exist is none (in `.npz`, which has no
+//!   other word for it, NaN).
 
 // The examples of the README are compiled and run with those of the documentation.
 #[cfg(doctest)]

@@ -8,7 +8,7 @@ use super::error::LibraryError;
 /// The variable that names the folder.
 pub const VARIABLE: &str = "TAXEL_LIBRARY";
 
-/// The folder: the one asked for, else that of the variable, else `taxel` in the user's data folder.
+/// The folder: the one asked for, else that of the variable, else `taxel/library` in the user's data folder.
 ///
 /// # Errors
 /// Where there is none of these.

@@ -13,6 +13,19 @@ const POINT_ANSWER: &str = concat!(
     "\n"
 );
 
+/// The files that the README names.
+#[test]
+fn the_files_of_the_examples_are_answered() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples");
+    let poses = std::fs::read_to_string(format!("{folder}/poses.jsonl")).expect("it is there");
+    let run = taxel("batch", poses.as_str());
+    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
+    assert_eq!(run.stdout.lines().count(), poses.lines().count());
+    let first = run.stdout.lines().next().expect("an answer");
+    let run = taxel(&format!("describe {folder}/imprint.txt --json"), "");
+    assert_eq!(run.stdout.trim_end(), first, "Fig. 1, drawn and touched");
+}
+
 #[test]
 fn bad_lines_are_answered_in_their_places() {
     let lines: [&[u8]; 14] = [

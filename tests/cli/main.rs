@@ -15,6 +15,7 @@ mod library;
 mod picture;
 
 mod sweep;
+mod sweep_files;
 
 mod settings;
 

@@ -3,21 +3,20 @@
 use std::fs;
 use std::path::Path;
 use std::process::Command;
-use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use super::{finish, program, refused, taxel};
+use super::{refused, taxel};
 
 /// The paper's ring over one cell.
 const RING: &str = "sweep ellipse --radius-x 4 --radius-y 4 --thickness 2 --angle 0 --x0 1:1.99:0.01 --y0 1:1.99:0.01";
 
 /// A folder of a test's own, empty.
-fn folder() -> tempfile::TempDir {
+pub(crate) fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("a folder can be made")
 }
 
-fn names(folder: &Path) -> Vec<String> {
+pub(crate) fn names(folder: &Path) -> Vec<String> {
     let files = fs::read_dir(folder).expect("the folder is there");
     let name = |file: std::io::Result<fs::DirEntry>| {
         let name = file.expect("a file").file_name();
@@ -219,78 +218,6 @@ fn damaged_archives_are_refused() {
 }
 
 /// How long it takes is printed, not judged: `cargo test --release --test cli interrupt -- --nocapture`.
-#[test]
-fn an_interrupt_stops_at_once_and_leaves_nothing() {
-    let scratch = folder();
-    let folder = scratch.path();
-    let path = |name: &str| folder.join(name).display().to_string();
-    // Hours of work.
-    let line = format!(
-        "sweep heptagon --side 3 --thickness 1 --x0 5:5.999:0.001 --y0 5:5.999:0.001 --angle 0:359.999:0.001 --quiet --atlas {} --poses {}",
-        path("a.npz"),
-        path("p.npy")
-    );
-    let arguments: Vec<&str> = line.split_whitespace().collect();
-    let child = program(&arguments, "C.UTF-8")
-        .spawn()
-        .expect("the program starts");
-    let id = i32::try_from(child.id()).expect("a process");
-    // It listens to signals before it opens a file.
-    while names(folder).is_empty() {
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    // Somewhere on its way.
-    std::thread::sleep(Duration::from_millis(200));
-    let start = Instant::now();
-    let id = rustix::process::Pid::from_raw(id).expect("a process");
-    rustix::process::kill_process(id, rustix::process::Signal::INT).expect("it runs still");
-    let run = finish(child, b"");
-    println!("stopped after {:?}", start.elapsed());
-    refused(&run, 130, "stopped; nothing was written");
-    assert_eq!(names(folder), [""; 0]);
-}
-
-/// Hours of work are not lost to a slip of the hand, and not done in vain either: it is told before.
-#[test]
-fn files_are_replaced_by_force_only() {
-    let scratch = folder();
-    let path = |name: &str| scratch.path().join(name);
-    let sweep = |files: &str| {
-        let line = format!("sweep hexagon --x0 5 --y0 5 --angle 0:2:1 --quiet {files}");
-        taxel(&line, "")
-    };
-    let (atlas, poses) = (path("a.NPZ"), path("p.npy"));
-    let (atlas, poses) = (atlas.display(), poses.display());
-    assert_eq!(
-        sweep(&format!("--atlas {atlas} --poses {poses}")).status,
-        Some(0)
-    );
-    let first = fs::read(path("a.NPZ")).expect("written");
-    fs::write(path("a.NPZ"), "mine").expect("written");
-    let there = format!("{:?} is there already; --force replaces it", path("a.NPZ"));
-    refused(&sweep(&format!("--atlas {atlas}")), 1, &there);
-    let there = format!("{:?} is there already; --force replaces it", path("p.npy"));
-    refused(&sweep(&format!("--poses {poses}")), 1, &there);
-    assert_eq!(fs::read(path("a.NPZ")).ok().as_deref(), Some(&b"mine"[..]));
-    assert_eq!(sweep(&format!("--atlas {atlas} --force")).status, Some(0));
-    assert_eq!(fs::read(path("a.NPZ")).ok(), Some(first));
-    // Neither does a merge replace its own shard.
-    let run = taxel(&format!("merge {atlas} --atlas {atlas} --quiet"), "");
-    refused(
-        &run,
-        1,
-        &format!("{:?} is there already; --force replaces it", path("a.NPZ")),
-    );
-    let run = sweep(&format!("--poses {atlas}"));
-    assert_eq!(run.status, Some(2));
-    assert!(
-        run.stderr.contains("expected a name that ends in .npy"),
-        "{}",
-        run.stderr
-    );
-    assert_eq!(names(scratch.path()), ["a.NPZ", "p.npy"]);
-}
-
 #[test]
 fn what_is_no_sweep_is_refused() {
     refused(

@@ -28,6 +28,12 @@ const CELLS: Line = Line {
     grey: 150,
     dash: None,
 };
+/// Through the taxels of other regions: a shade alone is lost on a bad printer.
+const HATCH: Line = Line {
+    width: 0.5,
+    grey: 110,
+    dash: None,
+};
 const OUTLINE: Line = Line::black(1.3);
 const RECTANGLE: Line = Line {
     width: 0.9,
@@ -169,7 +175,11 @@ impl Layout<'_> {
             };
             let cells: Vec<_> = taxels.active().map(cell).collect();
             if !cells.is_empty() {
+                let hatch = hatch(&cells);
                 self.filled(what, cells, grey);
+                if grey == OTHER {
+                    self.line(what, hatch, HATCH);
+                }
             }
         }
         let (columns, rows) = (f64::from(imprint.columns()), f64::from(imprint.rows()));
@@ -286,8 +296,9 @@ impl Layout<'_> {
                 self,
                 &format!("other active taxels: {others}"),
                 &|layout, place| {
-                    layout.filled("legend", vec![box_of(place)], OTHER);
                     let (low, high) = box_of(place);
+                    layout.filled("legend", vec![(low, high)], OTHER);
+                    layout.line("legend", hatch(&[(low, high)]), HATCH);
                     layout.line("legend", rectangle(low, high), CELLS);
                 },
             );
@@ -321,6 +332,14 @@ impl Layout<'_> {
             layout.line("legend", circle(place, 3.5), POINT);
         });
     }
+}
+
+/// A stroke through each cell, from its lower left corner up.
+fn hatch(cells: &[(Place, Place)]) -> Vec<Step> {
+    let stroke = |&((left, top), (right, bottom)): &(Place, Place)| {
+        [Step::Move((left, bottom)), Step::Line((right, top))]
+    };
+    cells.iter().flat_map(stroke).collect()
 }
 
 /// An upright cross.
