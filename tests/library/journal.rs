@@ -49,6 +49,18 @@ fn cleared_work_is_gone_and_more_can_be_kept() {
     assert_eq!(offered(&scratch), [shape("work", 2)]);
 }
 
+/// Somebody has tidied up while the program ran.
+#[test]
+fn a_folder_that_was_removed_is_made_again() {
+    let scratch = Scratch::new();
+    let mut journal = Journal::new(&scratch.library);
+    journal.keep(&shape("work", 1)).expect("kept");
+    std::fs::remove_dir_all(scratch.path(".journal")).expect("it is there");
+    journal.keep(&shape("work", 2)).expect("kept again");
+    drop(journal);
+    assert_eq!(offered(&scratch), [shape("work", 2)]);
+}
+
 #[test]
 fn several_programs_keep_each_their_own() {
     let scratch = Scratch::new();
