@@ -256,12 +256,7 @@ fn quitting_asks_where_work_would_be_lost() {
     assert!(session("q").app().ended());
     assert!(session("<C-c>").app().ended());
     let asked = session("f<Enter>q");
-    assert!(
-        !asked.app().ended()
-            && asked
-                .screen()
-                .contains("not saved. Quit all the same? (y/n)")
-    );
+    assert!(!asked.app().ended() && asked.screen().contains("not saved. Quit anyway? (y/n)"));
     assert!(session("f<Enter>qy").app().ended());
     assert!(
         !session("f<Enter>q<Enter>").app().ended(),
@@ -274,6 +269,15 @@ fn quitting_asks_where_work_would_be_lost() {
         session("f<Enter>uq").app().ended(),
         "nothing is left to lose"
     );
+    // What was left for something else would be lost too: only undo has it.
+    for left in ["<Space>nq", "<Space><Right><Space>lwasher<Enter>q"] {
+        let asked = session(left);
+        let question = "An earlier drawing is not saved. Quit anyway? (y/n)";
+        assert!(asked.screen().contains(question), "{}", asked.screen());
+    }
+    for nothing_lost in ["<Space><Space>nq", "<Space>saa<Enter>nq", "<Space>nuuq"] {
+        assert!(session(nothing_lost).app().ended(), "{nothing_lost}");
+    }
 }
 
 #[test]
@@ -335,4 +339,49 @@ fn no_key_means_two_things_in_one_place() {
             assert!(!keys[..index].contains(key), "{key} in {context:?}");
         }
     }
+}
+
+/// Nothing moves, so nothing that was set by hand goes.
+#[test]
+fn a_move_by_nothing_changes_nothing() {
+    for nothing in [":move 0 0", ":turn 0", ":turn 360"] {
+        shows(
+            &format!("f<Enter><Space>{nothing}<Enter>"),
+            &["+ 1 by hand"],
+        );
+    }
+}
+
+#[test]
+fn another_shape_is_not_held() {
+    for other in [
+        ":load washer<Enter>",
+        ":figure hexagon<Enter>",
+        ":picture washer<Enter><Enter>",
+        "n",
+    ] {
+        let keys = format!("f<Enter>g{other}");
+        let screen = session(&keys).screen();
+        assert!(!screen.contains("held"), "{keys}\n{screen}");
+    }
+}
+
+#[test]
+fn what_is_copied_is_said() {
+    shows("y", &["! no region: the matrix is empty"]);
+    shows(
+        "Y",
+        &["imprint sent to your terminal's clipboard (272 characters)"],
+    );
+    shows(
+        "<Space>y",
+        &["descriptors sent to your terminal's clipboard ("],
+    );
+}
+
+/// What is typed is seen, however many columns its characters have.
+#[test]
+fn wide_characters_in_a_number_are_seen() {
+    shows("f<Tab>字字字字字字1", &["字字字1"]);
+    shows("f<Enter>e字字字字字字字字1", &["字字字字字字1"]);
 }

@@ -3,6 +3,7 @@
 use taxel::sensor::Sensor;
 use taxel::tui::app::Options;
 use taxel::tui::effect::World;
+use taxel::tui::message::{Message, Mouse, MouseKind};
 use taxel::tui::script::Session;
 use taxel::tui::theme::{ColorDepth, Palette, Theme};
 
@@ -102,10 +103,7 @@ fn joined(screen: &str) -> String {
 #[test]
 fn questions_and_notices_are_read_to_their_end_on_narrow_screens() {
     for (keys, text) in [
-        (
-            "<Space>q",
-            "The imprint is not saved. Quit all the same? (y/n)",
-        ),
+        ("<Space>q", "The imprint is not saved. Quit anyway? (y/n)"),
         (
             "g",
             "! nothing to move: this was drawn by hand; f touches a figure, p a stored shape",
@@ -197,4 +195,23 @@ fn a_list_tells_what_is_out_of_sight() {
         "{screen}"
     );
     assert!(screen.contains(" shipped\n"), "{screen}");
+}
+
+#[test]
+fn matrix_and_descriptors_change_places_only_where_one_of_them_is_seen() {
+    let mut wide = session((80, 24), false, "i");
+    assert!(wide.screen().contains("both in sight"), "{}", wide.screen());
+    wide.resize(40, 24);
+    assert!(!wide.screen().contains("NA     –"), "{}", wide.screen());
+    // A click on the descriptors draws nothing on the matrix that they hide.
+    wide.keys("f<Enter>i").expect("keys");
+    let before = wide.app().shown();
+    for kind in [MouseKind::Press, MouseKind::Release] {
+        wide.send(Message::Mouse(Mouse {
+            kind,
+            column: 6,
+            row: 5,
+        }));
+    }
+    assert_eq!(wide.app().shown(), before);
 }

@@ -176,7 +176,7 @@ fn a_signal_keeps_unsaved_work() {
     )
     .expect("it holds");
     run(
-        "Expect /Unsaved work of 52 taxels/\nKeys y\nExpect /rx 4.00/",
+        "Expect /Unsaved work was left: 52 taxels/\nKeys y\nExpect /rx 4.00/",
         &[],
         &settings,
         world(),
@@ -207,7 +207,7 @@ fn a_script_sets_the_scene() {
         assert!(sensor.contains(part), "{sensor}");
     }
     let script = format!(
-        "Set leftover {PAIR}\nExpect /Unsaved work of 2 taxels of pair/\nKeys y\nExpect /brought back/\n\
+        "Set leftover {PAIR}\nExpect /Unsaved work was left: 2 taxels of pair/\nKeys y\nExpect /brought back/\n\
          Expect /NA 2 in all/"
     );
     output(&script, false).expect("it holds");
@@ -240,4 +240,13 @@ fn a_script_prints_as_it_goes() {
     );
     assert_eq!(stopped, Err(Failure::Stopped));
     assert_eq!(printed, 2);
+}
+
+/// A wide character has two columns, and nothing is seen of what stood in the second.
+#[test]
+fn wide_characters_cover_what_was_there() {
+    let script = "Keys <Space>sfoobar<Enter>s<C-u>\nType \"字字\"\nKeys <Enter>\n\
+                  Expect /saved as 字字/\nExpect /(?m)^字字: drawn by hand$/\n\
+                  ExpectAt 2,20 \"字: drawn\"\nExpectAt 4,20 \": drawn\"";
+    output(script, false).expect("it holds");
 }

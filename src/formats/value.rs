@@ -82,6 +82,17 @@ pub fn grouped(count: u64) -> String {
     text
 }
 
+/// A count of something: one of it, or so many.
+///
+/// ```
+/// use taxel::formats::value::counted;
+/// assert_eq!([0, 1, 2000].map(|count| counted(count, "pose")), ["0 poses", "1 pose", "2,000 poses"]);
+/// ```
+pub fn counted(count: u64, noun: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{} {noun}{plural}", grouped(count))
+}
+
 /// With at most so many decimals, no zeros at their end, and no minus before a zero.
 pub(super) fn decimal(number: f64, decimals: usize) -> String {
     let text = format!("{number:.decimals$}");

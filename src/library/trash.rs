@@ -9,8 +9,9 @@ use super::error::LibraryError;
 use super::file::{self, system};
 use super::lock::Lock;
 use super::shipped;
-use super::store::Library;
+use super::store::{Library, TEMPORARY};
 use crate::formats::name::{Name, folded};
+use crate::formats::shape::Shape;
 
 /// How many deleted shapes are kept.
 pub const KEPT: usize = 50;
@@ -60,17 +61,51 @@ impl Library {
         let path = self.path(&own);
         file::regular(&path)?;
         file::make_inner_folder(&self.trash())?;
-        let mut deleted = self.deleted()?;
-        let number = deleted.last().map_or(1, |last| last.number + 1);
-        let target = self.trash().join(format!("{number:010} {own}.json"));
+        let deleted = self.deleted()?;
+        let target = self.next(&deleted, &own);
         fs::rename(&path, &target).map_err(system("move it into the trash", &path))?;
         file::sync(&self.trash())?;
         file::sync(self.folder())?;
-        for old in deleted.drain(..deleted.len().saturating_sub(KEPT - 1)) {
-            // One too many does no harm.
-            let _ = fs::remove_file(old.path);
-        }
+        forget_oldest(deleted);
         Ok(own)
+    }
+
+    /// Puts a shape into the trash that was never stored, under its name with a number, so that it is in the way of
+    /// nothing when it is brought back; answers that name.
+    ///
+    /// # Errors
+    /// What the system refuses; then it is nowhere.
+    pub fn throw_away(&self, shape: &Shape) -> Result<String, LibraryError> {
+        file::make_folder(self.folder())?;
+        let _lock = Lock::of(self.folder())?;
+        file::make_inner_folder(&self.trash())?;
+        let deleted = self.deleted()?;
+        let free = |name: &Name| {
+            let thrown = deleted.iter().any(|deleted| name.same(&deleted.name));
+            !thrown && matches!(self.own_name(name), Ok(None))
+        };
+        let mut numbered = (1..1000).filter_map(|number| {
+            let name = format!("{} {number}", shape.name);
+            Name::new(&name).ok()
+        });
+        // In the trash a name may stand twice.
+        let name = numbered.find(free);
+        let name = name.unwrap_or_else(|| shape.name.clone());
+        let thrown = Shape {
+            name: name.clone(),
+            ..shape.clone()
+        };
+        let target = self.next(&deleted, name.as_str());
+        let temporary = self.trash().join(TEMPORARY);
+        file::write(&target, &temporary, thrown.write().as_bytes())?;
+        forget_oldest(deleted);
+        Ok(name.to_string())
+    }
+
+    /// Where the next one in the trash is.
+    fn next(&self, deleted: &[Deleted], name: &str) -> PathBuf {
+        let number = deleted.last().map_or(1, |last| last.number + 1);
+        self.trash().join(format!("{number:010} {name}.json"))
     }
 
     /// The names of the shapes in the trash, those that were deleted last first, each once.
@@ -121,6 +156,14 @@ impl Library {
         file::sync(self.folder())?;
         file::sync(&self.trash())?;
         Ok(deleted.name)
+    }
+}
+
+/// Makes room for one more.
+fn forget_oldest(mut deleted: Vec<Deleted>) {
+    for old in deleted.drain(..deleted.len().saturating_sub(KEPT - 1)) {
+        // One too many does no harm.
+        let _ = fs::remove_file(old.path);
     }
 }
 

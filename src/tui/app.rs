@@ -196,6 +196,14 @@ impl App {
         self.dialogs.iter().rev().find(|dialog| dialog.has_pane())
     }
 
+    /// What a sweep found, where that is looked at: under whatever lies over it.
+    pub(super) fn results_below(&self) -> Option<&Results> {
+        self.dialogs.iter().rev().find_map(|dialog| match dialog {
+            Dialog::Results(results) => Some(&**results),
+            _ => None,
+        })
+    }
+
     /// The document that the matrix shows: what an open form would make of it, or the present one.
     pub fn shown(&self) -> Document {
         self.on_matrix().clone()

@@ -2,7 +2,7 @@
 
 use crate::description::descriptor::Description;
 use crate::description::region::{Region, main_region, regions};
-use crate::formats::name::Name;
+use crate::formats::name::{Name, folded};
 use crate::formats::shape::Shape;
 use crate::imprint::Imprint;
 use crate::library::store::Origin as Owner;
@@ -245,6 +245,33 @@ impl History {
                 saved,
             };
         }
+    }
+
+    /// The stored shape of that name is gone: nothing would be found again of what came from it.
+    pub fn removed(&mut self, name: &str) {
+        let gone = folded(name);
+        for origin in &mut self.origins {
+            let own = origin.name.as_ref();
+            let own = own.filter(|stored| stored.owner == Owner::Own);
+            if own.is_some_and(|stored| folded(&stored.name) == gone) {
+                *origin = Origin {
+                    name: None,
+                    saved: Document::empty(origin.saved.sensor),
+                };
+            }
+        }
+    }
+
+    /// Whether something was drawn and left for a document from elsewhere without being saved: only undoing would bring
+    /// it back. Of an empty matrix there is nothing to save.
+    pub fn left_unsaved(&self) -> bool {
+        let states = || self.past.iter().chain([&self.present]);
+        states().zip(states().skip(1)).any(|(state, next)| {
+            state.origin != next.origin
+                && state.document != Document::empty(state.document.sensor)
+                && (self.origins.get(state.origin))
+                    .is_some_and(|origin| origin.saved != state.document)
+        })
     }
 
     /// Amended until it was as before, a change is none, and leaves no trace either.

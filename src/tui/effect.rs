@@ -2,22 +2,24 @@
 
 mod workers;
 
+mod keeper;
+
 pub use workers::Post;
 
 use std::io;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::sync::Arc;
 
+use keeper::Keeper;
 use tempfile::TempDir;
 use workers::Workers;
 
 use super::app::App;
-use super::message::{Answer, Message};
+use super::message::{Answer, Left, Message};
 use super::request::{Effect, Request};
 use super::update::update;
 use crate::formats::name::Name;
 use crate::formats::shape::Shape;
+use crate::formats::value::counted;
 use crate::library::error::LibraryError;
 use crate::library::journal::{Journal, Orphan, UNNAMED};
 use crate::library::store::{Expected, Library};
@@ -26,7 +28,8 @@ use crate::library::store::{Expected, Library};
 #[derive(Debug)]
 pub struct World {
     library: Library,
-    orphan: Option<Orphan>,
+    /// The work that is offered, and how many there are with it that wait.
+    orphan: Option<(Orphan, usize)>,
     keeper: Keeper,
     workers: Workers,
     /// The library's folder where that is one for the time being. The last field: it goes after the keeper has written.
@@ -61,8 +64,10 @@ impl World {
     }
 
     /// One only: the others are for other programs, or for later.
-    fn newest_orphan(&self) -> Option<Orphan> {
-        Orphan::all(&self.library).pop()
+    fn newest_orphan(&self) -> Option<(Orphan, usize)> {
+        let mut all = Orphan::all(&self.library);
+        let count = all.len();
+        all.pop().map(|newest| (newest, count))
     }
 
     /// A world of its own: an empty library in a folder that goes with it.
@@ -103,19 +108,25 @@ impl World {
     /// and nothing is told of how far it is or how long it takes: scripts show the same every time.
     #[must_use]
     pub fn with_workers(mut self, post: Post) -> Self {
+        self.keeper.tell(Arc::clone(&post));
         self.workers = Workers::beside(post);
         self
     }
 
     /// What there is to say at the start: that a program left work when it died.
     pub fn greeting(&self) -> Option<Message> {
-        let shape = &self.orphan.as_ref()?.shape;
-        let taxels = shape.imprint.count();
-        let what = match shape.name.as_str() {
-            UNNAMED => format!("{taxels} taxels"),
-            name => format!("{taxels} taxels of {name}"),
+        Some(Message::Answer(Answer::Found(self.left()?)))
+    }
+
+    fn left(&self) -> Option<Left> {
+        let (orphan, waiting) = self.orphan.as_ref()?;
+        let taxels = counted(orphan.shape.imprint.count().into(), "taxel");
+        let what = match orphan.shape.name.as_str() {
+            UNNAMED => taxels,
+            name => format!("{taxels} of {name}"),
         };
-        Some(Message::Answer(Answer::Found(what)))
+        let waiting = *waiting;
+        Some(Left { what, waiting })
     }
 
     /// Does what a message says, with all that follows from it. What is left is for the terminal.
@@ -175,7 +186,7 @@ impl World {
             Request::Remove(name) => done(self.library.delete(&name), Answer::Removed),
             Request::Restore(name) => done(self.library.restore(&name), Answer::Restored),
             Request::Recover => match self.orphan.take() {
-                Some(orphan) => {
+                Some((orphan, _)) => {
                     let shape = orphan.shape.clone();
                     // It is in this program's journal before it is taken out of that of the dead one.
                     self.keeper.keep(shape.clone());
@@ -186,176 +197,32 @@ impl World {
                 }
                 None => Answer::Failed("no unsaved work is left".to_owned()),
             },
-            Request::GiveUp => {
-                let kept = self
-                    .orphan
-                    .take()
-                    .and_then(|orphan| self.discard_into_trash(orphan));
-                self.orphan = self.newest_orphan();
-                return self
-                    .greeting()
-                    .unwrap_or(Message::Answer(Answer::GivenUp(kept)));
-            }
+            Request::GiveUp => self.give_up(),
         };
         Message::Answer(answer)
     }
-}
 
-impl World {
-    /// Unsaved work that is not wanted goes the way of a deleted shape; answers the name that brings it back.
-    fn discard_into_trash(&self, orphan: Orphan) -> Option<String> {
-        let names = (1..100).map(|number| format!("{UNNAMED} {number}"));
-        let name = names
-            .filter_map(|name| Name::new(&name).ok())
-            .find(|name| self.library.load(name.as_str()).is_err())?;
+    /// Unsaved work that is not wanted goes the way of a deleted shape. Only where it is gone is there other work to
+    /// offer: this one again would be asked about without end.
+    fn give_up(&mut self) -> Answer {
+        let Some((orphan, _)) = self.orphan.take() else {
+            return Answer::Failed("no unsaved work is left".to_owned());
+        };
         let shape = Shape {
-            name,
+            name: Name::new(UNNAMED).unwrap_or_else(|_| orphan.shape.name.clone()),
             ..orphan.shape.clone()
         };
-        self.library.save(&shape, Expected::Nothing).ok()?;
-        let name = self.library.delete(shape.name.as_str()).ok()?;
-        orphan.discard();
-        Some(name)
+        match self.library.throw_away(&shape) {
+            Ok(name) => {
+                orphan.discard();
+                self.orphan = self.newest_orphan();
+                Answer::GivenUp(name, self.left())
+            }
+            Err(error) => Answer::NotGivenUp(error.to_string()),
+        }
     }
 }
 
 fn done(result: Result<String, LibraryError>, answer: fn(String) -> Answer) -> Answer {
     result.map_or_else(|error| Answer::Failed(error.to_string()), answer)
-}
-
-/// How long changes are gathered before they are written: a second at most is lost.
-const GATHER: Duration = Duration::from_millis(400);
-
-/// Writes the journal beside the program, so that no key waits for a disk. It sleeps while there is nothing to write.
-#[derive(Debug)]
-struct Keeper {
-    notes: Option<Sender<Note>>,
-    thread: Option<JoinHandle<()>>,
-    last: Option<Shape>,
-}
-
-#[derive(Debug)]
-enum Note {
-    Keep(Box<Shape>),
-    Clear,
-    /// Answers whether everything is written.
-    Flush(Sender<bool>),
-}
-
-impl Keeper {
-    fn new(journal: Journal) -> Self {
-        let (notes, inbox) = channel();
-        let thread = std::thread::spawn(move || keep_journal(journal, &inbox));
-        Self {
-            notes: Some(notes),
-            thread: Some(thread),
-            last: None,
-        }
-    }
-
-    /// One that keeps nothing.
-    fn idle() -> Self {
-        Self {
-            notes: None,
-            thread: None,
-            last: None,
-        }
-    }
-
-    /// Notes the work that would be lost, if it is other work than before.
-    fn note(&mut self, app: &App) {
-        let work = app.unsaved_work();
-        if work == self.last {
-            return;
-        }
-        if let Some(shape) = work {
-            self.keep(shape);
-        } else {
-            self.last = None;
-            self.send(Note::Clear);
-        }
-    }
-
-    fn keep(&mut self, shape: Shape) {
-        self.last = Some(shape.clone());
-        self.send(Note::Keep(Box::new(shape)));
-    }
-
-    fn send(&self, note: Note) {
-        if let Some(notes) = &self.notes {
-            // The thread ends only after this end of the channel.
-            let _ = notes.send(note);
-        }
-    }
-
-    /// Waits until everything is written; false where it could not be.
-    fn flush(&self) -> bool {
-        let (done, written) = channel();
-        self.send(Note::Flush(done));
-        written
-            .recv_timeout(Duration::from_secs(5))
-            .unwrap_or(false)
-    }
-}
-
-impl Drop for Keeper {
-    fn drop(&mut self) {
-        self.notes = None;
-        if let Some(thread) = self.thread.take() {
-            // A thread that panicked has said so.
-            let _ = thread.join();
-        }
-    }
-}
-
-/// The thread: gathers changes for a moment, then writes the last one.
-fn keep_journal(mut journal: Journal, inbox: &Receiver<Note>) {
-    let mut pending: Option<(Box<Shape>, Instant)> = None;
-    // What could not be written waits for the next note, not for the clock.
-    let mut failed = false;
-    loop {
-        let note = match &pending {
-            _ if failed => inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
-            None => inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
-            Some((_, since)) => inbox.recv_timeout(GATHER.saturating_sub(since.elapsed())),
-        };
-        match note {
-            Ok(Note::Keep(shape)) => {
-                let since = pending
-                    .filter(|_| !failed)
-                    .map_or_else(Instant::now, |(_, since)| since);
-                failed = false;
-                pending = Some((shape, since));
-            }
-            Ok(Note::Clear) => {
-                (pending, failed) = (None, false);
-                journal.clear();
-            }
-            Ok(Note::Flush(done)) => {
-                let written = pending
-                    .take()
-                    .is_none_or(|(shape, _)| journal.keep(&shape).is_ok());
-                // Whoever asked may have stopped waiting.
-                let _ = done.send(written);
-            }
-            Err(RecvTimeoutError::Timeout) => {
-                // A disk that is full now may have room at the next change, or when all of it has to be written.
-                if pending
-                    .as_ref()
-                    .is_some_and(|(shape, _)| journal.keep(shape).is_ok())
-                {
-                    pending = None;
-                    failed = false;
-                } else {
-                    failed = true;
-                }
-            }
-            Err(RecvTimeoutError::Disconnected) => {
-                if let Some((shape, _)) = pending.take() {
-                    let _ = journal.keep(&shape);
-                }
-                return;
-            }
-        }
-    }
 }

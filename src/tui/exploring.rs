@@ -124,4 +124,6 @@ pub enum Told {
     Exists(u64, String),
     /// Nothing came of it, and why.
     Failed(u64, String),
+    /// Something that belongs to no piece of work cannot be done, and why.
+    Refused(String),
 }

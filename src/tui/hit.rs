@@ -2,7 +2,7 @@
 
 use ratatui::layout::{Position, Rect};
 
-use super::app::App;
+use super::app::{App, Page};
 use super::dialog::Dialog;
 use super::explore_layout::point;
 use super::explore_layout::ranges::RangeRows;
@@ -67,6 +67,10 @@ pub fn at(app: &App, column: u16, row: u16) -> Option<Target> {
             rows.row(row - panes.form.y).map(Target::Field)
         }
         None if panes.panel.is_some_and(inside) => Some(Target::Panel),
+        // The descriptors have the matrix's place.
+        None if panes.panel.is_none() && app.page == Page::Panel => {
+            inside(panes.body).then_some(Target::Panel)
+        }
         None if inside(panes.matrix) => {
             let grid = Grid::of(panes.matrix, &imprint, app.cursor());
             grid.taxel(column, row)

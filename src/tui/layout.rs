@@ -2,6 +2,7 @@
 
 use ratatui::layout::Rect;
 
+use super::app::App;
 use super::binding::{Binding, Context};
 use super::form_dialog::FormDialog;
 use super::keymap::{KEYMAP, MENU};
@@ -48,6 +49,12 @@ pub struct Panes {
 }
 
 impl Panes {
+    /// The panes of the screen as it is.
+    pub fn shown(app: &App) -> Option<Self> {
+        let (columns, rows) = app.screen;
+        Self::of(Rect::new(0, 0, columns, rows), &app.seen().imprint)
+    }
+
     /// The panes of a screen for a matrix; none on a screen that is too small for any.
     pub fn of(area: Rect, imprint: &Imprint) -> Option<Self> {
         if area.width < SMALLEST.0 || area.height < SMALLEST.1 {

@@ -62,6 +62,8 @@ pub enum Message {
     NudgeStep(i8),
     /// Go to another field of a form, so many further on.
     Field(i8),
+    /// Go to the field of that number; none: to the kind of a form, or what follows the fields of ranges.
+    ToField(Option<usize>),
     /// An arrow in a form: moves within a field, or chooses.
     Choose(Arrow),
     /// Change a field by its last decimal.
@@ -158,14 +160,25 @@ pub enum Answer {
     Removed(String),
     /// It was brought back.
     Restored(String),
-    /// Work that a program left when it died, and whether there is more.
+    /// Work that a program left when it died.
     Recovered(Box<Shape>),
-    /// A program left work when it died: what it was.
-    Found(String),
-    /// Such work was thrown into the trash, under this name, and there is no more of it.
-    GivenUp(Option<String>),
+    /// A program left work when it died.
+    Found(Left),
+    /// Such work was thrown into the trash, under this name; and what is left then.
+    GivenUp(String, Option<Left>),
+    /// It was not, and why.
+    NotGivenUp(String),
     /// Nothing came of it.
     Failed(String),
+}
+
+/// Work that programs left when they died.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Left {
+    /// What the one that is offered is, in a few words.
+    pub what: String,
+    /// How many there are with it.
+    pub waiting: usize,
 }
 
 /// What the mouse did, and where on the screen.

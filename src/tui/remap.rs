@@ -151,7 +151,9 @@ fn allowed(change: &Change, before: &[Change]) -> Result<(), RemapError> {
         ref action,
     } = *change;
     let mut bound = of_table(context).flat_map(|row| row.keys.iter());
-    let is_text = matches!(key, Key::Char(_)) && context.takes_text();
+    // What means something everywhere would mean it in every field.
+    let takes_text = context.takes_text() || context == Context::Everywhere;
+    let is_text = matches!(key, Key::Char(_)) && takes_text;
     let as_ever = |(own, meaning): &(Key, Message)| *own == key && Some(meaning) == action.as_ref();
     if key == WAY_OUT && !bound.clone().any(as_ever) {
         return Err(RemapError::WayOut);
@@ -339,6 +341,10 @@ mod tests {
             (
                 change(List, "j", "scroll-down"),
                 "j is typed as text here; a key like <C-x> is not",
+            ),
+            (
+                change(Everywhere, "r", "redraw"),
+                "r is typed as text here; a key like <C-x> is not",
             ),
             (
                 change(Matrix, "x", "undo"),

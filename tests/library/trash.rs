@@ -3,7 +3,7 @@
 use taxel::library::error::LibraryError;
 use taxel::library::trash::KEPT;
 
-use super::{Scratch, files, refusal};
+use super::{Scratch, files, refusal, shape};
 
 #[test]
 fn what_is_deleted_comes_back_as_it_was() {
@@ -111,4 +111,21 @@ fn a_trash_with_anything_in_it_is_used_all_the_same() {
         refusal(scratch.library.restore("one"), &scratch),
         "FOLDER/.trash/77 one.json: is a folder, expected a regular file"
     );
+}
+
+/// Under a name that is in the way of nothing, here and in the trash.
+#[test]
+fn what_was_never_stored_is_thrown_away_and_comes_back() {
+    let scratch = Scratch::with(&["lost 2"]);
+    for name in ["lost 1", "lost 3"] {
+        let thrown = scratch.library.throw_away(&shape("lost", 7));
+        assert_eq!(thrown.expect("thrown away"), name);
+    }
+    assert_eq!(scratch.own(), ["lost 2"]);
+    scratch.library.restore("lost 3").expect("restored");
+    assert_eq!(scratch.number("lost 3"), Some(7));
+    let none = Scratch::new();
+    none.put(".trash", "in the way");
+    assert!(none.library.throw_away(&shape("lost", 7)).is_err());
+    assert!(none.own().is_empty());
 }

@@ -34,6 +34,7 @@ pub(crate) fn of_emulator(screen: &vt100::Screen) -> String {
     for row in 0..rows.get() {
         let cells: Vec<(char, char)> = (0..columns.get())
             .filter_map(|column| screen.cell(row, column))
+            .filter(|cell| !cell.is_wide_continuation())
             .map(|cell| (cell.contents().chars().next().unwrap_or(' '), letter(cell)))
             .collect();
         write_row(&mut text, &cells);

@@ -58,6 +58,7 @@ fn the_whole_group_stops() {
 fn without_a_shell_it_is_not_stopped() {
     let mut program = Program::started(&Start::default());
     program.types(b"\x1a");
+    program.shows("! there is no shell to go back to");
     program.signal(Signal::TSTP);
     program.types(b" ");
     program.shows("NA 1 in all");

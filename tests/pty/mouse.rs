@@ -136,7 +136,7 @@ fn what_is_copied_goes_to_the_clipboard_of_the_terminal() {
     let mut program = Program::started(&Start::default());
     let mut script = session(false, (80, 24));
     program.types(b"f\rY");
-    program.shows("272 characters sent to your terminal's clipboard");
+    program.shows("imprint sent to your terminal's clipboard (272 characters)");
     script.keys("f<CR>").expect("keys");
     let imprint = script.app().seen().imprint.to_string() + "\n";
     program.until("the imprint", |program| {
@@ -153,4 +153,20 @@ fn what_is_copied_goes_to_the_clipboard_of_the_terminal() {
     );
     program.types(b"qy");
     program.ends_well(0);
+}
+
+/// A terminal that would show the text is not sent it, and its user is told.
+#[test]
+fn nothing_is_copied_where_there_is_no_clipboard() {
+    for term in ["dumb", "vt100", "linux"] {
+        let mut program = Program::started(&Start {
+            variables: &[("TERM", term), ("LANG", "C.UTF-8")],
+            ..Start::default()
+        });
+        program.types(b"Y");
+        program.shows("! this terminal has no clipboard; s saves");
+        program.types(b"q");
+        program.ends_well(0);
+        assert_eq!(program.count(b"\x1b]52"), 0, "{term}");
+    }
 }

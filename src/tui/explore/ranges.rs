@@ -246,7 +246,7 @@ impl RangesForm {
     }
 
     /// Goes to a row, the anchor after the fields; there already, takes the other anchor.
-    pub fn point(&mut self, row: usize) {
+    fn point(&mut self, row: usize) {
         let to = (row < self.fields.len()).then_some(row);
         if to.is_none() && self.focus.is_none() {
             self.other_anchor();
@@ -272,6 +272,7 @@ impl RangesForm {
     pub fn take(&mut self, message: &Message) {
         match message {
             Message::Field(by) => self.move_focus(*by),
+            Message::ToField(row) => self.point(row.unwrap_or(self.fields.len())),
             Message::Choose(Arrow::Up) => self.move_focus(-1),
             Message::Choose(Arrow::Down) => self.move_focus(1),
             message => match self.focused() {

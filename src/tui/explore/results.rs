@@ -162,10 +162,10 @@ impl Results {
         self.column
     }
 
-    /// Shows other columns, of so many.
-    pub fn move_columns(&mut self, by: i8, columns: usize) {
-        let moved = self.column.saturating_add_signed(isize::from(by));
-        self.column = moved.min(columns.saturating_sub(1));
+    /// Shows other columns, the first of them no later than the `last`.
+    pub fn move_columns(&mut self, by: i8, last: usize) {
+        let moved = (self.column.min(last)).saturating_add_signed(isize::from(by));
+        self.column = moved.min(last);
     }
 
     /// Goes so many rows on: in the list, in the statistics and the histogram by descriptors, in the map along y0.

@@ -4,13 +4,14 @@
 //! text, a run of one style in one element that is stretched to its columns. Colours are those of a theme with
 //! [`ColorDepth::True`]; without them the text is black, or light on the dark palette.
 
-use std::fmt::Write;
+use std::fmt::Write as _;
 
 use ratatui::buffer::Buffer;
 use ratatui::style::{Color, Modifier};
 
 use crate::formats::xml::escaped;
 use crate::tui::theme::{Palette, Theme};
+use crate::tui::view::write;
 
 /// A character's field.
 const WIDTH: u32 = 9;
@@ -55,8 +56,18 @@ pub(super) fn svg(buffer: &Buffer, theme: Theme, title: &str) -> String {
     );
     for row in 0..area.height {
         let mut runs: Vec<(u16, Look, Vec<&str>)> = Vec::new();
+        let mut covered = 0;
         for column in 0..area.width {
             let cell = &buffer[(area.x + column, area.y + row)];
+            // What stands behind a wide character is covered by it.
+            if covered > 0 {
+                covered -= 1;
+                if let Some((.., symbols)) = runs.last_mut() {
+                    symbols.push("");
+                }
+                continue;
+            }
+            covered = write::width(cell.symbol()).saturating_sub(1);
             let look = Look::of(cell, ink, paper);
             match runs.last_mut() {
                 Some((_, last, symbols)) if *last == look => symbols.push(cell.symbol()),
@@ -125,7 +136,7 @@ fn draw(svg: &mut String, (column, row): (u16, u16), look: Look, paper: [u8; 3],
         }
     }
     for (from, text) in pieces(symbols) {
-        let length = text.chars().count();
+        let length = write::width(&text);
         let units = |columns: usize| u32::try_from(columns).unwrap_or(0) * WIDTH;
         let (x, y, length) = (x + units(from), y + BASE, units(length));
         // Cannot fail: a String takes everything.
@@ -144,6 +155,9 @@ fn pieces(symbols: &[&str]) -> Vec<(usize, String)> {
     let mut pieces: Vec<(usize, String)> = Vec::new();
     let mut blanks = usize::MAX;
     for (column, &symbol) in symbols.iter().enumerate() {
+        if symbol.is_empty() {
+            continue;
+        }
         if symbol.trim().is_empty() || block(symbol).is_some() {
             blanks = blanks.saturating_add(1);
             continue;
@@ -229,5 +243,15 @@ mod tests {
             assert!(svg.contains(part), "no {part}\n{svg}");
         }
         assert_eq!(svg.matches("<text").count(), 4);
+        // Nothing is seen of what a wide character covers.
+        let mut buffer = Buffer::empty(Rect::new(0, 0, 6, 1));
+        buffer.set_string(0, 0, "foobar", Style::new());
+        buffer[(0, 0)].set_symbol("字");
+        buffer[(2, 0)].set_symbol("字");
+        let svg = super::svg(&buffer, Theme::plain(false), "");
+        assert!(
+            svg.contains("textLength=\"54\"") && svg.contains(">字字ar</text>"),
+            "{svg}"
+        );
     }
 }

@@ -15,6 +15,7 @@ use crate::tui::effect::World;
 use crate::tui::key::Key;
 use crate::tui::message::{Message, Mouse, MouseKind};
 use crate::tui::remap::Keymap;
+use crate::tui::view::write;
 
 /// How a script is run.
 #[derive(Clone, Debug)]
@@ -255,11 +256,9 @@ fn look(
         }
         Command::ExpectAt((column, row), text) => {
             let shown = session.screen();
-            let found: String = line_of(&shown, *row)
-                .chars()
-                .skip((*column).into())
-                .take(text.chars().count())
-                .collect();
+            let line = line_of(&shown, *row);
+            let rest = line.chars().skip(character_at(line, *column));
+            let found: String = rest.take(text.chars().count()).collect();
             if found != *text {
                 return fails(format!(
                     "at {column},{row} stands {:?}, expected {:?}",
@@ -269,9 +268,8 @@ fn look(
             }
         }
         Command::ExpectStyle((column, row), letter) => {
-            let found = line_of(&session.styles(), *row)
-                .chars()
-                .nth((*column).into());
+            let index = character_at(line_of(&session.screen(), *row), *column);
+            let found = line_of(&session.styles(), *row).chars().nth(index);
             if found != Some(*letter) {
                 let found = found.map_or("nothing".to_owned(), |found| format!("style {found}"));
                 return fails(format!("at {column},{row} is {found}, expected {letter}"));
@@ -332,9 +330,19 @@ fn click(session: &mut Session, place: Place) {
 /// Where a text stands first.
 fn find(screen: &str, text: &str) -> Option<Place> {
     screen.lines().enumerate().find_map(|(row, line)| {
-        let column = line[..line.find(text)?].chars().count();
+        let column = write::width(&line[..line.find(text)?]);
         Some((u16::try_from(column).ok()?, u16::try_from(row).ok()?))
     })
+}
+
+/// The number of the character in a column: a wide one has two.
+fn character_at(line: &str, column: u16) -> usize {
+    let (mut end, column) = (0, usize::from(column));
+    let before = line.chars().take_while(|character| {
+        end += write::width(character.encode_utf8(&mut [0; 4]));
+        end <= column
+    });
+    before.count() + column.saturating_sub(write::width(line))
 }
 
 fn line_of(grid: &str, row: u16) -> &str {

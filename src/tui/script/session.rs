@@ -20,7 +20,7 @@ use crate::tui::effect::World;
 use crate::tui::key::{Key, KeyError, parse};
 use crate::tui::message::Message;
 use crate::tui::theme::Role;
-use crate::tui::view::view;
+use crate::tui::view::{view, write};
 
 /// A running program on a screen of its own.
 #[derive(Debug)]
@@ -125,10 +125,18 @@ impl Session {
     fn rows(&self, show: impl Fn(&ratatui::buffer::Cell) -> String) -> String {
         let buffer = self.terminal.backend().buffer();
         let width = usize::from(buffer.area.width).max(1);
-        let rows = buffer
-            .content
-            .chunks(width)
-            .map(|row| row.iter().map(&show).collect::<String>());
+        let rows = buffer.content.chunks(width).map(|row| {
+            let mut text = String::new();
+            let mut cells = row.iter();
+            while let Some(cell) = cells.next() {
+                text += &show(cell);
+                // What stands behind a wide character is covered by it.
+                for _ in 1..write::width(cell.symbol()) {
+                    cells.next();
+                }
+            }
+            text
+        });
         rows.map(|row| row.trim_end().to_owned() + "\n").collect()
     }
 }

@@ -1,7 +1,6 @@
 //! The loop: sleeps until there is a key, a signal or a worker's message, updates the state, draws.
 
 use std::io;
-use std::os::fd::BorrowedFd;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::time::Duration;
 
@@ -20,6 +19,7 @@ use super::signals::{Said, Signals};
 use super::{job, session};
 use crate::tui::app::App;
 use crate::tui::effect::World;
+use crate::tui::exploring::Told;
 use crate::tui::message::Message;
 use crate::tui::request::Effect;
 use crate::tui::view::view;
@@ -36,7 +36,13 @@ pub(super) fn run(
     let signals = Signals::new()?;
     leave_on_panic();
     let mut talk = Talk::new(watch, app, world, *settings, device, signals, mailbox);
-    let ended = catch_unwind(AssertUnwindSafe(|| talk.run()));
+    let ended = catch_unwind(AssertUnwindSafe(|| {
+        talk.run().or_else(|error| match error {
+            // Whoever finds it out first: reading, writing, or taking the terminal anew.
+            lost if is_lost(&lost) => Ok(Outcome::Hangup),
+            error => Err(error),
+        })
+    }));
     if !matches!(ended, Ok(Ok(Outcome::Quit))) {
         // The end comes from outside: what is not saved stays in the journal.
         let _ = talk.world.handle(&mut talk.app, Message::Killed);
@@ -74,8 +80,7 @@ struct Talk<'a> {
     settings: Settings,
     device: Device,
     signals: Signals,
-    /// None when no worker can send any more: a closed pipe would ring for ever.
-    mailbox: Option<Mailbox>,
+    mailbox: Mailbox,
     reader: Reader,
     screen: Terminal<Screen>,
     mouse: bool,
@@ -118,7 +123,7 @@ impl<'a> Talk<'a> {
             settings,
             device,
             signals,
-            mailbox: Some(mailbox),
+            mailbox,
             reader: Reader::default(),
             screen,
             mouse: settings.mouse,
@@ -156,13 +161,8 @@ impl<'a> Talk<'a> {
     /// Sleeps until there is something to do, or for `patience`.
     fn wait(&self, patience: Option<Duration>) -> io::Result<Ready> {
         let timeout = patience.and_then(|patience| Timespec::try_from(patience).ok());
-        let bell = self.mailbox.as_ref().map(Mailbox::bell);
-        let watched = [Some(self.device.input()), Some(self.signals.ear()), bell];
-        let mut fds: Vec<PollFd<'_>> = watched
-            .into_iter()
-            .flatten()
-            .map(|fd: BorrowedFd<'_>| PollFd::from_borrowed_fd(fd, PollFlags::IN))
-            .collect();
+        let watched = [self.device.input(), self.signals.ear(), self.mailbox.bell()];
+        let mut fds = watched.map(|fd| PollFd::from_borrowed_fd(fd, PollFlags::IN));
         match poll(&mut fds, timeout.as_ref()) {
             Ok(0) => {
                 return Ok(Ready {
@@ -175,14 +175,14 @@ impl<'a> Talk<'a> {
             Err(Errno::INTR) => return Ok(Ready::default()),
             Err(error) => return Err(error.into()),
         }
-        let happened = |index: usize| fds.get(index).map_or(PollFlags::empty(), PollFd::revents);
+        let [input, signals, mail] = fds.map(|fd| fd.revents());
         let lost = PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL;
         Ok(Ready {
-            gone: happened(0).intersects(lost),
-            input: happened(0).contains(PollFlags::IN),
+            gone: input.intersects(lost),
+            input: input.contains(PollFlags::IN),
             late: false,
-            signals: !happened(1).is_empty(),
-            mail: !happened(2).is_empty(),
+            signals: !signals.is_empty(),
+            mail: !mail.is_empty(),
         })
     }
 
@@ -202,16 +202,8 @@ impl<'a> Talk<'a> {
     }
 
     fn collect(&mut self) -> io::Result<()> {
-        let Some(mailbox) = &mut self.mailbox else {
-            return Ok(());
-        };
-        let (messages, open) = mailbox.collect();
-        if !open {
-            self.mailbox = None;
-        }
-        messages
-            .into_iter()
-            .try_for_each(|message| self.update(message))
+        let mut messages = self.mailbox.collect().into_iter();
+        messages.try_for_each(|message| self.update(message))
     }
 
     /// Reads what is there, or takes note that nothing more came in time.
@@ -255,9 +247,17 @@ impl<'a> Talk<'a> {
             Some(Effect::Suspend) => self.suspend()?,
             Some(Effect::Mouse(on)) => {
                 self.mouse = on;
-                session::set_mouse(on)?;
+                self.send(session::set_mouse(on).as_bytes())?;
             }
-            Some(Effect::Copy(text)) => session::copy(&text)?,
+            Some(Effect::Copy(text)) if self.settings.abilities.clipboard => {
+                self.send(session::copied(&text).as_bytes())?;
+            }
+            Some(Effect::Copy(_)) => {
+                let save = self.app.key_of(&Message::Save);
+                self.refuse(&format!(
+                    "this terminal has no clipboard; {save} saves, 'taxel export' writes a file"
+                ));
+            }
         }
         if self.app.ended() {
             self.outcome.get_or_insert(Outcome::Quit);
@@ -269,21 +269,22 @@ impl<'a> Talk<'a> {
     fn draw(&mut self) -> io::Result<()> {
         let Ok(_) = self.screen.draw(|frame| view(&self.app, frame));
         let frame = self.screen.backend_mut().take_frame();
-        if frame.is_empty() {
-            return Ok(());
+        self.send(&frame)
+    }
+
+    /// Writes something. Where it is cut off, by a signal while the terminal takes nothing, the next frame puts the screen
+    /// right; its first character ends whatever was begun.
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        if self.device.write(bytes, self.signals.ear())? == Written::Interrupted {
+            self.redraw();
         }
-        match self.device.write(&frame, self.signals.ear()) {
-            Ok(Written::All) => Ok(()),
-            Ok(Written::Interrupted) => {
-                self.redraw();
-                Ok(())
-            }
-            Err(error) if is_lost(&error) => {
-                self.outcome.get_or_insert(Outcome::Hangup);
-                Ok(())
-            }
-            Err(error) => Err(error),
-        }
+        Ok(())
+    }
+
+    /// Says that something cannot be done here.
+    fn refuse(&mut self, reason: &str) {
+        let told = Message::Told(Told::Refused(reason.to_owned()));
+        let _ = self.world.handle(&mut self.app, told);
     }
 
     /// Nothing is known of what the terminal shows: all of it is drawn next time.
@@ -314,6 +315,7 @@ impl<'a> Talk<'a> {
     /// Gives the terminal back, stops, and takes it again when the shell says so.
     fn suspend(&mut self) -> io::Result<()> {
         if !job::has_shell() {
+            self.refuse("there is no shell to go back to");
             return Ok(());
         }
         self.world.secure();

@@ -67,7 +67,7 @@ impl Device {
     /// Reads what is there; none where the terminal is gone.
     pub(super) fn read(&self, buffer: &mut [u8]) -> io::Result<Option<usize>> {
         match read(&self.input, buffer) {
-            Ok(0) | Err(Errno::IO | Errno::NXIO) => Ok(None),
+            Ok(0) => Ok(None),
             Ok(count) => Ok(Some(count)),
             Err(Errno::AGAIN | Errno::INTR) => Ok(Some(0)),
             Err(error) => Err(error.into()),

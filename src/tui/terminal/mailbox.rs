@@ -59,17 +59,11 @@ impl Mailbox {
         self.bell.as_fd()
     }
 
-    /// All messages that are there. Answers whether there can be more: whether any worker is left.
-    pub(super) fn collect(&mut self) -> (Vec<Message>, bool) {
-        // First the bell: what is sent after this rings anew.
+    /// All messages that are there.
+    pub(super) fn collect(&mut self) -> Vec<Message> {
+        // First the bell: what is sent after this rings anew. The world keeps a sender as long as the loop runs.
         let mut rung = [0; 64];
-        let open = loop {
-            match self.bell.read(&mut rung) {
-                Ok(0) => break false,
-                Ok(_) => {}
-                Err(error) => break error.kind() == io::ErrorKind::WouldBlock,
-            }
-        };
-        (self.messages.try_iter().collect(), open)
+        while self.bell.read(&mut rung).is_ok_and(|count| count > 0) {}
+        self.messages.try_iter().collect()
     }
 }

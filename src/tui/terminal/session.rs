@@ -46,20 +46,26 @@ fn found() -> MutexGuard<'static, Option<Found>> {
 /// may have changed it while the program was stopped.
 pub(super) fn enter(device: &Device, settings: &Settings, mouse: bool) -> io::Result<()> {
     let mut held = found();
-    let (attributes, later) = match held.take() {
-        Some(found) => (found.attributes, found.later),
-        None => (tcgetattr(device.input())?, String::new()),
+    let mut raw = match held.as_mut() {
+        Some(found) => {
+            (found.settings, found.mouse) = (*settings, mouse);
+            found.attributes.clone()
+        }
+        None => {
+            let attributes = tcgetattr(device.input())?;
+            // Known before anything is changed, so that it is put right where the change fails half-way.
+            *held = Some(Found {
+                device: device.try_clone()?,
+                attributes: attributes.clone(),
+                settings: *settings,
+                mouse,
+                later: String::new(),
+            });
+            attributes
+        }
     };
-    let mut raw = attributes.clone();
     raw.make_raw();
     set(device, &raw)?;
-    *held = Some(Found {
-        device: device.try_clone()?,
-        attributes,
-        settings: *settings,
-        mouse,
-        later,
-    });
     let mut hello = String::new();
     if settings.kind.has_modes() {
         push(&mut hello, EnterAlternateScreen);
@@ -121,23 +127,17 @@ fn eprint(text: &str) {
     let _ = io::stderr().write_all(text.as_bytes());
 }
 
-/// Has the mouse reported, or leaves it to the terminal.
-pub(super) fn set_mouse(on: bool) -> io::Result<()> {
+/// What has the mouse reported, or leaves it to the terminal.
+pub(super) fn set_mouse(on: bool) -> &'static str {
     if let Some(found) = found().as_mut() {
         found.mouse = on;
-        let words = if on { MOUSE_ON } else { MOUSE_OFF };
-        found.device.write_last(words.as_bytes())?;
     }
-    Ok(())
+    if on { MOUSE_ON } else { MOUSE_OFF }
 }
 
-/// Puts a text into the clipboard of the user's terminal, which may refuse without saying so (OSC 52).
-pub(super) fn copy(text: &str) -> io::Result<()> {
-    if let Some(found) = found().as_ref() {
-        let words = format!("\x1b]52;c;{}\x07", base64(text.as_bytes()));
-        found.device.write_last(words.as_bytes())?;
-    }
-    Ok(())
+/// What puts a text into the clipboard of the user's terminal, which may refuse without saying so (OSC 52).
+pub(super) fn copied(text: &str) -> String {
+    format!("\x1b]52;c;{}\x07", base64(text.as_bytes()))
 }
 
 /// RFC 4648, section 4.

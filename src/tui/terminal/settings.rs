@@ -25,6 +25,8 @@ impl Kind {
         let begins = |starts: &[&str]| starts.iter().any(|start| term.starts_with(start));
         match term {
             "" | "dumb" | "unknown" | "network" => Self::Dumb,
+            // Named like the old terminals, but a library for windows.
+            _ if begins(&["vte"]) => Self::Window,
             _ if begins(&["vt", "ansi", "pcansi", "wy"]) => Self::Serial,
             _ if begins(&["linux", "cons25", "bterm", "fbterm"]) => Self::Console,
             _ => Self::Window,
@@ -61,6 +63,8 @@ pub struct Abilities {
     pub synchronized: bool,
     /// It erases so many characters in the middle of a row (ECH), as all since the VT220 do.
     pub erases: bool,
+    /// It may put a text into its clipboard (OSC 52); others would show the text.
+    pub clipboard: bool,
 }
 
 /// What the terminal is sent.
@@ -122,6 +126,7 @@ impl Settings {
                 styles: kind > Kind::Dumb || color != ColorDepth::Never,
                 synchronized: kind == Kind::Window,
                 erases: kind >= Kind::Console,
+                clipboard: kind == Kind::Window,
             },
         }
     }
@@ -143,7 +148,7 @@ fn depth(term: &str, colorterm: &str) -> ColorDepth {
         ColorDepth::True
     } else if has(&["256color", "kitty", "alacritty", "foot", "ghostty"]) {
         ColorDepth::TwoFiftySix
-    } else if has(&["mono", "-m"]) {
+    } else if has(&["mono"]) || term.ends_with("-m") {
         ColorDepth::Never
     } else {
         ColorDepth::Sixteen
@@ -181,6 +186,8 @@ mod tests {
             ("dumb", Kind::Dumb),
             ("vt100", Kind::Serial),
             ("vt220", Kind::Serial),
+            ("vte", Kind::Window),
+            ("vte-256color", Kind::Window),
             ("linux", Kind::Console),
             ("xterm-256color", Kind::Window),
             ("tmux", Kind::Window),
@@ -191,6 +198,7 @@ mod tests {
             let abilities = settings.abilities;
             assert_eq!(abilities.synchronized, kind == Kind::Window, "{name}");
             assert_eq!(abilities.erases, kind >= Kind::Console, "{name}");
+            assert_eq!(abilities.clipboard, kind == Kind::Window, "{name}");
             assert_eq!(settings.ascii, kind <= Kind::Serial, "{name}");
             assert_eq!(abilities.styles, kind != Kind::Dumb, "{name}");
         }
@@ -201,6 +209,9 @@ mod tests {
     fn colours_follow_the_terminal_unless_somebody_says_otherwise() {
         assert_eq!(term("linux").color, ColorDepth::Sixteen);
         assert_eq!(term("xterm").color, ColorDepth::Sixteen);
+        assert_eq!(term("putty-m1").color, ColorDepth::Sixteen);
+        assert_eq!(term("xterm-mono").color, ColorDepth::Never);
+        assert_eq!(term("ansi-m").color, ColorDepth::Never);
         assert_eq!(term("screen-256color").color, ColorDepth::TwoFiftySix);
         assert_eq!(term("vt100").color, ColorDepth::Never);
         let with = |name, value| {

@@ -4,13 +4,14 @@ use super::change::{begin, change, inform, refuse};
 use crate::imprint::Imprint;
 use crate::library::store::{Expected, Loaded, Origin};
 use crate::picture::Picture;
-use crate::tui::app::App;
+use crate::tui::app::{App, Mode};
+use crate::tui::binding::Context;
 use crate::tui::commands::{Takes, wants_names};
 use crate::tui::dialog::{Dialog, Question};
 use crate::tui::document::{Document, StoredName};
 use crate::tui::form_dialog::FormDialog;
 use crate::tui::list::ListDialog;
-use crate::tui::message::{Answer, Message};
+use crate::tui::message::{Answer, Left, Message};
 use crate::tui::purpose::Purpose;
 use crate::tui::request::{Effect, Request};
 
@@ -68,6 +69,8 @@ pub(super) fn take(app: &mut App, answer: Answer) -> Option<Effect> {
             )));
         }
         Answer::Removed(name) => {
+            // What is on the matrix may be all that is left of it.
+            app.history.removed(&name);
             let undo = app.key_of(&Message::Undo);
             inform(app, format!("{name} deleted; {undo} brings it back"));
             app.removed = Some(name);
@@ -76,15 +79,7 @@ pub(super) fn take(app: &mut App, answer: Answer) -> Option<Effect> {
             app.removed = None;
             inform(app, format!("{name} is back"));
         }
-        Answer::Found(what) => {
-            let text = format!("Unsaved work of {what}. Bring it back? y yes, n into the trash");
-            let question = Question {
-                text,
-                yes: Message::Recover,
-                no: Some(Message::GiveUp),
-            };
-            app.dialogs.push(Dialog::Question(question));
-        }
+        Answer::Found(left) => offer(app, "", &left),
         Answer::Recovered(shape) => {
             begin(app, Document::empty(shape.sensor), None);
             change(app, Document::of_shape(&shape));
@@ -96,23 +91,47 @@ pub(super) fn take(app: &mut App, answer: Answer) -> Option<Effect> {
                 .pop_if(|dialog| matches!(dialog, Dialog::List(_)));
             refuse(app, text);
         }
-        Answer::GivenUp(Some(name)) => {
-            let undo = app.key_of(&Message::Undo);
-            inform(
-                app,
-                format!("it is in the trash as {name}; {undo} brings it back"),
-            );
-            app.removed = Some(name);
+        Answer::GivenUp(name, left) => {
+            app.removed = Some(name.clone());
+            match left {
+                Some(left) => offer(app, &format!("{name} is in the trash. "), &left),
+                None => {
+                    let undo = app.key_of(&Message::Undo);
+                    let text = "the unsaved work is in the trash as";
+                    inform(app, format!("{text} {name}; {undo} brings it back"));
+                }
+            }
         }
-        Answer::GivenUp(None) => refuse(
-            app,
-            "it cannot be moved into the trash, and is offered again",
-        ),
+        Answer::NotGivenUp(reason) => {
+            let text = "the unsaved work cannot be moved to the trash, and is offered again at the next start";
+            refuse(app, format!("{text}: {reason}"));
+        }
         Answer::Named(_, Err(text)) | Answer::Trash(Err(text)) | Answer::Failed(text) => {
             refuse(app, text);
         }
     }
     None
+}
+
+/// Asks whether work shall be brought back that a program left when it died.
+fn offer(app: &mut App, before: &str, left: &Left) {
+    let key = |answer| app.keymap().label(Context::Question, answer);
+    let (yes, no) = (key(&Message::Accept), key(&Message::Decline));
+    let later = key(&Message::Cancel);
+    let of = match left.waiting {
+        0 | 1 => String::new(),
+        all => format!(" (1 of {all})"),
+    };
+    let text = format!(
+        "{before}Unsaved work was left{of}: {}. Bring it back? ({yes}: yes, {no}: to the trash, {later}: ask again next time)",
+        left.what
+    );
+    let question = Question {
+        text,
+        yes: Message::Recover,
+        no: Some(Message::GiveUp),
+    };
+    app.dialogs.push(Dialog::Question(question));
 }
 
 /// Asks for the shapes of the list that have come into sight.
@@ -159,6 +178,7 @@ pub(super) fn choose(app: &mut App, list: ListDialog) -> Option<Effect> {
 fn open_picture(app: &mut App, imprint: &Imprint, name: String) {
     let picture = Picture::at_home(*imprint).named(&name);
     let form = FormDialog::picture(app.history.present(), picture, name);
+    app.mode = Mode::Draw;
     app.dialogs.push(Dialog::Form(Box::new(form)));
 }
 

@@ -27,6 +27,7 @@ pub(super) fn change(app: &mut App, document: Document) {
 pub(super) fn begin(app: &mut App, document: Document, name: Option<StoredName>) {
     let saved = document.clone();
     app.history.begin(document, Origin { name, saved });
+    app.mode = Mode::Draw;
     settle(app);
 }
 
@@ -154,6 +155,8 @@ fn set(app: &mut App, source: Source, values: &[(Parameter, f64)]) {
             source.with(parameter, value, sensor.side())
         });
     match moved {
+        // What was set by hand stays where nothing moves.
+        Ok(source) if app.history.present().source.as_ref() == Some(&source) => {}
         Ok(source) => replace(app, Document::touched(sensor, source)),
         Err(error) => refuse(app, error.labelled()),
     }

@@ -1,7 +1,5 @@
 //! What messages do in a dialog. The dialog was taken off the stack, and goes back unless it is done with.
 
-use ratatui::layout::Rect;
-
 use super::answer::{choose, look};
 use super::change::{refuse, replace};
 use super::{explore, matrix};
@@ -10,6 +8,7 @@ use crate::tui::command::read;
 use crate::tui::command_dialog::CommandDialog;
 use crate::tui::commands::{Takes, wants_names};
 use crate::tui::dialog::{Dialog, Help, Question};
+use crate::tui::exploring::Exploring;
 use crate::tui::form_dialog::FormDialog;
 use crate::tui::key::Arrow;
 use crate::tui::layout::Panes;
@@ -20,6 +19,11 @@ use crate::tui::request::{Effect, Request};
 
 /// Does what a message says.
 pub(super) fn act(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> {
+    let message = match (&dialog, message) {
+        // Work that nobody waits for any more does not go on.
+        (Dialog::Running(_), Message::Cancel | Message::Quit) => Message::Explore(Exploring::Stop),
+        (_, message) => message,
+    };
     if matches!(message, Message::Cancel | Message::Quit) {
         explore::put_away(app, dialog);
         return None;
@@ -46,9 +50,7 @@ pub(super) fn act(app: &mut App, dialog: Dialog, message: Message) -> Option<Eff
 
 fn in_help(app: &mut App, mut help: Help, message: &Message) {
     if let Message::Scroll(lines) = message {
-        let (columns, rows) = app.screen;
-        let screen = Rect::new(0, 0, columns, rows);
-        let room = Panes::of(screen, &app.seen().imprint).map_or(0, |panes| panes.body.height);
+        let room = Panes::shown(app).map_or(0, |panes| panes.body.height);
         help.scroll(*lines, app.keymap(), room.into());
     }
     app.dialogs.push(Dialog::Help(help));
@@ -77,6 +79,9 @@ fn in_form(app: &mut App, mut dialog: FormDialog, message: Message) {
             }
         },
         Message::Field(by) => dialog.move_focus(by),
+        // The kind, being there already: the next one.
+        Message::ToField(None) if dialog.form().focus().is_none() => dialog.choose(Arrow::Right),
+        Message::ToField(field) => dialog.edit(|form| form.set_focus(field)),
         Message::Choose(arrow) => dialog.choose(arrow),
         Message::Type(character) => dialog.insert(character),
         Message::Step(direction) => dialog.edit(|form| form.step(direction)),

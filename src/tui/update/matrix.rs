@@ -4,7 +4,7 @@ use super::change::{
     begin, change, inform, movable, nudge, refuse, replace, shift, travel, turn, zoom,
 };
 use super::explore;
-use crate::description::descriptor::DESCRIPTORS;
+use crate::description::descriptor::{DESCRIPTORS, Descriptor};
 use crate::formats::value;
 use crate::library::store::{Expected, Origin};
 use crate::tui::app::{App, Display, Mode, Page};
@@ -13,11 +13,15 @@ use crate::tui::dialog::{Dialog, Help, Question};
 use crate::tui::document::{Document, History};
 use crate::tui::form_dialog::FormDialog;
 use crate::tui::key::Arrow;
+use crate::tui::layout::Panes;
 use crate::tui::list::ListDialog;
 use crate::tui::message::{Copied, End, Message};
 use crate::tui::name_dialog::NameDialog;
 use crate::tui::purpose::Purpose;
 use crate::tui::request::{Effect, Request};
+
+/// What there is to say of an empty matrix.
+const NO_REGION: &str = "no region: the matrix is empty";
 
 /// Does what a message says.
 pub(super) fn act(app: &mut App, message: Message) -> Option<Effect> {
@@ -53,9 +57,12 @@ pub(super) fn act(app: &mut App, message: Message) -> Option<Effect> {
             return Some(Effect::Library(Request::Named(Purpose::Picture, name)));
         }
         Message::Restore(name) => return Some(Effect::Library(Request::Restore(name))),
-        Message::Become(document) => replace(app, *document),
+        Message::Become(document) => {
+            app.mode = Mode::Draw;
+            replace(app, *document);
+        }
         Message::Command => app.dialogs.push(Dialog::Command(CommandDialog::default())),
-        Message::Copy(what) => return Some(copy(app, what)),
+        Message::Copy(what) => return copy(app, what),
         Message::MouseOnOff => {
             app.mouse = !app.mouse;
             let key = app.key_of(&Message::MouseOnOff);
@@ -77,11 +84,14 @@ pub(super) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::Remove(name) => return Some(Effect::Library(Request::Remove(name))),
         Message::Recover => return Some(Effect::Library(Request::Recover)),
         Message::GiveUp => return Some(Effect::Library(Request::GiveUp)),
-        Message::Quit if app.unsaved() => {
-            let question = Question::new(
-                "The imprint is not saved. Quit all the same?",
-                Message::QuitNow,
-            );
+        Message::Quit if app.unsaved() || app.history.left_unsaved() => {
+            let what = if app.unsaved() {
+                "The imprint"
+            } else {
+                "An earlier drawing"
+            };
+            let text = format!("{what} is not saved. Quit anyway?");
+            let question = Question::new(text, Message::QuitNow);
             app.dialogs.push(Dialog::Question(question));
         }
         Message::Quit | Message::QuitNow => app.ended = true,
@@ -126,6 +136,9 @@ fn edit(app: &mut App, message: &Message) {
                 Display::Percent => Display::Imprint,
             };
         }
+        Message::Page if Panes::shown(app).is_some_and(|panes| panes.panel.is_some()) => {
+            inform(app, "matrix and descriptors are both in sight");
+        }
         Message::Page => {
             app.page = match app.page {
                 Page::Matrix => Page::Panel,
@@ -145,26 +158,28 @@ fn edit(app: &mut App, message: &Message) {
 }
 
 /// The text goes to the terminal, which puts it into its clipboard or does not: it never says.
-fn copy(app: &mut App, what: Copied) -> Effect {
+fn copy(app: &mut App, what: Copied) -> Option<Effect> {
     let seen = app.seen();
-    let text = match (what, seen.description(app.chosen)) {
-        (Copied::Imprint, _) | (_, None) => seen.imprint.to_string() + "\n",
+    let (name, text) = match (what, seen.description(app.chosen)) {
+        (Copied::Imprint, _) => ("imprint", seen.imprint.to_string() + "\n"),
+        (Copied::Descriptors, None) => {
+            refuse(app, NO_REGION);
+            return None;
+        }
         (Copied::Descriptors, Some(description)) => {
-            let line = |descriptor: &crate::description::descriptor::Descriptor| {
+            let line = |descriptor: &Descriptor| {
                 let value = value::text((descriptor.measure)(&description), descriptor.unit);
                 format!("{}\t{}\n", descriptor.key, value.as_deref().unwrap_or("–"))
             };
-            DESCRIPTORS.iter().map(line).collect()
+            ("descriptors", DESCRIPTORS.iter().map(line).collect())
         }
     };
+    let length = value::counted(text.chars().count() as u64, "character");
     inform(
         app,
-        format!(
-            "{} characters sent to your terminal's clipboard",
-            text.chars().count()
-        ),
+        format!("{name} sent to your terminal's clipboard ({length})"),
     );
-    Effect::Copy(text)
+    Some(Effect::Copy(text))
 }
 
 fn open_form(app: &mut App, form: FormDialog) {
@@ -205,7 +220,7 @@ fn move_cursor(app: &mut App, arrow: Arrow) {
 fn choose_region(app: &mut App, by: i8) {
     let seen = app.seen();
     let Some((now, _)) = seen.region(app.chosen) else {
-        return inform(app, "no region: the matrix is empty");
+        return inform(app, NO_REGION);
     };
     let count = seen.regions.len();
     if count == 1 {

@@ -4,7 +4,6 @@ use super::change::{change, settle};
 use crate::tui::app::App;
 use crate::tui::dialog::Dialog;
 use crate::tui::hit::{Target, at};
-use crate::tui::key::Arrow;
 use crate::tui::message::{Message, Mouse, MouseKind};
 
 /// Lines that a turn of the wheel scrolls.
@@ -41,8 +40,10 @@ pub(super) fn act(app: &mut App, mouse: Mouse) -> Option<Message> {
             }
         }
         (MouseKind::Press, Some(Target::Panel)) => return Some(Message::Region(1)),
-        (MouseKind::Press, Some(Target::Kind)) => point_at_field(app, None),
-        (MouseKind::Press, Some(Target::Field(index))) => point_at_field(app, Some(index)),
+        (MouseKind::Press, Some(Target::Kind)) => return Some(Message::ToField(None)),
+        (MouseKind::Press, Some(Target::Field(index))) => {
+            return Some(Message::ToField(Some(index)));
+        }
         (MouseKind::Press, Some(Target::Row(index))) => return point_at_row(app, index),
         (MouseKind::Press, Some(Target::Means(message))) => return Some(message),
         _ => {}
@@ -81,20 +82,6 @@ fn scroll(app: &App, lines: i16) -> Option<Message> {
         Some(Dialog::List(_) | Dialog::Help(_) | Dialog::Results(_))
     );
     scrolls.then_some(Message::Scroll(lines))
-}
-
-/// A click on the kind goes there, and takes the next one if it was there; a click on a field goes to it.
-fn point_at_field(app: &mut App, field: Option<usize>) {
-    if let Some(Dialog::Form(dialog)) = app.dialogs.last_mut() {
-        let was_there = dialog.form().focus().is_none();
-        dialog.edit(|form| form.set_focus(field));
-        if field.is_none() && was_there {
-            dialog.choose(Arrow::Right);
-        }
-    }
-    if let (Some(Dialog::Ranges(form)), Some(row)) = (app.dialogs.last_mut(), field) {
-        form.point(row);
-    }
 }
 
 /// A click selects a row, a click on the selected row takes it.

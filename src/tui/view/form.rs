@@ -108,10 +108,9 @@ fn draw_kind(app: &App, kind: Kind, focused: bool, buffer: &mut Buffer, row: Rec
 fn draw_field(app: &App, field: &Field, focused: bool, buffer: &mut Buffer, row: Rect) -> Position {
     let theme = app.theme();
     let label = format!("{:LABEL$}", field.parameter().row().label);
-    // A text that is longer than the field shows the part around its cursor.
-    let hidden = (field.cursor() + 1).saturating_sub(INPUT);
-    let shown: String = field.text().chars().skip(hidden).take(INPUT).collect();
-    let padded = format!("{shown:INPUT$}");
+    let (shown, cursor) = write::window(field.text(), field.cursor(), INPUT);
+    let shown = write::fitted(shown, INPUT, theme);
+    let padded = format!("{shown}{}", " ".repeat(INPUT - write::width(&shown)));
     let role = if focused { Role::Focus } else { Role::Text };
     write::line(
         buffer,
@@ -119,7 +118,7 @@ fn draw_field(app: &App, field: &Field, focused: bool, buffer: &mut Buffer, row:
         theme,
         [(label.as_str(), Role::Text), (padded.as_str(), role)],
     );
-    Position::new(row.x + narrow(LABEL + field.cursor() - hidden), row.y)
+    Position::new(row.x + narrow(LABEL + cursor), row.y)
 }
 
 /// What else there is to know about a field that may be empty, and whether that is about the value it has now.

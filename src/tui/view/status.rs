@@ -91,14 +91,7 @@ fn field(
 ) -> Position {
     write::clear(buffer, area);
     let room = usize::from(area.width).saturating_sub(label.len());
-    let (mut shown, mut column) = (text, cursor);
-    while column >= room.max(1)
-        && let Some(first) = shown.chars().next()
-    {
-        let (hidden, rest) = shown.split_at(first.len_utf8());
-        column = column.saturating_sub(write::width(hidden));
-        shown = rest;
-    }
+    let (shown, column) = write::window(text, cursor, room);
     let pieces = [label, shown, after].map(|piece| (piece, Role::Text));
     write::line(buffer, area, app.theme(), pieces);
     let column = u16::try_from(label.len() + column).unwrap_or(u16::MAX);

@@ -56,6 +56,20 @@ pub fn fitted<'a>(text: &'a str, room: usize, theme: &Theme) -> Cow<'a, str> {
     Cow::Owned(format!("{}{ellipsis}", kept.trim_end()))
 }
 
+/// Of a text that is typed into so many columns, the part that has its cursor in sight, and where the cursor stands in
+/// that.
+pub fn window(text: &str, cursor: usize, room: usize) -> (&str, usize) {
+    let (mut shown, mut column) = (text, cursor);
+    while column >= room.max(1)
+        && let Some(first) = shown.chars().next()
+    {
+        let (hidden, rest) = shown.split_at(first.len_utf8());
+        column = column.saturating_sub(width(hidden));
+        shown = rest;
+    }
+    (shown, column)
+}
+
 /// The first of several texts that fits into so many columns; the last one where none does.
 pub fn first_fitting<'a>(texts: &[&'a str], room: usize) -> &'a str {
     let fitting = texts.iter().find(|text| width(text) <= room);
@@ -180,6 +194,21 @@ mod tests {
         }
         assert_eq!(fitted("washer", 5, &ascii), "wa...");
         assert_eq!(fitted("washer", 2, &ascii), "wa");
+    }
+
+    #[test]
+    fn what_is_typed_is_seen_where_the_cursor_is() {
+        for (text, cursor, expected) in [
+            ("1234", 4, ("1234", 4)),
+            ("12345", 5, ("2345", 4)),
+            ("12345", 0, ("12345", 0)),
+            ("字字字", 6, ("字字", 4)),
+            ("字字字", 2, ("字字字", 2)),
+            ("", 0, ("", 0)),
+        ] {
+            assert_eq!(window(text, cursor, 5), expected, "{text} at {cursor}");
+        }
+        assert_eq!(window("ab", 2, 0), ("", 0));
     }
 
     #[test]

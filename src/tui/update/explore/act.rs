@@ -1,5 +1,7 @@
 //! The way to results: what is asked for over the matrix, the form of ranges, work under way.
 
+use std::sync::Arc;
+
 use crate::sweep::grid::Grid;
 use crate::tui::app::{App, Mode};
 use crate::tui::dialog::Dialog;
@@ -19,10 +21,7 @@ pub(crate) fn act(app: &mut App, asked: Exploring) -> Option<Effect> {
         Exploring::Ranges => open_ranges(app),
         Exploring::Start(grid) => Some(start(app, *grid)),
         Exploring::Write(name, existing) => {
-            let found = app.dialogs.iter().rev().find_map(|dialog| match dialog {
-                Dialog::Results(results) => Some(results.findings().clone()),
-                _ => None,
-            })?;
+            let found = Arc::clone(app.results_below()?.findings());
             let poses = is_poses(&name).then(|| found.survey.grid.poses());
             let number = begin(app, Job::Write(name.clone(), poses));
             Some(Effect::Work(Work::Write(number, found, name, existing)))

@@ -10,7 +10,10 @@ use crate::tui::dialog::Dialog;
 use crate::tui::document::{Document, Seen};
 use crate::tui::explore::export::{ExportDialog, is_poses};
 use crate::tui::explore::results::Results;
+use crate::tui::explore_layout::panes::ResultPanes;
+use crate::tui::explore_layout::statistics::StatisticsTable;
 use crate::tui::exploring::{ExplorePage, Exploring};
+use crate::tui::layout::Panes;
 use crate::tui::message::Message;
 use crate::tui::request::Effect;
 use crate::tui::update::change::{change, inform, refuse};
@@ -49,7 +52,13 @@ fn look(app: &mut App, results: &mut Results, asked: &Exploring) {
         Exploring::Page(page) => results.turn_to(page),
         Exploring::NextPage(by) => results.next_page(by),
         Exploring::Quantity(by) => results.next_quantity(by),
-        Exploring::Columns(by) => results.move_columns(by, COLUMNS.len()),
+        Exploring::Columns(by) => {
+            if let Some(panes) = Panes::shown(app) {
+                let page = ResultPanes::of(&panes).page;
+                let (_, visible) = StatisticsTable::of(page, results).columns;
+                results.move_columns(by, COLUMNS.len() - visible);
+            }
+        }
         Exploring::Sort(by) => results.sort(by),
         Exploring::Find => match results.id(&app.seen().imprint) {
             Some(id) => {
@@ -117,7 +126,7 @@ fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
     None
 }
 
-/// The name of a file; `request` is what the message means in a line of text.
+/// The name of a file to write.
 pub(crate) fn in_export(
     app: &mut App,
     mut dialog: ExportDialog,
@@ -140,10 +149,7 @@ pub(crate) fn in_export(
 
 /// Why the poses cannot be written.
 fn missing(app: &App, name: &str) -> Option<String> {
-    let Some(Dialog::Results(results)) = app.dialogs.last() else {
-        return None;
-    };
-    let survey = results.survey();
+    let survey = app.results_below()?.survey();
     (is_poses(name) && !survey.complete()).then(|| {
         format!(
             ".npy needs all poses: only {} of {} were gone through",

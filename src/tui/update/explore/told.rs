@@ -23,7 +23,12 @@ pub(crate) fn hear(app: &mut App, told: Told) -> Option<Effect> {
             }
         }
         Told::Estimate(grid, time) => {
-            if let Some(Dialog::Ranges(form)) = app.dialogs.last_mut() {
+            let mut dialogs = app.dialogs.iter_mut().rev();
+            let form = dialogs.find_map(|dialog| match dialog {
+                Dialog::Ranges(form) => Some(form),
+                _ => None,
+            });
+            if let Some(form) = form {
                 form.take_estimate(&grid, time);
             }
         }
@@ -34,10 +39,10 @@ pub(crate) fn hear(app: &mut App, told: Told) -> Option<Effect> {
             }
         }
         Told::Exists(number, name) => {
-            if finish(app, number).is_some() {
+            if let Some(place) = finish(app, number) {
                 let text = format!("{name} is there already. Replace it?");
                 let yes = Message::Explore(Exploring::Write(name, Existing::Replaced));
-                app.dialogs.push(Dialog::Question(Question::new(text, yes)));
+                ask(app, place, Dialog::Question(Question::new(text, yes)));
             }
         }
         Told::Failed(number, reason) => {
@@ -45,15 +50,23 @@ pub(crate) fn hear(app: &mut App, told: Told) -> Option<Effect> {
                 Job::Write(name, _) if !running.stopping => Some(name.clone()),
                 _ => None,
             });
-            if finish(app, number).is_some() {
+            if let Some(place) = finish(app, number) {
                 // To be put right.
-                let again = name.map(|name| Dialog::Export(ExportDialog::new(&name)));
-                app.dialogs.extend(again);
+                if let Some(name) = name {
+                    ask(app, place, Dialog::Export(ExportDialog::new(&name)));
+                }
                 refuse(app, reason);
             }
         }
+        Told::Refused(reason) => refuse(app, reason),
     }
     None
+}
+
+/// Asks for something in the place of the work that wants to know it; help that lies over that is closed.
+fn ask(app: &mut App, place: usize, dialog: Dialog) {
+    app.dialogs.truncate(place);
+    app.dialogs.push(dialog);
 }
 
 /// The work of that number, if it is still waited for.

@@ -69,15 +69,15 @@ fn draw_field(
     buffer: &mut Buffer,
     row: Rect,
 ) -> Position {
+    let theme = app.theme();
     let label = format!("{:LABEL$}", field.parameter().row().label);
-    // A text that is longer than the field shows the part around its cursor.
-    let hidden = (field.cursor() + 1).saturating_sub(INPUT);
-    let shown: String = field.text().chars().skip(hidden).take(INPUT).collect();
-    let padded = format!("{shown:INPUT$}");
+    let (shown, cursor) = write::window(field.text(), field.cursor(), INPUT);
+    let shown = write::fitted(shown, INPUT, theme);
+    let padded = format!("{shown}{}", " ".repeat(INPUT - write::width(&shown)));
     let role = if focused { Role::Focus } else { Role::Text };
     let pieces = [(label.as_str(), Role::Text), (padded.as_str(), role)];
-    write::line(buffer, row, app.theme(), pieces);
-    let column = narrow(LABEL + field.cursor() - hidden);
+    write::line(buffer, row, theme, pieces);
+    let column = narrow(LABEL + cursor);
     Position::new(row.x.saturating_add(column), row.y)
 }
 

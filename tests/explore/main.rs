@@ -1,7 +1,7 @@
 //! Exploring with workers beside the program: what is shown while they run, stopping, files, and any keys at any time.
 
-use std::path::Path;
-use std::process::Command;
+mod files;
+
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
@@ -11,10 +11,10 @@ use taxel::library::store::Library;
 use taxel::tui::app::Options;
 use taxel::tui::effect::World;
 use taxel::tui::exploring::Told;
-use taxel::tui::message::Message;
+use taxel::tui::message::{Message, Mouse, MouseKind};
 use taxel::tui::script::Session;
 
-#[path = "common/screen.rs"]
+#[path = "../common/screen.rs"]
 mod screen;
 use screen::{press, session, shows};
 
@@ -127,7 +127,7 @@ fn ctrl_c_while_a_sweep_runs_keeps_unsaved_work() {
     assert!(program.session.app().ended());
     drop(program);
     let next = Beside::within(world(), "");
-    shows(&next.session, &["Unsaved work of 18 taxels"]);
+    shows(&next.session, &["Unsaved work was left: 18 taxels"]);
 }
 
 #[test]
@@ -138,10 +138,29 @@ fn the_time_is_told_while_ranges_are_typed() {
     program.press("0:9.99:0.001<Tab>0:9.99:0.001<Tab>0:359.9:0.1");
     shows(&program.session, &["359,352,291,600 poses"]);
     program.until("359,352,291,600 poses, about ");
+    // Help lies over the form while it is told, and a click asks as a key does.
+    program.press("<BS><BS>9<F1>");
+    let told = program.told.recv_timeout(DEADLINE).expect("it is told");
+    program.session.send(Message::Told(told));
+    program.press("<Esc>");
+    shows(&program.session, &["poses, about "]);
+    let anchor = |program: &mut Beside| {
+        let screen = program.session.screen();
+        let row = screen.lines().position(|line| line.contains("Anchor"));
+        let row = u16::try_from(row.expect("the anchor")).expect("small");
+        let (kind, column) = (MouseKind::Press, 50);
+        program
+            .session
+            .send(Message::Mouse(Mouse { kind, column, row }));
+    };
+    anchor(&mut program);
+    anchor(&mut program);
+    shows(&program.session, &["< centre >"]);
+    program.until("poses, about ");
     // What was measured before is not taken for another grid's.
-    program.press("<BS>5");
+    program.press("<S-Tab><End><BS>5");
     assert!(
-        !program.session.screen().contains("about"),
+        !program.session.screen().contains("poses, about"),
         "{}",
         program.session.screen()
     );
@@ -205,86 +224,30 @@ fn the_imprint_of_a_row_is_the_one_on_the_matrix() {
     }
 }
 
-fn type_in(session: &mut Session, text: &str) {
-    session.send(Message::Paste(text.to_owned()));
-}
-
-fn export(session: &mut Session, path: &Path) {
-    press(session, "x");
-    type_in(session, path.to_str().expect("a name"));
-    press(session, "<Enter>");
-}
-
-/// The same bytes as the command line writes, each of them whole.
+/// Whatever key closes the dialog of work under way, the work does not go on unseen.
 #[test]
-fn files_are_those_of_the_command_line() {
-    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+fn work_is_stopped_by_every_key_that_leaves_it() {
+    let mut program = Beside::new("fr<Enter>");
+    program.press(LONG);
+    for leaving in [Message::Cancel, Message::Quit] {
+        program.session.send(leaving);
+        shows(&program.session, &["stopping"]);
+    }
+    while !matches!(program.told.recv_timeout(DEADLINE), Ok(Told::Swept(..))) {}
+}
+
+/// The last column is the last that can be seen, so that one step back is seen too.
+#[test]
+fn columns_of_statistics_end_with_the_last() {
     let mut session = session("fp<Enter>");
     press(&mut session, SHORT);
-    for name in ["a.csv", "a.jsonl", "a.npz", "a.npy"] {
-        let (own, other) = (
-            folder.path().join(name),
-            folder.path().join(format!("cli-{name}")),
-        );
-        export(&mut session, &own);
-        shows(&session, &["written: "]);
-        let flag = if name == "a.npy" {
-            "--poses"
-        } else {
-            "--atlas"
-        };
-        let status = Command::new(env!("CARGO_BIN_EXE_taxel"))
-            .args("sweep pentagon --x0 5:5.9:0.1 --y0 5:5.9:0.1 --angle 0:50:10 --quiet".split(' '))
-            .arg(flag)
-            .arg(&other)
-            .output()
-            .expect("it runs");
-        assert!(status.status.success(), "{status:?}");
-        let read = |path: &Path| std::fs::read(path).expect("it is there");
-        if name == "a.npz" {
-            // The header holds where the shape was.
-            assert_eq!(read(&own).len(), read(&other).len());
-        } else {
-            assert!(read(&own) == read(&other), "{name}");
-        }
-    }
-}
-
-#[test]
-fn a_file_that_is_there_is_asked_about() {
-    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
-    let path = folder.path().join("mine.csv");
-    std::fs::write(&path, "mine").expect("written");
-    let mut program = Beside::new("fp<Enter>");
-    program.press(SHORT);
-    program.until("pentagon: 600 poses");
-    export(&mut program.session, &path);
-    program.until("is there already. Replace it?");
-    program.press("n");
-    assert_eq!(std::fs::read(&path).ok().as_deref(), Some(&b"mine"[..]));
-    export(&mut program.session, &path);
-    program.until("is there already. Replace it?");
-    program.press("y");
-    program.until("written: ");
-    let text = std::fs::read_to_string(&path).expect("it is there");
-    assert!(text.starts_with("id,count,share"), "{text:.50}");
-    let names = std::fs::read_dir(folder.path()).expect("a folder").count();
-    assert_eq!(names, 1, "nothing else is left there");
-}
-
-/// What is under way when the program ends is given up, and no part of a file stays.
-#[test]
-fn no_part_of_a_file_is_left_at_the_end() {
-    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
-    let mut program = Beside::new("fh<Enter>");
-    program.press(":explore --x0 5:5.999:0.001 --y0 5:5.999:0.001 --angle 0:59:1<Enter>");
-    program.until("60,000,000 poses, ");
-    program.until("distinct imprints");
-    export(&mut program.session, &folder.path().join("poses.npy"));
-    shows(&program.session, &["stop leaves nothing behind"]);
-    drop(program);
-    let names = std::fs::read_dir(folder.path()).expect("a folder").count();
-    assert_eq!(names, 0);
+    session.resize(60, 24);
+    press(&mut session, "2<7x:Right>");
+    let last = session.screen();
+    press(&mut session, "<Left>");
+    assert_ne!(session.screen(), last);
+    press(&mut session, "<Right>");
+    assert_eq!(session.screen(), last);
 }
 
 fn any_keys() -> impl Strategy<Value = Vec<&'static str>> {
@@ -360,7 +323,6 @@ proptest! {
         sizes in prop::collection::vec((1_u16..=120, 1_u16..=50), 60),
         clicks in prop::collection::vec((0_u16..120, 0_u16..50), 60),
     ) {
-        use taxel::tui::message::{Mouse, MouseKind};
         let mut program = Beside::new("fr<Enter>");
         program.press(SHORT);
         program.until("rectangle: 600 poses");

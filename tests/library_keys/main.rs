@@ -1,5 +1,7 @@
 //! The library on the screen: what Load, Save, Delete, Picture, the sensor and the mouse do.
 
+mod unsaved;
+
 use std::path::Path;
 
 use proptest::prelude::*;
@@ -9,7 +11,7 @@ use taxel::tui::effect::World;
 use taxel::tui::message::{Message, Mouse, MouseKind};
 use taxel::tui::script::Session;
 
-#[path = "common/screen.rs"]
+#[path = "../common/screen.rs"]
 mod screen;
 use screen::{press, session, shows, started};
 
@@ -229,39 +231,6 @@ fn the_mouse_draws_and_points() {
     assert!(
         !session.screen().contains("On the matrix"),
         "the wheel scrolls help"
-    );
-}
-
-#[test]
-fn unsaved_work_is_offered_back_once() {
-    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
-    let lost = session_on(folder.path(), "f<Enter><Space>");
-    // Saved work is not offered, and a running program's work is its own.
-    let running = session_on(folder.path(), "<Space>");
-    assert!(!running.screen().contains("Unsaved work"));
-    drop((lost, running));
-    let mut later = session_on(folder.path(), "");
-    shows(
-        &later,
-        &["Unsaved work of 1 taxels. Bring it back? y yes, n into the trash"],
-    );
-    press(&mut later, "n");
-    shows(&later, &["Unsaved work of 51 taxels"]);
-    press(&mut later, "y");
-    shows(
-        &later,
-        &["ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0° + 1 by hand"],
-    );
-    // What was not wanted is in the trash.
-    press(&mut later, ":restore unsaved 1<Enter>lunsaved 1<Enter>");
-    shows(&later, &["unsaved 1 loaded", "NA 1 in all"]);
-    press(&mut later, "uu<Space>smine<Enter>q");
-    assert!(later.app().ended());
-    drop(later);
-    assert!(
-        !session_on(folder.path(), "")
-            .screen()
-            .contains("Unsaved work")
     );
 }
 
