@@ -276,7 +276,10 @@ fn commands_do_what_keys_do() {
     );
     shows(&session, &["column 7,"]);
     press(&mut session, ":copy descriptors<Enter>");
-    shows(&session, &["characters sent to your terminal's clipboard"]);
+    shows(
+        &session,
+        &["descriptors sent to your terminal's clipboard ("],
+    );
     for (line, message) in [
         ("fly", "! \"fly\" is unknown; Tab shows the commands"),
         (
@@ -287,7 +290,7 @@ fn commands_do_what_keys_do() {
         ("figure hexagon --side 99", "! Side: 99 is out of range"),
         (
             "figure hexagon --length 2",
-            "! length: not a value of the hexagon",
+            "! --length: the hexagon has none",
         ),
         (
             "figure hexagon side 2",

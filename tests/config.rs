@@ -167,7 +167,7 @@ fn menu_hints_help_and_notices_name_the_keys_of_the_file() {
         &[
             "Ctrl-N New   l Load",
             "q Quit   H Help",
-            "empty: x draws, f touches a figure",
+            "empty: x draws, f places a figure",
             "x toggle  ? undo",
         ],
     );
@@ -176,11 +176,11 @@ fn menu_hints_help_and_notices_name_the_keys_of_the_file() {
         &[
             "Ctrl-N                  New: empty the matrix",
             "h arrows                move the cursor",
-            "? u                     take back",
+            "? u                     undo the last",
         ],
     );
-    shows("f<Enter>x>", &["by hand dropped; ? brings back"]);
-    shows(":mouse<Enter>", &[":mouse takes it again"]);
+    shows("f<Enter>x>", &["by hand dropped; ? brings it back"]);
+    shows(":mouse<Enter>", &[":mouse lets it set taxels"]);
     shows("f", &["Ctrl-N field"]);
     shows(
         ":nonsense<Enter>",

@@ -106,7 +106,7 @@ fn questions_and_notices_are_read_to_their_end_on_narrow_screens() {
         ("<Space>q", "The imprint is not saved. Quit anyway? (y/n)"),
         (
             "g",
-            "! nothing to move: this was drawn by hand; f touches a figure, p a stored shape",
+            "! nothing to move: this was drawn by hand; f places a figure, p a stored shape",
         ),
         (
             "<Space>s/",
@@ -214,4 +214,23 @@ fn matrix_and_descriptors_change_places_only_where_one_of_them_is_seen() {
         }));
     }
     assert_eq!(wide.app().shown(), before);
+}
+
+/// Help says all of what keys do, on narrow screens in more lines, and nothing that does not hold where it is asked for.
+#[test]
+fn help_is_whole_and_holds_where_it_is() {
+    for size in [(80, 24), (60, 20), (46, 20), (40, 24), (24, 20)] {
+        let help = joined(&session(size, false, "?").screen());
+        let text = "New: empty the matrix, to draw by hand";
+        assert!(help.contains(text), "{size:?}\n{help}");
+        let end = joined(&session(size, false, "?<99x:PageDown>").screen());
+        assert!(end.contains("the keys that mean something here"), "{end}");
+    }
+    let held = session((80, 60), false, "f<Enter>g?").screen();
+    assert!(held.contains("move the shape by a step"), "{held}");
+    assert!(!held.contains("move the cursor"), "{held}");
+    // What an outer place has under other keys too stays with those.
+    assert!(held.contains("  Ctrl-C   "), "{held}");
+    let ranges = session((80, 24), false, "f<Enter>e?").screen();
+    assert!(ranges.contains("Ranges of a sweep"), "{ranges}");
 }

@@ -88,7 +88,7 @@ fn what_does_not_hold_is_told_with_its_line() {
         ("ExpectNot /New/", "line 1: /New/ is on the screen"),
         (
             "ExpectAt 0,0 \"x\"",
-            "line 1: at 0,0 stands \"n\", expected \"x\"",
+            "line 1: at 0,0 there is \"n\", expected \"x\"",
         ),
         (
             "ExpectStyle 0,0 reverse",
@@ -97,10 +97,10 @@ fn what_does_not_hold_is_told_with_its_line() {
         ("Click \"zzz\"", "line 1: no \"zzz\" to click on"),
         ("Quit", "line 1: the program has not ended"),
         ("State /nowhere", "line 1: the state has no \"/nowhere\""),
-        ("Keys q\nKeys f", "line 2: the program has ended before"),
+        ("Keys q\nKeys f", "line 2: the program had already ended"),
         (
             "Signal TERM\nResize 10x10",
-            "line 2: the program has ended before",
+            "line 2: the program had already ended",
         ),
         (
             "\n\nFly",
@@ -109,6 +109,14 @@ fn what_does_not_hold_is_told_with_its_line() {
         (
             "Keys <Foo>",
             "line 1: key \"<Foo>\" at character 1 is unknown",
+        ),
+        (
+            "Keys <20000x:Down>",
+            "line 1: key \"<20000x:Down>\" at character 1: a key is repeated at most 10,000 times",
+        ),
+        (
+            "ExpectAt 3,4",
+            "line 1: expected a place like 12,5 and then more",
         ),
         ("Size 80", "line 1: expected a size like 80x24"),
         (
@@ -141,7 +149,7 @@ fn what_does_not_hold_is_told_with_its_line() {
         ),
         (
             "Set seed 7",
-            "line 1: nothing to set is called \"seed\", expected one of ascii, color",
+            "line 1: \"seed\" cannot be set, expected one of ascii, color",
         ),
         (
             "Size 80x24\nSet columns 65",
@@ -215,7 +223,7 @@ fn a_script_sets_the_scene() {
     let told = output(&both, false).expect_err("it does not hold");
     assert_eq!(
         told.to_string(),
-        "line 1: a library that is named has its own shapes"
+        "line 1: Set library cannot stand beside Set shape or Set leftover"
     );
 }
 

@@ -95,6 +95,17 @@ impl NudgeStep {
     }
 }
 
+/// Whether the program runs, and how it ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Life {
+    /// It runs.
+    Running,
+    /// Its end was asked for: what is not saved was given up.
+    Quit,
+    /// It ends without having asked: what is not saved stays in the journal.
+    Killed,
+}
+
 /// Something said to the user until the next key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Notice {
@@ -133,9 +144,7 @@ pub struct App {
     pub(super) screen: (u16, u16),
     pub(super) theme: Theme,
     pub(super) keymap: Keymap,
-    pub(super) ended: bool,
-    /// It ends without having asked: what is not saved stays in the journal.
-    pub(super) killed: bool,
+    pub(super) life: Life,
 }
 
 impl App {
@@ -161,8 +170,7 @@ impl App {
             screen: (80, 24),
             theme: options.theme,
             keymap: Keymap::default(),
-            ended: false,
-            killed: false,
+            life: Life::Running,
         }
     }
 
@@ -180,6 +188,17 @@ impl App {
     /// The key of something that can be done on the matrix, as notices name it.
     pub(super) fn key_of(&self, action: &Message) -> String {
         self.keymap.label(Context::Matrix, action)
+    }
+
+    /// Why nothing can be explored: what is missing, and how it is made.
+    pub(super) fn nothing_to_explore(&self) -> String {
+        let [figure, picture, draw] = [Message::Figure, Message::Picture, Message::Toggle];
+        format!(
+            "nothing to explore: {} places a figure, {} a stored shape, {} draws",
+            self.key_of(&figure),
+            self.key_of(&picture),
+            self.key_of(&draw)
+        )
     }
 
     /// Where keys are looked up.
@@ -229,7 +248,7 @@ impl App {
 
     /// What is on the matrix and would be lost, to be kept in the journal. At an end that was asked for, it was given up.
     pub fn unsaved_work(&self) -> Option<Shape> {
-        if self.ended && !self.killed {
+        if self.life == Life::Quit {
             return None;
         }
         let stored = self.stored_name().unwrap_or(UNNAMED);
@@ -261,7 +280,7 @@ impl App {
 
     /// Whether the program has come to its end.
     pub fn ended(&self) -> bool {
-        self.ended
+        self.life != Life::Running
     }
 
     /// How it looks.

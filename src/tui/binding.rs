@@ -79,7 +79,7 @@ impl Context {
             Self::Help => "In this list",
             Self::Question => "At a question",
             Self::Ranges => "Ranges of a sweep",
-            Self::Running => "While a sweep runs",
+            Self::Running => "While work is under way",
             Self::Explore => "Exploring, on every page",
             Self::Imprints => "In the list of imprints",
             Self::Statistics => "In the statistics",
@@ -157,6 +157,15 @@ impl Binding {
         self.keys.iter().any(|(_, meaning)| meaning == message)
     }
 
+    /// The row without some keys.
+    pub(super) fn without(&self, others: &[Key]) -> Self {
+        let keys = self.keys.iter().filter(|(key, _)| !others.contains(key));
+        Self {
+            keys: keys.cloned().collect(),
+            ..self.clone()
+        }
+    }
+
     /// Its keys as people write them: "Home End"; the four arrows as one word.
     pub fn labels(&self) -> String {
         let mut labels = Vec::new();
@@ -194,7 +203,7 @@ impl Binding {
             .map(|(key, _)| key.label());
         let first = first.label();
         match opposite {
-            Some(second) if first.len() + second.len() <= 7 => format!("{first} {second}"),
+            Some(second) if first.len() + second.len() <= 9 => format!("{first} {second}"),
             _ => first,
         }
     }

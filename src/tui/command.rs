@@ -27,8 +27,9 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
     let (name, rest) = line
         .split_once(' ')
         .map_or((line, ""), |(name, rest)| (name, rest.trim()));
+    let complete = || app.keymap().label(Context::Command, &Message::Field(1));
     let command = find(name).ok_or_else(|| {
-        let complete = app.keymap().label(Context::Command, &Message::Field(1));
+        let complete = complete();
         format!(
             "{:?} is unknown; {complete} shows the commands",
             shortened(name)
@@ -42,7 +43,10 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
     match (command.takes, &words[..]) {
         (Takes::Deleted, []) => match &app.removed {
             Some(name) => Ok(Message::Restore(name.clone())),
-            None => Err("restore needs the name of a deleted shape; Tab shows them".to_owned()),
+            None => Err(format!(
+                "restore needs the name of a deleted shape; {} shows them",
+                complete()
+            )),
         },
         (_, []) | (Takes::Nothing, _) => Err(unexpected()),
         (Takes::Shape(purpose), _) => {
@@ -151,8 +155,8 @@ fn figure(kind: &str, pairs: &[&str], app: &App) -> Result<Message, String> {
         .find(|(parameter, _)| !own.contains(parameter))
     {
         return Err(format!(
-            "{}: not a value of the {}",
-            foreign.row().key,
+            "--{}: the {} has none",
+            foreign.flag(),
             kind.name()
         ));
     }

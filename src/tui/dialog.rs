@@ -2,6 +2,7 @@
 //! are a stack; the top one gets the keys.
 
 use super::binding::Context;
+use super::columns::broken;
 use super::command_dialog::CommandDialog;
 use super::explore::export::ExportDialog;
 use super::explore::ranges::RangesForm;
@@ -74,19 +75,45 @@ impl Help {
         Self { context, top: 0 }
     }
 
-    /// Its lines, and which of them stands first where there is room for so many.
-    pub fn lines<'a>(&self, keymap: &'a Keymap, room: usize) -> (Vec<HelpLine<'a>>, usize) {
-        let lines = help(self.context, keymap);
-        let last_top = lines.len().saturating_sub(room);
-        (lines, self.top.min(last_top))
+    /// Its lines where there is room for so many columns and lines, and which of them stands first.
+    pub fn lines(&self, keymap: &Keymap, room: (u16, u16)) -> (Vec<HelpLine>, usize) {
+        let (columns, rows) = (usize::from(room.0), usize::from(room.1));
+        let lines: Vec<HelpLine> = help(self.context, keymap)
+            .into_iter()
+            .flat_map(|line| broken_line(line, columns))
+            .collect();
+        let last_top = lines.len().saturating_sub(rows);
+        let top = self.top.min(last_top);
+        (lines, top)
     }
 
-    /// Goes on by lines, where there is room for so many.
-    pub fn scroll(&mut self, lines: i16, keymap: &Keymap, room: usize) {
+    /// Goes on by lines, where there is room for so many columns and lines.
+    pub fn scroll(&mut self, lines: i16, keymap: &Keymap, room: (u16, u16)) {
         let (_, top) = self.lines(keymap, room);
         self.top = top.saturating_add_signed(isize::from(lines));
         (_, self.top) = self.lines(keymap, room);
     }
+}
+
+/// Where what keys do begins in a line of so many columns: behind the keys, or under them where little room is left
+/// there.
+pub fn help_indent(columns: usize) -> usize {
+    const BEHIND: usize = 26;
+    if columns >= BEHIND + 20 { BEHIND } else { 4 }
+}
+
+/// A line of help in as many as it needs.
+fn broken_line(line: HelpLine, columns: usize) -> Vec<HelpLine> {
+    let HelpLine::Keys(keys, text) = line else {
+        return vec![line];
+    };
+    let indent = help_indent(columns);
+    let mut pieces = broken(text, columns.saturating_sub(indent)).into_iter();
+    let beside = (keys.len() + 2 < indent).then(|| pieces.next()).flatten();
+    let first = HelpLine::Keys(keys, beside.unwrap_or_default());
+    std::iter::once(first)
+        .chain(pieces.map(HelpLine::More))
+        .collect()
 }
 
 impl Dialog {

@@ -15,7 +15,7 @@ use workers::Workers;
 
 use super::app::App;
 use super::message::{Answer, Left, Message};
-use super::request::{Effect, Request};
+use super::request::{Effect, Request, TerminalEffect};
 use super::update::update;
 use crate::formats::name::Name;
 use crate::formats::shape::Shape;
@@ -130,24 +130,21 @@ impl World {
     }
 
     /// Does what a message says, with all that follows from it. What is left is for the terminal.
-    pub fn handle(&mut self, app: &mut App, message: Message) -> Option<Effect> {
+    pub fn handle(&mut self, app: &mut App, message: Message) -> Option<TerminalEffect> {
         let mut next = message;
-        loop {
+        let left = loop {
             match update(app, next) {
                 Some(Effect::Library(request)) => next = self.perform(request),
-                Some(Effect::Work(work)) => {
-                    let Some(told) = self.workers.perform(work) else {
-                        self.keeper.note(app);
-                        return None;
-                    };
-                    next = Message::Told(told);
-                }
-                other => {
-                    self.keeper.note(app);
-                    return other;
-                }
+                Some(Effect::Work(work)) => match self.workers.perform(work) {
+                    Some(told) => next = Message::Told(told),
+                    None => break None,
+                },
+                Some(Effect::Terminal(effect)) => break Some(effect),
+                None => break None,
             }
-        }
+        };
+        self.keeper.note(app);
+        left
     }
 
     /// Puts unsaved work in safety at once: the program is about to end.

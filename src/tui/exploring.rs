@@ -3,7 +3,9 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use crate::figure::Kind;
 use crate::formats::unfinished::Existing;
+use crate::source::Source;
 use crate::sweep::grid::Grid;
 use crate::sweep::order::SortKey;
 use crate::sweep::survey::Survey;
@@ -22,6 +24,11 @@ impl PartialEq for Findings {
     fn eq(&self, other: &Self) -> bool {
         std::ptr::eq(self, other)
     }
+}
+
+/// What is swept, in a word: the kind of a figure, or a picture.
+pub fn name_of(source: &Source) -> &'static str {
+    source.kind().map_or("picture", Kind::name)
 }
 
 /// The pages that they are shown on.

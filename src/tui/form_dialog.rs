@@ -5,6 +5,7 @@ use super::form::{Field, Form};
 use super::key::Arrow;
 use super::message::Message;
 use crate::figure::{Figure, Kind};
+use crate::formats::value::counted;
 use crate::imprint::Imprint;
 use crate::parameter::{Parameter, ParameterError};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
@@ -119,8 +120,8 @@ impl FormDialog {
         let (columns, rows) = (self.shown.sensor.columns(), self.shown.sensor.rows());
         let all = Seen::of(&self.before).imprint;
         let lost = all.count() - all.resized(columns, rows).count();
-        let taxels = if lost == 1 { "taxel" } else { "taxels" };
-        (lost > 0).then(|| format!("{lost} active {taxels} will be cut"))
+        let taxels = counted(lost.into(), "active taxel");
+        (lost > 0).then(|| format!("{taxels} will be cut"))
     }
 
     fn parameters(&self) -> Vec<Parameter> {

@@ -126,14 +126,28 @@ impl Key {
     }
 }
 
-/// Why a text is no sequence of keys.
+/// Why a text is no sequence of keys: what stands where, in characters from 1.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("key {found:?} at character {at} is unknown; a '<' by itself is written <lt>")]
-pub struct KeyError {
-    /// Where, in characters, from 1.
-    pub at: usize,
-    /// What stands there.
-    pub found: String,
+#[non_exhaustive]
+pub enum KeyError {
+    /// No key has that name.
+    #[error("key {found:?} at character {at} is unknown; a '<' by itself is written <lt>")]
+    Unknown {
+        /// Where.
+        at: usize,
+        /// What.
+        found: String,
+    },
+    /// It would go on for hours.
+    #[error(
+        "key {found:?} at character {at}: a key is repeated at most 10,000 times, and all are at most 200,000 keys"
+    )]
+    TooMany {
+        /// Where.
+        at: usize,
+        /// What.
+        found: String,
+    },
 }
 
 /// The most keys that one repetition gives: a slip of the pen must not take hours.
@@ -157,25 +171,20 @@ pub fn parse(text: &str) -> Result<Vec<Key>, KeyError> {
     while let Some(first) = rest.chars().next() {
         let mut used = first.len_utf8();
         if first == '<' {
-            let error = |length: usize| KeyError {
-                at,
-                found: rest.chars().take(length.min(24)).collect(),
-            };
-            let end = rest.find('>').ok_or_else(|| error(24))?;
-            used = end + 1;
-            let name = &rest[1..end];
-            let (times, name) = match name.split_once("x:") {
-                Some((times, name)) => (
-                    times.parse().ok().filter(|&times| times <= MOST_REPEATED),
-                    name,
-                ),
-                None => (Some(1), name),
-            };
-            let (Some(times), Some(key)) = (times, named(name)) else {
-                return Err(error(rest[..used].chars().count()));
-            };
-            if keys.len() + times > MOST_KEYS {
-                return Err(error(rest[..used].chars().count()));
+            let end = rest.find('>');
+            used = end.map_or(rest.len(), |end| end + 1);
+            let found = || rest[..used].chars().take(24).collect();
+            let unknown = || KeyError::Unknown { at, found: found() };
+            let name = &rest[1..end.ok_or_else(unknown)?];
+            let (times, name) = name.split_once("x:").unwrap_or(("1", name));
+            let key = named(name).ok_or_else(unknown)?;
+            if times.is_empty() || !times.bytes().all(|digit| digit.is_ascii_digit()) {
+                return Err(unknown());
+            }
+            // A number that is too large to be read is too many, too.
+            let times = times.parse().unwrap_or(usize::MAX);
+            if times > MOST_REPEATED || keys.len() + times > MOST_KEYS {
+                return Err(KeyError::TooMany { at, found: found() });
             }
             keys.extend(std::iter::repeat_n(key, times));
         } else {

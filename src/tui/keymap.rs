@@ -37,18 +37,18 @@ pub const KEYMAP: &[Binding] = table! {
     Matrix {
         [Char('n') => New] "" "New: empty the matrix, to draw by hand";
         [Char('l') => Load] "" "Load: bring a stored shape onto the matrix";
-        [Char('f') => Figure] "" "Figure: touch one of the seven figures";
+        [Char('f') => Figure] "" "Figure: place one of the seven figures";
         [Char('p') => Picture] "" "Picture: move, turn and zoom a stored shape";
         [Char('s') => Save] "" "Save: store what is on the matrix";
         [Char('d') => Delete] "" "Delete: remove a stored shape";
-        [Char('q') => Quit] "" "Quit, after a question where work would be lost";
+        [Char('q') => Quit] "" "Quit: asks first where work would be lost";
         [LEFT => Cursor(Left), RIGHT => Cursor(Right), UP => Cursor(Up), DOWN => Cursor(Down)]
             "" "move the cursor";
         [Home => ToColumn(First), END => ToColumn(Last)] "" "cursor to the first, the last column";
         [PageUp => ToRow(First), PageDown => ToRow(Last)] "" "cursor to the first, the last row";
         [Char(' ') => Toggle] "toggle" "turn the taxel under the cursor on or off";
-        [Char('u') => Undo] "undo" "take back the last change, and those before";
-        [Char('U') => Redo, Ctrl('r') => Redo] "redo" "make it again";
+        [Char('u') => Undo] "undo" "undo the last change, then those before";
+        [Char('U') => Redo, Ctrl('r') => Redo] "redo" "redo what was undone";
         [Tab => Region(1), BackTab => Region(-1)]
             "region" "describe the next, the previous piece or hole";
         [Char('c') => Display] "coverage" "coverage in shades, in percent, the imprint again";
@@ -61,13 +61,13 @@ pub const KEYMAP: &[Binding] = table! {
             "turn" "turn the shape by 1 degree, left, right";
         [Char('(') => Turn(-10), Char(')') => Turn(10)] "" "turn it by 10 degrees";
         [Char('z') => Zoom(1), Char('Z') => Zoom(-1)]
-            "" "zoom a picture in, out, by the step of holding";
+            "" "zoom a picture in, out, by the current step";
         [Char('S') => Sensor] "" "Sensor: columns, rows, threshold, pitch";
-        [Char('i') => Page] "descriptors" "on a narrow screen: descriptors, matrix";
+        [Char('i') => Page] "descriptors" "on a narrow screen: descriptors or matrix";
         [Char('y') => Copy(Copied::Descriptors), Char('Y') => Copy(Copied::Imprint)]
-            "" "copy the descriptors, the imprint to your terminal";
-        [Char('m') => MouseOnOff] "" "the mouse: to taxel, or to select text";
-        [Char(':') => Command] "" "a command by its name";
+            "" "copy descriptors, imprint to your terminal's clipboard";
+        [Char('m') => MouseOnOff] "" "the mouse sets taxels, or selects text";
+        [Char(':') => Command] "" "type a command";
         [Char('?') => Help] "help" "Help: this list";
     }
 
@@ -82,7 +82,7 @@ pub const KEYMAP: &[Binding] = table! {
     Form {
         [Tab => Field(1), BackTab => Field(-1)] "field" "next, previous field";
         [LEFT => Choose(Left), RIGHT => Choose(Right), UP => Choose(Up), DOWN => Choose(Down)]
-            "" "choose the kind; move in a field, to other fields";
+            "" "choose the kind (or by its letter); move, change field";
         [Char('+') => Step(1), Char('=') => Step(1), Char('-') => Step(-1)]
             "step" "change the number by its last decimal";
         [Backspace => Erase(Erase::Before), Delete => Erase(Erase::Under)] "" "delete a character";
@@ -140,13 +140,14 @@ pub const KEYMAP: &[Binding] = table! {
         [Backspace => Erase(Erase::Before), Delete => Erase(Erase::Under)] "" "delete a character";
         [Ctrl('u') => Erase(Erase::All)] "clear" "clear the field";
         [Home => ToEdge(First), END => ToEdge(Last)] "" "to the start, the end of the field";
-        [Enter => Accept] "start" "go through all poses; refused while a range is wrong";
+        [Enter => Accept] "start" "sweep all poses; refused while a range is wrong";
         [Esc => Cancel, Ctrl('g') => Cancel] "cancel" "leave everything as it was";
+        [Char('?') => Help] "help" "these keys";
     }
 
     Running {
         [Esc => Explore(Exploring::Stop), Char('s') => Explore(Exploring::Stop), Ctrl('g') => Explore(Exploring::Stop)]
-            "stop" "stop, and keep what is complete";
+            "stop" "stop; a sweep keeps what is complete";
         [Ctrl('c') => Killed] "quit" "quit at once; unsaved work is offered next time";
     }
 
@@ -164,7 +165,7 @@ pub const KEYMAP: &[Binding] = table! {
         [Char('e') => Explore(Exploring::Ranges)] "ranges" "explore other ranges";
         [Char('?') => Help] "help" "all keys";
         [Esc => Cancel, Ctrl('g') => Cancel, Char('q') => Cancel]
-            "close" "back to the matrix; e comes back here";
+            "close" "back to the matrix; what was found is kept";
     }
 
     Imprints {
@@ -176,7 +177,7 @@ pub const KEYMAP: &[Binding] = table! {
             Char('f') => Explore(Exploring::Sort(SortKey::FirstPose)),
             Char('v') => Explore(Exploring::Sort(SortKey::Value)),
             Char('c') => Explore(Exploring::Sort(SortKey::Pieces)), Char('h') => Explore(Exploring::Sort(SortKey::Holes))]
-            "sort" "by poses, first pose, value, pieces, holes; or back";
+            "sort" "poses, 1st pose, value, pieces, holes; again: reversed";
         [Char('j') => Explore(Exploring::Find)] "find" "jump to the imprint that is on the matrix";
         [Char('g') => Explore(Exploring::Follow)] "map" "go to its first pose on the map";
     }
@@ -219,6 +220,7 @@ pub const KEYMAP: &[Binding] = table! {
         [Backspace => Erase(Erase::Before), Delete => Erase(Erase::Under)] "" "delete a character";
         [Ctrl('u') => Erase(Erase::All)] "clear" "clear the name";
         [Esc => Cancel, Ctrl('g') => Cancel] "cancel" "write nothing";
+        [F1 => Help] "help" "these keys";
     }
 
     Help {
@@ -230,7 +232,7 @@ pub const KEYMAP: &[Binding] = table! {
 
     Everywhere {
         [Ctrl('l') => Redraw] "" "draw the screen anew";
-        [Ctrl('z') => Suspend] "" "back to the shell; its fg comes back here";
+        [Ctrl('z') => Suspend] "" "back to the shell; fg returns here";
         [Ctrl('c') => Quit] "" "close what is open; on the matrix: quit";
         [F1 => Help] "" "the keys that mean something here";
     }

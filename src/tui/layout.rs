@@ -4,6 +4,7 @@ use ratatui::layout::Rect;
 
 use super::app::App;
 use super::binding::{Binding, Context};
+use super::columns::narrow;
 use super::form_dialog::FormDialog;
 use super::keymap::{KEYMAP, MENU};
 use super::message::Message;
@@ -221,9 +222,9 @@ impl Axis {
 /// Where the taxels are.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid {
-    /// The first visible taxel's place.
+    /// The column of the screen where the first visible taxel begins.
     pub x: u16,
-    /// The first visible taxel's place.
+    /// The row of the screen where it begins.
     pub y: u16,
     /// Columns of the screen that a taxel has: 2 or a multiple, or 1 where the matrix fits only so.
     pub cell: u16,
@@ -313,7 +314,7 @@ impl FormRows {
     }
 }
 
-/// Lines of a list: how many there are above its first row, and which row comes first.
+/// How many lines of a list there are above its first row.
 pub const LIST_HEAD: u16 = 2;
 
 /// The list's pane and, where there is room, that of the preview.
@@ -334,14 +335,25 @@ pub fn list(body: Rect) -> (Rect, Option<Rect>) {
     (left, Some(right))
 }
 
-/// The first row of a list that is visible, the selected one as near to the middle as the ends allow.
+/// The first row of a list that is visible.
 pub fn list_first(area: Rect, rows: usize, selected: usize) -> usize {
-    let visible = usize::from(area.height.saturating_sub(LIST_HEAD));
+    first_of(area.height.saturating_sub(LIST_HEAD), rows, selected)
+}
+
+/// The first of so many rows, of which some are visible, the selected one as near to the middle as the ends allow.
+pub(super) fn first_of(visible: u16, rows: usize, selected: usize) -> usize {
+    let visible = usize::from(visible);
     selected
         .saturating_sub(visible / 2)
         .min(rows.saturating_sub(visible))
 }
 
-fn narrow(length: usize) -> u16 {
-    u16::try_from(length).unwrap_or(u16::MAX)
+/// The part of an area that begins so many lines below its top.
+pub fn below(area: Rect, lines: u16) -> Rect {
+    let lines = lines.min(area.height);
+    Rect {
+        y: area.y + lines,
+        height: area.height - lines,
+        ..area
+    }
 }

@@ -92,10 +92,23 @@ impl ListDialog {
 
     fn sift(&mut self) {
         let wanted = folded(self.filter());
-        let fits = |entry: &Entry| wanted.is_empty() || folded(&entry.name).contains(&wanted);
-        self.matching = (0..self.entries.len())
-            .filter(|&index| fits(&self.entries[index]))
+        // The name itself, names that begin with what was typed, names that have it somewhere.
+        let rank = |entry: &Entry| {
+            let name = folded(&entry.name);
+            let at = name.find(&wanted)?;
+            Some(match at {
+                _ if wanted.is_empty() => 0,
+                0 if name == wanted => 1,
+                0 => 2,
+                _ => 3,
+            })
+        };
+        let ranked = self.entries.iter().map(rank).zip(0..);
+        let mut ranked: Vec<(u8, usize)> = ranked
+            .filter_map(|(rank, index)| Some((rank?, index)))
             .collect();
+        ranked.sort_unstable();
+        self.matching = ranked.into_iter().map(|(_, index)| index).collect();
         self.selected = 0;
     }
 

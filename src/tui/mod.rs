@@ -2,9 +2,10 @@
 //!
 //! The way of one keystroke:
 //! ```text
-//! terminal   crossterm event -> Key
+//! terminal   bytes -> Key
 //! remap      lookup(context, key) -> Message       one table: context, keys, message, help
 //! update     update(&mut App, Message) -> Effect   the only writer
+//! effect     perform(Effect) -> Message            the only one that touches the world; then update again
 //! view       view(&App, &mut Frame)                reads only; one pane per file
 //! ```
 //! A [`script::Session`] replaces the first line by text and the terminal by a buffer; the middle is the same code.
@@ -20,6 +21,8 @@ pub mod exploring;
 pub mod message;
 
 pub mod text_field;
+
+pub mod columns;
 
 pub mod binding;
 

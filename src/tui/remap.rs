@@ -120,27 +120,42 @@ impl Keymap {
 }
 
 /// A line of help.
-#[derive(Clone, Copy, Debug)]
-pub enum HelpLine<'a> {
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum HelpLine {
     /// The heading of a place.
     Place(Context),
-    /// A row of the table.
-    Keys(&'a Binding),
+    /// The keys of a row of the table, and what they do.
+    Keys(String, &'static str),
+    /// More of what they do, where one line has no room for all of it.
+    More(&'static str),
 }
 
 /// The lines of help in a place: on the matrix, where one begins, all of the table; elsewhere what means something
-/// there.
-pub fn help(context: Context, keymap: &Keymap) -> Vec<HelpLine<'_>> {
+/// there, so without the keys of outer places that mean something else there.
+pub fn help(context: Context, keymap: &Keymap) -> Vec<HelpLine> {
     let places = match context {
         Context::Matrix => Context::ALL.to_vec(),
         inner => std::iter::successors(Some(inner), |place| place.outer()).collect(),
     };
-    places
-        .into_iter()
-        .flat_map(|place| {
-            std::iter::once(HelpLine::Place(place)).chain(keymap.of(place).map(HelpLine::Keys))
-        })
-        .collect()
+    let mut lines = Vec::new();
+    let mut taken: Vec<Key> = Vec::new();
+    for place in places {
+        let rows: Vec<HelpLine> = keymap
+            .of(place)
+            .map(|row| row.without(&taken))
+            .filter(|row| taken.is_empty() || !row.keys.is_empty())
+            .map(|row| HelpLine::Keys(row.labels(), row.help))
+            .collect();
+        if !rows.is_empty() {
+            lines.push(HelpLine::Place(place));
+            lines.extend(rows);
+        }
+        if context != Context::Matrix {
+            let own = keymap.of(place).flat_map(|row| row.keys.iter());
+            taken.extend(own.map(|(key, _)| *key));
+        }
+    }
+    lines
 }
 
 /// Whether a change says something sensible for itself, after those before it.

@@ -12,6 +12,17 @@ use crate::sweep::grid::Grid;
 /// What the world outside shall do.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Effect {
+    /// Ask the library; what it answers is the next message.
+    Library(Request),
+    /// Have a worker do something.
+    Work(Work),
+    /// Have the terminal do something.
+    Terminal(TerminalEffect),
+}
+
+/// What the terminal shall do.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TerminalEffect {
     /// Forget what is on the screen and draw all of it.
     Redraw,
     /// Give the terminal back to the shell until it calls again.
@@ -20,10 +31,6 @@ pub enum Effect {
     Mouse(bool),
     /// Put a text into the clipboard of the user's terminal.
     Copy(String),
-    /// Ask the library; what it answers is the next message.
-    Library(Request),
-    /// Have a worker do something.
-    Work(Work),
 }
 
 /// What a worker does. Each piece of work has a number.

@@ -90,14 +90,14 @@ fn work_is_shown_and_stopped_and_what_is_complete_is_kept() {
     program.until("distinct imprints");
     shows(
         &program.session,
-        &["a part: ", " of 36,000,000,000 poses", "stopped: a part"],
+        &["a part: ", " of 36,000,000,000 poses", "stopped after "],
     );
     program.press("xposes.npy<Enter>");
     shows(&program.session, &[".npy needs all poses: only "]);
     program.press("<Esc>4))");
-    shows(&program.session, &["not gone through"]);
+    shows(&program.session, &["not swept"]);
     program.press("g");
-    shows(&program.session, &["this pose was not gone through"]);
+    shows(&program.session, &["this pose was not swept"]);
 }
 
 #[test]
@@ -208,7 +208,7 @@ fn the_imprint_of_a_row_is_the_one_on_the_matrix() {
                 shows(&session, &["on the matrix; u takes it back"]);
                 press(&mut session, "ej");
                 assert!(
-                    !session.screen().contains("none of these"),
+                    !session.screen().contains("not among these"),
                     "{}",
                     session.screen()
                 );

@@ -164,7 +164,7 @@ fn a_picture_starts_where_it_is_and_follows() {
     press(&mut session, "uu>");
     shows(&session, &["picture of pair at 2.00, 8.00, 359°"]);
     press(&mut session, "f<Enter>z");
-    shows(&session, &["a figure has sizes in place of a zoom"]);
+    shows(&session, &["a figure has no zoom; f changes its size"]);
 }
 
 #[test]
@@ -285,4 +285,17 @@ proptest! {
         press(&mut other, &format!("S{columns}<Tab>{rows}<Enter>lkept<Enter>"));
         prop_assert_eq!(other.app().shown(), before);
     }
+}
+
+#[test]
+fn the_shape_whose_name_was_typed_comes_first() {
+    let mut session =
+        session("<Space>sturned washer<Enter><Space><Right><Space>s<C-u>washers<Enter>");
+    press(&mut session, "lwasher");
+    let screen = session.screen();
+    let line = |name: &str| screen.lines().position(|line| line.contains(name));
+    assert!(line("> washer  ") < line("washers "), "{screen}");
+    assert!(line("washers ") < line("turned washer"), "{screen}");
+    press(&mut session, "<Enter>");
+    assert_eq!(session.app().stored_name(), Some("washer"));
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::mpsc::channel;
 
-use taxel::library::store::Library;
+use taxel::library::store::{Entry, Library, Origin};
 use taxel::tui::effect::World;
 use taxel::tui::exploring::Told;
 use taxel::tui::message::Message;
@@ -61,10 +61,9 @@ fn unsaved_work_that_cannot_go_to_the_trash_stays() {
     press(&mut later, "q");
     assert!(later.app().ended());
     drop(later);
-    let left = |name: &str| name.ends_with(".json");
-    let names = std::fs::read_dir(folder.path()).expect("a folder");
-    let names = names.flatten().map(|file| file.file_name());
-    assert!(!names.into_iter().any(|name| left(&name.to_string_lossy())));
+    let listed = Library::open(folder.path().to_owned()).list();
+    let own = |entry: &Entry| entry.origin == Origin::Own;
+    assert!(!listed.expect("listed").iter().any(own));
     let again = session_on(folder.path(), "");
     shows(&again, &["Unsaved work was left: 1 taxel."]);
 }

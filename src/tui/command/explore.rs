@@ -6,7 +6,7 @@ use crate::quote::shortened;
 use crate::sweep::grid::{Anchor, Grid, Ranges};
 use crate::sweep::range::DecimalRange;
 use crate::tui::app::App;
-use crate::tui::explore::ranges::RangesForm;
+use crate::tui::explore::ranges::explored;
 use crate::tui::exploring::Exploring;
 use crate::tui::message::Message;
 
@@ -16,7 +16,7 @@ use crate::tui::message::Message;
 /// What is wrong with them, in a sentence.
 pub(super) fn read(words: &[&str], app: &App) -> Result<Message, String> {
     let document = app.shown();
-    let form = RangesForm::new(&document, None)?;
+    let source = explored(&document).ok_or_else(|| app.nothing_to_explore())?;
     let (mut ranges, mut anchor) = (Ranges::default(), Anchor::default());
     let mut given: Vec<&str> = Vec::new();
     for pair in words.chunks(2) {
@@ -46,7 +46,7 @@ pub(super) fn read(words: &[&str], app: &App) -> Result<Message, String> {
         }
         let rows = ranges.rows();
         let known = rows.iter().map(|(parameter, _)| *parameter);
-        let mut own = known.filter(|parameter| flag_of(*parameter) == name);
+        let mut own = known.filter(|parameter| parameter.flag() == name);
         let parameter = own.next().ok_or_else(|| {
             format!(
                 "{} is unknown, expected --x0, --y0, --angle, --zoom-x, --zoom-y or --anchor",
@@ -63,12 +63,7 @@ pub(super) fn read(words: &[&str], app: &App) -> Result<Message, String> {
         };
         *place = range;
     }
-    let grid = Grid::new(form.source().clone(), document.sensor, anchor, ranges);
+    let grid = Grid::new(source, document.sensor, anchor, ranges);
     let grid = grid.map_err(|error| error.to_string())?;
     Ok(Message::Explore(Exploring::Start(Box::new(grid))))
-}
-
-/// The name of a parameter's flag, without the dashes.
-fn flag_of(parameter: Parameter) -> String {
-    parameter.row().key.replace('_', "-")
 }

@@ -7,6 +7,9 @@ use crate::tui::text_field::TextField;
 /// No name is longer: that of a Linux file with its folders.
 const LONGEST: usize = 4096;
 
+/// What a name can end in.
+pub const ENDINGS: &str = ".csv, .jsonl, .npz or .npy";
+
 /// The field.
 #[derive(Clone, Debug)]
 pub struct ExportDialog {
@@ -15,6 +18,13 @@ pub struct ExportDialog {
 }
 
 impl ExportDialog {
+    /// A field that proposes a name: what is typed replaces it.
+    pub fn proposing(name: &str) -> Self {
+        let mut dialog = Self::new(name);
+        dialog.field.enter();
+        dialog
+    }
+
     /// A field that starts with a name.
     pub fn new(name: &str) -> Self {
         Self {
@@ -36,9 +46,7 @@ impl ExportDialog {
         } else {
             format!("{:?}: ", shortened(name))
         };
-        Err(format!(
-            "{found}expected a name that ends in .csv, .jsonl, .npz or .npy"
-        ))
+        Err(format!("{found}expected a name that ends in {ENDINGS}"))
     }
 }
 

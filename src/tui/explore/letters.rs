@@ -2,18 +2,18 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// So many letters there are, small and large ones.
-pub const LETTERS: u8 = 52;
+/// So many letters there are: small and large ones, and digits.
+pub const LETTERS: u8 = 62;
 
 /// The letter of each cell, from 0, of a map of rows that are `width` cells wide; none where there is no imprint.
-/// Cells that touch, at a corner too, have different letters where they have different imprints; only more than
-/// [`LETTERS`] imprints that all touch one could run out of them. Where nothing is in the way it is the imprint's number
-/// that decides, so most letters stay when the map moves.
+/// Different imprints have different letters while there are letters left. Then letters come back, but not where cells
+/// touch, at a corner too; only more than [`LETTERS`] imprints that all touch one could run out of them. Where nothing is
+/// in the way it is the imprint's number that decides, so most letters stay when the map moves.
 ///
 /// ```
 /// use taxel::tui::explore::letters::letters;
-/// // 52 would have the letter of 0, its neighbour.
-/// assert_eq!(letters(&[Some(0), Some(52), None, Some(3)], 2), [Some(0), Some(1), None, Some(3)]);
+/// // 62 would have the letter of 0.
+/// assert_eq!(letters(&[Some(0), Some(62), None, Some(3)], 2), [Some(0), Some(1), None, Some(3)]);
 /// ```
 pub fn letters(ids: &[Option<u32>], width: usize) -> Vec<Option<u8>> {
     let width = width.max(1);
@@ -43,14 +43,20 @@ pub fn letters(ids: &[Option<u32>], width: usize) -> Vec<Option<u8>> {
     let mut order: Vec<u32> = neighbours.keys().copied().collect();
     order.sort_by_key(|id| std::cmp::Reverse(neighbours[id].len()));
     let mut chosen: BTreeMap<u32, u8> = BTreeMap::new();
+    let mut used: BTreeSet<u8> = BTreeSet::new();
     for id in order {
         let taken = |letter: &u8| {
             let mut around = neighbours[&id].iter();
             around.any(|other| chosen.get(other) == Some(letter))
         };
         let own = u8::try_from(id % u32::from(LETTERS)).unwrap_or(0);
-        let mut others = (0..LETTERS).map(|step| (own + step) % LETTERS);
-        let letter = others.find(|letter| !taken(letter)).unwrap_or(own);
+        let others = || (0..LETTERS).map(|step| (own + step) % LETTERS);
+        let unused = |letter: &u8| !used.contains(letter);
+        let letter = others()
+            .find(unused)
+            .or_else(|| others().find(|letter| !taken(letter)));
+        let letter = letter.unwrap_or(own);
+        used.insert(letter);
         chosen.insert(id, letter);
     }
     ids.iter()
@@ -60,12 +66,12 @@ pub fn letters(ids: &[Option<u32>], width: usize) -> Vec<Option<u8>> {
 
 /// The letter of that number.
 pub fn letter(number: u8) -> char {
-    let (first, number) = if number < 26 {
-        (b'a', number)
-    } else {
-        (b'A', number - 26)
+    let (first, number) = match number {
+        0..26 => (b'a', number),
+        26..52 => (b'A', number - 26),
+        _ => (b'0', (number - 52).min(9)),
     };
-    char::from(first + number.min(25))
+    char::from(first + number)
 }
 
 #[cfg(test)]
@@ -78,7 +84,7 @@ mod tests {
         for (width, height) in [(1, 9), (9, 1), (7, 8), (40, 30)] {
             let id = |x: usize, y: usize| {
                 let block = (x / 3 * 7 + y / 2 * 5) % 23;
-                (block % 6 != 5).then(|| u32::try_from(block * 52).expect("small"))
+                (block % 6 != 5).then(|| u32::try_from(block * 62).expect("small"))
             };
             let places = || (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
             let ids: Vec<_> = places().map(|(x, y)| id(x, y)).collect();
@@ -99,5 +105,14 @@ mod tests {
             }
         }
         assert_eq!(letters(&[], 0), []);
+        let all: String = (0..LETTERS).map(letter).collect();
+        assert!(
+            all.starts_with("abc") && all.ends_with("XYZ0123456789"),
+            "{all}"
+        );
+        // As many imprints as there are letters: no letter twice, whatever their numbers.
+        let ids: Vec<_> = (0..u32::from(LETTERS)).map(|id| Some(id * 31)).collect();
+        let different: BTreeSet<_> = letters(&ids, 8).into_iter().flatten().collect();
+        assert_eq!(different.len(), ids.len());
     }
 }

@@ -1,11 +1,11 @@
-//! The form of ranges that a sweep goes through: a text field a parameter, and which point of the shape they place.
+//! The form of ranges that are swept: a text field a parameter, and which point of the shape they place.
 //!
 //! Fields come from the table of parameters and start with the command line's defaults. A range is
 //! `start:end:step` or a single number, as on the command line.
 
 use std::time::Duration;
 
-use crate::formats::value::grouped;
+use crate::formats::value::{counted, grouped};
 use crate::parameter::{Parameter, Range};
 use crate::picture::Picture;
 use crate::sensor::Sensor;
@@ -13,6 +13,7 @@ use crate::source::Source;
 use crate::sweep::grid::{Anchor, Grid, GridError, MAX_POSES, Ranges};
 use crate::sweep::range::DecimalRange;
 use crate::tui::document::{Document, Seen};
+use crate::tui::exploring::name_of;
 use crate::tui::key::Arrow;
 use crate::tui::message::Message;
 use crate::tui::text_field::TextField;
@@ -55,6 +56,14 @@ pub struct Trouble {
     pub full: String,
 }
 
+/// What is explored of a document: its figure or picture, or what is drawn as a picture; nothing of an empty matrix.
+pub fn explored(document: &Document) -> Option<Source> {
+    document.source.clone().or_else(|| {
+        let imprint = Seen::of(document).imprint;
+        (!imprint.is_empty()).then(|| Source::Picture(Picture::at_home(imprint)))
+    })
+}
+
 /// The form.
 #[derive(Clone, Debug)]
 pub struct RangesForm {
@@ -70,23 +79,8 @@ pub struct RangesForm {
 }
 
 impl RangesForm {
-    /// The form for what is on the matrix: its figure or picture, or what is drawn as a picture. The ranges are those of
-    /// an earlier sweep, or the defaults.
-    ///
-    /// # Errors
-    /// What is missing, where the matrix is empty.
-    pub fn new(document: &Document, earlier: Option<&Grid>) -> Result<Self, &'static str> {
-        let source = if let Some(source) = &document.source {
-            source.clone()
-        } else {
-            let imprint = Seen::of(document).imprint;
-            if imprint.is_empty() {
-                return Err(
-                    "nothing to explore: f touches a figure, p a stored shape, Space draws",
-                );
-            }
-            Source::Picture(Picture::at_home(imprint))
-        };
+    /// The form for what is explored of a document. The ranges are those of an earlier sweep, or the defaults.
+    pub fn new(document: &Document, source: Source, earlier: Option<&Grid>) -> Self {
         let by_hand = match document.source {
             Some(_) => document.turned.count(),
             None => 0,
@@ -110,21 +104,12 @@ impl RangesForm {
             measured: None,
         };
         form.set_focus(Some(0));
-        Ok(form)
+        form
     }
 
-    /// What is gone through, in a word or two.
+    /// What is swept, in a word or two.
     pub fn title(&self) -> String {
-        let what = match &self.source {
-            Source::Figure(figure) => figure.kind().name(),
-            Source::Picture(_) => "picture",
-        };
-        format!("Explore: {what}")
-    }
-
-    /// What is gone through; where it is does not matter.
-    pub fn source(&self) -> &Source {
-        &self.source
+        format!("Explore: {}", name_of(&self.source))
     }
 
     /// The fields, from the top.
@@ -229,7 +214,7 @@ impl RangesForm {
                 GridError::Poses { poses } => {
                     let poses = u64::try_from(*poses).unwrap_or(u64::MAX);
                     let most = grouped(MAX_POSES);
-                    format!("{} poses\nexpected at most {most}", grouped(poses))
+                    format!("{}\nexpected at most {most}", counted(poses, "pose"))
                 }
                 _ => error.to_string(),
             },

@@ -258,7 +258,7 @@ impl Results {
 }
 
 /// `by` further on among `count`, the first after the last.
-fn around(now: usize, by: i8, count: usize) -> usize {
+pub fn around(now: usize, by: i8, count: usize) -> usize {
     let forward = usize::from(by.unsigned_abs()) % count;
     let step = if by < 0 { count - forward } else { forward };
     (now + step) % count

@@ -2,11 +2,13 @@
 
 use ratatui::layout::{Position, Rect};
 
-use super::lines::{below, first, narrow, width_of};
+use super::lines::{first, width_of};
 use crate::formats::value::grouped;
 use crate::parameter::Parameter;
 use crate::sweep::grid::Grid;
+use crate::tui::columns::narrow;
 use crate::tui::explore::results::Results;
+use crate::tui::layout::below;
 
 /// Characters of a value of a descriptor.
 pub const VALUE: usize = 8;

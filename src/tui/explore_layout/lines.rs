@@ -1,27 +1,11 @@
 //! Lines, rows and widths that the pages have in common.
 
-use ratatui::layout::Rect;
-
 use crate::parameter::Parameter;
 use crate::sweep::grid::Grid;
 
 /// The first row that is visible: rows are shown page by page, so that what is clicked on stays where it is.
 pub(super) fn first(visible: usize, selected: usize) -> usize {
     selected - selected % visible.max(1)
-}
-
-/// The part of an area that begins so many lines below its top.
-pub(super) fn below(area: Rect, lines: u16) -> Rect {
-    let lines = lines.min(area.height);
-    Rect {
-        y: area.y + lines,
-        height: area.height - lines,
-        ..area
-    }
-}
-
-pub(super) fn narrow(length: usize) -> u16 {
-    u16::try_from(length).unwrap_or(u16::MAX)
 }
 
 /// Characters of the values of a range, and of its name.

@@ -2,9 +2,11 @@
 
 use ratatui::layout::{Position, Rect};
 
-use super::lines::{below, narrow, width_of};
+use super::lines::width_of;
 use crate::parameter::Parameter;
+use crate::tui::columns::narrow;
 use crate::tui::explore::results::Results;
+use crate::tui::layout::below;
 
 /// The map of x0 and y0.
 #[derive(Clone, Copy, Debug)]

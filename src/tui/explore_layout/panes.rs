@@ -2,9 +2,9 @@
 
 use ratatui::layout::Rect;
 
-use super::lines::{below, narrow};
+use crate::tui::columns::narrow;
 use crate::tui::exploring::ExplorePage;
-use crate::tui::layout::Panes;
+use crate::tui::layout::{Panes, below};
 
 /// The parts of the screen of results.
 #[derive(Clone, Copy, Debug)]

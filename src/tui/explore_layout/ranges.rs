@@ -2,7 +2,7 @@
 
 use ratatui::layout::Rect;
 
-use super::lines::narrow;
+use crate::tui::columns::narrow;
 use crate::tui::explore::ranges::RangesForm;
 
 /// The lines of the form of ranges.

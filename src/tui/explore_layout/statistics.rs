@@ -2,10 +2,10 @@
 
 use ratatui::layout::{Position, Rect};
 
-use super::lines::{below, first};
 use crate::sweep::quantity::quantities;
 use crate::sweep::statistics::COLUMNS;
 use crate::tui::explore::results::Results;
+use crate::tui::layout::{below, first_of};
 
 /// The table of statistics.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +46,7 @@ impl StatisticsTable {
                 height: table.height.min(1),
                 ..table
             },
-            first: first(usize::from(rows.height), results.quantity_number()),
+            first: first_of(rows.height, quantities().len(), results.quantity_number()),
             rows,
             name,
             column,

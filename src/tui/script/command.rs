@@ -201,9 +201,12 @@ fn command(line: &str) -> Result<Command, String> {
 }
 
 fn two(text: &str) -> Result<(&str, &str), String> {
-    let (first, second) = text
-        .split_once(char::is_whitespace)
-        .ok_or_else(|| format!("expected two things, found {:?}", shortened(text)))?;
+    let (first, second) = text.split_once(char::is_whitespace).ok_or_else(|| {
+        format!(
+            "expected a place like 12,5 and then more, found {:?}",
+            shortened(text)
+        )
+    })?;
     Ok((first, second.trim()))
 }
 

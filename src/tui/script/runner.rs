@@ -56,7 +56,7 @@ pub enum Failure {
     #[error("stopped by whoever reads it")]
     Stopped,
     /// The program ended before the script.
-    #[error("line {line}: the program has ended before")]
+    #[error("line {line}: the program had already ended")]
     Ended {
         /// The first line that could not be done.
         line: usize,
@@ -135,7 +135,7 @@ pub fn run_shown(
         if let Some((line, _)) = library {
             return Err(wrong(
                 line,
-                "a library that is named has its own shapes".to_owned(),
+                "Set library cannot stand beside Set shape or Set leftover".to_owned(),
             ));
         }
         world = World::furnished(&shapes, &leftovers).map_err(Failure::World)?;
@@ -261,7 +261,7 @@ fn look(
             let found: String = rest.take(text.chars().count()).collect();
             if found != *text {
                 return fails(format!(
-                    "at {column},{row} stands {:?}, expected {:?}",
+                    "at {column},{row} there is {:?}, expected {:?}",
                     shortened(&found),
                     shortened(text)
                 ));

@@ -69,7 +69,7 @@ pub fn read(text: &str) -> Result<Setting, String> {
         _ => match Parameter::from_flag(name).filter(|own| SENSOR_PARAMETERS.contains(own)) {
             Some(parameter) => number(parameter, value).map_err(|error| error.to_string()),
             None => Err(format!(
-                "nothing to set is called {:?}, expected one of ascii, color, theme, mouse, columns, rows, \
+                "{:?} cannot be set, expected one of ascii, color, theme, mouse, columns, rows, \
                  threshold, pitch, library, shape, leftover",
                 shortened(name)
             )),

@@ -21,10 +21,10 @@ use crate::tui::app::App;
 use crate::tui::effect::World;
 use crate::tui::exploring::Told;
 use crate::tui::message::Message;
-use crate::tui::request::Effect;
+use crate::tui::request::TerminalEffect;
 use crate::tui::view::view;
 
-/// Runs the program; see the module above.
+/// Runs the program until it ends, and leaves the terminal as it was.
 pub(super) fn run(
     app: App,
     world: World,
@@ -241,18 +241,17 @@ impl<'a> Talk<'a> {
 
     fn update(&mut self, message: Message) -> io::Result<()> {
         match self.world.handle(&mut self.app, message) {
-            // What is asked of the library and of workers was seen to on the way.
-            None | Some(Effect::Library(_) | Effect::Work(_)) => {}
-            Some(Effect::Redraw) => self.redraw(),
-            Some(Effect::Suspend) => self.suspend()?,
-            Some(Effect::Mouse(on)) => {
+            None => {}
+            Some(TerminalEffect::Redraw) => self.redraw(),
+            Some(TerminalEffect::Suspend) => self.suspend()?,
+            Some(TerminalEffect::Mouse(on)) => {
                 self.mouse = on;
                 self.send(session::set_mouse(on).as_bytes())?;
             }
-            Some(Effect::Copy(text)) if self.settings.abilities.clipboard => {
+            Some(TerminalEffect::Copy(text)) if self.settings.kind.has_clipboard() => {
                 self.send(session::copied(&text).as_bytes())?;
             }
-            Some(Effect::Copy(_)) => {
+            Some(TerminalEffect::Copy(_)) => {
                 let save = self.app.key_of(&Message::Save);
                 self.refuse(&format!(
                     "this terminal has no clipboard; {save} saves, 'taxel export' writes a file"

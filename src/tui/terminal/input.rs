@@ -1,8 +1,8 @@
 //! Bytes from the terminal become keys, pasted text and the mouse.
 //!
-//! Sequences may come in pieces, over a slow line in single bytes. Only two things wait for a moment: an ESC by
-//! itself, which may be a key or the beginning of one, and an answer of the terminal to a program before us, which
-//! would otherwise be read as keys. Everything that is not known is swallowed whole.
+//! Sequences may come in pieces, over a slow line in single bytes. Few things wait for a moment: an ESC by
+//! itself, which may be a key or the beginning of one, an answer of the terminal to a program before us, which would
+//! otherwise be read as keys, and the rest of a pasted text. Everything that is not known is swallowed whole.
 //!
 //! ESC before a character is the key Esc, then the character: nothing here is bound to Alt, and a quick Esc over a
 //! slow line arrives together with the next key. ESC ESC is Alt-Esc, one Esc.

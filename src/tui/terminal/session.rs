@@ -46,26 +46,22 @@ fn found() -> MutexGuard<'static, Option<Found>> {
 /// may have changed it while the program was stopped.
 pub(super) fn enter(device: &Device, settings: &Settings, mouse: bool) -> io::Result<()> {
     let mut held = found();
-    let mut raw = match held.as_mut() {
-        Some(found) => {
-            (found.settings, found.mouse) = (*settings, mouse);
-            found.attributes.clone()
-        }
-        None => {
-            let attributes = tcgetattr(device.input())?;
-            // Known before anything is changed, so that it is put right where the change fails half-way.
-            *held = Some(Found {
-                device: device.try_clone()?,
-                attributes: attributes.clone(),
-                settings: *settings,
-                mouse,
-                later: String::new(),
-            });
-            attributes
-        }
-    };
-    raw.make_raw();
-    set(device, &raw)?;
+    if held.is_none() {
+        // Before anything is changed, so that all is put right where the change fails half-way.
+        *held = Some(Found {
+            device: device.try_clone()?,
+            attributes: tcgetattr(device.input())?,
+            settings: *settings,
+            mouse,
+            later: String::new(),
+        });
+    }
+    if let Some(found) = held.as_mut() {
+        found.mouse = mouse;
+        let mut raw = found.attributes.clone();
+        raw.make_raw();
+        set(device, &raw)?;
+    }
     let mut hello = String::new();
     if settings.kind.has_modes() {
         push(&mut hello, EnterAlternateScreen);

@@ -37,6 +37,11 @@ impl Kind {
     pub fn has_modes(self) -> bool {
         self >= Self::Console
     }
+
+    /// Whether it may put a text into its clipboard (OSC 52); others would show the text.
+    pub fn has_clipboard(self) -> bool {
+        self == Self::Window
+    }
 }
 
 /// What the command line says; nothing where it is silent.
@@ -63,8 +68,6 @@ pub struct Abilities {
     pub synchronized: bool,
     /// It erases so many characters in the middle of a row (ECH), as all since the VT220 do.
     pub erases: bool,
-    /// It may put a text into its clipboard (OSC 52); others would show the text.
-    pub clipboard: bool,
 }
 
 /// What the terminal is sent.
@@ -126,7 +129,6 @@ impl Settings {
                 styles: kind > Kind::Dumb || color != ColorDepth::Never,
                 synchronized: kind == Kind::Window,
                 erases: kind >= Kind::Console,
-                clipboard: kind == Kind::Window,
             },
         }
     }
@@ -198,7 +200,7 @@ mod tests {
             let abilities = settings.abilities;
             assert_eq!(abilities.synchronized, kind == Kind::Window, "{name}");
             assert_eq!(abilities.erases, kind >= Kind::Console, "{name}");
-            assert_eq!(abilities.clipboard, kind == Kind::Window, "{name}");
+            assert_eq!(kind.has_clipboard(), kind == Kind::Window, "{name}");
             assert_eq!(settings.ascii, kind <= Kind::Serial, "{name}");
             assert_eq!(abilities.styles, kind != Kind::Dumb, "{name}");
         }

@@ -93,13 +93,12 @@ pub(super) fn take(app: &mut App, answer: Answer) -> Option<Effect> {
         }
         Answer::GivenUp(name, left) => {
             app.removed = Some(name.clone());
-            match left {
-                Some(left) => offer(app, &format!("{name} is in the trash. "), &left),
-                None => {
-                    let undo = app.key_of(&Message::Undo);
-                    let text = "the unsaved work is in the trash as";
-                    inform(app, format!("{text} {name}; {undo} brings it back"));
-                }
+            if let Some(left) = left {
+                offer(app, &format!("{name} is in the trash. "), &left);
+            } else {
+                let undo = app.key_of(&Message::Undo);
+                let text = "the unsaved work is in the trash as";
+                inform(app, format!("{text} {name}; {undo} brings it back"));
             }
         }
         Answer::NotGivenUp(reason) => {

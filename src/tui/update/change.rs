@@ -1,5 +1,6 @@
 //! Changes of the document: touching, moving, turning, zooming, and going back through them.
 
+use crate::formats::value::counted;
 use crate::parameter::Parameter;
 use crate::source::Source;
 use crate::tui::app::{App, Mode, Notice};
@@ -65,11 +66,12 @@ pub(super) fn replace(app: &mut App, document: Document) {
         .saturating_sub(document.turned.count());
     change(app, document);
     if dropped > 0 {
-        let taxels = if dropped == 1 { "taxel" } else { "taxels" };
+        let taxels = counted(dropped.into(), "taxel");
+        let them = if dropped == 1 { "it" } else { "them" };
         let undo = app.key_of(&Message::Undo);
         inform(
             app,
-            format!("{dropped} {taxels} set by hand dropped; {undo} brings back what was"),
+            format!("{taxels} set by hand dropped; {undo} brings {them} back"),
         );
     }
 }
@@ -79,7 +81,7 @@ fn refuse_to_move(app: &mut App) {
     refuse(
         app,
         format!(
-            "nothing to move: this was drawn by hand; {figure} touches a figure, {picture} a stored shape"
+            "nothing to move: this was drawn by hand; {figure} places a figure, {picture} a stored shape"
         ),
     );
 }
@@ -129,7 +131,7 @@ pub(super) fn zoom(app: &mut App, direction: i8) {
     let by = f64::from(direction) * app.step.length();
     let (Some(x), Some(y)) = (source.get(Parameter::ZoomX), source.get(Parameter::ZoomY)) else {
         let figure = app.key_of(&Message::Figure);
-        let text = format!("a figure has sizes in place of a zoom: {figure} changes them");
+        let text = format!("a figure has no zoom; {figure} changes its size");
         return refuse(app, text);
     };
     set(

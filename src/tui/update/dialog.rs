@@ -15,7 +15,7 @@ use crate::tui::layout::Panes;
 use crate::tui::list::ListDialog;
 use crate::tui::message::{End, Message};
 use crate::tui::name_dialog::NameDialog;
-use crate::tui::request::{Effect, Request};
+use crate::tui::request::{Effect, Request, TerminalEffect};
 
 /// Does what a message says.
 pub(super) fn act(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> {
@@ -50,8 +50,8 @@ pub(super) fn act(app: &mut App, dialog: Dialog, message: Message) -> Option<Eff
 
 fn in_help(app: &mut App, mut help: Help, message: &Message) {
     if let Message::Scroll(lines) = message {
-        let room = Panes::shown(app).map_or(0, |panes| panes.body.height);
-        help.scroll(*lines, app.keymap(), room.into());
+        let room = Panes::shown(app).map_or((0, 0), |panes| panes.body.as_size().into());
+        help.scroll(*lines, app.keymap(), room);
     }
     app.dialogs.push(Dialog::Help(help));
 }
@@ -115,8 +115,8 @@ fn in_command(app: &mut App, mut dialog: CommandDialog, message: Message) -> Opt
                         app.commands.push(line);
                     }
                     return match message {
-                        Message::Redraw => Some(Effect::Redraw),
-                        Message::Suspend => Some(Effect::Suspend),
+                        Message::Redraw => Some(Effect::Terminal(TerminalEffect::Redraw)),
+                        Message::Suspend => Some(Effect::Terminal(TerminalEffect::Suspend)),
                         other => matrix::act(app, other),
                     };
                 }

@@ -7,10 +7,11 @@ use super::explore;
 use crate::description::descriptor::{DESCRIPTORS, Descriptor};
 use crate::formats::value;
 use crate::library::store::{Expected, Origin};
-use crate::tui::app::{App, Display, Mode, Page};
+use crate::tui::app::{App, Display, Life, Mode, Page};
 use crate::tui::command_dialog::CommandDialog;
 use crate::tui::dialog::{Dialog, Help, Question};
 use crate::tui::document::{Document, History};
+use crate::tui::explore::results::around;
 use crate::tui::form_dialog::FormDialog;
 use crate::tui::key::Arrow;
 use crate::tui::layout::Panes;
@@ -18,7 +19,7 @@ use crate::tui::list::ListDialog;
 use crate::tui::message::{Copied, End, Message};
 use crate::tui::name_dialog::NameDialog;
 use crate::tui::purpose::Purpose;
-use crate::tui::request::{Effect, Request};
+use crate::tui::request::{Effect, Request, TerminalEffect};
 
 /// What there is to say of an empty matrix.
 const NO_REGION: &str = "no region: the matrix is empty";
@@ -69,12 +70,12 @@ pub(super) fn act(app: &mut App, message: Message) -> Option<Effect> {
             inform(
                 app,
                 if app.mouse {
-                    format!("the mouse points at taxels; {key} gives it back")
+                    format!("the mouse sets taxels; {key} leaves it to the terminal")
                 } else {
-                    format!("the mouse selects text; {key} takes it again")
+                    format!("the mouse selects text; {key} lets it set taxels")
                 },
             );
-            return Some(Effect::Mouse(app.mouse));
+            return Some(Effect::Terminal(TerminalEffect::Mouse(app.mouse)));
         }
         Message::Replace(shape, stamp) => {
             let text = format!("Replace {}?", shape.name);
@@ -94,7 +95,7 @@ pub(super) fn act(app: &mut App, message: Message) -> Option<Effect> {
             let question = Question::new(text, Message::QuitNow);
             app.dialogs.push(Dialog::Question(question));
         }
-        Message::Quit | Message::QuitNow => app.ended = true,
+        Message::Quit | Message::QuitNow => app.life = Life::Quit,
         Message::Explore(asked) => return explore::act(app, asked),
         Message::Help => {
             let help = Help::new(app.context());
@@ -179,7 +180,7 @@ fn copy(app: &mut App, what: Copied) -> Option<Effect> {
         app,
         format!("{name} sent to your terminal's clipboard ({length})"),
     );
-    Some(Effect::Copy(text))
+    Some(Effect::Terminal(TerminalEffect::Copy(text)))
 }
 
 fn open_form(app: &mut App, form: FormDialog) {
@@ -226,7 +227,5 @@ fn choose_region(app: &mut App, by: i8) {
     if count == 1 {
         return inform(app, "there is no other region");
     }
-    let forward = usize::from(by.unsigned_abs()) % count;
-    let step = if by < 0 { count - forward } else { forward };
-    app.chosen = Some((now + step) % count);
+    app.chosen = Some(around(now, by, count));
 }

@@ -12,22 +12,21 @@ mod dialog;
 
 mod mouse;
 
-use super::app::App;
+use super::app::{App, Life};
 use super::message::Message;
-use super::request::Effect;
+use super::request::{Effect, TerminalEffect};
 
 /// Does what a message says. A notice stays until the next message that is not an answer to the last one.
 pub fn update(app: &mut App, message: Message) -> Option<Effect> {
     match message {
-        Message::Redraw => return Some(Effect::Redraw),
-        Message::Suspend => return Some(Effect::Suspend),
+        Message::Redraw => return Some(Effect::Terminal(TerminalEffect::Redraw)),
+        Message::Suspend => return Some(Effect::Terminal(TerminalEffect::Suspend)),
         Message::Resized(columns, rows) => {
             app.screen = (columns, rows);
-            return Some(Effect::Redraw);
+            return Some(Effect::Terminal(TerminalEffect::Redraw));
         }
         Message::Killed => {
-            app.killed = true;
-            app.ended = true;
+            app.life = Life::Killed;
             return None;
         }
         Message::Answer(answer) => return answer::take(app, answer),

@@ -7,6 +7,7 @@ use super::write;
 use crate::figure::{Kind, NO_ROOM};
 use crate::source::Source;
 use crate::tui::app::App;
+use crate::tui::columns::narrow;
 use crate::tui::form::Field;
 use crate::tui::form_dialog::FormDialog;
 use crate::tui::layout::FormRows;
@@ -169,8 +170,4 @@ fn draw_range(
             write(area, &[&both, &barely, first, second]);
         }
     }
-}
-
-fn narrow(columns: usize) -> u16 {
-    u16::try_from(columns).unwrap_or(u16::MAX)
 }

@@ -7,8 +7,11 @@ use super::{thumbnail, write};
 use crate::description::region::{Kind, regions};
 use crate::library::store::{Entry, Loaded, Origin};
 use crate::tui::app::App;
+use crate::tui::binding::Context;
+use crate::tui::columns::narrow;
 use crate::tui::layout::{LIST_HEAD, list, list_first};
 use crate::tui::list::ListDialog;
+use crate::tui::message::{Erase, Message};
 use crate::tui::purpose::Purpose;
 use crate::tui::theme::Role;
 
@@ -43,15 +46,19 @@ pub fn draw(app: &App, dialog: &ListDialog, buffer: &mut Buffer, body: Rect) -> 
     );
     if dialog.rows().len() == 0 {
         let text = match (dialog.total(), dialog.purpose()) {
-            (0, Purpose::Delete) => "there are no shapes of your own",
-            (0, _) => "the library is empty",
-            _ => "no name has this in it; Backspace widens the filter",
+            (0, Purpose::Delete) => "there are no shapes of your own".to_owned(),
+            (0, _) => "the library is empty".to_owned(),
+            _ => {
+                let shorter = Message::Erase(Erase::Before);
+                let key = app.keymap().label(Context::List, &shorter);
+                format!("no name contains this; {key} shortens it")
+            }
         };
         write::line(
             buffer,
             write::row(area, usize::from(LIST_HEAD)),
             theme,
-            [(text, Role::Quiet)],
+            [(text.as_str(), Role::Quiet)],
         );
     }
     let first = list_first(area, dialog.rows().len(), dialog.selected());
@@ -159,8 +166,4 @@ fn draw_preview(
             say(reason, Role::Text);
         }
     }
-}
-
-fn narrow(lines: usize) -> u16 {
-    u16::try_from(lines).unwrap_or(u16::MAX)
 }

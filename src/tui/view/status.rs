@@ -6,9 +6,10 @@ use ratatui::layout::{Position, Rect};
 use super::write;
 use crate::formats::name::NameError;
 use crate::tui::app::{App, Mode, Notice};
-use crate::tui::binding::Binding;
+use crate::tui::binding::{Binding, Context};
 use crate::tui::dialog::Dialog;
 use crate::tui::document::Seen;
+use crate::tui::explore::export::ENDINGS;
 use crate::tui::layout::Panes;
 use crate::tui::message::Message;
 use crate::tui::theme::Role;
@@ -56,7 +57,8 @@ pub fn draw(app: &App, seen: &Seen, buffer: &mut Buffer, panes: &Panes) -> Optio
         }
         Some(Dialog::Export(dialog)) => {
             let typed = (EXPORT_LABEL, dialog.field.text(), dialog.field.cursor());
-            Some(field(app, typed, "", buffer, panes.notice))
+            let endings = format!("   ({ENDINGS})");
+            Some(field(app, typed, &endings, buffer, panes.notice))
         }
         _ => None,
     };
@@ -110,7 +112,7 @@ fn source(app: &App) -> String {
         return name
             + &if by_hand == 0 {
                 let (draw, figure) = (app.key_of(&Message::Toggle), app.key_of(&Message::Figure));
-                format!("empty: {draw} draws, {figure} touches a figure")
+                format!("empty: {draw} draws, {figure} places a figure")
             } else {
                 "drawn by hand".to_owned()
             };
@@ -170,7 +172,11 @@ fn taxel(app: &App, seen: &Seen, panes: &Panes) -> String {
 fn said(app: &App, panes: &Panes) -> Option<(String, Role)> {
     match app.dialogs.last() {
         Some(Dialog::Question(question)) => {
-            let answers = if question.no.is_some() { "" } else { " (y/n)" };
+            let key = |answer| app.keymap().label(Context::Question, answer);
+            let answers = match question.no {
+                Some(_) => String::new(),
+                None => format!(" ({}/{})", key(&Message::Accept), key(&Message::Decline)),
+            };
             return Some((format!("{}{answers}", question.text), Role::Error));
         }
         Some(Dialog::Name(dialog)) if app.notice.is_none() => {
@@ -179,16 +185,19 @@ fn said(app: &App, panes: &Panes) -> Option<(String, Role)> {
             return Some((format!("! {error}"), Role::Error));
         }
         Some(Dialog::Help(help)) if app.notice.is_none() => {
-            let room = usize::from(panes.body.height);
-            let (lines, top) = help.lines(app.keymap(), room);
-            let last = lines.len().min(top + room);
+            let (lines, top) = help.lines(app.keymap(), panes.body.as_size().into());
+            let last = lines.len().min(top + usize::from(panes.body.height));
+            let key = |lines| app.keymap().label(Context::Help, &Message::Scroll(lines));
             let more = match (top, last == lines.len()) {
                 (0, true) => return None,
-                (_, true) => "the end",
-                (_, false) => "more below: Down, PageDown",
+                (_, true) => "the end".to_owned(),
+                (_, false) => format!("more below: {}, {}", key(1), key(10)),
             };
             let text = format!("lines {}-{last} of {}; {more}", top + 1, lines.len());
-            return Some((text, Role::Key));
+            // A second line would lie over the last one of the list.
+            let short = format!("{last} of {}", lines.len());
+            let fitting = write::first_fitting(&[&text, &short], panes.notice.width.into());
+            return Some((fitting.to_owned(), Role::Key));
         }
         _ => {}
     }

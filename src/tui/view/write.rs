@@ -4,8 +4,10 @@ use std::borrow::Cow;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use ratatui::text::Span;
 
+use crate::tui::columns::head;
+pub use crate::tui::columns::{broken, width, window};
+pub use crate::tui::layout::below;
 use crate::tui::theme::{Role, Theme};
 
 /// Writes pieces of text, each in its role, into the first line of an area; the first that does not fit is shortened,
@@ -32,11 +34,6 @@ pub fn line<'a>(
     x
 }
 
-/// The columns that a text takes.
-pub fn width(text: &str) -> usize {
-    Span::raw(text).width()
-}
-
 /// A text in so many columns: as it is where it fits, but for spaces at its end, else shortened with an ellipsis.
 pub fn fitted<'a>(text: &'a str, room: usize, theme: &Theme) -> Cow<'a, str> {
     if width(text) <= room {
@@ -56,36 +53,10 @@ pub fn fitted<'a>(text: &'a str, room: usize, theme: &Theme) -> Cow<'a, str> {
     Cow::Owned(format!("{}{ellipsis}", kept.trim_end()))
 }
 
-/// Of a text that is typed into so many columns, the part that has its cursor in sight, and where the cursor stands in
-/// that.
-pub fn window(text: &str, cursor: usize, room: usize) -> (&str, usize) {
-    let (mut shown, mut column) = (text, cursor);
-    while column >= room.max(1)
-        && let Some(first) = shown.chars().next()
-    {
-        let (hidden, rest) = shown.split_at(first.len_utf8());
-        column = column.saturating_sub(width(hidden));
-        shown = rest;
-    }
-    (shown, column)
-}
-
 /// The first of several texts that fits into so many columns; the last one where none does.
 pub fn first_fitting<'a>(texts: &[&'a str], room: usize) -> &'a str {
     let fitting = texts.iter().find(|text| width(text) <= room);
     fitting.or(texts.last()).copied().unwrap_or_default()
-}
-
-/// As much of the beginning of a text as fits into so many columns.
-fn head(text: &str, room: usize) -> &str {
-    let mut ends = text
-        .char_indices()
-        .map(|(at, character)| at + character.len_utf8());
-    let mut kept = "";
-    while let Some(end) = ends.next().filter(|&end| width(&text[..end]) <= room) {
-        kept = &text[..end];
-    }
-    kept
 }
 
 /// The line of an area that lies `index` below its top; empty where the area ends before.
@@ -116,16 +87,6 @@ pub fn clear(buffer: &mut Buffer, area: Rect) {
     }
 }
 
-/// The part of an area that begins `lines` below its top.
-pub fn below(area: Rect, lines: u16) -> Rect {
-    let lines = lines.min(area.height);
-    Rect {
-        y: area.y + lines,
-        height: area.height - lines,
-        ..area
-    }
-}
-
 /// Writes a text over as many lines as it needs, and answers how many these are. Where the area has fewer, an ellipsis
 /// tells.
 pub fn wrapped(buffer: &mut Buffer, area: Rect, theme: &Theme, text: &str, role: Role) -> usize {
@@ -146,28 +107,6 @@ pub fn wrapped(buffer: &mut Buffer, area: Rect, theme: &Theme, text: &str, role:
         line(buffer, row(area, last), theme, [(rest.as_str(), role)]);
     }
     lines.len()
-}
-
-/// A text in lines of at most so many columns, broken at spaces, and inside words that are longer: paths have no spaces.
-pub fn broken(text: &str, room: usize) -> Vec<&str> {
-    let mut lines = Vec::new();
-    let mut rest = text.trim();
-    while !rest.is_empty() {
-        let fits = head(rest, room.max(1));
-        let end = if fits.len() == rest.len() {
-            rest.len()
-        } else {
-            // A character that is wider than the room goes into a line all the same.
-            let first = rest.chars().next().map_or(1, char::len_utf8);
-            let space =
-                rest[..fits.len() + usize::from(rest[fits.len()..].starts_with(' '))].rfind(' ');
-            space.filter(|&at| at > 0).unwrap_or(fits.len()).max(first)
-        };
-        let (piece, after) = rest.split_at(end);
-        lines.push(piece.trim_end());
-        rest = after.trim_start();
-    }
-    lines
 }
 
 #[cfg(test)]
@@ -194,33 +133,5 @@ mod tests {
         }
         assert_eq!(fitted("washer", 5, &ascii), "wa...");
         assert_eq!(fitted("washer", 2, &ascii), "wa");
-    }
-
-    #[test]
-    fn what_is_typed_is_seen_where_the_cursor_is() {
-        for (text, cursor, expected) in [
-            ("1234", 4, ("1234", 4)),
-            ("12345", 5, ("2345", 4)),
-            ("12345", 0, ("12345", 0)),
-            ("字字字", 6, ("字字", 4)),
-            ("字字字", 2, ("字字字", 2)),
-            ("", 0, ("", 0)),
-        ] {
-            assert_eq!(window(text, cursor, 5), expected, "{text} at {cursor}");
-        }
-        assert_eq!(window("ab", 2, 0), ("", 0));
-    }
-
-    #[test]
-    fn lines_break_at_spaces_and_inside_long_words() {
-        assert_eq!(
-            broken("one two  three", 7),
-            ["one two", "three"],
-            "at the space that just fits no more"
-        );
-        assert_eq!(broken("one two", 6), ["one", "two"]);
-        assert_eq!(broken("/a/long/path x", 5), ["/a/lo", "ng/pa", "th x"]);
-        assert_eq!(broken("字字", 1), ["字", "字"]);
-        assert!(broken("  ", 4).is_empty());
     }
 }

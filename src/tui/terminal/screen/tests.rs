@@ -27,7 +27,6 @@ fn check(frames: &[(Vec<Writing>, Cursor)], synchronized: bool, erases: bool) {
         styles: true,
         synchronized,
         erases,
-        clipboard: false,
     };
     let Ok(mut terminal) = Terminal::new(Screen::new(SIZE, abilities));
     let mut emulator = emulator(SIZE);
@@ -158,7 +157,6 @@ const EVERYTHING: Abilities = Abilities {
     styles: true,
     synchronized: true,
     erases: true,
-    clipboard: true,
 };
 
 fn frame(before: &[&str], after: &[&str]) -> String {

@@ -6,7 +6,7 @@ use crate::sweep::grid::Grid;
 use crate::tui::app::{App, Mode};
 use crate::tui::dialog::Dialog;
 use crate::tui::explore::export::is_poses;
-use crate::tui::explore::ranges::RangesForm;
+use crate::tui::explore::ranges::{RangesForm, explored};
 use crate::tui::explore::results::Results;
 use crate::tui::explore::running::{Job, Running};
 use crate::tui::exploring::Exploring;
@@ -48,8 +48,8 @@ fn open(app: &mut App) -> Option<Effect> {
 /// Whether results are those of the shape on the matrix, wherever it is now.
 fn is_of(app: &App, results: &Results) -> bool {
     let grid = &results.survey().grid;
-    let form = RangesForm::new(app.history.present(), None);
-    form.is_ok_and(|form| grid.is_of(form.source(), &app.history.present().sensor))
+    let present = app.history.present();
+    explored(present).is_some_and(|source| grid.is_of(&source, &present.sensor))
 }
 
 /// The form, with the ranges of the results below it or those that were last.
@@ -58,17 +58,15 @@ fn open_ranges(app: &mut App) -> Option<Effect> {
         Dialog::Results(results) => Some(results.survey().grid.clone()),
         _ => None,
     });
-    match RangesForm::new(app.history.present(), below.as_ref()) {
-        Ok(mut form) => {
-            let effect = measure(&mut form);
-            app.dialogs.push(Dialog::Ranges(Box::new(form)));
-            effect
-        }
-        Err(missing) => {
-            refuse(app, missing);
-            None
-        }
-    }
+    let present = app.history.present();
+    let Some(source) = explored(present) else {
+        refuse(app, app.nothing_to_explore());
+        return None;
+    };
+    let mut form = RangesForm::new(present, source, below.as_ref());
+    let effect = measure(&mut form);
+    app.dialogs.push(Dialog::Ranges(Box::new(form)));
+    effect
 }
 
 /// Asks how long the grid of a form takes, once for each.

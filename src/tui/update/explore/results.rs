@@ -12,7 +12,7 @@ use crate::tui::explore::export::{ExportDialog, is_poses};
 use crate::tui::explore::results::Results;
 use crate::tui::explore_layout::panes::ResultPanes;
 use crate::tui::explore_layout::statistics::StatisticsTable;
-use crate::tui::exploring::{ExplorePage, Exploring};
+use crate::tui::exploring::{ExplorePage, Exploring, name_of};
 use crate::tui::layout::Panes;
 use crate::tui::message::Message;
 use crate::tui::request::Effect;
@@ -31,8 +31,10 @@ pub(crate) fn in_results(
         Message::Cursor(arrow) => results.move_cursor(arrow),
         Message::Paste(_) => inform(app, "pasted text goes into fields only"),
         Message::Explore(Exploring::Export) => {
+            let name = format!("{}.csv", name_of(results.survey().grid.source()));
             app.dialogs.push(Dialog::Results(results));
-            app.dialogs.push(Dialog::Export(ExportDialog::new("")));
+            let dialog = ExportDialog::proposing(&name);
+            app.dialogs.push(Dialog::Export(dialog));
             return None;
         }
         Message::Explore(Exploring::Ranges) => {
@@ -64,7 +66,7 @@ fn look(app: &mut App, results: &mut Results, asked: &Exploring) {
             Some(id) => {
                 results.find(id);
             }
-            None => refuse(app, "the imprint on the matrix is none of these"),
+            None => refuse(app, "the imprint on the matrix is not among these"),
         },
         Exploring::Follow => follow(app, results),
         Exploring::Select(row) if results.page() == ExplorePage::Imprints => results.select(row),
@@ -90,7 +92,7 @@ fn follow(app: &mut App, results: &mut Results) {
             results.find(id);
             results.turn_to(ExplorePage::Imprints);
         }
-        None => refuse(app, "this pose was not gone through: the sweep was stopped"),
+        None => refuse(app, "this pose was not swept: the sweep was stopped"),
     }
 }
 
@@ -115,12 +117,12 @@ fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
     let number = results.id(&imprint).map(|id| format!("imprint {id} "));
     change(app, document);
     app.chosen = None;
+    let number = number.unwrap_or_default();
+    let undo = app.key_of(&Message::Undo);
+    let explore = app.key_of(&Message::Explore(Exploring::Open));
     inform(
         app,
-        format!(
-            "{}on the matrix; u takes it back, e goes on exploring",
-            number.unwrap_or_default()
-        ),
+        format!("{number}on the matrix; {undo} takes it back, {explore} goes on exploring"),
     );
     app.results = Some(results);
     None
@@ -152,7 +154,7 @@ fn missing(app: &App, name: &str) -> Option<String> {
     let survey = app.results_below()?.survey();
     (is_poses(name) && !survey.complete()).then(|| {
         format!(
-            ".npy needs all poses: only {} of {} were gone through",
+            ".npy needs all poses: only {} of {} were swept",
             grouped(survey.poses),
             grouped(survey.grid.poses())
         )

@@ -101,7 +101,7 @@ fn take_findings(app: &mut App, number: u64, findings: Arc<Findings>) {
         inform(
             app,
             format!(
-                "stopped: a part, {} of {} poses",
+                "stopped after {} of {} poses",
                 grouped(survey.poses),
                 grouped(survey.grid.poses())
             ),

@@ -4,7 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use crate::description::descriptor::Unit;
-use crate::formats::value::{fitting, grouped};
+use crate::formats::value::{counted, fitting, grouped};
 use crate::sweep::histogram::Histogram;
 use crate::tui::app::App;
 use crate::tui::explore::results::Results;
@@ -40,11 +40,7 @@ pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) {
         number(statistic.sd),
         number(statistic.min),
         number(statistic.max),
-        if histogram.without == 0 {
-            theme.none().to_owned()
-        } else {
-            format!("{} poses", grouped(histogram.without))
-        }
+        counted(histogram.without, "pose")
     );
     let facts_row = write::row(page, 1);
     write::line(buffer, facts_row, theme, [(facts.as_str(), Role::Text)]);

@@ -4,7 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::formats::atlas::value;
-use crate::formats::value::{fitting, grouped};
+use crate::formats::value::{counted, fitting, grouped};
 use crate::sweep::atlas::Entry;
 use crate::sweep::grid::Pose;
 use crate::sweep::order::SortKey;
@@ -110,10 +110,7 @@ fn number(app: &App, results: &Results, entry: &Entry) -> String {
 /// All about an imprint in one line.
 fn detail(app: &App, results: &Results, entry: &Entry) -> String {
     let pose = results.survey().grid.pose(entry.first_pose);
-    let count = |count: u16, noun: &str| {
-        let plural = if count == 1 { "" } else { "s" };
-        format!("{count} {noun}{plural}")
-    };
+    let count = |count: u16, noun: &str| counted(count.into(), noun);
     format!(
         "imprint {} at {}; {}, {}, {} {}",
         entry.id,

@@ -5,7 +5,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use super::imprints::place;
-use crate::formats::value::grouped;
+use crate::formats::value::{counted, grouped};
 use crate::parameter::Parameter;
 use crate::sweep::grid::Grid;
 use crate::touch::Plane;
@@ -16,13 +16,21 @@ use crate::tui::explore_layout::map::MapPane;
 use crate::tui::theme::Role;
 use crate::tui::view::{thumbnail, write};
 
+/// What letters mean.
+const LEGEND: &str = "  letter: an imprint";
+
 /// Draws the page; answers where the cursor is.
 pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) -> Option<Position> {
     let theme = app.theme();
     let pane = MapPane::of(page, results);
     let grid = &results.survey().grid;
     let head = heading(results);
-    write::line(buffer, pane.head, theme, [(head.as_str(), Role::Title)]);
+    let end = write::line(buffer, pane.head, theme, [(head.as_str(), Role::Title)]);
+    // Only where there is room for all of it.
+    let legend = write::right_of(pane.head, end);
+    if write::width(LEGEND) <= usize::from(legend.width) {
+        write::line(buffer, legend, theme, [(LEGEND, Role::Quiet)]);
+    }
     let cursor = draw_cells(app, results, &pane, buffer);
     draw_rulers(app, grid, &pane, buffer, page);
     draw_pose(app, results, &pane, buffer);
@@ -148,9 +156,9 @@ fn draw_pose(app: &App, results: &Results, pane: &MapPane, buffer: &mut Buffer) 
     let (which, poses) = match entry {
         Some(entry) => (
             format!("imprint {}", entry.id),
-            format!("{} poses", grouped(entry.count)),
+            counted(entry.count, "pose"),
         ),
-        None => ("not gone through".to_owned(), String::new()),
+        None => ("not swept".to_owned(), String::new()),
     };
     let detail = format!("{which} at {}; {poses}", place(results, &pose));
     let detail = detail.trim_end_matches("; ");

@@ -16,11 +16,11 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Position;
 
 use super::write;
-use crate::formats::value::grouped;
+use crate::formats::value::{counted, grouped};
 use crate::tui::app::App;
 use crate::tui::explore::results::Results;
 use crate::tui::explore_layout::panes::ResultPanes;
-use crate::tui::exploring::ExplorePage;
+use crate::tui::exploring::{ExplorePage, name_of};
 use crate::tui::layout::Panes;
 use crate::tui::theme::Role;
 
@@ -56,18 +56,15 @@ pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, panes: &Panes) ->
 fn summary(results: &Results) -> String {
     let survey = results.survey();
     let poses = if survey.complete() {
-        format!("{} poses", grouped(survey.poses))
+        counted(survey.poses, "pose")
     } else {
         format!(
-            "a part: {} of {} poses",
+            "a part: {} of {}",
             grouped(survey.poses),
-            grouped(survey.grid.poses())
+            counted(survey.grid.poses(), "pose")
         )
     };
-    let what = match survey.grid.source().kind() {
-        Some(kind) => kind.name(),
-        None => "picture",
-    };
-    let distinct = grouped(survey.atlas.len() as u64);
-    format!("{what}: {poses}, {distinct} distinct imprints")
+    let what = name_of(survey.grid.source());
+    let distinct = counted(survey.atlas.len() as u64, "distinct imprint");
+    format!("{what}: {poses}, {distinct}")
 }

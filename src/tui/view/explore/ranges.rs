@@ -6,9 +6,10 @@ use std::time::Duration;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::formats::value::grouped;
+use crate::formats::value::counted;
 use crate::sweep::grid::Anchor;
 use crate::tui::app::App;
+use crate::tui::columns::narrow;
 use crate::tui::explore::ranges::{RangeField, RangesForm};
 use crate::tui::explore_layout::ranges::RangeRows;
 use crate::tui::theme::Role;
@@ -85,8 +86,8 @@ fn draw_field(
 fn draw_anchor(app: &App, form: &RangesForm, buffer: &mut Buffer, row: Rect) -> Position {
     let label = format!("{:LABEL$}", "Anchor");
     let (name, meaning) = match form.anchor() {
-        Anchor::Corner => ("corner", "its upright top left"),
-        Anchor::Centre => ("centre", "what it turns about"),
+        Anchor::Corner => ("corner", "top left, unturned"),
+        Anchor::Centre => ("centre", "point it turns about"),
     };
     let role = if form.focus().is_none() {
         Role::Focus
@@ -110,7 +111,7 @@ fn draw_summary(app: &App, form: &RangesForm, buffer: &mut Buffer, area: Rect) {
     let theme = app.theme();
     let (text, role) = match form.grid() {
         Ok(grid) => {
-            let poses = format!("{} poses", grouped(grid.poses()));
+            let poses = counted(grid.poses(), "pose");
             let time = form.estimate().map(|time| format!(", {}", about(time)));
             (poses + time.as_deref().unwrap_or(""), Role::Text)
         }
@@ -126,12 +127,8 @@ fn draw_summary(app: &App, form: &RangesForm, buffer: &mut Buffer, area: Rect) {
     };
     write::line(buffer, write::row(area, 0), theme, [(text.as_str(), role)]);
     if form.by_hand() > 0 {
-        let taxels = if form.by_hand() == 1 {
-            "taxel"
-        } else {
-            "taxels"
-        };
-        let text = format!("without {} {taxels} set by hand", form.by_hand());
+        let taxels = counted(form.by_hand().into(), "taxel");
+        let text = format!("without {taxels} set by hand");
         let row = write::row(area, 1);
         write::line(buffer, row, theme, [(text.as_str(), Role::Quiet)]);
     }
@@ -147,12 +144,7 @@ pub fn about(time: Duration) -> String {
         6_000..172_800 => (seconds / 3_600, "hour"),
         _ => (seconds / 86_400, "day"),
     };
-    let plural = if number == 1 { "" } else { "s" };
-    format!("about {} {unit}{plural}", grouped(number))
-}
-
-fn narrow(columns: usize) -> u16 {
-    u16::try_from(columns).unwrap_or(u16::MAX)
+    format!("about {}", counted(number, unit))
 }
 
 #[cfg(test)]

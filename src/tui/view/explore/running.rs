@@ -6,9 +6,10 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use super::ranges::about;
-use crate::formats::value::grouped;
+use crate::formats::value::{counted, grouped};
 use crate::tui::app::App;
 use crate::tui::explore::running::{Job, Running};
+use crate::tui::exploring::name_of;
 use crate::tui::theme::Role;
 use crate::tui::view::write;
 
@@ -22,7 +23,7 @@ pub fn draw(app: &App, running: &Running, buffer: &mut Buffer, area: Rect) {
     let inner = write::right_of(area, area.x.saturating_add(2));
     let (title, end) = match &running.job {
         Job::Sweep(grid) => (
-            format!("Exploring: {}", grid.source().noun()),
+            format!("Exploring: {}", name_of(grid.source())),
             "stop keeps what is complete",
         ),
         Job::Write(name, _) => (format!("Writing {name}"), "stop leaves nothing behind"),
@@ -34,7 +35,8 @@ pub fn draw(app: &App, running: &Running, buffer: &mut Buffer, area: Rect) {
     let done = running.progress.map_or(0, |progress| progress.poses);
     if let Some(all) = running.poses() {
         let percent = u128::from(done) * 100 / u128::from(all.max(1));
-        let text = format!("{} of {} poses, {percent} %", grouped(done), grouped(all));
+        let all_of_them = counted(all, "pose");
+        let text = format!("{} of {all_of_them}, {percent} %", grouped(done));
         write::line(buffer, row(1), theme, [(text.as_str(), Role::Text)]);
         gauge(app, done, all, buffer, row(2));
     }

@@ -4,6 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::formats::value::{fitting, grouped};
+use crate::sweep::quantity::quantities;
 use crate::sweep::statistics::COLUMNS;
 use crate::tui::app::App;
 use crate::tui::explore::results::Results;
@@ -22,12 +23,17 @@ pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) -> Op
     let (first, visible) = table.columns;
     let (name, width) = (table.name, table.column);
     let columns = || COLUMNS.iter().skip(first).take(visible);
-    let mut head = format!("{:name$}", more(first, visible));
+    let mut headings = format!("{:name$}", head(&table, results));
     for column in columns() {
         let title: String = column.title.chars().take(width - 1).collect();
-        head += &format!("{title:>width$}");
+        headings += &format!("{title:>width$}");
     }
-    write::line(buffer, table.head, theme, [(head.as_str(), Role::Title)]);
+    write::line(
+        buffer,
+        table.head,
+        theme,
+        [(headings.as_str(), Role::Title)],
+    );
     let mut cursor = None;
     let statistics = results.survey().statistics.iter().enumerate();
     let rows = statistics.skip(table.first).take(table.rows.height.into());
@@ -59,14 +65,22 @@ pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) -> Op
     cursor
 }
 
-/// That there are columns that do not fit.
-fn more(first: usize, visible: usize) -> &'static str {
-    match (first > 0, first + visible < COLUMNS.len()) {
+/// Which row is chosen where not all can be seen, and to which side there are columns that do not fit.
+fn head(table: &StatisticsTable, results: &Results) -> String {
+    let (first, visible) = table.columns;
+    let all = quantities().len();
+    let row = if usize::from(table.rows.height) < all {
+        format!("{} of {all} ", results.quantity_number() + 1)
+    } else {
+        String::new()
+    };
+    let columns = match (first > 0, first + visible < COLUMNS.len()) {
         (false, false) => "",
-        (false, true) => "more: Right",
-        (true, false) => "more: Left",
-        (true, true) => "more: Left Right",
-    }
+        (false, true) => "more >",
+        (true, false) => "< more",
+        (true, true) => "< more >",
+    };
+    row + columns
 }
 
 /// Poses and imprints.
