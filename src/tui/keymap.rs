@@ -199,7 +199,7 @@ pub const KEYMAP: &[Binding] = table! {
 
     Map {
         [LEFT => Cursor(Left), RIGHT => Cursor(Right), UP => Cursor(Up), DOWN => Cursor(Down)]
-            "" "to the next pose";
+            "" "to the next pose; each letter is an imprint";
         [PageUp => Scroll(-10), PageDown => Scroll(10)] "" "ten poses up, down";
         [Home => ScrollTo(First), END => ScrollTo(Last)] "" "to the first, the last x0";
         [Char('<') => Explore(Exploring::Angle(-1)), Char('>') => Explore(Exploring::Angle(1))]
