@@ -91,10 +91,7 @@ impl Library {
         // In the trash a name may stand twice.
         let name = numbered.find(free);
         let name = name.unwrap_or_else(|| shape.name.clone());
-        let thrown = Shape {
-            name: name.clone(),
-            ..shape.clone()
-        };
+        let thrown = shape.clone().renamed(name.clone());
         let target = self.next(&deleted, name.as_str());
         let temporary = self.trash().join(TEMPORARY);
         file::write(&target, &temporary, thrown.write().as_bytes())?;

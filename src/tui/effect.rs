@@ -205,10 +205,10 @@ impl World {
         let Some((orphan, _)) = self.orphan.take() else {
             return Answer::Failed("no unsaved work is left".to_owned());
         };
-        let shape = Shape {
-            name: Name::new(UNNAMED).unwrap_or_else(|_| orphan.shape.name.clone()),
-            ..orphan.shape.clone()
-        };
+        let mut shape = orphan.shape.clone();
+        if let Ok(name) = Name::new(UNNAMED) {
+            shape = shape.renamed(name);
+        }
         match self.library.throw_away(&shape) {
             Ok(name) => {
                 orphan.discard();

@@ -291,7 +291,7 @@ fn any_keys() -> impl Strategy<Value = Vec<&'static str>> {
         "s",
         "q",
         "y",
-        "x",
+        "x<C-u>",
         "a.txt",
         "<BS>",
         "<C-u>",
