@@ -34,21 +34,17 @@ pub enum Role {
     Error,
 }
 
-impl Role {
-    /// Its letter in printed screens.
-    pub fn letter(style: &Style) -> char {
-        let has = |modifier| style.add_modifier.contains(modifier);
-        if has(Modifier::REVERSED) {
-            'R'
-        } else if has(Modifier::BOLD) {
-            'B'
-        } else if has(Modifier::UNDERLINED) {
-            'U'
-        } else if has(Modifier::DIM) {
-            'D'
-        } else {
-            '.'
-        }
+/// The letter of a style in printed screens. No role has another style than these, and colours.
+pub fn letter(style: &Style) -> char {
+    let has = |modifier| style.add_modifier.contains(modifier);
+    if has(Modifier::REVERSED) {
+        'R'
+    } else if has(Modifier::BOLD) {
+        'B'
+    } else if has(Modifier::DIM) {
+        'D'
+    } else {
+        '.'
     }
 }
 

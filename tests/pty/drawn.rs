@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::num::NonZeroU16;
 
 use taxel::tui::script::Session;
-use taxel::tui::theme::Role;
+use taxel::tui::theme;
 
 pub(crate) fn emulator(columns: u16, rows: u16) -> vt100::Parser {
     vt100::Parser::new(side(rows), side(columns), 0)
@@ -46,17 +46,17 @@ pub(crate) fn of_emulator(screen: &vt100::Screen) -> String {
 
 fn letter(cell: &vt100::Cell) -> char {
     use ratatui::style::{Modifier, Style};
+    assert!(!cell.underline(), "nothing is underlined");
     let attributes = [
         (cell.inverse(), Modifier::REVERSED),
         (cell.bold(), Modifier::BOLD),
-        (cell.underline(), Modifier::UNDERLINED),
         (cell.dim(), Modifier::DIM),
     ];
     let set = attributes
         .into_iter()
         .filter(|(set, _)| *set)
         .map(|(_, attribute)| attribute);
-    Role::letter(&Style::new().add_modifier(set.collect()))
+    theme::letter(&Style::new().add_modifier(set.collect()))
 }
 
 /// A blank has no style that matters unless it is reversed.

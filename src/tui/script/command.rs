@@ -63,11 +63,10 @@ pub enum Command {
 }
 
 /// The styles that can be expected, and their letters in printed screens.
-const STYLES: [(&str, char); 5] = [
+const STYLES: [(&str, char); 4] = [
     ("plain", '.'),
     ("reverse", 'R'),
     ("bold", 'B'),
-    ("underline", 'U'),
     ("dim", 'D'),
 ];
 

@@ -29,7 +29,6 @@ struct Look {
     paper: [u8; 3],
     bold: bool,
     dim: bool,
-    underlined: bool,
 }
 
 /// Ink and paper of a palette.
@@ -99,7 +98,6 @@ impl Look {
             paper,
             bold: has(Modifier::BOLD),
             dim: has(Modifier::DIM),
-            underlined: has(Modifier::UNDERLINED),
         }
     }
 }
@@ -129,7 +127,6 @@ fn draw(svg: &mut String, (column, row): (u16, u16), look: Look, paper: [u8; 3],
     for (wanted, attribute) in [
         (look.bold, " font-weight=\"bold\""),
         (look.dim, " opacity=\"0.6\""),
-        (look.underlined, " text-decoration=\"underline\""),
     ] {
         if wanted {
             style += attribute;

@@ -19,7 +19,7 @@ use crate::tui::app::{App, Options};
 use crate::tui::effect::World;
 use crate::tui::key::{Key, KeyError, parse};
 use crate::tui::message::Message;
-use crate::tui::theme::Role;
+use crate::tui::theme::letter;
 use crate::tui::view::{view, write};
 
 /// A running program on a screen of its own.
@@ -113,7 +113,7 @@ impl Session {
 
     /// The styles of the screen, a letter a character: `R` reversed, `B` bold, `D` dim, `.` plain.
     pub fn styles(&self) -> String {
-        self.rows(|cell| Role::letter(&cell.style()).to_string())
+        self.rows(|cell| letter(&cell.style()).to_string())
     }
 
     /// The screen as SVG, with a title. Its colours are those of a theme that has all of them, as it is where
