@@ -4,11 +4,14 @@
 //! cell. What reaches beyond the sensor is cut off.
 //!
 //! **Exactly the threshold is active**, in real arithmetic, for the decimals that the user wrote. Coverages are
-//! computed in `f64` first, with an error below 1e-12 ([`crate::geometry::overlap`]). One that lies within
-//! [`DOUBTFUL`] of the threshold is computed again with 32 digits ([`Double`]), and is active unless it falls short
-//! by more than 1e-20 ([`Real::TIE`]). Whether two algebraic expressions of the input are *equal* cannot be decided
-//! by any number of digits; but decimals of at most 17 digits that come within 1e-20 of a tie without being one are
-//! not known, and on grids of hundredths the nearest are about 6e-9 away.
+//! computed in `f64` first, with an error below 1e-11 ([`crate::geometry::overlap`]). One that lies within 1e-10 of
+//! the threshold is computed again with 32 digits ([`Double`]), and is active unless it falls short by more than 1e-20
+//! ([`Real::TIE`]).
+//!
+//! Whether two algebraic expressions of the input are *equal* cannot be decided by any number of digits: what falls
+//! short by less than 1e-20 is taken for a tie. For an upright rectangle whose numbers have at most nine decimals that
+//! is exact, since its coverages are multiples of 1e-18; with more decimals a coverage can come nearer than 1e-20
+//! (0.9999999999 × 0.50000000005). Turned figures of hundredths come within 3e-11.
 
 use crate::geometry::outline::{Extent, Solid};
 use crate::geometry::overlap::{Overlap, cell};
@@ -16,10 +19,12 @@ use crate::geometry::real::{Double, Real};
 use crate::imprint::Imprint;
 use crate::sensor::Sensor;
 
-/// A coverage this near to the threshold is decided with more digits; a share of a cell.
-pub const DOUBTFUL: f64 = 1e-10;
+/// A coverage this near to the threshold is decided with more digits, of every shape of the program; a share of a cell.
+pub(crate) const DOUBTFUL: f64 = 1e-10;
+/// Outlines of one's own may reach further: roundings grow with the numbers that they are roundings of.
+const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
-/// The sensory plane: a sensor that can be touched again and again without allocating.
+/// The sensory plane: a sensor that can be touched again and again without allocating, unless a coverage is in doubt.
 ///
 /// ```
 /// use taxel::{figure::{Figure, Kind}, sensor::Sensor, touch::Plane};
@@ -59,7 +64,7 @@ impl Plane {
 
     /// Activates the taxels that are covered enough.
     fn activate(&self, solid: &impl Solid, imprint: &mut Imprint) {
-        let threshold = self.sensor.threshold();
+        let (threshold, doubt) = (self.sensor.threshold(), self.doubt());
         let areas = self.areas.grid();
         let rows = areas.rows();
         let columns = areas.columns();
@@ -80,9 +85,9 @@ impl Plane {
                 }
             }
             let mut active = short.map(|short| (!short >> unused) << first);
-            if Real::min(nearest[0], nearest[1]) < DOUBTFUL {
+            if Real::min(nearest[0], nearest[1]) < doubt {
                 for lane in 0..2 {
-                    if nearest[lane] < DOUBTFUL {
+                    if nearest[lane] < doubt {
                         active[lane] = self.decide(solid, 2 * pair + lane, active[lane]);
                     }
                 }
@@ -91,20 +96,23 @@ impl Plane {
         }
     }
 
+    /// How near to the threshold a coverage of the last touch is in doubt.
+    fn doubt(&self) -> f64 {
+        DOUBTFUL.max(ROUNDINGS * self.areas.grid().magnitude())
+    }
+
     /// The active taxels of a row, those in doubt computed again.
     #[cold]
     fn decide(&self, solid: &impl Solid, row: usize, mut active: u64) -> u64 {
-        let threshold = self.sensor.threshold();
-        // At least TIE, so that a threshold below it does not activate what is not covered at all.
-        let least = Double::decimal(threshold) - Double::TIE;
-        let least = Real::max(least, Double::TIE);
+        let (threshold, doubt) = (self.sensor.threshold(), self.doubt());
+        let least = least(threshold);
         let areas = self.areas.grid();
         let columns = areas.columns();
         // The last cell that was decided and that no boundary crosses: its neighbours share its area. So full cells
         // are decided once a row at a threshold of 1, not one by one.
         let mut open: Option<(usize, bool)> = None;
         for (column, area) in columns.clone().zip(areas.row(row, &columns)) {
-            if (area - threshold).abs() >= DOUBTFUL {
+            if (area - threshold).abs() >= doubt {
                 continue;
             }
             let (Ok(cell_column), Ok(cell_row)) = (u8::try_from(column), u8::try_from(row)) else {
@@ -151,6 +159,12 @@ impl Plane {
         }
         all
     }
+}
+
+/// The least coverage that activates a taxel: the threshold, short of a tie; and more than nothing, so that a threshold
+/// below a tie does not activate what is not covered at all.
+pub(crate) fn least(threshold: f64) -> Double {
+    Real::max(Double::decimal(threshold) - Double::TIE, Double::TIE)
 }
 
 /// A share of a cell without the roundings that show: never below 0 or above 1, and 0, ½ and 1 just these.

@@ -7,7 +7,7 @@ mod common;
 use std::f64::consts::{PI, SQRT_2};
 
 use common::{figure, picture, sensor};
-use taxel::geometry::outline::{Polygon, Solid};
+use taxel::geometry::outline::{Ellipse, Pen, Point, Polygon, Side, Solid};
 use taxel::touch::Plane;
 
 /// Columns and rows of the sensor.
@@ -135,6 +135,37 @@ fn polygons_of_ones_own_cover_what_their_slopes_say() {
     ];
     for &(name, vertices, cells) in cases {
         assert_coverages(name, &Polygon::new(vertices.iter().copied()), cells);
+    }
+}
+
+/// The edges as they are drawn.
+struct Drawn(Vec<[Vertex; 2]>);
+
+impl Pen<f64> for Drawn {
+    fn edge(&mut self, from: Point<f64>, to: Point<f64>) {
+        self.0.push([(from.x, from.y), (to.x, to.y)]);
+    }
+    fn ellipse(&mut self, _: &Ellipse<f64>, _: Side) {}
+}
+
+#[test]
+fn polygons_of_any_size_and_anywhere_are_read_in_either_sense() {
+    let drawn = |corners: [Vertex; 3]| {
+        let mut drawn = Drawn(Vec::new());
+        Polygon::new(corners).draw(&mut drawn);
+        drawn.0
+    };
+    // Beyond 1e154 the products of coordinates are none; near 1e9 those of a small triangle are all roundings.
+    for size in [1e-300, 1e-200, 1.0, 1e154, 1e200, f64::MAX] {
+        for place in [0.0, -size, 1e9] {
+            let (near, far) = (place, place + size);
+            let [a, b, c] = [(near, near), (far, near), (far, far)];
+            if near == far {
+                continue;
+            }
+            assert_eq!(drawn([a, b, c]), [[c, a], [a, b], [b, c]], "{size} {place}");
+            assert_eq!(drawn([c, b, a]), [[c, a], [a, b], [b, c]], "{size} {place}");
+        }
     }
 }
 

@@ -6,7 +6,8 @@
 mod common;
 
 use common::{figure, picture, sensor};
-use taxel::geometry::outline::{Polygon, Solid};
+use taxel::geometry::outline::{Ellipse, Pen, Point, Polygon, Side, Solid};
+use taxel::geometry::real::Real;
 use taxel::touch::Plane;
 
 /// Columns and rows of the sensor: room for the circle of radius 13.
@@ -147,6 +148,19 @@ fn near_misses_are_no_ties() {
         (0.5, "rectangle length=8 width=2 x0=2.5 y0=5.5 angle=29.999999999", &[(4, 6), (8, 6)], &[]),
         (0.5, "octagon side=1.000000001 x0=1.25 y0=1", &[], &[(1, 1)]),
         (0.5, "octagon side=0.999999999 x0=1.25 y0=1", &[(1, 1)], &[]),
+        // Short by 2.84e-11, the nearest that is known of figures of hundredths.
+        (0.5, "rectangle length=7.24 width=5.99 x0=1.31 y0=4.01 angle=2", &[], &[(8, 8)]),
+    ]);
+}
+
+/// The limit of the rule: products of ten and eleven decimals have 21, and 1/2 − 5e-21 is taken for a half.
+#[test]
+#[rustfmt::skip] // A case a line.
+fn what_is_nearer_than_twenty_decimals_is_taken_for_a_tie() {
+    assert_figures(&[
+        (0.5, "rectangle length=0.9999999999 width=0.50000000005 x0=0 y0=0", &[(0, 0)], &[]),
+        // With nine decimals 1/2 − 5e-19 is told from a half.
+        (0.5, "rectangle length=0.999999999 width=0.5000000005 x0=0 y0=0", &[], &[(0, 0)]),
     ]);
 }
 
@@ -184,18 +198,59 @@ fn pictures_tie_at_every_angle() {
 #[test]
 fn polygons_of_ones_own_tie() {
     #[rustfmt::skip] // A case a line.
-    let cases: [(f64, &[Vertex], (u8, u8)); 5] = [
+    let cases: [(f64, &[Vertex], (u8, u8)); 8] = [
         (0.5, &[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)], (0, 0)),
         (0.32, &[(2.1, 2.1), (2.9, 2.1), (2.1, 2.9)], (2, 2)),
         // Lines through (2.5, 2.5) that climb by 3/4, by 1/2 and by 7/3.
         (0.5, &[(0.1, 0.7), (4.9, 4.3), (4.9, 9.0), (0.1, 9.0)], (2, 2)),
         (0.5, &[(0.1, 1.3), (4.9, 3.7), (4.9, 0.1), (0.1, 0.2)], (2, 2)),
         (0.5, &[(1.6, 0.4), (3.4, 4.6), (7.7, 4.6), (7.7, 0.4)], (2, 2)),
+        // From far beyond the sensor through (0.5, 0.5), climbing by 3/10; in `f64` it misses by 4e-8.
+        (0.5, &[(-999_999_999.5, -299_999_999.5), (1_000_000_000.5, 300_000_000.5), (0.0, 9e9)], (0, 0)),
+        (0.5, &[(-999_999_999.5, -299_999_999.5), (1_000_000_000.5, 300_000_000.5), (0.0, -9e9)], (0, 0)),
+        (0.5, &[(-299_999_999.5, -999_999_999.5), (300_000_000.5, 1_000_000_000.5), (9e9, 0.0)], (0, 0)),
     ];
     for (threshold, vertices, cell) in cases {
         let polygon = Polygon::new(vertices.iter().copied());
         let name = format!("{vertices:?}");
         assert_active(&name, threshold, &polygon, &[cell], &[]);
         assert_active(&name, threshold + 1e-15, &polygon, &[], &[cell]);
+    }
+}
+
+/// A disc that reaches from far beyond the sensor to the lower right corner of a taxel's cell.
+struct Far {
+    legs: (f64, f64),
+    radius: f64,
+}
+
+impl Solid for Far {
+    fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
+        let corner = T::whole(3);
+        let (x, y) = (T::decimal(self.legs.0), T::decimal(self.legs.1));
+        let radius = T::decimal(self.radius);
+        let disc = Ellipse {
+            centre: Point::new(corner - x, corner - y),
+            across: Point::new(radius, T::ZERO),
+            along: Point::new(T::ZERO, radius),
+        };
+        pen.ellipse(&disc, Side::Inside);
+    }
+}
+
+#[test]
+fn large_discs_through_a_corner_of_a_cell_cover_it_fully() {
+    // 3² + 4² = 5² and the like, in hundreds: in `f64` the sums miss by more than a touch takes for doubtful.
+    for (across, down, radius) in [(3.0, 4.0, 5.0), (5.0, 12.0, 13.0), (8.0, 15.0, 17.0)] {
+        for scale in [100.0, 1000.0, 2000.0] {
+            let disc = |shorter: f64| Far {
+                legs: (across * scale, down * scale),
+                radius: radius * scale - shorter,
+            };
+            let name = format!("{radius} times {scale}");
+            assert_active(&name, 1.0, &disc(0.0), &[(2, 2), (1, 2)], &[(3, 3), (3, 2)]);
+            // Shorter by 1e-8 it leaves about 1e-16 of the cell uncovered.
+            assert_active(&name, 1.0, &disc(1e-8), &[(1, 1)], &[(2, 2)]);
+        }
     }
 }

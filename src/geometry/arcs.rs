@@ -6,8 +6,8 @@
 //! ellipse that merely touches a grid line is no special case.
 //!
 //! What a piece adds to its cell is the difference of two running sums ([`Sums`]), so each line is computed once for
-//! the cells on its two sides; and all lines are before the way down begins, since a processor then works on several of
-//! them at once.
+//! the cells on its two sides; and all lines are computed before the way down begins, since a processor then works on
+//! several of them at once.
 
 use super::curve::{Curve, Sums};
 use super::grid::{Grid, index};
@@ -69,9 +69,11 @@ impl<T: Real> Arcs<T> {
             return;
         }
         grid.draws(
-            Point::new(curve.left.x, top),
-            Point::new(curve.right.x, end),
+            Point::new(curve.left.x, curve.top.y),
+            Point::new(curve.right.x, curve.bottom.y),
         );
+        let farthest = curve.left.x.abs().max(curve.right.x.abs());
+        grid.weighs(farthest * (curve.bottom.y - curve.top.y) * T::HALF);
         let (leftmost, mut line) = grid.place(curve.left.x);
         let (rightmost, _) = grid.place(curve.right.x);
         for vertical in &mut self.vertical[leftmost..rightmost] {

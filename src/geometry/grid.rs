@@ -28,6 +28,8 @@ pub(crate) struct Grid<T> {
     /// How far anything drawn reaches: the least x and y, and the largest ones.
     low: Point<T>,
     high: Point<T>,
+    /// The largest moment of an ellipse that was drawn.
+    moment: T,
 }
 
 /// What the pieces of boundary in a cell and in the one below it leave there, and in each cell further to the right.
@@ -55,6 +57,7 @@ impl<T: Real> Grid<T> {
             entries: vec![Entry::EMPTY; stride * usize::from(rows).div_ceil(2)],
             low: Point::new(T::ZERO, T::ZERO),
             high: Point::new(T::ZERO, T::ZERO),
+            moment: T::ZERO,
         };
         grid.clear();
         grid
@@ -72,6 +75,7 @@ impl<T: Real> Grid<T> {
         }
         self.low = Point::new(self.right(), self.bottom());
         self.high = Point::new(-T::ONE, -T::ONE);
+        self.moment = T::ZERO;
     }
 
     /// Its lower end.
@@ -161,6 +165,18 @@ impl<T: Real> Grid<T> {
             entry.here[lane] = entry.here[lane] + here;
             entry.beyond[lane] = entry.beyond[lane] + beyond;
         }
+    }
+
+    /// How large the numbers are that the areas are sums of, at most: coordinates of edges, moments of ellipses.
+    pub(crate) fn magnitude(&self) -> T {
+        let ends = [self.low.x, self.low.y, self.high.x, self.high.y];
+        ends.into_iter()
+            .fold(self.moment, |most, end| most.max(end.abs()))
+    }
+
+    /// Remembers that an ellipse of this moment is drawn.
+    pub(crate) fn weighs(&mut self, moment: T) {
+        self.moment = self.moment.max(moment);
     }
 
     /// Remembers that something is drawn within a rectangle.

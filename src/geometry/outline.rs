@@ -1,11 +1,14 @@
 //! What bounds a shape: straight edges and ellipses, drawn with a [`Pen`].
 //!
 //! A shape is *drawn* rather than returned: it calls the pen for each edge and each ellipse of its boundary. So one
-//! definition of a shape serves every use (areas, extents, pictures) in every number ([`Real`]), and nothing is
-//! allocated on the way.
+//! definition of a shape serves every use (areas, extents, pictures) in every number ([`Real`]), and in `f64` nothing
+//! is allocated on the way.
 //!
 //! **Orientation.** Edges run clockwise as seen (x right, y down) around the material, that is with the material on
 //! their right; around a hole they run the other way. Only closed sets of edges bound anything; their order is free.
+//!
+//! **Size.** Coordinates are finite. They may lie far beyond the sensor, but roundings grow with them: of the 32 digits
+//! that decide a tie, those before the decimal point are lost, and of an ellipse as many again.
 
 use super::real::Real;
 
@@ -85,7 +88,7 @@ pub enum Side {
     Outside,
 }
 
-/// What a shape draws its boundary with.
+/// What a shape draws its boundary with; all coordinates are finite.
 pub trait Pen<T: Real> {
     /// A straight piece of boundary, the material on the right of the way from `from` to `to`.
     fn edge(&mut self, from: Point<T>, to: Point<T>);
@@ -174,17 +177,29 @@ impl Polygon {
             .into_iter()
             .map(|(x, y)| (finite(x), finite(y)))
             .collect();
-        let next = vertices.iter().cycle().skip(1);
-        let doubled_area: f64 = vertices
-            .iter()
-            .zip(next)
-            .map(|(a, b)| a.0 * b.1 - b.0 * a.1)
-            .sum();
-        if doubled_area < 0.0 {
+        if turns_left(&vertices) {
             vertices.reverse();
         }
         Self { vertices }
     }
+}
+
+/// Whether a ring of vertices runs counter-clockwise as seen: its area is negative.
+fn turns_left(vertices: &[(f64, f64)]) -> bool {
+    let Some(&first) = vertices.first() else {
+        return false;
+    };
+    // Seen from the first vertex, or a polygon far away would be lost in the roundings of the way there; and in units
+    // of its size, or products would overflow. Of halves the differences cannot.
+    let way = |&(x, y): &(f64, f64)| (x / 2.0 - first.0 / 2.0, y / 2.0 - first.1 / 2.0);
+    let ways = || vertices.iter().map(way);
+    let size = ways().fold(f64::MIN_POSITIVE, |size, (x, y)| {
+        size.max(x.abs()).max(y.abs())
+    });
+    let corners = ways().map(|(x, y)| (x / size, y / size));
+    let next = corners.clone().cycle().skip(1);
+    let products = corners.zip(next).map(|(a, b)| a.0 * b.1 - b.0 * a.1);
+    products.sum::<f64>() < 0.0
 }
 
 impl Solid for Polygon {

@@ -3,8 +3,8 @@
 //! **Method.** The boundary is cut at the grid lines, and each piece adds to its own cell what the areas follow from
 //! (`grid`): straight edges here, ellipses in `arcs`.
 //!
-//! **Error.** A few roundings of numbers below 64 per piece: under 1e-12 in `f64` for every shape of the program.
-//! Edges that are horizontal or vertical up to a rounding are harmless: what they contribute is as small as their
+//! **Error.** A few roundings per piece, of sums below 10^4 for every shape of the program: under 1e-11 in `f64`, a
+//! tenth of what a touch takes for doubtful. Edges that are horizontal or vertical up to a rounding are harmless: what they contribute is as small as their
 //! height. Deciding a threshold exactly is the business of [`crate::touch`], which uses [`cell`] for it.
 
 use super::arcs::Arcs;

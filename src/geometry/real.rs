@@ -1,7 +1,7 @@
 //! The number that geometry is computed in: [`f64`] for speed, [`Double`] to decide what `f64` cannot.
 //!
 //! Every outline and every area is written once, over [`Real`]. A touch computes in `f64`, whose error here stays
-//! below 1e-12; what lies nearer than that to the threshold is computed again as a [`Double`], a pair of `f64`
+//! below 1e-11; what lies within ten times that of the threshold is computed again as a [`Double`], a pair of `f64`
 //! with about 106 bits, and there a difference below 1e-20 counts as none ([`Real::TIE`]).
 //!
 //! **A parameter means the decimal number that one reads.** `0.1` as an `f64` is not one tenth, so a figure that
@@ -28,7 +28,7 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// Nought.
+    /// Zero.
     const ZERO: Self;
     /// One.
     const ONE: Self;
@@ -36,7 +36,7 @@ pub trait Real:
     const HALF: Self;
     /// A right angle in radians.
     const QUARTER_TURN: Self;
-    /// Two areas (in cells) that differ by less than this cannot be told apart in this number.
+    /// Two areas (in cells) that differ by less than this are taken for equal.
     const TIE: Self;
 
     /// The decimal number that `value` is written as; `value` itself where the number has no more digits than that.
@@ -47,7 +47,7 @@ pub trait Real:
     fn whole(value: i32) -> Self;
     /// The largest whole number not above it; saturates beyond the range of `i32`.
     fn floor(self) -> i32;
-    /// The cell of a line that a number from 0 to 2²⁰ lies in: its index, and its lower end. A whole number lies in
+    /// The cell of a line that a number from 0 to below 2²⁰ lies in: its index, and its lower end. A whole number lies in
     /// either of two.
     fn cell(self) -> (usize, Self);
     /// The square root, of a negative number 0: roots of differences that vanish may come out at −1e-17.
@@ -288,7 +288,7 @@ impl Real for Double {
         let (Ok(exponent), Ok(places)) = (exponent.parse::<i32>(), i32::try_from(places)) else {
             return Self::from(value);
         };
-        // At most 17 digits, so the halves and the powers of ten up to 10^22 are exact.
+        // At most 17 digits, so the digits are exact, and so are the powers of ten up to 10^46.
         let mut number = Self::ZERO;
         for digit in digits.bytes().filter(u8::is_ascii_digit) {
             number = number * Self::from(10.0) + Self::from(f64::from(digit - b'0'));

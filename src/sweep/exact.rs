@@ -9,6 +9,7 @@ use super::grid::Grid;
 use crate::geometry::outline::Point;
 use crate::geometry::overlap::Overlap;
 use crate::geometry::real::{Double, Real};
+use crate::touch::least;
 
 /// How many values of x0 and of y0 are kept as places.
 const REMEMBERED: usize = 128;
@@ -33,11 +34,7 @@ impl<'a> Exact<'a> {
             boundary: None,
             places: vec![(None, Double::ZERO); 2 * REMEMBERED].into(),
             cell: Overlap::new(1, 1),
-            // What is not covered at all stays inactive, however low the threshold.
-            least: Real::max(
-                Double::decimal(grid.sensor().threshold()) - Double::TIE,
-                Double::TIE,
-            ),
+            least: least(grid.sensor().threshold()),
         }
     }
 

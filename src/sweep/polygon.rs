@@ -8,7 +8,7 @@
 //! one quadratic, whose passages through the threshold are solved for.
 //!
 //! **Error.** `w` at a corner is a sum of shares of rises, each in [0, 1] of them, and `W` is summed up by
-//! trapezoids: nothing is extrapolated, so steep pieces do no harm. Below 1e-12.
+//! trapezoids: nothing is extrapolated, so steep pieces do no harm. Below 1e-11.
 
 use super::span::{DOUBT, Level, STEEP, Spans};
 use crate::geometry::outline::Point;

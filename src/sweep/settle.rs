@@ -7,7 +7,7 @@
 //! passage; one on which `C` cannot reach the threshold holds none; any other is halved. Nothing is missed,
 //! whatever the wall.
 //!
-//! **Error.** Below 1e-12: closed forms of numbers below 64. Frame: the anchor at the origin; cell sides.
+//! **Error.** Below 1e-11: closed forms of numbers below 10^4. Frame: the anchor at the origin; cell sides.
 
 use super::oval::Oval;
 use super::span::{DOUBT, Level, NEAR, Spans};
