@@ -105,11 +105,13 @@ impl DecimalRange {
     /// # Ok::<(), taxel::sweep::range::RangeError>(())
     /// ```
     pub fn part(&self, indices: std::ops::Range<u64>) -> Option<Self> {
-        let count = indices.end.checked_sub(indices.start)?;
+        if indices.is_empty() || indices.end > self.count {
+            return None;
+        }
         let way = i64::try_from(indices.start).ok()?.checked_mul(self.step)?;
-        (count > 0 && indices.end <= self.count).then_some(Self {
+        Some(Self {
             start: self.start + way,
-            count,
+            count: indices.end - indices.start,
             ..*self
         })
     }
@@ -163,10 +165,12 @@ impl FromStr for DecimalRange {
             })
         };
         let (first, last, by) = (units(start)?, units(end)?, units(step)?);
-        if by == 0 {
-            return Err(RangeError::Step);
+        if by <= 0 {
+            return Err(RangeError::Step {
+                step: shortened(step),
+            });
         }
-        if last < first || by < 0 {
+        if last < first {
             return Err(RangeError::Backwards {
                 start: shortened(start),
                 end: shortened(end),
@@ -234,18 +238,21 @@ pub enum RangeError {
         text: String,
     },
     /// Not a plain decimal, or with more digits than are exact.
-    #[error("\"{text}\" is not a decimal number of at most {MAX_PLACES} decimals")]
+    #[error(
+        "\"{text}\" is not a decimal number of at most 15 digits, {MAX_PLACES} of them behind the point"
+    )]
     Number {
         /// What was given.
         text: String,
     },
-    /// A step of 0.
-    #[error("step 0 leads nowhere, expected one above 0")]
-    Step,
+    /// A step of 0, or backwards.
+    #[error("step {step} leads nowhere, expected one above 0")]
+    Step {
+        /// As given.
+        step: String,
+    },
     /// An end before the start.
-    #[error(
-        "{start}:{end}:{step} ends before it starts, expected an end from {start} on and a step above 0"
-    )]
+    #[error("{start}:{end}:{step} ends before it starts, expected an end from {start} on")]
     Backwards {
         /// As given.
         start: String,
@@ -267,8 +274,8 @@ impl RangeError {
     pub fn expected(&self) -> String {
         match self {
             Self::Form { .. } => "expected a number or start:end:step".to_owned(),
-            Self::Number { .. } => format!("not decimals of at most {MAX_PLACES} places"),
-            Self::Step => "expected a step above 0".to_owned(),
+            Self::Number { .. } => format!("not decimals of 15 digits, {MAX_PLACES} places"),
+            Self::Step { .. } => "expected a step above 0".to_owned(),
             Self::Backwards { start, .. } => format!("expected an end from {start} on"),
             Self::Many { .. } => self.to_string(),
         }

@@ -28,10 +28,21 @@ fn ranges_are_exact_or_refused() {
     let refused = |text: &str| range(text).expect_err("no range").to_string();
     assert_eq!(
         refused("1:2:0.00"),
-        "step 0 leads nowhere, expected one above 0"
+        "step 0.00 leads nowhere, expected one above 0"
     );
-    assert!(refused("2:1:0.1").starts_with("2:1:0.1 ends before it starts"));
-    assert!(refused("1:2:-0.1").contains("a step above 0"));
+    assert_eq!(
+        refused("2:1:0.1"),
+        "2:1:0.1 ends before it starts, expected an end from 2 on"
+    );
+    assert_eq!(
+        refused("1:2:-0.1"),
+        "step -0.1 leads nowhere, expected one above 0"
+    );
+    assert_eq!(refused("2:1:-1"), refused("1:2:-1"));
+    assert_eq!(
+        refused("9999999999999999"),
+        "\"9999999999999999\" is not a decimal number of at most 15 digits, 12 of them behind the point"
+    );
     assert_eq!(
         refused("1:2"),
         "\"1:2\" is no range, expected a number or start:end:step"
@@ -56,6 +67,26 @@ fn ranges_are_exact_or_refused() {
         refused("0:10:0.000001"),
         format!("10000001 values, expected at most {MAX_VALUES}")
     );
+}
+
+#[test]
+fn parts_beyond_the_end_are_none() {
+    let far = i64::MAX.unsigned_abs();
+    for text in ["5:5.99:0.01", "1", "999999999999998:999999999999999:1"] {
+        let range: DecimalRange = text.parse().expect("a range");
+        let count = range.count();
+        assert_eq!(range.part(0..count), Some(range));
+        for indices in [
+            far..far + 1,
+            far - 1..far,
+            0..far,
+            u64::MAX - 1..u64::MAX,
+            count..count,
+            count..count + 1,
+        ] {
+            assert_eq!(range.part(indices.clone()), None, "{text}: {indices:?}");
+        }
+    }
 }
 
 #[test]
