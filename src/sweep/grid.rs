@@ -95,7 +95,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// The grid; the position, angle and zoom that `source` itself has do not matter.
+    /// The grid; the position, angle and zoom that `source` itself has do not matter: it is put into the first pose.
     ///
     /// # Errors
     /// A range that leaves its parameter's, zooms for a figure, or more than [`MAX_POSES`] poses.
@@ -105,7 +105,7 @@ impl Grid {
         anchor: Anchor,
         ranges: Ranges,
     ) -> Result<Self, GridError> {
-        let mut poses = 1_u128;
+        let (mut source, mut poses) = (source, 1_u128);
         for (parameter, range) in ranges.rows() {
             let zoom = matches!(parameter, Parameter::ZoomX | Parameter::ZoomY);
             if zoom && source.kind().is_some() {
@@ -116,9 +116,8 @@ impl Grid {
                 }
                 continue;
             }
-            for value in [range.value(0), range.last()] {
-                parameter.check(value, sensor.side())?;
-            }
+            parameter.check(range.last(), sensor.side())?;
+            source = source.with(parameter, range.value(0), sensor.side())?;
             poses *= u128::from(range.count());
         }
         if poses > u128::from(MAX_POSES) {

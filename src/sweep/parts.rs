@@ -70,11 +70,10 @@ impl Survey {
             "more poses than there are",
         )?;
         let ascending = parts.first_poses.windows(2).all(|pair| pair[0] < pair[1]);
-        let last = parts.first_poses.last();
-        check(
-            ascending && last.is_none_or(|&last| last < own.end * width),
-            "first poses out of order",
-        )?;
+        let (first, last) = (parts.first_poses.first(), parts.first_poses.last());
+        let inside = first.is_none_or(|&first| first >= own.start * width)
+            && last.is_none_or(|&last| last < own.end * width);
+        check(ascending && inside, "first poses out of order")?;
         let mut atlas = Atlas::new(columns, rows);
         let mut census = Census::new(atlas.layout().words());
         let entries = parts.counts.iter().zip(&parts.first_poses);
@@ -107,3 +106,34 @@ impl Survey {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct PartsError(&'static str);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Figure, Kind};
+    use crate::sensor::Sensor;
+    use crate::source::Source;
+    use crate::sweep::grid::{Anchor, Ranges};
+    use crate::sweep::range::DecimalRange;
+    use crate::sweep::survey::Watch;
+
+    #[test]
+    fn first_poses_lie_in_the_shard() {
+        let ranges = Ranges {
+            angle: DecimalRange::whole(0),
+            ..Ranges::default()
+        };
+        let source = Source::Figure(Figure::default_of(Kind::Hexagon, 16));
+        let grid = Grid::new(source, Sensor::default(), Anchor::Corner, ranges).expect("a grid");
+        let shard = Shard::new(2, 2).expect("a shard");
+        let parts = Survey::of(&grid, shard, Watch::nothing()).parts();
+        let read = |first: u64| {
+            let mut parts = parts.clone();
+            parts.first_poses[0] = first;
+            Survey::from_parts(grid.clone(), shard, &parts).map(|survey| survey.parts() == parts)
+        };
+        assert_eq!(parts.first_poses[0], 5000);
+        assert_eq!(read(5000), Ok(true));
+        assert_eq!(read(4999), Err(PartsError("first poses out of order")));
+    }
+}

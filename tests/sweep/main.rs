@@ -12,6 +12,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use cases::{cases, differences, figure, picture};
 use taxel::figure::Kind;
+use taxel::parameter::Parameter;
 use taxel::sensor::Sensor;
 use taxel::source::Source;
 use taxel::sweep::grid::{Anchor, Grid, Ranges};
@@ -222,6 +223,15 @@ fn shards_are_merged_only_if_all_are_there() {
     assert_eq!(
         merge(vec![shard(&grid, 1, 2), shard(&grid, 1, 2)]),
         Err(MergeError::Count { shard: twice })
+    );
+    // Where the shape itself lay does not matter.
+    let moved = figure(Kind::Triangle, 6.0, 0.0, 0.0)
+        .with(Parameter::Y0, 2.5, 16)
+        .and_then(|source| source.with(Parameter::Angle, 77.0, 16));
+    let moved = small(moved.expect("in range"), "5:5.9:0.1", "0:40:10");
+    assert_eq!(
+        merge(vec![shard(&grid, 1, 2), shard(&moved, 2, 2)]),
+        Ok(grid.poses())
     );
     let other = small(
         figure(Kind::Triangle, 6.1, 0.0, 0.0),
