@@ -5,7 +5,7 @@
 //! horizontal side before they are turned; their centre is that of the circumscribed circle.
 //! Source: Purcaru and Niculescu; the sense of rotation and the form of the hole are conventions of this project.
 
-use crate::geometry::outline::{Ellipse, Pen, Point, Side, Solid, Turn};
+use crate::geometry::outline::{Ellipse, Extent, Pen, Point, Side, Solid, Turn};
 use crate::geometry::real::Real;
 use crate::parameter::{Parameter, ParameterError};
 
@@ -152,7 +152,8 @@ impl Figure {
         Ok(figure)
     }
 
-    /// The figure that a new form shows: every parameter at its default, solid.
+    /// The figure that a new form shows: every parameter at its default, solid; on a sensor whose larger side is `side`, 1
+    /// to 64. On a small one it begins further up and to the left, in whole cells, so that as much of it as fits is there.
     pub fn default_of(kind: Kind, side: u8) -> Self {
         let default = |parameter: Parameter| parameter.default(side);
         let size = |index: usize| {
@@ -160,13 +161,21 @@ impl Figure {
                 .get(index)
                 .map_or(1.0, |&parameter| default(parameter))
         };
-        Self {
+        let at_origin = Self {
             kind,
             sizes: [size(0), size(1)],
-            x0: default(Parameter::X0),
-            y0: default(Parameter::Y0),
+            x0: 0.0,
+            y0: 0.0,
             angle: default(Parameter::Angle),
             thickness: None,
+        };
+        let room = |end: f64| (f64::from(side) - end).floor().max(0.0);
+        let (right, bottom) =
+            Extent::of(&at_origin).map_or((0.0, 0.0), |extent| (extent.right, extent.bottom));
+        Self {
+            x0: default(Parameter::X0).min(room(right)),
+            y0: default(Parameter::Y0).min(room(bottom)),
+            ..at_origin
         }
     }
 
@@ -360,6 +369,27 @@ impl std::fmt::Display for Figure {
             Ok(())
         } else {
             write!(f, " ({NO_ROOM})")
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_new_figure_lies_on_the_sensor_whatever_its_size() {
+        for side in 0..=64 {
+            for kind in Kind::ALL {
+                let figure = Figure::default_of(kind, side);
+                let extent = Extent::of(&figure).expect("it has a boundary");
+                let side = f64::from(side.max(1));
+                assert!(extent.left >= 0.0 && extent.left + 0.5 < side, "{figure}");
+                assert!(extent.top >= 0.0 && extent.top + 0.5 < side, "{figure}");
+                // Wholly, wherever there is room for it.
+                let fits = extent.right - extent.left <= side && extent.bottom - extent.top <= side;
+                assert!(!fits || extent.right.max(extent.bottom) <= side, "{figure}");
+            }
         }
     }
 }

@@ -15,13 +15,14 @@ impl Parameter {
             .unwrap_or(&LENGTH)
     }
 
-    /// What files and flags may set, on a sensor whose larger side is `side`.
+    /// What files and flags may set, on a sensor whose larger side is `side`, 1 to 64.
     pub fn range(self, side: u8) -> Range {
         let row = self.row();
         Range {
             low: row.low,
             high: row.high,
-            side: f64::from(side),
+            // Or nothing would be in the range of a length.
+            side: f64::from(side.max(1)),
         }
     }
 
@@ -42,7 +43,7 @@ impl Parameter {
         if self.range(side).contains(default) {
             default
         } else {
-            f64::from(side)
+            f64::from(side.max(1))
         }
     }
 
@@ -82,7 +83,8 @@ impl Parameter {
     /// The number in the text of a form's field.
     ///
     /// # Errors
-    /// Any [`ParameterError`]: forms hold to the paper's decimals.
+    /// [`ParameterError::Number`], [`ParameterError::Range`] or [`ParameterError::Decimals`]: forms hold to the paper's
+    /// decimals.
     pub fn read_form(self, text: &str, side: u8) -> Result<f64, ParameterError> {
         let text = text.trim();
         let plain = text
@@ -135,14 +137,47 @@ impl Parameter {
 
     /// The next number that a form takes, `direction` last decimals further; angles go round, others stop at the ends.
     pub fn step(self, value: f64, direction: i32, side: u8) -> f64 {
-        let direction = f64::from(direction.signum());
         // From ten up the steps are tenths, from ten down hundredths.
-        let decimals = self.decimals_at(value + direction.min(0.0) * 0.01);
+        let decimals = self.decimals_at(if direction < 0 { value - 0.01 } else { value });
         let scale = 10_f64.powi(i32::try_from(decimals).unwrap_or(0));
-        let stepped = ((value * scale).round() + direction) / scale;
+        // A number with more decimals lies between two that a form takes; one that it takes may be a rounding beside
+        // itself when it is counted in its last decimals.
+        let places = value * scale;
+        let stepped = match direction {
+            1.. => (places + 1e-6).floor() + 1.0,
+            0 => places.round(),
+            _ => (places - 1e-6).ceil() - 1.0,
+        } / scale;
         if self == Self::Angle {
             return stepped.rem_euclid(360.0);
         }
         self.form_range(side).nearest(stepped, 1.0 / scale)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_lead_to_the_next_number_that_a_form_takes() {
+        for (parameter, value, up, down) in [
+            (Parameter::X0, 1.236, 1.24, 1.23),
+            (Parameter::X0, 1.234, 1.24, 1.23),
+            (Parameter::X0, 1.24, 1.25, 1.23),
+            (Parameter::X0, 0.29, 0.3, 0.28),
+            (Parameter::X0, 9.995, 10.0, 9.99),
+            (Parameter::X0, 10.0, 10.1, 9.99),
+            (Parameter::X0, 10.05, 10.1, 10.0),
+            (Parameter::X0, 16.0, 16.0, 15.9),
+            (Parameter::Side, 0.004, 0.01, 0.01),
+            (Parameter::Angle, 17.5, 18.0, 17.0),
+            (Parameter::Angle, 359.5, 0.0, 359.0),
+            (Parameter::Angle, 0.0, 1.0, 359.0),
+        ] {
+            assert_eq!(parameter.step(value, 1, 16), up, "{parameter:?} {value}");
+            assert_eq!(parameter.step(value, -1, 16), down, "{parameter:?} {value}");
+        }
+        assert_eq!(Parameter::X0.step(1.236, 0, 16), 1.24);
     }
 }

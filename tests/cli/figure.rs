@@ -52,7 +52,7 @@ fn what_is_not_given_takes_its_default() {
 fn numbers_may_be_negative_and_figures_reach_beyond_the_sensor() {
     for x0 in ["-0.8", "-.8", "-8e-1"] {
         let run = taxel(
-            &format!("figure hexagon --x0 {x0} --columns 3 --rows 2"),
+            &format!("figure hexagon --x0 {x0} --y0 3 --columns 3 --rows 2"),
             "",
         );
         let expected = "
