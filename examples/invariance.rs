@@ -15,7 +15,7 @@ use taxel::sweep::grid::{Anchor, Grid, Ranges};
 use taxel::sweep::plan::Shard;
 use taxel::sweep::survey::{Survey, Watch};
 
-/// Those whose variation means something: the others say where the figure lies.
+/// Those that describe the shape.
 const DESCRIBING: [&str; 8] = [
     "na",
     "nae",
@@ -27,12 +27,10 @@ const DESCRIBING: [&str; 8] = [
     "filling",
 ];
 
-fn main() {
+fn main() -> Result<(), String> {
     let step = std::env::args().nth(1).unwrap_or("1".to_owned());
-    match report(&format!("0:359:{step}")) {
-        Ok(table) => print!("{table}"),
-        Err(message) => eprintln!("error: {message}"),
-    }
+    print!("{}", report(&format!("0:359:{step}"))?);
+    Ok(())
 }
 
 /// A table in Markdown over a range of angles: a row for each descriptor and each part, a column for each figure.
