@@ -72,7 +72,7 @@ fn circle() -> Figure {
 /// Every value of the table.
 fn describe(region: &Region) {
     let description = Description::of(region);
-    for descriptor in &DESCRIPTORS {
+    for descriptor in DESCRIPTORS {
         black_box((descriptor.measure)(&description));
     }
 }

@@ -34,7 +34,7 @@ pub(crate) fn report() -> String {
     for region in regions(&imprint) {
         let description = Description::of(&region);
         let _ = writeln!(text, "\n{}", region.kind().name());
-        for descriptor in &DESCRIPTORS {
+        for descriptor in DESCRIPTORS {
             let value = (descriptor.measure)(&description);
             let value = value::text(value, descriptor.unit);
             let value = value.as_deref().unwrap_or("–");

@@ -179,7 +179,8 @@ impl Figure {
         }
     }
 
-    /// The same figure with one value changed; unchanged by a parameter that it does not have.
+    /// The same figure with one value changed, in the parameter's unit; unchanged by a parameter that it does not have, whose
+    /// value is checked all the same.
     ///
     /// # Errors
     /// Where the value is out of range on a sensor whose larger side is `side`.

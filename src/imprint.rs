@@ -62,7 +62,7 @@ impl Imprint {
     }
 
     /// Sets rows `2 * pair` and `2 * pair + 1` in the same way.
-    pub fn set_pair(&mut self, pair: usize, words: [u64; 2]) {
+    pub(crate) fn set_pair(&mut self, pair: usize, words: [u64; 2]) {
         let mask = self.mask();
         let rows = &mut self.words[..usize::from(self.rows)];
         for (slot, word) in rows.iter_mut().skip(2 * pair).zip(words) {
@@ -159,7 +159,7 @@ pub struct Bounds {
 
 impl Bounds {
     /// Around the columns and the rows whose bits are set; none where no bit is.
-    pub fn around(across: u64, down: u64) -> Option<Self> {
+    pub(crate) fn around(across: u64, down: u64) -> Option<Self> {
         let first = |bits: u64| u8::try_from(bits.trailing_zeros()).unwrap_or(MAX_SIDE);
         let end = |bits: u64| MAX_SIDE - u8::try_from(bits.leading_zeros()).unwrap_or(MAX_SIDE);
         (across != 0 && down != 0).then(|| Self {

@@ -13,7 +13,8 @@ pub const SENSOR_PARAMETERS: [Parameter; 4] = [
     Parameter::Pitch,
 ];
 
-/// A sensor. Its values are always in range: columns and rows 1 to 64, threshold in (0, 1], pitch above 0 mm.
+/// A sensor. Its values are always in range: columns and rows 1 to 64, threshold in (0, 1],
+/// pitch above 0, up to 1000 mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
     columns: u8,
@@ -39,13 +40,14 @@ impl Sensor {
     ///
     /// # Errors
     /// Where a number is not from 1 to [`MAX_SIDE`].
-    pub fn new(columns: f64, rows: f64) -> Result<Self, ParameterError> {
+    pub fn new(columns: u8, rows: u8) -> Result<Self, ParameterError> {
         Self::default()
-            .with(Parameter::Columns, columns)?
-            .with(Parameter::Rows, rows)
+            .with(Parameter::Columns, columns.into())?
+            .with(Parameter::Rows, rows.into())
     }
 
-    /// The same sensor with one of [`SENSOR_PARAMETERS`] set; unchanged by any other.
+    /// The same sensor with one of [`SENSOR_PARAMETERS`] set, `value` in the parameter's unit; unchanged by any other, whose
+    /// value is checked all the same.
     ///
     /// # Errors
     /// Where the value is out of the parameter's range.

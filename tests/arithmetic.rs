@@ -305,7 +305,7 @@ fn angles_are_those_of_their_sines() {
 
 #[test]
 fn areas_in_f64_hold_twelve_digits() {
-    let mut plane = Plane::new(Sensor::new(64.0, 64.0).expect("a sensor"));
+    let mut plane = Plane::new(Sensor::new(64, 64).expect("a sensor"));
     for text in [
         "ellipse radius_x=31.9 radius_y=31.7 x0=0.13 y0=0.21",
         "ellipse radius_x=63.9 radius_y=63.7 x0=-40.3 y0=-31.2 angle=33",

@@ -253,7 +253,7 @@ fn compare(imprint: &Imprint) -> usize {
     for (region, plain) in found.iter().zip(&expected) {
         assert_eq!(region.kind(), plain.kind, "{imprint}");
         let description = Description::of(region);
-        for descriptor in &DESCRIPTORS {
+        for descriptor in DESCRIPTORS {
             let expected = plain.values.iter().find(|(key, _)| *key == descriptor.key);
             let (key, expected) = *expected.expect("a descriptor that this test knows");
             let value = (descriptor.measure)(&description);

@@ -41,8 +41,8 @@ fn every_size_of_every_screen_is_drawn() {
         "fr<Enter>:explore --x0 5 --y0 5 --angle 0<Enter>x/tmp",
     ];
     for keys in screens {
-        for side in [1.0, 16.0, 64.0] {
-            let sensor = Sensor::new(side, 65.0 - side).expect("sides from 1 to 64");
+        for side in [1, 16, 64] {
+            let sensor = Sensor::new(side, 65 - side).expect("sides from 1 to 64");
             let options = Options {
                 sensor,
                 theme: Theme {

@@ -149,21 +149,23 @@ fn sweep() -> Command {
         .help("Sweep a stored shape instead");
     let sizes = flags::figure_parameters().filter(|parameter| {
         Ranges::default()
-            .rows()
+            .by_parameter()
             .iter()
             .all(|(own, _)| own != parameter)
     });
-    let ranges = Ranges::default().rows().map(|(parameter, default)| {
-        let (row, flag) = (parameter.row(), parameter.flag());
-        let help = format!("{}; default {default}", flags::capitalised(row.meaning));
-        Arg::new(format!("range_{}", row.key))
-            .long(flag)
-            .value_name("START:END:STEP")
-            .allow_hyphen_values(true)
-            .value_parser(parse_range)
-            .help_heading("Grid")
-            .help(flags::wrapped(&help, 46))
-    });
+    let ranges = Ranges::default()
+        .by_parameter()
+        .map(|(parameter, default)| {
+            let (row, flag) = (parameter.row(), parameter.flag());
+            let help = format!("{}; default {default}", flags::capitalised(row.meaning));
+            Arg::new(format!("range_{}", row.key))
+                .long(flag)
+                .value_name("START:END:STEP")
+                .allow_hyphen_values(true)
+                .value_parser(parse_range)
+                .help_heading("Grid")
+                .help(flags::wrapped(&help, 46))
+        });
     let anchor = Arg::new("anchor")
         .long("anchor")
         .value_name("POINT")

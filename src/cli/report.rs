@@ -124,7 +124,7 @@ struct Quantity {
 /// All lines; with a pitch, each length and area again in mm and mm².
 fn quantities(pitch: Option<f64>) -> Vec<Quantity> {
     let mut all = Vec::new();
-    for descriptor in &DESCRIPTORS {
+    for descriptor in DESCRIPTORS {
         let (factor, unit) = match descriptor.unit {
             Unit::Count | Unit::Ratio => (1.0, ""),
             Unit::Length => (1.0, ", cells"),

@@ -53,7 +53,7 @@ impl<'a> Summary<'a> {
             1 => String::new(),
             _ => format!(", shard {shard}"),
         };
-        let ranges = grid.ranges().rows();
+        let ranges = grid.ranges().by_parameter();
         let ranges = ranges
             .iter()
             .filter(|(parameter, range)| {
@@ -76,14 +76,14 @@ impl<'a> Summary<'a> {
         ));
         line("");
         let mut row = format!("{:<16}", "");
-        for column in &COLUMNS {
+        for column in COLUMNS {
             // Cannot fail: a String takes everything.
             let _ = write!(row, "{:>11}", column.title);
         }
         line(&row);
         for statistic in statistics {
             let mut row = format!("{:<16}", statistic.quantity.key);
-            for column in &COLUMNS {
+            for column in COLUMNS {
                 let value = (column.value)(statistic)
                     .map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
                 let value = charset.line(&value).into_owned();

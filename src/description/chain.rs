@@ -33,15 +33,14 @@ fn windows(upper_left: u64, upper_right: u64, lower_left: u64, lower_right: u64)
 }
 
 /// What is counted of a filled region.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct Outline {
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Outline {
     /// Its taxels.
-    pub taxels: u32,
+    pub(super) taxels: u32,
     /// Those of them that have one of their four neighbours outside of it.
-    pub outline: u32,
+    pub(super) outline: u32,
     /// The steps around it.
-    pub steps: Steps,
+    pub(super) steps: Steps,
 }
 
 impl Outline {
@@ -49,7 +48,7 @@ impl Outline {
     ///
     /// Regions are narrow, and counting a word's bits takes a dozen steps on a processor that is not known to have an
     /// instruction for it: so four rows go into a word wherever they leave a column free between them.
-    pub fn of(filled: &Imprint, bounds: Bounds) -> Self {
+    pub(super) fn of(filled: &Imprint, bounds: Bounds) -> Self {
         if bounds.right - bounds.left < 16 {
             Self::count::<16>(filled, bounds)
         } else {

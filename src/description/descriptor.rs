@@ -2,16 +2,18 @@
 //!
 //! Panel, tables, JSON and statistics walk [`DESCRIPTORS`]; nothing else in the program lists them. Frame and units
 //! are those of the sensory plane: a taxel's coordinates are those of its centre, lengths are cell sides, areas
-//! cells, directions degrees counter-clockwise as seen from +x. A value that does not exist is [`Value::None`],
-//! never a number that is not finite.
+//! cells, directions degrees counter-clockwise from +x as seen on the screen. A value that does not exist is
+//! [`Value::None`], never a number that is not finite. Points are [`glam`]'s.
 
 use std::f64::consts::PI;
 
 use glam::DVec2;
 
-use super::chain::{Outline, Steps};
+use super::chain::Outline;
 use super::region::{Kind, Region};
 use crate::imprint::{Bounds, Imprint};
+
+pub use super::chain::Steps;
 
 /// What is counted and summed up of one region; every descriptor follows from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,7 +145,7 @@ pub enum Unit {
     Length,
     /// Cells; times the square of the pitch in mm².
     Area,
-    /// Degrees, counter-clockwise as seen from +x.
+    /// Degrees, counter-clockwise from +x as seen on the screen.
     Direction,
     /// A pure number.
     Ratio,
@@ -187,7 +189,7 @@ const fn row(
 }
 
 /// The table, in the paper's order; `roundness` is what image analysis uses in place of F.
-pub const DESCRIPTORS: [Descriptor; 17] = [
+pub const DESCRIPTORS: &[Descriptor] = &[
     row("na", "NA", "active taxels", Unit::Count, |d| {
         Value::Count(d.na)
     }),

@@ -5,6 +5,6 @@
 
 pub mod region;
 
-pub mod chain;
+mod chain;
 
 pub mod descriptor;

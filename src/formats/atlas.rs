@@ -18,7 +18,7 @@ use crate::sweep::survey::Survey;
 /// The parameters of a pose of this grid.
 pub(super) fn place(grid: &Grid) -> impl Iterator<Item = Parameter> {
     let own = grid.source().parameters();
-    let rows = grid.ranges().rows().map(|(parameter, _)| parameter);
+    let rows = grid.ranges().by_parameter().map(|(parameter, _)| parameter);
     rows.into_iter()
         .filter(move |parameter| own.contains(parameter))
 }

@@ -5,7 +5,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 /// Sine and cosine of an angle of at most half a right one.
-pub fn sin_cos(angle: f64) -> (f64, f64) {
+pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
     // 1/n! for odd and for even n.
     const ODD: [f64; 8] = inverse_factorials(1.0);
     const EVEN: [f64; 9] = inverse_factorials(0.0);
@@ -34,7 +34,7 @@ const fn inverse_factorials<const TERMS: usize>(first: f64) -> [f64; TERMS] {
 ///
 /// Turned back by an angle of a table that is nearly the same, there is so little left that its arc sine is a short
 /// series. The sine says which one, so the cosine, which is often a root still being computed, is not waited for.
-pub fn angle(sin: f64, cos: f64) -> f64 {
+pub(crate) fn angle(sin: f64, cos: f64) -> f64 {
     let size = sin.abs();
     #[expect(
         clippy::cast_possible_truncation,

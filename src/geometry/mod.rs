@@ -3,7 +3,7 @@
 //! Frame: that of the sensory plane, x to the right, y **down**, the side of a cell as unit. Angles are degrees.
 //! The module knows nothing of sensors, figures or imprints.
 
-pub mod circle;
+pub(crate) mod circle;
 
 pub mod real;
 

@@ -14,14 +14,14 @@ use super::real::Real;
 
 /// A grid of `columns × rows` unit cells with its top left corner at the origin, that sums up what is drawn on it.
 #[derive(Clone, Debug)]
-pub struct Overlap<T> {
+pub(crate) struct Overlap<T> {
     grid: Grid<T>,
     arcs: Arcs<T>,
 }
 
 impl<T: Real> Overlap<T> {
     /// An empty grid.
-    pub fn new(columns: u8, rows: u8) -> Self {
+    pub(crate) fn new(columns: u8, rows: u8) -> Self {
         Self {
             grid: Grid::new(columns, rows),
             arcs: Arcs::new(columns, rows),
@@ -29,7 +29,7 @@ impl<T: Real> Overlap<T> {
     }
 
     /// Wipes the grid.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.grid.clear();
     }
 
@@ -39,7 +39,7 @@ impl<T: Real> Overlap<T> {
     }
 
     /// The area in the top left cell, which is the only one of a grid of 1 × 1.
-    pub fn first(&self) -> T {
+    pub(crate) fn first(&self) -> T {
         let (rows, columns) = (self.grid.rows(), self.grid.columns());
         if !rows.contains(&0) || !columns.contains(&0) {
             return T::ZERO;

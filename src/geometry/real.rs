@@ -17,9 +17,21 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::circle;
 
+mod sealed {
+    /// What only the numbers of this file are.
+    pub trait Sealed {}
+}
+
+impl sealed::Sealed for f64 {}
+
+impl sealed::Sealed for Double {}
+
 /// What geometry needs of a number. Total: no operation panics; the callers keep divisors away from zero.
+///
+/// Sealed: [`f64`] and [`Double`] are all there are.
 pub trait Real:
-    Copy
+    sealed::Sealed
+    + Copy
     + Debug
     + PartialOrd
     + Add<Output = Self>

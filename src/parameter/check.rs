@@ -9,7 +9,7 @@ use crate::quote::shortened;
 impl Parameter {
     /// Its row of the table.
     pub fn row(self) -> &'static Row {
-        const { &PARAMETERS }
+        PARAMETERS
             .iter()
             .find(|row| row.parameter == self)
             .unwrap_or(&LENGTH)

@@ -17,8 +17,8 @@ impl Parameter {
     /// assert_eq!(Parameter::from_flag("radius_x"), None);
     /// ```
     pub fn from_flag(flag: &str) -> Option<Self> {
-        let parameters = PARAMETERS.iter().map(|row| row.parameter);
-        parameters.into_iter().find(|own| own.flag() == flag)
+        let mut parameters = PARAMETERS.iter().map(|row| row.parameter);
+        parameters.find(|own| own.flag() == flag)
     }
 }
 
@@ -28,7 +28,7 @@ mod tests {
 
     #[test]
     fn every_parameter_is_found_by_its_own_flag() {
-        for row in &PARAMETERS {
+        for row in PARAMETERS {
             let flag = row.parameter.flag();
             assert_eq!(Parameter::from_flag(&flag), Some(row.parameter), "{flag}");
         }

@@ -37,7 +37,7 @@ impl Range {
     }
 
     /// The allowed number nearest to `value`; beside an end that is not allowed itself, one `step` inside.
-    pub fn nearest(&self, value: f64, step: f64) -> f64 {
+    pub(super) fn nearest(&self, value: f64, step: f64) -> f64 {
         let ((low, with_low), (high, with_high)) = (self.end(self.low), self.end(self.high));
         let low = if with_low { low } else { low + step };
         let high = if with_high { high } else { high - step };

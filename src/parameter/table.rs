@@ -81,7 +81,7 @@ pub(super) enum Decimals {
 pub struct Row {
     /// Which quantity.
     pub parameter: Parameter,
-    /// Its name in files; in flags with `-` for `_`.
+    /// Its name in files; that of its flag is [`Parameter::flag`].
     pub key: &'static str,
     /// Its name on the screen.
     pub label: &'static str,
@@ -142,7 +142,7 @@ const COUNT: Row = Row {
 };
 
 /// The table, in the order of forms.
-pub const PARAMETERS: [Row; 15] = [
+pub const PARAMETERS: &[Row] = &[
     Row {
         parameter: Parameter::RadiusX,
         key: "radius_x",

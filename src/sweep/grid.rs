@@ -8,14 +8,13 @@
 //! figure the centre that it turns about, of a picture that of its scaled bounding rectangle, which then lies
 //! *at* the given point, whatever the zoom. Cells, degrees. Convention of this project.
 
+use super::boundary::{Boundary, Moving};
 use super::range::DecimalRange;
 use crate::geometry::outline::{Pen, Point, Solid};
 use crate::geometry::real::Real;
 use crate::parameter::{Parameter, ParameterError};
 use crate::sensor::Sensor;
 use crate::source::Source;
-
-use super::boundary::{Boundary, Moving};
 
 /// The most poses that a grid may have.
 pub const MAX_POSES: u64 = 1_000_000_000_000;
@@ -61,7 +60,7 @@ impl Default for Ranges {
 
 impl Ranges {
     /// Each range with its parameter, from the fastest to the slowest.
-    pub fn rows(&self) -> [(Parameter, DecimalRange); 5] {
+    pub fn by_parameter(&self) -> [(Parameter, DecimalRange); 5] {
         [
             (Parameter::X0, self.x0),
             (Parameter::Y0, self.y0),
@@ -106,7 +105,7 @@ impl Grid {
         ranges: Ranges,
     ) -> Result<Self, GridError> {
         let (mut source, mut poses) = (source, 1_u128);
-        for (parameter, range) in ranges.rows() {
+        for (parameter, range) in ranges.by_parameter() {
             let zoom = matches!(parameter, Parameter::ZoomX | Parameter::ZoomY);
             if zoom && source.kind().is_some() {
                 if range != DecimalRange::whole(1) {
@@ -162,28 +161,38 @@ impl Grid {
     }
 
     /// Number of turns: of angles times zooms.
-    pub fn turns(&self) -> u64 {
+    fn turns(&self) -> u64 {
         self.ranges.angle.count() * self.ranges.zoom_x.count() * self.ranges.zoom_y.count()
     }
 
-    /// The pose of that number; beyond the last one, an angle or zoom that is not of the grid.
-    pub fn pose(&self, number: u64) -> Pose {
+    /// How many values each range has.
+    pub fn counts(&self) -> Place {
+        self.ranges.by_parameter().map(|(_, range)| range.count())
+    }
+
+    /// Where the pose of that number is; beyond the last one, the places begin again.
+    pub fn place(&self, number: u64) -> Place {
         let mut rest = number;
-        let [x0, y0, angle, zoom_x, zoom_y] = self.ranges.rows().map(|(_, range)| {
-            let index = rest % range.count();
-            rest /= range.count();
-            range.value(index)
-        });
+        self.counts().map(|count| {
+            let index = rest % count;
+            rest /= count;
+            index
+        })
+    }
+
+    /// The pose of that number; beyond the last one, the poses begin again.
+    pub fn pose(&self, number: u64) -> Pose {
+        let [x0, y0, angle, zoom_x, zoom_y] = self.place(number);
         Pose {
-            x0,
-            y0,
-            angle,
-            zoom_x,
-            zoom_y,
+            x0: self.ranges.x0.value(x0),
+            y0: self.ranges.y0.value(y0),
+            angle: self.ranges.angle.value(angle),
+            zoom_x: self.ranges.zoom_x.value(zoom_x),
+            zoom_y: self.ranges.zoom_y.value(zoom_y),
         }
     }
 
-    /// The shape in a pose.
+    /// The shape in a pose. A value out of its parameter's range is ignored.
     pub fn placed(&self, pose: Pose) -> Placed {
         let (x0, y0) = match self.anchor {
             Anchor::Corner => (pose.x0, pose.y0),
@@ -239,6 +248,9 @@ impl Grid {
         Point::new(place.x * T::decimal(zoom_x), place.y * T::decimal(zoom_y))
     }
 }
+
+/// Which value of each range, counted from 0, from the fastest: x0, y0, angle, zoom x, zoom y.
+pub type Place = [u64; 5];
 
 /// Values of one pose: cells, degrees, ratios.
 #[derive(Clone, Copy, Debug, PartialEq)]

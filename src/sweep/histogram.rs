@@ -6,6 +6,7 @@ use crate::description::descriptor::Unit;
 
 /// Poses counted in equal intervals of a value, each with its lower end; the last one with both.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Histogram {
     /// Where the first interval begins, in the quantity's own unit.
     pub start: f64,
@@ -24,8 +25,8 @@ const ARCS: [f64; 12] = [
 ];
 
 impl Histogram {
-    /// Counts the poses of an atlas in at most `most` intervals, or as few as there can be. `values` are those of the quantity, one
-    /// per imprint ([`Atlas::values`]).
+    /// Counts the poses of an atlas in at most `most` intervals, or as few as there can be. `values` are those of the
+    /// quantity, one per imprint ([`Atlas::values`]).
     ///
     /// ```
     /// # use taxel::figure::{Figure, Kind};

@@ -59,7 +59,7 @@ fn twice_to_centre(grid: &Grid) -> Option<[f64; 2]> {
                 let zoom = matches!(parameter, Parameter::ZoomX | Parameter::ZoomY);
                 zoom && *range != DecimalRange::whole(1)
             };
-            if grid.ranges().rows().iter().any(zoomed) {
+            if grid.ranges().by_parameter().iter().any(zoomed) {
                 return None;
             }
             let bounds = picture.imprint().bounds()?;

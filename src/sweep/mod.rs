@@ -75,7 +75,7 @@ pub mod survey;
 
 pub mod place;
 
-pub mod window;
+mod window;
 
 pub mod sample;
 

@@ -6,6 +6,7 @@ use super::atlas::Atlas;
 
 /// What an atlas can be sorted by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SortKey {
     /// The number of the first pose, which orders the imprints' own numbers too.
     FirstPose,

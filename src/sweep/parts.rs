@@ -14,24 +14,24 @@ use crate::imprint::Imprint;
 
 /// The numbers of a survey.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Parts {
+pub(crate) struct Parts {
     /// Poses gone through.
-    pub poses: u64,
+    pub(crate) poses: u64,
     /// Poses that reach beyond the sensor.
-    pub partly_off: u64,
+    pub(crate) partly_off: u64,
     /// The imprints one after another, a word per row of the sensor, bit `i` for column `i`.
-    pub rows: Vec<u64>,
+    pub(crate) rows: Vec<u64>,
     /// How often each imprint occurs.
-    pub counts: Vec<u64>,
+    pub(crate) counts: Vec<u64>,
     /// The number of the first pose of each.
-    pub first_poses: Vec<u64>,
+    pub(crate) first_poses: Vec<u64>,
     /// Sums about the turns; their meaning is a matter of this version of the program.
-    pub spread: Vec<u64>,
+    pub(crate) spread: Vec<u64>,
 }
 
 impl Survey {
     /// The numbers that it is made of.
-    pub fn parts(&self) -> Parts {
+    pub(crate) fn parts(&self) -> Parts {
         let mut parts = Parts {
             poses: self.poses,
             partly_off: self.partly_off,
@@ -50,7 +50,7 @@ impl Survey {
     ///
     /// # Errors
     /// Where they contradict each other or the grid.
-    pub fn from_parts(grid: Grid, shard: Shard, parts: &Parts) -> Result<Self, PartsError> {
+    pub(crate) fn from_parts(grid: Grid, shard: Shard, parts: &Parts) -> Result<Self, PartsError> {
         let check = |holds: bool, what: &'static str| holds.then_some(()).ok_or(PartsError(what));
         let (columns, rows) = (grid.sensor().columns(), grid.sensor().rows());
         let height = usize::from(rows);

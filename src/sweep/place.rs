@@ -1,34 +1,16 @@
 //! Poses by their places along the ranges of a grid, and as shapes that can be touched by themselves.
 
-use super::grid::{Anchor, Grid, Pose, centre};
+use super::grid::{Anchor, Grid, Place, Pose, centre};
 use crate::parameter::{Parameter, ParameterError};
 use crate::sensor::Sensor;
 use crate::source::Source;
 
-/// Which value of each range, counted from 0, from the fastest: x0, y0, angle, zoom x, zoom y.
-pub type Place = [u64; 5];
-
 impl Grid {
-    /// How many values each range has.
-    pub fn counts(&self) -> Place {
-        self.ranges().rows().map(|(_, range)| range.count())
-    }
-
     /// The number of the pose at a place; of a place beyond the grid, that of the nearest one in it.
     pub fn number(&self, place: Place) -> u64 {
         let values = place.into_iter().zip(self.counts());
         values.rev().fold(0, |number, (index, count)| {
             number * count + index.min(count - 1)
-        })
-    }
-
-    /// Where the pose of that number is; beyond the last one, the place goes round.
-    pub fn place(&self, number: u64) -> Place {
-        let mut rest = number;
-        self.counts().map(|count| {
-            let index = rest % count;
-            rest /= count;
-            index
         })
     }
 
@@ -110,7 +92,7 @@ impl Grid {
             == (sensor.columns(), sensor.rows(), sensor.threshold());
         // Both in the same pose: what is left to differ is the shape.
         let posed = |source: &Source| {
-            let rows = self.ranges().rows();
+            let rows = self.ranges().by_parameter();
             let mut values = rows.iter().map(|(parameter, _)| *parameter);
             values.try_fold(source.clone(), |source, parameter| {
                 let value = parameter.default(own.side());

@@ -88,6 +88,7 @@ impl fmt::Display for Shard {
 /// A text that is no shard.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("\"{text}\" is no shard, expected K/N with K from 1 to N")]
+#[non_exhaustive]
 pub struct ShardError {
     /// What was given.
     pub text: String,

@@ -45,7 +45,7 @@ fn all() -> Vec<Quantity> {
         return Vec::new();
     };
     let mut all = Vec::new();
-    for descriptor in &DESCRIPTORS {
+    for descriptor in DESCRIPTORS {
         let parts: &[&str] = match (descriptor.measure)(&sample) {
             Value::Point(_) => &["_x", "_y"],
             Value::Pair(_) => &["_1", "_2"],
@@ -64,7 +64,7 @@ fn all() -> Vec<Quantity> {
 /// Gives the value of each quantity that has one, with the quantity's number in [`quantities`].
 pub fn values(description: &Description, mut take: impl FnMut(usize, f64)) {
     let mut index = 0;
-    for descriptor in &DESCRIPTORS {
+    for descriptor in DESCRIPTORS {
         let mut part = |value: f64| {
             take(index, value);
             index += 1;

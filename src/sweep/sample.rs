@@ -10,6 +10,7 @@ const POSES: u64 = 20_000;
 
 /// A part of a grid, and how many times its work the whole is.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Sample {
     /// The part: neighbouring poses at one angle and one pair of zooms, from the middle of their ranges.
     pub grid: Grid,

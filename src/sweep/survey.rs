@@ -23,9 +23,10 @@ pub type TakeRow<'a> = dyn FnMut(u64, &[u32]) + Send + 'a;
 
 /// What a caller wants to see while a sweep runs.
 pub struct Watch<'a> {
-    /// Told of each number of poses done, from any thread; the sweep stops early once it answers `false`.
+    /// Called now and then, from any thread, with the number of poses done since the last call; the sweep stops once it
+    /// answers `false`.
     pub progress: &'a (dyn Fn(u64) -> bool + Sync),
-    /// Given each row once, in an order that is not that of the grid where turns look the same.
+    /// Given each row of what is complete once; in an order that is not that of the grid where turns look the same.
     pub rows: Option<&'a mut TakeRow<'a>>,
 }
 

@@ -4,7 +4,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::place::Place;
+use super::grid::Place;
 use super::plan::Task;
 use super::runs;
 use super::survey::Survey;

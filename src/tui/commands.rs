@@ -255,7 +255,7 @@ fn next_words(command: &Command, before: &str) -> Vec<String> {
             .unwrap_or_default(),
         (Takes::Sensor, said) => flags(SENSOR_PARAMETERS.to_vec(), said),
         (Takes::Ranges, said) => {
-            let rows = Ranges::default().rows();
+            let rows = Ranges::default().by_parameter();
             let ranges = rows.map(|(parameter, _)| format!("--{}", parameter.flag()));
             words([&ranges[..], &["--anchor".to_owned()]].concat(), said)
         }

@@ -108,7 +108,7 @@ pub(crate) fn grid(text: &str) -> Imprint {
 
 /// A sensor of so many taxels and a threshold.
 pub(crate) fn sensor(columns: u8, rows: u8, threshold: f64) -> Sensor {
-    Sensor::new(f64::from(columns), f64::from(rows))
+    Sensor::new(columns, rows)
         .and_then(|sensor| sensor.with(Parameter::Threshold, threshold))
         .expect("a sensor in range")
 }

@@ -62,7 +62,7 @@ fn sources(side: u8) -> impl Strategy<Value = Option<Source>> {
 fn shapes() -> impl Strategy<Value = Shape> {
     (imprints(), 1e-6..=1.0, 1e-6..=1000.0)
         .prop_flat_map(|(imprint, threshold, pitch)| {
-            let sensor = Sensor::new(f64::from(imprint.columns()), f64::from(imprint.rows()))
+            let sensor = Sensor::new(imprint.columns(), imprint.rows())
                 .and_then(|sensor| sensor.with(Parameter::Threshold, threshold))
                 .and_then(|sensor| sensor.with(Parameter::Pitch, pitch))
                 .expect("in range");

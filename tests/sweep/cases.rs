@@ -38,7 +38,7 @@ pub(crate) fn picture(rows: &str) -> Source {
     Source::Picture(Picture::at_home(imprint))
 }
 
-pub(crate) fn sensor(columns: f64, rows: f64, threshold: f64) -> Sensor {
+pub(crate) fn sensor(columns: u8, rows: u8, threshold: f64) -> Sensor {
     let sensor = Sensor::new(columns, rows).expect("sides are in range");
     sensor
         .with(Parameter::Threshold, threshold)
@@ -118,7 +118,7 @@ pub(crate) fn cases() -> Vec<Case> {
             figure(Kind::Ellipse, 5.0, 3.0, 1.0),
         )),
         Case {
-            sensor: sensor(8.0, 8.0, 0.5),
+            sensor: sensor(8, 8, 0.5),
             place: "0:1.99:0.01",
             ..case(
                 "rectangle 8 x 8 wall 2 on 8 x 8",
@@ -126,28 +126,28 @@ pub(crate) fn cases() -> Vec<Case> {
             )
         },
         Case {
-            sensor: sensor(33.0, 20.0, 0.5),
+            sensor: sensor(33, 20, 0.5),
             ..case(
                 "octagon 6 wall 2 on 33 x 20",
                 figure(Kind::Octagon, 6.0, 0.0, 2.0),
             )
         },
         Case {
-            sensor: sensor(16.0, 16.0, 1.0),
+            sensor: sensor(16, 16, 1.0),
             ..case(
                 "rectangle 6 x 3, threshold 1",
                 figure(Kind::Rectangle, 6.0, 3.0, 0.0),
             )
         },
         Case {
-            sensor: sensor(16.0, 16.0, 1.0),
+            sensor: sensor(16, 16, 1.0),
             ..case(
                 "circle 4 wall 2, threshold 1",
                 figure(Kind::Ellipse, 4.0, 4.0, 2.0),
             )
         },
         Case {
-            sensor: sensor(16.0, 16.0, 0.25),
+            sensor: sensor(16, 16, 0.25),
             ..case(
                 "triangle 6 wall 1, threshold 0.25",
                 figure(Kind::Triangle, 6.0, 0.0, 1.0),

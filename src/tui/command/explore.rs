@@ -44,7 +44,7 @@ pub(super) fn read(words: &[&str], app: &App) -> Result<Message, String> {
             };
             continue;
         }
-        let rows = ranges.rows();
+        let rows = ranges.by_parameter();
         let known = rows.iter().map(|(parameter, _)| *parameter);
         let mut own = known.filter(|parameter| parameter.flag() == name);
         let parameter = own.next().ok_or_else(|| {

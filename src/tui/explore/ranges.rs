@@ -87,7 +87,7 @@ impl RangesForm {
         };
         let ranges = earlier.map_or_else(Ranges::default, |grid| *grid.ranges());
         let own = source.parameters();
-        let rows = ranges.rows().into_iter();
+        let rows = ranges.by_parameter().into_iter();
         let fields =
             rows.filter(|(parameter, _)| own.contains(parameter))
                 .map(|(parameter, range)| RangeField {

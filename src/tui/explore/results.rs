@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use crate::imprint::Imprint;
 use crate::sweep::atlas::Entry;
+use crate::sweep::grid::Place;
 use crate::sweep::order::{SortKey, sorted};
-use crate::sweep::place::Place;
 use crate::sweep::quantity::{Quantity, quantities};
 use crate::sweep::survey::Survey;
 use crate::tui::exploring::{ExplorePage, Findings, Zoom};

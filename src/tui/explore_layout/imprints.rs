@@ -102,7 +102,7 @@ impl ImprintList {
 /// The parameters of a pose that a grid's shape has.
 pub fn varied(grid: &Grid) -> impl Iterator<Item = Parameter> {
     let own = grid.source().parameters();
-    let rows = grid.ranges().rows().map(|(parameter, _)| parameter);
+    let rows = grid.ranges().by_parameter().map(|(parameter, _)| parameter);
     rows.into_iter()
         .filter(move |parameter| own.contains(parameter))
 }

@@ -10,7 +10,7 @@ pub(super) fn first(visible: usize, selected: usize) -> usize {
 
 /// Characters of the values of a range, and of its name.
 pub(super) fn width_of(grid: &Grid, parameter: Parameter) -> usize {
-    let rows = grid.ranges().rows();
+    let rows = grid.ranges().by_parameter();
     let range = rows.iter().find(|(own, _)| *own == parameter);
     let width = range.map_or(0, |(_, range)| {
         let ends = [range.value(0), range.value(1), range.last()];

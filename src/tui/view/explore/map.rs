@@ -42,7 +42,7 @@ fn heading(results: &Results) -> String {
     let grid = &results.survey().grid;
     let (place, counts) = (results.place(), grid.counts());
     let own = grid.source().parameters();
-    let rows = grid.ranges().rows().into_iter().enumerate().skip(2);
+    let rows = grid.ranges().by_parameter().into_iter().enumerate().skip(2);
     let parts = rows
         .filter(|(_, (parameter, _))| own.contains(parameter))
         .map(|(axis, (parameter, range))| {
