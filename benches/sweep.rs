@@ -60,7 +60,7 @@ const MEASURED: [&str; 11] = [
 
 /// A hexagon with a wall of 1, each row in another respect than the first one; its angles, none of which repeats.
 fn growing() -> Vec<Case> {
-    let case = |name, side: f64, on: f64, place| Case {
+    let case = |name, side: f64, on: u8, place| Case {
         name,
         source: figure(Kind::Hexagon, side, 0.0, 1.0),
         sensor: sensor(on, on, 0.5),
@@ -69,15 +69,15 @@ fn growing() -> Vec<Case> {
     };
     let cell = "5:5.99:0.01";
     vec![
-        case("side 3, 16 x 16, step 0.01", 3.0, 16.0, cell),
-        case("on 32 x 32", 3.0, 32.0, cell),
-        case("on 64 x 64", 3.0, 64.0, cell),
-        case("side 6, on 32 x 32", 6.0, 32.0, cell),
-        case("side 12, on 64 x 64", 12.0, 64.0, cell),
-        case("step 0.04", 3.0, 16.0, "5:5.96:0.04"),
-        case("step 0.02", 3.0, 16.0, "5:5.98:0.02"),
-        case("step 0.005", 3.0, 16.0, "5:5.995:0.005"),
-        case("step 0.0025", 3.0, 16.0, "5:5.9975:0.0025"),
+        case("side 3, 16 x 16, step 0.01", 3.0, 16, cell),
+        case("on 32 x 32", 3.0, 32, cell),
+        case("on 64 x 64", 3.0, 64, cell),
+        case("side 6, on 32 x 32", 6.0, 32, cell),
+        case("side 12, on 64 x 64", 12.0, 64, cell),
+        case("step 0.04", 3.0, 16, "5:5.96:0.04"),
+        case("step 0.02", 3.0, 16, "5:5.98:0.02"),
+        case("step 0.005", 3.0, 16, "5:5.995:0.005"),
+        case("step 0.0025", 3.0, 16, "5:5.9975:0.0025"),
     ]
 }
 

@@ -152,8 +152,8 @@ impl Figure {
         Ok(figure)
     }
 
-    /// The figure that a new form shows: every parameter at its default, solid; on a sensor whose larger side is `side`, 1
-    /// to 64. On a small one it begins further up and to the left, in whole cells, so that as much of it as fits is there.
+    /// The figure that a new form shows: every parameter at its default, solid; on a sensor whose larger side is `side`,
+    /// 1 to 64. On a small one it begins further up and to the left, in whole cells, so that as much as fits is there.
     pub fn default_of(kind: Kind, side: u8) -> Self {
         let default = |parameter: Parameter| parameter.default(side);
         let size = |index: usize| {
@@ -179,8 +179,8 @@ impl Figure {
         }
     }
 
-    /// The same figure with one value changed, in the parameter's unit; unchanged by a parameter that it does not have, whose
-    /// value is checked all the same.
+    /// The same figure with one value changed; `value` in the parameter's unit. Unchanged by a parameter that it does not have,
+    /// whose value is checked all the same.
     ///
     /// # Errors
     /// Where the value is out of range on a sensor whose larger side is `side`.

@@ -88,7 +88,8 @@
 //!
 //! # Invariants
 //!
-//! - A coverage of exactly the threshold in real arithmetic is active ([`touch`]).
+//! - A coverage of exactly the threshold in real arithmetic is active, and so is one that falls short by less than 1e-20
+//!   ([`touch`]).
 //! - Every [`figure::Figure`], [`picture::Picture`] and [`sensor::Sensor`] is in range for the sensor that it is made for;
 //!   a picture at home lies where its imprint does.
 //! - What follows from a document (coverage, imprint, regions, descriptors) is computed, never stored beside it.

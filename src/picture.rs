@@ -82,8 +82,8 @@ impl Picture {
         Ok(picture)
     }
 
-    /// The same picture with one value changed, in the parameter's unit; unchanged by a parameter that it does not have, whose
-    /// value is checked all the same.
+    /// The same picture with one value changed; `value` in the parameter's unit. Unchanged by a parameter that it does not have,
+    /// whose value is checked all the same.
     ///
     /// # Errors
     /// Where the value is out of range on a sensor whose larger side is `side`.

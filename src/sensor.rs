@@ -46,8 +46,8 @@ impl Sensor {
             .with(Parameter::Rows, rows.into())
     }
 
-    /// The same sensor with one of [`SENSOR_PARAMETERS`] set, `value` in the parameter's unit; unchanged by any other, whose
-    /// value is checked all the same.
+    /// The same sensor with one of [`SENSOR_PARAMETERS`] set; `value` in the parameter's unit. Unchanged by any other,
+    /// whose value is checked all the same.
     ///
     /// # Errors
     /// Where the value is out of the parameter's range.

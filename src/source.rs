@@ -47,8 +47,8 @@ impl Source {
         }
     }
 
-    /// The same with one value changed, in the parameter's unit; unchanged by a parameter that it does not have, whose
-    /// value is checked all the same.
+    /// The same with one value changed; `value` in the parameter's unit. Unchanged by a parameter that it does not have,
+    /// whose value is checked all the same.
     ///
     /// # Errors
     /// Where the value is out of range on a sensor whose larger side is `side`.

@@ -304,13 +304,15 @@ fn angles_are_those_of_their_sines() {
 }
 
 #[test]
-fn areas_in_f64_hold_twelve_digits() {
+fn areas_in_f64_hold_eleven_digits() {
     let mut plane = Plane::new(Sensor::new(64, 64).expect("a sensor"));
     for text in [
         "ellipse radius_x=31.9 radius_y=31.7 x0=0.13 y0=0.21",
         "ellipse radius_x=63.9 radius_y=63.7 x0=-40.3 y0=-31.2 angle=33",
         "ellipse radius_x=63.9 radius_y=1.7 x0=-31.3 y0=29.2 angle=41 thickness=0.3",
         "ellipse radius_x=5.1 radius_y=60.3 x0=28.3 y0=-27.9 angle=88 thickness=5",
+        // The largest moments that a figure can have: off by 1.4e-12.
+        "ellipse radius_x=63.25 radius_y=63.25 x0=49.2 y0=-19.69",
         "ellipse radius_x=0.3 radius_y=0.2 x0=63.1 y0=62.7 angle=7",
         "rectangle length=63 width=2.5 x0=0.3 y0=30.1 angle=29 thickness=1",
         "octagon side=25 x0=1.3 y0=0.7 angle=17 thickness=20",
@@ -322,7 +324,7 @@ fn areas_in_f64_hold_twelve_digits() {
             for column in (row % 7..64).step_by(7) {
                 let exact = cell::<Double>(&figure, column, row).to_f64();
                 let off = (plane.coverage(column, row) - exact).abs();
-                assert!(off < 1e-12, "{text} at {column}, {row}: {off:e}");
+                assert!(off < 2e-12, "{text} at {column}, {row}: {off:e}");
             }
         }
     }

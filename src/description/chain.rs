@@ -38,7 +38,7 @@ pub(super) struct Outline {
     /// Its taxels.
     pub(super) taxels: u32,
     /// Those of them that have one of their four neighbours outside of it.
-    pub(super) outline: u32,
+    pub(super) rim: u32,
     /// The steps around it.
     pub(super) steps: Steps,
 }
@@ -92,7 +92,7 @@ impl Outline {
         let [many, three, across] = counts;
         Self {
             taxels,
-            outline: taxels - inner,
+            rim: taxels - inner,
             steps: Steps {
                 // Each taxel is a corner of four windows; and by Euler's formula there are four windows with one taxel
                 // more than there are with three and twice those with a diagonal. So those with two neighbours, which

@@ -48,7 +48,7 @@ impl Description {
             kind: region.kind(),
             na,
             nae: counted.taxels,
-            ce: counted.outline,
+            ce: counted.rim,
             num_x: f64::from(columns) + half,
             num_y: f64::from(rows) + half,
             steps: counted.steps,

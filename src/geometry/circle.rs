@@ -4,7 +4,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-/// Sine and cosine of an angle of at most half a right one.
+/// Sine and cosine of an angle from −π/4 to π/4.
 pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
     // 1/n! for odd and for even n.
     const ODD: [f64; 8] = inverse_factorials(1.0);
@@ -48,7 +48,7 @@ pub(crate) fn angle(sin: f64, cos: f64) -> f64 {
         angle,
     } = NODES[number % NODES.len()];
     let rest = size * node_cos - cos * node_sin;
-    // |rest| < 0.09, so the next term is below 2e-18. In pairs, so that a processor can work on several at once.
+    // |rest| < 0.09, so the next term is below 3e-18. In pairs, so that a processor can work on several at once.
     let square = rest * rest;
     let fourth = square * square;
     let low = 1.0 / 6.0 + square * (3.0 / 40.0);
@@ -66,8 +66,8 @@ struct Node {
     angle: f64,
 }
 
-/// For sines from a 64th to the next one the angle in the middle; beyond the 63rd so far as a right angle; once more for
-/// the sine of one, up to where a number of 7 bits goes.
+/// Entry n below 64: the angle halfway between the arc sines of n/64 and (n+1)/64. The others: a right angle; 64 is for a
+/// sine of 1, the rest lets seven bits index the table.
 static NODES: [Node; 128] = nodes();
 
 const fn nodes() -> [Node; 128] {
@@ -76,7 +76,7 @@ const fn nodes() -> [Node; 128] {
     while number < 64 {
         sine += 1.0 / 64.0;
         // Newton's method; from the angle of the sine before, which is smaller, it does not go too far but the last
-        // time, where the slope is nought.
+        // time, where the slope is zero.
         let (mut to, mut step) = (from, 0);
         while step < 9 && number < 63 {
             let near = Node::at(to);
@@ -95,7 +95,7 @@ const fn nodes() -> [Node; 128] {
 impl Node {
     const fn at(angle: f64) -> Self {
         let (mut sin, mut cos, mut term, mut power) = (0.0, 0.0, 1.0, 0.0);
-        // From the 28th power on the terms are nought.
+        // From the 28th power on the terms are below 1e-23.
         while power < 28.0 {
             cos += term;
             term *= angle / (power + 1.0);

@@ -88,20 +88,20 @@ impl<T: Real> Grid<T> {
         T::whole(self.columns)
     }
 
-    /// The rows whose cells are not all empty for certain.
+    /// The rows that may hold something; all others are empty.
     pub(crate) fn rows(&self) -> Range<usize> {
         let row = |y: T| y.max(T::ZERO).min(self.bottom()).cell().0;
         let rows = usize::try_from(self.rows).unwrap_or(0);
         row(self.low.y)..(row(self.high.y) + 1).min(rows)
     }
 
-    /// The entries of these rows that are not all zero for certain. Where pieces lie follows from [`Real::cell`] too, and
-    /// that never puts a larger number into a cell before.
+    /// The entries of these rows that may hold something; all others are empty. Where pieces lie follows from
+    /// [`Real::cell`] too, and that never puts a larger number into a cell before.
     fn entries_drawn(&self) -> Range<usize> {
         self.place(self.low.x).0..self.place(self.high.x).0 + 1
     }
 
-    /// The columns whose cells are not all empty for certain.
+    /// The columns that may hold something; all others are empty.
     pub(crate) fn columns(&self) -> Range<usize> {
         let entries = self.entries_drawn();
         let column = |entry: usize| entry.saturating_sub(1).min(self.stride - 2);

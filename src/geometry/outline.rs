@@ -109,6 +109,22 @@ pub trait Pen<T: Real> {
     }
 }
 
+/// A pen whose paper is moved.
+pub(crate) struct Moving<'a, T, P> {
+    pub(crate) by: Point<T>,
+    pub(crate) pen: &'a mut P,
+}
+
+impl<T: Real, P: Pen<T>> Pen<T> for Moving<'_, T, P> {
+    fn edge(&mut self, from: Point<T>, to: Point<T>) {
+        self.pen.edge(from.moved(self.by), to.moved(self.by));
+    }
+    fn ellipse(&mut self, ellipse: &Ellipse<T>, material: Side) {
+        let centre = ellipse.centre.moved(self.by);
+        self.pen.ellipse(&Ellipse { centre, ..*ellipse }, material);
+    }
+}
+
 /// Anything with a boundary: figures, pictures, and outlines of one's own.
 ///
 /// A type of one's own says how it is drawn, once, for every kind of number:
@@ -231,14 +247,19 @@ pub struct Extent {
 impl Extent {
     /// The extent of a shape; none of one without a boundary.
     pub fn of(solid: &impl Solid) -> Option<Self> {
+        Self::drawn(|pen| solid.draw(pen))
+    }
+
+    /// The extent of what is drawn with the pen.
+    pub(crate) fn drawn(draw: impl FnOnce(&mut ExtentPen)) -> Option<Self> {
         let mut pen = ExtentPen(None);
-        solid.draw(&mut pen);
+        draw(&mut pen);
         pen.0
     }
 }
 
 /// Draws nothing and remembers how far it went.
-struct ExtentPen(Option<Extent>);
+pub(crate) struct ExtentPen(Option<Extent>);
 
 impl ExtentPen {
     fn cover(&mut self, low: Point<f64>, high: Point<f64>) {

@@ -4,12 +4,13 @@
 //! (`grid`): straight edges here, ellipses in `arcs`.
 //!
 //! **Error.** A few roundings per piece, of sums below 10^4 for every shape of the program: under 1e-11 in `f64`, a
-//! tenth of what a touch takes for doubtful. Edges that are horizontal or vertical up to a rounding are harmless: what they contribute is as small as their
-//! height. Deciding a threshold exactly is the business of [`crate::touch`], which uses [`cell`] for it.
+//! tenth of what a touch takes for doubtful. Edges that are horizontal or vertical up to a rounding are harmless: what
+//! they contribute is as small as their height. Deciding a threshold exactly is the business of [`crate::touch`], which
+//! uses [`cell`] for it.
 
 use super::arcs::Arcs;
 use super::grid::{Grid, index};
-use super::outline::{Ellipse, Pen, Point, Side, Solid};
+use super::outline::{Ellipse, Moving, Pen, Point, Side, Solid};
 use super::real::Real;
 
 /// A grid of `columns × rows` unit cells with its top left corner at the origin, that sums up what is drawn on it.
@@ -224,31 +225,10 @@ impl<T: Real> Pen<T> for Overlap<T> {
 /// The area of a shape inside the one cell whose top left corner is (`column`, `row`), by the same method.
 pub fn cell<T: Real>(solid: &impl Solid, column: u8, row: u8) -> T {
     let corner = Point::new(T::whole(-i32::from(column)), T::whole(-i32::from(row)));
-    let mut moved = Moved {
+    let mut overlap = Overlap::new(1, 1);
+    solid.draw(&mut Moving {
         by: corner,
-        grid: Overlap::new(1, 1),
-    };
-    solid.draw(&mut moved);
-    moved.grid.first()
-}
-
-/// A grid under a moved shape.
-struct Moved<T> {
-    by: Point<T>,
-    grid: Overlap<T>,
-}
-
-impl<T: Real> Pen<T> for Moved<T> {
-    fn edge(&mut self, from: Point<T>, to: Point<T>) {
-        self.grid.edge(from.moved(self.by), to.moved(self.by));
-    }
-    fn ellipse(&mut self, ellipse: &Ellipse<T>, material: Side) {
-        self.grid.ellipse(
-            &Ellipse {
-                centre: ellipse.centre.moved(self.by),
-                ..*ellipse
-            },
-            material,
-        );
-    }
+        pen: &mut overlap,
+    });
+    overlap.first()
 }

@@ -3,7 +3,7 @@
 //! In `f64` it is what bands are cut from; as [`Double`](crate::geometry::real::Double) it decides what `f64`
 //! cannot. Frame and units are those of the plane; the anchor of the shape lies at the origin.
 
-use crate::geometry::outline::{Ellipse, Pen, Point, Side, Solid};
+use crate::geometry::outline::{Ellipse, Extent, Moving, Pen, Point, Side, Solid};
 use crate::geometry::real::Real;
 
 /// Straight edges with the material on their right, and ellipses.
@@ -62,27 +62,18 @@ impl<T: Real> Boundary<T> {
     }
 }
 
+impl Boundary<f64> {
+    /// How far it reaches; none of a shape without a boundary.
+    pub(super) fn extent(&self) -> Option<Extent> {
+        Extent::drawn(|pen| self.draw(Point::new(0.0, 0.0), pen))
+    }
+}
+
 impl<T: Real> Pen<T> for Boundary<T> {
     fn edge(&mut self, from: Point<T>, to: Point<T>) {
         self.edges.push((from, to));
     }
     fn ellipse(&mut self, ellipse: &Ellipse<T>, material: Side) {
         self.ellipses.push((*ellipse, material));
-    }
-}
-
-/// A pen whose paper is moved.
-pub(super) struct Moving<'a, T, P> {
-    pub(super) by: Point<T>,
-    pub(super) pen: &'a mut P,
-}
-
-impl<T: Real, P: Pen<T>> Pen<T> for Moving<'_, T, P> {
-    fn edge(&mut self, from: Point<T>, to: Point<T>) {
-        self.pen.edge(from.moved(self.by), to.moved(self.by));
-    }
-    fn ellipse(&mut self, ellipse: &Ellipse<T>, material: Side) {
-        let centre = ellipse.centre.moved(self.by);
-        self.pen.ellipse(&Ellipse { centre, ..*ellipse }, material);
     }
 }

@@ -8,9 +8,9 @@
 //! figure the centre that it turns about, of a picture that of its scaled bounding rectangle, which then lies
 //! *at* the given point, whatever the zoom. Cells, degrees. Convention of this project.
 
-use super::boundary::{Boundary, Moving};
+use super::boundary::Boundary;
 use super::range::DecimalRange;
-use crate::geometry::outline::{Pen, Point, Solid};
+use crate::geometry::outline::{Moving, Pen, Point, Solid};
 use crate::geometry::real::Real;
 use crate::parameter::{Parameter, ParameterError};
 use crate::sensor::Sensor;

@@ -1,12 +1,12 @@
-//! Rows that are images of rows gone through before ([`super::mirror`]): their runs, read backwards.
+//! Rows that are images of rows gone through before ([`super::half_turn`]): their runs, read backwards.
 //!
 //! The image of a row has the same runs in the opposite order, cut in two where the range of x0 comes round; the imprint
 //! of each is the half-turned one, moved by whole cells. What is counted, and in which order, is the same as if
 //! the row had been gone through itself.
 
 use super::census::Census;
+use super::half_turn::HalfTurn;
 use super::layout::Layout;
-use super::mirror::Mirror;
 
 /// The runs of several rows: index in a census, and length.
 #[derive(Clone, Debug, Default)]
@@ -40,7 +40,7 @@ impl Runs {
 #[derive(Debug)]
 pub(super) struct Images<'a> {
     layout: &'a Layout,
-    mirror: Mirror,
+    half_turn: HalfTurn,
     /// By index in the census: those of its images, by whether x0 comes round, and y0.
     known: Vec<[Option<u32>; 4]>,
     key: Vec<u64>,
@@ -49,10 +49,10 @@ pub(super) struct Images<'a> {
 }
 
 impl<'a> Images<'a> {
-    pub(super) fn new(layout: &'a Layout, mirror: Mirror) -> Self {
+    pub(super) fn new(layout: &'a Layout, half_turn: HalfTurn) -> Self {
         Self {
             layout,
-            mirror,
+            half_turn,
             known: Vec::new(),
             key: vec![0; layout.words()],
             row: Vec::new(),
@@ -61,7 +61,7 @@ impl<'a> Images<'a> {
 
     /// The row that a value of y0 is the image of, and whether y0 comes round on the way.
     pub(super) fn source(&self, y: u64) -> (u64, bool) {
-        self.mirror.y.image(y)
+        self.half_turn.y.image(y)
     }
 
     /// Counts the image of a row; `first` is the number of its first pose.
@@ -72,7 +72,7 @@ impl<'a> Images<'a> {
         (source, round): (usize, bool),
         first: u64,
     ) {
-        let x = self.mirror.x;
+        let x = self.half_turn.x;
         self.row.clear();
         let mut pose = first;
         // Backwards from `last` to 0, then from the end to the one after `last`.
@@ -104,7 +104,10 @@ impl<'a> Images<'a> {
         }
         let slot = &mut self.known[index][usize::from(after[0]) + 2 * usize::from(after[1])];
         let image = slot.get_or_insert_with(|| {
-            let cells = [self.mirror.x.cells(after[0]), self.mirror.y.cells(after[1])];
+            let cells = [
+                self.half_turn.x.cells(after[0]),
+                self.half_turn.y.cells(after[1]),
+            ];
             let hash = self
                 .layout
                 .half_turned(census.key(index), cells, &mut self.key);

@@ -11,7 +11,7 @@
 //! (`exact`). Each imprint is counted once per run (`census`) and described once per sweep (`atlas`).
 //!
 //! **What is not gone through.** Angles at which the shape looks the same (`symmetry`); and, where a half turn of the
-//! plane maps the poses of one angle onto each other, one half of their rows (`mirror`, `images`). Both by exact decimals.
+//! plane maps the poses of one angle onto each other, one half of their rows (`half_turn`, `images`). Both by exact decimals.
 //!
 //! Sums are whole numbers (`sums`), so no thread, shard or symmetry changes a digit of the statistics.
 
@@ -23,7 +23,7 @@ pub mod grid;
 
 mod symmetry;
 
-mod mirror;
+mod half_turn;
 
 pub mod plan;
 

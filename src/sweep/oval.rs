@@ -11,7 +11,7 @@ use crate::geometry::outline::Ellipse;
 /// Bounds of sections are taken this much wider than computed.
 const SLACK: f64 = 1e-12;
 
-/// An ellipse prepared for bands; see `Curve` in [`crate::geometry::overlap`] for the formulas.
+/// An ellipse prepared for bands; see `geometry::curve` for the formulas.
 #[derive(Clone, Debug)]
 pub(super) struct Oval {
     pub(super) x: f64,
@@ -199,7 +199,7 @@ impl Oval {
         ((middle + half).min(self.top + 1.0) - (middle - half).max(self.top)).max(0.0)
     }
 
-    /// `w`.
+    /// The height of the section at a place.
     pub(super) fn height(&self, x: f64) -> f64 {
         let d = x - self.x;
         if d.abs() >= self.reach_x {
@@ -208,7 +208,7 @@ impl Oval {
         self.clipped(d, self.half(d))
     }
 
-    /// `w`, `W` and what goes with them.
+    /// The height of the section at a place, the area on the left of it, and what goes with them.
     pub(super) fn at(&self, x: f64) -> Place {
         let d = x - self.x;
         let stretches = &self.stretches[..self.count];

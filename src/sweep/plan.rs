@@ -10,7 +10,7 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 use super::grid::Grid;
-use super::mirror::Mirror;
+use super::half_turn::HalfTurn;
 use super::symmetry::period;
 use crate::quote::shortened;
 
@@ -106,7 +106,7 @@ pub(super) struct Task {
 /// About so many poses make a task: enough to pay for its start, few enough to share out.
 const TASK_POSES: u64 = 20_000;
 /// And so many at most where rows are images of each other.
-const MIRRORED_TASK_POSES: u64 = 1_000_000;
+const HALVED_TASK_POSES: u64 = 1_000_000;
 /// A piece of work is cut into at least so many tasks, where it has as many rows.
 const TASKS: u64 = 16;
 
@@ -151,9 +151,9 @@ pub(super) fn tasks(
     let width = grid.ranges().x0.count();
     let count = pieces.len() as u64;
     // Only inside of one task can rows be images of each other.
-    let mirrored = width * height <= MIRRORED_TASK_POSES && Mirror::of(grid).is_some();
-    let most = if mirrored {
-        MIRRORED_TASK_POSES
+    let halved = width * height <= HALVED_TASK_POSES && HalfTurn::of(grid).is_some();
+    let most = if halved {
+        HALVED_TASK_POSES
     } else {
         TASK_POSES
     };

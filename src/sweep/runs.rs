@@ -1,12 +1,8 @@
 //! The imprints of the rows of one turn, run by run instead of pose by pose.
 //!
-//! The spans of a band ([`super::span`]) say for each taxel of a row of the sensor between which x0 it is active: taxel
-//! `i` inside of a span from `a` to `b` is so while `i − b ≤ x0 ≤ i − a`. So the imprint at the first x0 follows,
-//! and where along the range which taxel turns over. Between two such places the imprint is the same: one *run*.
-//!
-//! **Exactly as touching does.** Where a value of x0 lies within [`NEAR`] of the end of a span, or in a span that is in
-//! doubt, [`Exact`] decides for that taxel and that pose. Rows that are images of rows gone through before
-//! ([`super::mirror`]) are not gone through themselves.
+//! From the spans of a band ([`super::span`]) [`super::mark`] makes events; between two of them the imprint is the
+//! same: one *run*. Rows that are images of rows gone through before ([`super::half_turn`]) are not gone through
+//! themselves.
 
 use super::boundary::Boundary;
 use super::census::Census;
@@ -14,14 +10,14 @@ use super::ellipse::Elliptic;
 use super::events::Events;
 use super::exact::Exact;
 use super::grid::Grid;
+use super::half_turn::HalfTurn;
 use super::images::{Images, Runs};
 use super::layout::Layout;
 use super::mark::{Marker, Steps};
-use super::mirror::Mirror;
 use super::plan::Task;
 use super::polygon::Polygonal;
 use super::span::Spans;
-use crate::geometry::outline::{Extent, Point};
+use crate::geometry::outline::Extent;
 use crate::geometry::real::Real;
 use crate::touch::DOUBTFUL;
 
@@ -49,8 +45,8 @@ pub(super) fn go(
 ) -> Option<Found> {
     let turn = task.turns[0];
     let mut sweeper = Sweeper::new(grid, layout, turn);
-    let mirror = Mirror::of(grid).filter(|_| sweeper.lies_inside());
-    let mut images = mirror.map(|mirror| Images::new(layout, mirror));
+    let half_turn = HalfTurn::of(grid).filter(|_| sweeper.lies_inside());
+    let mut images = half_turn.map(|half_turn| Images::new(layout, half_turn));
     let mut found = Found {
         census: Census::new(layout.words()),
         partly_off: 0,
@@ -74,7 +70,7 @@ pub(super) fn go(
             found.partly_off += sweeper.beyond(y);
             sweeper.events.play(|key, hash, from, to| {
                 let index = found.census.add(key, hash, to - from, first + from);
-                if keep_runs || mirror.is_some() {
+                if keep_runs || half_turn.is_some() {
                     found.runs.push(index, to - from);
                 }
             });
@@ -135,7 +131,7 @@ impl<'a> Sweeper<'a> {
         let place = |x: u64| grid.offset::<f64>(turn, x, 0).x;
         let (first, last) = (place(0), place(count - 1));
         let count = i32::try_from(count).unwrap_or(i32::MAX);
-        let extent = extent(&boundary);
+        let extent = boundary.extent();
         let outside = |extent: &Extent| {
             let off = |x: &f64| {
                 extent.left + x < -DOUBTFUL
@@ -220,31 +216,4 @@ impl<'a> Sweeper<'a> {
             .spans(&self.spans);
         }
     }
-}
-
-/// The extent of a boundary.
-fn extent(boundary: &Boundary<f64>) -> Option<Extent> {
-    let corners = boundary.edges.iter().map(|&(from, _)| (from, from));
-    let ovals = boundary.ellipses.iter().map(|(ellipse, _)| {
-        let (centre, reach) = (ellipse.centre, ellipse.reach());
-        (
-            Point::new(centre.x - reach.x, centre.y - reach.y),
-            Point::new(centre.x + reach.x, centre.y + reach.y),
-        )
-    });
-    corners.chain(ovals).fold(None, |all, (low, high)| {
-        let own = Extent {
-            left: low.x,
-            top: low.y,
-            right: high.x,
-            bottom: high.y,
-        };
-        let all = all.unwrap_or(own);
-        Some(Extent {
-            left: all.left.min(own.left),
-            top: all.top.min(own.top),
-            right: all.right.max(own.right),
-            bottom: all.bottom.max(own.bottom),
-        })
-    })
 }

@@ -5,8 +5,10 @@
 //! So one function of `u` per row serves all columns and all x0. This module holds the set of `u` at which it
 //! reaches the threshold.
 
+use crate::touch::DOUBTFUL;
+
 /// A coverage this near to the threshold is not decided in `f64`; a share of a cell.
-pub(super) const DOUBT: f64 = 1e-10;
+pub(super) const DOUBT: f64 = DOUBTFUL;
 
 /// An end of a sharp span lies this near to its true place; cell sides. Where the coverage passes the threshold
 /// with a slope of [`STEEP`] or more, [`DOUBT`] is left after this way.

@@ -66,7 +66,7 @@ impl TurnSums {
     /// Of imprints with how many poses of one turn show each.
     pub(super) fn of(table: &Table, times: u64, counted: impl Iterator<Item = (u32, u64)>) -> Self {
         let mut sums = vec![Sum::default(); quantities().len()];
-        let places: Vec<_> = places().0.collect();
+        let places = places();
         let mut poses = 0;
         for (id, count) in counted {
             let row = table.row(usize::try_from(id).unwrap_or(0));

@@ -186,7 +186,7 @@ pub(super) fn statistics(
     spread: &Spread,
     ideal: impl Fn(&str) -> Option<f64>,
 ) -> Vec<Statistic> {
-    let places: Vec<_> = places().0.collect();
+    let places = places();
     let nothing = || vec![NOTHING; places.len()];
     let totals = (0..counts.len())
         .into_par_iter()

@@ -16,13 +16,13 @@ pub(super) fn period(source: &Source) -> Option<u32> {
         Source::Picture(picture) => {
             let imprint = picture.imprint();
             let half_turned = imprint.bounds().is_some_and(|bounds| {
-                let mirrored = |column: u8, row: u8| {
+                let turned = |column: u8, row: u8| {
                     imprint.get(
                         bounds.left + bounds.right - 1 - column,
                         bounds.top + bounds.bottom - 1 - row,
                     )
                 };
-                imprint.active().all(|(column, row)| mirrored(column, row))
+                imprint.active().all(|(column, row)| turned(column, row))
             });
             return Some(if half_turned { 180 } else { 360 });
         }

@@ -5,28 +5,45 @@ use rayon::prelude::*;
 use super::quantity::{Note, quantities, values};
 
 /// The values of all quantities of the imprints of an atlas.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Table {
+    /// The length of a row.
+    width: usize,
     /// A row per imprint: each quantity, NaN where it does not exist; a direction with its cosine and sine.
     values: Vec<f64>,
 }
 
-/// Where the values of each quantity stand in a row, and the row's length.
-pub(super) fn places() -> (impl Iterator<Item = (usize, bool)>, usize) {
-    let width = |circular: bool| if circular { 3 } else { 1 };
+/// How many values of a row a quantity takes.
+fn width(circular: bool) -> usize {
+    if circular { 3 } else { 1 }
+}
+
+/// Where the values of each quantity stand in a row, and whether it is circular.
+pub(super) fn places() -> Vec<(usize, bool)> {
     let all = quantities().iter().map(|quantity| quantity.circular);
-    let places = all.clone().scan(0, move |next, circular| {
+    let places = all.scan(0, |next, circular| {
         let place = *next;
         *next += width(circular);
         Some((place, circular))
     });
-    (places, all.map(width).sum())
+    places.collect()
+}
+
+impl Default for Table {
+    /// Of no imprint.
+    fn default() -> Self {
+        let widths = quantities().iter().map(|quantity| width(quantity.circular));
+        Self {
+            width: widths.sum(),
+            values: Vec::new(),
+        }
+    }
 }
 
 impl Table {
     /// Adds the values of the imprints that are not in it yet.
     pub(super) fn extend(&mut self, notes: &[Note]) {
-        let (places, width) = (places().0.collect::<Vec<_>>(), places().1);
+        let (places, width) = (places(), self.width);
         let known = self.values.len() / width;
         let new = &notes[known.min(notes.len())..];
         let start = self.values.len();
@@ -50,7 +67,6 @@ impl Table {
     }
 
     pub(super) fn row(&self, index: usize) -> &[f64] {
-        let width = places().1;
-        &self.values[index * width..][..width]
+        &self.values[index * self.width..][..self.width]
     }
 }

@@ -19,12 +19,12 @@ use crate::source::Source;
 
 /// How the poses of a turn are mapped onto each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Mirror {
+pub(super) struct HalfTurn {
     pub(super) x: Fold,
     pub(super) y: Fold,
 }
 
-impl Mirror {
+impl HalfTurn {
     /// None where the shape or the ranges are not mapped onto themselves. Whether the shape lies inside of the sensor is
     /// for the caller to see.
     pub(super) fn of(grid: &Grid) -> Option<Self> {
@@ -121,7 +121,7 @@ impl Fold {
         }
     }
 
-    /// By how many cells a taxel and its image are apart from 0, summed up, for values up to `last` or after it.
+    /// The sum of the coordinates of a centre and its image, in cells, for values up to `last` or after it.
     pub(super) fn cells(&self, after: bool) -> i32 {
         self.cells[usize::from(after)]
     }
@@ -141,7 +141,7 @@ mod tests {
             ..Ranges::default()
         };
         let grid = Grid::new(source, Sensor::default(), anchor, ranges).expect("a grid");
-        Mirror::of(&grid).is_some()
+        HalfTurn::of(&grid).is_some()
     }
 
     fn fold(range: &str, extent: f64) -> Option<Fold> {
@@ -176,14 +176,14 @@ mod tests {
 
     #[test]
     fn only_what_a_half_turn_maps_onto_itself_has_images() {
-        let mirrored = |kind: Kind, anchor| {
+        let halved = |kind: Kind, anchor| {
             has_images(Source::Figure(Figure::default_of(kind, 16)), anchor, "1")
         };
         let (corner, centre) = (Anchor::Corner, Anchor::Centre);
-        assert!(mirrored(Kind::Rectangle, corner) && mirrored(Kind::Ellipse, corner));
-        assert!(mirrored(Kind::Hexagon, centre) && mirrored(Kind::Octagon, centre));
-        assert!(!mirrored(Kind::Hexagon, corner) && !mirrored(Kind::Octagon, corner));
-        assert!(!mirrored(Kind::Triangle, centre) && !mirrored(Kind::Heptagon, centre));
+        assert!(halved(Kind::Rectangle, corner) && halved(Kind::Ellipse, corner));
+        assert!(halved(Kind::Hexagon, centre) && halved(Kind::Octagon, centre));
+        assert!(!halved(Kind::Hexagon, corner) && !halved(Kind::Octagon, corner));
+        assert!(!halved(Kind::Triangle, centre) && !halved(Kind::Heptagon, centre));
         let picture = |rows: &str, anchor, zoom: &str| {
             let rows = rows.parse().expect("rows");
             has_images(Source::Picture(Picture::at_home(rows)), anchor, zoom)
