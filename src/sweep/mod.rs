@@ -37,8 +37,6 @@ mod span;
 
 mod polygon;
 
-mod arc;
-
 mod oval;
 
 mod settle;

@@ -5,7 +5,7 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use super::arc::angle;
+use crate::geometry::circle::angle;
 use crate::geometry::outline::Ellipse;
 
 /// Bounds of sections are taken this much wider than computed.
