@@ -32,8 +32,10 @@ pub(super) struct Found {
     pub(super) runs: Runs,
 }
 
-/// After about so many poses of a turn the progress is told.
+/// After about so many poses of a turn the progress is told, where the shape has few edges.
 const TOLD: u64 = 4_000;
+/// So many edges more take about as long again: a picture may have thousands, and be stopped all the same.
+const EDGES: usize = 64;
 
 /// Goes through the rows of a task. `progress` is told of poses of one turn; where it answers `false` there is no result.
 pub(super) fn go(
@@ -76,7 +78,7 @@ pub(super) fn go(
             });
         }
         untold += width;
-        if untold >= TOLD && !progress(std::mem::take(&mut untold)) {
+        if untold >= sweeper.told && !progress(std::mem::take(&mut untold)) {
             return None;
         }
     }
@@ -114,6 +116,8 @@ struct Sweeper<'a> {
     grid: &'a Grid,
     turn: u64,
     shape: Shape,
+    /// How many poses may go by untold.
+    told: u64,
     /// Of the shape at the origin; none of one without a boundary.
     extent: Option<Extent>,
     steps: Steps,
@@ -144,6 +148,7 @@ impl<'a> Sweeper<'a> {
             grid,
             turn,
             shape: Shape::new(&boundary),
+            told: TOLD / (1 + boundary.edges.len() / EDGES) as u64,
             beyond: extent.as_ref().map_or(0, outside),
             extent,
             steps: Steps {

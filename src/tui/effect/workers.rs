@@ -236,8 +236,10 @@ fn write_poses(
     clock: Option<&Clock<'_>>,
 ) -> Result<bool, SweepFileError> {
     let mut file = PoseFile::new(name, &survey.grid, existing)?;
-    let progress = |poses: u64| going(poses, stop, clock);
-    let mut take = |row: u64, ids: &[u32]| file.take(row, ids, stop);
+    // A disk that is full ends the work, but is no wish to stop.
+    let full = AtomicBool::new(false);
+    let progress = |poses: u64| going(poses, stop, clock) && !full.load(Ordering::Relaxed);
+    let mut take = |row: u64, ids: &[u32]| file.take(row, ids, &full);
     let watch = Watch {
         progress: &progress,
         rows: Some(&mut take),
