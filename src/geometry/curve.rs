@@ -50,20 +50,14 @@ pub(crate) type Crossing<T> = (T, Sums<T>);
 impl<T: Real> Curve<T> {
     /// Prepares an ellipse; none that is thinner than any tie.
     pub(crate) fn of(ellipse: &Ellipse<T>) -> Option<Self> {
-        let Ellipse {
-            centre,
-            across: a,
-            along: b,
-        } = *ellipse;
-        let reach = ellipse.reach();
-        let area = (a.x * b.y - a.y * b.x).abs();
+        let (centre, reach, area) = (ellipse.centre, ellipse.reach(), ellipse.span());
         if area <= T::TIE * T::TIE {
             return None;
         }
         let inverse = Point::new(T::ONE / reach.x, T::ONE / reach.y);
         let extent = Point::new(area * inverse.y, area * inverse.x);
         // How far the points of the extremes lie aside of the axes through the centre.
-        let mixed = a.x * a.y + b.x * b.y;
+        let mixed = ellipse.skew();
         let skew = Point::new(mixed * inverse.y, mixed * inverse.x);
         Some(Self {
             centre,

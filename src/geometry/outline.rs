@@ -77,6 +77,16 @@ impl<T: Real> Ellipse<T> {
             length(self.across.y, self.along.y),
         )
     }
+
+    /// The area of the parallelogram that its two axes span: its own area over π.
+    pub(crate) fn span(&self) -> T {
+        (self.across.x * self.along.y - self.across.y * self.along.x).abs()
+    }
+
+    /// By how much its extreme points lie aside, times the reach in that direction; 0 where it is upright or a circle.
+    pub(crate) fn skew(&self) -> T {
+        self.across.x * self.across.y + self.along.x * self.along.y
+    }
 }
 
 /// Which side of a boundary the material lies on.

@@ -39,17 +39,19 @@ impl Journal {
     /// # Errors
     /// What the system refuses. The shape kept before is still there.
     pub fn keep(&mut self, shape: &Shape) -> Result<(), LibraryError> {
-        let content = shape.write();
-        let path = self.file()?;
-        match file::write(&path, &temporary_of(&path), content.as_bytes()) {
+        match self.write(shape) {
             // Somebody has removed the folder: another one is made.
             Err(LibraryError::System { error, .. }) if error.kind() == ErrorKind::NotFound => {
                 self.open = None;
-                let path = self.file()?;
-                file::write(&path, &temporary_of(&path), content.as_bytes())
+                self.write(shape)
             }
             written => written,
         }
+    }
+
+    fn write(&mut self, shape: &Shape) -> Result<(), LibraryError> {
+        let path = self.file()?;
+        file::write(&path, &temporary_of(&path), shape.write().as_bytes())
     }
 
     /// The journal's own file, found a name for at the first use.
@@ -116,7 +118,7 @@ impl Orphan {
                         if let Some(lock) = Lock::if_free(&path)
                             && !journal.exists()
                         {
-                            remove(&journal, lock);
+                            remove(&journal, Some(lock));
                         }
                         None
                     }
@@ -134,14 +136,14 @@ impl Orphan {
         let content = match file::read(&path) {
             // Its program has cleared it just now.
             Err(LibraryError::System { error, .. }) if error.kind() == ErrorKind::NotFound => {
-                remove(&path, lock);
+                remove(&path, Some(lock));
                 return None;
             }
             content => content.ok()?,
         };
         let shape = Shape::read(&content).ok()?;
         if is_saved(library, &shape) {
-            remove(&path, lock);
+            remove(&path, Some(lock));
             return None;
         }
         Some(Self { shape, path, lock })
@@ -149,7 +151,7 @@ impl Orphan {
 
     /// The work is elsewhere now, or is not wanted.
     pub fn discard(self) {
-        remove(&self.path, self.lock);
+        remove(&self.path, Some(self.lock));
     }
 }
 
@@ -177,10 +179,10 @@ fn temporary_of(path: &Path) -> PathBuf {
 }
 
 /// The lock goes last, so that nobody finds the file without it.
-fn remove(path: &Path, lock: impl Into<Option<Lock>>) {
+fn remove(path: &Path, lock: Option<Lock>) {
     // What cannot be removed is offered again: better twice than never.
     let _ = fs::remove_file(temporary_of(path));
     let _ = fs::remove_file(path);
     let _ = fs::remove_file(lock_of(path));
-    drop(lock.into());
+    drop(lock);
 }

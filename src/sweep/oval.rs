@@ -56,15 +56,9 @@ pub(super) struct Place {
 
 impl Oval {
     pub(super) fn new(ellipse: &Ellipse<f64>) -> Self {
-        let Ellipse {
-            centre,
-            across: a,
-            along: b,
-        } = *ellipse;
-        let reach = ellipse.reach();
+        let (centre, reach) = (ellipse.centre, ellipse.reach());
         let (x_square, y_square) = (reach.x * reach.x, reach.y * reach.y);
-        let mixed = a.x * a.y + b.x * b.y;
-        let area = (a.x * b.y - a.y * b.x).abs();
+        let (mixed, area) = (ellipse.skew(), ellipse.span());
         Self {
             x: centre.x,
             y: centre.y,
