@@ -11,12 +11,12 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use rustix::time::{ClockId, clock_gettime};
+use taxel::atlas::feature::{describe, values};
 use taxel::figure::Kind;
 use taxel::parameter::Parameter;
+use taxel::pose::grid::{Grid, Pose};
 use taxel::source::Source;
-use taxel::sweep::grid::{Grid, Pose};
 use taxel::sweep::plan::Shard;
-use taxel::sweep::quantity::{describe, values};
 use taxel::sweep::survey::{Survey, Watch};
 use taxel::touch::Plane;
 

@@ -12,7 +12,9 @@ use taxel::figure::{Figure, Kind};
 use taxel::parameter::Parameter;
 use taxel::sensor::Sensor;
 use taxel::touch::Plane;
-use taxel::tui::{app::Options, effect::World, script::Session};
+use taxel::tui::app::state::Options;
+use taxel::tui::runtime::perform::World;
+use taxel::tui::script::Session;
 
 use peer::{Outline, Peer};
 

@@ -9,9 +9,9 @@
 use std::fmt::Write;
 
 use taxel::figure::{Figure, Kind};
+use taxel::pose::grid::{Anchor, Grid, Ranges};
 use taxel::sensor::Sensor;
 use taxel::source::Source;
-use taxel::sweep::grid::{Anchor, Grid, Ranges};
 use taxel::sweep::plan::Shard;
 use taxel::sweep::survey::{Survey, Watch};
 
@@ -73,7 +73,7 @@ pub(crate) fn report(angles: &str) -> Result<String, String> {
 fn row(
     surveys: &[Survey],
     key: &str,
-    deviation: fn(&taxel::sweep::statistics::Statistic) -> Option<f64>,
+    deviation: fn(&taxel::atlas::statistics::Statistic) -> Option<f64>,
 ) -> String {
     let percent = |survey: &Survey| {
         let statistic = survey

@@ -10,11 +10,11 @@ use std::fmt::Write;
 
 use taxel::figure::{Figure, Kind};
 use taxel::parameter::Parameter;
+use taxel::pose::grid::{Anchor, Grid, Ranges};
+use taxel::pose::range::DecimalRange;
 use taxel::sensor::Sensor;
 use taxel::source::Source;
-use taxel::sweep::grid::{Anchor, Grid, Ranges};
 use taxel::sweep::plan::Shard;
-use taxel::sweep::range::DecimalRange;
 use taxel::sweep::survey::{Survey, Watch};
 
 /// What is gone through, the ranges of x0 and y0, and what the paper says of it.

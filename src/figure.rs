@@ -97,7 +97,8 @@ impl Kind {
 /// A figure on the sensory plane. Its values are always finite, its sizes and its thickness above 0.
 ///
 /// ```
-/// use taxel::{figure::{Figure, Kind}, parameter::Parameter};
+/// use taxel::figure::{Figure, Kind};
+/// use taxel::parameter::Parameter;
 /// let ring = Figure::new(Kind::Ellipse, 16, |parameter| match parameter {
 ///     Parameter::RadiusX | Parameter::RadiusY => Some(4.0),
 ///     Parameter::X0 => Some(1.99),
@@ -229,7 +230,8 @@ impl Figure {
     /// Whether it has a hole: it has a thickness, and that leaves room for one.
     ///
     /// ```
-    /// use taxel::{figure::{Figure, Kind}, parameter::Parameter};
+    /// use taxel::figure::{Figure, Kind};
+    /// use taxel::parameter::Parameter;
     /// let square = Figure::default_of(Kind::Rectangle, 16).with(Parameter::Width, 6.0, 16)?;
     /// assert!(!square.has_hole());
     /// assert!(square.with(Parameter::Thickness, 2.99, 16)?.has_hole());

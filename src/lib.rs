@@ -6,8 +6,12 @@
 //! in a library of files. The program of the same name is a screen and a command line over it.
 //!
 //! ```
-//! use taxel::description::{descriptor::Description, region::{main_region, regions}};
-//! use taxel::{figure::{Figure, Kind}, parameter::Parameter, sensor::Sensor, touch::Plane};
+//! use taxel::description::descriptor::Description;
+//! use taxel::description::region::{main_region, regions};
+//! use taxel::figure::{Figure, Kind};
+//! use taxel::parameter::Parameter;
+//! use taxel::sensor::Sensor;
+//! use taxel::touch::Plane;
 //!
 //! // The paper's Fig. 1: an ellipse with radii of 4, a wall of 2.
 //! let figure = Figure::default_of(Kind::Ellipse, 16)
@@ -40,7 +44,7 @@
 //!
 //! # Map
 //!
-//! The modules as layers; each names only what stands above it, and the same holds inside each of them. A test reads the
+//! The rooms in reading order; each names only rooms above it, and inside a room there is no cycle. A test reads the
 //! `use` lines and holds that law.
 //! ```text
 //!  geometry     the area of polygons and ellipses in each cell of a grid           plane, f64
@@ -50,14 +54,16 @@
 //!  figure  picture  source        what touches: seven figures, a stored imprint
 //!  touch        shape + sensor -> coverage of each taxel -> imprint
 //!  description  imprint -> regions -> DESCRIPTORS
-//!  sweep        every pose of a grid -> its distinct imprints, statistics
+//!  pose         exact ranges, the grid of poses and the index of each
+//!  atlas        the distinct imprints of a grid, counted; statistics
+//!  sweep        every pose of a grid at once -> its atlas
 //!  ───────────  above: total, no input or output, no panic; below: the world
 //!  formats      text, PBM, CSV, NPY, JSON, atlases; drawings as SVG and PNG
-//!  library      the folder of stored shapes
+//!  storage      files: atomic writes, the folder of stored shapes, journal, trash
 //!  tui          the screen                                                         ratatui, crossterm
 //!  cli          the command line over all of it                                    clap
 //! ```
-//! Files and streams are touched by `library`, `formats`, `cli`, `tui::effect`, `tui::terminal` and `main` only.
+//! Files and streams are touched by `storage`, `formats`, `cli`, `tui::runtime`, `tui::terminal` and `main` only.
 //!
 //! The way of a pose:
 //! ```text
@@ -71,10 +77,10 @@
 //!                     brings                                           on top of
 //! (none)              all but what stands below; glam and serde only
 //! json                formats::shape, formats::job
-//! sweep               sweep; formats::atlas, archive, sweep_file,      json
-//!                     unfinished
+//! sweep               pose, atlas, sweep; formats::atlas, archive;     json
+//!                     storage::sweep_file, unfinished
 //! png                 formats::drawing::Drawing::png
-//! library             library                                          json
+//! library             storage                                          json
 //! tui                 tui                                              library, sweep
 //! cli (the default)   cli, and the program                             tui, png
 //! ```
@@ -83,7 +89,7 @@
 //!
 //! # Stability
 //!
-//! From `geometry` to `library` the crate follows semantic versioning; what is likely to grow is non-exhaustive. `tui`
+//! From `geometry` to `storage` the crate follows semantic versioning; what is likely to grow is non-exhaustive. `tui`
 //! and `cli` are the program: their items are public for tests and scripts, and follow the program.
 //!
 //! # Invariants
@@ -122,12 +128,18 @@ pub mod touch;
 pub mod description;
 
 #[cfg(feature = "sweep")]
+pub mod pose;
+
+#[cfg(feature = "sweep")]
+pub mod atlas;
+
+#[cfg(feature = "sweep")]
 pub mod sweep;
 
 pub mod formats;
 
-#[cfg(feature = "library")]
-pub mod library;
+#[cfg(any(feature = "library", feature = "sweep"))]
+pub mod storage;
 
 #[cfg(feature = "tui")]
 pub mod tui;

@@ -27,7 +27,9 @@ const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 /// The sensory plane: a sensor that can be touched again and again without allocating, unless a coverage is in doubt.
 ///
 /// ```
-/// use taxel::{figure::{Figure, Kind}, sensor::Sensor, touch::Plane};
+/// use taxel::figure::{Figure, Kind};
+/// use taxel::sensor::Sensor;
+/// use taxel::touch::Plane;
 /// let mut plane = Plane::new(Sensor::default());
 /// let imprint = plane.touch(&Figure::default_of(Kind::Rectangle, 16));
 /// assert_eq!(imprint.count(), 6 * 3);

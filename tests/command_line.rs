@@ -1,9 +1,9 @@
 //! The command line at the foot of the screen, and help in every place.
 
-use taxel::tui::binding::Context;
-use taxel::tui::commands::COMMANDS;
-use taxel::tui::keymap::KEYMAP;
-use taxel::tui::message::Message;
+use taxel::tui::app::message::Message;
+use taxel::tui::keys::binding::Context;
+use taxel::tui::keys::default_keys::KEYMAP;
+use taxel::tui::prompt::commands::COMMANDS;
 
 #[path = "common/screen.rs"]
 mod screen;
@@ -32,7 +32,7 @@ fn every_action_has_a_command() {
 #[test]
 fn commands_are_found_by_their_names() {
     for command in COMMANDS {
-        let found = taxel::tui::commands::find(command.name).expect("it is there");
+        let found = taxel::tui::prompt::commands::find(command.name).expect("it is there");
         assert_eq!(format!("{found:?}"), format!("{command:?}"));
     }
 }

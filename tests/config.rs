@@ -2,10 +2,10 @@
 //! then shows.
 
 use taxel::cli::config::Config;
-use taxel::tui::app::{App, Options};
-use taxel::tui::binding::Context;
-use taxel::tui::effect::World;
-use taxel::tui::keymap::KEYMAP;
+use taxel::tui::app::state::{App, Options};
+use taxel::tui::keys::binding::Context;
+use taxel::tui::keys::default_keys::KEYMAP;
+use taxel::tui::runtime::perform::World;
 use taxel::tui::script::Session;
 
 fn refused(text: &str, expected: &str) {
@@ -196,14 +196,14 @@ fn an_option_without_a_key_stays_in_the_menu() {
     assert!(!session.screen().contains("Kind"));
     let column = session.screen().find("Figure").expect("an option");
     let mouse = |kind| {
-        taxel::tui::message::Message::Mouse(taxel::tui::message::Mouse {
+        taxel::tui::app::message::Message::Mouse(taxel::tui::app::message::Mouse {
             kind,
             column: u16::try_from(column).expect("on the screen"),
             row: 0,
         })
     };
-    session.send(mouse(taxel::tui::message::MouseKind::Press));
-    session.send(mouse(taxel::tui::message::MouseKind::Release));
+    session.send(mouse(taxel::tui::app::message::MouseKind::Press));
+    session.send(mouse(taxel::tui::app::message::MouseKind::Release));
     assert!(session.screen().contains("Kind"), "{}", session.screen());
 }
 
@@ -211,7 +211,7 @@ fn an_option_without_a_key_stays_in_the_menu() {
 #[test]
 fn every_place_and_every_action_can_be_named() {
     for context in Context::ALL {
-        for name in taxel::tui::remap::actions(context) {
+        for name in taxel::tui::keys::keymap::actions(context) {
             let text = format!("[keys.{}]\n'<C-k>' = '{name}'\n", context.name());
             let config = Config::read(&text).expect(&text);
             assert_eq!(config.keymap().rows().len(), KEYMAP.len());

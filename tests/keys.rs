@@ -1,11 +1,11 @@
 //! What keys do: keys in, then what must and what must not be on the screen.
 
-use taxel::tui::app::Options;
-use taxel::tui::binding::Context;
-use taxel::tui::effect::World;
-use taxel::tui::keymap::KEYMAP;
-use taxel::tui::message::Message;
-use taxel::tui::remap::{Keymap, help};
+use taxel::tui::app::message::Message;
+use taxel::tui::app::state::Options;
+use taxel::tui::keys::binding::Context;
+use taxel::tui::keys::default_keys::KEYMAP;
+use taxel::tui::keys::keymap::{Keymap, help};
+use taxel::tui::runtime::perform::World;
 use taxel::tui::script::Session;
 
 fn world() -> World {

@@ -10,13 +10,13 @@ use taxel::parameter::Parameter;
 use taxel::sensor::Sensor;
 use taxel::source::Source;
 use taxel::touch::Plane;
-use taxel::tui::app::Options;
-use taxel::tui::binding::Context;
-use taxel::tui::effect::World;
-use taxel::tui::keymap::KEYMAP;
-use taxel::tui::remap::Keymap;
+use taxel::tui::app::state::Options;
+use taxel::tui::keys::binding::Context;
+use taxel::tui::keys::default_keys::KEYMAP;
+use taxel::tui::keys::keymap::Keymap;
+use taxel::tui::runtime::perform::World;
 use taxel::tui::script::runner::{Settings, Shown, run_shown};
-use taxel::tui::theme::{ColorDepth, Palette, Theme};
+use taxel::tui::widget::theme::{ColorDepth, Palette, Theme};
 
 #[path = "readme/dependencies.rs"]
 mod dependencies;

@@ -5,7 +5,8 @@
 use std::path::PathBuf;
 
 use serde_json::Value;
-use taxel::formats::{answer::Answer, job::Job};
+use taxel::formats::answer::Answer;
+use taxel::formats::job::Job;
 use taxel::sensor::Sensor;
 use taxel::touch::Plane;
 

@@ -1,11 +1,11 @@
 //! Screens of every size and every character set.
 
 use taxel::sensor::Sensor;
-use taxel::tui::app::Options;
-use taxel::tui::effect::World;
-use taxel::tui::message::{Message, Mouse, MouseKind};
+use taxel::tui::app::message::{Message, Mouse, MouseKind};
+use taxel::tui::app::state::Options;
+use taxel::tui::runtime::perform::World;
 use taxel::tui::script::Session;
-use taxel::tui::theme::{ColorDepth, Palette, Theme};
+use taxel::tui::widget::theme::{ColorDepth, Palette, Theme};
 
 fn world() -> World {
     World::scratch().expect("there is a folder for temporary files")

@@ -6,9 +6,9 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use taxel::tui::app::Options;
-use taxel::tui::effect::World;
-use taxel::tui::remap::Keymap;
+use taxel::tui::app::state::Options;
+use taxel::tui::keys::keymap::Keymap;
+use taxel::tui::runtime::perform::World;
 use taxel::tui::script::runner::{Failure, Settings, run};
 
 fn settings(styles: bool, json: bool) -> Settings {
@@ -170,7 +170,7 @@ fn what_does_not_hold_is_told_with_its_line() {
 fn a_signal_keeps_unsaved_work() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let world = || {
-        World::new(taxel::library::store::Library::open(
+        World::new(taxel::storage::store::Library::open(
             folder.path().to_owned(),
         ))
     };

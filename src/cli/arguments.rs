@@ -7,25 +7,26 @@ use clap::ArgMatches;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 
-use super::chosen::Chosen;
-use super::commands;
-use super::completions::Shell;
-use super::effective::{Effective, Loaded};
-use super::export::Export;
-use super::failure::Failure;
-use super::flags::{self, Given};
-use super::pitch::Pitch;
-use super::program::Script;
-use super::sweep::Wanted;
+use crate::cli::chosen::Chosen;
+use crate::cli::commands;
+use crate::cli::completions::Shell;
+use crate::cli::effective::{Effective, Loaded};
+use crate::cli::export::Export;
+use crate::cli::failure::Failure;
+use crate::cli::flags;
+use crate::cli::flags::Given;
+use crate::cli::pitch::Pitch;
+use crate::cli::program::Script;
+use crate::cli::sweep::Wanted;
 use crate::figure::Kind;
 use crate::formats::name::Name;
-use crate::formats::sweep_file::AtlasFile;
 use crate::parameter::Parameter;
+use crate::pose::grid::{Anchor, Ranges};
+use crate::pose::range::DecimalRange;
 use crate::sensor::Sensor;
 use crate::source::Source;
-use crate::sweep::grid::{Anchor, Ranges};
+use crate::storage::sweep_file::AtlasFile;
 use crate::sweep::plan::Shard;
-use crate::sweep::range::DecimalRange;
 
 /// What is asked for, and with which settings.
 #[derive(Clone, Debug)]

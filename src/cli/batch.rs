@@ -6,8 +6,8 @@
 
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 
-use super::failure::Failure;
-use super::report;
+use crate::cli::failure::Failure;
+use crate::cli::report;
 use crate::formats::answer::Answer;
 use crate::formats::job::Job;
 use crate::imprint::Imprint;

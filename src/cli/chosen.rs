@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::ArgMatches;
 
-use super::flags::Given;
-use crate::tui::theme::{ColorDepth, Palette};
+use crate::cli::flags::Given;
+use crate::tui::widget::theme::{ColorDepth, Palette};
 
 /// What a flag with several words says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

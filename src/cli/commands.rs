@@ -6,24 +6,26 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgGroup, Command, value_parser};
 
-use super::examples::{
+use crate::cli::examples::{
     ABOUT, BATCH_EXAMPLES, CHECK_EXAMPLES, DELETE_EXAMPLES, DESCRIBE_EXAMPLES, EXAMPLES,
     EXPORT_EXAMPLES, FIGURE_EXAMPLES, LIBRARY_EXAMPLES, LIST_EXAMPLES, MERGE_EXAMPLES,
     PATH_EXAMPLES, PICTURE_EXAMPLES, RESTORE_EXAMPLES, SAVE_EXAMPLES, SHOW_EXAMPLES,
     SWEEP_EXAMPLES,
 };
-use super::export;
-use super::flags;
-use super::program::{ascii, completions, config, config_file, look, man, record, script, size};
+use crate::cli::export;
+use crate::cli::flags;
+use crate::cli::program::{
+    ascii, completions, config, config_file, look, man, record, script, size,
+};
 use crate::figure::Kind;
 use crate::formats::name::{Name, NameError};
-use crate::formats::sweep_file::{AtlasFile, is_poses};
 use crate::parameter::Parameter;
 use crate::picture::PICTURE_PARAMETERS;
+use crate::pose::grid::Ranges;
+use crate::pose::range::{DecimalRange, RangeError};
 use crate::sensor::SENSOR_PARAMETERS;
-use crate::sweep::grid::Ranges;
+use crate::storage::sweep_file::{AtlasFile, is_poses};
 use crate::sweep::plan::{Shard, ShardError};
-use crate::sweep::range::{DecimalRange, RangeError};
 
 /// All commands.
 pub(super) fn all() -> Command {

@@ -16,11 +16,11 @@ use toml::de::{DeTable, DeValue};
 use crate::parameter::{Parameter, ParameterError};
 use crate::quote::legible;
 use crate::sensor::Sensor;
-use crate::tui::action;
-use crate::tui::binding::Context;
-use crate::tui::key::{Key, parse};
-use crate::tui::remap::{Change, Keymap, RemapError};
-use crate::tui::theme::{ColorDepth, Palette};
+use crate::tui::keys::action;
+use crate::tui::keys::binding::Context;
+use crate::tui::keys::key::{Key, parse};
+use crate::tui::keys::keymap::{Change, Keymap, RemapError};
+use crate::tui::widget::theme::{ColorDepth, Palette};
 
 /// What stands for a choice that the program makes.
 pub(super) const AUTO: &str = "auto";

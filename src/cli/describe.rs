@@ -1,9 +1,9 @@
 //! `taxel describe`: what is stored under a name or in a file, shown.
 
-use super::arguments::Form;
-use super::input::Content;
-use super::locale::Charset;
-use super::report;
+use crate::cli::arguments::Form;
+use crate::cli::input::Content;
+use crate::cli::locale::Charset;
+use crate::cli::report;
 
 /// The imprint with what describes it. A stored shape says what made it.
 pub(super) fn content(content: &Content, form: Form, charset: Charset) -> String {

@@ -6,17 +6,17 @@ use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::PathBuf;
 
-use super::chosen::Chosen;
-use super::config::{AUTO, CHARSETS, Config, MAX_BYTES, SENSOR, Written, Wrong};
-use super::failure::Failure;
-use super::locale::Charset;
-use crate::library::place;
+use crate::cli::chosen::Chosen;
+use crate::cli::config::{AUTO, CHARSETS, Config, MAX_BYTES, SENSOR, Written, Wrong};
+use crate::cli::failure::Failure;
+use crate::cli::locale::Charset;
 use crate::parameter::Parameter;
 use crate::sensor::Sensor;
-use crate::tui::action;
-use crate::tui::binding::Context;
-use crate::tui::remap::Keymap;
-use crate::tui::theme::{ColorDepth, Palette};
+use crate::storage::place;
+use crate::tui::keys::action;
+use crate::tui::keys::binding::Context;
+use crate::tui::keys::keymap::Keymap;
+use crate::tui::widget::theme::{ColorDepth, Palette};
 
 /// The variable that names the file.
 pub(super) const VARIABLE: &str = "TAXEL_CONFIG";

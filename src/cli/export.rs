@@ -4,15 +4,15 @@ use std::ffi::OsStr;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use super::failure::Failure;
-use super::input::Content;
-use super::pitch::Pitch;
-use super::shelf::Shelf;
+use crate::cli::failure::Failure;
+use crate::cli::input::Content;
+use crate::cli::pitch::Pitch;
+use crate::cli::shelf::Shelf;
 use crate::formats::drawing::Drawing;
 use crate::formats::exchange::Format as ImprintFormat;
-use crate::formats::unfinished::{Existing, Unfinished, Whole};
 use crate::imprint::Imprint;
 use crate::source::Source;
+use crate::storage::unfinished::{Existing, Unfinished, Whole};
 
 /// What a file is to hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,13 +2,13 @@
 
 use std::io;
 
-use super::input::InputError;
-use super::locale::Charset;
+use crate::cli::input::InputError;
+use crate::cli::locale::Charset;
 use crate::formats::archive::ArchiveError;
-use crate::formats::sweep_file::SweepFileError;
-use crate::library::error::LibraryError;
+use crate::pose::grid::GridError;
 use crate::quote::legible;
-use crate::sweep::grid::GridError;
+use crate::storage::error::LibraryError;
+use crate::storage::sweep_file::SweepFileError;
 use crate::sweep::survey::MergeError;
 use crate::tui::script::runner;
 

@@ -2,12 +2,12 @@
 
 use clap::{Arg, ArgMatches};
 
-use super::failure::Failure;
+use crate::cli::failure::Failure;
 use crate::figure::{Figure, Kind};
-use crate::formats::unfinished::Existing;
 use crate::parameter::{PARAMETERS, Parameter, ParameterError, Unit, number};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
 use crate::sensor::{MAX_SIDE, SENSOR_PARAMETERS, Sensor};
+use crate::storage::unfinished::Existing;
 
 /// Help texts are broken so that they fit 80 columns beside the flags.
 const HELP_WIDTH: usize = 52;

@@ -4,7 +4,8 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::PathBuf;
 
-use crate::formats::exchange::{self, ExchangeError};
+use crate::formats::exchange;
+use crate::formats::exchange::ExchangeError;
 use crate::formats::shape::{MAX_BYTES, Shape, ShapeError};
 use crate::imprint::Imprint;
 use crate::quote::legible;

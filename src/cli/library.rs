@@ -5,19 +5,19 @@ use std::fmt::Write;
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use super::arguments::{Form, Saving};
-use super::describe;
-use super::failure::Failure;
-use super::input::Content;
-use super::locale::Charset;
-use super::report;
-use super::shelf::Shelf;
+use crate::cli::arguments::{Form, Saving};
+use crate::cli::describe;
+use crate::cli::failure::Failure;
+use crate::cli::input::Content;
+use crate::cli::locale::Charset;
+use crate::cli::report;
+use crate::cli::shelf::Shelf;
 use crate::description::region::{Kind, regions};
 use crate::formats::shape::Shape;
-use crate::library::store::{Entry, Library, Origin};
 use crate::parameter::Parameter;
 use crate::quote::legible;
 use crate::sensor::Sensor;
+use crate::storage::store::{Entry, Library, Origin};
 
 /// A line of the list.
 struct Line {

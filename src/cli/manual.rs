@@ -11,11 +11,11 @@ use clap::Command;
 use clap_mangen::Man;
 use clap_mangen::roff::{Roff, roman};
 
-use super::commands;
-use super::examples::{ENVIRONMENT, FILES};
-use super::export;
-use super::failure::Failure;
-use crate::formats::unfinished::Existing;
+use crate::cli::commands;
+use crate::cli::examples::{ENVIRONMENT, FILES};
+use crate::cli::export;
+use crate::cli::failure::Failure;
+use crate::storage::unfinished::Existing;
 
 /// The program's own page.
 pub(super) fn main_page() -> Result<Vec<u8>, Failure> {

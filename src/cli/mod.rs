@@ -69,7 +69,7 @@ use locale::Charset;
 use shelf::Shelf;
 use touch::Touched;
 
-use crate::sweep::grid::Grid;
+use crate::pose::grid::Grid;
 
 /// Does what the arguments ask for, the first of which is the program's own name, and gives the exit status.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {

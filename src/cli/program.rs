@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
-use super::completions::Shell;
-use super::config::AUTO;
-use super::examples::{COMPLETIONS_EXAMPLES, CONFIG_EXAMPLES, MAN_EXAMPLES, SCRIPT_EXAMPLES};
-use super::flags;
-use super::input::Place;
-use crate::formats::unfinished::Existing;
+use crate::cli::completions::Shell;
+use crate::cli::config::AUTO;
+use crate::cli::examples::{COMPLETIONS_EXAMPLES, CONFIG_EXAMPLES, MAN_EXAMPLES, SCRIPT_EXAMPLES};
+use crate::cli::flags;
+use crate::cli::input::Place;
+use crate::storage::unfinished::Existing;
 use crate::tui::script::command;
-use crate::tui::theme::{ColorDepth, Palette};
+use crate::tui::widget::theme::{ColorDepth, Palette};
 
 /// A script and how it is run.
 #[derive(Clone, Debug)]
@@ -183,7 +183,7 @@ fn parse_size(text: &str) -> Result<(u16, u16), String> {
     command::size(text)
 }
 
-/// Declared for the help only: [`super::locale::Charset`] has seen it before.
+/// Declared for the help only: [`crate::cli::locale::Charset`] has seen it before.
 pub(super) fn ascii() -> Arg {
     Arg::new("ascii")
         .long("ascii")

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-use super::locale::Charset;
+use crate::cli::locale::Charset;
 
 /// A line comes this often where there is no terminal.
 const PAUSE: Duration = Duration::from_secs(10);

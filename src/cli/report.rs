@@ -6,7 +6,7 @@
 
 use std::fmt::Write;
 
-use super::locale::Charset;
+use crate::cli::locale::Charset;
 use crate::description::descriptor::{DESCRIPTORS, Description, Descriptor, Unit};
 use crate::description::region::{Kind, regions};
 use crate::formats::answer::Answer;

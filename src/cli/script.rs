@@ -4,20 +4,21 @@ use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::ops::ControlFlow;
 
-use super::effective::Effective;
-use super::export;
-use super::failure::Failure;
-use super::input::Place;
-use super::locale::Charset;
-use super::program::Script;
-use super::shelf::Shelf;
+use crate::cli::effective::Effective;
+use crate::cli::export;
+use crate::cli::failure::Failure;
+use crate::cli::input::Place;
+use crate::cli::locale::Charset;
+use crate::cli::program::Script;
+use crate::cli::shelf::Shelf;
 use crate::formats::name::{Name, folded};
-use crate::tui::app::Options;
-use crate::tui::effect::World;
-use crate::tui::key::parse;
+use crate::tui::app::state::Options;
+use crate::tui::keys::key::parse;
+use crate::tui::runtime::perform::World;
 use crate::tui::script::command::ScriptError;
-use crate::tui::script::runner::{self, Settings as Running, Shown};
-use crate::tui::theme::{ColorDepth, Palette, Theme};
+use crate::tui::script::runner;
+use crate::tui::script::runner::{Settings as Running, Shown};
+use crate::tui::widget::theme::{ColorDepth, Palette, Theme};
 
 /// No script is longer.
 const MOST_BYTES: u64 = 16 << 20;

@@ -6,12 +6,13 @@ use std::ffi::OsStr;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
-use super::failure::Failure;
-use super::input::{self, Content, InputError, Place};
+use crate::cli::failure::Failure;
+use crate::cli::input;
+use crate::cli::input::{Content, InputError, Place};
 use crate::formats::shape::Shape;
 use crate::imprint::Imprint;
-use crate::library::error::LibraryError;
-use crate::library::store::{Expected, Library};
+use crate::storage::error::LibraryError;
+use crate::storage::store::{Expected, Library};
 
 /// The library, opened when it is used first.
 #[derive(Debug)]

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use super::locale::Charset;
-use crate::sweep::statistics::{COLUMNS, Column, Statistic};
+use crate::atlas::statistics::{COLUMNS, Column, Statistic};
+use crate::cli::locale::Charset;
 use crate::sweep::survey::Survey;
 
 /// A survey, and how long it took.

@@ -12,14 +12,15 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
-use super::failure::Failure;
-use super::locale::Charset;
-use super::progress::Progress;
-use super::summary::Summary;
-use crate::formats::archive::{self, ArchiveError};
-use crate::formats::sweep_file::{AtlasFile, PoseFile, Whole};
-use crate::formats::unfinished::Existing;
-use crate::sweep::grid::Grid;
+use crate::cli::failure::Failure;
+use crate::cli::locale::Charset;
+use crate::cli::progress::Progress;
+use crate::cli::summary::Summary;
+use crate::formats::archive;
+use crate::formats::archive::ArchiveError;
+use crate::pose::grid::Grid;
+use crate::storage::sweep_file::{AtlasFile, PoseFile, Whole};
+use crate::storage::unfinished::Existing;
 use crate::sweep::plan::Shard;
 use crate::sweep::survey::{Survey, Watch};
 

@@ -3,14 +3,14 @@
 
 use std::ffi::OsStr;
 
-use super::arguments::{Form, Kept, Saving};
-use super::export::{Begun, Exported};
-use super::failure::Failure;
-use super::flags::Given;
-use super::input::Content;
-use super::locale::Charset;
-use super::report;
-use super::shelf::Shelf;
+use crate::cli::arguments::{Form, Kept, Saving};
+use crate::cli::export::{Begun, Exported};
+use crate::cli::failure::Failure;
+use crate::cli::flags::Given;
+use crate::cli::input::Content;
+use crate::cli::locale::Charset;
+use crate::cli::report;
+use crate::cli::shelf::Shelf;
 use crate::formats::shape::Shape;
 use crate::parameter::Parameter;
 use crate::picture::Picture;

@@ -9,11 +9,11 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
-use super::chain::Outline;
-use super::region::{Kind, Region};
+use crate::description::chain::Outline;
+use crate::description::region::{Kind, Region};
 use crate::imprint::{Bounds, Imprint};
 
-pub use super::chain::Steps;
+pub use crate::description::chain::Steps;
 
 /// What is counted and summed up of one region; every descriptor follows from it.
 #[derive(Clone, Copy, Debug, PartialEq)]

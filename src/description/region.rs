@@ -83,7 +83,8 @@ impl<'a> Region<'a> {
 /// All regions of an imprint, exteriors first. Empty for an empty imprint.
 ///
 /// ```
-/// use taxel::{description::region::{regions, Kind}, imprint::Imprint};
+/// use taxel::description::region::{regions, Kind};
+/// use taxel::imprint::Imprint;
 /// let ring: Imprint = "\
 /// .##.
 /// #..#
@@ -101,7 +102,9 @@ pub fn regions(imprint: &Imprint) -> Vec<Region<'static>> {
 /// Shows all regions of an imprint one after another, in the order of [`regions`], and allocates nothing.
 ///
 /// ```
-/// use taxel::{description::{descriptor::Description, region::each_region}, imprint::Imprint};
+/// use taxel::description::descriptor::Description;
+/// use taxel::description::region::each_region;
+/// use taxel::imprint::Imprint;
 /// let two: Imprint = "##.#".parse().unwrap();
 /// let mut counts = Vec::new();
 /// each_region(&two, |region| counts.push(Description::of(region).na));

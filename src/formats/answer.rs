@@ -9,7 +9,8 @@ use crate::imprint::Imprint;
 /// Serialises as `{"imprint":[…],"na":…,"regions":[{"kind":…,…},…]}`.
 ///
 /// ```
-/// use taxel::{formats::answer::Answer, imprint::Imprint};
+/// use taxel::formats::answer::Answer;
+/// use taxel::imprint::Imprint;
 /// let one: Imprint = "..\n.#".parse().unwrap();
 /// let json = serde_json::to_string(&Answer(&one)).unwrap();
 /// assert!(json.starts_with(r#"{"imprint":["..",".#"],"na":1,"regions":[{"kind":"exterior","na":1,"nae":1,"ce":1,"#));
@@ -36,7 +37,7 @@ impl Serialize for Answer<'_> {
 
 /// An imprint as a list of its rows.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rows<'a>(pub &'a Imprint);
+pub(crate) struct Rows<'a>(pub &'a Imprint);
 
 impl Serialize for Rows<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -53,7 +54,7 @@ impl Serialize for Rows<'_> {
 
 /// A region by its descriptors.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Entry(pub Description);
+pub(crate) struct Entry(pub Description);
 
 impl Serialize for Entry {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

@@ -14,16 +14,17 @@ use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
-use super::atlas::{place, value};
-use super::npy::{self, Kind};
-use super::record::{Record, RecordError, Values};
+use crate::atlas::feature::{quantities, values};
+use crate::formats::atlas::{place, value};
+use crate::formats::npy;
+use crate::formats::npy::Kind;
+use crate::formats::record::{Record, RecordError, Values};
+use crate::pose::grid::{Anchor, Grid, GridError, Ranges};
+use crate::pose::range::RangeError;
 use crate::quote::shortened;
 use crate::sensor::Sensor;
-use crate::sweep::grid::{Anchor, Grid, GridError, Ranges};
 use crate::sweep::parts::{Parts, PartsError};
 use crate::sweep::plan::{Shard, ShardError};
-use crate::sweep::quantity::{quantities, values};
-use crate::sweep::range::RangeError;
 use crate::sweep::survey::Survey;
 
 /// What the header must say first.
@@ -101,7 +102,7 @@ pub fn write(survey: &Survey, output: impl Write + Seek) -> Result<(), ArchiveEr
         first.extend(own.flat_map(f64::to_le_bytes));
     }
     archive.add("first", Kind::F64, &[count, own.len() as u64], &first)?;
-    let small = |of: fn(&crate::sweep::quantity::Note) -> u16| {
+    let small = |of: fn(&crate::atlas::feature::Note) -> u16| {
         let notes = survey.atlas.entries().map(|entry| entry.note);
         notes
             .flat_map(|note| of(&note).to_le_bytes())
@@ -176,7 +177,7 @@ pub fn read(input: impl Read + Seek) -> Result<Survey, ArchiveError> {
     let header = array("header")?;
     let header = npy::content(&header, Kind::U8).ok_or(ArchiveError::Array("header"))?;
     let header: Header<Record<'_>, Values> = serde_json::from_slice(header)
-        .map_err(|error| ArchiveError::Header(super::quote::message(&error)))?;
+        .map_err(|error| ArchiveError::Header(crate::formats::quote::message(&error)))?;
     if header.format != FORMAT {
         return Err(ArchiveError::Format(shortened(&header.format)));
     }

@@ -1,11 +1,12 @@
 //! An imprint as an array of numpy (`numpy.load`): rows × columns, true for an active taxel.
 //!
 //! Written is `bool`. Read are two-dimensional arrays of `bool`, whole numbers or floats of either byte order, in C or
-//! Fortran order, whose values are 0 and 1, of the format's versions 1 to 3. Source: that of [`super::npy`].
+//! Fortran order, whose values are 0 and 1, of the format's versions 1 to 3. Source: that of [`crate::formats::npy`].
 
 use std::fmt;
 
-use super::npy::{self, Kind};
+use crate::formats::npy;
+use crate::formats::npy::Kind;
 use crate::imprint::Imprint;
 use crate::quote::shortened;
 use crate::sensor::MAX_SIDE;
@@ -136,7 +137,8 @@ impl Type {
 /// What is wrong first, and where.
 ///
 /// ```
-/// use taxel::{formats::array::{read, write}, imprint::Imprint};
+/// use taxel::formats::array::{read, write};
+/// use taxel::imprint::Imprint;
 /// let cup: Imprint = "#.#\n###".parse().unwrap();
 /// let file = write(&cup);
 /// assert!(file[10..].starts_with(b"{'descr': '|b1', 'fortran_order': False, 'shape': (2, 3), }"));

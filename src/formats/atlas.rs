@@ -1,22 +1,22 @@
 //! An atlas as a table: CSV, a line per imprint, or JSON lines.
 //!
 //! Columns of the CSV: `id`, `count`, `share` of all poses, the first pose (`first_x0` and so on, zooms for pictures
-//! only), `pieces`, `holes`, each quantity of [`crate::sweep::quantity`] (empty where it does not exist), and
+//! only), `pieces`, `holes`, each quantity of [`crate::atlas::feature`] (empty where it does not exist), and
 //! `imprint`, its rows of `#` and `.` from the top with `/` between them.
 
 use std::io::{self, Write};
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use super::answer::{Entry as Main, Rows};
+use crate::atlas::Entry;
+use crate::atlas::feature::{quantities, values};
+use crate::formats::answer::{Entry as Main, Rows};
 use crate::parameter::Parameter;
-use crate::sweep::atlas::Entry;
-use crate::sweep::grid::{Grid, Pose};
-use crate::sweep::quantity::{quantities, values};
+use crate::pose::grid::{Grid, Pose};
 use crate::sweep::survey::Survey;
 
 /// The parameters of a pose of this grid.
-pub(super) fn place(grid: &Grid) -> impl Iterator<Item = Parameter> {
+pub(crate) fn place(grid: &Grid) -> impl Iterator<Item = Parameter> {
     let own = grid.source().parameters();
     let rows = grid.ranges().by_parameter().map(|(parameter, _)| parameter);
     rows.into_iter()

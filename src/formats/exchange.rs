@@ -15,10 +15,14 @@
 
 use std::fmt;
 
-use super::array::{self, ArrayError};
-use super::pbm::{self, PbmError};
-use super::table::{self, TableError};
-use super::text::{self, TextError};
+use crate::formats::array;
+use crate::formats::array::ArrayError;
+use crate::formats::pbm;
+use crate::formats::pbm::PbmError;
+use crate::formats::table;
+use crate::formats::table::TableError;
+use crate::formats::text;
+use crate::formats::text::TextError;
 use crate::imprint::Imprint;
 
 /// No file of an imprint is larger; a larger one is refused unread. 1 MiB.

@@ -1,7 +1,7 @@
 //! One line of `taxel batch`: a figure, a picture or a whole matrix, and perhaps a sensor of its own.
 
-use super::quote::message;
-use super::record::{Record, RecordError};
+use crate::formats::quote::message;
+use crate::formats::record::{Record, RecordError};
 use crate::imprint::Imprint;
 use crate::sensor::Sensor;
 use crate::source::Source;

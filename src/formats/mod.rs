@@ -45,12 +45,3 @@ pub mod atlas;
 
 #[cfg(feature = "sweep")]
 pub mod archive;
-
-#[cfg(feature = "sweep")]
-mod latch;
-
-#[cfg(feature = "sweep")]
-pub mod unfinished;
-
-#[cfg(feature = "sweep")]
-pub mod sweep_file;

@@ -9,9 +9,9 @@ use std::fmt;
 use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use super::answer::Rows;
-use super::quote::without_place;
 use crate::figure::{Figure, Kind};
+use crate::formats::answer::Rows;
+use crate::formats::quote::without_place;
 use crate::imprint::{Imprint, ImprintError};
 use crate::parameter::{PARAMETERS, Parameter, ParameterError};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
@@ -68,7 +68,7 @@ fn article(noun: &str) -> &'static str {
 
 /// Numbers by parameter.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Values([Option<f64>; PARAMETERS.len()]);
+pub(crate) struct Values([Option<f64>; PARAMETERS.len()]);
 
 impl Values {
     fn index(parameter: Parameter) -> Option<usize> {
@@ -76,12 +76,12 @@ impl Values {
     }
 
     /// The value of a parameter, where one was given.
-    pub(super) fn get(&self, parameter: Parameter) -> Option<f64> {
+    pub(crate) fn get(&self, parameter: Parameter) -> Option<f64> {
         self.0[Self::index(parameter)?]
     }
 
     /// Refuses the first value that is not of the parameters expected.
-    pub(super) fn only(
+    pub(crate) fn only(
         &self,
         thing: &'static str,
         expected: &[Parameter],
@@ -112,7 +112,7 @@ impl Values {
     ///
     /// # Errors
     /// The first value that is missing, out of range, or not of this kind.
-    pub(super) fn figure(&self, kind: Kind, side: u8) -> Result<Figure, RecordError> {
+    pub(crate) fn figure(&self, kind: Kind, side: u8) -> Result<Figure, RecordError> {
         self.only(kind.name(), &kind.parameters().collect::<Vec<_>>())?;
         Ok(Figure::new(kind, side, |parameter| self.get(parameter))?)
     }
@@ -132,7 +132,7 @@ impl Values {
     ///
     /// # Errors
     /// The first value that is out of range or not of a sensor.
-    pub(super) fn sensor(&self, base: Sensor) -> Result<Sensor, RecordError> {
+    pub(crate) fn sensor(&self, base: Sensor) -> Result<Sensor, RecordError> {
         self.only("sensor", &SENSOR_PARAMETERS)?;
         SENSOR_PARAMETERS
             .into_iter()
@@ -145,7 +145,7 @@ impl Values {
 
 /// Rows of text, or a name.
 #[derive(Clone, Debug)]
-pub(super) enum Content<'a> {
+pub(crate) enum Content<'a> {
     /// Rows of `#` and `.`, not checked yet.
     Rows(Vec<Cow<'a, str>>),
     /// A name.
@@ -157,7 +157,7 @@ impl Content<'_> {
     ///
     /// # Errors
     /// Where the rows are no imprint, or the name leads to none.
-    pub(super) fn imprint(
+    pub(crate) fn imprint(
         &self,
         key: &'static str,
         lookup: &dyn Fn(&str) -> Result<Imprint, String>,
@@ -172,17 +172,17 @@ impl Content<'_> {
 
 /// An object with any of the keys that occur in jobs, sensors and sources.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Record<'a> {
+pub(crate) struct Record<'a> {
     /// A figure's name.
-    pub(super) figure: Option<Cow<'a, str>>,
+    pub(crate) figure: Option<Cow<'a, str>>,
     /// A picture's rows or name.
-    pub(super) picture: Option<Content<'a>>,
+    pub(crate) picture: Option<Content<'a>>,
     /// A whole matrix.
-    pub(super) imprint: Option<Content<'a>>,
+    pub(crate) imprint: Option<Content<'a>>,
     /// A sensor.
-    pub(super) sensor: Option<Values>,
+    pub(crate) sensor: Option<Values>,
     /// All keys that are parameters.
-    pub(super) values: Values,
+    pub(crate) values: Values,
 }
 
 impl Record<'_> {
@@ -190,7 +190,7 @@ impl Record<'_> {
     ///
     /// # Errors
     /// Any [`RecordError`].
-    pub(super) fn source(
+    pub(crate) fn source(
         &self,
         side: u8,
         lookup: &dyn Fn(&str) -> Result<Imprint, String>,
@@ -211,7 +211,7 @@ impl Record<'_> {
     }
 
     /// Refuses a sensor where it would change nothing.
-    pub(super) fn no_sensor(&self, thing: &'static str) -> Result<(), RecordError> {
+    pub(crate) fn no_sensor(&self, thing: &'static str) -> Result<(), RecordError> {
         if self.sensor.is_none() {
             return Ok(());
         }

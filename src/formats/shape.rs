@@ -4,10 +4,10 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::fmt;
 
-use super::answer::Rows;
-use super::name::{Name, NameError};
-use super::quote::message;
-use super::record::{Content, Record, RecordError, Values};
+use crate::formats::answer::Rows;
+use crate::formats::name::{Name, NameError};
+use crate::formats::quote::message;
+use crate::formats::record::{Content, Record, RecordError, Values};
 use crate::imprint::Imprint;
 use crate::quote::shortened;
 use crate::sensor::Sensor;

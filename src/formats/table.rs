@@ -6,7 +6,7 @@
 
 use std::fmt;
 
-use super::text::lines;
+use crate::formats::text::lines;
 use crate::imprint::Imprint;
 use crate::quote::shortened;
 use crate::sensor::MAX_SIDE;

@@ -164,7 +164,7 @@ fn no_text(bytes: &[u8], end: usize) -> TextError {
 }
 
 /// The lines without their ends, and without the blank ones after the last that is not.
-pub(super) fn lines(text: &str) -> Vec<&str> {
+pub(crate) fn lines(text: &str) -> Vec<&str> {
     let mut lines: Vec<&str> = text
         .split('\n')
         .map(|line| line.strip_suffix('\r').unwrap_or(line))

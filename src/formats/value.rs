@@ -5,7 +5,8 @@ use crate::description::descriptor::{Unit, Value};
 /// The text of a value; none where the value does not exist.
 ///
 /// ```
-/// use taxel::{description::descriptor::{Unit, Value}, formats::value::text};
+/// use taxel::description::descriptor::{Unit, Value};
+/// use taxel::formats::value::text;
 /// assert_eq!(text(Value::Number(9.0 / 14.0), Unit::Share).as_deref(), Some("64.29 %"));
 /// assert_eq!(text(Value::Number(5.5), Unit::Length).as_deref(), Some("5.5"));
 /// assert_eq!(text(Value::None, Unit::Length), None);
@@ -94,7 +95,7 @@ pub fn counted(count: u64, noun: &str) -> String {
 }
 
 /// With at most so many decimals, no zeros at their end, and no minus before a zero.
-pub(super) fn decimal(number: f64, decimals: usize) -> String {
+pub(crate) fn decimal(number: f64, decimals: usize) -> String {
     let text = format!("{number:.decimals$}");
     let text = if text.contains('.') {
         text.trim_end_matches('0').trim_end_matches('.')

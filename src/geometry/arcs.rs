@@ -9,10 +9,10 @@
 //! the cells on its two sides; and all lines are computed before the way down begins, since a processor then works on
 //! several of them at once.
 
-use super::curve::{Curve, Sums};
-use super::grid::{Grid, index};
-use super::outline::{Ellipse, Point, Side};
-use super::real::Real;
+use crate::geometry::curve::{Curve, Sums};
+use crate::geometry::grid::{Grid, index};
+use crate::geometry::outline::{Ellipse, Point, Side};
+use crate::geometry::real::Real;
 
 /// Draws ellipses, again and again without allocating.
 #[derive(Clone, Debug, Default)]

@@ -8,8 +8,8 @@
 //! the centre. A horizontal line takes one angle `η` for the two points at which it meets the ellipse, since they lie
 //! as far from the topmost point on either side; so does a vertical line.
 
-use super::outline::{Ellipse, Point};
-use super::real::Real;
+use crate::geometry::outline::{Ellipse, Point};
+use crate::geometry::real::Real;
 
 /// An ellipse: its extreme points, and where it meets horizontal and vertical lines.
 #[derive(Clone, Debug)]

@@ -14,8 +14,8 @@
 
 use std::ops::Range;
 
-use super::outline::Point;
-use super::real::Real;
+use crate::geometry::outline::Point;
+use crate::geometry::real::Real;
 
 /// A grid of `columns × rows` unit cells with its top left corner at the origin.
 #[derive(Clone, Debug)]

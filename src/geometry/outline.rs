@@ -10,7 +10,7 @@
 //! **Size.** Coordinates are finite. They may lie far beyond the sensor, but roundings grow with them: of the 32 digits
 //! that decide a tie, those before the decimal point are lost, and of an ellipse as many again.
 
-use super::real::Real;
+use crate::geometry::real::Real;
 
 /// A point of the plane, or a vector in it; cell sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -142,7 +142,8 @@ impl<T: Real, P: Pen<T>> Pen<T> for Moving<'_, T, P> {
 /// ```
 /// use taxel::geometry::outline::{Ellipse, Pen, Point, Side, Solid};
 /// use taxel::geometry::real::Real;
-/// use taxel::{sensor::Sensor, touch::Plane};
+/// use taxel::sensor::Sensor;
+/// use taxel::touch::Plane;
 ///
 /// /// A square plate with a round hole in its middle.
 /// struct Flange { left: f64, top: f64, side: f64, bore: f64 }
@@ -180,7 +181,8 @@ pub trait Solid {
 ///
 /// ```
 /// use taxel::geometry::outline::{Extent, Polygon};
-/// use taxel::{sensor::Sensor, touch::Plane};
+/// use taxel::sensor::Sensor;
+/// use taxel::touch::Plane;
 ///
 /// let kite = Polygon::new([(3.0, 1.0), (1.0, 4.0), (3.0, 9.0), (5.0, 4.0)]);
 /// assert_eq!(Extent::of(&kite), Some(Extent { left: 1.0, top: 1.0, right: 5.0, bottom: 9.0 }));

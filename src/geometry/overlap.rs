@@ -8,10 +8,10 @@
 //! they contribute is as small as their height. Deciding a threshold exactly is the business of [`crate::touch`], which
 //! uses [`cell`] for it.
 
-use super::arcs::Arcs;
-use super::grid::{Grid, index};
-use super::outline::{Ellipse, Moving, Pen, Point, Side, Solid};
-use super::real::Real;
+use crate::geometry::arcs::Arcs;
+use crate::geometry::grid::{Grid, index};
+use crate::geometry::outline::{Ellipse, Moving, Pen, Point, Side, Solid};
+use crate::geometry::real::Real;
 
 /// A grid of `columns × rows` unit cells with its top left corner at the origin, that sums up what is drawn on it.
 #[derive(Clone, Debug)]

@@ -15,7 +15,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::circle;
+use crate::geometry::circle;
 
 mod sealed {
     /// What only the numbers of this file are.

@@ -1,9 +1,9 @@
 //! Numbers in and out: range checks, reading, showing, stepping.
 
-use super::error::ParameterError;
-use super::number;
-use super::range::Range;
-use super::table::{Decimals, LENGTH, PARAMETERS, Parameter, Row, Unit};
+use crate::parameter::error::ParameterError;
+use crate::parameter::number;
+use crate::parameter::range::Range;
+use crate::parameter::table::{Decimals, LENGTH, PARAMETERS, Parameter, Row, Unit};
 use crate::quote::shortened;
 
 impl Parameter {

@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use super::number::{complaint, short};
-use super::range::Range;
-use super::table::{Parameter, Unit};
+use crate::parameter::number::{complaint, short};
+use crate::parameter::range::Range;
+use crate::parameter::table::{Parameter, Unit};
 
 /// Why a number was refused. The message names the parameter, what was given and what was expected.
 #[derive(Clone, Debug, PartialEq)]

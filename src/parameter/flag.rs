@@ -1,6 +1,6 @@
 //! Parameters by their flags: `--radius-x 4` on the program's command line and on the screen's.
 
-use super::table::{PARAMETERS, Parameter};
+use crate::parameter::table::{PARAMETERS, Parameter};
 
 impl Parameter {
     /// The name of its flag, without the dashes: its key with `-` for `_`, and without a unit, which stands in the help.

@@ -1,6 +1,6 @@
 //! The table of parameters.
 
-use super::range::End;
+use crate::parameter::range::End;
 
 /// A quantity that a user can set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

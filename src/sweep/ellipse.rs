@@ -1,33 +1,33 @@
 //! Spans of ellipses, solid or with one ellipse as their hole, row by row of the grid.
 //!
 //! **Method.** With `O` and `I` the areas of the outer and the inner ellipse in the cell, a taxel is active where
-//! `O − I` reaches the threshold `t`. `O` does so between one rising and one falling passage ([`super::track`]), and
+//! `O − I` reaches the threshold `t`. `O` does so between one rising and one falling passage ([`crate::sweep::track`]), and
 //! outside of these nothing is active. Where the cell lies inside of the outer ellipse (`O = 1`), what matters is where
 //! `I` exceeds `1 − t`: again one rising and one falling passage. What remains is where the cell reaches the
 //! hole already and the outside still; there `O` rises from its value at the first touch of the hole and `I` to
 //! its value at the last touch of the outside, and as a rule the difference of the two stays above `t`. Whenever
-//! something of this does not hold the band is settled from nothing ([`super::settle`]).
+//! something of this does not hold the band is settled from nothing ([`crate::sweep::isolate`]).
 
-use super::oval::Oval;
-use super::settle::Ring;
-use super::span::{DOUBT, Level, NEAR, Spans};
-use super::track::Track;
 use crate::geometry::outline::{Ellipse, Side};
 use crate::sensor::MAX_SIDE;
+use crate::sweep::ellipse_band::Oval;
+use crate::sweep::isolate::Ring;
+use crate::sweep::span::{DOUBT, Level, NEAR, Spans};
+use crate::sweep::track::Track;
 
 /// The passages of one row of the sensor: outer rising and falling, inner rising and falling.
 type Tracks = [Track; 4];
 
 /// An ellipse, perhaps with a hole.
 #[derive(Clone, Debug)]
-pub(super) struct Elliptic {
+pub(crate) struct Elliptic {
     ring: Ring,
     tracks: Box<[Tracks]>,
 }
 
 impl Elliptic {
     /// None where the ellipses are not one with at most one hole.
-    pub(super) fn new(ellipses: &[(Ellipse<f64>, Side)]) -> Option<Self> {
+    pub(crate) fn new(ellipses: &[(Ellipse<f64>, Side)]) -> Option<Self> {
         let (outer, inner) = match ellipses {
             [(outer, Side::Inside)] => (outer, None),
             [(outer, Side::Inside), (inner, Side::Outside)] => (outer, Some(Oval::new(inner))),
@@ -45,7 +45,7 @@ impl Elliptic {
 
     /// The spans at which the coverage of the cells from `top` to `top + 1` reaches the threshold. `row` is the row of
     /// the sensor: the passages of the same row a moment ago tell where to look.
-    pub(super) fn band(&mut self, top: f64, row: usize, threshold: f64, spans: &mut Spans) {
+    pub(crate) fn band(&mut self, top: f64, row: usize, threshold: f64, spans: &mut Spans) {
         spans.clear();
         self.ring.threshold = threshold;
         let outer = &mut self.ring.outer;

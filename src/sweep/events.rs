@@ -3,12 +3,12 @@
 //! Events are kept by the step at which they happen, in lists without an order of their own, and a bit per step tells
 //! where to look. Playing them back gives one imprint per run of steps at which nothing happens.
 
-use super::layout::Layout;
+use crate::atlas::packing::Layout;
 
 /// Which taxels are active at first, and which turn over at which step.
 #[derive(Clone, Debug)]
-pub(super) struct Events<'a> {
-    pub(super) layout: &'a Layout,
+pub(crate) struct Events<'a> {
+    pub(crate) layout: &'a Layout,
     count: u64,
     key: Vec<u64>,
     hash: u64,
@@ -30,7 +30,7 @@ struct Event {
 const NONE: u32 = u32::MAX;
 
 impl<'a> Events<'a> {
-    pub(super) fn new(layout: &'a Layout, count: u64) -> Self {
+    pub(crate) fn new(layout: &'a Layout, count: u64) -> Self {
         let steps = usize::try_from(count).unwrap_or(0);
         Self {
             layout,
@@ -43,21 +43,21 @@ impl<'a> Events<'a> {
         }
     }
 
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.key.fill(0);
         self.hash = 0;
         self.list.clear();
     }
 
     /// Taxels of a row that are active at the first step.
-    pub(super) fn start(&mut self, row: usize, taxels: u64) {
+    pub(crate) fn start(&mut self, row: usize, taxels: u64) {
         let (word, shift) = self.layout.place(row);
         self.key[word] ^= taxels << shift;
         self.hash ^= self.layout.hash(row, taxels);
     }
 
     /// A taxel turns over at a step, 1 to the last.
-    pub(super) fn turn_over(&mut self, row: usize, column: usize, step: i32) {
+    pub(crate) fn turn_over(&mut self, row: usize, column: usize, step: i32) {
         let step = usize::try_from(step).unwrap_or(0);
         let (word, shift) = self.layout.place(row);
         let (bits, bit) = (&mut self.marked[step / 64], 1 << (step % 64));
@@ -77,7 +77,7 @@ impl<'a> Events<'a> {
     }
 
     /// Gives key, hash, first step and the step after the last of each run in turn, and forgets the marks.
-    pub(super) fn play(&mut self, mut run: impl FnMut(&[u64], u64, u64, u64)) {
+    pub(crate) fn play(&mut self, mut run: impl FnMut(&[u64], u64, u64, u64)) {
         let mut from = 0;
         for (index, marked) in self.marked.iter_mut().enumerate() {
             while *marked != 0 {

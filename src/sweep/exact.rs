@@ -4,11 +4,11 @@
 //! short. The boundary is drawn once per turn in [`Double`] at the origin and shifted by the decimals that the ranges
 //! give, which is in real arithmetic the shape of the pose itself.
 
-use super::boundary::Boundary;
-use super::grid::Grid;
 use crate::geometry::outline::Point;
 use crate::geometry::overlap::Overlap;
 use crate::geometry::real::{Double, Real};
+use crate::pose::boundary::Boundary;
+use crate::pose::grid::Grid;
 use crate::touch::least;
 
 /// How many values of x0 and of y0 are kept as places.
@@ -16,7 +16,7 @@ const REMEMBERED: usize = 128;
 
 /// The shape of one turn, ready for exact decisions.
 #[derive(Debug)]
-pub(super) struct Exact<'a> {
+pub(crate) struct Exact<'a> {
     grid: &'a Grid,
     turn: u64,
     boundary: Option<Boundary<Double>>,
@@ -27,7 +27,7 @@ pub(super) struct Exact<'a> {
 }
 
 impl<'a> Exact<'a> {
-    pub(super) fn new(grid: &'a Grid, turn: u64) -> Self {
+    pub(crate) fn new(grid: &'a Grid, turn: u64) -> Self {
         Self {
             grid,
             turn,
@@ -40,7 +40,7 @@ impl<'a> Exact<'a> {
 
     /// Whether the taxel is active when the shape lies at value `x` of x0 and value `y` of y0.
     #[cold]
-    pub(super) fn active(&mut self, column: usize, row: usize, x: u64, y: u64) -> bool {
+    pub(crate) fn active(&mut self, column: usize, row: usize, x: u64, y: u64) -> bool {
         let whole = |index: usize| Double::whole(i32::try_from(index).unwrap_or(0));
         let by = Point::new(
             self.place(x, false) - whole(column),

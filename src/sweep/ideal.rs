@@ -11,7 +11,7 @@ use crate::source::Source;
 
 /// Area and outline of the continuous figure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Ideal {
+pub(crate) struct Ideal {
     area: f64,
     filled: f64,
     outline: f64,
@@ -19,7 +19,7 @@ pub(super) struct Ideal {
 
 impl Ideal {
     /// Of a figure.
-    pub(super) fn of(source: &Source) -> Option<Self> {
+    pub(crate) fn of(source: &Source) -> Option<Self> {
         let Source::Figure(figure) = source else {
             return None;
         };
@@ -29,7 +29,7 @@ impl Ideal {
     }
 
     /// The value of the quantity of that name.
-    pub(super) fn get(&self, key: &str) -> Option<f64> {
+    pub(crate) fn get(&self, key: &str) -> Option<f64> {
         match key {
             "na" => Some(self.area),
             "nae" => Some(self.filled),

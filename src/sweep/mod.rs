@@ -15,21 +15,9 @@
 //!
 //! Sums are whole numbers (`sums`), so no thread, shard or symmetry changes a digit of the statistics.
 
-pub mod range;
-
-mod boundary;
-
-pub mod grid;
-
-mod symmetry;
-
-mod half_turn;
+mod point_symmetry;
 
 pub mod plan;
-
-mod layout;
-
-mod census;
 
 mod exact;
 
@@ -37,9 +25,9 @@ mod span;
 
 mod polygon;
 
-mod oval;
+mod ellipse_band;
 
-mod settle;
+mod isolate;
 
 mod track;
 
@@ -47,38 +35,18 @@ mod ellipse;
 
 mod events;
 
-mod mark;
+mod flips;
 
-mod images;
+mod reflected_rows;
 
 mod runs;
-
-pub mod quantity;
-
-mod canonical;
-
-pub mod atlas;
-
-mod sums;
-
-mod table;
-
-mod spread;
-
-pub mod statistics;
 
 mod ideal;
 
 pub mod survey;
 
-pub mod place;
-
 mod window;
 
 pub mod sample;
-
-pub mod order;
-
-pub mod histogram;
 
 pub mod parts;

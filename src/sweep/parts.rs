@@ -3,14 +3,14 @@
 //! Imprints, how often each occurs and where first, and the sums that the statistics need beside these. Descriptors
 //! are not among them: they follow from the imprints.
 
-use super::atlas::Atlas;
-use super::census::Census;
-use super::grid::Grid;
-use super::plan::Shard;
-use super::spread::Spread;
-use super::survey::Survey;
-use super::table::Table;
+use crate::atlas::Atlas;
+use crate::atlas::counter::Census;
+use crate::atlas::values::Table;
+use crate::atlas::variance::Spread;
 use crate::imprint::Imprint;
+use crate::pose::grid::Grid;
+use crate::sweep::plan::Shard;
+use crate::sweep::survey::Survey;
 
 /// The numbers of a survey.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -111,10 +111,10 @@ pub struct PartsError(&'static str);
 mod tests {
     use super::*;
     use crate::figure::{Figure, Kind};
+    use crate::pose::grid::{Anchor, Ranges};
+    use crate::pose::range::DecimalRange;
     use crate::sensor::Sensor;
     use crate::source::Source;
-    use crate::sweep::grid::{Anchor, Ranges};
-    use crate::sweep::range::DecimalRange;
     use crate::sweep::survey::Watch;
 
     #[test]

@@ -9,10 +9,10 @@ use std::ops::Range;
 use std::str::FromStr;
 use std::sync::Arc;
 
-use super::grid::Grid;
-use super::half_turn::HalfTurn;
-use super::symmetry::period;
+use crate::pose::grid::Grid;
+use crate::pose::symmetry::period;
 use crate::quote::shortened;
+use crate::sweep::point_symmetry::HalfTurn;
 
 /// One of `of` nearly equal pieces of a grid, `number` from 1.
 ///
@@ -96,11 +96,11 @@ pub struct ShardError {
 
 /// Some rows of a turn, and of all turns that look the same.
 #[derive(Clone, Debug)]
-pub(super) struct Task {
+pub(crate) struct Task {
     /// The turns, the first of which is gone through.
-    pub(super) turns: Arc<[u64]>,
+    pub(crate) turns: Arc<[u64]>,
     /// Numbers of its values of y0.
-    pub(super) rows: Range<u64>,
+    pub(crate) rows: Range<u64>,
 }
 
 /// About so many poses make a task: enough to pay for its start, few enough to share out.
@@ -112,7 +112,7 @@ const TASKS: u64 = 16;
 
 /// The tasks of one block of turns (all angles at one pair of zooms) inside of the rows of a shard, in the order in
 /// which they meet a new imprint first. Made one by one as they are asked for: a large grid has millions.
-pub(super) fn tasks(
+pub(crate) fn tasks(
     grid: &Grid,
     shard: &Range<u64>,
     block: u64,

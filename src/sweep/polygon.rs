@@ -10,8 +10,8 @@
 //! **Error.** `w` at a corner is a sum of shares of rises, each in [0, 1] of them, and `W` is summed up by
 //! trapezoids: nothing is extrapolated, so steep pieces do no harm. Below 1e-11.
 
-use super::span::{DOUBT, Level, STEEP, Spans};
 use crate::geometry::outline::Point;
+use crate::sweep::span::{DOUBT, Level, STEEP, Spans};
 
 /// An edge, from its upper end.
 #[derive(Clone, Copy, Debug)]
@@ -80,7 +80,7 @@ impl Stretch {
 
 /// A shape of straight edges, and room to work in.
 #[derive(Clone, Debug)]
-pub(super) struct Polygonal {
+pub(crate) struct Polygonal {
     edges: Vec<Edge>,
     /// Where edges lie that are level, which cut nothing.
     levels: Vec<f64>,
@@ -90,7 +90,7 @@ pub(super) struct Polygonal {
 }
 
 impl Polygonal {
-    pub(super) fn new(edges: &[(Point<f64>, Point<f64>)]) -> Self {
+    pub(crate) fn new(edges: &[(Point<f64>, Point<f64>)]) -> Self {
         let edge = |&(from, to): &(Point<f64>, Point<f64>)| {
             let (upper, lower, sign) = if to.y < from.y {
                 (to, from, 1.0)
@@ -123,7 +123,7 @@ impl Polygonal {
     }
 
     /// The spans at which the coverage of the cells from `top` to `top + 1` reaches the threshold.
-    pub(super) fn band(&mut self, top: f64, threshold: f64, spans: &mut Spans) {
+    pub(crate) fn band(&mut self, top: f64, threshold: f64, spans: &mut Spans) {
         spans.clear();
         self.cut(top);
         self.stretch();

@@ -1,35 +1,35 @@
 //! The imprints of the rows of one turn, run by run instead of pose by pose.
 //!
-//! From the spans of a band ([`super::span`]) [`super::mark`] makes events; between two of them the imprint is the
-//! same: one *run*. Rows that are images of rows gone through before ([`super::half_turn`]) are not gone through
+//! From the spans of a band ([`crate::sweep::span`]) [`crate::sweep::flips`] makes events; between two of them the imprint is the
+//! same: one *run*. Rows that are images of rows gone through before ([`crate::sweep::point_symmetry`]) are not gone through
 //! themselves.
 
-use super::boundary::Boundary;
-use super::census::Census;
-use super::ellipse::Elliptic;
-use super::events::Events;
-use super::exact::Exact;
-use super::grid::Grid;
-use super::half_turn::HalfTurn;
-use super::images::{Images, Runs};
-use super::layout::Layout;
-use super::mark::{Marker, Steps};
-use super::plan::Task;
-use super::polygon::Polygonal;
-use super::span::Spans;
+use crate::atlas::counter::Census;
+use crate::atlas::packing::Layout;
 use crate::geometry::outline::Extent;
 use crate::geometry::real::Real;
+use crate::pose::boundary::Boundary;
+use crate::pose::grid::Grid;
+use crate::sweep::ellipse::Elliptic;
+use crate::sweep::events::Events;
+use crate::sweep::exact::Exact;
+use crate::sweep::flips::{Marker, Steps};
+use crate::sweep::plan::Task;
+use crate::sweep::point_symmetry::HalfTurn;
+use crate::sweep::polygon::Polygonal;
+use crate::sweep::reflected_rows::{Images, Runs};
+use crate::sweep::span::Spans;
 use crate::touch::DOUBTFUL;
 
 /// What a task gave.
 #[derive(Debug)]
-pub(super) struct Found {
+pub(crate) struct Found {
     /// Its imprints, counted once per pose of one of its turns.
-    pub(super) census: Census,
+    pub(crate) census: Census,
     /// Poses of one turn that reach beyond the sensor.
-    pub(super) partly_off: u64,
+    pub(crate) partly_off: u64,
     /// The runs of each row; only where asked for.
-    pub(super) runs: Runs,
+    pub(crate) runs: Runs,
 }
 
 /// After about so many poses of a turn the progress is told, where the shape has few edges.
@@ -38,7 +38,7 @@ const TOLD: u64 = 4_000;
 const EDGES: usize = 64;
 
 /// Goes through the rows of a task. `progress` is told of poses of one turn; where it answers `false` there is no result.
-pub(super) fn go(
+pub(crate) fn go(
     grid: &Grid,
     layout: &Layout,
     task: &Task,

@@ -2,8 +2,8 @@
 
 use std::collections::HashSet;
 
-use super::grid::Grid;
-use super::symmetry::period;
+use crate::pose::grid::Grid;
+use crate::pose::symmetry::period;
 
 /// About so many poses are enough to measure by.
 const POSES: u64 = 20_000;
@@ -53,9 +53,9 @@ fn distinct_angles(grid: &Grid) -> u64 {
 mod tests {
     use super::*;
     use crate::figure::{Figure, Kind};
+    use crate::pose::grid::{Anchor, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
-    use crate::sweep::grid::{Anchor, Ranges};
 
     fn sample(kind: Kind, ranges: Ranges) -> (u64, f64) {
         let source = Source::Figure(Figure::default_of(kind, 16));

@@ -8,18 +8,18 @@
 use crate::touch::DOUBTFUL;
 
 /// A coverage this near to the threshold is not decided in `f64`; a share of a cell.
-pub(super) const DOUBT: f64 = DOUBTFUL;
+pub(crate) const DOUBT: f64 = DOUBTFUL;
 
 /// An end of a sharp span lies this near to its true place; cell sides. Where the coverage passes the threshold
 /// with a slope of [`STEEP`] or more, [`DOUBT`] is left after this way.
-pub(super) const NEAR: f64 = 1e-8;
+pub(crate) const NEAR: f64 = 1e-8;
 
 /// See [`NEAR`]; the factor of two leaves room for the curvature.
-pub(super) const STEEP: f64 = 2.0 * DOUBT / NEAR;
+pub(crate) const STEEP: f64 = 2.0 * DOUBT / NEAR;
 
 /// What is known of the coverage at some place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Level {
+pub(crate) enum Level {
     /// Short of the threshold.
     Below,
     /// Within [`DOUBT`] of it.
@@ -30,7 +30,7 @@ pub(super) enum Level {
 
 impl Level {
     /// Of a coverage less the threshold.
-    pub(super) fn of(excess: f64) -> Self {
+    pub(crate) fn of(excess: f64) -> Self {
         if excess > DOUBT {
             Self::Above
         } else if excess < -DOUBT {
@@ -43,17 +43,17 @@ impl Level {
 
 /// An interval of places.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Span {
-    pub(super) from: f64,
-    pub(super) to: f64,
+pub(crate) struct Span {
+    pub(crate) from: f64,
+    pub(crate) to: f64,
     /// Active inside, and not outside, but within [`NEAR`] of the ends, where nothing is known. Otherwise nothing is
     /// known inside and within [`NEAR`] of it.
-    pub(super) sharp: bool,
+    pub(crate) sharp: bool,
 }
 
 /// The spans of one band, ascending and apart from each other by more than four times [`NEAR`] if all are sharp.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Spans {
+pub(crate) struct Spans {
     list: Vec<Span>,
     sharp: bool,
     level: Option<(f64, Level)>,
@@ -61,14 +61,14 @@ pub(super) struct Spans {
 
 impl Spans {
     /// Starts again, far to the left of the shape.
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.list.clear();
         self.sharp = true;
         self.level = None;
     }
 
     /// Takes note that from `at` on the level is this one. Places come in ascending order.
-    pub(super) fn turn(&mut self, at: f64, level: Level) {
+    pub(crate) fn turn(&mut self, at: f64, level: Level) {
         if let Some((from, old)) = self.level {
             if old == level {
                 return;
@@ -135,12 +135,12 @@ impl Spans {
     }
 
     /// Whether all of them are sharp.
-    pub(super) fn sharp(&self) -> bool {
+    pub(crate) fn sharp(&self) -> bool {
         self.sharp
     }
 
     /// The spans, from left to right.
-    pub(super) fn all(&self) -> &[Span] {
+    pub(crate) fn all(&self) -> &[Span] {
         &self.list
     }
 }

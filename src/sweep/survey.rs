@@ -9,14 +9,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use super::atlas::Atlas;
-use super::grid::Grid;
-use super::ideal::Ideal;
-use super::plan::{Shard, Task, tasks};
-use super::runs::{self, Found};
-use super::spread::{Spread, TurnSums};
-use super::statistics::{Statistic, statistics};
-use super::table::Table;
+use crate::atlas::Atlas;
+use crate::atlas::statistics::{Statistic, statistics};
+use crate::atlas::values::Table;
+use crate::atlas::variance::{Spread, TurnSums};
+use crate::pose::grid::Grid;
+use crate::sweep::ideal::Ideal;
+use crate::sweep::plan::{Shard, Task, tasks};
+use crate::sweep::runs;
+use crate::sweep::runs::Found;
 
 /// Takes a row: its number in the grid, and the atlas numbers of its poses.
 pub type TakeRow<'a> = dyn FnMut(u64, &[u32]) + Send + 'a;
@@ -55,7 +56,9 @@ impl Watch<'_> {
 /// use taxel::parameter::Parameter;
 /// use taxel::sensor::Sensor;
 /// use taxel::source::Source;
-/// use taxel::sweep::{grid::{Anchor, Grid, Ranges}, plan::Shard, survey::{Survey, Watch}};
+/// use taxel::pose::grid::{Anchor, Grid, Ranges};
+/// use taxel::sweep::plan::Shard;
+/// use taxel::sweep::survey::{Survey, Watch};
 ///
 /// // The paper's ring: over one cell of positions it leaves 393 different imprints.
 /// let ring = Figure::new(Kind::Ellipse, 16, |parameter| match parameter {
@@ -67,7 +70,7 @@ impl Watch<'_> {
 /// let grid = Grid::new(Source::Figure(ring), Sensor::default(), Anchor::Corner, ranges).unwrap();
 /// let survey = Survey::of(&grid, Shard::WHOLE, Watch::nothing());
 /// assert_eq!((survey.poses, survey.atlas.len()), (10_000, 393));
-/// # Ok::<(), taxel::sweep::range::RangeError>(())
+/// # Ok::<(), taxel::pose::range::RangeError>(())
 /// ```
 #[derive(Clone, Debug)]
 #[non_exhaustive]
@@ -82,9 +85,9 @@ pub struct Survey {
     pub partly_off: u64,
     /// The distinct imprints.
     pub atlas: Atlas,
-    /// Of each quantity of [`super::quantity::quantities`].
+    /// Of each quantity of [`crate::atlas::feature::quantities`].
     pub statistics: Vec<Statistic>,
-    pub(super) spread: Spread,
+    pub(crate) spread: Spread,
 }
 
 impl Survey {
@@ -123,7 +126,7 @@ impl Survey {
         self.poses == (rows.end - rows.start) * self.grid.ranges().x0.count()
     }
 
-    pub(super) fn new(
+    pub(crate) fn new(
         grid: Grid,
         shard: Shard,
         (poses, partly_off): (u64, u64),

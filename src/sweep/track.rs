@@ -9,12 +9,12 @@
 //! slope cannot change by more than `c` ([`Oval::change`]). Then the passage lies between `e/(m + c)` and `e/(m − c)`
 //! away. It is taken for known once that is narrower than [`NEAR`] asks for.
 
-use super::oval::Oval;
-use super::span::{NEAR, STEEP};
+use crate::sweep::ellipse_band::Oval;
+use crate::sweep::span::{NEAR, STEEP};
 
 /// Where a passage was in the last rows.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Track {
+pub(crate) struct Track {
     places: [f64; 3],
     known: usize,
 }
@@ -31,17 +31,17 @@ impl Track {
         }
     }
 
-    pub(super) fn note(&mut self, place: f64) {
+    pub(crate) fn note(&mut self, place: f64) {
         self.places = [place, self.places[0], self.places[1]];
         self.known = (self.known + 1).min(3);
     }
 
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.known = 0;
     }
 
     /// The passage through a level in the present band, rising or falling; none where it cannot be told for certain.
-    pub(super) fn follow(&mut self, oval: &Oval, level: f64, rising: bool) -> Option<f64> {
+    pub(crate) fn follow(&mut self, oval: &Oval, level: f64, rising: bool) -> Option<f64> {
         let mut u = self.expected()?;
         for _ in 0..4 {
             let (left, right) = (oval.at(u), oval.at(u + 1.0));

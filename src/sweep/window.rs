@@ -4,10 +4,10 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::grid::Place;
-use super::plan::Task;
-use super::runs;
-use super::survey::Survey;
+use crate::pose::grid::Place;
+use crate::sweep::plan::Task;
+use crate::sweep::runs;
+use crate::sweep::survey::Survey;
 
 impl Survey {
     /// The atlas numbers of the poses that lie at those x0 and y0, row after row, at the angle and the zooms of `turn`
@@ -18,7 +18,9 @@ impl Survey {
     /// use taxel::figure::{Figure, Kind};
     /// use taxel::sensor::Sensor;
     /// use taxel::source::Source;
-    /// use taxel::sweep::{grid::{Anchor, Grid, Ranges}, plan::Shard, survey::{Survey, Watch}};
+    /// use taxel::pose::grid::{Anchor, Grid, Ranges};
+    /// use taxel::sweep::plan::Shard;
+    /// use taxel::sweep::survey::{Survey, Watch};
     /// let square = Source::Figure(Figure::default_of(Kind::Rectangle, 16));
     /// let ranges = Ranges { angle: "0".parse()?, ..Ranges::default() };
     /// let grid = Grid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
@@ -65,9 +67,9 @@ mod tests {
     use crate::figure::{Figure, Kind};
     use crate::imprint::Imprint;
     use crate::picture::Picture;
+    use crate::pose::grid::{Anchor, Grid, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
-    use crate::sweep::grid::{Anchor, Grid, Ranges};
     use crate::sweep::plan::Shard;
     use crate::sweep::survey::Watch;
     use crate::touch::Plane;

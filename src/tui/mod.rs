@@ -10,63 +10,23 @@
 //! ```
 //! A [`script::Session`] replaces the first line by text and the terminal by a buffer; the middle is the same code.
 
-pub mod key;
+pub mod keys;
 
-pub mod document;
-
-pub mod purpose;
-
-pub mod exploring;
-
-pub mod message;
-
-pub mod text_field;
-
-pub mod columns;
-
-pub mod binding;
-
-pub mod keymap;
-
-pub mod action;
-
-pub mod remap;
-
-pub mod theme;
-
-pub mod form;
-
-pub mod form_dialog;
-
-pub mod list;
-
-pub mod name_dialog;
-
-pub mod commands;
-
-pub mod command_dialog;
-
-pub mod explore;
-
-pub mod dialog;
+pub mod widget;
 
 pub mod app;
 
-pub mod command;
+pub mod matrix;
 
-pub mod layout;
+pub mod form;
 
-pub mod explore_layout;
+pub mod shapes;
 
-pub mod hit;
+pub mod prompt;
 
-pub mod request;
+pub mod explore;
 
-pub mod update;
-
-pub mod effect;
-
-pub mod view;
+pub mod runtime;
 
 pub mod terminal;
 

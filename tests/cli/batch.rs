@@ -2,7 +2,8 @@
 
 use std::io::{BufRead, BufReader, Read, Write};
 
-use super::{program, taxel};
+use super::program;
+use super::taxel;
 
 /// The shortest pose, and its answer.
 pub(super) const POINT: &str = r##"{"imprint":["#"]}"##;

@@ -2,8 +2,11 @@
 
 use std::path::PathBuf;
 
+use super::Run;
 use super::library::Shelf;
-use super::{Run, refused, run_in, taxel};
+use super::refused;
+use super::run_in;
+use super::taxel;
 
 /// A shape whose source reaches beyond its sensor, on cells of 2.5 mm.
 pub(super) const SHAPE: &str = r###"

@@ -2,7 +2,12 @@
 
 use tempfile::TempDir;
 
-use super::{RING, Run, misused, program, refused, taxel};
+use super::RING;
+use super::Run;
+use super::misused;
+use super::program;
+use super::refused;
+use super::taxel;
 
 /// A folder that commands run in.
 struct Folder(TempDir);

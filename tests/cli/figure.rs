@@ -1,6 +1,9 @@
 //! `taxel figure`: the worked example of the paper, flags, ranges, usage.
 
-use super::{RING, misused, refused, taxel};
+use super::RING;
+use super::misused;
+use super::refused;
+use super::taxel;
 
 #[test]
 fn the_worked_example_is_shown_as_matrix_and_table() {

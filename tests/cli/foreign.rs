@@ -7,7 +7,8 @@ use std::process::{Command, Stdio};
 
 use tempfile::TempDir;
 
-use super::{finish, program};
+use super::finish;
+use super::program;
 
 /// What the washer is, as rows of `#` and `.`, and its files in a folder.
 fn washer() -> (String, TempDir) {

@@ -4,7 +4,10 @@ use std::path::PathBuf;
 
 use tempfile::TempDir;
 
-use super::{Run, misused, refused, run_in};
+use super::Run;
+use super::misused;
+use super::refused;
+use super::run_in;
 
 /// A library of its own.
 pub(super) struct Shelf {
@@ -96,7 +99,7 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
         "library|restore|my ring",
         "nothing called \"my ring\" is in the trash",
     );
-    let count = taxel::library::shipped::names().count() + 1;
+    let count = taxel::storage::shipped::names().count() + 1;
     assert_eq!(
         shelf.does("library|check", ""),
         format!("{count} shapes, all whole\n")
@@ -185,7 +188,7 @@ fn broken_shapes_are_listed_and_checked_with_the_reason() {
     );
     let run = shelf.run("library|check", "");
     let folder = shelf.folder.display().to_string();
-    let all = taxel::library::shipped::names().count() + 3;
+    let all = taxel::storage::shipped::names().count() + 3;
     assert_eq!(
         run.stdout.replace(&folder, "FOLDER"),
         "broken: bad\u{e9}: FOLDER/bad\u{e9}.json: line 1, column 26: format: \"taxel-shape/9\" is not known here, expected \"taxel-shape/1\"\n\

@@ -1,6 +1,8 @@
 //! `taxel script`: what it prints, and how it tells what did not hold.
 
-use super::{Run, run_in, taxel};
+use super::Run;
+use super::run_in;
+use super::taxel;
 
 #[test]
 fn messages_name_the_script_and_the_line() {

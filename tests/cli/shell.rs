@@ -4,7 +4,9 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use super::{misused, program, taxel};
+use super::misused;
+use super::program;
+use super::taxel;
 
 /// Every command that has a help.
 const COMMANDS: [&str; 20] = [

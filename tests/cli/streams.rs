@@ -1,8 +1,13 @@
 //! What holds for every command: characters, help, pipes that close, disks that are full.
 
+use super::RING;
 use super::batch::POINT;
 use super::describe::SHAPE;
-use super::{RING, finish, program, refused, run_in, taxel};
+use super::finish;
+use super::program;
+use super::refused;
+use super::run_in;
+use super::taxel;
 
 /// Commands that write to standard output, each in its own way.
 const WRITING: [&str; 10] = [

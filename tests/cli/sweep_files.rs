@@ -3,8 +3,12 @@
 use std::fs;
 use std::time::{Duration, Instant};
 
-use super::sweep::{folder, names};
-use super::{finish, program, refused, taxel};
+use super::finish;
+use super::program;
+use super::refused;
+use super::sweep::folder;
+use super::sweep::names;
+use super::taxel;
 
 #[test]
 fn an_interrupt_stops_at_once_and_leaves_nothing() {

@@ -7,8 +7,8 @@ use std::io::{Write, stdout};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use taxel::library::journal::{Journal, Orphan};
-use taxel::library::store::{Expected, Library};
+use taxel::storage::journal::{Journal, Orphan};
+use taxel::storage::store::{Expected, Library};
 
 use super::state::shape;
 

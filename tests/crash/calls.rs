@@ -5,9 +5,12 @@ use std::process::{Command, Output};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::act;
-use super::state::{State, each, program};
-use super::strace::{self, Call};
-use taxel::library::error::LibraryError;
+use super::state::State;
+use super::state::each;
+use super::state::program;
+use super::strace;
+use super::strace::Call;
+use taxel::storage::error::LibraryError;
 
 /// Something that is done to a library, and what may have become of it.
 #[derive(Clone, Copy)]

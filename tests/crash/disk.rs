@@ -5,9 +5,12 @@ use std::path::Path;
 use std::process::Command;
 
 use super::act;
-use super::state::{State, finish, shape, taxel};
-use taxel::library::journal::{Journal, Orphan};
-use taxel::library::store::{Expected, Library, Origin};
+use super::state::State;
+use super::state::finish;
+use super::state::shape;
+use super::state::taxel;
+use taxel::storage::journal::{Journal, Orphan};
+use taxel::storage::store::{Expected, Library, Origin};
 
 /// The exit status of a program that may not mount.
 const NOT_ALLOWED: i32 = 77;
@@ -132,7 +135,7 @@ pub(crate) fn on_read_only_disk(folder: &Path) {
         let message = error.expect("refused");
         assert!(message.contains("Read-only file system"), "{message}");
     };
-    let text = |error: taxel::library::error::LibraryError| error.to_string();
+    let text = |error: taxel::storage::error::LibraryError| error.to_string();
     read_only(
         library
             .save(&shape("one", 2), Expected::Stamp(one.stamp))

@@ -3,9 +3,12 @@
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, SystemTime};
 
-use super::state::{State, each};
-use super::{act, calls, strace};
-use taxel::library::error::LibraryError;
+use super::act;
+use super::calls;
+use super::state::State;
+use super::state::each;
+use super::strace;
+use taxel::storage::error::LibraryError;
 
 /// Kills in a run of all tests.
 const KILLS: usize = 300;

@@ -9,10 +9,10 @@ use std::time::{Duration, Instant};
 use taxel::formats::name::Name;
 use taxel::formats::shape::Shape;
 use taxel::imprint::Imprint;
-use taxel::library::error::LibraryError;
-use taxel::library::journal::Orphan;
-use taxel::library::store::{Expected, Library, Origin};
 use taxel::sensor::Sensor;
+use taxel::storage::error::LibraryError;
+use taxel::storage::journal::Orphan;
+use taxel::storage::store::{Expected, Library, Origin};
 use tempfile::TempDir;
 
 /// No start takes so long, on the busiest machine.

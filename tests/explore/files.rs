@@ -3,11 +3,14 @@
 use std::path::Path;
 use std::process::Command;
 
-use taxel::tui::message::Message;
+use taxel::tui::app::message::Message;
 use taxel::tui::script::Session;
 
-use super::screen::{press, session, shows};
-use super::{Beside, SHORT};
+use super::Beside;
+use super::SHORT;
+use super::screen::press;
+use super::screen::session;
+use super::screen::shows;
 
 fn type_in(session: &mut Session, text: &str) {
     session.send(Message::Paste(text.to_owned()));

@@ -7,11 +7,11 @@ use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 use proptest::prelude::*;
-use taxel::library::store::Library;
-use taxel::tui::app::Options;
-use taxel::tui::effect::World;
-use taxel::tui::exploring::Told;
-use taxel::tui::message::{Message, Mouse, MouseKind};
+use taxel::storage::store::Library;
+use taxel::tui::app::message::{Message, Mouse, MouseKind};
+use taxel::tui::app::state::Options;
+use taxel::tui::explore::message::Told;
+use taxel::tui::runtime::perform::World;
 use taxel::tui::script::Session;
 
 #[path = "../common/screen.rs"]

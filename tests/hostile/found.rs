@@ -1,7 +1,7 @@
 //! What was found, by the targets and while they were written.
 
-use taxel::sweep::quantity::quantities;
-use taxel::sweep::range::DecimalRange;
+use taxel::atlas::feature::quantities;
+use taxel::pose::range::DecimalRange;
 
 use crate::bodies::{body, session_of, with_spread};
 

@@ -14,7 +14,7 @@ use std::time::Instant;
 use bodies::{BODIES, body};
 use proptest::collection::vec;
 use proptest::prelude::*;
-use taxel::tui::message::Message;
+use taxel::tui::app::message::Message;
 
 /// The usual inputs of a body.
 fn seeds(folder: &str) -> Vec<Vec<u8>> {

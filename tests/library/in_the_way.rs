@@ -8,10 +8,13 @@ use std::sync::mpsc::channel;
 use std::time::Duration;
 
 use rustix::fs::{CWD, FileType, Mode, mknodat};
-use taxel::library::journal::{Journal, Orphan};
-use taxel::library::store::{Expected, Library};
+use taxel::storage::journal::{Journal, Orphan};
+use taxel::storage::store::{Expected, Library};
 
-use super::{Scratch, is_root, refusal, shape};
+use super::Scratch;
+use super::is_root;
+use super::refusal;
+use super::shape;
 
 fn pipe(path: &Path) {
     mknodat(CWD, path, FileType::Fifo, Mode::from_raw_mode(0o666), 0).expect("a pipe");

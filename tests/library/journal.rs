@@ -1,10 +1,12 @@
 //! Unsaved work: kept, offered back, never taken from a program that runs.
 
 use taxel::formats::shape::Shape;
-use taxel::library::journal::{Journal, Orphan};
-use taxel::library::store::Expected;
+use taxel::storage::journal::{Journal, Orphan};
+use taxel::storage::store::Expected;
 
-use super::{Scratch, files, shape};
+use super::Scratch;
+use super::files;
+use super::shape;
 
 fn offered(scratch: &Scratch) -> Vec<Shape> {
     let orphans = Orphan::all(&scratch.library);

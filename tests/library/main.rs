@@ -21,9 +21,9 @@ use std::path::{Path, PathBuf};
 use taxel::formats::name::Name;
 use taxel::formats::shape::Shape;
 use taxel::imprint::Imprint;
-use taxel::library::error::LibraryError;
-use taxel::library::store::{Expected, Library, Origin};
 use taxel::sensor::Sensor;
+use taxel::storage::error::LibraryError;
+use taxel::storage::store::{Expected, Library, Origin};
 use tempfile::TempDir;
 
 /// A library in a folder that goes with it.

@@ -2,9 +2,10 @@
 
 use std::time::Instant;
 
-use taxel::library::store::Library;
+use taxel::storage::store::Library;
 
-use super::{Scratch, shape};
+use super::Scratch;
+use super::shape;
 
 #[test]
 fn ten_thousand_shapes_are_listed_and_any_of_them_is_loaded() {
@@ -19,7 +20,7 @@ fn ten_thousand_shapes_are_listed_and_any_of_them_is_loaded() {
     let start = Instant::now();
     let entries = library.list().expect("listed");
     let listed = start.elapsed();
-    let shipped = taxel::library::shipped::names().count();
+    let shipped = taxel::storage::shipped::names().count();
     assert_eq!(entries.len(), 10_000 + shipped);
     assert_eq!(entries[0].name, "shape 00000");
     let start = Instant::now();

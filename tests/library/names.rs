@@ -1,10 +1,12 @@
 //! Names: none leads out of the folder, upper and lower case are one, the file's name counts.
 
 use taxel::formats::name::{Name, NameError};
-use taxel::library::error::LibraryError;
-use taxel::library::store::Expected;
+use taxel::storage::error::LibraryError;
+use taxel::storage::store::Expected;
 
-use super::{Scratch, refusal, shape};
+use super::Scratch;
+use super::refusal;
+use super::shape;
 
 #[test]
 fn no_name_leads_out_of_the_folder() {

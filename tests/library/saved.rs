@@ -6,11 +6,11 @@ use taxel::figure::{Figure, Kind};
 use taxel::formats::name::Name;
 use taxel::formats::shape::Shape;
 use taxel::imprint::Imprint;
-use taxel::library::store::{Expected, Origin};
 use taxel::parameter::Parameter;
 use taxel::picture::Picture;
 use taxel::sensor::Sensor;
 use taxel::source::Source;
+use taxel::storage::store::{Expected, Origin};
 
 use super::Scratch;
 

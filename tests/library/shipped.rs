@@ -4,13 +4,14 @@ use std::path::Path;
 
 use taxel::description::region::{Kind, regions};
 use taxel::imprint::Imprint;
-use taxel::library::shipped;
-use taxel::library::store::{Library, Loaded, Origin};
 use taxel::parameter::Parameter;
 use taxel::picture::Picture;
+use taxel::storage::shipped;
+use taxel::storage::store::{Library, Loaded, Origin};
 use taxel::touch::Plane;
 
-use super::{Scratch, files};
+use super::Scratch;
+use super::files;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/library");
 

@@ -3,10 +3,12 @@
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
-use taxel::library::error::LibraryError;
-use taxel::library::store::{Expected, Library};
+use taxel::storage::error::LibraryError;
+use taxel::storage::store::{Expected, Library};
 
-use super::{Scratch, refusal, shape};
+use super::Scratch;
+use super::refusal;
+use super::shape;
 
 #[test]
 fn what_was_changed_meanwhile_is_not_overwritten() {

@@ -1,9 +1,12 @@
 //! Deleting and bringing back.
 
-use taxel::library::error::LibraryError;
-use taxel::library::trash::KEPT;
+use taxel::storage::error::LibraryError;
+use taxel::storage::trash::KEPT;
 
-use super::{Scratch, files, refusal, shape};
+use super::Scratch;
+use super::files;
+use super::refusal;
+use super::shape;
 
 #[test]
 fn what_is_deleted_comes_back_as_it_was() {
@@ -79,7 +82,7 @@ fn shapes_that_come_with_the_program_are_not_deleted() {
         refusal(scratch.library.delete("nothing"), &scratch),
         "no shape is called \"nothing\""
     );
-    let nowhere = taxel::library::store::Library::open(scratch.path("nowhere"));
+    let nowhere = taxel::storage::store::Library::open(scratch.path("nowhere"));
     assert_eq!(
         refusal(nowhere.delete("nothing"), &scratch),
         "no shape is called \"nothing\""

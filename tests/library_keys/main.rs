@@ -5,10 +5,10 @@ mod unsaved;
 use std::path::Path;
 
 use proptest::prelude::*;
-use taxel::library::store::Library;
-use taxel::tui::document::Document;
-use taxel::tui::effect::World;
-use taxel::tui::message::{Message, Mouse, MouseKind};
+use taxel::storage::store::Library;
+use taxel::tui::app::document::Document;
+use taxel::tui::app::message::{Message, Mouse, MouseKind};
+use taxel::tui::runtime::perform::World;
 use taxel::tui::script::Session;
 
 #[path = "../common/screen.rs"]

@@ -3,12 +3,15 @@
 use std::sync::Arc;
 use std::sync::mpsc::channel;
 
-use taxel::library::store::{Entry, Library, Origin};
-use taxel::tui::effect::World;
-use taxel::tui::exploring::Told;
-use taxel::tui::message::Message;
+use taxel::storage::store::{Entry, Library, Origin};
+use taxel::tui::app::message::Message;
+use taxel::tui::explore::message::Told;
+use taxel::tui::runtime::perform::World;
 
-use super::screen::{press, session, shows, started};
+use super::screen::press;
+use super::screen::session;
+use super::screen::shows;
+use super::screen::started;
 use super::session_on;
 
 #[test]

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::num::NonZeroU16;
 
 use taxel::tui::script::Session;
-use taxel::tui::theme;
+use taxel::tui::widget::theme;
 
 pub(crate) fn emulator(columns: u16, rows: u16) -> vt100::Parser {
     vt100::Parser::new(side(rows), side(columns), 0)

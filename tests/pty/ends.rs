@@ -3,12 +3,13 @@
 use std::time::Duration;
 
 use rustix::process::Signal;
-use taxel::library::journal::Orphan;
-use taxel::library::store::Library;
-use taxel::tui::app::{App, Options};
-use taxel::tui::effect::World;
+use taxel::storage::journal::Orphan;
+use taxel::storage::store::Library;
+use taxel::tui::app::state::{App, Options};
+use taxel::tui::runtime::perform::World;
+use taxel::tui::terminal;
+use taxel::tui::terminal::input::Input;
 use taxel::tui::terminal::settings::{Flags, Settings};
-use taxel::tui::terminal::{self, input::Input};
 
 use crate::program::{Program, Start, TAXEL};
 

@@ -1,6 +1,6 @@
 //! The mouse and the clipboard, as bytes: what a terminal reports, and what it is asked to do.
 
-use taxel::tui::message::{Message, Mouse, MouseKind};
+use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::script::Session;
 
 use crate::program::{Program, Start};

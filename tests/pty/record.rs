@@ -5,8 +5,8 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use taxel::formats::shape::Shape;
-use taxel::library::journal::Journal;
-use taxel::library::store::{Expected, Library};
+use taxel::storage::journal::Journal;
+use taxel::storage::store::{Expected, Library};
 
 use crate::program::{Program, Start, TAXEL};
 

@@ -1,7 +1,7 @@
 //! What is on the screen: the same as in a script, on every kind of terminal.
 
-use taxel::tui::app::Options;
-use taxel::tui::message::Message;
+use taxel::tui::app::message::Message;
+use taxel::tui::app::state::Options;
 use taxel::tui::script::Session;
 
 use crate::program::{Program, Start, TAXEL};
@@ -12,7 +12,7 @@ pub(crate) fn session(ascii: bool, size: (u16, u16)) -> Session {
 
 /// The same, started in another way.
 pub(crate) fn started(options: Options, size: (u16, u16)) -> Session {
-    let world = taxel::tui::effect::World::scratch().expect("a folder");
+    let world = taxel::tui::runtime::perform::World::scratch().expect("a folder");
     Session::new(&options, world, size.0, size.1)
 }
 

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use taxel::tui::app::Options;
-use taxel::tui::key::{Arrow, Key};
-use taxel::tui::message::{Message, Mouse, MouseKind};
+use taxel::tui::app::message::{Message, Mouse, MouseKind};
+use taxel::tui::app::state::Options;
+use taxel::tui::keys::key::{Arrow, Key};
 use taxel::tui::script::Session;
 use taxel::tui::script::command::{Command, read};
 use taxel::tui::script::setting::Setting;

@@ -3,9 +3,9 @@
 use taxel::figure::{Figure, Kind};
 use taxel::parameter::Parameter;
 use taxel::picture::Picture;
+use taxel::pose::grid::{Anchor, Grid, Ranges};
 use taxel::sensor::Sensor;
 use taxel::source::Source;
-use taxel::sweep::grid::{Anchor, Grid, Ranges};
 use taxel::sweep::plan::Shard;
 use taxel::sweep::survey::{Survey, Watch};
 use taxel::touch::{Plane, reaches_beyond};

@@ -13,9 +13,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use cases::{cases, differences, figure, picture};
 use taxel::figure::Kind;
 use taxel::parameter::Parameter;
+use taxel::pose::grid::{Anchor, Grid, Ranges};
 use taxel::sensor::Sensor;
 use taxel::source::Source;
-use taxel::sweep::grid::{Anchor, Grid, Ranges};
 use taxel::sweep::plan::Shard;
 use taxel::sweep::survey::{MergeError, Survey, Watch};
 

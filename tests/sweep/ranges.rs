@@ -1,9 +1,9 @@
 //! Ranges and grids of poses: exact, or refused with the reason.
 
 use taxel::figure::Kind;
+use taxel::pose::grid::{Anchor, Grid, Ranges};
+use taxel::pose::range::{DecimalRange, MAX_VALUES};
 use taxel::sensor::Sensor;
-use taxel::sweep::grid::{Anchor, Grid, Ranges};
-use taxel::sweep::range::{DecimalRange, MAX_VALUES};
 
 use crate::cases::{figure, picture};
 

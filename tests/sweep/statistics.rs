@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
+use taxel::atlas::feature::{quantities, values};
 use taxel::description::descriptor::Description;
 use taxel::description::region::{main_region, regions};
 use taxel::figure::Kind;
 use taxel::imprint::Imprint;
-use taxel::sweep::quantity::{quantities, values};
 use taxel::touch::Plane;
 
 use crate::cases::{figure, picture};

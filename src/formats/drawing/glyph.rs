@@ -2,8 +2,8 @@
 
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 
-use super::ink::Ink;
-use super::scene::{Anchor, Place};
+use crate::formats::drawing::ink::Ink;
+use crate::formats::drawing::scene::{Anchor, Place};
 
 const WEIGHT: FontWeight = FontWeight::Regular;
 /// Eight points at four pixels.

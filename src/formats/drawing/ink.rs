@@ -4,7 +4,7 @@
 //! larger, a tenth of it. Here a pixel's share of a rectangle is the product of two overlaps, and its share of a line
 //! follows from its distance: within half a pixel of the edge it falls from 1 to 0. So ends and corners are round.
 
-use super::scene::{Line, Place, Step};
+use crate::formats::drawing::scene::{Line, Place, Step};
 
 /// Straight pieces of a cubic curve. An ellipse has eight curves: no piece is off by more than 0.04 pixels of 600.
 const PIECES: u8 = 32;

@@ -6,7 +6,10 @@
 //! inch.
 //!
 //! ```
-//! use taxel::{figure::{Figure, Kind}, formats::drawing::Drawing, sensor::Sensor, touch::Plane};
+//! use taxel::figure::{Figure, Kind};
+//! use taxel::formats::drawing::Drawing;
+//! use taxel::sensor::Sensor;
+//! use taxel::touch::Plane;
 //! let figure = Figure::default_of(Kind::Ellipse, 16);
 //! let imprint = Plane::new(Sensor::default()).touch(&figure);
 //! let drawing = Drawing::new(&imprint).with_outline(&figure).with_pitch(2.5);

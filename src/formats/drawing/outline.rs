@@ -2,7 +2,8 @@
 
 use std::collections::VecDeque;
 
-use super::scene::{self, Place, Step};
+use crate::formats::drawing::scene;
+use crate::formats::drawing::scene::{Place, Step};
 use crate::geometry::outline::{Ellipse, Pen, Point, Side, Solid};
 
 /// The whole boundary. Edges that follow each other are one piece, so that their corners are whole.

@@ -1,9 +1,9 @@
 //! Where everything stands on the page: the plane with its axes, what is described on it, the legend below.
 
-use super::axis::Marks;
-use super::scene::{Anchor, Line, Mark, Place, Step, circle, rectangle};
 use crate::description::descriptor::{Description, Value};
 use crate::description::region::Kind;
+use crate::formats::drawing::axis::Marks;
+use crate::formats::drawing::scene::{Anchor, Line, Mark, Place, Step, circle, rectangle};
 use crate::formats::value;
 use crate::imprint::Imprint;
 

@@ -4,10 +4,10 @@ use std::io;
 
 use png::{BitDepth, ColorType, Encoder, PixelDimensions, Unit};
 
-use super::glyph;
-use super::ink::Ink;
-use super::page::Page;
-use super::scene::{Line, Mark, Place};
+use crate::formats::drawing::glyph;
+use crate::formats::drawing::ink::Ink;
+use crate::formats::drawing::page::Page;
+use crate::formats::drawing::scene::{Line, Mark, Place};
 
 /// Pixels a point.
 const SCALE: f64 = 4.0;

@@ -1,7 +1,7 @@
 //! A page as SVG: one element a mark, text as text.
 
-use super::page::{Page, TEXT};
-use super::scene::{Anchor, Line, Mark, Place, Step, rectangle};
+use crate::formats::drawing::page::{Page, TEXT};
+use crate::formats::drawing::scene::{Anchor, Line, Mark, Place, Step, rectangle};
 use crate::formats::value::decimal;
 use crate::formats::xml::escaped;
 

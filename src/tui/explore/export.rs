@@ -1,8 +1,8 @@
 //! The field for the name of a file that what was found is written to.
 
-use crate::formats::sweep_file::AtlasFile;
 use crate::quote::shortened;
-use crate::tui::text_field::TextField;
+use crate::storage::sweep_file::AtlasFile;
+use crate::tui::widget::text_field::TextField;
 
 /// No name is longer: that of a Linux file with its folders.
 const LONGEST: usize = 4096;

@@ -1,6 +1,8 @@
-//! All the imprints of a shape: a form of ranges, work under way, what was found, a file to write it to.
-//!
-//! Each is a dialog of the screen: plain state and what keys do to it. Nothing here starts a thread or draws.
+//! Every imprint of a shape: a form of ranges, the sweep in progress, the pages of its results, and their export.
+
+pub mod message;
+
+pub mod lines;
 
 pub mod ranges;
 
@@ -8,6 +10,24 @@ pub mod running;
 
 pub mod results;
 
-pub mod letters;
-
 pub mod export;
+
+pub mod imprints;
+
+pub mod statistics;
+
+pub mod histogram;
+
+pub mod map;
+
+pub mod panes;
+
+pub mod point;
+
+pub mod start;
+
+pub mod update;
+
+pub mod worker_event;
+
+pub mod view;

@@ -2,15 +2,15 @@
 
 use std::sync::Arc;
 
+use crate::atlas::Entry;
+use crate::atlas::feature::{Quantity, quantities};
+use crate::atlas::order::{SortKey, sorted};
 use crate::imprint::Imprint;
-use crate::sweep::atlas::Entry;
-use crate::sweep::grid::Place;
-use crate::sweep::order::{SortKey, sorted};
-use crate::sweep::quantity::{Quantity, quantities};
+use crate::pose::grid::Place;
 use crate::sweep::survey::Survey;
-use crate::tui::exploring::{ExplorePage, Findings, Zoom};
-use crate::tui::key::Arrow;
-use crate::tui::message::End;
+use crate::tui::app::message::End;
+use crate::tui::explore::message::{ExplorePage, Findings, Zoom};
+use crate::tui::keys::key::Arrow;
 
 /// The results, as they are looked at.
 #[derive(Clone, Debug)]
@@ -268,9 +268,9 @@ pub fn around(now: usize, by: i8, count: usize) -> usize {
 mod tests {
     use super::*;
     use crate::figure::{Figure, Kind};
+    use crate::pose::grid::{Anchor, Grid, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
-    use crate::sweep::grid::{Anchor, Grid, Ranges};
     use crate::sweep::plan::Shard;
     use crate::sweep::survey::Watch;
 

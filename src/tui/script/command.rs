@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! Size 80x24          Resize 100x30       Set ascii on        Set theme light
-//! Set columns 8       Set threshold 0.6   Set library "DIR"   (all of them: [`super::setting`])
+//! Set columns 8       Set threshold 0.6   Set library "DIR"   (all of them: [`crate::tui::script::setting`])
 //! Keys f<Down><Tab>4.00<Enter>            vim notation; <lt>; <3x:Down>
 //! Type "literal text" Paste "1.5"         Click 12,5   Click "Figure"   Drag 3,4 9,9   Scroll 12,5 -3
 //! Screen [name]       State [json-pointer]
@@ -14,9 +14,10 @@
 
 use regex_lite::{Regex, RegexBuilder};
 
-use super::setting::{self, Setting};
 use crate::quote::shortened;
-use crate::tui::key::{Key, parse};
+use crate::tui::keys::key::{Key, parse};
+use crate::tui::script::setting;
+use crate::tui::script::setting::Setting;
 
 /// A place of the screen: column, row.
 pub type Place = (u16, u16);

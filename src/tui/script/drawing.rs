@@ -10,8 +10,8 @@ use ratatui::buffer::Buffer;
 use ratatui::style::{Color, Modifier};
 
 use crate::formats::xml::escaped;
-use crate::tui::theme::{Palette, Theme};
-use crate::tui::view::write;
+use crate::tui::widget::theme::{Palette, Theme};
+use crate::tui::widget::write;
 
 /// A character's field.
 const WIDTH: u32 = 9;
@@ -40,7 +40,7 @@ fn colors(palette: Palette) -> ([u8; 3], [u8; 3]) {
 }
 
 /// The drawing of a screen, with a title for those who cannot see it.
-pub(super) fn svg(buffer: &Buffer, theme: Theme, title: &str) -> String {
+pub(in crate::tui) fn svg(buffer: &Buffer, theme: Theme, title: &str) -> String {
     let (ink, paper) = colors(theme.palette);
     let area = buffer.area;
     let width = u32::from(area.width) * WIDTH + 2 * MARGIN;

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use super::setting::Setting;
-use crate::tui::message::{Mouse, MouseKind};
+use crate::tui::app::message::{Mouse, MouseKind};
+use crate::tui::script::setting::Setting;
 use crate::tui::terminal::Outcome;
 use crate::tui::terminal::input::Input;
 
@@ -99,7 +99,7 @@ impl Recorder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tui::key::{Arrow, Key};
+    use crate::tui::keys::key::{Arrow, Key};
     use crate::tui::script::command::read;
 
     #[test]

@@ -4,18 +4,18 @@ use std::ops::ControlFlow;
 
 use serde_json::{Value, json};
 
-use super::command::{Command, Place, ScriptError, read};
-use super::session::Session;
-use super::setting::Setting;
 use crate::formats::answer::Answer;
-use crate::library::store::Library;
 use crate::quote::shortened;
-use crate::tui::app::{App, Options};
-use crate::tui::effect::World;
-use crate::tui::key::Key;
-use crate::tui::message::{Message, Mouse, MouseKind};
-use crate::tui::remap::Keymap;
-use crate::tui::view::write;
+use crate::storage::store::Library;
+use crate::tui::app::message::{Message, Mouse, MouseKind};
+use crate::tui::app::state::{App, Options};
+use crate::tui::keys::key::Key;
+use crate::tui::keys::keymap::Keymap;
+use crate::tui::runtime::perform::World;
+use crate::tui::script::command::{Command, Place, ScriptError, read};
+use crate::tui::script::session::Session;
+use crate::tui::script::setting::Setting;
+use crate::tui::widget::write;
 
 /// How a script is run.
 #[derive(Clone, Debug)]

@@ -3,7 +3,9 @@
 //! Keys go through the same table, the same update and the same view as in a terminal.
 //!
 //! ```
-//! use taxel::tui::{app::Options, effect::World, script::Session};
+//! use taxel::tui::app::state::Options;
+//! use taxel::tui::runtime::perform::World;
+//! use taxel::tui::script::Session;
 //! let mut session = Session::new(&Options::plain(true), World::scratch()?, 80, 24);
 //! session.keys("f<Enter>")?;
 //! assert!(session.screen().contains("ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0 deg"));
@@ -14,13 +16,14 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::layout::Position;
 
-use super::drawing;
-use crate::tui::app::{App, Options};
-use crate::tui::effect::World;
-use crate::tui::key::{Key, KeyError, parse};
-use crate::tui::message::Message;
-use crate::tui::theme::letter;
-use crate::tui::view::{view, write};
+use crate::tui::app::message::Message;
+use crate::tui::app::state::{App, Options};
+use crate::tui::app::view::view;
+use crate::tui::keys::key::{Key, KeyError, parse};
+use crate::tui::runtime::perform::World;
+use crate::tui::script::drawing;
+use crate::tui::widget::theme::letter;
+use crate::tui::widget::write;
 
 /// A running program on a screen of its own.
 #[derive(Debug)]
@@ -117,7 +120,7 @@ impl Session {
     }
 
     /// The screen as SVG, with a title. Its colours are those of a theme that has all of them, as it is where
-    /// [`crate::tui::theme::ColorDepth::True`].
+    /// [`crate::tui::widget::theme::ColorDepth::True`].
     pub fn svg(&self, title: &str) -> String {
         drawing::svg(self.terminal.backend().buffer(), *self.app.theme(), title)
     }

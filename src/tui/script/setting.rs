@@ -16,8 +16,8 @@ use crate::formats::shape::Shape;
 use crate::parameter::{Parameter, ParameterError};
 use crate::quote::shortened;
 use crate::sensor::{MAX_SIDE, SENSOR_PARAMETERS};
-use crate::tui::app::Options;
-use crate::tui::theme::{ColorDepth, Palette};
+use crate::tui::app::state::Options;
+use crate::tui::widget::theme::{ColorDepth, Palette};
 
 /// One line of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -148,7 +148,7 @@ pub fn of_options(options: &Options) -> Vec<Setting> {
 mod tests {
     use super::*;
     use crate::sensor::Sensor;
-    use crate::tui::theme::Theme;
+    use crate::tui::widget::theme::Theme;
 
     #[test]
     fn what_is_written_is_read() {

@@ -19,14 +19,14 @@ const LARGEST: (u16, u16) = (1000, 500);
 
 /// Where bytes come from and go to.
 #[derive(Debug)]
-pub(super) struct Device {
+pub(in crate::tui) struct Device {
     input: OwnedFd,
     output: OwnedFd,
 }
 
 /// What became of a write.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum Written {
+pub(in crate::tui) enum Written {
     /// All is out.
     All,
     /// Something else wants attention, and an unknown part is out.
@@ -41,7 +41,7 @@ impl Device {
     ///
     /// # Errors
     /// Where there is no terminal.
-    pub(super) fn open() -> io::Result<Self> {
+    pub(in crate::tui) fn open() -> io::Result<Self> {
         let input = match stdin() {
             file if isatty(&file) => file.as_fd().try_clone_to_owned()?,
             _ => controlling(OFlags::RDONLY)?,
@@ -60,12 +60,12 @@ impl Device {
     }
 
     /// Where keys come from.
-    pub(super) fn input(&self) -> BorrowedFd<'_> {
+    pub(in crate::tui) fn input(&self) -> BorrowedFd<'_> {
         self.input.as_fd()
     }
 
     /// Reads what is there; none where the terminal is gone.
-    pub(super) fn read(&self, buffer: &mut [u8]) -> io::Result<Option<usize>> {
+    pub(in crate::tui) fn read(&self, buffer: &mut [u8]) -> io::Result<Option<usize>> {
         match read(&self.input, buffer) {
             Ok(0) => Ok(None),
             Ok(count) => Ok(Some(count)),
@@ -75,7 +75,11 @@ impl Device {
     }
 
     /// Writes all of it, unless `attention` becomes readable while the terminal takes nothing.
-    pub(super) fn write(&self, bytes: &[u8], attention: BorrowedFd<'_>) -> io::Result<Written> {
+    pub(in crate::tui) fn write(
+        &self,
+        bytes: &[u8],
+        attention: BorrowedFd<'_>,
+    ) -> io::Result<Written> {
         let wait = || {
             let mut fds = [
                 PollFd::new(&self.output, PollFlags::OUT),
@@ -90,7 +94,7 @@ impl Device {
     }
 
     /// The same for last words, which a terminal that takes nothing does not get.
-    pub(super) fn write_last(&self, bytes: &[u8]) -> io::Result<Written> {
+    pub(in crate::tui) fn write_last(&self, bytes: &[u8]) -> io::Result<Written> {
         let wait = || {
             let mut fds = [PollFd::new(&self.output, PollFlags::OUT)];
             poll(&mut fds, Some(&LAST_WRITE)).map(|ready| ready > 0)
@@ -120,7 +124,7 @@ impl Device {
     }
 
     /// Columns and rows; `fallback` for a side that the terminal does not know.
-    pub(super) fn size(&self, fallback: (u16, u16)) -> (u16, u16) {
+    pub(in crate::tui) fn size(&self, fallback: (u16, u16)) -> (u16, u16) {
         let known = tcgetwinsize(&self.output).map_or((0, 0), |size| (size.ws_col, size.ws_row));
         let side = |known: u16, otherwise: u16, most: u16| {
             if known == 0 { otherwise } else { known }.clamp(1, most)
@@ -132,7 +136,7 @@ impl Device {
     }
 
     /// A second pair of names for the same files.
-    pub(super) fn try_clone(&self) -> io::Result<Self> {
+    pub(in crate::tui) fn try_clone(&self) -> io::Result<Self> {
         Ok(Self {
             input: self.input.try_clone()?,
             output: self.output.try_clone()?,

@@ -11,8 +11,8 @@
 
 use std::time::Duration;
 
-use crate::tui::key::{Arrow, Key};
-use crate::tui::message::{Mouse, MouseKind};
+use crate::tui::app::message::{Mouse, MouseKind};
+use crate::tui::keys::key::{Arrow, Key};
 
 /// What came in.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -10,7 +10,7 @@ use rustix::process::{Signal, kill_current_process_group};
 /// All is read from `/proc`, where a process, group or session that lies outside the program's PID namespace (a
 /// container's) is a plain 0: the system calls answer 0 there too, which is no process number. A controlling terminal
 /// belongs to one session only, so it tells what the session's number could not.
-pub(super) fn has_shell() -> bool {
+pub(in crate::tui) fn has_shell() -> bool {
     let Some(own) = Process::read("self") else {
         return false;
     };
@@ -31,7 +31,7 @@ pub(super) fn has_shell() -> bool {
 
 /// Stops the whole process group, as the terminal itself would: a program that waits for this one (an editor's or a
 /// version control's) must stop too, or the shell would not notice.
-pub(super) fn stop() -> rustix::io::Result<()> {
+pub(in crate::tui) fn stop() -> rustix::io::Result<()> {
     kill_current_process_group(Signal::STOP)
 }
 

@@ -36,21 +36,20 @@ mod signals;
 
 mod job;
 
-pub mod mailbox;
-
 mod outcome;
 
-mod converse;
+mod event_loop;
 
+use crate::tui::runtime::mailbox;
 use std::io;
 use std::sync::Arc;
 
 pub use outcome::Outcome;
 pub use settings::Settings;
 
-use super::app::App;
-use super::effect::World;
-use super::message::Message;
+use crate::tui::app::message::Message;
+use crate::tui::app::state::App;
+use crate::tui::runtime::perform::World;
 use input::Input;
 
 /// Runs the program until it ends. The terminal is left as it was, after an error, a signal and a panic too, and
@@ -66,5 +65,5 @@ pub fn run(
 ) -> io::Result<Outcome> {
     let (sender, mailbox) = mailbox::new()?;
     let world = world.with_workers(Arc::new(move |told| sender.send(Message::Told(told))));
-    converse::run(app, world, settings, mailbox, watch)
+    event_loop::run(app, world, settings, mailbox, watch)
 }

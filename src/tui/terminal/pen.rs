@@ -5,13 +5,13 @@ use ratatui::style::{Color, Modifier};
 
 /// How characters are written: colours and attributes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Pen {
-    pub(super) fore: Color,
-    pub(super) back: Color,
-    pub(super) attributes: Modifier,
+pub(in crate::tui) struct Pen {
+    pub(in crate::tui) fore: Color,
+    pub(in crate::tui) back: Color,
+    pub(in crate::tui) attributes: Modifier,
 }
 
-pub(super) const PLAIN: Pen = Pen {
+pub(in crate::tui) const PLAIN: Pen = Pen {
     fore: Color::Reset,
     back: Color::Reset,
     attributes: Modifier::empty(),
@@ -30,7 +30,7 @@ const ATTRIBUTES: [(Modifier, u8, u8); 7] = [
 ];
 
 impl Pen {
-    pub(super) fn of(cell: &Cell) -> Self {
+    pub(in crate::tui) fn of(cell: &Cell) -> Self {
         Self {
             fore: cell.fg,
             back: cell.bg,
@@ -39,13 +39,13 @@ impl Pen {
     }
 
     /// Whether a blank looks the same as a plain one.
-    pub(super) fn leaves_blanks_plain(self) -> bool {
+    pub(in crate::tui) fn leaves_blanks_plain(self) -> bool {
         let seen = Modifier::REVERSED | Modifier::UNDERLINED | Modifier::CROSSED_OUT;
         self.back == Color::Reset && !self.attributes.intersects(seen)
     }
 
     /// The shortest sequence that changes `before` into this one.
-    pub(super) fn change(self, before: Self, out: &mut Vec<u8>) {
+    pub(in crate::tui) fn change(self, before: Self, out: &mut Vec<u8>) {
         if self == before {
             return;
         }

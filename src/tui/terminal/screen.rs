@@ -9,9 +9,9 @@ use ratatui::backend::{Backend, ClearType, WindowSize};
 use ratatui::buffer::Cell;
 use ratatui::layout::{Position, Size};
 
-use super::pen::{PLAIN, Pen};
-use super::settings::Abilities;
-use super::writer::{Run, Writer, columns, is_narrow};
+use crate::tui::terminal::pen::{PLAIN, Pen};
+use crate::tui::terminal::settings::Abilities;
+use crate::tui::terminal::writer::{Run, Writer, columns, is_narrow};
 
 /// A frame of fewer bytes is one packet of a network or less: it arrives in one piece anyhow, and goes without the
 /// marks that keep it together.

@@ -10,8 +10,8 @@ use crossterm::{Command, cursor};
 use rustix::io::Errno;
 use rustix::termios::{OptionalActions, QueueSelector, Termios, tcflush, tcgetattr, tcsetattr};
 
-use super::device::Device;
-use super::settings::Settings;
+use crate::tui::terminal::device::Device;
+use crate::tui::terminal::settings::Settings;
 
 /// Buttons only, places as numbers. Crossterm's own command also has every motion reported, a flood on a slow line.
 const MOUSE_ON: &str = "\x1b[?1000h\x1b[?1006h";
@@ -44,7 +44,7 @@ fn found() -> MutexGuard<'static, Option<Found>> {
 
 /// Into raw mode, onto the second screen, the mouse as asked for. Inside already, all of it is said again: somebody
 /// may have changed it while the program was stopped.
-pub(super) fn enter(device: &Device, settings: &Settings, mouse: bool) -> io::Result<()> {
+pub(in crate::tui) fn enter(device: &Device, settings: &Settings, mouse: bool) -> io::Result<()> {
     let mut held = found();
     if held.is_none() {
         // Before anything is changed, so that all is put right where the change fails half-way.
@@ -76,7 +76,7 @@ pub(super) fn enter(device: &Device, settings: &Settings, mouse: bool) -> io::Re
 }
 
 /// Everything as it was found. Outside, nothing.
-pub(super) fn leave() -> io::Result<()> {
+pub(in crate::tui) fn leave() -> io::Result<()> {
     let Some(found) = found().take() else {
         return Ok(());
     };
@@ -112,7 +112,7 @@ pub(super) fn leave() -> io::Result<()> {
 }
 
 /// Keeps a text for standard error until the terminal is the shell's again. Answers whether the terminal is ours.
-pub(super) fn tell_later(text: &str) -> bool {
+pub(in crate::tui) fn tell_later(text: &str) -> bool {
     let mut found = found();
     let ours = found.as_mut().map(|found| found.later += text);
     ours.is_some()
@@ -124,7 +124,7 @@ fn eprint(text: &str) {
 }
 
 /// What has the mouse reported, or leaves it to the terminal.
-pub(super) fn set_mouse(on: bool) -> &'static str {
+pub(in crate::tui) fn set_mouse(on: bool) -> &'static str {
     if let Some(found) = found().as_mut() {
         found.mouse = on;
     }
@@ -132,7 +132,7 @@ pub(super) fn set_mouse(on: bool) -> &'static str {
 }
 
 /// What puts a text into the clipboard of the user's terminal, which may refuse without saying so (OSC 52).
-pub(super) fn copied(text: &str) -> String {
+pub(in crate::tui) fn copied(text: &str) -> String {
     format!("\x1b]52;c;{}\x07", base64(text.as_bytes()))
 }
 

@@ -5,7 +5,7 @@
 
 use std::ffi::OsString;
 
-use crate::tui::theme::{ColorDepth, Palette, Theme};
+use crate::tui::widget::theme::{ColorDepth, Palette, Theme};
 
 /// Kinds of terminals, from the poorest on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

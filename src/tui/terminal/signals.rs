@@ -11,7 +11,7 @@ use signal_hook::iterator::exfiltrator::SignalOnly;
 
 /// A signal, as far as it matters here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Said {
+pub(in crate::tui) enum Said {
     /// End, by this number.
     End(i32),
     /// Stop.
@@ -24,13 +24,13 @@ pub(super) enum Said {
 
 /// Listens from its making on.
 #[derive(Debug)]
-pub(super) struct Signals {
+pub(in crate::tui) struct Signals {
     delivery: SignalDelivery<UnixStream, SignalOnly>,
 }
 
 impl Signals {
     /// Begins to listen.
-    pub(super) fn new() -> io::Result<Self> {
+    pub(in crate::tui) fn new() -> io::Result<Self> {
         let (read, write) = UnixStream::pair()?;
         read.set_nonblocking(true)?;
         write.set_nonblocking(true)?;
@@ -40,12 +40,12 @@ impl Signals {
     }
 
     /// Readable when there is something to hear.
-    pub(super) fn ear(&self) -> BorrowedFd<'_> {
+    pub(in crate::tui) fn ear(&self) -> BorrowedFd<'_> {
         self.delivery.get_read().as_fd()
     }
 
     /// What was said since the last time; what ends the program comes first.
-    pub(super) fn heard(&mut self) -> Vec<Said> {
+    pub(in crate::tui) fn heard(&mut self) -> Vec<Said> {
         let mut heard: Vec<Said> = self
             .delivery
             .pending()

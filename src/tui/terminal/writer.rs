@@ -13,28 +13,28 @@ use ratatui::buffer::Cell;
 use ratatui::layout::{Position, Size};
 use ratatui::text::Span;
 
-use super::pen::{PLAIN, Pen};
-use super::settings::Abilities;
+use crate::tui::terminal::pen::{PLAIN, Pen};
+use crate::tui::terminal::settings::Abilities;
 
 /// Writes cells where they are not on the screen yet.
 #[derive(Clone, Debug)]
-pub(super) struct Writer<'a> {
-    pub(super) size: Size,
-    pub(super) abilities: Abilities,
+pub(in crate::tui) struct Writer<'a> {
+    pub(in crate::tui) size: Size,
+    pub(in crate::tui) abilities: Abilities,
     /// What is or will be on the screen.
-    pub(super) cells: &'a [Cell],
+    pub(in crate::tui) cells: &'a [Cell],
     /// Which of it is not there yet.
-    pub(super) stale: Vec<bool>,
+    pub(in crate::tui) stale: Vec<bool>,
     /// Where the terminal's cursor is; none where that is not certain. A column beyond the last one stands for the
     /// last one after a character was written there.
-    pub(super) at: Option<Position>,
-    pub(super) pen: Pen,
-    pub(super) out: Vec<u8>,
+    pub(in crate::tui) at: Option<Position>,
+    pub(in crate::tui) pen: Pen,
+    pub(in crate::tui) out: Vec<u8>,
 }
 
 impl Writer<'_> {
     /// Writes the stale cells of some pieces of rows, then goes where the cursor shall be.
-    pub(super) fn write_all(mut self, runs: &[Run], wanted: Option<Position>) -> Self {
+    pub(in crate::tui) fn write_all(mut self, runs: &[Run], wanted: Option<Position>) -> Self {
         for run in runs {
             self.write_run(run);
         }
@@ -171,7 +171,7 @@ impl Writer<'_> {
 
 /// A piece of a row, all of it stale: which row, and which cells by their place in reading order.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Run {
+pub(in crate::tui) struct Run {
     y: u16,
     row: usize,
     cells: Range<usize>,
@@ -179,7 +179,7 @@ pub(super) struct Run {
 
 impl Run {
     /// All pieces of a screen of so many columns, in reading order.
-    pub(super) fn all(stale: &[bool], width: u16) -> Vec<Self> {
+    pub(in crate::tui) fn all(stale: &[bool], width: u16) -> Vec<Self> {
         let width = usize::from(width).max(1);
         let mut runs: Vec<Self> = Vec::new();
         for (index, _) in stale.iter().enumerate().filter(|(_, stale)| **stale) {
@@ -201,7 +201,7 @@ impl Run {
     }
 
     /// How many columns from a place it begins; none where that is far, or in another row.
-    pub(super) fn distance(&self, place: Option<Position>) -> Option<u16> {
+    pub(in crate::tui) fn distance(&self, place: Option<Position>) -> Option<u16> {
         let place = place.filter(|place| place.y == self.y)?;
         Some(self.column(self.cells.start).abs_diff(place.x)).filter(|&distance| distance <= 4)
     }
@@ -241,7 +241,7 @@ fn is_blank(cell: &Cell) -> bool {
 }
 
 /// How many columns a cell takes.
-pub(super) fn columns(cell: &Cell) -> usize {
+pub(in crate::tui) fn columns(cell: &Cell) -> usize {
     match cell.symbol() {
         narrow if is_narrow(narrow) => 1,
         other => Span::raw(other).width().max(1),
@@ -249,7 +249,7 @@ pub(super) fn columns(cell: &Cell) -> usize {
 }
 
 /// Whether every terminal gives it one column.
-pub(super) fn is_narrow(symbol: &str) -> bool {
+pub(in crate::tui) fn is_narrow(symbol: &str) -> bool {
     let mut characters = symbol.chars();
     let first = characters.next();
     // Latin and Greek; dashes and dots; lines, blocks and shades.

@@ -2,14 +2,15 @@
 
 use taxel::cli::config::Config;
 use taxel::formats::answer::Answer;
-use taxel::formats::exchange::{self, Format};
+use taxel::formats::exchange;
+use taxel::formats::exchange::Format;
 use taxel::formats::job::Job;
 use taxel::formats::npy::{Kind, content, header, words};
 use taxel::formats::shape::Shape;
 use taxel::imprint::Imprint;
+use taxel::pose::range::{DecimalRange, MAX_VALUES};
 use taxel::sensor::{SENSOR_PARAMETERS, Sensor};
 use taxel::sweep::plan::Shard;
-use taxel::sweep::range::{DecimalRange, MAX_VALUES};
 use taxel::touch::Plane;
 
 use super::is_short;

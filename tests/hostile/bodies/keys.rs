@@ -1,6 +1,6 @@
 //! Keys in notation, and the bytes that a terminal sends.
 
-use taxel::tui::key::parse;
+use taxel::tui::keys::key::parse;
 use taxel::tui::terminal::input::{Input, Reader};
 
 use super::is_short;

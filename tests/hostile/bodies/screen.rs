@@ -6,19 +6,19 @@
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 
-use taxel::library::store::Library;
-use taxel::tui::app::{App, Options};
-use taxel::tui::command::read as read_command;
-use taxel::tui::commands::complete;
-use taxel::tui::effect::World;
-use taxel::tui::key::{Arrow, Key};
-use taxel::tui::message::{Message, Mouse, MouseKind};
-use taxel::tui::remap::Keymap;
+use taxel::storage::store::Library;
+use taxel::tui::app::message::{Message, Mouse, MouseKind};
+use taxel::tui::app::state::{App, Options};
+use taxel::tui::app::update::update;
+use taxel::tui::keys::key::{Arrow, Key};
+use taxel::tui::keys::keymap::Keymap;
+use taxel::tui::prompt::command::read as read_command;
+use taxel::tui::prompt::commands::complete;
+use taxel::tui::runtime::perform::World;
 use taxel::tui::script::Session;
 use taxel::tui::script::command::{Command, read};
 use taxel::tui::script::runner::{Failure, Settings, run};
 use taxel::tui::script::setting::Setting;
-use taxel::tui::update::update;
 use tempfile::TempDir;
 
 use super::is_short;

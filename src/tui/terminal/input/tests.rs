@@ -1,7 +1,7 @@
 //! Keys of many terminals, in pieces and whole.
 
 use super::*;
-use crate::tui::key;
+use crate::tui::keys::key;
 use MouseKind::{Drag, Press, Release, ScrollDown, ScrollUp};
 use proptest::prelude::*;
 

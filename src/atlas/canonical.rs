@@ -1,0 +1,145 @@
+//! Imprints that differ by a shift, a quarter turn or a mirror image only, brought to one form.
+//!
+//! A matrix is moved to the top left corner first. Of the eight images of a rectangle's symmetries those that are not
+//! higher than wide are kept, which are four unless it is a square; the one whose rows come first in order stands
+//! for all. Rows are compared as whole numbers, from the top.
+
+use crate::atlas::counter::Census;
+use crate::atlas::packing::Layout;
+use crate::imprint::Imprint;
+use crate::sensor::MAX_SIDE;
+
+/// Counts imprints up to shifts, and up to shifts, quarter turns and mirror images.
+#[derive(Debug)]
+pub(crate) struct Classes {
+    layout: Layout,
+    shifts: Census,
+    symmetry: Census,
+    key: Vec<u64>,
+}
+
+/// The rows of an imprint at the top left corner.
+#[derive(Clone, Copy)]
+struct Block {
+    width: u32,
+    height: usize,
+    rows: [u64; MAX_SIDE as usize],
+}
+
+impl Classes {
+    pub(crate) fn new(columns: u8, rows: u8) -> Self {
+        // Square, so that a quarter turn fits.
+        let side = columns.max(rows);
+        let layout = Layout::new(side, side);
+        let words = layout.words();
+        Self {
+            layout,
+            shifts: Census::new(words),
+            symmetry: Census::new(words),
+            key: vec![0; words],
+        }
+    }
+
+    /// Number of imprints seen up to shifts, and up to shifts, quarter turns and mirror images.
+    pub(crate) fn counts(&self) -> (usize, usize) {
+        (self.shifts.len(), self.symmetry.len())
+    }
+
+    pub(crate) fn add(&mut self, imprint: &Imprint) {
+        let block = Block::of(imprint);
+        self.pack(&block, |row| block.rows[row]);
+        let known = self.shifts.len();
+        self.shifts.add(&self.key, mixed(&self.key), 1, 0);
+        if self.shifts.len() == known {
+            // Its class under more symmetries is known as well.
+            return;
+        }
+        let turned = block.transposed();
+        let wide = |block: &Block| block.width as usize >= block.height;
+        let mut best: Option<(Block, bool)> = None;
+        for block in [block, turned].into_iter().filter(wide) {
+            for block in [block, block.mirrored()] {
+                for upwards in [false, true] {
+                    if best.is_none_or(|(best, down)| block.before(upwards, &best, down)) {
+                        best = Some((block, upwards));
+                    }
+                }
+            }
+        }
+        if let Some((block, upwards)) = best {
+            self.pack(&block, |row| block.row(row, upwards));
+            self.symmetry.add(&self.key, mixed(&self.key), 1, 0);
+        }
+    }
+
+    fn pack(&mut self, block: &Block, row: impl Fn(usize) -> u64) {
+        self.key.fill(0);
+        for index in 0..block.height {
+            let (word, shift) = self.layout.place(index);
+            self.key[word] |= row(index) << shift;
+        }
+    }
+}
+
+impl Block {
+    fn of(imprint: &Imprint) -> Self {
+        let mut block = Self {
+            width: 0,
+            height: 0,
+            rows: [0; MAX_SIDE as usize],
+        };
+        if let Some(bounds) = imprint.bounds() {
+            block.width = u32::from(bounds.right - bounds.left);
+            for (slot, row) in block.rows.iter_mut().zip(bounds.rows()) {
+                *slot = imprint.words()[usize::from(row)] >> bounds.left;
+            }
+            block.height = bounds.rows().len();
+        }
+        block
+    }
+
+    fn row(&self, index: usize, upwards: bool) -> u64 {
+        self.rows[if upwards {
+            self.height - 1 - index
+        } else {
+            index
+        }]
+    }
+
+    /// Whether its rows come before those of another one of the same size.
+    fn before(&self, upwards: bool, other: &Self, other_upwards: bool) -> bool {
+        let rows = (0..self.height).map(|index| self.row(index, upwards));
+        rows.lt((0..self.height).map(|index| other.row(index, other_upwards)))
+    }
+
+    fn mirrored(mut self) -> Self {
+        for row in &mut self.rows[..self.height] {
+            *row = row.reverse_bits() >> (64 - self.width);
+        }
+        self
+    }
+
+    fn transposed(&self) -> Self {
+        let mut turned = Self {
+            width: u32::try_from(self.height).unwrap_or(0),
+            height: self.width as usize,
+            rows: [0; MAX_SIDE as usize],
+        };
+        for (index, &row) in self.rows[..self.height].iter().enumerate() {
+            let mut rest = row;
+            while rest != 0 {
+                turned.rows[rest.trailing_zeros() as usize] |= 1 << index;
+                rest &= rest - 1;
+            }
+        }
+        turned
+    }
+}
+
+/// A hash of any words.
+fn mixed(key: &[u64]) -> u64 {
+    key.iter().fold(0, |hash: u64, &word| {
+        let mixed = (hash.rotate_left(29) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        mixed ^ mixed >> 32
+    })
+}

@@ -1,0 +1,121 @@
+//! Keys counted: each distinct one once, in order of first occurrence, with how often and where it came first.
+//!
+//! An open hash table of indices beside the keys themselves. A slot holds the upper half of a hash and an index, so
+//! nearly all comparisons end there; a key counts as found only where all of its words agree.
+
+/// How often a key occurred, and the number of the pose where it did so first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Tally {
+    pub(crate) count: u64,
+    pub(crate) first: u64,
+}
+
+/// Keys of one length, counted.
+#[derive(Clone, Debug)]
+pub(crate) struct Census {
+    /// Words in a key.
+    length: usize,
+    keys: Vec<u64>,
+    hashes: Vec<u64>,
+    tallies: Vec<Tally>,
+    /// Upper half of the hash, and index + 1; 0 where empty. A power of two, at most half of them taken.
+    slots: Vec<u64>,
+}
+
+/// The half of a slot that holds the index.
+const INDEX: u64 = 0xffff_ffff;
+
+impl Census {
+    pub(crate) fn new(length: usize) -> Self {
+        Self {
+            length,
+            keys: Vec::new(),
+            hashes: Vec::new(),
+            tallies: Vec::new(),
+            slots: vec![0; 512],
+        }
+    }
+
+    /// Number of distinct keys.
+    pub(crate) fn len(&self) -> usize {
+        self.tallies.len()
+    }
+
+    pub(crate) fn key(&self, index: usize) -> &[u64] {
+        &self.keys[index * self.length..][..self.length]
+    }
+
+    pub(crate) fn hash(&self, index: usize) -> u64 {
+        self.hashes[index]
+    }
+
+    pub(crate) fn tallies(&self) -> &[Tally] {
+        &self.tallies
+    }
+
+    /// Counts a key `count` times more, first seen at pose `first` unless it is known. Its index, from 0.
+    #[inline]
+    pub(crate) fn add(&mut self, key: &[u64], hash: u64, count: u64, first: u64) -> usize {
+        let mask = self.slots.len() - 1;
+        let mut slot = usize::try_from(hash & mask as u64).unwrap_or(0);
+        loop {
+            let held = self.slots[slot];
+            if held == 0 {
+                return self.insert(slot, key, hash, Tally { count, first });
+            }
+            if (held ^ hash) & !INDEX == 0 {
+                let index = usize::try_from((held & INDEX) - 1).unwrap_or(0);
+                if self.key(index) == key {
+                    self.tallies[index].count += count;
+                    return index;
+                }
+            }
+            slot = (slot + 1) & mask;
+        }
+    }
+
+    /// Counts a known key more.
+    pub(crate) fn count(&mut self, index: usize, count: u64) {
+        self.tallies[index].count += count;
+    }
+
+    /// The index of a key.
+    pub(crate) fn find(&self, key: &[u64], hash: u64) -> Option<usize> {
+        let mask = self.slots.len() - 1;
+        let mut slot = usize::try_from(hash & mask as u64).unwrap_or(0);
+        while self.slots[slot] != 0 {
+            let index = usize::try_from((self.slots[slot] & INDEX) - 1).unwrap_or(0);
+            if self.key(index) == key {
+                return Some(index);
+            }
+            slot = (slot + 1) & mask;
+        }
+        None
+    }
+
+    #[cold]
+    fn insert(&mut self, slot: usize, key: &[u64], hash: u64, tally: Tally) -> usize {
+        let index = self.tallies.len();
+        self.keys.extend_from_slice(key);
+        self.hashes.push(hash);
+        self.tallies.push(tally);
+        self.slots[slot] = hash & !INDEX | (index as u64 + 1);
+        if self.tallies.len() * 2 > self.slots.len() {
+            self.grow();
+        }
+        index
+    }
+
+    fn grow(&mut self) {
+        let mask = self.slots.len() * 2 - 1;
+        let mut slots = vec![0; mask + 1];
+        for (index, &hash) in self.hashes.iter().enumerate() {
+            let mut slot = usize::try_from(hash & mask as u64).unwrap_or(0);
+            while slots[slot] != 0 {
+                slot = (slot + 1) & mask;
+            }
+            slots[slot] = hash & !INDEX | (index as u64 + 1);
+        }
+        self.slots = slots;
+    }
+}

@@ -1,0 +1,118 @@
+//! The numbers that statistics are made of: every descriptor of [`DESCRIPTORS`], taken apart where it has parts.
+//!
+//! A point `cg` gives `cg_x` and `cg_y`; a rectangle `rect` gives `rect_left`, `rect_top`, `rect_right` and
+//! `rect_bottom`; the two diagonals give `diagonals_1`, in (0, 90), and `diagonals_2`, in (90, 180): neither
+//! comes near the end of its range, so both are taken as plain numbers. The one direction that goes all around,
+//! `cg_cd_direction`, is [`Quantity::circular`].
+
+use std::sync::LazyLock;
+
+use crate::description::descriptor::{DESCRIPTORS, Description, Descriptor, Unit, Value};
+use crate::description::region::{Kind, each_region};
+use crate::imprint::Imprint;
+
+/// A number that describes an imprint's main region.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Quantity {
+    /// Its name in JSON and CSV.
+    pub key: String,
+    /// What it is a part of.
+    pub descriptor: &'static Descriptor,
+    /// A direction that goes all around, in degrees: its mean and its deviation are circular ones.
+    pub circular: bool,
+}
+
+/// All of them, in the order of [`DESCRIPTORS`].
+///
+/// ```
+/// use taxel::atlas::feature::quantities;
+/// let keys: Vec<&str> = quantities().iter().map(|quantity| quantity.key.as_str()).collect();
+/// assert_eq!(keys[..8], ["na", "nae", "ce", "num_x", "num_y", "cg_x", "cg_y", "p"]);
+/// assert_eq!(keys.len(), 23);
+/// ```
+pub fn quantities() -> &'static [Quantity] {
+    static ALL: LazyLock<Vec<Quantity>> = LazyLock::new(all);
+    &ALL
+}
+
+fn all() -> Vec<Quantity> {
+    // An imprint of which every descriptor exists shows which parts each one has.
+    let mut corner = Imprint::empty(2, 2);
+    corner.set_word(0, 0b11);
+    corner.set_word(1, 0b01);
+    let Some(sample) = describe(&corner).description else {
+        return Vec::new();
+    };
+    let mut all = Vec::new();
+    for descriptor in DESCRIPTORS {
+        let parts: &[&str] = match (descriptor.measure)(&sample) {
+            Value::Point(_) => &["_x", "_y"],
+            Value::Pair(_) => &["_1", "_2"],
+            Value::Rect(_) => &["_left", "_top", "_right", "_bottom"],
+            _ => &[""],
+        };
+        all.extend(parts.iter().map(|part| Quantity {
+            key: format!("{}{part}", descriptor.key),
+            descriptor,
+            circular: descriptor.unit == Unit::Direction && part.is_empty(),
+        }));
+    }
+    all
+}
+
+/// Gives the value of each quantity that has one, with the quantity's number in [`quantities`].
+pub fn values(description: &Description, mut take: impl FnMut(usize, f64)) {
+    let mut index = 0;
+    for descriptor in DESCRIPTORS {
+        let mut part = |value: f64| {
+            take(index, value);
+            index += 1;
+        };
+        match (descriptor.measure)(description) {
+            Value::None => index += 1,
+            Value::Count(count) => part(f64::from(count)),
+            Value::Number(number) => part(number),
+            Value::Point(point) => [point.x, point.y].into_iter().for_each(part),
+            Value::Pair(pair) => pair.into_iter().for_each(part),
+            Value::Rect(rect) => {
+                let sides = [rect.left, rect.top, rect.right, rect.bottom];
+                sides.into_iter().map(f64::from).for_each(part);
+            }
+        }
+    }
+}
+
+/// What an atlas says of an imprint beside where it occurs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Note {
+    /// Number of its pieces, 8-connected.
+    pub pieces: u16,
+    /// Number of its holes.
+    pub holes: u16,
+    /// Of the main region; none of an empty imprint.
+    pub description: Option<Description>,
+}
+
+/// Counts the regions of an imprint and describes the main one.
+pub fn describe(imprint: &Imprint) -> Note {
+    let mut note = Note {
+        pieces: 0,
+        holes: 0,
+        description: None,
+    };
+    each_region(imprint, |region| {
+        if region.kind() == Kind::Hole {
+            note.holes = note.holes.saturating_add(1);
+            return;
+        }
+        note.pieces = note.pieces.saturating_add(1);
+        // The main region: the piece with the largest filled area, the first of equals.
+        let best = note.description.as_ref();
+        if best.is_none_or(|best| region.filled().count() > best.nae) {
+            note.description = Some(Description::of(region));
+        }
+    });
+    note
+}

@@ -1,0 +1,254 @@
+//! How often which values of a quantity occur, over all poses.
+
+use crate::atlas::Atlas;
+use crate::atlas::feature::Quantity;
+use crate::description::descriptor::Unit;
+
+/// Poses counted in equal intervals of a value, each with its lower end; the last one with both.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Histogram {
+    /// Where the first interval begins, in the quantity's own unit.
+    pub start: f64,
+    /// How wide they are: 1, 2 or 5 times a power of ten, so that all ends are short decimals; a divisor of 360 for
+    /// directions that go all around.
+    pub width: f64,
+    /// How many poses have a value in each; empty where no pose has one.
+    pub poses: Vec<u64>,
+    /// How many poses have none.
+    pub without: u64,
+}
+
+/// Widths of directions, in degrees.
+const ARCS: [f64; 12] = [
+    1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 45.0, 60.0, 90.0, 120.0, 180.0,
+];
+
+impl Histogram {
+    /// Counts the poses of an atlas in at most `most` intervals, or as few as there can be. `values` are those of the
+    /// quantity, one per imprint ([`Atlas::values`]).
+    ///
+    /// ```
+    /// # use taxel::figure::{Figure, Kind};
+    /// # use taxel::sensor::Sensor;
+    /// # use taxel::source::Source;
+    /// # use taxel::pose::grid::{Anchor, Grid, Ranges};
+    /// # use taxel::sweep::plan::Shard;
+    /// # use taxel::sweep::survey::{Survey, Watch};
+    /// use taxel::atlas::histogram::Histogram;
+    /// use taxel::atlas::feature::quantities;
+    /// let square = Source::Figure(Figure::default_of(Kind::Rectangle, 16));
+    /// let grid = Grid::new(square, Sensor::default(), Anchor::Corner, Ranges::default())?;
+    /// let survey = Survey::of(&grid, Shard::WHOLE, Watch::nothing());
+    /// let na = Histogram::of(&survey.atlas, &quantities()[0], &survey.atlas.values(0), 10);
+    /// assert_eq!((na.width, na.without), (1.0, 0));
+    /// assert_eq!(na.poses.iter().sum::<u64>(), 3_600_000);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn of(atlas: &Atlas, quantity: &Quantity, values: &[Option<f64>], most: usize) -> Self {
+        let found = values.iter().copied().flatten();
+        let (low, high) = found.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(value), high.max(value))
+        });
+        let (start, width, bins) = if quantity.circular {
+            around(most)
+        } else if low <= high {
+            let least = match quantity.descriptor.unit {
+                Unit::Count => 1.0,
+                _ => 0.0,
+            };
+            straight(low, high, least, most)
+        } else {
+            (0.0, 1.0, 0)
+        };
+        let mut histogram = Self {
+            start,
+            width,
+            poses: vec![0; if low <= high { bins } else { 0 }],
+            without: 0,
+        };
+        for (value, count) in values.iter().zip(atlas.counts()) {
+            let bin = value.and_then(|value| {
+                let last = histogram.poses.len().checked_sub(1)?;
+                Some(place(value - start, width).min(last))
+            });
+            match bin {
+                Some(bin) => histogram.poses[bin] += count,
+                None => histogram.without += count,
+            }
+        }
+        histogram
+    }
+
+    /// Where an interval begins, in the quantity's own unit.
+    #[expect(clippy::cast_precision_loss, reason = "few of them")]
+    pub fn from(&self, bin: usize) -> f64 {
+        self.start + self.width * bin as f64
+    }
+
+    /// How many decimals the ends of the intervals have, at most 12.
+    pub fn decimals(&self) -> usize {
+        let short = |decimals: &usize| {
+            let scaled = self.width * 10_f64.powi(i32::try_from(*decimals).unwrap_or(0));
+            (scaled - scaled.round()).abs() < 1e-6 && scaled.round() >= 1.0
+        };
+        (0..12).find(short).unwrap_or(12)
+    }
+}
+
+/// In which interval a distance from the start lies. A value that should be the end of one, but for roundings, is.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "saturates"
+)]
+fn place(way: f64, width: f64) -> usize {
+    (way / width + 1e-9).floor().max(0.0) as usize
+}
+
+/// Intervals of a direction: all around, from −180.
+fn around(most: usize) -> (f64, f64, usize) {
+    let fits = |width: &&f64| place(360.0, **width) <= most;
+    let width = ARCS.iter().find(fits).copied().unwrap_or(360.0);
+    (-180.0, width, place(360.0, width))
+}
+
+/// Intervals from a multiple of their width on, as narrow as is allowed.
+fn straight(low: f64, high: f64, least: f64, most: usize) -> (f64, f64, usize) {
+    // Zero is an end of every width: one interval cannot have both sides of it.
+    let most = most.max(if low < 0.0 && high >= 0.0 { 2 } else { 1 });
+    #[expect(clippy::cast_precision_loss, reason = "an estimate, made larger below")]
+    let guess = ((high - low) / most as f64).max(least).max(1e-9);
+    #[expect(clippy::cast_possible_truncation, reason = "at most a few hundred")]
+    let mut exponent = if high > low || least > 0.0 {
+        guess.log10().floor() as i32
+    } else {
+        0
+    };
+    loop {
+        for step in [1.0, 2.0, 5.0] {
+            // The quotient of two whole numbers is the nearest to the decimal, a product would not be.
+            let width = if exponent < 0 {
+                step / 10_f64.powi(-exponent)
+            } else {
+                step * 10_f64.powi(exponent)
+            };
+            let start = (low / width + 1e-9).floor() * width;
+            let bins = place(high - start, width) + 1;
+            if width >= least && bins <= most {
+                return (start + 0.0, width, bins);
+            }
+        }
+        exponent += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::atlas::feature::quantities;
+    use crate::figure::{Figure, Kind};
+    use crate::pose::grid::{Anchor, Grid, Ranges};
+    use crate::sensor::Sensor;
+    use crate::source::Source;
+    use crate::sweep::plan::Shard;
+    use crate::sweep::survey::{Survey, Watch};
+
+    fn survey(x0: &str) -> Survey {
+        let source = Source::Figure(Figure::default_of(Kind::Triangle, 16));
+        let ranges = Ranges {
+            x0: x0.parse().expect("a range"),
+            y0: "5:5.9:0.1".parse().expect("a range"),
+            angle: "0:350:10".parse().expect("a range"),
+            ..Ranges::default()
+        };
+        let grid = Grid::new(source, Sensor::default(), Anchor::Corner, ranges);
+        Survey::of(&grid.expect("in range"), Shard::WHOLE, Watch::nothing())
+    }
+
+    /// Every pose is in one interval or has no value, and the intervals hold what they say.
+    #[test]
+    fn all_poses_are_counted_where_their_value_is() {
+        let survey = survey("-5:15:0.5");
+        for (index, quantity) in quantities().iter().enumerate() {
+            let values = survey.atlas.values(index);
+            for most in [1, 2, 7, 15, 100] {
+                let histogram = Histogram::of(&survey.atlas, quantity, &values, most);
+                let poses: u64 = histogram.poses.iter().sum();
+                assert_eq!(poses + histogram.without, survey.poses, "{}", quantity.key);
+                assert_eq!(poses, survey.statistics[index].poses, "{}", quantity.key);
+                assert!(
+                    (1..=most).contains(&histogram.poses.len()),
+                    "{}",
+                    quantity.key
+                );
+                let counts: Vec<u64> = survey.atlas.counts().collect();
+                for (bin, &poses) in histogram.poses.iter().enumerate() {
+                    let (from, to) = (histogram.from(bin), histogram.from(bin + 1));
+                    let last = bin + 1 == histogram.poses.len();
+                    let inside = |value: &Option<f64>| {
+                        value.is_some_and(|value| {
+                            value >= from - 1e-7 && (value < to - 1e-7 || last && value <= to)
+                        })
+                    };
+                    let expected = values.iter().zip(&counts);
+                    let expected = expected.filter(|(value, _)| inside(value));
+                    let expected: u64 = expected.map(|(_, count)| count).sum();
+                    assert_eq!(poses, expected, "{} from {from}", quantity.key);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn ends_are_short_decimals() {
+        for (low, high, least, most, expected) in [
+            (10.0, 14.0, 1.0, 15, (10.0, 1.0, 5)),
+            (10.0, 400.0, 1.0, 15, (0.0, 50.0, 9)),
+            (0.3, 0.9, 0.0, 7, (0.3, 0.1, 7)),
+            (0.3, 0.9, 0.0, 6, (0.2, 0.2, 4)),
+            (5.0, 5.0, 0.0, 15, (5.0, 1.0, 1)),
+            (5.0, 5.0, 1.0, 1, (5.0, 1.0, 1)),
+            (-3.0, 3.0, 0.0, 1, (-5.0, 5.0, 2)),
+        ] {
+            let (start, width, bins) = straight(low, high, least, most);
+            assert!(
+                (start - expected.0).abs() < 1e-12 && width == expected.1,
+                "{start} {width}"
+            );
+            assert_eq!(bins, expected.2);
+        }
+        let decimals = |width| {
+            let histogram = Histogram {
+                start: 0.0,
+                width,
+                poses: Vec::new(),
+                without: 0,
+            };
+            histogram.decimals()
+        };
+        assert_eq!([50.0, 1.0, 0.5, 0.02, 0.001].map(decimals), [0, 0, 1, 2, 3]);
+        assert_eq!(
+            (around(15), around(40), around(1)),
+            ((-180.0, 30.0, 12), (-180.0, 10.0, 36), (-180.0, 360.0, 1))
+        );
+    }
+
+    #[test]
+    fn nothing_is_counted_where_nothing_is() {
+        let source = Source::Figure(Figure::default_of(Kind::Triangle, 16));
+        let ranges = Ranges {
+            x0: "-16".parse().expect("a range"),
+            y0: "-16".parse().expect("a range"),
+            ..Ranges::default()
+        };
+        let grid = Grid::new(source, Sensor::default(), Anchor::Corner, ranges);
+        let survey = Survey::of(&grid.expect("in range"), Shard::WHOLE, Watch::nothing());
+        for (index, quantity) in quantities().iter().enumerate() {
+            let histogram = Histogram::of(&survey.atlas, quantity, &survey.atlas.values(index), 15);
+            let empty = survey.statistics[index].poses == 0;
+            assert_eq!(histogram.poses.is_empty(), empty, "{}", quantity.key);
+            assert_eq!(histogram.without, if empty { 360 } else { 0 });
+        }
+    }
+}

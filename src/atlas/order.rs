@@ -1,0 +1,139 @@
+//! The imprints of an atlas in another order than that of their first occurrence.
+
+use std::cmp::Ordering;
+
+use crate::atlas::Atlas;
+
+/// What an atlas can be sorted by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SortKey {
+    /// The number of the first pose, which orders the imprints' own numbers too.
+    FirstPose,
+    /// In how many poses an imprint occurs.
+    Poses,
+    /// Number of pieces.
+    Pieces,
+    /// Number of holes.
+    Holes,
+    /// A value of each imprint that is given beside the atlas.
+    Value,
+}
+
+/// The numbers of all imprints, from the smallest key to the largest or the other way. Equal ones stay in the order of
+/// their first poses, and those without a value come last, either way. `values` are those of
+/// [`SortKey::Value`], one per imprint ([`Atlas::values`]); imprints beyond their end have none.
+pub fn sorted(atlas: &Atlas, values: &[Option<f64>], by: SortKey, descending: bool) -> Vec<u32> {
+    let count = u32::try_from(atlas.len()).unwrap_or(u32::MAX);
+    let notes = |of: fn(&crate::atlas::feature::Note) -> u16| {
+        let keys: Vec<u64> = atlas.notes().iter().map(|note| of(note).into()).collect();
+        keys
+    };
+    let keys: Vec<u64> = match by {
+        SortKey::FirstPose => (0..count).map(u64::from).collect(),
+        SortKey::Poses => atlas.counts().collect(),
+        SortKey::Pieces => notes(|note| note.pieces),
+        SortKey::Holes => notes(|note| note.holes),
+        SortKey::Value => return by_value(count, values, descending),
+    };
+    let mut ids: Vec<(u64, u32)> = keys.into_iter().zip(0..count).collect();
+    ids.sort_unstable_by(|(one, id), (other, other_id)| {
+        turned(one.cmp(other), descending).then(id.cmp(other_id))
+    });
+    ids.into_iter().map(|(_, id)| id).collect()
+}
+
+fn by_value(count: u32, values: &[Option<f64>], descending: bool) -> Vec<u32> {
+    let values = values.iter().copied().chain(std::iter::repeat(None));
+    let mut ids: Vec<(Option<f64>, u32)> = values.zip(0..count).collect();
+    ids.sort_unstable_by(|(one, id), (other, other_id)| {
+        let order = match (one, other) {
+            (Some(one), Some(other)) => turned(one.total_cmp(other), descending),
+            (Some(_), None) => Ordering::Less,
+            (None, Some(_)) => Ordering::Greater,
+            (None, None) => Ordering::Equal,
+        };
+        order.then(id.cmp(other_id))
+    });
+    ids.into_iter().map(|(_, id)| id).collect()
+}
+
+fn turned(order: Ordering, descending: bool) -> Ordering {
+    if descending { order.reverse() } else { order }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::atlas::feature::quantities;
+    use crate::figure::{Figure, Kind};
+    use crate::pose::grid::{Anchor, Grid, Ranges};
+    use crate::sensor::Sensor;
+    use crate::source::Source;
+    use crate::sweep::plan::Shard;
+    use crate::sweep::survey::{Survey, Watch};
+
+    /// A rectangle that leaves the sensor: some poses are empty, and have no values.
+    fn atlas() -> Atlas {
+        let source = Source::Figure(Figure::default_of(Kind::Rectangle, 16));
+        let range = |text: &str| text.parse().expect("a range");
+        let ranges = Ranges {
+            x0: range("-8:15:0.5"),
+            y0: range("7:8:0.25"),
+            angle: range("0:30:30"),
+            ..Ranges::default()
+        };
+        let grid = Grid::new(source, Sensor::default(), Anchor::Corner, ranges);
+        Survey::of(&grid.expect("in range"), Shard::WHOLE, Watch::nothing()).atlas
+    }
+
+    #[test]
+    fn every_order_has_every_imprint_once_and_is_one() {
+        let atlas = atlas();
+        let count = u32::try_from(atlas.len()).expect("few");
+        let values = atlas.values(0);
+        assert_eq!(values.len(), atlas.len());
+        assert!(values.contains(&None) && quantities()[0].key == "na");
+        for by in [
+            SortKey::FirstPose,
+            SortKey::Poses,
+            SortKey::Pieces,
+            SortKey::Holes,
+            SortKey::Value,
+        ] {
+            for descending in [false, true] {
+                let ids = sorted(&atlas, &values, by, descending);
+                let mut all = ids.clone();
+                all.sort_unstable();
+                assert!(all.into_iter().eq(0..count), "{by:?}");
+                let key = |id: u32| {
+                    let entry = atlas.entry(id).expect("one of them");
+                    #[expect(clippy::cast_precision_loss, reason = "small numbers")]
+                    match by {
+                        SortKey::FirstPose => Some(entry.first_pose as f64),
+                        SortKey::Poses => Some(entry.count as f64),
+                        SortKey::Pieces => Some(entry.note.pieces.into()),
+                        SortKey::Holes => Some(entry.note.holes.into()),
+                        SortKey::Value => entry.note.description.map(|one| one.na.into()),
+                    }
+                };
+                for pair in ids.windows(2) {
+                    let fits = match (key(pair[0]), key(pair[1])) {
+                        (Some(one), Some(other)) if one == other => pair[0] < pair[1],
+                        (Some(one), Some(other)) => (one < other) != descending,
+                        (None, None) => pair[0] < pair[1],
+                        (one, _) => one.is_some(),
+                    };
+                    assert!(fits, "{by:?}, descending {descending}: {pair:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn imprints_without_a_value_come_last() {
+        let atlas = atlas();
+        let ids = sorted(&atlas, &[None, Some(2.0), Some(1.0)], SortKey::Value, true);
+        assert_eq!(ids[..4], [1, 2, 0, 3]);
+    }
+}

@@ -1,0 +1,134 @@
+//! Imprints as short keys: several rows of the matrix in one word, so that a 16 × 16 imprint takes 32 bytes.
+//!
+//! Each row takes 8, 16, 32 or 64 bits, whichever is the first to hold the sensor's columns. A key's hash is the
+//! exclusive or of one random number per active taxel (A. L. Zobrist, *A new hashing method with application for game
+//! playing*, 1970), so turning a taxel over changes it in one step. Keys are compared in full all the same.
+
+use crate::imprint::Imprint;
+
+/// How the imprints of a sensor are packed.
+#[derive(Clone, Debug)]
+pub(crate) struct Layout {
+    columns: u8,
+    rows: u8,
+    /// Bits that a row takes, and rows that a word holds.
+    width: usize,
+    per_word: usize,
+    /// One number per taxel, in reading order.
+    numbers: Vec<u64>,
+}
+
+impl Layout {
+    pub(crate) fn new(columns: u8, rows: u8) -> Self {
+        let width = usize::from(columns).next_power_of_two().clamp(8, 64);
+        let mut seed = 0_u64;
+        let numbers = (0..usize::from(columns) * usize::from(rows))
+            .map(|_| split_mix(&mut seed))
+            .collect();
+        Self {
+            columns,
+            rows,
+            width,
+            per_word: 64 / width,
+            numbers,
+        }
+    }
+
+    pub(crate) fn columns(&self) -> u8 {
+        self.columns
+    }
+
+    pub(crate) fn rows(&self) -> u8 {
+        self.rows
+    }
+
+    /// Number of words in a key.
+    pub(crate) fn words(&self) -> usize {
+        usize::from(self.rows).div_ceil(self.per_word)
+    }
+
+    /// The word that holds a row, and by how much it is shifted there.
+    pub(crate) fn place(&self, row: usize) -> (usize, usize) {
+        (row / self.per_word, row % self.per_word * self.width)
+    }
+
+    /// The numbers of a row's taxels.
+    pub(crate) fn numbers(&self, row: usize) -> &[u64] {
+        let columns = usize::from(self.columns);
+        &self.numbers[row * columns..][..columns]
+    }
+
+    /// The imprint of a key.
+    pub(crate) fn imprint(&self, key: &[u64]) -> Imprint {
+        let mut imprint = Imprint::empty(self.columns, self.rows);
+        for row in 0..usize::from(self.rows) {
+            let (word, shift) = self.place(row);
+            imprint.set_word(row, key[word] >> shift);
+        }
+        imprint
+    }
+
+    /// The key of an imprint, and its hash.
+    pub(crate) fn key(&self, imprint: &Imprint) -> (Vec<u64>, u64) {
+        let mut key = vec![0; self.words()];
+        let mut hash = 0;
+        for (row, &bits) in imprint.words().iter().enumerate() {
+            let (word, shift) = self.place(row);
+            key[word] |= bits << shift;
+            hash ^= self.hash(row, bits);
+        }
+        (key, hash)
+    }
+
+    /// The key of an imprint after a half turn, and its hash: the coordinates of a taxel's centre and those of its image
+    /// sum up to `across` and `down`, which must keep all of it on the matrix.
+    pub(crate) fn half_turned(
+        &self,
+        key: &[u64],
+        [across, down]: [i32; 2],
+        turned: &mut [u64],
+    ) -> u64 {
+        turned.fill(0);
+        let mut hash = 0;
+        for row in 0..usize::from(self.rows) {
+            let (word, shift) = self.place(row);
+            let bits = key[word] >> shift & u64::MAX >> (u64::BITS - u32::from(self.columns));
+            if bits == 0 {
+                continue;
+            }
+            // Column `i` goes to `across − 1 − i`; reversed it is at `63 − i`.
+            let reversed = bits.reverse_bits();
+            let apart = across - 64;
+            let bits = if apart < 0 {
+                reversed.unbounded_shr(apart.unsigned_abs())
+            } else {
+                reversed.unbounded_shl(apart.unsigned_abs())
+            };
+            let image = usize::try_from(down - 1).unwrap_or(0).saturating_sub(row);
+            let (word, shift) = self.place(image);
+            turned[word] |= bits << shift;
+            hash ^= self.hash(image, bits);
+        }
+        hash
+    }
+
+    /// What the taxels of a row add to a hash.
+    pub(crate) fn hash(&self, row: usize, mut taxels: u64) -> u64 {
+        let numbers = self.numbers(row);
+        let mut hash = 0;
+        while taxels != 0 {
+            hash ^= numbers[taxels.trailing_zeros() as usize];
+            taxels &= taxels - 1;
+        }
+        hash
+    }
+}
+
+/// The generator of G. L. Steele, D. Lea and C. H. Flood (2014): fixed numbers without a table of them.
+fn split_mix(state: &mut u64) -> u64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut mixed = *state;
+    mixed = (mixed ^ mixed >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    mixed ^ mixed >> 31
+}

@@ -1,0 +1,213 @@
+//! Statistics of every quantity over all poses that have one, and how much of them comes from where.
+//!
+//! Mean, standard deviation (of the population) and coefficient of variation are weighted by how often each imprint
+//! occurs. The variance of a quantity is the mean of its variances at a fixed turn (one angle, one pair of zooms), plus
+//! the variance of its means at these: **`sd_position`** is the root of the first part, **`sd_angle`** that of the
+//! second, each turn weighted by its poses that have a value (which usually are as many for all), so
+//! `sd² = sd_position² + sd_angle²`.
+//!
+//! **Directions** that go all around have a circular mean, that of the unit vectors; with `R` the length of the mean
+//! vector the deviation is `√(−2 ln R)` (K. V. Mardia, *Statistics of Directional Data*, 1972), in degrees. In place of
+//! the variances stand `R`'s logarithms: `sd_position` is made from the mean over the turns of their own `R`, `sd_angle`
+//! from what `R` falls short of that, and the squares add up as above. A smallest and a largest direction do
+//! not exist, nor does a coefficient of variation.
+//!
+//! All sums are whole numbers of 2⁻⁴⁰: the result does not depend on threads, shards or symmetries.
+
+use rayon::prelude::*;
+
+use crate::atlas::feature::{Quantity, quantities};
+use crate::atlas::sums::{Wide, fixed, mean, signed_mean};
+use crate::atlas::values::{Table, places};
+use crate::atlas::variance::{Spread, Sum};
+
+/// What is known of one quantity over all poses that have it. None where no pose has it.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Statistic {
+    /// Which one.
+    pub quantity: &'static Quantity,
+    /// Number of poses that have it.
+    pub poses: u64,
+    /// Smallest; none of a direction.
+    pub min: Option<f64>,
+    /// Mean; of a direction the circular one, none where the directions cancel.
+    pub mean: Option<f64>,
+    /// Largest; none of a direction.
+    pub max: Option<f64>,
+    /// Standard deviation of the population.
+    pub sd: Option<f64>,
+    /// Standard deviation over the mean; none of a direction, and where the mean is 0.
+    pub cv: Option<f64>,
+    /// The value of the continuous figure, where it has one.
+    pub ideal: Option<f64>,
+    /// The part of the deviation that comes from the position at a fixed angle.
+    pub sd_position: Option<f64>,
+    /// The part of the deviation that comes from the angle (and from the zooms).
+    pub sd_angle: Option<f64>,
+}
+
+/// A column of the statistics.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Column {
+    /// Its name in JSON.
+    pub key: &'static str,
+    /// Its heading.
+    pub title: &'static str,
+    /// What stands in it.
+    pub value: fn(&Statistic) -> Option<f64>,
+}
+
+/// All of them, in their order.
+pub const COLUMNS: &[Column] = &[
+    column("min", "min", |row| row.min),
+    column("mean", "mean", |row| row.mean),
+    column("max", "max", |row| row.max),
+    column("sd", "sd", |row| row.sd),
+    column("cv", "cv", |row| row.cv),
+    column("ideal", "ideal", |row| row.ideal),
+    column("sd_position", "sd pos", |row| row.sd_position),
+    column("sd_angle", "sd angle", |row| row.sd_angle),
+];
+
+const fn column(
+    key: &'static str,
+    title: &'static str,
+    value: fn(&Statistic) -> Option<f64>,
+) -> Column {
+    Column { key, title, value }
+}
+
+/// What is summed up over all imprints.
+#[derive(Clone, Copy, Debug)]
+struct Total {
+    sum: Sum,
+    squares: Wide,
+    min: f64,
+    max: f64,
+}
+
+const NOTHING: Total = Total {
+    sum: Sum {
+        poses: 0,
+        x: 0,
+        y: 0,
+    },
+    squares: Wide::ZERO,
+    min: f64::INFINITY,
+    max: f64::NEG_INFINITY,
+};
+
+impl Total {
+    fn add(&mut self, values: &[f64], circular: bool, poses: u64) {
+        self.sum.add(values, circular, poses);
+        if !circular && !values[0].is_nan() {
+            let value = u128::from(fixed(values[0]));
+            self.squares += Wide::product(value * value, poses);
+            self.min = self.min.min(values[0]);
+            self.max = self.max.max(values[0]);
+        }
+    }
+
+    fn merged(mut self, other: &Self) -> Self {
+        self.sum.merge(&other.sum);
+        self.squares += other.squares;
+        self.min = self.min.min(other.min);
+        self.max = self.max.max(other.max);
+        self
+    }
+
+    fn statistic(
+        &self,
+        quantity: &'static Quantity,
+        between: Wide,
+        ideal: Option<f64>,
+    ) -> Statistic {
+        let mut statistic = Statistic {
+            quantity,
+            poses: self.sum.poses,
+            min: None,
+            mean: None,
+            max: None,
+            sd: None,
+            cv: None,
+            ideal,
+            sd_position: None,
+            sd_angle: None,
+        };
+        let poses = self.sum.poses;
+        if poses == 0 {
+            return statistic;
+        }
+        if quantity.circular {
+            self.directions(&mut statistic, between);
+            return statistic;
+        }
+        let sum = self.sum.total();
+        let of_mean = Wide::square_over(sum, poses);
+        let mean = mean(sum, poses);
+        let sd = (self.squares - of_mean).root_mean(poses);
+        statistic.min = Some(self.min);
+        statistic.max = Some(self.max);
+        statistic.mean = Some(mean);
+        statistic.sd = Some(sd);
+        statistic.cv = (mean != 0.0).then(|| sd / mean.abs());
+        statistic.sd_position = Some((self.squares - between).root_mean(poses));
+        statistic.sd_angle = Some((between - of_mean).root_mean(poses));
+        statistic
+    }
+
+    fn directions(&self, statistic: &mut Statistic, between: Wide) {
+        let poses = self.sum.poses;
+        let (x, y) = (
+            signed_mean(self.sum.x, poses),
+            signed_mean(self.sum.y, poses),
+        );
+        // No vector is longer than its parts together: a file may say otherwise, and rounding may.
+        let own = x.hypot(y).min(1.0);
+        let turns = between.mean(poses).clamp(own, 1.0);
+        // Vectors that cancel up to the rounding of their parts point nowhere.
+        if own < 1e-11 {
+            return;
+        }
+        let deviation = |length: f64| (-2.0 * length.ln()).max(0.0).sqrt().to_degrees();
+        statistic.mean = Some(y.atan2(x).to_degrees() + 0.0);
+        statistic.sd = Some(deviation(own));
+        statistic.sd_position = Some(deviation(turns));
+        statistic.sd_angle = Some(deviation(own / turns));
+    }
+}
+
+/// The statistics of all quantities. `counts` says how often each imprint of the table occurs.
+pub(crate) fn statistics(
+    table: &Table,
+    counts: &[u64],
+    spread: &Spread,
+    ideal: impl Fn(&str) -> Option<f64>,
+) -> Vec<Statistic> {
+    let places = places();
+    let nothing = || vec![NOTHING; places.len()];
+    let totals = (0..counts.len())
+        .into_par_iter()
+        .with_min_len(1024)
+        .fold(nothing, |mut totals, index| {
+            let row = table.row(index);
+            for (total, &(place, circular)) in totals.iter_mut().zip(&places) {
+                total.add(&row[place..], circular, counts[index]);
+            }
+            totals
+        })
+        .reduce(nothing, |one, other| {
+            one.iter()
+                .zip(&other)
+                .map(|(one, other)| one.merged(other))
+                .collect()
+        });
+    let parts = totals.iter().zip(quantities()).zip(spread.closed());
+    parts
+        .map(|((total, quantity), between)| {
+            total.statistic(quantity, between, ideal(&quantity.key))
+        })
+        .collect()
+}

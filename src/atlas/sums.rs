@@ -1,0 +1,151 @@
+//! Sums that come out the same in any order: of whole numbers, wide enough never to overflow.
+//!
+//! Threads, shards and symmetries change the order in which a sweep adds up; sums of `f64` would change with it in
+//! their last digits. A value therefore counts as the nearest multiple of 2⁻⁴⁰ (an error below 5e-13), values are below
+//! 2¹⁸ and poses at most 10¹² < 2⁴⁰, so a sum of values takes 98 bits and a sum of squares 156.
+
+use std::ops::{AddAssign, Sub};
+
+/// One, as a fixed-point number.
+const ONE: f64 = 1_099_511_627_776.0;
+
+/// The nearest multiple of 2⁻⁴⁰ of a number in [0, 2²³], as a whole number.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "saturates"
+)]
+pub(crate) fn fixed(value: f64) -> u64 {
+    // Not `round`, which is a call where the processor is not known to have the instruction.
+    (value * ONE + 0.5) as u64
+}
+
+/// The same of a number in [−1, 1].
+#[expect(clippy::cast_possible_truncation, reason = "at most 2^40")]
+pub(crate) fn signed(value: f64) -> i64 {
+    (value * ONE).round() as i64
+}
+
+/// The mean of `count` fixed-point numbers.
+#[expect(clippy::cast_precision_loss, reason = "the nearest f64 is wanted")]
+pub(crate) fn mean(sum: u128, count: u64) -> f64 {
+    let (whole, rest) = (sum / u128::from(count), sum % u128::from(count));
+    (whole as f64 + rest as f64 / count as f64) / ONE
+}
+
+/// The mean of `count` signed fixed-point numbers.
+#[expect(clippy::cast_precision_loss, reason = "the nearest f64 is wanted")]
+pub(crate) fn signed_mean(sum: i128, count: u64) -> f64 {
+    sum as f64 / count as f64 / ONE
+}
+
+/// A whole number from 0 to 2¹⁹² − 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Wide {
+    high: u64,
+    low: u128,
+}
+
+impl Wide {
+    pub(crate) const ZERO: Self = Self { high: 0, low: 0 };
+
+    pub(crate) fn of(low: u128) -> Self {
+        Self { high: 0, low }
+    }
+
+    /// The product of a number below 2¹²⁸ and one below 2⁶⁴.
+    pub(crate) fn product(value: u128, times: u64) -> Self {
+        if times < 1 << 12 && value < 1 << 116 {
+            return Self::of(value * u128::from(times));
+        }
+        let times = u128::from(times);
+        let (lower, upper) = (
+            (value & u128::from(u64::MAX)) * times,
+            (value >> 64) * times,
+        );
+        // upper · 2⁶⁴ + lower
+        let (low, carry) = (upper << 64).overflowing_add(lower);
+        let high = (upper >> 64) + u128::from(carry);
+        Self {
+            high: u64::try_from(high).unwrap_or(u64::MAX),
+            low,
+        }
+    }
+
+    /// This, so many times; what goes beyond 2¹⁹² is lost.
+    pub(crate) fn times(self, times: u64) -> Self {
+        let low = Self::product(self.low, times);
+        Self {
+            high: low.high.wrapping_add(self.high.wrapping_mul(times)),
+            ..low
+        }
+    }
+
+    /// `⌊sum² / count⌋`, for a sum of at most 2⁴⁰ numbers below 2⁵⁸.
+    ///
+    /// With `sum = count·m + r` it is `count·m² + 2·m·r + ⌊r²/count⌋`.
+    pub(crate) fn square_over(sum: u128, count: u64) -> Self {
+        let (mean, rest) = (sum / u128::from(count), sum % u128::from(count));
+        let mut all = Self::product(mean * mean, count);
+        all += Self::of(2 * mean * rest);
+        all += Self::of(rest * rest / u128::from(count));
+        all
+    }
+
+    /// The root of the mean of `count` squares of fixed-point numbers that sum up to this.
+    #[expect(clippy::cast_precision_loss, reason = "the nearest f64 is wanted")]
+    pub(crate) fn root_mean(self, count: u64) -> f64 {
+        let sum = self.high as f64 * 2_f64.powi(128) + self.low as f64;
+        (sum / count as f64).sqrt() / ONE
+    }
+
+    /// The nearest whole number to a number from 0 to 2¹²⁷.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "saturates"
+    )]
+    pub(crate) fn rounded(value: f64) -> Self {
+        Self::of(value.round() as u128)
+    }
+
+    /// The mean of `count` fixed-point numbers that sum up to this, which is below 2¹²⁸.
+    pub(crate) fn mean(self, count: u64) -> f64 {
+        mean(self.low, count)
+    }
+
+    /// As three words, the lowest first.
+    pub(crate) fn words(self) -> [u64; 3] {
+        let word = |bits: u128| u64::try_from(bits & u128::from(u64::MAX)).unwrap_or(0);
+        [word(self.low), word(self.low >> 64), self.high]
+    }
+
+    /// From three words.
+    pub(crate) fn from_words([first, second, high]: [u64; 3]) -> Self {
+        Self {
+            high,
+            low: u128::from(first) | u128::from(second) << 64,
+        }
+    }
+}
+
+impl AddAssign for Wide {
+    fn add_assign(&mut self, other: Self) {
+        let (low, carry) = self.low.overflowing_add(other.low);
+        self.low = low;
+        self.high = self
+            .high
+            .wrapping_add(other.high)
+            .wrapping_add(u64::from(carry));
+    }
+}
+
+impl Sub for Wide {
+    type Output = Self;
+    /// The difference, 0 where it is negative: of two numbers that are equal but for what was rounded down.
+    fn sub(self, other: Self) -> Self {
+        let (low, borrow) = self.low.overflowing_sub(other.low);
+        let high = i128::from(self.high) - i128::from(other.high) - i128::from(borrow);
+        u64::try_from(high).map_or_else(|_| Self::default(), |high| Self { high, low })
+    }
+}

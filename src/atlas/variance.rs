@@ -1,0 +1,214 @@
+//! Sums turn by turn: what tells how much of a variance comes from the position and how much from the angle.
+//!
+//! A turn is closed once all of its poses are in; only those that are not are kept one by one.
+
+use std::collections::BTreeMap;
+
+use crate::atlas::feature::quantities;
+use crate::atlas::sums::{Wide, fixed, signed};
+use crate::atlas::values::{Table, places};
+use crate::pose::range::MAX_VALUES;
+
+/// How many poses have a quantity and the sum of its values; of a direction the sums of cosines and of sines.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Sum {
+    pub(crate) poses: u64,
+    pub(crate) x: i128,
+    pub(crate) y: i128,
+}
+
+impl Sum {
+    pub(crate) fn add(&mut self, values: &[f64], circular: bool, poses: u64) {
+        if values[0].is_nan() {
+            return;
+        }
+        self.poses += poses;
+        if circular {
+            let poses = i128::from(poses);
+            self.x += i128::from(signed(values[1])) * poses;
+            self.y += i128::from(signed(values[2])) * poses;
+        } else {
+            // Below 2^98; one multiplication of the processor, which a signed product of this size is not.
+            let sum = u128::from(fixed(values[0])) * u128::from(poses);
+            self.x += i128::try_from(sum).unwrap_or(i128::MAX);
+        }
+    }
+
+    pub(crate) fn merge(&mut self, other: &Self) {
+        self.poses += other.poses;
+        self.x += other.x;
+        self.y += other.y;
+    }
+
+    /// Of values that are no direction.
+    pub(crate) fn total(&self) -> u128 {
+        u128::try_from(self.x).unwrap_or(0)
+    }
+
+    /// The length of the sum of the unit vectors.
+    #[expect(clippy::cast_precision_loss, reason = "the nearest f64 is wanted")]
+    fn length(&self) -> f64 {
+        (self.x as f64).hypot(self.y as f64)
+    }
+}
+
+/// The sums of one turn.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct TurnSums {
+    /// Poses gone through, whether or not they have a value.
+    poses: u64,
+    /// How many turns look like this one, with itself.
+    times: u64,
+    sums: Vec<Sum>,
+}
+
+impl TurnSums {
+    /// Of imprints with how many poses of one turn show each.
+    pub(crate) fn of(table: &Table, times: u64, counted: impl Iterator<Item = (u32, u64)>) -> Self {
+        let mut sums = vec![Sum::default(); quantities().len()];
+        let places = places();
+        let mut poses = 0;
+        for (id, count) in counted {
+            let row = table.row(usize::try_from(id).unwrap_or(0));
+            for (sum, &(place, circular)) in sums.iter_mut().zip(&places) {
+                sum.add(&row[place..], circular, count);
+            }
+            poses += count;
+        }
+        Self { poses, times, sums }
+    }
+
+    /// Whether so many poses can give such sums; others would overflow later, or take for ever.
+    fn is_sound(&self, full: u64) -> bool {
+        let sound = |sum: &Sum| {
+            let most = u128::from(sum.poses) << 58;
+            sum.poses <= self.poses && sum.x.unsigned_abs() <= most && sum.y.unsigned_abs() <= most
+        };
+        self.poses <= full && self.times <= MAX_VALUES && self.sums.iter().all(sound)
+    }
+}
+
+/// What the turns tell about where the variance comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Spread {
+    /// Poses of a turn of the grid.
+    full: u64,
+    /// Of each quantity, over the turns that are complete: the sum of (sum² / poses), or of the vectors' lengths.
+    between: Vec<Wide>,
+    /// Turns of which something is missing still.
+    open: BTreeMap<u64, TurnSums>,
+}
+
+impl Spread {
+    /// Of turns of so many poses.
+    pub(crate) fn new(full: u64) -> Self {
+        Self {
+            full,
+            between: vec![Wide::default(); quantities().len()],
+            open: BTreeMap::new(),
+        }
+    }
+
+    /// Adds a part of a turn. Parts of the same turn stand for as many turns.
+    pub(crate) fn add(&mut self, turn: u64, part: TurnSums) {
+        let sums = match self.open.remove(&turn) {
+            Some(mut sums) => {
+                sums.poses += part.poses;
+                for (sum, other) in sums.sums.iter_mut().zip(&part.sums) {
+                    sum.merge(other);
+                }
+                sums
+            }
+            None => part,
+        };
+        if sums.poses >= self.full {
+            close(&mut self.between, &sums);
+        } else {
+            self.open.insert(turn, sums);
+        }
+    }
+
+    /// Adds what other rows of the same grid gave.
+    pub(crate) fn merge(&mut self, other: Self) {
+        for (sum, other) in self.between.iter_mut().zip(other.between) {
+            *sum += other;
+        }
+        for (turn, sums) in other.open {
+            self.add(turn, sums);
+        }
+    }
+
+    /// As words: three per quantity, then each open turn.
+    pub(crate) fn words(&self) -> Vec<u64> {
+        let halves = |sum: i128| {
+            let bits = sum.cast_unsigned();
+            let half = |bits: u128| u64::try_from(bits & u128::from(u64::MAX)).unwrap_or(0);
+            [half(bits), half(bits >> 64)]
+        };
+        let mut words: Vec<u64> = self.between.iter().flat_map(|sum| sum.words()).collect();
+        for (&turn, sums) in &self.open {
+            words.extend([turn, sums.poses, sums.times]);
+            for sum in &sums.sums {
+                words.push(sum.poses);
+                words.extend(halves(sum.x));
+                words.extend(halves(sum.y));
+            }
+        }
+        words
+    }
+
+    /// From words; none where these are not as many as they must be.
+    pub(crate) fn from_words(full: u64, words: &[u64]) -> Option<Self> {
+        let count = quantities().len();
+        let (between, open) = words.split_at_checked(3 * count)?;
+        let whole =
+            |words: &[u64]| (u128::from(words[0]) | u128::from(words[1]) << 64).cast_signed();
+        let turns = open.chunks_exact(3 + 5 * count);
+        if !turns.remainder().is_empty() {
+            return None;
+        }
+        let turn = |words: &[u64]| {
+            let sum = |words: &[u64]| Sum {
+                poses: words[0],
+                x: whole(&words[1..3]),
+                y: whole(&words[3..5]),
+            };
+            let sums = TurnSums {
+                poses: words[1],
+                times: words[2],
+                sums: words[3..].chunks_exact(5).map(sum).collect(),
+            };
+            sums.is_sound(full).then_some((words[0], sums))
+        };
+        let wide = |words: &[u64]| Wide::from_words([words[0], words[1], words[2]]);
+        Some(Self {
+            full,
+            between: between.chunks_exact(3).map(wide).collect(),
+            open: turns.map(turn).collect::<Option<_>>()?,
+        })
+    }
+
+    /// The same with all turns taken as complete.
+    pub(crate) fn closed(&self) -> Vec<Wide> {
+        let mut between = self.between.clone();
+        for sums in self.open.values() {
+            close(&mut between, sums);
+        }
+        between
+    }
+}
+
+fn close(between: &mut [Wide], turn: &TurnSums) {
+    let quantities = between.iter_mut().zip(&turn.sums).zip(quantities());
+    for ((between, sum), quantity) in quantities {
+        if sum.poses == 0 {
+            continue;
+        }
+        let part = if quantity.circular {
+            Wide::rounded(sum.length())
+        } else {
+            Wide::square_over(sum.total(), sum.poses)
+        };
+        *between += part.times(turn.times);
+    }
+}

@@ -1,0 +1,283 @@
+//! Exact ranges of decimals, `start:end:step` with the end included: what a sweep goes through in one parameter.
+//!
+//! The numbers are integers scaled by a power of ten, so `5:5.99:0.01` is one hundred hundredths and nothing is
+//! accumulated: value `i` is the `f64` nearest to the exact decimal `start + i·step`. Where the step does not
+//! lead to the end, the last value is the largest one below it. A single number is a range of one. Units are those of
+//! the parameter. Convention of this project.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::quote::shortened;
+
+/// The most values that one range may have.
+pub const MAX_VALUES: u64 = 1_000_000;
+
+/// More decimals are not taken: in units of them, [`MAX_UNITS`] is just below 1000.
+const MAX_PLACES: usize = 12;
+
+/// The largest number of units of the last place: every decimal of 15 digits has an `f64` of its own, which is written
+/// as that decimal again.
+const MAX_UNITS: i64 = 999_999_999_999_999;
+
+/// Decimals from a start to an end in equal steps; never empty.
+///
+/// ```
+/// use taxel::pose::range::DecimalRange;
+/// let range: DecimalRange = "5:5.99:0.01".parse()?;
+/// assert_eq!((range.count(), range.value(0), range.value(37), range.last()), (100, 5.0, 5.37, 5.99));
+/// assert_eq!(range.to_string(), "5:5.99:0.01");
+/// assert_eq!("1:2:0".parse::<DecimalRange>().unwrap_err().to_string(), "step 0 leads nowhere, expected one above 0");
+/// # Ok::<(), taxel::pose::range::RangeError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DecimalRange {
+    /// First value and step, in units of `10^-places`.
+    start: i64,
+    step: i64,
+    places: u32,
+    count: u64,
+}
+
+impl DecimalRange {
+    /// The range of one whole number.
+    pub const fn whole(value: i32) -> Self {
+        Self::from_units(value as i64, 0, 1)
+    }
+
+    /// `count` neighbouring units of the last of `places` decimals.
+    pub(crate) const fn from_units(start: i64, places: u32, count: u64) -> Self {
+        Self {
+            start,
+            step: 1,
+            places,
+            count,
+        }
+    }
+
+    /// The same values in units of as few decimals as they need; the step of a single value is 1. Equal ranges are
+    /// equal in their fields then, however they were written.
+    fn shortest(mut start: i64, step: i64, places: usize, count: u64) -> Self {
+        let mut places = u32::try_from(places).unwrap_or(0);
+        let mut step = if count == 1 { 10_i64.pow(places) } else { step };
+        while places > 0 && start % 10 == 0 && step % 10 == 0 {
+            (start, step, places) = (start / 10, step / 10, places - 1);
+        }
+        Self {
+            start,
+            step,
+            places,
+            count,
+        }
+    }
+
+    /// Number of values, 1 to [`MAX_VALUES`].
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// The `f64` nearest to value `index`, counted from 0; beyond the last one, as if the range went on.
+    pub fn value(&self, index: u64) -> f64 {
+        let units = i64::try_from(index)
+            .ok()
+            .and_then(|index| index.checked_mul(self.step))
+            .and_then(|way| way.checked_add(self.start));
+        scaled(units.unwrap_or(i64::MAX), self.places)
+    }
+
+    /// The last value.
+    pub fn last(&self) -> f64 {
+        self.value(self.count - 1)
+    }
+
+    /// From one value to the next.
+    pub fn step(&self) -> f64 {
+        scaled(self.step, self.places)
+    }
+
+    /// Some neighbouring values of it as a range of their own; none where there are none, or fewer than that.
+    ///
+    /// ```
+    /// use taxel::pose::range::DecimalRange;
+    /// let range: DecimalRange = "5:5.99:0.01".parse()?;
+    /// assert_eq!(range.part(10..20).map(|part| part.to_string()).as_deref(), Some("5.1:5.19:0.01"));
+    /// assert_eq!(range.part(90..101), None);
+    /// # Ok::<(), taxel::pose::range::RangeError>(())
+    /// ```
+    pub fn part(&self, indices: std::ops::Range<u64>) -> Option<Self> {
+        if indices.is_empty() || indices.end > self.count {
+            return None;
+        }
+        let way = i64::try_from(indices.start).ok()?.checked_mul(self.step)?;
+        Some(Self {
+            start: self.start + way,
+            count: indices.end - indices.start,
+            ..*self
+        })
+    }
+
+    /// All values in order.
+    pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.count).map(|index| self.value(index))
+    }
+
+    /// First value and step in units of the last place: exact, for questions of symmetry.
+    pub(crate) fn units(&self) -> [i128; 2] {
+        [i128::from(self.start), i128::from(self.step)]
+    }
+
+    /// One, in the same units.
+    pub(crate) fn one(&self) -> i128 {
+        10_i128.pow(self.places)
+    }
+
+    /// Value `index` modulo a whole number, in units of the last place: exact as well.
+    pub(crate) fn residue(&self, index: u64, modulus: u32) -> i128 {
+        let units = i128::from(self.start) + i128::from(index) * i128::from(self.step);
+        units.rem_euclid(i128::from(modulus) * self.one())
+    }
+}
+
+/// Correctly rounded: both numbers of the quotient are exact.
+#[expect(clippy::cast_precision_loss, reason = "at most 2^53")]
+fn scaled(units: i64, places: u32) -> f64 {
+    units as f64 / 10_u64.pow(places) as f64
+}
+
+impl FromStr for DecimalRange {
+    type Err = RangeError;
+
+    fn from_str(text: &str) -> Result<Self, RangeError> {
+        let parts: Vec<&str> = text.split(':').map(str::trim).collect();
+        let (start, end, step) = match parts[..] {
+            [single] => (single, single, "1"),
+            [start, end, step] => (start, end, step),
+            _ => {
+                return Err(RangeError::Form {
+                    text: shortened(text.trim()),
+                });
+            }
+        };
+        let places = places(start).max(places(end)).max(places(step));
+        let units = |text: &str| {
+            units(text, places).ok_or_else(|| RangeError::Number {
+                text: shortened(text),
+            })
+        };
+        let (first, last, by) = (units(start)?, units(end)?, units(step)?);
+        if by <= 0 {
+            return Err(RangeError::Step {
+                step: shortened(step),
+            });
+        }
+        if last < first {
+            return Err(RangeError::Backwards {
+                start: shortened(start),
+                end: shortened(end),
+                step: shortened(step),
+            });
+        }
+        let count = (last - first).unsigned_abs() / by.unsigned_abs() + 1;
+        if count > MAX_VALUES {
+            return Err(RangeError::Many { count });
+        }
+        Ok(Self::shortest(first, by, places, count))
+    }
+}
+
+/// How many decimals a number is written with, but for zeros at the end.
+fn places(text: &str) -> usize {
+    let fraction = text.split_once('.').map_or("", |(_, after)| after);
+    fraction.trim_end_matches('0').len()
+}
+
+/// A decimal in units of `10^-places`; none of anything that is no plain decimal, or too long to be exact.
+fn units(text: &str, places: usize) -> Option<i64> {
+    let (negative, digits) = match text.strip_prefix('-') {
+        Some(digits) => (true, digits),
+        None => (false, text.strip_prefix('+').unwrap_or(text)),
+    };
+    let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
+    let digits = whole.bytes().chain(fraction.bytes());
+    let plain = digits.clone().all(|byte| byte.is_ascii_digit());
+    if !plain || digits.count() == 0 || places > MAX_PLACES {
+        return None;
+    }
+    let kept = fraction.trim_end_matches('0').bytes();
+    let zeros = std::iter::repeat_n(b'0', places - kept.len());
+    let units = whole
+        .bytes()
+        .chain(kept)
+        .chain(zeros)
+        .try_fold(0_i64, |units, digit| {
+            units.checked_mul(10)?.checked_add(i64::from(digit - b'0'))
+        })?;
+    (units <= MAX_UNITS).then_some(if negative { -units } else { units })
+}
+
+impl fmt::Display for DecimalRange {
+    /// The form that is read.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // The shortest decimal that reads back as the nearest `f64` is the exact decimal itself.
+        write!(f, "{}", self.value(0))?;
+        if self.count > 1 {
+            write!(f, ":{}:{}", self.last(), self.step())?;
+        }
+        Ok(())
+    }
+}
+
+/// Why a text is no range.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RangeError {
+    /// Neither one number nor three.
+    #[error("\"{text}\" is no range, expected a number or start:end:step")]
+    Form {
+        /// What was given.
+        text: String,
+    },
+    /// Not a plain decimal, or with more digits than are exact.
+    #[error(
+        "\"{text}\" is not a decimal number of at most 15 digits, {MAX_PLACES} of them behind the point"
+    )]
+    Number {
+        /// What was given.
+        text: String,
+    },
+    /// A step of 0, or backwards.
+    #[error("step {step} leads nowhere, expected one above 0")]
+    Step {
+        /// As given.
+        step: String,
+    },
+    /// An end before the start.
+    #[error("{start}:{end}:{step} ends before it starts, expected an end from {start} on")]
+    Backwards {
+        /// As given.
+        start: String,
+        /// As given.
+        end: String,
+        /// As given.
+        step: String,
+    },
+    /// Too many values.
+    #[error("{count} values, expected at most {MAX_VALUES}")]
+    Many {
+        /// How many it would be.
+        count: u64,
+    },
+}
+
+impl RangeError {
+    /// What was expected, for a place that shows the text beside it.
+    pub fn expected(&self) -> String {
+        match self {
+            Self::Form { .. } => "expected a number or start:end:step".to_owned(),
+            Self::Number { .. } => format!("not decimals of 15 digits, {MAX_PLACES} places"),
+            Self::Step { .. } => "expected a step above 0".to_owned(),
+            Self::Backwards { start, .. } => format!("expected an end from {start} on"),
+            Self::Many { .. } => self.to_string(),
+        }
+    }
+}

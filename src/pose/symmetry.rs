@@ -1,0 +1,41 @@
+//! Which angles show a shape alike.
+//!
+//! (x0, y0) places the corner of the figure *before* it is turned, so the centre stays where it is, and two angles give
+//! the same shape when they differ by a symmetry of the figure: 180° for rectangles and ellipses, 90° for squares, 360°/n
+//! for regular polygons where that is a whole number of degrees (not the heptagon's), and any angle for circles. A
+//! picture that a half turn maps onto itself has 180°. Angles are compared as exact decimals.
+
+use crate::figure::Kind;
+use crate::parameter::Parameter;
+use crate::source::Source;
+
+/// After how many degrees a shape looks the same again; none where any angle will do.
+pub(crate) fn period(source: &Source) -> Option<u32> {
+    let figure = match source {
+        Source::Figure(figure) => figure,
+        Source::Picture(picture) => {
+            let imprint = picture.imprint();
+            let half_turned = imprint.bounds().is_some_and(|bounds| {
+                let turned = |column: u8, row: u8| {
+                    imprint.get(
+                        bounds.left + bounds.right - 1 - column,
+                        bounds.top + bounds.bottom - 1 - row,
+                    )
+                };
+                imprint.active().all(|(column, row)| turned(column, row))
+            });
+            return Some(if half_turned { 180 } else { 360 });
+        }
+    };
+    let equal = |one: Parameter, other: Parameter| figure.get(one) == figure.get(other);
+    match figure.kind() {
+        Kind::Ellipse if equal(Parameter::RadiusX, Parameter::RadiusY) => None,
+        Kind::Rectangle if equal(Parameter::Length, Parameter::Width) => Some(90),
+        Kind::Ellipse | Kind::Rectangle => Some(180),
+        Kind::Triangle => Some(120),
+        Kind::Pentagon => Some(72),
+        Kind::Hexagon => Some(60),
+        Kind::Heptagon => Some(360),
+        Kind::Octagon => Some(45),
+    }
+}

@@ -1,0 +1,189 @@
+//! Unsaved work: kept in a file while the program runs, offered back after it died.
+//!
+//! Each running program holds the lock of a file of its own in the folder's `.journal`. A journal whose lock is free
+//! was left by a program that died; whoever takes its lock offers it, so several programs do not take each other's.
+
+use std::fs;
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+use crate::formats::shape::Shape;
+use crate::storage::error::LibraryError;
+use crate::storage::file;
+use crate::storage::file::system;
+use crate::storage::lock::{Found, Lock};
+use crate::storage::store::Library;
+
+/// The name of unsaved work that has none.
+pub const UNNAMED: &str = "unsaved";
+
+/// The journal of a running program. Nothing is written before there is something to keep, and what is kept stays
+/// until it is cleared: a program that ends without doing so, whyever, has lost nothing.
+#[derive(Debug)]
+pub struct Journal {
+    folder: PathBuf,
+    /// Its file with the lock, where there are locks.
+    open: Option<(PathBuf, Option<Lock>)>,
+}
+
+impl Journal {
+    /// A journal in a library.
+    pub fn new(library: &Library) -> Self {
+        Self {
+            folder: folder(library),
+            open: None,
+        }
+    }
+
+    /// Keeps a shape in place of the one kept before; durable on return.
+    ///
+    /// # Errors
+    /// What the system refuses. The shape kept before is still there.
+    pub fn keep(&mut self, shape: &Shape) -> Result<(), LibraryError> {
+        match self.write(shape) {
+            // Somebody has removed the folder: another one is made.
+            Err(LibraryError::System { error, .. }) if error.kind() == ErrorKind::NotFound => {
+                self.open = None;
+                self.write(shape)
+            }
+            written => written,
+        }
+    }
+
+    fn write(&mut self, shape: &Shape) -> Result<(), LibraryError> {
+        let path = self.file()?;
+        file::write(&path, &temporary_of(&path), shape.write().as_bytes())
+    }
+
+    /// The journal's own file, found a name for at the first use.
+    fn file(&mut self) -> Result<PathBuf, LibraryError> {
+        if let Some((path, _)) = &self.open {
+            return Ok(path.clone());
+        }
+        file::make_inner_folder(&self.folder)?;
+        let process = std::process::id();
+        for number in 0..1000 {
+            let path = self.folder.join(format!("{process}-{number}.json"));
+            // Left by a dead program that had the same number.
+            if path.exists() {
+                continue;
+            }
+            let lock = match Lock::at(&lock_of(&path))? {
+                Found::Free(lock) => Some(lock),
+                Found::Held => continue,
+                // What is kept can be found in the folder; nobody can tell whether its program still runs, so it is
+                // not offered.
+                Found::Unknown => None,
+            };
+            self.open = Some((path.clone(), lock));
+            return Ok(path);
+        }
+        let none = io::Error::other("no journal could be locked");
+        Err(system("begin a journal", &self.folder)(none))
+    }
+
+    /// Forgets what was kept: it is saved, or given up.
+    pub fn clear(&mut self) {
+        if let Some((path, lock)) = self.open.take() {
+            remove(&path, lock);
+        }
+    }
+}
+
+/// Work that a program left behind when it died. While this lives, no other program offers it.
+#[derive(Debug)]
+pub struct Orphan {
+    /// What was on its matrix.
+    pub shape: Shape,
+    path: PathBuf,
+    lock: Lock,
+}
+
+impl Orphan {
+    /// All that wait in a library. Work that is saved under its name just so is cleared away. A journal that cannot be
+    /// read is left alone: it may be one of a later version.
+    pub fn all(library: &Library) -> Vec<Self> {
+        let folder = folder(library);
+        // A folder that cannot be read must not keep the program from starting.
+        let mut names = file::names(&folder).unwrap_or_default();
+        names.sort();
+        names
+            .into_iter()
+            .filter_map(|name| {
+                let path = folder.join(name);
+                let journal = path.with_extension("json");
+                match path.extension()?.to_str()? {
+                    "json" => Self::of(library, path),
+                    // Left of a journal that was begun, or being cleared, when its program died.
+                    "lock" if !journal.exists() => {
+                        if let Some(lock) = Lock::if_free(&path)
+                            && !journal.exists()
+                        {
+                            remove(&journal, Some(lock));
+                        }
+                        None
+                    }
+                    _ => None,
+                }
+            })
+            .collect()
+    }
+
+    /// The work in a journal, if its program is dead and it would be lost.
+    fn of(library: &Library, path: PathBuf) -> Option<Self> {
+        let lock = Lock::if_free(&lock_of(&path))?;
+        // Half-written; the one before is whole.
+        let _ = fs::remove_file(temporary_of(&path));
+        let content = match file::read(&path) {
+            // Its program has cleared it just now.
+            Err(LibraryError::System { error, .. }) if error.kind() == ErrorKind::NotFound => {
+                remove(&path, Some(lock));
+                return None;
+            }
+            content => content.ok()?,
+        };
+        let shape = Shape::read(&content).ok()?;
+        if is_saved(library, &shape) {
+            remove(&path, Some(lock));
+            return None;
+        }
+        Some(Self { shape, path, lock })
+    }
+
+    /// The work is elsewhere now, or is not wanted.
+    pub fn discard(self) {
+        remove(&self.path, Some(self.lock));
+    }
+}
+
+/// Whether a library holds just this under its name, or there is nothing to hold.
+fn is_saved(library: &Library, shape: &Shape) -> bool {
+    let same = |saved: &Shape| {
+        (saved.sensor, saved.imprint, &saved.source) == (shape.sensor, shape.imprint, &shape.source)
+    };
+    shape.imprint.is_empty() && shape.source.is_none()
+        || library
+            .load(shape.name.as_str())
+            .is_ok_and(|saved| same(&saved.shape))
+}
+
+fn folder(library: &Library) -> PathBuf {
+    library.folder().join(".journal")
+}
+
+fn lock_of(path: &Path) -> PathBuf {
+    path.with_extension("lock")
+}
+
+fn temporary_of(path: &Path) -> PathBuf {
+    path.with_extension("tmp")
+}
+
+/// The lock goes last, so that nobody finds the file without it.
+fn remove(path: &Path, lock: Option<Lock>) {
+    // What cannot be removed is offered again: better twice than never.
+    let _ = fs::remove_file(temporary_of(path));
+    let _ = fs::remove_file(path);
+    let _ = fs::remove_file(lock_of(path));
+    drop(lock);
+}

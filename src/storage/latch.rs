@@ -1,0 +1,66 @@
+//! A writer that keeps quiet about errors until it is asked.
+
+use std::io::{self, Seek, SeekFrom, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Writes until something goes wrong or it is to stop; from then on it only takes note of what would have been written,
+/// since a zip whose writer fails complains on standard error, where the screen is.
+pub(crate) struct Latch<'a, W> {
+    output: W,
+    stopped: &'a AtomicBool,
+    /// What went wrong first.
+    pub(crate) error: Option<io::Error>,
+    place: u64,
+    end: u64,
+}
+
+impl<'a, W: Write + Seek> Latch<'a, W> {
+    pub(crate) fn new(output: W, stopped: &'a AtomicBool) -> Self {
+        Self {
+            output,
+            stopped,
+            error: None,
+            place: 0,
+            end: 0,
+        }
+    }
+
+    fn attempt<T>(&mut self, act: impl FnOnce(&mut W) -> io::Result<T>) -> Option<T> {
+        if self.stopped.load(Ordering::Relaxed) && self.error.is_none() {
+            self.error = Some(io::Error::other("stopped"));
+        }
+        if self.error.is_some() {
+            return None;
+        }
+        act(&mut self.output)
+            .map_err(|error| self.error = Some(error))
+            .ok()
+    }
+}
+
+impl<W: Write + Seek> Write for Latch<'_, W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let _ = self.attempt(|output| output.write_all(bytes));
+        self.place += bytes.len() as u64;
+        self.end = self.end.max(self.place);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let _ = self.attempt(Write::flush);
+        Ok(())
+    }
+}
+
+impl<W: Write + Seek> Seek for Latch<'_, W> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let _ = self.attempt(|output| output.seek(to));
+        let place = match to {
+            SeekFrom::Start(place) => Some(place),
+            SeekFrom::End(by) => self.end.checked_add_signed(by),
+            SeekFrom::Current(by) => self.place.checked_add_signed(by),
+        };
+        self.place = place.ok_or(io::ErrorKind::InvalidInput)?;
+        Ok(self.place)
+    }
+}

@@ -1,0 +1,33 @@
+//! Where the library is.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use crate::storage::error::LibraryError;
+
+/// The variable that names the folder.
+pub const VARIABLE: &str = "TAXEL_LIBRARY";
+
+/// The folder: the one asked for, else that of the variable, else `taxel/library` in the user's data folder.
+///
+/// # Errors
+/// Where there is none of these.
+pub fn folder(asked: Option<PathBuf>, variable: Option<OsString>) -> Result<PathBuf, LibraryError> {
+    let named = asked.or_else(|| {
+        variable
+            .filter(|value| !value.is_empty())
+            .map(PathBuf::from)
+    });
+    let own = || {
+        directories::ProjectDirs::from("", "", "taxel").map(|own| own.data_dir().join("library"))
+    };
+    named.or_else(own).ok_or(LibraryError::NoPlace)
+}
+
+/// A path that may start with `~/`, which stands for the user's home; none where that is not known.
+pub fn below_home(path: &str) -> Option<PathBuf> {
+    match path.strip_prefix("~/") {
+        Some(rest) => directories::BaseDirs::new().map(|own| own.home_dir().join(rest)),
+        None => Some(PathBuf::from(path)),
+    }
+}

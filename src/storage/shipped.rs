@@ -1,0 +1,65 @@
+//! The shapes that come with the program, compiled in. They were made with the program itself, by `library/make`.
+
+use crate::formats::name::Name;
+use crate::formats::shape::Shape;
+use crate::storage::error::LibraryError;
+use crate::storage::file::stamp;
+
+macro_rules! shapes {
+    ($($name:literal),* $(,)?) => {
+        [$(($name, include_str!(concat!("../../library/", $name, ".json")))),*]
+    };
+}
+
+/// Name and file of each, by name.
+const SHIPPED: [(&str, &str); 28] = shapes![
+    "arrow",
+    "bar",
+    "bracket",
+    "button",
+    "clover",
+    "cross",
+    "dice five",
+    "disc",
+    "flange",
+    "frame",
+    "gear",
+    "hexagon bar",
+    "key",
+    "letter A",
+    "letter B",
+    "letter C",
+    "letter E",
+    "nut",
+    "oval ring",
+    "pentagon",
+    "ring and dot",
+    "saltire",
+    "slot plate",
+    "smile",
+    "star",
+    "triangle ring",
+    "two pins",
+    "washer",
+];
+
+/// Their names, by alphabet.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    SHIPPED.iter().map(|&(name, _)| name)
+}
+
+/// Whether a shape of that name comes with the program, upper and lower case alike.
+pub(crate) fn has(name: &Name) -> bool {
+    SHIPPED.iter().any(|(shipped, _)| name.same(shipped))
+}
+
+/// The shape of that name with its stamp; none where no shape of that name comes with the program.
+pub(crate) fn load(name: &Name) -> Option<Result<(Shape, u64), LibraryError>> {
+    let &(name, text) = SHIPPED.iter().find(|(shipped, _)| name.same(shipped))?;
+    let broken = |error| LibraryError::Broken {
+        path: format!("{name}.json").into(),
+        error,
+    };
+    let loaded = |shape| (shape, stamp(text.as_bytes()));
+    Some(Shape::read(text.as_bytes()).map(loaded).map_err(broken))
+}

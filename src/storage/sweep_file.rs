@@ -1,0 +1,312 @@
+//! What a sweep leaves as files: its atlas, in the form that the name's ending tells, and the atlas number of every
+//! pose.
+//!
+//! At every time there is all of a file or what was there before ([`crate::storage::unfinished`]).
+
+use std::io::{self, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::formats::archive;
+use crate::formats::archive::ArchiveError;
+use crate::formats::atlas::{write_csv, write_jsonl};
+use crate::formats::npy;
+use crate::formats::npy::Kind;
+use crate::pose::grid::Grid;
+use crate::storage::latch::Latch;
+use crate::storage::unfinished;
+use crate::storage::unfinished::{Existing, Unfinished};
+use crate::sweep::survey::Survey;
+
+/// Why a file was not written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+#[error("{name}: {error}")]
+pub struct SweepFileError {
+    /// The file's name.
+    pub name: String,
+    /// What went wrong.
+    pub error: ArchiveError,
+}
+
+impl SweepFileError {
+    fn new(path: &Path, error: impl Into<ArchiveError>) -> Self {
+        Self {
+            name: path.to_string_lossy().into_owned(),
+            error: error.into(),
+        }
+    }
+
+    /// Whether a file of that name is there already, and was to be kept.
+    pub fn exists(&self) -> bool {
+        matches!(&self.error, ArchiveError::Io(error) if error.kind() == io::ErrorKind::AlreadyExists)
+    }
+}
+
+/// Where an atlas goes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AtlasFile {
+    path: PathBuf,
+    format: Format,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Csv,
+    JsonLines,
+    Archive,
+}
+
+impl AtlasFile {
+    /// A file of that name.
+    ///
+    /// # Errors
+    /// What was expected, where its ending is that of no format.
+    pub fn new(path: impl Into<PathBuf>) -> Result<Self, &'static str> {
+        let path = path.into();
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        let ending = ending.map(str::to_ascii_lowercase);
+        let format = match ending.as_deref() {
+            Some("csv") => Format::Csv,
+            Some("jsonl") => Format::JsonLines,
+            Some("npz") => Format::Archive,
+            _ => return Err("expected a name that ends in .csv, .jsonl or .npz"),
+        };
+        Ok(Self { path, format })
+    }
+
+    /// Whether a file can be begun there: said before the work rather than after it.
+    ///
+    /// # Errors
+    /// Those of the system, with the file's name; where one is there and is to be kept.
+    pub fn check(&self, existing: Existing) -> Result<(), SweepFileError> {
+        begun(&self.path, existing).map(drop)
+    }
+
+    /// Writes the atlas of a survey; nothing of it is left where `stopped` becomes true on the way.
+    ///
+    /// # Errors
+    /// Those of the system, with the file's name.
+    pub fn write(
+        &self,
+        survey: &Survey,
+        existing: Existing,
+        stopped: &AtomicBool,
+    ) -> Result<(), SweepFileError> {
+        self.whole(survey, existing, stopped)?.keep()
+    }
+
+    /// The same without its name yet, so that several files can appear together.
+    ///
+    /// # Errors
+    /// Those of the system, with the file's name.
+    pub fn whole(
+        &self,
+        survey: &Survey,
+        existing: Existing,
+        stopped: &AtomicBool,
+    ) -> Result<Whole, SweepFileError> {
+        let mut file = begun(&self.path, existing)?;
+        let mut output = Latch::new(&mut file.output, stopped);
+        let written = match self.format {
+            Format::Csv => write_csv(survey, &mut output).map_err(ArchiveError::from),
+            Format::JsonLines => write_jsonl(survey, &mut output).map_err(ArchiveError::from),
+            Format::Archive => archive::write(survey, &mut output),
+        };
+        let written = match output.error {
+            Some(error) => Err(error.into()),
+            None => written,
+        };
+        written.map_err(|error| SweepFileError::new(&self.path, error))?;
+        Whole::of(file)
+    }
+}
+
+/// Whether a file of that name can hold the atlas number of every pose.
+pub fn is_poses(name: &Path) -> bool {
+    name.extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("npy"))
+}
+
+/// The atlas number of every pose, `uint32` in an array shaped angles × y0 × x0, before that zooms (y, then x) where
+/// there are several.
+#[derive(Debug)]
+pub struct PoseFile {
+    file: Unfinished,
+    start: u64,
+    /// What went wrong first.
+    error: Option<io::Error>,
+    bytes: Vec<u8>,
+}
+
+impl PoseFile {
+    /// Begins a file for the poses of a grid.
+    ///
+    /// # Errors
+    /// Those of the system, with the file's name.
+    pub fn new(
+        path: impl Into<PathBuf>,
+        grid: &Grid,
+        existing: Existing,
+    ) -> Result<Self, SweepFileError> {
+        let mut file = begun(&path.into(), existing)?;
+        let ranges = grid.ranges();
+        let mut shape = [
+            ranges.zoom_y,
+            ranges.zoom_x,
+            ranges.angle,
+            ranges.y0,
+            ranges.x0,
+        ]
+        .map(|range| range.count())
+        .to_vec();
+        if shape[..2] == [1, 1] {
+            shape.drain(..2);
+        }
+        let header = npy::header(Kind::U32, &shape);
+        if let Err(error) = file.output.write_all(&header) {
+            return Err(SweepFileError::new(file.path(), error));
+        }
+        Ok(Self {
+            file,
+            start: header.len() as u64,
+            error: None,
+            bytes: Vec::new(),
+        })
+    }
+
+    /// Takes a row: its number in the grid and the atlas numbers of its poses, which are as many for each. Where it
+    /// cannot be written, `stopped` becomes true.
+    pub fn take(&mut self, row: u64, ids: &[u32], stopped: &AtomicBool) {
+        if self.error.is_some() {
+            return;
+        }
+        self.bytes.clear();
+        self.bytes
+            .extend(ids.iter().flat_map(|id| id.to_le_bytes()));
+        let place = self.start + row * self.bytes.len() as u64;
+        let output = &mut self.file.output;
+        let written = output
+            .seek(SeekFrom::Start(place))
+            .and_then(|_| output.write_all(&self.bytes));
+        if let Err(error) = written {
+            self.error = Some(error);
+            stopped.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// The file without its name yet, when all rows were taken. Dropped in place of this, nothing is left of it.
+    ///
+    /// # Errors
+    /// What went wrong first, with the file's name.
+    pub fn whole(self) -> Result<Whole, SweepFileError> {
+        match self.error {
+            Some(error) => Err(SweepFileError::new(self.file.path(), error)),
+            None => Whole::of(self.file),
+        }
+    }
+}
+
+/// A file that lacks only its name. Dropped, nothing is left of it.
+#[derive(Debug)]
+pub struct Whole(unfinished::Whole);
+
+impl Whole {
+    fn of(file: Unfinished) -> Result<Self, SweepFileError> {
+        let path = file.path().to_owned();
+        let whole = file.whole();
+        whole
+            .map(Self)
+            .map_err(|error| SweepFileError::new(&path, error))
+    }
+
+    /// The file takes its name.
+    ///
+    /// # Errors
+    /// Those of the system, with the file's name.
+    pub fn keep(self) -> Result<(), SweepFileError> {
+        let path = self.0.path().to_owned();
+        let kept = self.0.keep();
+        kept.map_err(|error| SweepFileError::new(&path, error))
+    }
+}
+
+fn begun(path: &Path, existing: Existing) -> Result<Unfinished, SweepFileError> {
+    Unfinished::new(path, existing).map_err(|error| SweepFileError::new(path, error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Figure, Kind as Figures};
+    use crate::pose::grid::{Anchor, Ranges};
+    use crate::sensor::Sensor;
+    use crate::source::Source;
+    use crate::sweep::plan::Shard;
+    use crate::sweep::survey::Watch;
+
+    fn survey() -> Survey {
+        let ranges = Ranges {
+            angle: "0".parse().expect("a range"),
+            ..Ranges::default()
+        };
+        let source = Source::Figure(Figure::default_of(Figures::Hexagon, 16));
+        let grid = Grid::new(source, Sensor::default(), Anchor::Corner, ranges);
+        Survey::of(&grid.expect("in range"), Shard::WHOLE, Watch::nothing())
+    }
+
+    fn files(folder: &Path) -> Vec<String> {
+        let names = std::fs::read_dir(folder).expect("a folder").flatten();
+        names
+            .map(|file| file.file_name().to_string_lossy().into_owned())
+            .collect()
+    }
+
+    #[test]
+    fn a_file_is_whole_or_not_there() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let survey = survey();
+        for name in ["a.csv", "a.jsonl", "a.npz"] {
+            let path = folder.path().join(name);
+            let file = AtlasFile::new(&path).expect("a form");
+            let stopped = AtomicBool::new(true);
+            let refused = file.write(&survey, Existing::Kept, &stopped);
+            let refused = refused.expect_err("stopped").to_string();
+            assert!(refused.contains("stopped"), "{refused}");
+            assert_eq!(files(folder.path()), [""; 0], "nothing is left");
+            let going = AtomicBool::new(false);
+            file.write(&survey, Existing::Kept, &going)
+                .expect("written");
+            let first = std::fs::read(&path).expect("it is there");
+            let again = file.write(&survey, Existing::Kept, &going);
+            assert!(again.expect_err("it is there").exists());
+            file.write(&survey, Existing::Replaced, &going)
+                .expect("written again");
+            assert_eq!(std::fs::read(&path).ok(), Some(first));
+            std::fs::remove_file(&path).expect("it is there");
+        }
+        assert!(AtlasFile::new("a.txt").is_err() && AtlasFile::new("csv").is_err());
+        let nowhere = folder.path().join("nowhere/a.csv");
+        let nowhere = AtlasFile::new(nowhere).expect("a form");
+        let going = AtomicBool::new(false);
+        let error = nowhere.write(&survey, Existing::Kept, &going);
+        let error = error.expect_err("there is no such folder").to_string();
+        assert!(
+            error.ends_with("a.csv: No such file or directory (os error 2)"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn a_file_that_came_meanwhile_is_kept() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("poses.npy");
+        let survey = survey();
+        let file = PoseFile::new(&path, &survey.grid, Existing::Kept).expect("begun");
+        std::fs::write(&path, "mine").expect("written");
+        let whole = file.whole().expect("written");
+        assert!(whole.keep().expect_err("it is there").exists());
+        assert_eq!(std::fs::read(&path).ok().as_deref(), Some(&b"mine"[..]));
+        assert_eq!(files(folder.path()), ["poses.npy"]);
+    }
+}

@@ -1,0 +1,171 @@
+//! From the spans of a band to the events of a row of the grid.
+//!
+//! A taxel in column `i` inside of a span from `a` to `b` is active while `i − b ≤ x0 ≤ i − a`. Where a value of x0 lies
+//! within [`NEAR`] of the end of a span, or in a span that is in doubt, [`Exact`] decides for that taxel and pose.
+
+use crate::geometry::real::Real;
+use crate::sweep::events::Events;
+use crate::sweep::exact::Exact;
+use crate::sweep::span::{NEAR, Span, Spans};
+
+/// The values of x0 as places in the plane: `first + k / per_cell`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Steps {
+    pub(crate) first: f64,
+    pub(crate) per_cell: f64,
+    pub(crate) count: i32,
+}
+
+/// The largest whole number not above a place that is counted in steps; kept within a thousand ranges' length.
+fn floor(place: f64) -> i32 {
+    Real::floor(place.clamp(-1e9, 1e9))
+}
+
+/// Turns the spans of one row of the sensor into events.
+pub(crate) struct Marker<'s, 'e, 'a> {
+    pub(crate) steps: Steps,
+    pub(crate) row: usize,
+    pub(crate) y: u64,
+    pub(crate) events: &'s mut Events<'e>,
+    pub(crate) exact: &'s mut Exact<'a>,
+}
+
+impl Marker<'_, '_, '_> {
+    /// Marks all spans of a row of the sensor.
+    pub(crate) fn spans(&mut self, spans: &Spans) {
+        // Ends that are sharper than the grid is fine, or taxel by taxel.
+        if spans.sharp() && NEAR * self.steps.per_cell < 0.25 {
+            for span in spans.all() {
+                self.span(span);
+            }
+        } else {
+            self.each_taxel(spans.all());
+        }
+    }
+
+    fn span(&mut self, span: &Span) {
+        let left = self.end(span.from, false);
+        let right = self.end(span.to, true);
+        if left < right {
+            let ones = u64::MAX >> (64 - (right - left));
+            self.events.start(self.row, ones << left);
+        }
+    }
+
+    /// Marks where the taxels of the row pass the end of a span: they leave it on its left and enter on its right. The
+    /// result is the first taxel that does so after the first x0, or the number of columns.
+    fn end(&mut self, at: f64, right: bool) -> usize {
+        let columns = usize::from(self.events.layout.columns());
+        let start = at + self.steps.first;
+        let mut column = usize::try_from(Real::floor(start - NEAR) + 1).unwrap_or(0);
+        let mut first = None;
+        while column < columns {
+            let step = self.passing(column, start, right);
+            if step > 0 {
+                first = first.or(Some(column));
+                if step >= self.steps.count {
+                    break;
+                }
+                self.events.turn_over(self.row, column, step);
+            }
+            column += 1;
+        }
+        first.unwrap_or(columns)
+    }
+
+    /// The first step at which a taxel is past an end.
+    #[expect(clippy::cast_precision_loss, reason = "a column")]
+    fn passing(&mut self, column: usize, start: f64, right: bool) -> i32 {
+        let place = (column as f64 - start) * self.steps.per_cell;
+        let nearest = floor(place + 0.5);
+        if (place - f64::from(nearest)).abs() > NEAR * self.steps.per_cell {
+            return floor(place) + 1;
+        }
+        if nearest < 0 || nearest >= self.steps.count {
+            return nearest;
+        }
+        // At that very step the taxel is active on the near side of the end only.
+        let active = self.active(column, nearest);
+        nearest + i32::from(active != right)
+    }
+
+    fn active(&mut self, column: usize, step: i32) -> bool {
+        let x = u64::try_from(step).unwrap_or(0);
+        self.exact.active(column, self.row, x, self.y)
+    }
+
+    /// The slow way, for spans that are in doubt or close to each other.
+    #[cold]
+    #[expect(clippy::cast_precision_loss, reason = "a column")]
+    fn each_taxel(&mut self, spans: &[Span]) {
+        let Steps {
+            first,
+            per_cell,
+            count,
+        } = self.steps;
+        for column in 0..usize::from(self.events.layout.columns()) {
+            let place = |at: f64| (column as f64 - at - first) * per_cell;
+            let mut taxel = Taxel {
+                row: self.row,
+                column,
+                active: false,
+                next: 0,
+            };
+            // From right to left, since the taxel moves that way along the spans.
+            for span in spans.iter().rev() {
+                let from = (-floor(-place(span.to + NEAR))).max(taxel.next);
+                let to = floor(place(span.from - NEAR)).min(count - 1);
+                let sure = (floor(place(span.to - NEAR)) + 1)..floor(place(span.from + NEAR));
+                if from > to {
+                    continue;
+                }
+                if from > taxel.next {
+                    taxel.set(taxel.next, false, self.events);
+                }
+                let mut step = from;
+                while step <= to {
+                    if span.sharp && sure.contains(&step) {
+                        taxel.set(step, true, self.events);
+                        step = sure.end.min(to + 1);
+                    } else {
+                        let active = self.exact.active(
+                            column,
+                            self.row,
+                            u64::try_from(step).unwrap_or(0),
+                            self.y,
+                        );
+                        taxel.set(step, active, self.events);
+                        step += 1;
+                    }
+                }
+                taxel.next = to + 1;
+            }
+            if taxel.next < count {
+                taxel.set(taxel.next, false, self.events);
+            }
+        }
+    }
+}
+
+/// A taxel on its way along the range of x0.
+struct Taxel {
+    row: usize,
+    column: usize,
+    active: bool,
+    /// Steps below this one are done.
+    next: i32,
+}
+
+impl Taxel {
+    fn set(&mut self, step: i32, active: bool, events: &mut Events<'_>) {
+        if active == self.active {
+            return;
+        }
+        self.active = active;
+        if step == 0 {
+            events.start(self.row, 1 << self.column);
+        } else {
+            events.turn_over(self.row, self.column, step);
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! Poses that follow from others by a half turn of the plane.
+//!
+//! A half turn about a point whose coordinates are whole or half cells maps taxels onto taxels. A shape that looks the
+//! same after a half turn of its own is mapped onto itself, but for its place: its centre goes from `c` to `m − c`, with
+//! `m` any whole number. Where the ranges of x0 and y0 cover whole cells, and hold with every centre its image up to
+//! whole cells, each row of a turn is the image of another one, and only half of them need be gone through.
+//!
+//! **Exactly.** Positions are compared as decimals, so what is mapped is equal in real arithmetic, ties included. Twice
+//! the distance from anchor to centre must be a decimal for that: it is 0 with the anchor at the centre, and the sides
+//! of the bounding rectangle of ellipses, rectangles and pictures that are not zoomed; those of a regular polygon are
+//! none. What the sensor cuts off has no image, so the shape must lie inside of it in all poses of the turn.
+
+use crate::figure::Kind;
+use crate::parameter::Parameter;
+use crate::pose::grid::{Anchor, Grid};
+use crate::pose::range::DecimalRange;
+use crate::pose::symmetry::period;
+use crate::source::Source;
+
+/// How the poses of a turn are mapped onto each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct HalfTurn {
+    pub(crate) x: Fold,
+    pub(crate) y: Fold,
+}
+
+impl HalfTurn {
+    /// None where the shape or the ranges are not mapped onto themselves. Whether the shape lies inside of the sensor is
+    /// for the caller to see.
+    pub(crate) fn of(grid: &Grid) -> Option<Self> {
+        if period(grid.source()).is_some_and(|period| 180 % period != 0) {
+            return None;
+        }
+        let [width, height] = twice_to_centre(grid)?;
+        Some(Self {
+            x: Fold::of(&grid.ranges().x0, width)?,
+            y: Fold::of(&grid.ranges().y0, height)?,
+        })
+    }
+}
+
+/// Twice the way from the anchor to the centre, along x and y; none where it is no decimal. Cells.
+fn twice_to_centre(grid: &Grid) -> Option<[f64; 2]> {
+    if grid.anchor() == Anchor::Centre {
+        return Some([0.0; 2]);
+    }
+    match grid.source() {
+        Source::Figure(figure) => {
+            let sizes = figure.kind().sizes();
+            let size = |index: usize| figure.get(*sizes.get(index)?);
+            match figure.kind() {
+                Kind::Ellipse => Some([2.0 * size(0)?, 2.0 * size(1)?]),
+                Kind::Rectangle => Some([size(0)?, size(1)?]),
+                _ => None,
+            }
+        }
+        Source::Picture(picture) => {
+            let zoomed = |(parameter, range): &(Parameter, DecimalRange)| {
+                let zoom = matches!(parameter, Parameter::ZoomX | Parameter::ZoomY);
+                zoom && *range != DecimalRange::whole(1)
+            };
+            if grid.ranges().by_parameter().iter().any(zoomed) {
+                return None;
+            }
+            let bounds = picture.imprint().bounds()?;
+            let side = |from: u8, to: u8| f64::from(to - from);
+            Some([
+                side(bounds.left, bounds.right),
+                side(bounds.top, bounds.bottom),
+            ])
+        }
+    }
+}
+
+/// How the values of a range are mapped onto each other: value `i` to value `last − i`, or to `last − i + count` where
+/// that would be negative.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Fold {
+    pub(crate) count: u64,
+    pub(crate) last: u64,
+    /// The sum of the coordinates of a centre and its image, in cells, for values up to `last`, and for those after it.
+    cells: [i32; 2],
+}
+
+impl Fold {
+    /// Of a range whose values lie `extent / 2` before the centre.
+    fn of(range: &DecimalRange, extent: f64) -> Option<Self> {
+        // The shortest decimal that reads back as the number is the one that was given.
+        let extent: DecimalRange = extent.to_string().parse().ok()?;
+        let (mut numbers, mut one) = (range.units(), range.one());
+        let (mut extent, extent_one) = (extent.units()[0], extent.one());
+        // Both are powers of ten.
+        let all = one.max(extent_one);
+        numbers = numbers.map(|number| number * (all / one));
+        extent *= all / extent_one;
+        one = all;
+        let [start, step] = numbers;
+        let whole = i128::from(range.count()) * step;
+        // Two centres that are images of each other sum up to a whole number of cells.
+        let way = (-2 * start - extent).rem_euclid(whole);
+        if whole % one != 0 || way % step != 0 {
+            return None;
+        }
+        let cells = (2 * start + extent + way) / one;
+        Some(Self {
+            count: range.count(),
+            last: u64::try_from(way / step).ok()?,
+            cells: [
+                i32::try_from(cells).ok()?,
+                i32::try_from(cells + whole / one).ok()?,
+            ],
+        })
+    }
+
+    /// The value that one is the image of, and whether it comes after `last`.
+    pub(crate) fn image(&self, index: u64) -> (u64, bool) {
+        if index <= self.last {
+            (self.last - index, false)
+        } else {
+            (self.last + self.count - index, true)
+        }
+    }
+
+    /// The sum of the coordinates of a centre and its image, in cells, for values up to `last` or after it.
+    pub(crate) fn cells(&self, after: bool) -> i32 {
+        self.cells[usize::from(after)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::Figure;
+    use crate::picture::Picture;
+    use crate::pose::grid::Ranges;
+    use crate::sensor::Sensor;
+
+    fn has_images(source: Source, anchor: Anchor, zoom: &str) -> bool {
+        let ranges = Ranges {
+            zoom_x: zoom.parse().expect("a range"),
+            ..Ranges::default()
+        };
+        let grid = Grid::new(source, Sensor::default(), anchor, ranges).expect("a grid");
+        HalfTurn::of(&grid).is_some()
+    }
+
+    fn fold(range: &str, extent: f64) -> Option<Fold> {
+        Fold::of(&range.parse().expect("a range"), extent)
+    }
+
+    #[test]
+    fn a_centre_and_its_image_sum_up_to_whole_cells() {
+        for (range, extent) in [
+            ("5:5.99:0.01", 6.0),
+            ("5:5.99:0.01", 0.7),
+            ("-0.5:1.4:0.1", 3.1),
+            ("2.125:3.1:0.025", 2.4),
+            ("7", 3.0),
+            ("7.5", 0.0),
+            ("0:2.97:0.03", 0.0),
+        ] {
+            let fold = fold(range, extent).expect("a fold");
+            let range: DecimalRange = range.parse().expect("a range");
+            for index in 0..range.count() {
+                let (image, after) = fold.image(index);
+                assert_eq!(fold.image(image), (index, after));
+                let sum = range.value(index) + range.value(image) + extent;
+                let cells = f64::from(fold.cells(after));
+                assert!(
+                    (sum - cells).abs() < 1e-9,
+                    "{range} {extent}: {sum}, {cells}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn only_what_a_half_turn_maps_onto_itself_has_images() {
+        let halved = |kind: Kind, anchor| {
+            has_images(Source::Figure(Figure::default_of(kind, 16)), anchor, "1")
+        };
+        let (corner, centre) = (Anchor::Corner, Anchor::Centre);
+        assert!(halved(Kind::Rectangle, corner) && halved(Kind::Ellipse, corner));
+        assert!(halved(Kind::Hexagon, centre) && halved(Kind::Octagon, centre));
+        assert!(!halved(Kind::Hexagon, corner) && !halved(Kind::Octagon, corner));
+        assert!(!halved(Kind::Triangle, centre) && !halved(Kind::Heptagon, centre));
+        let picture = |rows: &str, anchor, zoom: &str| {
+            let rows = rows.parse().expect("rows");
+            has_images(Source::Picture(Picture::at_home(rows)), anchor, zoom)
+        };
+        assert!(picture("##.\n.##", corner, "1") && !picture("###\n.##", corner, "1"));
+        assert!(!picture("##.\n.##", corner, "0.5") && picture("##.\n.##", centre, "0.5"));
+    }
+
+    #[test]
+    fn other_ranges_have_no_image() {
+        // A step more or less than whole cells; a width between the steps; no decimal.
+        for (range, extent) in [
+            ("5:6:0.01", 6.0),
+            ("5:5.98:0.01", 6.0),
+            ("5:5.99:0.01", 6.005),
+            ("5.3", 6.0),
+            ("5:5.99:0.01", 3.0 * 3_f64.sqrt()),
+        ] {
+            assert_eq!(fold(range, extent), None, "{range} {extent}");
+        }
+    }
+}

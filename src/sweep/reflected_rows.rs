@@ -1,0 +1,119 @@
+//! Rows that are images of rows gone through before ([`crate::sweep::point_symmetry`]): their runs, read backwards.
+//!
+//! The image of a row has the same runs in the opposite order, cut in two where the range of x0 comes round; the imprint
+//! of each is the half-turned one, moved by whole cells. What is counted, and in which order, is the same as if
+//! the row had been gone through itself.
+
+use crate::atlas::counter::Census;
+use crate::atlas::packing::Layout;
+use crate::sweep::point_symmetry::HalfTurn;
+
+/// The runs of several rows: index in a census, and length.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Runs {
+    list: Vec<(u32, u32)>,
+    /// Where each row begins.
+    starts: Vec<usize>,
+}
+
+impl Runs {
+    /// The runs that follow are those of the next row.
+    pub(crate) fn begin(&mut self) {
+        self.starts.push(self.list.len());
+    }
+
+    pub(crate) fn push(&mut self, index: usize, length: u64) {
+        let (index, length) = (u32::try_from(index), u32::try_from(length));
+        self.list
+            .push((index.unwrap_or(u32::MAX), length.unwrap_or(u32::MAX)));
+    }
+
+    /// Those of a row, counted from 0; none of a row that is not there.
+    pub(crate) fn row(&self, row: usize) -> &[(u32, u32)] {
+        let start = self.starts.get(row).copied().unwrap_or(self.list.len());
+        let end = self.starts.get(row + 1).copied();
+        &self.list[start..end.unwrap_or(self.list.len())]
+    }
+}
+
+/// The images of the imprints of a task.
+#[derive(Debug)]
+pub(crate) struct Images<'a> {
+    layout: &'a Layout,
+    half_turn: HalfTurn,
+    /// By index in the census: those of its images, by whether x0 comes round, and y0.
+    known: Vec<[Option<u32>; 4]>,
+    key: Vec<u64>,
+    /// The runs of the row under way, which can't be added to those that it is made from before it is done.
+    row: Vec<(usize, u64)>,
+}
+
+impl<'a> Images<'a> {
+    pub(crate) fn new(layout: &'a Layout, half_turn: HalfTurn) -> Self {
+        Self {
+            layout,
+            half_turn,
+            known: Vec::new(),
+            key: vec![0; layout.words()],
+            row: Vec::new(),
+        }
+    }
+
+    /// The row that a value of y0 is the image of, and whether y0 comes round on the way.
+    pub(crate) fn source(&self, y: u64) -> (u64, bool) {
+        self.half_turn.y.image(y)
+    }
+
+    /// Counts the image of a row; `first` is the number of its first pose.
+    pub(crate) fn add(
+        &mut self,
+        census: &mut Census,
+        runs: &mut Runs,
+        (source, round): (usize, bool),
+        first: u64,
+    ) {
+        let x = self.half_turn.x;
+        self.row.clear();
+        let mut pose = first;
+        // Backwards from `last` to 0, then from the end to the one after `last`.
+        for (part, after) in [(0..x.last + 1, false), (x.last + 1..x.count, true)] {
+            let mut end = x.count;
+            for &(index, length) in runs.row(source).iter().rev() {
+                let start = end - u64::from(length);
+                let length = end.min(part.end).saturating_sub(start.max(part.start));
+                end = start;
+                if length == 0 {
+                    continue;
+                }
+                let index = usize::try_from(index).unwrap_or(0);
+                let image = self.image(census, index, [after, round], pose);
+                census.count(image, length);
+                self.row.push((image, length));
+                pose += length;
+            }
+        }
+        for &(index, length) in &self.row {
+            runs.push(index, length);
+        }
+    }
+
+    /// The index of an imprint's image, which is first seen at pose `first` unless it is known.
+    fn image(&mut self, census: &mut Census, index: usize, after: [bool; 2], first: u64) -> usize {
+        if self.known.len() <= index {
+            self.known.resize(index + 1, [None; 4]);
+        }
+        let slot = &mut self.known[index][usize::from(after[0]) + 2 * usize::from(after[1])];
+        let image = slot.get_or_insert_with(|| {
+            let cells = [
+                self.half_turn.x.cells(after[0]),
+                self.half_turn.y.cells(after[1]),
+            ];
+            let hash = self
+                .layout
+                .half_turned(census.key(index), cells, &mut self.key);
+            let image = census.add(&self.key, hash, 0, first);
+            u32::try_from(image).unwrap_or(u32::MAX)
+        });
+        usize::try_from(*image).unwrap_or(0)
+    }
+}

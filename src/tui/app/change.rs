@@ -1,0 +1,182 @@
+//! Changes of the document: touching, moving, turning, zooming, and going back through them.
+
+use crate::formats::value::counted;
+use crate::parameter::Parameter;
+use crate::source::Source;
+use crate::tui::app::document::{Document, History, Origin, StoredName};
+use crate::tui::app::message::Message;
+use crate::tui::app::state::{App, Mode, Notice};
+use crate::tui::keys::key::Arrow;
+
+/// Says something.
+pub(in crate::tui) fn inform(app: &mut App, text: impl Into<String>) {
+    app.notice = Some(Notice::Info(text.into()));
+}
+
+/// Says why something was not done.
+pub(in crate::tui) fn refuse(app: &mut App, text: impl Into<String>) {
+    app.notice = Some(Notice::Refusal(text.into()));
+}
+
+/// A change of the document. The chosen region stays chosen while there is one of that number.
+pub(in crate::tui) fn change(app: &mut App, document: Document) {
+    app.history.push(document);
+    settle(app);
+}
+
+/// A document that comes from somewhere else, with the name that it is stored under, if it is.
+pub(in crate::tui) fn begin(app: &mut App, document: Document, name: Option<StoredName>) {
+    let saved = document.clone();
+    app.history.begin(document, Origin { name, saved });
+    app.mode = Mode::Draw;
+    settle(app);
+}
+
+/// Brings back into range what depends on the document.
+pub(in crate::tui) fn settle(app: &mut App) {
+    app.removed = None;
+    let present = app.history.present();
+    app.cursor.0 = app.cursor.0.min(present.sensor.columns() - 1);
+    app.cursor.1 = app.cursor.1.min(present.sensor.rows() - 1);
+    if present.source.is_none() {
+        app.mode = Mode::Draw;
+    }
+    let regions = app.seen().regions.len();
+    app.chosen = app.chosen.filter(|&index| index < regions);
+}
+
+/// Back or forth by one change.
+pub(in crate::tui) fn travel(
+    app: &mut App,
+    step: impl FnOnce(&mut History) -> bool,
+    otherwise: &str,
+) {
+    if step(&mut app.history) {
+        settle(app);
+    } else {
+        inform(app, otherwise);
+    }
+}
+
+/// A document from a form: a new touch, or another sensor. What was done by hand and goes is said.
+pub(in crate::tui) fn replace(app: &mut App, document: Document) {
+    let present = app.history.present();
+    if *present == document {
+        return;
+    }
+    let dropped = present
+        .turned
+        .count()
+        .saturating_sub(document.turned.count());
+    change(app, document);
+    if dropped > 0 {
+        let taxels = counted(dropped.into(), "taxel");
+        let them = if dropped == 1 { "it" } else { "them" };
+        let undo = app.key_of(&Message::Undo);
+        inform(
+            app,
+            format!("{taxels} set by hand dropped; {undo} brings {them} back"),
+        );
+    }
+}
+
+fn refuse_to_move(app: &mut App) {
+    let (figure, picture) = (app.key_of(&Message::Figure), app.key_of(&Message::Picture));
+    refuse(
+        app,
+        format!(
+            "nothing to move: this was drawn by hand; {figure} places a figure, {picture} a stored shape"
+        ),
+    );
+}
+
+/// What can be moved; where there is nothing, that is said.
+pub(in crate::tui) fn movable(app: &mut App) -> Option<Source> {
+    let source = app.history.present().source.clone();
+    if source.is_none() {
+        refuse_to_move(app);
+    }
+    source
+}
+
+/// Moves the shape by a step.
+pub(in crate::tui) fn nudge(app: &mut App, arrow: Arrow) {
+    let (dx, dy) = arrow.step();
+    let length = app.step.length();
+    shift(app, f64::from(dx) * length, f64::from(dy) * length);
+}
+
+/// Moves the shape by so many cells.
+pub(in crate::tui) fn shift(app: &mut App, dx: f64, dy: f64) {
+    let Some(source) = movable(app) else { return };
+    let ways = [(Parameter::X0, dx), (Parameter::Y0, dy)];
+    let moved: Vec<(Parameter, f64)> = ways
+        .into_iter()
+        .filter(|(_, by)| *by != 0.0)
+        .map(|(parameter, by)| (parameter, tidy(source.get(parameter).unwrap_or(0.0) + by)))
+        .collect();
+    set(app, source, &moved);
+}
+
+/// Turns the shape, as seen.
+pub(in crate::tui) fn turn(app: &mut App, clockwise: i16) {
+    let Some(source) = movable(app) else { return };
+    let value = source.get(Parameter::Angle).unwrap_or(0.0) + f64::from(clockwise) * source.sense();
+    set(
+        app,
+        source,
+        &[(Parameter::Angle, tidy(value).rem_euclid(360.0))],
+    );
+}
+
+/// Makes a picture larger or smaller by a step.
+pub(in crate::tui) fn zoom(app: &mut App, direction: i8) {
+    let Some(source) = movable(app) else { return };
+    let by = f64::from(direction) * app.step.length();
+    let (Some(x), Some(y)) = (source.get(Parameter::ZoomX), source.get(Parameter::ZoomY)) else {
+        let figure = app.key_of(&Message::Figure);
+        let text = format!("a figure has no zoom; {figure} changes its size");
+        return refuse(app, text);
+    };
+    set(
+        app,
+        source,
+        &[
+            (Parameter::ZoomX, tidy(x + by)),
+            (Parameter::ZoomY, tidy(y + by)),
+        ],
+    );
+}
+
+/// Steps of a hundredth shall lead from decimal to decimal, not drift by roundings; nor to a zero with a minus.
+fn tidy(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6 + 0.0
+}
+
+fn set(app: &mut App, source: Source, values: &[(Parameter, f64)]) {
+    let sensor = app.history.present().sensor;
+    let moved = values
+        .iter()
+        .try_fold(source, |source, &(parameter, value)| {
+            source.with(parameter, value, sensor.side())
+        });
+    match moved {
+        // What was set by hand stays where nothing moves.
+        Ok(source) if app.history.present().source.as_ref() == Some(&source) => {}
+        Ok(source) => replace(app, Document::touched(sensor, source)),
+        Err(error) => refuse(app, error.labelled()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::tidy;
+
+    #[test]
+    fn steps_lead_to_zero_and_not_to_minus_zero() {
+        let there = [0.3, -0.1, -0.1, -0.1].iter().sum::<f64>();
+        assert!(there < 0.0);
+        assert_eq!(tidy(there).to_string(), "0");
+        assert_eq!(tidy(0.1 + 0.2).to_string(), "0.3");
+    }
+}

@@ -1,0 +1,216 @@
+//! What the library answers.
+
+use crate::imprint::Imprint;
+use crate::picture::Picture;
+use crate::storage::store::{Expected, Loaded, Origin};
+use crate::tui::app::change::{begin, change, inform, refuse};
+use crate::tui::app::dialog::{Dialog, Question};
+use crate::tui::app::document::{Document, StoredName};
+use crate::tui::app::message::{Answer, Left, Message};
+use crate::tui::app::state::{App, Mode};
+use crate::tui::form::state::FormDialog;
+use crate::tui::keys::binding::Context;
+use crate::tui::prompt::commands::{Takes, wants_names};
+use crate::tui::runtime::effect::{Effect, Request};
+use crate::tui::shapes::purpose::Purpose;
+use crate::tui::shapes::state::ListDialog;
+
+/// Takes an answer.
+pub(in crate::tui) fn take(app: &mut App, answer: Answer) -> Option<Effect> {
+    match answer {
+        Answer::List(Ok(entries)) => match app.dialogs.last_mut() {
+            Some(Dialog::List(list)) => {
+                *list = ListDialog::new(list.purpose(), entries);
+                return look(app);
+            }
+            Some(Dialog::Command(command)) => {
+                let mut names = entries;
+                match wants_names(command.field.text()) {
+                    Some(Takes::Shape(Purpose::Load | Purpose::Picture)) => {}
+                    _ => names.retain(|entry| entry.origin == Origin::Own),
+                }
+                let names: Vec<String> = names.into_iter().map(|entry| entry.name).collect();
+                command.complete(&names);
+            }
+            _ => {}
+        },
+        Answer::Trash(Ok(names)) => {
+            if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
+                command.complete(&names);
+            }
+        }
+        Answer::Read(read) => {
+            if let Some(Dialog::List(list)) = app.dialogs.last_mut() {
+                list.take(read);
+            }
+        }
+        Answer::Named(Purpose::Picture, Ok(loaded)) => {
+            let name = loaded.shape.name.to_string();
+            open_picture(app, &loaded.shape.imprint, name);
+        }
+        Answer::Named(_, Ok(loaded)) => {
+            if let Err(text) = place(app, &loaded) {
+                refuse(app, text);
+            }
+        }
+        Answer::Stored(name, stamp) => {
+            inform(app, format!("saved as {name}"));
+            app.history.stored(StoredName {
+                name,
+                stamp,
+                owner: Origin::Own,
+            });
+        }
+        Answer::Differs(shape, stamp, text) => {
+            let yes = Message::Store(shape, Expected::Stamp(stamp));
+            app.dialogs.push(Dialog::Question(Question::new(
+                format!("{text}. Replace it?"),
+                yes,
+            )));
+        }
+        Answer::Removed(name) => {
+            // What is on the matrix may be all that is left of it.
+            app.history.removed(&name);
+            let undo = app.key_of(&Message::Undo);
+            inform(app, format!("{name} deleted; {undo} brings it back"));
+            app.removed = Some(name);
+        }
+        Answer::Restored(name) => {
+            app.removed = None;
+            inform(app, format!("{name} is back"));
+        }
+        Answer::Found(left) => offer(app, "", &left),
+        Answer::Recovered(shape) => {
+            begin(app, Document::empty(shape.sensor), None);
+            change(app, Document::of_shape(&shape));
+            let save = app.key_of(&Message::Save);
+            inform(app, format!("brought back; {save} saves it"));
+        }
+        Answer::List(Err(text)) => {
+            app.dialogs
+                .pop_if(|dialog| matches!(dialog, Dialog::List(_)));
+            refuse(app, text);
+        }
+        Answer::GivenUp(name, left) => {
+            app.removed = Some(name.clone());
+            if let Some(left) = left {
+                offer(app, &format!("{name} is in the trash. "), &left);
+            } else {
+                let undo = app.key_of(&Message::Undo);
+                let text = "the unsaved work is in the trash as";
+                inform(app, format!("{text} {name}; {undo} brings it back"));
+            }
+        }
+        Answer::NotGivenUp(reason) => {
+            let text = "the unsaved work cannot be moved to the trash, and is offered again at the next start";
+            refuse(app, format!("{text}: {reason}"));
+        }
+        Answer::Named(_, Err(text)) | Answer::Trash(Err(text)) | Answer::Failed(text) => {
+            refuse(app, text);
+        }
+    }
+    None
+}
+
+/// Asks whether work shall be brought back that a program left when it died.
+fn offer(app: &mut App, before: &str, left: &Left) {
+    let key = |answer| app.keymap().label(Context::Question, answer);
+    let (yes, no) = (key(&Message::Accept), key(&Message::Decline));
+    let later = key(&Message::Cancel);
+    let of = match left.waiting {
+        0 | 1 => String::new(),
+        all => format!(" (1 of {all})"),
+    };
+    let text = format!(
+        "{before}Unsaved work was left{of}: {}. Bring it back? ({yes}: yes, {no}: to the trash, {later}: ask again next time)",
+        left.what
+    );
+    let question = Question {
+        text,
+        yes: Message::Recover,
+        no: Some(Message::GiveUp),
+    };
+    app.dialogs.push(Dialog::Question(question));
+}
+
+/// Asks for the shapes of the list that have come into sight.
+pub(in crate::tui) fn look(app: &App) -> Option<Effect> {
+    let Some(Dialog::List(list)) = app.dialogs.last() else {
+        return None;
+    };
+    let unread = list.unread();
+    (!unread.is_empty()).then_some(Effect::Library(Request::Read(unread)))
+}
+
+/// The selected shape of a list is taken, for what the list is for.
+pub(in crate::tui) fn choose(app: &mut App, list: ListDialog) -> Option<Effect> {
+    let purpose = list.purpose();
+    let chosen = list
+        .choice()
+        .map(|(entry, read)| (entry.name.clone(), read.cloned()));
+    match (chosen, purpose) {
+        (None, _) => app.dialogs.push(Dialog::List(list)),
+        (Some((name, _)), Purpose::Delete) => {
+            let question = Question::new(format!("Delete {name}?"), Message::Remove(name));
+            app.dialogs.push(Dialog::Question(question));
+        }
+        (Some((_, Some(Ok(loaded)))), Purpose::Load) => {
+            if let Err(text) = place(app, &loaded) {
+                app.dialogs.push(Dialog::List(list));
+                refuse(app, text);
+            }
+        }
+        (Some((name, Some(Ok(loaded)))), Purpose::Picture) => {
+            open_picture(app, &loaded.shape.imprint, name);
+        }
+        (Some((name, read)), _) => {
+            app.dialogs.push(Dialog::List(list));
+            let reason = read
+                .and_then(Result::err)
+                .unwrap_or_else(|| "it was not read".to_owned());
+            refuse(app, format!("{name}: {reason}"));
+        }
+    }
+    None
+}
+
+fn open_picture(app: &mut App, imprint: &Imprint, name: String) {
+    let picture = Picture::at_home(*imprint).named(&name);
+    let form = FormDialog::picture(app.history.present(), picture, name);
+    app.mode = Mode::Draw;
+    app.dialogs.push(Dialog::Form(Box::new(form)));
+}
+
+/// Brings a shape onto the matrix: with its sensor where that has as many columns and rows, as it is where its taxels
+/// fit, else not at all.
+fn place(app: &mut App, loaded: &Loaded) -> Result<(), String> {
+    let (shape, sensor) = (&loaded.shape, app.history.present().sensor);
+    let own = (shape.sensor.columns(), shape.sensor.rows());
+    let here = (sensor.columns(), sensor.rows());
+    let document = if own == here {
+        Document::of_shape(shape)
+    } else {
+        let imprint = shape.imprint.resized(here.0, here.1);
+        if imprint.count() < shape.imprint.count() {
+            let change = app.key_of(&Message::Sensor);
+            return Err(format!(
+                "{} is {} x {} and does not fit on {} x {} taxels; {change} changes the sensor",
+                shape.name, own.0, own.1, here.0, here.1
+            ));
+        }
+        Document {
+            turned: imprint,
+            ..Document::empty(sensor)
+        }
+    };
+    // What was cut out of its sensor is another shape: it is not stored under that name.
+    let name = (own == here).then(|| StoredName {
+        name: shape.name.to_string(),
+        stamp: loaded.stamp,
+        owner: loaded.origin,
+    });
+    begin(app, document, name);
+    app.chosen = None;
+    inform(app, format!("{} loaded", shape.name));
+    Ok(())
+}

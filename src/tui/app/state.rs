@@ -1,0 +1,290 @@
+//! The state of the program. Everybody may read it; only [`crate::tui::app::update`] writes it.
+
+use crate::formats::name::Name;
+use crate::formats::shape::Shape;
+use crate::sensor::Sensor;
+use crate::storage::journal::UNNAMED;
+use crate::tui::app::dialog::Dialog;
+use crate::tui::app::document::{Document, History, Seen, StoredName};
+use crate::tui::app::message::Message;
+use crate::tui::explore::results::Results;
+use crate::tui::keys::binding::Context;
+use crate::tui::keys::keymap::Keymap;
+use crate::tui::widget::theme::Theme;
+
+/// How the program starts.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// The sensor of the empty matrix.
+    pub sensor: Sensor,
+    /// How it looks.
+    pub theme: Theme,
+    /// Whether the terminal tells of its mouse, until the user says otherwise.
+    pub mouse: bool,
+}
+
+impl Options {
+    /// As scripts and tests have it: the sensor of the paper, no colours, a mouse.
+    pub fn plain(ascii: bool) -> Self {
+        Self {
+            sensor: Sensor::default(),
+            theme: Theme::plain(ascii),
+            mouse: true,
+        }
+    }
+}
+
+/// What the arrows do on the matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// They move the cursor.
+    Draw,
+    /// They move the shape.
+    Grab,
+}
+
+/// How taxels are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Display {
+    /// Active or not.
+    Imprint,
+    /// Coverage in shades.
+    Shades,
+    /// Coverage in percent.
+    Percent,
+}
+
+/// What a screen shows that is too narrow for matrix and descriptors side by side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Page {
+    /// The matrix.
+    Matrix,
+    /// The descriptors.
+    Panel,
+}
+
+/// A step of nudging.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NudgeStep {
+    /// 0.01 cells.
+    Hundredth,
+    /// 0.1 cells.
+    Tenth,
+    /// One cell.
+    One,
+}
+
+impl NudgeStep {
+    /// Its length in cell sides.
+    pub fn length(self) -> f64 {
+        match self {
+            Self::Hundredth => 0.01,
+            Self::Tenth => 0.1,
+            Self::One => 1.0,
+        }
+    }
+
+    /// The next larger or smaller one, or the same at the end.
+    #[must_use]
+    pub fn other(self, direction: i8) -> Self {
+        match (self, direction > 0) {
+            (Self::Hundredth, true) | (Self::One, false) => Self::Tenth,
+            (_, true) => Self::One,
+            (_, false) => Self::Hundredth,
+        }
+    }
+}
+
+/// Whether the program runs, and how it ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Life {
+    /// It runs.
+    Running,
+    /// Its end was asked for: what is not saved was given up.
+    Quit,
+    /// It ends without having asked: what is not saved stays in the journal.
+    Killed,
+}
+
+/// Something said to the user until the next key.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Notice {
+    /// For information.
+    Info(String),
+    /// Why something was not done.
+    Refusal(String),
+}
+
+/// The state of the program.
+#[derive(Clone, Debug)]
+pub struct App {
+    pub(in crate::tui) history: History,
+    pub(in crate::tui) cursor: (u8, u8),
+    /// The region chosen with Tab; none: the main one.
+    pub(in crate::tui) chosen: Option<usize>,
+    pub(in crate::tui) mode: Mode,
+    pub(in crate::tui) display: Display,
+    pub(in crate::tui) page: Page,
+    pub(in crate::tui) step: NudgeStep,
+    pub(in crate::tui) dialogs: Vec<Dialog>,
+    pub(in crate::tui) notice: Option<Notice>,
+    /// The shape that was removed last, until something else is done: undo brings it back.
+    pub(in crate::tui) removed: Option<String>,
+    /// What the last sweep found, while it is not looked at.
+    pub(in crate::tui) results: Option<Box<Results>>,
+    /// How many pieces of work were begun.
+    pub(in crate::tui) works: u64,
+    /// The commands that were given, the last one last.
+    pub(in crate::tui) commands: Vec<String>,
+    /// Whether the mouse is wanted.
+    pub(in crate::tui) mouse: bool,
+    /// What a drag of the mouse sets taxels to, and the taxel that it was on last.
+    pub(in crate::tui) paint: Option<(bool, (u8, u8))>,
+    /// Columns and rows of the screen.
+    pub(in crate::tui) screen: (u16, u16),
+    pub(in crate::tui) theme: Theme,
+    pub(in crate::tui) keymap: Keymap,
+    pub(in crate::tui) life: Life,
+}
+
+impl App {
+    /// An empty matrix, the cursor in its middle.
+    pub fn new(options: &Options) -> Self {
+        let document = Document::empty(options.sensor);
+        Self {
+            cursor: (options.sensor.columns() / 2, options.sensor.rows() / 2),
+            history: History::new(document),
+            chosen: None,
+            mode: Mode::Draw,
+            display: Display::Imprint,
+            page: Page::Matrix,
+            step: NudgeStep::Hundredth,
+            dialogs: Vec::new(),
+            notice: None,
+            removed: None,
+            results: None,
+            works: 0,
+            commands: Vec::new(),
+            mouse: options.mouse,
+            paint: None,
+            screen: (80, 24),
+            theme: options.theme,
+            keymap: Keymap::default(),
+            life: Life::Running,
+        }
+    }
+
+    /// The same with other keys.
+    #[must_use]
+    pub fn with_keymap(self, keymap: Keymap) -> Self {
+        Self { keymap, ..self }
+    }
+
+    /// What each key means.
+    pub fn keymap(&self) -> &Keymap {
+        &self.keymap
+    }
+
+    /// The key of something that can be done on the matrix, as notices name it.
+    pub(in crate::tui) fn key_of(&self, action: &Message) -> String {
+        self.keymap.label(Context::Matrix, action)
+    }
+
+    /// Why nothing can be explored: what is missing, and how it is made.
+    pub(in crate::tui) fn nothing_to_explore(&self) -> String {
+        let [figure, picture, draw] = [Message::Figure, Message::Picture, Message::Toggle];
+        format!(
+            "nothing to explore: {} places a figure, {} a stored shape, {} draws",
+            self.key_of(&figure),
+            self.key_of(&picture),
+            self.key_of(&draw)
+        )
+    }
+
+    /// Where keys are looked up.
+    pub fn context(&self) -> Context {
+        match (self.dialogs.last(), self.mode) {
+            (Some(dialog), _) => dialog.context(),
+            (None, Mode::Grab) => Context::Grab,
+            (None, Mode::Draw) => Context::Matrix,
+        }
+    }
+
+    /// The dialog that has the pane; none where the matrix has it.
+    pub fn pane(&self) -> Option<&Dialog> {
+        self.dialogs.iter().rev().find(|dialog| dialog.has_pane())
+    }
+
+    /// What a sweep found, where that is looked at: under whatever lies over it.
+    pub(in crate::tui) fn results_below(&self) -> Option<&Results> {
+        self.dialogs.iter().rev().find_map(|dialog| match dialog {
+            Dialog::Results(results) => Some(&**results),
+            _ => None,
+        })
+    }
+
+    /// The document that the matrix shows: what an open form would make of it, or the present one.
+    pub fn shown(&self) -> Document {
+        self.on_matrix().clone()
+    }
+
+    fn on_matrix(&self) -> &Document {
+        let form = self.dialogs.iter().rev().find_map(|dialog| match dialog {
+            Dialog::Form(form) => Some(form.shown()),
+            _ => None,
+        });
+        form.unwrap_or_else(|| self.history.present())
+    }
+
+    /// What can be seen of it.
+    pub fn seen(&self) -> Seen {
+        Seen::of(&self.shown())
+    }
+
+    /// Whether there is work that would be lost.
+    pub fn unsaved(&self) -> bool {
+        self.history.present() != &self.history.origin().saved
+    }
+
+    /// What is on the matrix and would be lost, to be kept in the journal. At an end that was asked for, it was given up.
+    pub fn unsaved_work(&self) -> Option<Shape> {
+        if self.life == Life::Quit {
+            return None;
+        }
+        let stored = self.stored_name().unwrap_or(UNNAMED);
+        let name = Name::new(stored).or_else(|_| Name::new(UNNAMED)).ok()?;
+        let shown = self.shown();
+        (shown != self.history.origin().saved).then(|| shown.to_shape(name))
+    }
+
+    /// The taxel that the cursor is on: column, row. While a form shows a smaller sensor, it stands at the rim of that.
+    pub fn cursor(&self) -> (u8, u8) {
+        let (sensor, (column, row)) = (&self.on_matrix().sensor, self.cursor);
+        (column.min(sensor.columns() - 1), row.min(sensor.rows() - 1))
+    }
+
+    /// The region that was chosen, by its number from 0; none: the main one.
+    pub fn chosen(&self) -> Option<usize> {
+        self.chosen
+    }
+
+    /// Where the document is stored.
+    pub(in crate::tui) fn stored(&self) -> Option<&StoredName> {
+        self.history.origin().name.as_ref()
+    }
+
+    /// The name that the document was loaded from or stored under.
+    pub fn stored_name(&self) -> Option<&str> {
+        self.stored().map(|stored| stored.name.as_str())
+    }
+
+    /// Whether the program has come to its end.
+    pub fn ended(&self) -> bool {
+        self.life != Life::Running
+    }
+
+    /// How it looks.
+    pub fn theme(&self) -> &Theme {
+        &self.theme
+    }
+}

@@ -1,0 +1,3 @@
+//! How often each value of a descriptor occurs.
+
+pub mod view;

@@ -1,0 +1,104 @@
+//! How often which values of the chosen descriptor occur: a bar an interval, with its ends and its poses.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+use crate::atlas::histogram::Histogram;
+use crate::description::descriptor::Unit;
+use crate::formats::value::{counted, fitting, grouped};
+use crate::tui::app::state::App;
+use crate::tui::explore::results::Results;
+use crate::tui::widget::theme::Role;
+use crate::tui::widget::write;
+
+/// Characters of a number in the line above the bars.
+const NUMBER: usize = 9;
+
+/// Draws the page.
+pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) {
+    let theme = app.theme();
+    let (survey, quantity) = (results.survey(), results.quantity());
+    let statistic = &survey.statistics[results.quantity_number()];
+    let number = |value: Option<f64>| {
+        value.map_or_else(|| theme.none().to_owned(), |value| fitting(value, NUMBER))
+    };
+    let unit = match quantity.descriptor.unit {
+        Unit::Count => "",
+        Unit::Length => ", cell sides",
+        Unit::Area => ", cells",
+        Unit::Direction => ", degrees",
+        _ => ", ratio",
+    };
+    let title = format!("{}: {}{unit}", quantity.key, quantity.descriptor.name);
+    write::line(buffer, page, theme, [(title.as_str(), Role::Title)]);
+    // The axis and what has no value have a line each.
+    let room = usize::from(page.height.saturating_sub(3));
+    let histogram = Histogram::of(&survey.atlas, quantity, results.values(), room.max(1));
+    let facts = format!(
+        "mean {}  sd {}  min {}  max {}  no value: {}",
+        number(statistic.mean),
+        number(statistic.sd),
+        number(statistic.min),
+        number(statistic.max),
+        counted(histogram.without, "pose")
+    );
+    let facts_row = write::row(page, 1);
+    write::line(buffer, facts_row, theme, [(facts.as_str(), Role::Text)]);
+    if histogram.poses.is_empty() {
+        let text = format!("{}  no pose has a value", theme.none());
+        let row = write::row(page, 2);
+        write::line(buffer, row, theme, [(text.as_str(), Role::Quiet)]);
+        return;
+    }
+    bars(
+        app,
+        &histogram,
+        quantity.descriptor.unit,
+        buffer,
+        write::below(page, 2),
+    );
+}
+
+/// A line an interval.
+fn bars(app: &App, histogram: &Histogram, unit: Unit, buffer: &mut Buffer, area: Rect) {
+    let theme = app.theme();
+    let decimals = histogram.decimals();
+    let single = unit == Unit::Count && histogram.width == 1.0;
+    let label = |bin: usize| {
+        let (from, to) = (histogram.from(bin), histogram.from(bin + 1));
+        if single {
+            format!("{from:.0}")
+        } else {
+            format!("{from:.decimals$} to {to:.decimals$}")
+        }
+    };
+    let labels: Vec<String> = (0..histogram.poses.len()).map(label).collect();
+    let longest = labels.iter().map(String::len).max().unwrap_or(0);
+    let most = histogram.poses.iter().copied().max().unwrap_or(0).max(1);
+    let count = grouped(most).len();
+    let all: u64 = histogram.poses.iter().sum::<u64>() + histogram.without;
+    let used = longest + 2 + 1 + count + 9;
+    let room = usize::from(area.width).saturating_sub(used);
+    let [full, half, _] = theme.bar();
+    for (index, (label, &poses)) in labels.iter().zip(&histogram.poses).enumerate() {
+        let halves = u128::from(poses) * 2 * room as u128 / u128::from(most);
+        let halves = usize::try_from(halves)
+            .unwrap_or(0)
+            .max(usize::from(poses > 0));
+        let mut bar = full.to_string().repeat(halves / 2);
+        if halves % 2 == 1 && room > 0 {
+            bar.push(half);
+        }
+        #[expect(clippy::cast_precision_loss, reason = "for reading")]
+        let share = poses as f64 * 100.0 / all.max(1) as f64;
+        let label = format!("{label:>longest$} |");
+        let bar = format!("{bar:room$}");
+        let numbers = format!(" {:>count$} {share:>6.2} %", grouped(poses));
+        let pieces = [
+            (label.as_str(), Role::Quiet),
+            (bar.as_str(), Role::Chosen),
+            (numbers.as_str(), Role::Text),
+        ];
+        write::line(buffer, write::row(area, index), theme, pieces);
+    }
+}

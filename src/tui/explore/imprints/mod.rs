@@ -1,0 +1,5 @@
+//! The list of distinct imprints.
+
+pub mod layout;
+
+pub mod view;

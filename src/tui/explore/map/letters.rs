@@ -1,0 +1,118 @@
+//! Letters for the imprints of a map: the same one wherever an imprint occurs, another one for each neighbour.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+/// So many letters there are: small and large ones, and digits.
+pub const LETTERS: u8 = 62;
+
+/// The letter of each cell, from 0, of a map of rows that are `width` cells wide; none where there is no imprint.
+/// Different imprints have different letters while there are letters left. Then letters come back, but not where cells
+/// touch, at a corner too; only more than [`LETTERS`] imprints that all touch one could run out of them. Where nothing is
+/// in the way it is the imprint's number that decides, so most letters stay when the map moves.
+///
+/// ```
+/// use taxel::tui::explore::map::letters::letters;
+/// // 62 would have the letter of 0.
+/// assert_eq!(letters(&[Some(0), Some(62), None, Some(3)], 2), [Some(0), Some(1), None, Some(3)]);
+/// ```
+pub fn letters(ids: &[Option<u32>], width: usize) -> Vec<Option<u8>> {
+    let width = width.max(1);
+    let mut neighbours: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
+    let mut touch = |one: u32, other: usize| {
+        let own = neighbours.entry(one).or_default();
+        if let Some(&Some(other)) = ids.get(other)
+            && other != one
+        {
+            own.insert(other);
+            neighbours.entry(other).or_default().insert(one);
+        }
+    };
+    for (index, id) in ids.iter().enumerate() {
+        let Some(id) = *id else { continue };
+        let column = index % width;
+        touch(id, index + width);
+        if column + 1 < width {
+            touch(id, index + 1);
+            touch(id, index + width + 1);
+        }
+        if column > 0 {
+            touch(id, index + width - 1);
+        }
+    }
+    // Those with most neighbours first: what has fewer of them than there are letters always finds one.
+    let mut order: Vec<u32> = neighbours.keys().copied().collect();
+    order.sort_by_key(|id| std::cmp::Reverse(neighbours[id].len()));
+    let mut chosen: BTreeMap<u32, u8> = BTreeMap::new();
+    let mut used: BTreeSet<u8> = BTreeSet::new();
+    for id in order {
+        let taken = |letter: &u8| {
+            let mut around = neighbours[&id].iter();
+            around.any(|other| chosen.get(other) == Some(letter))
+        };
+        let own = u8::try_from(id % u32::from(LETTERS)).unwrap_or(0);
+        let others = || (0..LETTERS).map(|step| (own + step) % LETTERS);
+        let unused = |letter: &u8| !used.contains(letter);
+        let letter = others()
+            .find(unused)
+            .or_else(|| others().find(|letter| !taken(letter)));
+        let letter = letter.unwrap_or(own);
+        used.insert(letter);
+        chosen.insert(id, letter);
+    }
+    ids.iter()
+        .map(|id| chosen.get(id.as_ref()?).copied())
+        .collect()
+}
+
+/// The letter of that number.
+pub fn letter(number: u8) -> char {
+    let (first, number) = match number {
+        0..26 => (b'a', number),
+        26..52 => (b'A', number - 26),
+        _ => (b'0', (number - 52).min(9)),
+    };
+    char::from(first + number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbours_differ_and_an_imprint_has_one_letter() {
+        // Numbers that would all have the same letter.
+        for (width, height) in [(1, 9), (9, 1), (7, 8), (40, 30)] {
+            let id = |x: usize, y: usize| {
+                let block = (x / 3 * 7 + y / 2 * 5) % 23;
+                (block % 6 != 5).then(|| u32::try_from(block * 62).expect("small"))
+            };
+            let places = || (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+            let ids: Vec<_> = places().map(|(x, y)| id(x, y)).collect();
+            let found = letters(&ids, width);
+            let at = |x: usize, y: usize| (ids[y * width + x], found[y * width + x]);
+            for (x, y) in places() {
+                let (own, letter) = at(x, y);
+                assert_eq!(own.is_some(), letter.is_some());
+                for (other_x, other_y) in places() {
+                    let (other, other_letter) = at(other_x, other_y);
+                    let near = x.abs_diff(other_x) <= 1 && y.abs_diff(other_y) <= 1;
+                    if own.is_some() && own == other {
+                        assert_eq!(letter, other_letter);
+                    } else if near && own.is_some() && other.is_some() {
+                        assert_ne!(letter, other_letter, "{x},{y} and {other_x},{other_y}");
+                    }
+                }
+            }
+        }
+        assert_eq!(letters(&[], 0), []);
+        let all: String = (0..LETTERS).map(letter).collect();
+        assert!(
+            all.starts_with("abc") && all.ends_with("XYZ0123456789"),
+            "{all}"
+        );
+        // As many imprints as there are letters: no letter twice, whatever their numbers.
+        let ids: Vec<_> = (0..u32::from(LETTERS)).map(|id| Some(id * 31)).collect();
+        let different: BTreeSet<_> = letters(&ids, 8).into_iter().flatten().collect();
+        assert_eq!(different.len(), ids.len());
+    }
+}

@@ -1,0 +1,7 @@
+//! Which imprint each position leaves.
+
+pub mod letters;
+
+pub mod layout;
+
+pub mod view;

@@ -1,0 +1,177 @@
+//! The map: which imprint each x0 and y0 leaves at one angle. Every imprint has a letter, and neighbours have different
+//! ones; colours only help the eye. Where there is no letter, the sweep was stopped before.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::formats::value::{counted, grouped};
+use crate::parameter::Parameter;
+use crate::pose::grid::Grid;
+use crate::touch::Plane;
+use crate::tui::app::state::App;
+use crate::tui::explore::imprints::view::place;
+use crate::tui::explore::map::layout::MapPane;
+use crate::tui::explore::map::letters::{letter, letters};
+use crate::tui::explore::results::Results;
+use crate::tui::widget::theme::Role;
+use crate::tui::widget::{thumbnail, write};
+
+/// What letters mean.
+const LEGEND: &str = "  letter: an imprint";
+
+/// Draws the page; answers where the cursor is.
+pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) -> Option<Position> {
+    let theme = app.theme();
+    let pane = MapPane::of(page, results);
+    let grid = &results.survey().grid;
+    let head = heading(results);
+    let end = write::line(buffer, pane.head, theme, [(head.as_str(), Role::Title)]);
+    // Only where there is room for all of it.
+    let legend = write::right_of(pane.head, end);
+    if write::width(LEGEND) <= usize::from(legend.width) {
+        write::line(buffer, legend, theme, [(LEGEND, Role::Quiet)]);
+    }
+    let cursor = draw_cells(app, results, &pane, buffer);
+    draw_rulers(app, grid, &pane, buffer, page);
+    draw_pose(app, results, &pane, buffer);
+    cursor
+}
+
+/// The angle and the zooms, and how many others there are.
+fn heading(results: &Results) -> String {
+    let grid = &results.survey().grid;
+    let (place, counts) = (results.place(), grid.counts());
+    let own = grid.source().parameters();
+    let rows = grid.ranges().by_parameter().into_iter().enumerate().skip(2);
+    let parts = rows
+        .filter(|(_, (parameter, _))| own.contains(parameter))
+        .map(|(axis, (parameter, range))| {
+            let value = parameter.format(range.value(place[axis]));
+            let unit = if parameter == Parameter::Angle {
+                "°"
+            } else {
+                ""
+            };
+            let which = if counts[axis] > 1 {
+                format!(" {}/{}", grouped(place[axis] + 1), grouped(counts[axis]))
+            } else {
+                String::new()
+            };
+            format!("{} {value}{unit}{which}", parameter.row().short)
+        });
+    parts.collect::<Vec<_>>().join("  ")
+}
+
+fn draw_cells(
+    app: &App,
+    results: &Results,
+    pane: &MapPane,
+    buffer: &mut Buffer,
+) -> Option<Position> {
+    let theme = app.theme();
+    let ((x, y), (width, height)) = (pane.first, pane.count);
+    let ids = results
+        .survey()
+        .ids(results.place(), x..x + width, y..y + height);
+    let columns = usize::try_from(width).unwrap_or(1).max(1);
+    let letters = letters(&ids, columns);
+    let [at_x, at_y, ..] = results.place();
+    let here =
+        pane.count != (0, 0) && (x..x + width).contains(&at_x) && (y..y + height).contains(&at_y);
+    let step = |from: u64, to: u64| u16::try_from(to - from).unwrap_or(0);
+    let cursor = here.then(|| {
+        Position::new(
+            pane.cells.x + step(x, at_x) * pane.cell,
+            pane.cells.y + step(y, at_y),
+        )
+    });
+    for (place, number) in pane
+        .cells
+        .rows()
+        .flat_map(Rect::columns)
+        .filter(|place| (place.x - pane.cells.x).is_multiple_of(pane.cell))
+        .zip(letters)
+    {
+        let (text, style) = match number {
+            Some(number) => (letter(number), theme.tint(number.into())),
+            None => (' ', theme.style(Role::Quiet)),
+        };
+        for column in 0..pane.cell {
+            let position = Position::new(place.x + column, place.y);
+            let style = if cursor == Some(Position::new(place.x, place.y)) {
+                theme.style(Role::Cursor)
+            } else {
+                style
+            };
+            if let Some(cell) = buffer.cell_mut(position) {
+                cell.set_char(text).set_style(style);
+            }
+        }
+    }
+    cursor
+}
+
+/// y0 left of the cells; above them the first x0 and the last.
+fn draw_rulers(app: &App, grid: &Grid, pane: &MapPane, buffer: &mut Buffer, page: Rect) {
+    let theme = app.theme();
+    let ranges = grid.ranges();
+    let label = usize::from(pane.cells.x.saturating_sub(page.x)).saturating_sub(1);
+    for (line, index) in (0..pane.cells.height).zip(pane.first.1..) {
+        let row = Rect {
+            x: page.x,
+            y: pane.cells.y + line,
+            width: pane.cells.x.saturating_sub(page.x),
+            height: 1,
+        };
+        let value = Parameter::Y0.format(ranges.y0.value(index));
+        let text = format!("{value:>label$}");
+        write::line(buffer, row, theme, [(text.as_str(), Role::Quiet)]);
+    }
+    let value = |index: u64| Parameter::X0.format(ranges.x0.value(index));
+    let (first, last) = (
+        value(pane.first.0),
+        value(pane.first.0 + pane.count.0.max(1) - 1),
+    );
+    let ruler = write::right_of(pane.ruler, pane.cells.x);
+    let width = usize::from(pane.cells.width);
+    let first = format!("x0 {first}");
+    let text = if first.len() + last.len() < width {
+        let rest = width - first.len();
+        format!("{first}{last:>rest$}")
+    } else {
+        first
+    };
+    write::line(buffer, pane.ruler, theme, [("y0", Role::Quiet)]);
+    write::line(buffer, ruler, theme, [(text.as_str(), Role::Quiet)]);
+}
+
+/// The pose at the cursor: its imprint, which one it is, where it is.
+fn draw_pose(app: &App, results: &Results, pane: &MapPane, buffer: &mut Buffer) {
+    let theme = app.theme();
+    let survey = results.survey();
+    let grid = &survey.grid;
+    let pose = grid.pose(grid.number(results.place()));
+    let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(pose));
+    let entry = results.id(&imprint).and_then(|id| survey.atlas.entry(id));
+    let (which, poses) = match entry {
+        Some(entry) => (
+            format!("imprint {}", entry.id),
+            counted(entry.count, "pose"),
+        ),
+        None => ("not swept".to_owned(), String::new()),
+    };
+    let detail = format!("{which} at {}; {poses}", place(results, &pose));
+    let detail = detail.trim_end_matches("; ");
+    write::line(buffer, pane.detail, theme, [(detail, Role::Text)]);
+    if let Some(side) = pane.side {
+        write::line(buffer, side, theme, [(which.as_str(), Role::Title)]);
+        let row = write::row(side, 1);
+        write::line(buffer, row, theme, [(poses.as_str(), Role::Text)]);
+        let below = write::below(side, 3);
+        let below = Rect {
+            height: below.height.saturating_sub(1),
+            ..below
+        };
+        thumbnail::draw(app, &imprint, buffer, below);
+    }
+}

@@ -1,0 +1,282 @@
+//! The form of ranges that are swept: a text field a parameter, and which point of the shape they place.
+//!
+//! Fields come from the table of parameters and start with the command line's defaults. A range is
+//! `start:end:step` or a single number, as on the command line.
+
+use std::time::Duration;
+
+use crate::formats::value::{counted, grouped};
+use crate::parameter::{Parameter, Range};
+use crate::picture::Picture;
+use crate::pose::grid::{Anchor, Grid, GridError, MAX_POSES, Ranges};
+use crate::pose::range::DecimalRange;
+use crate::sensor::Sensor;
+use crate::source::Source;
+use crate::tui::app::document::{Document, Seen};
+use crate::tui::app::message::Message;
+use crate::tui::explore::message::name_of;
+use crate::tui::keys::key::Arrow;
+use crate::tui::widget::text_field::TextField;
+
+/// No field takes more characters.
+const LONGEST: usize = 40;
+
+/// The text field of one range.
+#[derive(Clone, Debug)]
+pub struct RangeField {
+    parameter: Parameter,
+    input: TextField,
+}
+
+impl RangeField {
+    /// Which parameter it ranges over.
+    pub fn parameter(&self) -> Parameter {
+        self.parameter
+    }
+
+    /// Its text.
+    pub fn text(&self) -> &str {
+        self.input.text()
+    }
+
+    /// Where its cursor stands, in columns.
+    pub fn cursor(&self) -> usize {
+        self.input.cursor()
+    }
+}
+
+/// What is wrong, and in which field; of none, where it is wrong with all of them together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Trouble {
+    /// The field's number.
+    pub field: Option<usize>,
+    /// For a place that shows the field beside it; in lines, where it is wrong with all of them.
+    pub brief: String,
+    /// With the field's name.
+    pub full: String,
+}
+
+/// What is explored of a document: its figure or picture, or what is drawn as a picture; nothing of an empty matrix.
+pub fn explored(document: &Document) -> Option<Source> {
+    document.source.clone().or_else(|| {
+        let imprint = Seen::of(document).imprint;
+        (!imprint.is_empty()).then(|| Source::Picture(Picture::at_home(imprint)))
+    })
+}
+
+/// The form.
+#[derive(Clone, Debug)]
+pub struct RangesForm {
+    source: Source,
+    sensor: Sensor,
+    anchor: Anchor,
+    fields: Vec<RangeField>,
+    /// A field; none: the anchor, below the fields.
+    focus: Option<usize>,
+    by_hand: u32,
+    /// The grid that was asked about last, and how long it takes.
+    measured: Option<(Grid, Option<Duration>)>,
+}
+
+impl RangesForm {
+    /// The form for what is explored of a document. The ranges are those of an earlier sweep, or the defaults.
+    pub fn new(document: &Document, source: Source, earlier: Option<&Grid>) -> Self {
+        let by_hand = match document.source {
+            Some(_) => document.turned.count(),
+            None => 0,
+        };
+        let ranges = earlier.map_or_else(Ranges::default, |grid| *grid.ranges());
+        let own = source.parameters();
+        let rows = ranges.by_parameter().into_iter();
+        let fields =
+            rows.filter(|(parameter, _)| own.contains(parameter))
+                .map(|(parameter, range)| RangeField {
+                    parameter,
+                    input: TextField::new(range.to_string(), LONGEST),
+                });
+        let mut form = Self {
+            fields: fields.collect(),
+            source,
+            sensor: document.sensor,
+            anchor: earlier.map_or(Anchor::default(), Grid::anchor),
+            focus: None,
+            by_hand,
+            measured: None,
+        };
+        form.set_focus(Some(0));
+        form
+    }
+
+    /// What is swept, in a word or two.
+    pub fn title(&self) -> String {
+        format!("Explore: {}", name_of(&self.source))
+    }
+
+    /// The fields, from the top.
+    pub fn fields(&self) -> &[RangeField] {
+        &self.fields
+    }
+
+    /// Which field has the focus; none: the anchor.
+    pub fn focus(&self) -> Option<usize> {
+        self.focus
+    }
+
+    /// What the ranges of x0 and y0 place.
+    pub fn anchor(&self) -> Anchor {
+        self.anchor
+    }
+
+    /// What the values of a field may be.
+    pub fn allowed(&self, field: &RangeField) -> Range {
+        field.parameter.range(self.sensor.side())
+    }
+
+    /// How many taxels were turned over by hand, which the sweep leaves out.
+    pub fn by_hand(&self) -> u32 {
+        self.by_hand
+    }
+
+    /// How long the grid of the fields will take, about, where that is known.
+    pub fn estimate(&self) -> Option<Duration> {
+        let (grid, time) = self.measured.as_ref()?;
+        time.filter(|_| self.grid().ok().as_ref() == Some(grid))
+    }
+
+    /// The grid of the fields, where nobody was asked yet how long it takes; from now on it counts as asked about.
+    pub fn unmeasured(&mut self) -> Option<Grid> {
+        let grid = self.grid().ok()?;
+        let known = self.measured.as_ref().map(|(known, _)| known);
+        if known == Some(&grid) {
+            return None;
+        }
+        self.measured = Some((grid.clone(), None));
+        Some(grid)
+    }
+
+    /// Takes note of how long a grid will take; of one that is no longer asked about, nothing.
+    pub fn take_estimate(&mut self, grid: &Grid, time: Duration) {
+        if let Some((known, estimate)) = &mut self.measured
+            && known == grid
+        {
+            *estimate = Some(time);
+        }
+    }
+
+    /// What is wrong with a field.
+    pub fn trouble(&self, index: usize) -> Option<Trouble> {
+        let field = self.fields.get(index)?;
+        let wrong = |brief: String, full: String| Trouble {
+            field: Some(index),
+            brief,
+            full,
+        };
+        let range: DecimalRange = match field.text().parse() {
+            Ok(range) => range,
+            Err(error) => {
+                let full = format!("{}: {error}", field.parameter.row().key);
+                return Some(wrong(error.expected(), full));
+            }
+        };
+        let ends = [range.value(0), range.last()];
+        let error = ends.into_iter().find_map(|value| {
+            let checked = field.parameter.check(value, self.sensor.side());
+            checked.err()
+        });
+        error.map(|error| wrong(error.expected(), error.to_string()))
+    }
+
+    /// The grid of the fields.
+    ///
+    /// # Errors
+    /// The first thing that is wrong.
+    pub fn grid(&self) -> Result<Grid, Trouble> {
+        if let Some(trouble) = (0..self.fields.len()).find_map(|index| self.trouble(index)) {
+            return Err(trouble);
+        }
+        let range = |wanted: Parameter| {
+            let mut fields = self.fields.iter();
+            let field = fields.find(|field| field.parameter == wanted);
+            field.and_then(|field| field.text().parse().ok())
+        };
+        let default = Ranges::default();
+        let ranges = Ranges {
+            x0: range(Parameter::X0).unwrap_or(default.x0),
+            y0: range(Parameter::Y0).unwrap_or(default.y0),
+            angle: range(Parameter::Angle).unwrap_or(default.angle),
+            zoom_x: range(Parameter::ZoomX).unwrap_or(default.zoom_x),
+            zoom_y: range(Parameter::ZoomY).unwrap_or(default.zoom_y),
+        };
+        let grid = Grid::new(self.source.clone(), self.sensor, self.anchor, ranges);
+        grid.map_err(|error: GridError| Trouble {
+            field: None,
+            brief: match &error {
+                GridError::Poses { poses } => {
+                    let poses = u64::try_from(*poses).unwrap_or(u64::MAX);
+                    let most = grouped(MAX_POSES);
+                    format!("{}\nexpected at most {most}", counted(poses, "pose"))
+                }
+                _ => error.to_string(),
+            },
+            full: error.to_string(),
+        })
+    }
+
+    /// Goes to a field; none: to the anchor.
+    pub fn set_focus(&mut self, focus: Option<usize>) {
+        self.focus = focus.map(|index| index.min(self.fields.len().saturating_sub(1)));
+        if let Some(field) = self.focused() {
+            field.input.enter();
+        }
+    }
+
+    /// Goes to a row, the anchor after the fields; there already, takes the other anchor.
+    fn point(&mut self, row: usize) {
+        let to = (row < self.fields.len()).then_some(row);
+        if to.is_none() && self.focus.is_none() {
+            self.other_anchor();
+        }
+        self.set_focus(to);
+    }
+
+    /// Goes `by` rows on; the last row is followed by the first.
+    pub fn move_focus(&mut self, by: i8) {
+        let count = self.fields.len();
+        let rows = i64::try_from(count + 1).unwrap_or(1);
+        let now = i64::try_from(self.focus.unwrap_or(count)).unwrap_or(0);
+        let next = usize::try_from((now + i64::from(by)).rem_euclid(rows)).unwrap_or(0);
+        self.set_focus((next < count).then_some(next));
+    }
+
+    fn focused(&mut self) -> Option<&mut RangeField> {
+        self.fields.get_mut(self.focus?)
+    }
+
+    /// Moves to another row, or types, moves or deletes in the field; on the anchor, Space and the arrows to the sides are
+    /// the other one.
+    pub fn take(&mut self, message: &Message) {
+        match message {
+            Message::Field(by) => self.move_focus(*by),
+            Message::ToField(row) => self.point(row.unwrap_or(self.fields.len())),
+            Message::Choose(Arrow::Up) => self.move_focus(-1),
+            Message::Choose(Arrow::Down) => self.move_focus(1),
+            message => match self.focused() {
+                Some(field) => {
+                    field.input.take(message);
+                }
+                None if matches!(message, Message::Choose(_) | Message::Type(' ')) => {
+                    self.other_anchor();
+                }
+                None => {}
+            },
+        }
+    }
+
+    /// The other anchor.
+    pub fn other_anchor(&mut self) {
+        self.anchor = match self.anchor {
+            Anchor::Corner => Anchor::Centre,
+            Anchor::Centre => Anchor::Corner,
+        };
+    }
+}

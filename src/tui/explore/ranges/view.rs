@@ -1,0 +1,172 @@
+//! The form of ranges: a line a field with what it may hold, errors under or beside it, how many poses there are and how
+//! long they take.
+
+use std::time::Duration;
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::formats::value::counted;
+use crate::pose::grid::Anchor;
+use crate::tui::app::state::App;
+use crate::tui::explore::ranges::layout::RangeRows;
+use crate::tui::explore::ranges::state::{RangeField, RangesForm};
+use crate::tui::widget::columns::narrow;
+use crate::tui::widget::theme::Role;
+use crate::tui::widget::write;
+
+const LABEL: usize = 8;
+const INPUT: usize = 14;
+
+/// A pane from this width on has room for what is allowed beside the field.
+const WIDE: u16 = 40;
+
+/// Draws the form; answers where the text cursor is.
+pub fn draw(app: &App, form: &RangesForm, buffer: &mut Buffer, area: Rect) -> Option<Position> {
+    let theme = app.theme();
+    write::clear(buffer, area);
+    let title = form.title();
+    write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
+    let rows = RangeRows::of(area, form);
+    let mut cursor = None;
+    for (index, line) in rows.lines() {
+        let row = write::row(area, line.into());
+        let Some(field) = form.fields().get(index) else {
+            let at = draw_anchor(app, form, buffer, row);
+            cursor = cursor.or(form.focus().is_none().then_some(at));
+            continue;
+        };
+        let marked = form.focus() == Some(index);
+        let at = draw_field(app, field, marked, buffer, row);
+        cursor = cursor.or(marked.then_some(at));
+        let under = write::right_of(write::row(area, usize::from(line) + 1), area.x + 2);
+        let beside = write::right_of(row, area.x.saturating_add(narrow(LABEL + INPUT + 1)));
+        let allowed = format!(
+            "{} {}",
+            form.allowed(field),
+            field.parameter().row().unit.symbol()
+        );
+        let allowed = (allowed, Role::Quiet);
+        let error = form.trouble(index);
+        let error = error.map(|trouble| (format!("! {}", trouble.brief), Role::Error));
+        let (first, second) = match (rows.spacing, area.width >= WIDE) {
+            (2, true) => (Some((beside, allowed)), error.map(|error| (under, error))),
+            (2, false) => (Some((under, error.unwrap_or(allowed))), None),
+            _ => (Some((beside, error.unwrap_or(allowed))), None),
+        };
+        for (place, (text, role)) in [first, second].into_iter().flatten() {
+            write::line(buffer, place, theme, [(text.as_str(), role)]);
+        }
+    }
+    draw_summary(app, form, buffer, write::below(area, rows.end()));
+    cursor
+}
+
+/// Label and text; answers where the text cursor would be.
+fn draw_field(
+    app: &App,
+    field: &RangeField,
+    focused: bool,
+    buffer: &mut Buffer,
+    row: Rect,
+) -> Position {
+    let theme = app.theme();
+    let label = format!("{:LABEL$}", field.parameter().row().label);
+    let (shown, cursor) = write::window(field.text(), field.cursor(), INPUT);
+    let shown = write::fitted(shown, INPUT, theme);
+    let padded = format!("{shown}{}", " ".repeat(INPUT - write::width(&shown)));
+    let role = if focused { Role::Focus } else { Role::Text };
+    let pieces = [(label.as_str(), Role::Text), (padded.as_str(), role)];
+    write::line(buffer, row, theme, pieces);
+    let column = narrow(LABEL + cursor);
+    Position::new(row.x.saturating_add(column), row.y)
+}
+
+/// The anchor between angle brackets.
+fn draw_anchor(app: &App, form: &RangesForm, buffer: &mut Buffer, row: Rect) -> Position {
+    let label = format!("{:LABEL$}", "Anchor");
+    let (name, meaning) = match form.anchor() {
+        Anchor::Corner => ("corner", "top left, unturned"),
+        Anchor::Centre => ("centre", "point it turns about"),
+    };
+    let role = if form.focus().is_none() {
+        Role::Focus
+    } else {
+        Role::Text
+    };
+    let meaning = if row.width >= WIDE { meaning } else { "" };
+    let pieces = [
+        (label.as_str(), Role::Text),
+        ("< ", Role::Quiet),
+        (name, role),
+        (" >     ", Role::Quiet),
+        (meaning, Role::Quiet),
+    ];
+    write::line(buffer, row, app.theme(), pieces);
+    Position::new(row.x.saturating_add(narrow(LABEL)), row.y)
+}
+
+/// How many poses there are, or why there are none; and what is left out.
+fn draw_summary(app: &App, form: &RangesForm, buffer: &mut Buffer, area: Rect) {
+    let theme = app.theme();
+    let (text, role) = match form.grid() {
+        Ok(grid) => {
+            let poses = counted(grid.poses(), "pose");
+            let time = form.estimate().map(|time| format!(", {}", about(time)));
+            (poses + time.as_deref().unwrap_or(""), Role::Text)
+        }
+        // A wrong field says so itself.
+        Err(trouble) if trouble.field.is_some() => (String::new(), Role::Text),
+        Err(trouble) => {
+            for (index, line) in trouble.brief.lines().enumerate() {
+                let pieces = [("! ", Role::Error), (line, Role::Error)];
+                write::line(buffer, write::row(area, index), theme, pieces);
+            }
+            return;
+        }
+    };
+    write::line(buffer, write::row(area, 0), theme, [(text.as_str(), role)]);
+    if form.by_hand() > 0 {
+        let taxels = counted(form.by_hand().into(), "taxel");
+        let text = format!("without {taxels} set by hand");
+        let row = write::row(area, 1);
+        write::line(buffer, row, theme, [(text.as_str(), Role::Quiet)]);
+    }
+}
+
+/// A time as people say it.
+pub fn about(time: Duration) -> String {
+    let seconds = time.as_secs();
+    let (number, unit) = match seconds {
+        0 => return "under a second".to_owned(),
+        1..100 => (seconds, "second"),
+        100..6_000 => (seconds / 60, "minute"),
+        6_000..172_800 => (seconds / 3_600, "hour"),
+        _ => (seconds / 86_400, "day"),
+    };
+    format!("about {}", counted(number, unit))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_said_in_the_unit_that_fits() {
+        let said = [0, 1, 99, 100, 5_999, 7_300, 172_800, 400_000_000];
+        let said = said.map(|seconds| about(Duration::from_secs(seconds)));
+        assert_eq!(
+            said,
+            [
+                "under a second",
+                "about 1 second",
+                "about 99 seconds",
+                "about 1 minute",
+                "about 99 minutes",
+                "about 2 hours",
+                "about 2 days",
+                "about 4,629 days"
+            ]
+        );
+    }
+}

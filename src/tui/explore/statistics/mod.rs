@@ -1,0 +1,5 @@
+//! Statistics of every descriptor.
+
+pub mod layout;
+
+pub mod view;

@@ -1,0 +1,162 @@
+//! What keys do with what was found: pages, rows, the map, a shape back onto the matrix, a file.
+
+use crate::atlas::statistics::COLUMNS;
+use crate::formats::value::grouped;
+use crate::storage::unfinished::Existing;
+use crate::touch::Plane;
+use crate::tui::app::change::{change, inform, refuse};
+use crate::tui::app::dialog::Dialog;
+use crate::tui::app::document::{Document, Seen};
+use crate::tui::app::layout::Panes;
+use crate::tui::app::message::Message;
+use crate::tui::app::state::App;
+use crate::tui::explore::export::{ExportDialog, is_poses};
+use crate::tui::explore::message::{ExplorePage, Exploring, name_of};
+use crate::tui::explore::panes::ResultPanes;
+use crate::tui::explore::results::Results;
+use crate::tui::explore::start::act;
+use crate::tui::explore::statistics::layout::StatisticsTable;
+use crate::tui::runtime::effect::Effect;
+
+/// Does what a message says over the results.
+pub(crate) fn in_results(
+    app: &mut App,
+    mut results: Box<Results>,
+    message: Message,
+) -> Option<Effect> {
+    match message {
+        Message::Accept => return put_onto_matrix(app, results),
+        Message::Scroll(lines) => results.scroll(lines),
+        Message::ScrollTo(end) => results.scroll_to(end),
+        Message::Cursor(arrow) => results.move_cursor(arrow),
+        Message::Paste(_) => inform(app, "pasted text goes into fields only"),
+        Message::Explore(Exploring::Export) => {
+            let name = format!("{}.csv", name_of(results.survey().grid.source()));
+            app.dialogs.push(Dialog::Results(results));
+            let dialog = ExportDialog::proposing(&name);
+            app.dialogs.push(Dialog::Export(dialog));
+            return None;
+        }
+        Message::Explore(Exploring::Ranges) => {
+            app.dialogs.push(Dialog::Results(results));
+            return act(app, Exploring::Ranges);
+        }
+        Message::Explore(asked) => look(app, &mut results, &asked),
+        _ => {}
+    }
+    app.dialogs.push(Dialog::Results(results));
+    None
+}
+
+/// What changes only what is looked at.
+fn look(app: &mut App, results: &mut Results, asked: &Exploring) {
+    match *asked {
+        Exploring::Page(page) => results.turn_to(page),
+        Exploring::NextPage(by) => results.next_page(by),
+        Exploring::Quantity(by) => results.next_quantity(by),
+        Exploring::Columns(by) => {
+            if let Some(panes) = Panes::shown(app) {
+                let page = ResultPanes::of(&panes).page;
+                let (_, visible) = StatisticsTable::of(page, results).columns;
+                results.move_columns(by, COLUMNS.len() - visible);
+            }
+        }
+        Exploring::Sort(by) => results.sort(by),
+        Exploring::Find => match results.id(&app.seen().imprint) {
+            Some(id) => {
+                results.find(id);
+            }
+            None => refuse(app, "the imprint on the matrix is not among these"),
+        },
+        Exploring::Follow => follow(app, results),
+        Exploring::Select(row) if results.page() == ExplorePage::Imprints => results.select(row),
+        Exploring::Select(row) => results.choose_quantity(row),
+        Exploring::Point(x0, y0) => results.point(x0, y0),
+        Exploring::Angle(by) => results.turn(by),
+        Exploring::Zoomed(zoom, by) => results.zoom(zoom, by),
+        _ => {}
+    }
+}
+
+/// From the list to the first pose on the map, from the map to the imprint in the list.
+fn follow(app: &mut App, results: &mut Results) {
+    let Some(pose) = results.pose() else { return };
+    if results.page() != ExplorePage::Map {
+        results.go_to_pose(pose);
+        return results.turn_to(ExplorePage::Map);
+    }
+    let grid = &results.survey().grid;
+    let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(grid.pose(pose)));
+    match results.id(&imprint) {
+        Some(id) => {
+            results.find(id);
+            results.turn_to(ExplorePage::Imprints);
+        }
+        None => refuse(app, "this pose was not swept: the sweep was stopped"),
+    }
+}
+
+/// The shape in the pose that is looked at, with just the imprint that the sweep found.
+fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
+    let grid = &results.survey().grid;
+    let Some(pose) = results.pose().map(|number| grid.pose(number)) else {
+        app.dialogs.push(Dialog::Results(results));
+        return None;
+    };
+    let source = match grid.source_at(pose) {
+        Ok(source) => source,
+        Err(error) => {
+            refuse(app, error.to_string());
+            app.dialogs.push(Dialog::Results(results));
+            return None;
+        }
+    };
+    let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(pose));
+    let mut document = Document::touched(app.history.present().sensor, source);
+    document.turned = Seen::of(&document).imprint.differing(&imprint);
+    let number = results.id(&imprint).map(|id| format!("imprint {id} "));
+    change(app, document);
+    app.chosen = None;
+    let number = number.unwrap_or_default();
+    let undo = app.key_of(&Message::Undo);
+    let explore = app.key_of(&Message::Explore(Exploring::Open));
+    inform(
+        app,
+        format!("{number}on the matrix; {undo} takes it back, {explore} goes on exploring"),
+    );
+    app.results = Some(results);
+    None
+}
+
+/// The name of a file to write.
+pub(crate) fn in_export(
+    app: &mut App,
+    mut dialog: ExportDialog,
+    message: &Message,
+) -> Option<Effect> {
+    if *message == Message::Accept {
+        match dialog.name() {
+            Ok(name) => match missing(app, &name) {
+                None => return act(app, Exploring::Write(name, Existing::Kept)),
+                Some(missing) => refuse(app, missing),
+            },
+            Err(error) => refuse(app, error),
+        }
+    } else {
+        dialog.field.take(message);
+    }
+    app.dialogs.push(Dialog::Export(dialog));
+    None
+}
+
+/// Why the poses cannot be written.
+fn missing(app: &App, name: &str) -> Option<String> {
+    let survey = app.results_below()?.survey();
+    (is_poses(name) && !survey.complete()).then(|| {
+        format!(
+            ".npy needs all poses: only {} of {} were swept",
+            grouped(survey.poses),
+            grouped(survey.grid.poses())
+        )
+    })
+}

@@ -1,0 +1,178 @@
+//! A form: a text field a parameter. It knows the table of parameters and no shapes.
+
+use crate::parameter::{Parameter, ParameterError};
+use crate::tui::app::message::Message;
+use crate::tui::widget::text_field::TextField;
+
+/// No field takes more characters.
+const LONGEST: usize = 24;
+
+/// A text field of one parameter.
+#[derive(Clone, Debug)]
+pub struct Field {
+    parameter: Parameter,
+    optional: bool,
+    input: TextField,
+    /// What stood there at first, which is always taken: a shape that was moved or loaded may have more decimals
+    /// than the form's own.
+    initial: Option<f64>,
+    initial_text: String,
+}
+
+impl Field {
+    /// A field that shows a value; empty without one.
+    pub fn new(parameter: Parameter, value: Option<f64>, optional: bool) -> Self {
+        let text = value
+            .map(|value| parameter.format(value))
+            .unwrap_or_default();
+        let mut input = TextField::new(text.clone(), LONGEST);
+        input.enter();
+        Self {
+            parameter,
+            optional,
+            input,
+            initial: value,
+            initial_text: text,
+        }
+    }
+
+    /// Which parameter it sets.
+    pub fn parameter(&self) -> Parameter {
+        self.parameter
+    }
+
+    /// Whether it may be empty.
+    pub fn optional(&self) -> bool {
+        self.optional
+    }
+
+    /// Its text.
+    pub fn text(&self) -> &str {
+        self.input.text()
+    }
+
+    /// Where its cursor stands, in columns.
+    pub fn cursor(&self) -> usize {
+        self.input.cursor()
+    }
+
+    /// Whether the next character replaces the text.
+    pub fn fresh(&self) -> bool {
+        self.input.fresh()
+    }
+
+    /// The value in the text; none of an empty field that may be empty.
+    ///
+    /// # Errors
+    /// What is wrong with the text.
+    pub fn value(&self, side: u8) -> Result<Option<f64>, ParameterError> {
+        if self.text() == self.initial_text && (self.initial.is_some() || self.optional) {
+            return Ok(self.initial);
+        }
+        match (self.text().trim(), self.optional) {
+            ("", true) => Ok(None),
+            ("", false) => {
+                let range = self.parameter.form_range(side);
+                Err(ParameterError::Missing {
+                    parameter: self.parameter,
+                    range,
+                })
+            }
+            (text, _) => self.parameter.read_form(text, side).map(Some),
+        }
+    }
+
+    fn step(&mut self, direction: i8, side: u8) {
+        let value = match self.value(side) {
+            Ok(Some(value)) => self.parameter.step(value, i32::from(direction), side),
+            Ok(None) => self.parameter.default(side),
+            Err(ParameterError::Range { value, .. } | ParameterError::Decimals { value, .. }) => {
+                self.parameter.step(value, i32::from(direction), side)
+            }
+            Err(_) => return,
+        };
+        self.input.set(self.parameter.format(value));
+        self.input.enter();
+    }
+}
+
+/// Fields, one of which has the focus; or none, where something beside the form has it.
+#[derive(Clone, Debug)]
+pub struct Form {
+    fields: Vec<Field>,
+    focus: Option<usize>,
+    side: u8,
+}
+
+impl Form {
+    /// A form for a sensor whose larger side is `side`; no field has the focus.
+    pub fn new(fields: Vec<Field>, side: u8) -> Self {
+        Self {
+            fields,
+            focus: None,
+            side,
+        }
+    }
+
+    /// Its fields, from the top.
+    pub fn fields(&self) -> &[Field] {
+        &self.fields
+    }
+
+    /// Takes the fields out.
+    pub fn into_fields(self) -> Vec<Field> {
+        self.fields
+    }
+
+    /// The larger side of the sensor, which bounds the values.
+    pub fn side(&self) -> u8 {
+        self.side
+    }
+
+    /// Which field has the focus.
+    pub fn focus(&self) -> Option<usize> {
+        self.focus
+    }
+
+    /// Gives a field the focus, or none.
+    pub fn set_focus(&mut self, focus: Option<usize>) {
+        self.focus = focus.map(|index| index.min(self.fields.len().saturating_sub(1)));
+        if let Some(field) = self.focused() {
+            field.input.enter();
+        }
+    }
+
+    /// The value of a parameter; none where its field is empty, wrong or missing.
+    pub fn value(&self, parameter: Parameter) -> Option<f64> {
+        let field = self
+            .fields
+            .iter()
+            .find(|field| field.parameter == parameter)?;
+        field.value(self.side).ok().flatten()
+    }
+
+    /// The first field that is wrong, and why.
+    pub fn error(&self) -> Option<(usize, ParameterError)> {
+        let mut fields = self.fields.iter().enumerate();
+        fields.find_map(|(index, field)| Some((index, field.value(self.side).err()?)))
+    }
+
+    fn focused(&mut self) -> Option<&mut Field> {
+        self.fields.get_mut(self.focus?)
+    }
+
+    /// Types, moves or deletes in the field that has the focus.
+    pub fn take(&mut self, message: &Message) {
+        if let Some(field) = self.focused() {
+            field.input.take(message);
+        }
+    }
+
+    /// Changes the number in the field by its last decimal.
+    pub fn step(&mut self, direction: i8) {
+        let side = self.side;
+        if let Some(field) = self.focused() {
+            field.step(direction, side);
+        }
+    }
+}

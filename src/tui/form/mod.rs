@@ -1,0 +1,7 @@
+//! The forms of Figure, Picture and the sensor.
+
+pub mod fields;
+
+pub mod state;
+
+pub mod view;

@@ -1,0 +1,264 @@
+//! The forms of Figure, Picture and the sensor, which the matrix follows live.
+
+use crate::figure::{Figure, Kind};
+use crate::formats::value::counted;
+use crate::imprint::Imprint;
+use crate::parameter::{Parameter, ParameterError};
+use crate::picture::{PICTURE_PARAMETERS, Picture};
+use crate::sensor::{SENSOR_PARAMETERS, Sensor};
+use crate::source::Source;
+use crate::tui::app::document::{Document, Seen};
+use crate::tui::app::message::Message;
+use crate::tui::form::fields::{Field, Form};
+use crate::tui::keys::key::Arrow;
+
+/// What a form is about.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Subject {
+    /// A figure of a kind, which can be changed in the form.
+    Figure(Kind),
+    /// A stored imprint, by its name.
+    Picture(String, Box<Imprint>),
+    /// The sensor.
+    Sensor,
+}
+
+/// A form with what it would make of the matrix.
+#[derive(Clone, Debug)]
+pub struct FormDialog {
+    subject: Subject,
+    form: Form,
+    /// Fields of other kinds of figure, kept as they were typed.
+    hidden: Vec<Field>,
+    /// What is on the matrix without the form.
+    before: Document,
+    /// What the fields make of it, while all of them are right.
+    shown: Document,
+    /// What they made of it before the field that has the focus was typed in. A field that becomes wrong may have been
+    /// right on the way, "1" on the way to "17": the matrix does not stay there.
+    settled: Document,
+}
+
+impl FormDialog {
+    /// The form of a figure: of the one on the matrix, or a new ellipse.
+    pub fn figure(before: &Document) -> Self {
+        let figure = match before.source {
+            Some(Source::Figure(figure)) => figure,
+            _ => Figure::default_of(Kind::Ellipse, before.sensor.side()),
+        };
+        Self::new(
+            Subject::Figure(figure.kind()),
+            before,
+            Document::touched(before.sensor, Source::Figure(figure)),
+        )
+    }
+
+    /// The form of a picture, which starts just where it is.
+    pub fn picture(before: &Document, picture: Picture, name: String) -> Self {
+        let imprint = Box::new(*picture.imprint());
+        let shown = Document::touched(before.sensor, Source::Picture(picture));
+        let mut dialog = Self::new(Subject::Picture(name, imprint), before, shown);
+        dialog.form.set_focus(Some(0));
+        dialog
+    }
+
+    /// The form of the sensor.
+    pub fn sensor(before: &Document) -> Self {
+        let mut dialog = Self::new(Subject::Sensor, before, before.clone());
+        dialog.form.set_focus(Some(0));
+        dialog
+    }
+
+    fn new(subject: Subject, before: &Document, shown: Document) -> Self {
+        let form = Form::new(Vec::new(), before.sensor.side());
+        let mut dialog = Self {
+            subject,
+            form,
+            hidden: Vec::new(),
+            before: before.clone(),
+            settled: shown.clone(),
+            shown,
+        };
+        dialog.fill();
+        dialog
+    }
+
+    /// What it is about.
+    pub fn subject(&self) -> &Subject {
+        &self.subject
+    }
+
+    /// Its heading.
+    pub fn title(&self) -> String {
+        match &self.subject {
+            Subject::Figure(_) => "Figure".to_owned(),
+            Subject::Picture(name, _) => format!("Picture: {name}"),
+            Subject::Sensor => "Sensor".to_owned(),
+        }
+    }
+
+    /// The kind of figure that is chosen; none where there is nothing to choose.
+    pub fn kind(&self) -> Option<Kind> {
+        match self.subject {
+            Subject::Figure(kind) => Some(kind),
+            _ => None,
+        }
+    }
+
+    /// The fields.
+    pub fn form(&self) -> &Form {
+        &self.form
+    }
+
+    /// What the matrix shows.
+    pub fn shown(&self) -> &Document {
+        &self.shown
+    }
+
+    /// What would be lost, in a sentence.
+    pub fn warning(&self) -> Option<String> {
+        let (columns, rows) = (self.shown.sensor.columns(), self.shown.sensor.rows());
+        let all = Seen::of(&self.before).imprint;
+        let lost = all.count() - all.resized(columns, rows).count();
+        let taxels = counted(lost.into(), "active taxel");
+        (lost > 0).then(|| format!("{taxels} will be cut"))
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        match self.subject {
+            Subject::Figure(kind) => kind.parameters().collect(),
+            Subject::Picture(..) => PICTURE_PARAMETERS.to_vec(),
+            Subject::Sensor => SENSOR_PARAMETERS.to_vec(),
+        }
+    }
+
+    /// The fields of the subject, those that were there before as they were.
+    fn fill(&mut self) {
+        let (side, focus) = (self.form.side(), self.form.focus());
+        let mut known = std::mem::take(&mut self.hidden);
+        known.extend(std::mem::replace(&mut self.form, Form::new(Vec::new(), side)).into_fields());
+        let parameters = self.parameters();
+        let fields = parameters.into_iter().map(|parameter| {
+            let at = known
+                .iter()
+                .position(|field| field.parameter() == parameter);
+            at.map_or_else(
+                || self.new_field(parameter, side),
+                |at| known.swap_remove(at),
+            )
+        });
+        let fields = fields.collect();
+        self.hidden = known;
+        self.form = Form::new(fields, side);
+        self.form.set_focus(focus);
+    }
+
+    fn new_field(&self, parameter: Parameter, side: u8) -> Field {
+        let of_source = |source: &Source| source.get(parameter);
+        let own = self.shown.source.as_ref().and_then(of_source);
+        let own = own.or_else(|| self.shown.sensor.get(parameter));
+        let optional = parameter == Parameter::Thickness;
+        let value = if optional {
+            own
+        } else {
+            own.or_else(|| Some(parameter.default(side)))
+        };
+        Field::new(parameter, value, optional)
+    }
+
+    /// Changes the fields by `change`, and the matrix follows.
+    pub fn edit(&mut self, change: impl FnOnce(&mut Form)) {
+        change(&mut self.form);
+        if let Ok(document) = self.made() {
+            self.shown = document;
+            let typed = self.form.focus().and_then(|at| self.form.fields().get(at));
+            if typed.is_none_or(Field::fresh) {
+                self.settled = self.shown.clone();
+            }
+        } else {
+            self.shown = self.settled.clone();
+        }
+    }
+
+    /// What the fields make of the matrix; while one of them is wrong, there is no answer.
+    fn made(&self) -> Result<Document, ParameterError> {
+        if let Some((_, error)) = self.form.error() {
+            return Err(error);
+        }
+        let (sensor, side) = (self.before.sensor, self.form.side());
+        let value = |parameter: Parameter| self.form.value(parameter);
+        match &self.subject {
+            Subject::Figure(kind) => {
+                let figure = Figure::new(*kind, side, value)?;
+                Ok(Document::touched(sensor, Source::Figure(figure)))
+            }
+            Subject::Picture(name, imprint) => {
+                let picture = Picture::new(**imprint, side, value)?.named(name);
+                Ok(Document::touched(sensor, Source::Picture(picture)))
+            }
+            Subject::Sensor => {
+                let own = self
+                    .parameters()
+                    .into_iter()
+                    .filter_map(|parameter| Some((parameter, value(parameter)?)));
+                let sensor = own
+                    .into_iter()
+                    .try_fold(sensor, |sensor: Sensor, (parameter, value)| {
+                        sensor.with(parameter, value)
+                    })?;
+                Ok(self.before.on(sensor))
+            }
+        }
+    }
+
+    /// Goes `by` rows on; the kind is a row above the fields, and the last row is followed by the first.
+    pub fn move_focus(&mut self, by: i8) {
+        let head = i64::from(self.kind().is_some());
+        let rows = i64::try_from(self.form.fields().len()).unwrap_or(0) + head;
+        let now = self
+            .form
+            .focus()
+            .map_or(0, |index| i64::try_from(index).unwrap_or(0) + head);
+        let next = (now + i64::from(by)).rem_euclid(rows);
+        self.edit(|form| form.set_focus(usize::try_from(next - head).ok()));
+    }
+
+    /// An arrow: chooses the kind, moves in a field or to another one.
+    pub fn choose(&mut self, arrow: Arrow) {
+        match (self.form.focus(), arrow) {
+            (None, Arrow::Left | Arrow::Up) => self.next_kind(Kind::ALL.len() - 1, |_| true),
+            (None, Arrow::Right | Arrow::Down) => self.next_kind(1, |_| true),
+            (Some(_), Arrow::Left | Arrow::Right) => self.form.take(&Message::Choose(arrow)),
+            (Some(_), Arrow::Up) => self.move_focus(-1),
+            (Some(_), Arrow::Down) => self.move_focus(1),
+        }
+    }
+
+    /// A character: into the field; on the kind, the next kind that begins with it.
+    pub fn insert(&mut self, character: char) {
+        if self.form.focus().is_some() {
+            self.edit(|form| form.take(&Message::Type(character)));
+        } else {
+            self.next_kind(1, |kind| {
+                kind.name().starts_with(character.to_ascii_lowercase())
+            });
+        }
+    }
+
+    /// The first kind, `step` after `step` from the present one on, that fits; the present one where none does.
+    fn next_kind(&mut self, step: usize, fits: impl Fn(Kind) -> bool) {
+        let kinds = Kind::ALL;
+        let now = kinds
+            .iter()
+            .position(|&kind| Some(kind) == self.kind())
+            .unwrap_or(0);
+        let next = (1..=kinds.len())
+            .map(|count| kinds[(now + count * step) % kinds.len()])
+            .find(|&kind| fits(kind));
+        if let Some(kind) = next {
+            self.subject = Subject::Figure(kind);
+            self.fill();
+            self.edit(|_| {});
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! A form: the kind of a figure, then a line a field with its range and unit, errors under the field.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::figure::{Kind, NO_ROOM};
+use crate::source::Source;
+use crate::tui::app::layout::FormRows;
+use crate::tui::app::state::App;
+use crate::tui::form::fields::Field;
+use crate::tui::form::state::FormDialog;
+use crate::tui::widget::columns::narrow;
+use crate::tui::widget::theme::Role;
+use crate::tui::widget::write;
+
+const LABEL: usize = 10;
+const INPUT: usize = 9;
+
+/// A pane from this width on has room for the range beside the field.
+const WIDE: u16 = 40;
+
+/// Draws the form; answers where the text cursor is.
+pub fn draw(app: &App, dialog: &FormDialog, buffer: &mut Buffer, area: Rect) -> Option<Position> {
+    let theme = app.theme();
+    write::clear(buffer, area);
+    write::line(
+        buffer,
+        area,
+        theme,
+        [(dialog.title().as_str(), Role::Title)],
+    );
+    let (focus, rows) = (dialog.form().focus(), FormRows::of(area, dialog));
+    let mut cursor = None;
+    if let (Some(kind), Some(line)) = (dialog.kind(), rows.kind) {
+        let row = write::row(area, usize::from(line));
+        draw_kind(app, kind, focus.is_none(), buffer, row);
+        cursor = focus.is_none().then(|| Position::new(row.x, row.y));
+    }
+    let fields = dialog.form().fields();
+    let mut end = 0;
+    for (index, row) in rows.fields(fields.len()) {
+        let (field, row) = (&fields[index], usize::from(row));
+        end = row + usize::from(rows.spacing);
+        let error = field
+            .value(dialog.form().side())
+            .err()
+            .map(|error| error.expected());
+        let marked = focus == Some(index);
+        let at = draw_field(app, field, marked, buffer, write::row(area, row));
+        let remark = remark(field, dialog).filter(|_| error.is_none());
+        let beside = write::right_of(write::row(area, row), area.x + narrow(LABEL + INPUT + 1));
+        let under = write::right_of(write::row(area, row + 1), area.x + 2);
+        let (error_at, range_at) = match (rows.spacing, area.width >= WIDE) {
+            (2, true) => (under, Some(beside)),
+            (2, false) => (under, error.is_none().then_some(under)),
+            _ => (beside, error.is_none().then_some(beside)),
+        };
+        if let Some(range_at) = range_at {
+            let under = (rows.spacing == 2 && range_at == beside).then_some(under);
+            let taken = (field, dialog.form().side());
+            draw_range(app, taken, remark, buffer, range_at, under);
+        }
+        if let Some(error) = error {
+            write::line(
+                buffer,
+                error_at,
+                theme,
+                [("! ", Role::Error), (error.as_str(), Role::Error)],
+            );
+        }
+        cursor = cursor.or(marked.then_some(at));
+    }
+    if let Some(warning) = dialog.warning() {
+        write::wrapped(
+            buffer,
+            write::below(area, narrow(end)),
+            theme,
+            &format!("! {warning}"),
+            Role::Error,
+        );
+    }
+    cursor
+}
+
+/// The kind between angle brackets, and the letters that choose one.
+fn draw_kind(app: &App, kind: Kind, focused: bool, buffer: &mut Buffer, row: Rect) {
+    let label = format!("{:LABEL$}", "Kind");
+    let name = format!("{:<9}", kind.name());
+    let role = if focused { Role::Focus } else { Role::Text };
+    let mut letters: Vec<&str> = Kind::ALL.iter().map(|kind| &kind.name()[..1]).collect();
+    letters.dedup();
+    let letters = if focused {
+        letters.join(" ")
+    } else {
+        String::new()
+    };
+    let pieces = [
+        (label.as_str(), Role::Text),
+        ("< ", Role::Quiet),
+        (name.as_str(), role),
+        (" >", Role::Quiet),
+        (" ", Role::Text),
+        (letters.as_str(), Role::Key),
+    ];
+    write::line(buffer, row, app.theme(), pieces);
+}
+
+/// Label and text; answers where the text cursor would be.
+fn draw_field(app: &App, field: &Field, focused: bool, buffer: &mut Buffer, row: Rect) -> Position {
+    let theme = app.theme();
+    let label = format!("{:LABEL$}", field.parameter().row().label);
+    let (shown, cursor) = write::window(field.text(), field.cursor(), INPUT);
+    let shown = write::fitted(shown, INPUT, theme);
+    let padded = format!("{shown}{}", " ".repeat(INPUT - write::width(&shown)));
+    let role = if focused { Role::Focus } else { Role::Text };
+    write::line(
+        buffer,
+        row,
+        theme,
+        [(label.as_str(), Role::Text), (padded.as_str(), role)],
+    );
+    Position::new(row.x + narrow(LABEL + cursor), row.y)
+}
+
+/// What else there is to know about a field that may be empty, and whether that is about the value it has now.
+fn remark(field: &Field, dialog: &FormDialog) -> Option<(&'static str, bool)> {
+    if !field.optional() {
+        return None;
+    }
+    match &dialog.shown().source {
+        Some(Source::Figure(figure))
+            if figure.get(field.parameter()).is_some() && !figure.has_hole() =>
+        {
+            Some((NO_ROOM, true))
+        }
+        _ => Some(("empty: solid", field.text().is_empty())),
+    }
+}
+
+/// What the field takes, and the remark under it or else behind it. Where there is no room for all of it the unit gives
+/// way first, then the remark, or the range where the remark is about the present value.
+fn draw_range(
+    app: &App,
+    (field, side): (&Field, u8),
+    remark: Option<(&str, bool)>,
+    buffer: &mut Buffer,
+    area: Rect,
+    under: Option<Rect>,
+) {
+    let bare = field.parameter().form_range(side).to_string();
+    let unit = field.parameter().row().unit.symbol();
+    let range = format!("{bare} {unit}").trim_end().to_owned();
+    let mut write = |area: Rect, texts: &[&str]| {
+        let text = write::first_fitting(texts, usize::from(area.width));
+        write::line(buffer, area, app.theme(), [(text, Role::Quiet)]);
+    };
+    match (remark, under) {
+        (None, _) => write(area, &[&range, &bare]),
+        (Some((remark, _)), Some(under)) => {
+            write(area, &[&range, &bare]);
+            write(under, &[remark]);
+        }
+        (Some((remark, of_value)), None) => {
+            let (both, barely) = (format!("{range}; {remark}"), format!("{bare}; {remark}"));
+            let (first, second) = if of_value {
+                (remark, remark)
+            } else {
+                (&*range, &*bare)
+            };
+            write(area, &[&both, &barely, first, second]);
+        }
+    }
+}

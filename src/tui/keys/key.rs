@@ -1,0 +1,243 @@
+//! Keys, and their notation: `f<Down><Tab>4.00<Enter>`.
+//!
+//! Only keys that arrive on every terminal: no Alt, no Ctrl with a digit. A character stands for itself, `<lt>` for
+//! `<`; named keys and Ctrl stand in angle brackets, so does a character by its number, `<U+3000>`; `<3x:Down>` repeats
+//! one.
+
+use std::fmt;
+
+/// One of the four arrows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arrow {
+    /// To smaller x.
+    Left,
+    /// To larger x.
+    Right,
+    /// To smaller y.
+    Up,
+    /// To larger y.
+    Down,
+}
+
+impl Arrow {
+    /// The step (dx, dy) in the plane's frame.
+    pub fn step(self) -> (i8, i8) {
+        match self {
+            Self::Left => (-1, 0),
+            Self::Right => (1, 0),
+            Self::Up => (0, -1),
+            Self::Down => (0, 1),
+        }
+    }
+}
+
+/// A key that was pressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Key {
+    /// A character, Shift already in it.
+    Char(char),
+    /// Ctrl with a lower-case letter.
+    Ctrl(char),
+    /// An arrow.
+    Arrow(Arrow),
+    /// An arrow with Shift, where the terminal sends it.
+    ShiftArrow(Arrow),
+    /// Home.
+    Home,
+    /// End.
+    End,
+    /// Page up.
+    PageUp,
+    /// Page down.
+    PageDown,
+    /// Enter.
+    Enter,
+    /// Escape.
+    Esc,
+    /// Tab.
+    Tab,
+    /// Shift-Tab.
+    BackTab,
+    /// Delete to the left.
+    Backspace,
+    /// Delete to the right.
+    Delete,
+    /// The first function key.
+    F1,
+}
+
+/// Names in brackets; the first of a key is the one that is written.
+const NAMES: [(&str, Key); 23] = [
+    ("Left", Key::Arrow(Arrow::Left)),
+    ("Right", Key::Arrow(Arrow::Right)),
+    ("Up", Key::Arrow(Arrow::Up)),
+    ("Down", Key::Arrow(Arrow::Down)),
+    ("S-Left", Key::ShiftArrow(Arrow::Left)),
+    ("S-Right", Key::ShiftArrow(Arrow::Right)),
+    ("S-Up", Key::ShiftArrow(Arrow::Up)),
+    ("S-Down", Key::ShiftArrow(Arrow::Down)),
+    ("Home", Key::Home),
+    ("End", Key::End),
+    ("PageUp", Key::PageUp),
+    ("PageDown", Key::PageDown),
+    ("Enter", Key::Enter),
+    ("CR", Key::Enter),
+    ("Esc", Key::Esc),
+    ("Tab", Key::Tab),
+    ("S-Tab", Key::BackTab),
+    ("BS", Key::Backspace),
+    ("Del", Key::Delete),
+    ("F1", Key::F1),
+    ("Space", Key::Char(' ')),
+    ("lt", Key::Char('<')),
+    ("gt", Key::Char('>')),
+];
+
+impl fmt::Display for Key {
+    /// The notation.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (*self, NAMES.iter().find(|(_, key)| key == self)) {
+            (Self::Char('>'), _) => f.write_str(">"),
+            (_, Some((name, _))) => write!(f, "<{name}>"),
+            (Self::Ctrl(letter), _) => write!(f, "<C-{letter}>"),
+            // In a script blanks at the end of a line do not count.
+            (Self::Char(blank), _) if blank.is_whitespace() || blank.is_control() => {
+                write!(f, "<U+{:04X}>", u32::from(blank))
+            }
+            (Self::Char(character), _) => write!(f, "{character}"),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Key {
+    /// How people write it: in hints, help and tables.
+    pub fn label(self) -> String {
+        match self {
+            Self::Char(' ') => "Space".to_owned(),
+            Self::Char(character) => character.to_string(),
+            Self::Ctrl(letter) => format!("Ctrl-{}", letter.to_ascii_uppercase()),
+            Self::BackTab => "Shift-Tab".to_owned(),
+            Self::Backspace => "Backspace".to_owned(),
+            Self::Delete => "Delete".to_owned(),
+            Self::ShiftArrow(arrow) => format!("Shift-{arrow:?}"),
+            other => other.to_string().trim_matches(['<', '>']).to_owned(),
+        }
+    }
+}
+
+/// Why a text is no sequence of keys: what stands where, in characters from 1.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum KeyError {
+    /// No key has that name.
+    #[error("key {found:?} at character {at} is unknown; a '<' by itself is written <lt>")]
+    Unknown {
+        /// Where.
+        at: usize,
+        /// What.
+        found: String,
+    },
+    /// It would go on for hours.
+    #[error(
+        "key {found:?} at character {at}: a key is repeated at most 10,000 times, and all are at most 200,000 keys"
+    )]
+    TooMany {
+        /// Where.
+        at: usize,
+        /// What.
+        found: String,
+    },
+}
+
+/// The most keys that one repetition gives: a slip of the pen must not take hours.
+const MOST_REPEATED: usize = 10_000;
+/// The most keys that a text gives.
+const MOST_KEYS: usize = 200_000;
+
+/// The keys of a text in notation.
+///
+/// ```
+/// use taxel::tui::keys::key::{Key, Arrow, parse};
+/// assert_eq!(parse("f<2x:Down><C-r>").unwrap(),
+///     [Key::Char('f'), Key::Arrow(Arrow::Down), Key::Arrow(Arrow::Down), Key::Ctrl('r')]);
+/// ```
+///
+/// # Errors
+/// The first name in brackets that is unknown.
+pub fn parse(text: &str) -> Result<Vec<Key>, KeyError> {
+    let mut keys = Vec::new();
+    let (mut rest, mut at) = (text, 1);
+    while let Some(first) = rest.chars().next() {
+        let mut used = first.len_utf8();
+        if first == '<' {
+            let end = rest.find('>');
+            used = end.map_or(rest.len(), |end| end + 1);
+            let found = || rest[..used].chars().take(24).collect();
+            let unknown = || KeyError::Unknown { at, found: found() };
+            let name = &rest[1..end.ok_or_else(unknown)?];
+            let (times, name) = name.split_once("x:").unwrap_or(("1", name));
+            let key = named(name).ok_or_else(unknown)?;
+            if times.is_empty() || !times.bytes().all(|digit| digit.is_ascii_digit()) {
+                return Err(unknown());
+            }
+            // A number that is too large to be read is too many, too.
+            let times = times.parse().unwrap_or(usize::MAX);
+            if times > MOST_REPEATED || keys.len() + times > MOST_KEYS {
+                return Err(KeyError::TooMany { at, found: found() });
+            }
+            keys.extend(std::iter::repeat_n(key, times));
+        } else {
+            keys.push(Key::Char(first));
+        }
+        at += rest[..used].chars().count();
+        rest = &rest[used..];
+    }
+    Ok(keys)
+}
+
+fn named(name: &str) -> Option<Key> {
+    let ctrl = || {
+        let letter = name
+            .strip_prefix("C-")
+            .or_else(|| name.strip_prefix("c-"))?;
+        let mut characters = letter.chars();
+        let letter = characters.next().filter(char::is_ascii_alphabetic)?;
+        characters
+            .next()
+            .is_none()
+            .then(|| Key::Ctrl(letter.to_ascii_lowercase()))
+    };
+    let numbered = || {
+        let number = u32::from_str_radix(name.strip_prefix("U+")?, 16).ok()?;
+        char::from_u32(number).map(Key::Char)
+    };
+    let listed = NAMES
+        .iter()
+        .find(|(known, _)| known.eq_ignore_ascii_case(name));
+    listed.map(|&(_, key)| key).or_else(ctrl).or_else(numbered)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_is_read() {
+        let named = NAMES.iter().map(|&(_, key)| key);
+        let others = [
+            'a', '<', '>', '#', '"', '\u{3000}', '\u{2028}', '\t', '\u{7f}', '你',
+        ];
+        let keys: Vec<Key> = named
+            .chain(others.map(Key::Char))
+            .chain([Key::Ctrl('r')])
+            .collect();
+        for &key in &keys {
+            let written = key.to_string();
+            assert_eq!(parse(&written), Ok(vec![key]), "{written}");
+            assert_eq!(written.trim(), written, "blanks at an end may be lost");
+        }
+        assert_eq!(Key::Char('\u{3000}').to_string(), "<U+3000>");
+        assert!(parse("<U+110000>").is_err() && parse("<U+>").is_err());
+    }
+}

@@ -1,0 +1,93 @@
+//! The descriptors of the region that is chosen, a line each, from the table of descriptors.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+use crate::description::descriptor::{DESCRIPTORS, Description, Descriptor, Value};
+use crate::formats::value;
+use crate::tui::app::document::Seen;
+use crate::tui::app::state::App;
+use crate::tui::widget::theme::Role;
+use crate::tui::widget::write;
+
+/// Columns of the symbols and of the values.
+const SYMBOL: usize = 7;
+const VALUE: usize = 17;
+
+/// Draws the panel. Where it has fewer lines than there are descriptors, they stand in several columns.
+pub fn draw(app: &App, seen: &Seen, buffer: &mut Buffer, area: Rect) {
+    let theme = app.theme();
+    let described = seen.region(app.chosen).zip(seen.description(app.chosen));
+    let title = match &described {
+        Some(((index, region), _)) => {
+            format!(
+                "Region {} of {}: {}",
+                index + 1,
+                seen.regions.len(),
+                region.kind().name()
+            )
+        }
+        None => "No region: the matrix is empty".to_owned(),
+    };
+    write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
+    let lines = usize::from(area.height.saturating_sub(1)).max(1);
+    let columns = DESCRIPTORS.len().div_ceil(lines);
+    let width = area.width / u16::try_from(columns).unwrap_or(u16::MAX).max(1);
+    for (index, descriptor) in DESCRIPTORS.iter().enumerate() {
+        let column = u16::try_from(index / lines)
+            .unwrap_or(u16::MAX)
+            .saturating_mul(width);
+        let row = write::right_of(
+            write::row(area, index % lines + 1),
+            area.x.saturating_add(column),
+        );
+        let row = Rect {
+            width: row.width.min(width),
+            ..row
+        };
+        let description = described.as_ref().map(|(_, description)| description);
+        draw_descriptor(app, descriptor, description, buffer, row);
+    }
+}
+
+/// A descriptor: its symbol, its value, and what that is in millimetres or what it means, as far as there is room.
+fn draw_descriptor(
+    app: &App,
+    descriptor: &Descriptor,
+    description: Option<&Description>,
+    buffer: &mut Buffer,
+    row: Rect,
+) {
+    let theme = app.theme();
+    let measured = description.map_or(Value::None, descriptor.measure);
+    let text = value::text(measured, descriptor.unit);
+    let text = text
+        .as_deref()
+        .map_or(theme.none().into(), |text| theme.text(text));
+    // Millimetres where the user gave a pitch; a pitch of 1 says nothing new.
+    let pitch = app.history.present().sensor.pitch_mm();
+    let scaled = value::in_millimetres(measured, descriptor.unit, pitch).filter(|_| pitch != 1.0);
+    let symbol = format!("{:SYMBOL$}", descriptor.symbol);
+    let value = format!("{text:VALUE$}");
+    // A word that is cut tells nothing.
+    let remark = scaled.as_deref().unwrap_or(descriptor.name);
+    let room = usize::from(row.width).saturating_sub(SYMBOL + VALUE);
+    let remark = if remark.chars().count() <= room {
+        remark
+    } else {
+        ""
+    };
+    // Where the value needs more room, the remark gives way.
+    let gap = if text.chars().count() < VALUE {
+        ""
+    } else {
+        "  "
+    };
+    let pieces = [
+        (symbol.as_str(), Role::Key),
+        (value.as_str(), Role::Text),
+        (gap, Role::Text),
+        (remark, Role::Quiet),
+    ];
+    write::line(buffer, row, theme, pieces);
+}

@@ -1,0 +1,231 @@
+//! What messages do while nothing lies over the matrix.
+
+use crate::description::descriptor::{DESCRIPTORS, Descriptor};
+use crate::formats::value;
+use crate::storage::store::{Expected, Origin};
+use crate::tui::app::change::{
+    begin, change, inform, movable, nudge, refuse, replace, shift, travel, turn, zoom,
+};
+use crate::tui::app::dialog::{Dialog, Help, Question};
+use crate::tui::app::document::{Document, History};
+use crate::tui::app::layout::Panes;
+use crate::tui::app::message::{Copied, End, Message};
+use crate::tui::app::state::{App, Display, Life, Mode, Page};
+use crate::tui::explore;
+use crate::tui::explore::results::around;
+use crate::tui::form::state::FormDialog;
+use crate::tui::keys::key::Arrow;
+use crate::tui::prompt::name::NameDialog;
+use crate::tui::prompt::state::CommandDialog;
+use crate::tui::runtime::effect::{Effect, Request, TerminalEffect};
+use crate::tui::shapes::purpose::Purpose;
+use crate::tui::shapes::state::ListDialog;
+
+/// What there is to say of an empty matrix.
+const NO_REGION: &str = "no region: the matrix is empty";
+
+/// Does what a message says.
+pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
+    let sensor = app.history.present().sensor;
+    match message {
+        Message::New => {
+            begin(app, Document::empty(sensor), None);
+        }
+        Message::Load => return Some(open_list(app, Purpose::Load)),
+        Message::Delete => return Some(open_list(app, Purpose::Delete)),
+        Message::Picture => return Some(open_list(app, Purpose::Picture)),
+        Message::Figure => open_form(app, FormDialog::figure(app.history.present())),
+        Message::Sensor => open_form(app, FormDialog::sensor(app.history.present())),
+        Message::Save if app.seen().imprint.is_empty() => {
+            refuse(app, "nothing to save: the matrix is empty");
+        }
+        Message::Save => {
+            let own = app.stored().filter(|stored| stored.owner == Origin::Own);
+            let name = own.map_or("", |stored| &stored.name);
+            app.dialogs.push(Dialog::Name(NameDialog::new(name)));
+        }
+        Message::Store(shape, expected) => {
+            return Some(Effect::Library(Request::Store(shape, expected)));
+        }
+        Message::AskRemove(name) => {
+            let question = Question::new(format!("Delete {name}?"), Message::Remove(name));
+            app.dialogs.push(Dialog::Question(question));
+        }
+        Message::LoadNamed(name) => {
+            return Some(Effect::Library(Request::Named(Purpose::Load, name)));
+        }
+        Message::PictureNamed(name) => {
+            return Some(Effect::Library(Request::Named(Purpose::Picture, name)));
+        }
+        Message::Restore(name) => return Some(Effect::Library(Request::Restore(name))),
+        Message::Become(document) => {
+            app.mode = Mode::Draw;
+            replace(app, *document);
+        }
+        Message::Command => app.dialogs.push(Dialog::Command(CommandDialog::default())),
+        Message::Copy(what) => return copy(app, what),
+        Message::MouseOnOff => {
+            app.mouse = !app.mouse;
+            let key = app.key_of(&Message::MouseOnOff);
+            inform(
+                app,
+                if app.mouse {
+                    format!("the mouse sets taxels; {key} leaves it to the terminal")
+                } else {
+                    format!("the mouse selects text; {key} lets it set taxels")
+                },
+            );
+            return Some(Effect::Terminal(TerminalEffect::Mouse(app.mouse)));
+        }
+        Message::Replace(shape, stamp) => {
+            let text = format!("Replace {}?", shape.name);
+            let question = Question::new(text, Message::Store(shape, Expected::Stamp(stamp)));
+            app.dialogs.push(Dialog::Question(question));
+        }
+        Message::Remove(name) => return Some(Effect::Library(Request::Remove(name))),
+        Message::Recover => return Some(Effect::Library(Request::Recover)),
+        Message::GiveUp => return Some(Effect::Library(Request::GiveUp)),
+        Message::Quit if app.unsaved() || app.history.left_unsaved() => {
+            let what = if app.unsaved() {
+                "The imprint"
+            } else {
+                "An earlier drawing"
+            };
+            let text = format!("{what} is not saved. Quit anyway?");
+            let question = Question::new(text, Message::QuitNow);
+            app.dialogs.push(Dialog::Question(question));
+        }
+        Message::Quit | Message::QuitNow => app.life = Life::Quit,
+        Message::Explore(asked) => return explore::start::act(app, asked),
+        Message::Help => {
+            let help = Help::new(app.context());
+            app.dialogs.push(Dialog::Help(help));
+        }
+        Message::Undo if app.removed.is_some() => {
+            return app
+                .removed
+                .take()
+                .map(|name| Effect::Library(Request::Restore(name)));
+        }
+        other => edit(app, &other),
+    }
+    None
+}
+
+/// What needs nothing from outside: the cursor, what is shown, and the shape.
+fn edit(app: &mut App, message: &Message) {
+    let sensor = app.history.present().sensor;
+    match *message {
+        Message::Cursor(arrow) => move_cursor(app, arrow),
+        Message::PointAt(column, row) => {
+            app.cursor = (column.min(sensor.columns() - 1), row.min(sensor.rows() - 1));
+        }
+        Message::ToColumn(end) => app.cursor.0 = at_end(end, sensor.columns()),
+        Message::ToRow(end) => app.cursor.1 = at_end(end, sensor.rows()),
+        Message::Toggle => {
+            let mut document = app.history.present().clone();
+            document.turned.toggle(app.cursor.0, app.cursor.1);
+            change(app, document);
+        }
+        Message::Undo => travel(app, History::undo, "nothing to undo"),
+        Message::Redo => travel(app, History::redo, "nothing to redo"),
+        Message::Region(by) => choose_region(app, by),
+        Message::Display => {
+            app.display = match app.display {
+                Display::Imprint => Display::Shades,
+                Display::Shades => Display::Percent,
+                Display::Percent => Display::Imprint,
+            };
+        }
+        Message::Page if Panes::shown(app).is_some_and(|panes| panes.panel.is_some()) => {
+            inform(app, "matrix and descriptors are both in sight");
+        }
+        Message::Page => {
+            app.page = match app.page {
+                Page::Matrix => Page::Panel,
+                Page::Panel => Page::Matrix,
+            };
+        }
+        Message::Grab if app.mode == Mode::Grab => app.mode = Mode::Draw,
+        Message::Grab if movable(app).is_some() => app.mode = Mode::Grab,
+        Message::Nudge(arrow) => nudge(app, arrow),
+        Message::Move(dx, dy) => shift(app, dx, dy),
+        Message::Turn(degrees) => turn(app, degrees),
+        Message::Zoom(direction) => zoom(app, direction),
+        Message::NudgeStep(direction) => app.step = app.step.other(direction),
+        Message::Paste(_) => refuse(app, "pasted text goes into fields only"),
+        _ => {}
+    }
+}
+
+/// The text goes to the terminal, which puts it into its clipboard or does not: it never says.
+fn copy(app: &mut App, what: Copied) -> Option<Effect> {
+    let seen = app.seen();
+    let (name, text) = match (what, seen.description(app.chosen)) {
+        (Copied::Imprint, _) => ("imprint", seen.imprint.to_string() + "\n"),
+        (Copied::Descriptors, None) => {
+            refuse(app, NO_REGION);
+            return None;
+        }
+        (Copied::Descriptors, Some(description)) => {
+            let line = |descriptor: &Descriptor| {
+                let value = value::text((descriptor.measure)(&description), descriptor.unit);
+                format!("{}\t{}\n", descriptor.key, value.as_deref().unwrap_or("–"))
+            };
+            ("descriptors", DESCRIPTORS.iter().map(line).collect())
+        }
+    };
+    let length = value::counted(text.chars().count() as u64, "character");
+    inform(
+        app,
+        format!("{name} sent to your terminal's clipboard ({length})"),
+    );
+    Some(Effect::Terminal(TerminalEffect::Copy(text)))
+}
+
+fn open_form(app: &mut App, form: FormDialog) {
+    app.mode = Mode::Draw;
+    app.dialogs.push(Dialog::Form(Box::new(form)));
+}
+
+fn open_list(app: &mut App, purpose: Purpose) -> Effect {
+    app.mode = Mode::Draw;
+    app.dialogs
+        .push(Dialog::List(ListDialog::new(purpose, Vec::new())));
+    Effect::Library(Request::List)
+}
+
+fn at_end(end: End, count: u8) -> u8 {
+    match end {
+        End::First => 0,
+        End::Last => count - 1,
+    }
+}
+
+fn move_cursor(app: &mut App, arrow: Arrow) {
+    let sensor = app.history.present().sensor;
+    let (dx, dy) = arrow.step();
+    app.cursor.0 = app
+        .cursor
+        .0
+        .saturating_add_signed(dx)
+        .min(sensor.columns() - 1);
+    app.cursor.1 = app
+        .cursor
+        .1
+        .saturating_add_signed(dy)
+        .min(sensor.rows() - 1);
+}
+
+/// Selects the region that comes `by` further on, the first after the last.
+fn choose_region(app: &mut App, by: i8) {
+    let seen = app.seen();
+    let Some((now, _)) = seen.region(app.chosen) else {
+        return inform(app, NO_REGION);
+    };
+    let count = seen.regions.len();
+    if count == 1 {
+        return inform(app, "there is no other region");
+    }
+    app.chosen = Some(around(now, by, count));
+}

@@ -1,0 +1,158 @@
+//! The matrix with its rulers. A matrix that is larger than its pane scrolls with the cursor.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+use ratatui::style::{Modifier, Style};
+
+use crate::description::region::{Kind, Region};
+use crate::tui::app::document::Seen;
+use crate::tui::app::layout::Grid;
+use crate::tui::app::state::{App, Display};
+use crate::tui::widget::theme::Role;
+use crate::tui::widget::write;
+
+/// Draws the matrix; answers where the cursor is.
+pub fn draw(app: &App, seen: &Seen, buffer: &mut Buffer, area: Rect) -> Option<Position> {
+    let imprint = &seen.imprint;
+    let theme = app.theme();
+    let grid = Grid::of(area, imprint, app.cursor());
+    let (cell, columns, rows) = (grid.cell, grid.columns, grid.rows);
+    // A number wants four characters with the space before the next one.
+    let every = match cell {
+        1 => 5,
+        2 => 2,
+        _ => 1,
+    };
+    for (index, column) in columns.visible().filter(|(_, column)| column % every == 0) {
+        let place = write::right_of(write::row(area, 0), grid.x + index * cell);
+        write::line(
+            buffer,
+            place,
+            theme,
+            [(column.to_string().as_str(), Role::Quiet)],
+        );
+    }
+    let chosen = seen.region(app.chosen).map(|(_, region)| region);
+    let mut cursor = None;
+    for (index, row) in rows.visible() {
+        let line = write::row(area, usize::from(index * grid.lines) + 1);
+        write::line(
+            buffer,
+            line,
+            theme,
+            [(format!("{row:>2}").as_str(), Role::Quiet)],
+        );
+        for (index, column) in columns.visible() {
+            let place = Rect {
+                x: grid.x + index * cell,
+                y: line.y,
+                width: cell,
+                height: grid.lines,
+            };
+            let here = (column, row) == app.cursor();
+            draw_taxel(
+                app,
+                seen,
+                role(seen, chosen, column, row),
+                (column, row),
+                buffer,
+                place,
+            );
+            if here {
+                cursor = Some(Position::new(place.x, place.y));
+            }
+        }
+    }
+    cursor
+}
+
+/// A taxel: two characters, or more of the same where it is drawn larger. The first one is the cursor's, where that is
+/// here; the second one still tells the state: a blank is an inactive taxel.
+fn draw_taxel(
+    app: &App,
+    seen: &Seen,
+    role: Role,
+    (column, row): (u8, u8),
+    buffer: &mut Buffer,
+    place: Rect,
+) {
+    let theme = app.theme();
+    let [first, second] = match app.display {
+        Display::Imprint => theme.taxel(role),
+        Display::Shades => theme.shade(coverage(seen, column, row)),
+        Display::Percent => percent(app, coverage(seen, column, row)),
+    };
+    let here = (column, row) == app.cursor();
+    // Numbers side by side are told apart by their weight.
+    let heavy = app.display == Display::Percent && column % 2 == 1 && first.is_ascii_digit();
+    let style = theme.style(role);
+    let weight = (style.add_modifier - Modifier::DIM) | Modifier::BOLD;
+    let style = if heavy {
+        Style {
+            add_modifier: weight,
+            ..style
+        }
+    } else {
+        style
+    };
+    // Full cells are filled, a sign or a number stands in the corner.
+    let fill = if first == second && !first.is_ascii_digit() {
+        first
+    } else {
+        ' '
+    };
+    for position in place.intersection(*buffer.area()).positions() {
+        let top = position.y == place.y;
+        let (character, style) = match (position.x - place.x, top) {
+            (0, true) if here => (
+                if place.width > 1 { '[' } else { first },
+                theme.style(Role::Cursor),
+            ),
+            (0, true) => (first, style),
+            (1, true) => (second, style),
+            _ => (fill, style),
+        };
+        buffer[position].set_char(character).set_style(style);
+    }
+}
+
+/// What a taxel is to the region that is described.
+fn role(seen: &Seen, chosen: Option<&Region>, column: u8, row: u8) -> Role {
+    let active = seen.imprint.get(column, row);
+    let in_region = chosen
+        .filter(|region| region.taxels().get(column, row))
+        .map(Region::kind);
+    match (active, in_region) {
+        (true, Some(_)) => Role::Chosen,
+        (true, None) => Role::Active,
+        (false, Some(Kind::Hole)) => Role::Hole,
+        (false, _) => Role::Inactive,
+    }
+}
+
+/// A drawn taxel counts as covered.
+fn coverage(seen: &Seen, column: u8, row: u8) -> f64 {
+    let drawn = if seen.imprint.get(column, row) {
+        1.0
+    } else {
+        0.0
+    };
+    seen.coverage(column, row).unwrap_or(drawn)
+}
+
+/// Two digits, cut rather than rounded so that 49.9 % is not shown as 50; full and empty cells by their signs.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "0 to 99"
+)]
+fn percent(app: &App, coverage: f64) -> [char; 2] {
+    if coverage <= 0.0 || coverage >= 1.0 {
+        return app.theme().shade(coverage);
+    }
+    let percent = (coverage * 100.0) as u8;
+    [
+        char::from(b'0' + percent / 10),
+        char::from(b'0' + percent % 10),
+    ]
+}

@@ -1,0 +1,198 @@
+//! The command line at the foot of the screen: every action by its name, figures and sensors with their numbers.
+//!
+//! Names and flags are those of the program's own command line: `figure hexagon --side 3 --angle 17`,
+//! `load washer`, `sensor --columns 32 --rows 32`. What is not given is as it is now, or the default.
+
+use crate::figure::{Figure, Kind};
+use crate::formats::name::Name;
+use crate::parameter::Parameter;
+use crate::quote::shortened;
+use crate::source::Source;
+use crate::storage::store::{Expected, Origin};
+use crate::tui::app::document::Document;
+use crate::tui::app::message::Message;
+use crate::tui::app::state::App;
+use crate::tui::keys::binding::Context;
+use crate::tui::prompt::commands::{Command, Takes, find};
+use crate::tui::shapes::purpose::Purpose;
+
+/// What a line asks for.
+///
+/// # Errors
+/// What is wrong with it, in a sentence.
+pub fn read(line: &str, app: &App) -> Result<Message, String> {
+    let line = line.trim();
+    let (name, rest) = line
+        .split_once(' ')
+        .map_or((line, ""), |(name, rest)| (name, rest.trim()));
+    let complete = || app.keymap().label(Context::Command, &Message::Field(1));
+    let command = find(name).ok_or_else(|| {
+        let complete = complete();
+        format!(
+            "{:?} is unknown; {complete} shows the commands",
+            shortened(name)
+        )
+    })?;
+    let words: Vec<&str> = rest.split_whitespace().collect();
+    if let Some((_, message)) = command.words.iter().find(|(word, _)| *word == rest) {
+        return Ok(message.clone());
+    }
+    let unexpected = || unexpected(command, rest);
+    match (command.takes, &words[..]) {
+        (Takes::Deleted, []) => match &app.removed {
+            Some(name) => Ok(Message::Restore(name.clone())),
+            None => Err(format!(
+                "restore needs the name of a deleted shape; {} shows them",
+                complete()
+            )),
+        },
+        (_, []) | (Takes::Nothing, _) => Err(unexpected()),
+        (Takes::Shape(purpose), _) => {
+            let name = name_of(rest)?.to_string();
+            Ok(match purpose {
+                Purpose::Load => Message::LoadNamed(name),
+                Purpose::Picture => Message::PictureNamed(name),
+                Purpose::Delete => Message::AskRemove(name),
+            })
+        }
+        (Takes::Deleted, _) => Ok(Message::Restore(name_of(rest)?.to_string())),
+        (Takes::Name, _) if app.seen().imprint.is_empty() => {
+            Err("nothing to save: the matrix is empty".to_owned())
+        }
+        (Takes::Name, _) => Ok(app.storing(name_of(rest)?)),
+        (Takes::Figure, [kind, pairs @ ..]) => figure(kind, pairs, app),
+        (Takes::Sensor, pairs) => sensor(pairs, app),
+        (Takes::Ranges, pairs) => crate::tui::prompt::explore::read(pairs, app),
+        (Takes::Degrees, _) => match rest.parse() {
+            Ok(degrees) if (-360..=360).contains(&degrees) => Ok(Message::Turn(degrees)),
+            _ => Err(format!(
+                "turn takes whole degrees from -360 to 360, found {:?}",
+                shortened(rest)
+            )),
+        },
+        (Takes::Taxel, [column, row]) => {
+            let sensor = app.shown().sensor;
+            let within = |text: &str, count: u8| text.parse().ok().filter(|&at: &u8| at < count);
+            match (within(column, sensor.columns()), within(row, sensor.rows())) {
+                (Some(column), Some(row)) => Ok(Message::PointAt(column, row)),
+                _ => Err(format!(
+                    "there is no such taxel: columns are 0 to {}, rows 0 to {}",
+                    sensor.columns() - 1,
+                    sensor.rows() - 1
+                )),
+            }
+        }
+        (Takes::Way, [dx, dy]) => {
+            let cells = |text: &str| text.parse().ok().filter(|cells: &f64| cells.is_finite());
+            match (cells(dx), cells(dy)) {
+                (Some(dx), Some(dy)) => Ok(Message::Move(dx, dy)),
+                _ => Err(unexpected()),
+            }
+        }
+        (Takes::Taxel | Takes::Way, _) => Err(unexpected()),
+    }
+}
+
+/// What a command takes, and that something else was found.
+fn unexpected(command: &Command, rest: &str) -> String {
+    let words = command.words.iter().map(|(word, _)| *word);
+    let mut taken: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+    taken.extend(Some(command.takes.form()).filter(|form| !form.is_empty()));
+    let taken = match taken.split_last() {
+        None => "nothing".to_owned(),
+        Some((last, [])) => (*last).to_owned(),
+        Some((last, others)) => format!("{} or {last}", others.join(", ")),
+    };
+    let found = if rest.is_empty() {
+        String::new()
+    } else {
+        format!(", found {:?}", shortened(rest))
+    };
+    format!("{} takes {taken}{found}", command.name)
+}
+
+fn name_of(text: &str) -> Result<Name, String> {
+    Name::new(text).map_err(|error| error.to_string())
+}
+
+/// The numbers of `--key value` pairs, each key once.
+fn numbers(pairs: &[&str], side: u8) -> Result<Vec<(Parameter, f64)>, String> {
+    let mut numbers: Vec<(Parameter, f64)> = Vec::new();
+    for pair in pairs.chunks(2) {
+        let flag = pair.first().copied().unwrap_or_default();
+        let key = flag
+            .strip_prefix("--")
+            .ok_or_else(|| format!("expected a flag like --side, found {}", shortened(flag)))?;
+        let parameter =
+            Parameter::from_flag(key).ok_or_else(|| format!("{} is unknown", shortened(flag)))?;
+        if numbers.iter().any(|(given, _)| *given == parameter) {
+            return Err(format!("{flag} is given twice"));
+        }
+        let text = pair
+            .get(1)
+            .ok_or_else(|| format!("{flag} needs a number"))?;
+        let value = parameter.read(text, side);
+        numbers.push((parameter, value.map_err(|error| error.labelled())?));
+    }
+    Ok(numbers)
+}
+
+fn figure(kind: &str, pairs: &[&str], app: &App) -> Result<Message, String> {
+    let sensor = app.shown().sensor;
+    let kind = Kind::from_name(kind).ok_or_else(|| {
+        format!(
+            "figure: {:?} is unknown, expected one of {}",
+            shortened(kind),
+            Kind::ALL.map(Kind::name).join(", ")
+        )
+    })?;
+    let values = numbers(pairs, sensor.side())?;
+    let own: Vec<Parameter> = kind.parameters().collect();
+    if let Some((foreign, _)) = values
+        .iter()
+        .find(|(parameter, _)| !own.contains(parameter))
+    {
+        return Err(format!(
+            "--{}: the {} has none",
+            foreign.flag(),
+            kind.name()
+        ));
+    }
+    let figure = values.into_iter().try_fold(
+        Figure::default_of(kind, sensor.side()),
+        |figure, (parameter, value)| figure.with(parameter, value, sensor.side()),
+    );
+    let figure = figure.map_err(|error| error.to_string())?;
+    Ok(Message::Become(Box::new(Document::touched(
+        sensor,
+        Source::Figure(figure),
+    ))))
+}
+
+fn sensor(pairs: &[&str], app: &App) -> Result<Message, String> {
+    let document = app.shown();
+    let values = numbers(pairs, crate::sensor::MAX_SIDE)?;
+    let sensor = values
+        .into_iter()
+        .try_fold(document.sensor, |sensor, (parameter, value)| {
+            sensor.with(parameter, value)
+        });
+    Ok(Message::Become(Box::new(
+        document.on(sensor.map_err(|error| error.to_string())?),
+    )))
+}
+
+impl App {
+    /// What stores the document under a name. Over the file that it came from it asks, as over any other.
+    pub(in crate::tui) fn storing(&self, name: Name) -> Message {
+        let own = self
+            .stored()
+            .filter(|stored| stored.owner == Origin::Own && name.same(&stored.name));
+        let stamp = own.map(|stored| stored.stamp);
+        let shape = Box::new(self.history.present().to_shape(name));
+        match stamp {
+            Some(stamp) => Message::Replace(shape, stamp),
+            None => Message::Store(shape, Expected::Nothing),
+        }
+    }
+}

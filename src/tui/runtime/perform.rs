@@ -1,0 +1,221 @@
+//! The only place of the screen that touches the world: the library, the journal of unsaved work, and workers.
+
+pub use crate::tui::runtime::workers::Post;
+
+use std::io;
+use std::sync::Arc;
+
+use crate::tui::runtime::journal_writer::Keeper;
+use crate::tui::runtime::workers::Workers;
+use tempfile::TempDir;
+
+use crate::formats::name::Name;
+use crate::formats::shape::Shape;
+use crate::formats::value::counted;
+use crate::storage::error::LibraryError;
+use crate::storage::journal::{Journal, Orphan, UNNAMED};
+use crate::storage::store::{Expected, Library};
+use crate::tui::app::message::{Answer, Left, Message};
+use crate::tui::app::state::App;
+use crate::tui::app::update::update;
+use crate::tui::runtime::effect::{Effect, Request, TerminalEffect};
+
+/// The world: a library, the work that died programs left in it, and the journal of this one.
+#[derive(Debug)]
+pub struct World {
+    library: Library,
+    /// The work that is offered, and how many there are with it that wait.
+    orphan: Option<(Orphan, usize)>,
+    keeper: Keeper,
+    workers: Workers,
+    /// The library's folder where that is one for the time being. The last field: it goes after the keeper has written.
+    _scratch: Option<TempDir>,
+}
+
+impl World {
+    /// The world around a library.
+    pub fn new(library: Library) -> Self {
+        let keeper = Keeper::new(Journal::new(&library));
+        let mut world = Self {
+            library,
+            orphan: None,
+            keeper,
+            workers: Workers::default(),
+            _scratch: None,
+        };
+        world.orphan = world.newest_orphan();
+        world
+    }
+
+    /// A library for a script: what is in it is used, but no unsaved work is offered or kept there, so that the same
+    /// script does the same every time.
+    pub fn quiet(library: Library) -> Self {
+        Self {
+            library,
+            orphan: None,
+            keeper: Keeper::idle(),
+            workers: Workers::default(),
+            _scratch: None,
+        }
+    }
+
+    /// One only: the others are for other programs, or for later.
+    fn newest_orphan(&self) -> Option<(Orphan, usize)> {
+        let mut all = Orphan::all(&self.library);
+        let count = all.len();
+        all.pop().map(|newest| (newest, count))
+    }
+
+    /// A world of its own: an empty library in a folder that goes with it.
+    ///
+    /// # Errors
+    /// Where the system gives no folder for the time being.
+    pub fn scratch() -> io::Result<Self> {
+        let folder = tempfile::tempdir()?;
+        let world = Self::new(Library::open(folder.path().join("library")));
+        Ok(Self {
+            _scratch: Some(folder),
+            ..world
+        })
+    }
+
+    /// The same with shapes in it, and with unsaved work that programs left when they died, the last one last.
+    ///
+    /// # Errors
+    /// What the system or the library refuses, in a sentence.
+    pub fn furnished(shapes: &[Shape], leftovers: &[Shape]) -> Result<Self, String> {
+        let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+        let library = Library::open(folder.path().join("library"));
+        let told = |error: LibraryError| error.to_string();
+        for shape in shapes {
+            library.save(shape, Expected::Nothing).map_err(told)?;
+        }
+        for leftover in leftovers {
+            // What is kept stays when a journal is dropped, as when its program dies.
+            Journal::new(&library).keep(leftover).map_err(told)?;
+        }
+        Ok(Self {
+            _scratch: Some(folder),
+            ..Self::new(library)
+        })
+    }
+
+    /// Has long work done beside the program, and what it tells sent by `post`. Without this, such work is done at once
+    /// and nothing is told of how far it is or how long it takes: scripts show the same every time.
+    #[must_use]
+    pub fn with_workers(mut self, post: Post) -> Self {
+        self.keeper.tell(Arc::clone(&post));
+        self.workers = Workers::beside(post);
+        self
+    }
+
+    /// What there is to say at the start: that a program left work when it died.
+    pub fn greeting(&self) -> Option<Message> {
+        Some(Message::Answer(Answer::Found(self.left()?)))
+    }
+
+    fn left(&self) -> Option<Left> {
+        let (orphan, waiting) = self.orphan.as_ref()?;
+        let taxels = counted(orphan.shape.imprint.count().into(), "taxel");
+        let what = match orphan.shape.name.as_str() {
+            UNNAMED => taxels,
+            name => format!("{taxels} of {name}"),
+        };
+        let waiting = *waiting;
+        Some(Left { what, waiting })
+    }
+
+    /// Does what a message says, with all that follows from it. What is left is for the terminal.
+    pub fn handle(&mut self, app: &mut App, message: Message) -> Option<TerminalEffect> {
+        let mut next = message;
+        let left = loop {
+            match update(app, next) {
+                Some(Effect::Library(request)) => next = self.perform(request),
+                Some(Effect::Work(work)) => match self.workers.perform(work) {
+                    Some(told) => next = Message::Told(told),
+                    None => break None,
+                },
+                Some(Effect::Terminal(effect)) => break Some(effect),
+                None => break None,
+            }
+        };
+        self.keeper.note(app);
+        left
+    }
+
+    /// Puts unsaved work in safety at once: the program is about to end.
+    pub fn secure(&mut self) {
+        self.keeper.flush();
+    }
+
+    fn perform(&mut self, request: Request) -> Message {
+        let answer = match request {
+            Request::List => Answer::List(self.library.list().map_err(|error| error.to_string())),
+            Request::Trash => {
+                Answer::Trash(self.library.in_trash().map_err(|error| error.to_string()))
+            }
+            Request::Read(names) => {
+                let read = |name: &str| self.library.load(name).map_err(|error| error.to_string());
+                Answer::Read(
+                    names
+                        .iter()
+                        .map(|(index, name)| (*index, read(name)))
+                        .collect(),
+                )
+            }
+            Request::Named(purpose, name) => {
+                let loaded = self.library.load(&name).map(Box::new);
+                Answer::Named(purpose, loaded.map_err(|error| error.to_string()))
+            }
+            Request::Store(shape, expected) => match self.library.save(&shape, expected) {
+                Ok(stamp) => Answer::Stored(shape.name.to_string(), stamp),
+                Err(error) => match error {
+                    LibraryError::Exists { stamp, .. } | LibraryError::Changed { stamp, .. } => {
+                        Answer::Differs(shape, stamp, error.to_string())
+                    }
+                    _ => Answer::Failed(error.to_string()),
+                },
+            },
+            Request::Remove(name) => done(self.library.delete(&name), Answer::Removed),
+            Request::Restore(name) => done(self.library.restore(&name), Answer::Restored),
+            Request::Recover => match self.orphan.take() {
+                Some((orphan, _)) => {
+                    let shape = orphan.shape.clone();
+                    // It is in this program's journal before it is taken out of that of the dead one.
+                    self.keeper.keep(shape.clone());
+                    if self.keeper.flush() {
+                        orphan.discard();
+                    }
+                    Answer::Recovered(Box::new(shape))
+                }
+                None => Answer::Failed("no unsaved work is left".to_owned()),
+            },
+            Request::GiveUp => self.give_up(),
+        };
+        Message::Answer(answer)
+    }
+
+    /// Unsaved work that is not wanted goes the way of a deleted shape. Only where it is gone is there other work to
+    /// offer: this one again would be asked about without end.
+    fn give_up(&mut self) -> Answer {
+        let Some((orphan, _)) = self.orphan.take() else {
+            return Answer::Failed("no unsaved work is left".to_owned());
+        };
+        let mut shape = orphan.shape.clone();
+        if let Ok(name) = Name::new(UNNAMED) {
+            shape = shape.renamed(name);
+        }
+        match self.library.throw_away(&shape) {
+            Ok(name) => {
+                orphan.discard();
+                self.orphan = self.newest_orphan();
+                Answer::GivenUp(name, self.left())
+            }
+            Err(error) => Answer::NotGivenUp(error.to_string()),
+        }
+    }
+}
+
+fn done(result: Result<String, LibraryError>, answer: fn(String) -> Answer) -> Answer {
+    result.map_or_else(|error| Answer::Failed(error.to_string()), answer)
+}

@@ -1,0 +1,253 @@
+//! Long work: sweeps and the files that are made of them. Beside the program where somebody hears what they tell;
+//! otherwise at once, before the next key.
+//!
+//! A worker ends when it is done or told to stop, and nothing is left waking up afterwards. At the end of the program a
+//! sweep is left to die with it; a file that is being written is given up first, so that no part of it stays.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use crate::pose::grid::Grid;
+use crate::storage::sweep_file::{AtlasFile, PoseFile, SweepFileError};
+use crate::storage::unfinished::Existing;
+use crate::sweep::plan::Shard;
+use crate::sweep::sample::Sample;
+use crate::sweep::survey::{Survey, Watch};
+use crate::tui::explore::export::is_poses;
+use crate::tui::explore::message::{Findings, Progress, Told};
+use crate::tui::runtime::effect::Work;
+
+/// Takes what workers tell, from any thread.
+pub type Post = Arc<dyn Fn(Told) + Send + Sync>;
+
+/// How far a sweep is is told no more often than this.
+const PAUSE: Duration = Duration::from_millis(100);
+
+/// A measurement takes the best of as many runs as there are within this time.
+const MEASURED: Duration = Duration::from_millis(30);
+
+/// What was begun, and how to stop it.
+#[derive(Default)]
+pub(in crate::tui) struct Workers {
+    /// None where work is done at once.
+    post: Option<Post>,
+    stop: Arc<AtomicBool>,
+    measuring: Arc<AtomicBool>,
+    /// The thread that writes a file.
+    writing: Option<JoinHandle<()>>,
+}
+
+impl std::fmt::Debug for Workers {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Workers")
+            .field("beside", &self.post.is_some())
+            .finish_non_exhaustive()
+    }
+}
+
+impl Workers {
+    /// Workers beside the program.
+    pub(in crate::tui) fn beside(post: Post) -> Self {
+        let mut workers = Self::default();
+        workers.post = Some(post);
+        workers
+    }
+
+    /// Begins a piece of work, or does it: then the answer is what it tells at its end.
+    pub(in crate::tui) fn perform(&mut self, work: Work) -> Option<Told> {
+        match work {
+            Work::Stop => {
+                self.stop.store(true, Ordering::Relaxed);
+                None
+            }
+            Work::Measure(grid) => {
+                self.measuring.store(true, Ordering::Relaxed);
+                let post = self.post.clone()?;
+                self.measuring = Arc::default();
+                let stop = Arc::clone(&self.measuring);
+                std::thread::spawn(move || {
+                    if let Some(time) = measure(&grid, &stop) {
+                        post(Told::Estimate(grid, time));
+                    }
+                });
+                None
+            }
+            Work::Sweep(number, grid) => {
+                let stop = self.begin();
+                let Some(post) = self.post.clone() else {
+                    return Some(sweep(number, &grid, &stop, None));
+                };
+                std::thread::spawn(move || {
+                    let clock = Clock::new(number, &post);
+                    let told = guarded(number, || sweep(number, &grid, &stop, Some(&clock)));
+                    post(told);
+                });
+                None
+            }
+            Work::Write(number, findings, name, existing) => {
+                let stop = self.begin();
+                let Some(post) = self.post.clone() else {
+                    return Some(write(number, &findings, &name, existing, &stop, None));
+                };
+                let thread = std::thread::spawn(move || {
+                    let clock = Clock::new(number, &post);
+                    let told = guarded(number, || {
+                        write(number, &findings, &name, existing, &stop, Some(&clock))
+                    });
+                    post(told);
+                });
+                self.writing = Some(thread);
+                None
+            }
+        }
+    }
+
+    /// A new piece of work: stops what was under way.
+    fn begin(&mut self) -> Arc<AtomicBool> {
+        self.stop.store(true, Ordering::Relaxed);
+        self.measuring.store(true, Ordering::Relaxed);
+        self.stop = Arc::default();
+        Arc::clone(&self.stop)
+    }
+}
+
+impl Drop for Workers {
+    fn drop(&mut self) {
+        self.begin();
+        if let Some(thread) = self.writing.take() {
+            // It catches its own panics.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Tells how far a sweep is, now and then.
+struct Clock<'a> {
+    number: u64,
+    post: &'a Post,
+    start: Instant,
+    poses: AtomicU64,
+    last: Mutex<Instant>,
+}
+
+impl<'a> Clock<'a> {
+    fn new(number: u64, post: &'a Post) -> Self {
+        let start = Instant::now();
+        Self {
+            number,
+            post,
+            start,
+            poses: AtomicU64::new(0),
+            last: Mutex::new(start),
+        }
+    }
+
+    /// So many poses more are done.
+    fn add(&self, poses: u64) {
+        let poses = self.poses.fetch_add(poses, Ordering::Relaxed) + poses;
+        // Another thread that is at it tells as much.
+        if let Ok(mut last) = self.last.try_lock()
+            && last.elapsed() >= PAUSE
+        {
+            *last = Instant::now();
+            let elapsed = self.start.elapsed();
+            (self.post)(Told::Progress(self.number, Progress { poses, elapsed }));
+        }
+    }
+}
+
+/// What a worker tells that panicked: otherwise the program would wait for it for ever.
+fn guarded(number: u64, work: impl FnOnce() -> Told) -> Told {
+    let told = catch_unwind(AssertUnwindSafe(work));
+    told.unwrap_or_else(|_| Told::Failed(number, "the work failed; this is a bug".to_owned()))
+}
+
+/// How long a grid takes, about; nothing where that is no longer asked.
+fn measure(grid: &Grid, stop: &AtomicBool) -> Option<Duration> {
+    let sample = Sample::of(grid);
+    let begun = Instant::now();
+    let mut best = f64::INFINITY;
+    while !best.is_finite() || begun.elapsed() < MEASURED {
+        let start = Instant::now();
+        Survey::of(&sample.grid, Shard::WHOLE, Watch::nothing());
+        best = best.min(start.elapsed().as_secs_f64());
+        if stop.load(Ordering::Relaxed) {
+            return None;
+        }
+    }
+    Duration::try_from_secs_f64(best * sample.times).ok()
+}
+
+fn sweep(number: u64, grid: &Grid, stop: &AtomicBool, clock: Option<&Clock<'_>>) -> Told {
+    let progress = |poses: u64| going(poses, stop, clock);
+    let watch = Watch {
+        progress: &progress,
+        rows: None,
+    };
+    let survey = Survey::of(grid, Shard::WHOLE, watch);
+    let classes = survey.atlas.distinct_classes();
+    Told::Swept(number, Arc::new(Findings { survey, classes }))
+}
+
+/// Takes note of poses that are done; answers whether to go on.
+fn going(poses: u64, stop: &AtomicBool, clock: Option<&Clock<'_>>) -> bool {
+    if let Some(clock) = clock {
+        clock.add(poses);
+    }
+    !stop.load(Ordering::Relaxed)
+}
+
+fn write(
+    number: u64,
+    findings: &Findings,
+    name: &str,
+    existing: Existing,
+    stop: &AtomicBool,
+    clock: Option<&Clock<'_>>,
+) -> Told {
+    let survey = &findings.survey;
+    let written = if is_poses(name) {
+        write_poses(survey, name, existing, stop, clock)
+    } else {
+        match AtlasFile::new(name) {
+            Ok(file) => file.write(survey, existing, stop).map(|()| true),
+            Err(expected) => return Told::Failed(number, format!("{name}: {expected}")),
+        }
+    };
+    match written {
+        Ok(true) => Told::Written(number, name.to_owned()),
+        Err(error) if error.exists() && existing == Existing::Kept => {
+            Told::Exists(number, name.to_owned())
+        }
+        Err(error) if !stop.load(Ordering::Relaxed) => Told::Failed(number, error.to_string()),
+        _ => Told::Failed(number, "stopped; nothing was written".to_owned()),
+    }
+}
+
+/// Goes through the grid once more: the numbers of its poses are kept nowhere. Answers whether it came to its end.
+fn write_poses(
+    survey: &Survey,
+    name: &str,
+    existing: Existing,
+    stop: &AtomicBool,
+    clock: Option<&Clock<'_>>,
+) -> Result<bool, SweepFileError> {
+    let mut file = PoseFile::new(name, &survey.grid, existing)?;
+    // A disk that is full ends the work, but is no wish to stop.
+    let full = AtomicBool::new(false);
+    let progress = |poses: u64| going(poses, stop, clock) && !full.load(Ordering::Relaxed);
+    let mut take = |row: u64, ids: &[u32]| file.take(row, ids, &full);
+    let watch = Watch {
+        progress: &progress,
+        rows: Some(&mut take),
+    };
+    let complete = Survey::of(&survey.grid, Shard::WHOLE, watch).complete();
+    let whole = file.whole()?;
+    if complete {
+        whole.keep()?;
+    }
+    Ok(complete)
+}

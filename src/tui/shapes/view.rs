@@ -1,0 +1,169 @@
+//! The list of shapes with its filter, and a preview of the selected one.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::description::region::{Kind, regions};
+use crate::storage::store::{Entry, Loaded, Origin};
+use crate::tui::app::layout::{LIST_HEAD, list, list_first};
+use crate::tui::app::message::{Erase, Message};
+use crate::tui::app::state::App;
+use crate::tui::keys::binding::Context;
+use crate::tui::shapes::purpose::Purpose;
+use crate::tui::shapes::state::ListDialog;
+use crate::tui::widget::columns::narrow;
+use crate::tui::widget::theme::Role;
+use crate::tui::widget::{thumbnail, write};
+
+/// Columns of a row beside the name: its sign, its size, where it comes from.
+const BESIDE: usize = 18;
+
+/// The fewest columns of a name that tell shapes apart; on a screen that is narrower still the others give way.
+const SHORTEST: usize = 8;
+
+/// Columns of a name are not more than this without need, so that what follows stays near.
+const USUAL: usize = 24;
+
+/// Draws the list; answers where the text cursor is.
+pub fn draw(app: &App, dialog: &ListDialog, buffer: &mut Buffer, body: Rect) -> Option<Position> {
+    let theme = app.theme();
+    write::clear(buffer, body);
+    let (area, preview) = list(body);
+    let title = match dialog.purpose() {
+        Purpose::Load => "Load",
+        Purpose::Delete => "Delete",
+        Purpose::Picture => "Picture",
+    };
+    let filter = format!("  filter: {}", dialog.filter());
+    let count = format!("   {} of {}", dialog.rows().len(), dialog.total());
+    let head = [(title, Role::Title), (filter.as_str(), Role::Text)];
+    let end = write::line(buffer, area, theme, head);
+    write::line(
+        buffer,
+        write::right_of(area, end),
+        theme,
+        [(count.as_str(), Role::Quiet)],
+    );
+    if dialog.rows().len() == 0 {
+        let text = match (dialog.total(), dialog.purpose()) {
+            (0, Purpose::Delete) => "there are no shapes of your own".to_owned(),
+            (0, _) => "the library is empty".to_owned(),
+            _ => {
+                let shorter = Message::Erase(Erase::Before);
+                let key = app.keymap().label(Context::List, &shorter);
+                format!("no name contains this; {key} shortens it")
+            }
+        };
+        write::line(
+            buffer,
+            write::row(area, usize::from(LIST_HEAD)),
+            theme,
+            [(text.as_str(), Role::Quiet)],
+        );
+    }
+    let first = list_first(area, dialog.rows().len(), dialog.selected());
+    let lines = usize::from(area.height.saturating_sub(LIST_HEAD));
+    let below = dialog.rows().len().saturating_sub(first + lines);
+    if first + below > 0 {
+        let hidden = format!("  {first} above, {below} below");
+        let row = write::row(area, usize::from(LIST_HEAD) - 1);
+        write::line(buffer, row, theme, [(hidden.as_str(), Role::Quiet)]);
+    }
+    for (index, (entry, read)) in dialog.rows().enumerate().skip(first).take(lines) {
+        let row = write::row(area, index - first + usize::from(LIST_HEAD));
+        draw_row(app, entry, read, index == dialog.selected(), buffer, row);
+    }
+    if let (Some(preview), Some((entry, Some(read)))) = (preview, dialog.choice()) {
+        draw_preview(app, entry, read, buffer, preview);
+    }
+    Some(Position::new(
+        end.min(area.right().saturating_sub(1)),
+        area.y,
+    ))
+}
+
+fn draw_row(
+    app: &App,
+    entry: &Entry,
+    read: Option<&Result<Loaded, String>>,
+    selected: bool,
+    buffer: &mut Buffer,
+    row: Rect,
+) {
+    // A sign beside the reversed line, for terminals that cannot reverse.
+    let sign = if selected { "> " } else { "  " };
+    let columns = usize::from(row.width).saturating_sub(BESIDE);
+    let columns = columns.clamp(SHORTEST, USUAL);
+    let name = app.theme().text(&entry.name);
+    let name = write::fitted(&name, columns, app.theme());
+    let gap = " ".repeat(columns + 1 - write::width(&name).min(columns));
+    let size = match read {
+        Some(Ok(loaded)) => format!(
+            "{:>2} x {:<2} ",
+            loaded.shape.imprint.columns(),
+            loaded.shape.imprint.rows()
+        ),
+        Some(Err(_)) => "broken  ".to_owned(),
+        None => "        ".to_owned(),
+    };
+    let origin = if entry.origin == Origin::Shipped {
+        "shipped"
+    } else {
+        ""
+    };
+    let role = if selected { Role::Focus } else { Role::Text };
+    let pieces = [
+        (sign, Role::Key),
+        (&name, role),
+        (&gap, role),
+        (size.as_str(), Role::Quiet),
+        (origin, Role::Quiet),
+    ];
+    write::line(buffer, row, app.theme(), pieces);
+}
+
+fn draw_preview(
+    app: &App,
+    entry: &Entry,
+    read: &Result<Loaded, String>,
+    buffer: &mut Buffer,
+    area: Rect,
+) {
+    let theme = app.theme();
+    // The name may need two lines, what made the shape more.
+    let mut used = write::wrapped(buffer, area, theme, &entry.name, Role::Title);
+    let mut say = |text: &str, role: Role| {
+        used += write::wrapped(buffer, write::below(area, narrow(used)), theme, text, role);
+        narrow(used)
+    };
+    match read {
+        Ok(loaded) => {
+            let imprint = &loaded.shape.imprint;
+            let count = |wanted: Kind| {
+                regions(imprint)
+                    .iter()
+                    .filter(|region| region.kind() == wanted)
+                    .count()
+            };
+            let facts = format!(
+                "NA {}, pieces {}, holes {}",
+                imprint.count(),
+                count(Kind::Exterior),
+                count(Kind::Hole)
+            );
+            let source = loaded
+                .shape
+                .source
+                .as_ref()
+                .map_or("drawn by hand".to_owned(), ToString::to_string);
+            say(&facts, Role::Text);
+            // At the same height for most of them.
+            let end = say(&source, Role::Quiet).max(4);
+            thumbnail::draw(app, imprint, buffer, write::below(area, end));
+        }
+        Err(reason) => {
+            say("broken:", Role::Error);
+            say(reason, Role::Text);
+        }
+    }
+}

@@ -1,0 +1,380 @@
+//! The loop: sleeps until there is a key, a signal or a worker's message, updates the state, draws.
+
+use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::time::Duration;
+
+use ratatui::Terminal;
+use ratatui::layout::Size;
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::io::Errno;
+
+use crate::tui::app::message::Message;
+use crate::tui::app::state::App;
+use crate::tui::app::view::view;
+use crate::tui::explore::message::Told;
+use crate::tui::runtime::effect::TerminalEffect;
+use crate::tui::runtime::mailbox::Mailbox;
+use crate::tui::runtime::perform::World;
+use crate::tui::terminal::device::{Device, Written};
+use crate::tui::terminal::input::{Input, Reader};
+use crate::tui::terminal::outcome::Outcome;
+use crate::tui::terminal::screen::Screen;
+use crate::tui::terminal::settings::Settings;
+use crate::tui::terminal::signals::{Said, Signals};
+use crate::tui::terminal::{job, session};
+
+/// Runs the program until it ends, and leaves the terminal as it was.
+pub(in crate::tui) fn run(
+    app: App,
+    world: World,
+    settings: &Settings,
+    mailbox: Mailbox,
+    watch: &mut dyn FnMut(&Input),
+) -> io::Result<Outcome> {
+    let device = Device::open()?;
+    let signals = Signals::new()?;
+    leave_on_panic();
+    let mut talk = Talk::new(watch, app, world, *settings, device, signals, mailbox);
+    let ended = catch_unwind(AssertUnwindSafe(|| {
+        talk.run().or_else(|error| match error {
+            // Whoever finds it out first: reading, writing, or taking the terminal anew.
+            lost if is_lost(&lost) => Ok(Outcome::Hangup),
+            error => Err(error),
+        })
+    }));
+    if !matches!(ended, Ok(Ok(Outcome::Quit))) {
+        // The end comes from outside: what is not saved stays in the journal.
+        let _ = talk.world.handle(&mut talk.app, Message::Killed);
+        talk.world.secure();
+    }
+    let left = session::leave();
+    match ended {
+        Ok(Ok(Outcome::Quit)) => left.map(|()| Outcome::Quit),
+        // A terminal that is gone takes no leave.
+        Ok(outcome) => outcome,
+        Err(panic) => resume_unwind(panic),
+    }
+}
+
+/// A panic here puts the terminal right before it is reported. One of a worker does not end the loop, and must not
+/// write over the screen: it is told when the terminal is the shell's again.
+fn leave_on_panic() {
+    let (hook, own) = (std::panic::take_hook(), std::thread::current().id());
+    std::panic::set_hook(Box::new(move |info| {
+        if std::thread::current().id() == own {
+            // Nothing better can be done with an error here than to report the panic all the same.
+            let _ = session::leave();
+            hook(info);
+        } else if !session::tell_later(&format!("{info}\n")) {
+            hook(info);
+        }
+    }));
+}
+
+struct Talk<'a> {
+    /// Is told of all that comes in.
+    watch: &'a mut dyn FnMut(&Input),
+    app: App,
+    world: World,
+    settings: Settings,
+    device: Device,
+    signals: Signals,
+    mailbox: Mailbox,
+    reader: Reader,
+    screen: Terminal<Screen>,
+    mouse: bool,
+    outcome: Option<Outcome>,
+}
+
+/// What there is to do.
+#[derive(Default)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "any of them may be so at the same time"
+)]
+struct Ready {
+    input: bool,
+    /// Nothing came in time.
+    late: bool,
+    signals: bool,
+    mail: bool,
+    gone: bool,
+}
+
+impl<'a> Talk<'a> {
+    fn new(
+        watch: &'a mut dyn FnMut(&Input),
+        app: App,
+        world: World,
+        settings: Settings,
+        device: Device,
+        signals: Signals,
+        mailbox: Mailbox,
+    ) -> Self {
+        let size = size(&device, &settings);
+        let screen = Screen::new(size, settings.abilities);
+        // A buffer in memory cannot fail: its error type has no values.
+        let Ok(screen) = Terminal::new(screen);
+        Self {
+            watch,
+            app,
+            world,
+            settings,
+            device,
+            signals,
+            mailbox,
+            reader: Reader::default(),
+            screen,
+            mouse: settings.mouse,
+            outcome: None,
+        }
+    }
+
+    fn run(&mut self) -> io::Result<Outcome> {
+        session::enter(&self.device, &self.settings, self.mouse)?;
+        self.tell_size();
+        if let Some(greeting) = self.world.greeting() {
+            self.update(greeting)?;
+        }
+        self.draw()?;
+        while self.outcome.is_none() {
+            let ready = self.wait(self.reader.patience())?;
+            // A signal before keys: who ends the program shall not have to wait for it to read what was typed.
+            if ready.signals {
+                self.hear()?;
+            }
+            if ready.gone {
+                self.outcome.get_or_insert(Outcome::Hangup);
+            }
+            if self.outcome.is_none() {
+                if ready.mail {
+                    self.collect()?;
+                }
+                self.read(&ready)?;
+                self.draw()?;
+            }
+        }
+        Ok(self.outcome.unwrap_or(Outcome::Quit))
+    }
+
+    /// Sleeps until there is something to do, or for `patience`.
+    fn wait(&self, patience: Option<Duration>) -> io::Result<Ready> {
+        let timeout = patience.and_then(|patience| Timespec::try_from(patience).ok());
+        let watched = [self.device.input(), self.signals.ear(), self.mailbox.bell()];
+        let mut fds = watched.map(|fd| PollFd::from_borrowed_fd(fd, PollFlags::IN));
+        match poll(&mut fds, timeout.as_ref()) {
+            Ok(0) => {
+                return Ok(Ready {
+                    late: true,
+                    ..Ready::default()
+                });
+            }
+            Ok(_) => {}
+            // A signal also rings its own bell.
+            Err(Errno::INTR) => return Ok(Ready::default()),
+            Err(error) => return Err(error.into()),
+        }
+        let [input, signals, mail] = fds.map(|fd| fd.revents());
+        let lost = PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL;
+        Ok(Ready {
+            gone: input.intersects(lost),
+            input: input.contains(PollFlags::IN),
+            late: false,
+            signals: !signals.is_empty(),
+            mail: !mail.is_empty(),
+        })
+    }
+
+    fn hear(&mut self) -> io::Result<()> {
+        for said in self.signals.heard() {
+            match said {
+                Said::End(signal) => {
+                    self.outcome.get_or_insert(Outcome::Signal(signal));
+                    return Ok(());
+                }
+                Said::Stop => self.suspend()?,
+                Said::Continue => self.resume()?,
+                Said::Size => self.measure(),
+            }
+        }
+        Ok(())
+    }
+
+    fn collect(&mut self) -> io::Result<()> {
+        let mut messages = self.mailbox.collect().into_iter();
+        messages.try_for_each(|message| self.update(message))
+    }
+
+    /// Reads what is there, or takes note that nothing more came in time.
+    fn read(&mut self, ready: &Ready) -> io::Result<()> {
+        let inputs = if ready.input {
+            let mut buffer = [0; 4096];
+            let Some(count) = self.device.read(&mut buffer)? else {
+                self.outcome = Some(Outcome::Hangup);
+                return Ok(());
+            };
+            self.reader.read(&buffer[..count])
+        } else if ready.late {
+            self.reader.settle()
+        } else {
+            return Ok(());
+        };
+        for input in inputs {
+            (self.watch)(&input);
+            let message = match input {
+                // Each key where the one before has led.
+                Input::Key(key) => self.app.keymap().lookup(self.app.context(), key),
+                Input::Paste(text) => Some(Message::Paste(text)),
+                Input::Mouse(mouse) => Some(Message::Mouse(mouse)),
+                Input::Size(columns, rows) => Some(Message::Resized(columns, rows)),
+            };
+            if let Some(message) = message {
+                self.update(message)?;
+            }
+            if self.outcome.is_some() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn update(&mut self, message: Message) -> io::Result<()> {
+        match self.world.handle(&mut self.app, message) {
+            None => {}
+            Some(TerminalEffect::Redraw) => self.redraw(),
+            Some(TerminalEffect::Suspend) => self.suspend()?,
+            Some(TerminalEffect::Mouse(on)) => {
+                self.mouse = on;
+                self.send(session::set_mouse(on).as_bytes())?;
+            }
+            Some(TerminalEffect::Copy(text)) if self.settings.kind.has_clipboard() => {
+                self.send(session::copied(&text).as_bytes())?;
+            }
+            Some(TerminalEffect::Copy(_)) => {
+                let save = self.app.key_of(&Message::Save);
+                self.refuse(&format!(
+                    "this terminal has no clipboard; {save} saves, 'taxel export' writes a file"
+                ));
+            }
+        }
+        if self.app.ended() {
+            self.outcome.get_or_insert(Outcome::Quit);
+        }
+        Ok(())
+    }
+
+    /// Writes what has changed on the screen, in one piece.
+    fn draw(&mut self) -> io::Result<()> {
+        let Ok(_) = self.screen.draw(|frame| view(&self.app, frame));
+        let frame = self.screen.backend_mut().take_frame();
+        self.send(&frame)
+    }
+
+    /// Writes something. Where it is cut off, by a signal while the terminal takes nothing, the next frame puts the screen
+    /// right; its first character ends whatever was begun.
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        if self.device.write(bytes, self.signals.ear())? == Written::Interrupted {
+            self.redraw();
+        }
+        Ok(())
+    }
+
+    /// Says that something cannot be done here.
+    fn refuse(&mut self, reason: &str) {
+        let told = Message::Told(Told::Refused(reason.to_owned()));
+        let _ = self.world.handle(&mut self.app, told);
+    }
+
+    /// Nothing is known of what the terminal shows: all of it is drawn next time.
+    fn redraw(&mut self) {
+        self.screen.backend_mut().forget();
+        let Ok(()) = self.screen.clear();
+    }
+
+    fn measure(&mut self) {
+        let size = size(&self.device, &self.settings);
+        let screen = self.screen.backend_mut();
+        let Ok(before) = ratatui::backend::Backend::size(screen);
+        if size != before {
+            screen.resize(size);
+            self.tell_size();
+        }
+    }
+
+    /// The state knows the size too: it finds what the mouse points at.
+    fn tell_size(&mut self) {
+        let Ok(size) = ratatui::backend::Backend::size(self.screen.backend());
+        (self.watch)(&Input::Size(size.width, size.height));
+        let _ = self
+            .world
+            .handle(&mut self.app, Message::Resized(size.width, size.height));
+    }
+
+    /// Gives the terminal back, stops, and takes it again when the shell says so.
+    fn suspend(&mut self) -> io::Result<()> {
+        if !job::has_shell() {
+            self.refuse("there is no shell to go back to");
+            return Ok(());
+        }
+        self.world.secure();
+        session::leave()?;
+        // From here on a "continue" is the answer to this stop.
+        let before = self.signals.heard();
+        if let Some(&Said::End(signal)) = before.first() {
+            self.outcome.get_or_insert(Outcome::Signal(signal));
+            return Ok(());
+        }
+        job::stop()?;
+        while self.outcome.is_none() {
+            for said in self.signals.heard() {
+                match said {
+                    Said::End(signal) => {
+                        self.outcome.get_or_insert(Outcome::Signal(signal));
+                        return Ok(());
+                    }
+                    Said::Continue => return self.resume(),
+                    Said::Stop | Said::Size => {}
+                }
+            }
+            // Another thread may be the one that was stopped first.
+            let mut fds = [
+                PollFd::from_borrowed_fd(self.signals.ear(), PollFlags::IN),
+                PollFd::from_borrowed_fd(self.device.input(), PollFlags::empty()),
+            ];
+            if poll(&mut fds, None).is_ok() && !fds[1].revents().is_empty() {
+                self.outcome = Some(Outcome::Hangup);
+            }
+        }
+        Ok(())
+    }
+
+    /// The terminal was somebody else's for a while.
+    fn resume(&mut self) -> io::Result<()> {
+        session::enter(&self.device, &self.settings, self.mouse)?;
+        self.measure();
+        self.redraw();
+        Ok(())
+    }
+}
+
+fn size(device: &Device, settings: &Settings) -> Size {
+    let (width, height) = settings
+        .size
+        .unwrap_or_else(|| device.size(settings.fallback));
+    Size { width, height }
+}
+
+/// Whether an error says that the terminal is gone.
+fn is_lost(error: &io::Error) -> bool {
+    let lost = [
+        Errno::IO,
+        Errno::PIPE,
+        Errno::NXIO,
+        Errno::NODEV,
+        Errno::BADF,
+    ];
+    error
+        .raw_os_error()
+        .is_some_and(|number| lost.iter().any(|errno| errno.raw_os_error() == number))
+}

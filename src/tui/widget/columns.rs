@@ -1,0 +1,94 @@
+//! Texts in the columns of a terminal, where a character may have two, or none.
+
+use ratatui::text::Span;
+
+/// A number of columns or lines, as places on the screen are counted.
+pub(in crate::tui) fn narrow(length: usize) -> u16 {
+    u16::try_from(length).unwrap_or(u16::MAX)
+}
+
+/// The columns that a text takes.
+pub fn width(text: &str) -> usize {
+    Span::raw(text).width()
+}
+
+/// As much of the beginning of a text as fits into so many columns.
+pub(in crate::tui) fn head(text: &str, room: usize) -> &str {
+    let mut ends = text
+        .char_indices()
+        .map(|(at, character)| at + character.len_utf8());
+    let mut kept = "";
+    while let Some(end) = ends.next().filter(|&end| width(&text[..end]) <= room) {
+        kept = &text[..end];
+    }
+    kept
+}
+
+/// Of a text that is typed into so many columns, the part that has its cursor in sight, and where the cursor stands in
+/// that.
+pub fn window(text: &str, cursor: usize, room: usize) -> (&str, usize) {
+    let (mut shown, mut column) = (text, cursor);
+    while column >= room.max(1)
+        && let Some(first) = shown.chars().next()
+    {
+        let (hidden, rest) = shown.split_at(first.len_utf8());
+        column = column.saturating_sub(width(hidden));
+        shown = rest;
+    }
+    (shown, column)
+}
+
+/// A text in lines of at most so many columns, broken at spaces, and inside words that are longer: paths have no spaces.
+pub fn broken(text: &str, room: usize) -> Vec<&str> {
+    let mut lines = Vec::new();
+    let mut rest = text.trim();
+    while !rest.is_empty() {
+        let fits = head(rest, room.max(1));
+        let end = if fits.len() == rest.len() {
+            rest.len()
+        } else {
+            // A character that is wider than the room goes into a line all the same.
+            let first = rest.chars().next().map_or(1, char::len_utf8);
+            let space =
+                rest[..fits.len() + usize::from(rest[fits.len()..].starts_with(' '))].rfind(' ');
+            space.filter(|&at| at > 0).unwrap_or(fits.len()).max(first)
+        };
+        let (piece, after) = rest.split_at(end);
+        lines.push(piece.trim_end());
+        rest = after.trim_start();
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_typed_is_seen_where_the_cursor_is() {
+        for (text, cursor, expected) in [
+            ("1234", 4, ("1234", 4)),
+            ("12345", 5, ("2345", 4)),
+            ("12345", 0, ("12345", 0)),
+            ("字字字", 6, ("字字", 4)),
+            ("字字字", 2, ("字字字", 2)),
+            ("", 0, ("", 0)),
+        ] {
+            assert_eq!(window(text, cursor, 5), expected, "{text} at {cursor}");
+        }
+        assert_eq!(window("ab", 2, 0), ("", 0));
+    }
+
+    #[test]
+    fn lines_break_at_spaces_and_inside_long_words() {
+        assert_eq!(
+            broken("one two  three", 7),
+            ["one two", "three"],
+            "at the space that just fits no more"
+        );
+        assert_eq!(broken("one two", 6), ["one", "two"]);
+        assert_eq!(broken("/a/long/path x", 5), ["/a/lo", "ng/pa", "th x"]);
+        assert_eq!(broken("字字", 1), ["字", "字"]);
+        assert!(broken("  ", 4).is_empty());
+    }
+}

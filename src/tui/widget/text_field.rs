@@ -1,0 +1,167 @@
+//! A line of text that is typed and edited: the same in a form, a list, a name and the command line.
+
+use tui_input::{Input, InputRequest};
+
+use crate::tui::app::message::{End, Erase, Message};
+use crate::tui::keys::key::Arrow;
+
+/// A line of text with a cursor in it.
+#[derive(Clone, Debug)]
+pub struct TextField {
+    input: Input,
+    longest: usize,
+    /// The field was just entered: what is typed replaces everything.
+    fresh: bool,
+}
+
+impl TextField {
+    /// A field that starts with a text, its cursor at the end. No more than `longest` characters are typed into it.
+    pub fn new(text: impl Into<String>, longest: usize) -> Self {
+        Self {
+            input: Input::new(text.into()),
+            longest,
+            fresh: false,
+        }
+    }
+
+    /// The cursor comes to this field: it stands at the end, and what is typed next replaces everything.
+    pub fn enter(&mut self) {
+        self.edit(InputRequest::GoToEnd);
+        self.fresh = true;
+    }
+
+    /// Whether the next character replaces the text.
+    pub fn fresh(&self) -> bool {
+        self.fresh
+    }
+
+    /// What stands in it.
+    pub fn text(&self) -> &str {
+        self.input.value()
+    }
+
+    /// Where its cursor stands, in columns.
+    pub fn cursor(&self) -> usize {
+        self.input.visual_cursor()
+    }
+
+    /// Puts another text in its place, the cursor at the end.
+    pub fn set(&mut self, text: impl Into<String>) {
+        self.input = Input::new(text.into());
+        self.fresh = false;
+    }
+
+    /// Does what a message means in a line of text; answers whether it means anything there.
+    pub fn take(&mut self, message: &Message) -> bool {
+        let replaces = matches!(
+            message,
+            Message::Type(_) | Message::Paste(_) | Message::Erase(_)
+        );
+        if self.fresh && replaces {
+            self.set("");
+        }
+        let taken = self.does(message);
+        self.fresh &= !taken;
+        taken
+    }
+
+    fn does(&mut self, message: &Message) -> bool {
+        let request = match message {
+            Message::Type(character) => {
+                self.insert(*character);
+                return true;
+            }
+            Message::Paste(text) => {
+                text.trim()
+                    .chars()
+                    .for_each(|character| self.insert(character));
+                return true;
+            }
+            Message::Choose(Arrow::Left) => InputRequest::GoToPrevChar,
+            Message::Choose(Arrow::Right) => InputRequest::GoToNextChar,
+            Message::ToEdge(End::First) => InputRequest::GoToStart,
+            Message::ToEdge(End::Last) => InputRequest::GoToEnd,
+            Message::Erase(Erase::All) => InputRequest::DeleteLine,
+            Message::Erase(Erase::Before) => InputRequest::DeletePrevChar,
+            Message::Erase(Erase::Under) => InputRequest::DeleteNextChar,
+            _ => return false,
+        };
+        self.edit(request);
+        true
+    }
+
+    /// Control characters have no place in a line.
+    fn insert(&mut self, character: char) {
+        if !character.is_control() && self.text().chars().count() < self.longest {
+            self.edit(InputRequest::InsertChar(character));
+        }
+    }
+
+    fn edit(&mut self, request: InputRequest) {
+        // What the library answers is only whether anything changed, which the view sees by itself.
+        let _ = self.input.handle(request);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn after(messages: &[Message]) -> (String, usize) {
+        let mut field = TextField::new("abc", 6);
+        for message in messages {
+            assert!(field.take(message), "{message:?}");
+        }
+        (field.text().to_owned(), field.cursor())
+    }
+
+    #[test]
+    fn a_line_is_edited_at_its_cursor() {
+        let (left, typed) = (Message::Choose(Arrow::Left), Message::Type('x'));
+        let erase = |what| Message::Erase(what);
+        assert_eq!(after(&[]), ("abc".to_owned(), 3));
+        assert_eq!(
+            after(&[left.clone(), typed.clone()]),
+            ("abxc".to_owned(), 3)
+        );
+        assert_eq!(
+            after(&[Message::ToEdge(End::First), erase(Erase::Under)]),
+            ("bc".to_owned(), 0)
+        );
+        assert_eq!(after(&[left, erase(Erase::Before)]), ("ac".to_owned(), 1));
+        assert_eq!(after(&[erase(Erase::All), typed]), ("x".to_owned(), 1));
+    }
+
+    #[test]
+    fn what_is_typed_into_a_field_that_was_just_entered_replaces_everything() {
+        let entered = |messages: &[Message]| {
+            let mut field = TextField::new("abc", 6);
+            field.enter();
+            assert!(field.fresh());
+            for message in messages {
+                field.take(message);
+            }
+            (field.text().to_owned(), field.fresh())
+        };
+        let (left, typed) = (Message::Choose(Arrow::Left), Message::Type('x'));
+        assert_eq!(entered(&[Message::Accept]), ("abc".to_owned(), true));
+        assert_eq!(
+            entered(&[typed.clone(), typed.clone()]),
+            ("xx".to_owned(), false)
+        );
+        assert_eq!(entered(&[left, typed]), ("abxc".to_owned(), false));
+        assert_eq!(
+            entered(&[Message::Erase(Erase::Before)]),
+            (String::new(), false)
+        );
+    }
+
+    #[test]
+    fn it_takes_no_more_than_it_has_room_for_and_nothing_that_steers_a_terminal() {
+        let pasted = Message::Paste("  d\u{1b}\te f g\n".to_owned());
+        assert_eq!(after(&[pasted]), ("abcde ".to_owned(), 6));
+        let mut field = TextField::new("abc", 6);
+        assert!(!field.take(&Message::Accept));
+        assert!(!field.take(&Message::Choose(Arrow::Up)));
+    }
+}

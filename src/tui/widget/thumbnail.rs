@@ -1,0 +1,56 @@
+//! An imprint in little: two rows in a line by half blocks; in ASCII a row a line.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+use crate::imprint::Imprint;
+use crate::tui::app::state::App;
+use crate::tui::widget::theme::Role;
+use crate::tui::widget::write;
+
+/// Columns and lines that an imprint takes.
+pub fn size(app: &App, imprint: &Imprint) -> (u16, u16) {
+    let rows = u16::from(imprint.rows());
+    let lines = if app.theme().ascii {
+        rows
+    } else {
+        rows.div_ceil(2)
+    };
+    (imprint.columns().into(), lines)
+}
+
+/// Draws an imprint from the top left corner of an area on; of one that is larger, the part around its active taxels.
+pub fn draw(app: &App, imprint: &Imprint, buffer: &mut Buffer, area: Rect) {
+    let theme = app.theme();
+    let step: u8 = if theme.ascii { 1 } else { 2 };
+    let (columns, rows) = (imprint.columns(), imprint.rows());
+    let seen = |room: u16| u8::try_from(room).unwrap_or(u8::MAX);
+    let (width, height) = (
+        seen(area.width).min(columns),
+        seen(area.height.saturating_mul(step.into())).min(rows),
+    );
+    let (mut left, mut top) = (0, 0);
+    if let Some(bounds) = imprint.bounds() {
+        let middle = |low: u8, high: u8| low + (high - low) / 2;
+        let from = |middle: u8, seen: u8, all: u8| middle.saturating_sub(seen / 2).min(all - seen);
+        left = from(middle(bounds.left, bounds.right), width, columns);
+        // Rows stay paired as they are in the whole.
+        top = from(middle(bounds.top, bounds.bottom), height, rows) / step * step;
+    }
+    for (line, row) in (top..rows).step_by(step.into()).enumerate() {
+        let half = |column: u8| match (
+            imprint.get(column, row),
+            step == 2 && imprint.get(column, row + 1),
+        ) {
+            (true, true) => '█',
+            (true, false) if theme.ascii => '#',
+            (true, false) => '▀',
+            (false, true) => '▄',
+            (false, false) if theme.ascii => '.',
+            (false, false) => '·',
+        };
+        let text: String = (left..left + width).map(half).collect();
+        let place = write::row(area, line);
+        write::line(buffer, place, theme, [(text.as_str(), Role::Chosen)]);
+    }
+}

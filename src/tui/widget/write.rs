@@ -1,0 +1,137 @@
+//! Writing text into the screen's buffer: by role, cut at the edge, in the characters that the terminal has.
+
+use std::borrow::Cow;
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+pub use crate::tui::app::layout::below;
+use crate::tui::widget::columns::head;
+pub use crate::tui::widget::columns::{broken, width, window};
+use crate::tui::widget::theme::{Role, Theme};
+
+/// Writes pieces of text, each in its role, into the first line of an area; the first that does not fit is shortened,
+/// which an ellipsis tells, and the others are left out. Answers where the text ends.
+pub fn line<'a>(
+    buffer: &mut Buffer,
+    area: Rect,
+    theme: &Theme,
+    pieces: impl IntoIterator<Item = (&'a str, Role)>,
+) -> u16 {
+    let mut x = area.x;
+    if area.height == 0 || area.intersection(*buffer.area()).is_empty() {
+        return x;
+    }
+    for (text, role) in pieces {
+        let room = usize::from(area.right().saturating_sub(x));
+        let text = theme.text(text);
+        let fitting = fitted(&text, room, theme);
+        (x, _) = buffer.set_stringn(x, area.y, &fitting, room, theme.style(role));
+        if fitting != text {
+            break;
+        }
+    }
+    x
+}
+
+/// A text in so many columns: as it is where it fits, but for spaces at its end, else shortened with an ellipsis.
+pub fn fitted<'a>(text: &'a str, room: usize, theme: &Theme) -> Cow<'a, str> {
+    if width(text) <= room {
+        return Cow::Borrowed(text);
+    }
+    let trimmed = text.trim_end();
+    if width(trimmed) <= room {
+        return Cow::Borrowed(head(text, room));
+    }
+    let ellipsis = theme.text("…");
+    let ellipsis = if width(&ellipsis) <= room {
+        ellipsis
+    } else {
+        Cow::Borrowed("")
+    };
+    let kept = head(trimmed, room - width(&ellipsis));
+    Cow::Owned(format!("{}{ellipsis}", kept.trim_end()))
+}
+
+/// The first of several texts that fits into so many columns; the last one where none does.
+pub fn first_fitting<'a>(texts: &[&'a str], room: usize) -> &'a str {
+    let fitting = texts.iter().find(|text| width(text) <= room);
+    fitting.or(texts.last()).copied().unwrap_or_default()
+}
+
+/// The line of an area that lies `index` below its top; empty where the area ends before.
+pub fn row(area: Rect, index: usize) -> Rect {
+    let index = u16::try_from(index).unwrap_or(u16::MAX);
+    let inside = index < area.height;
+    Rect {
+        y: area.y.saturating_add(if inside { index } else { 0 }),
+        height: u16::from(inside),
+        ..area
+    }
+}
+
+/// The part of an area right of `x`.
+pub fn right_of(area: Rect, x: u16) -> Rect {
+    let x = x.clamp(area.x, area.right());
+    Rect {
+        x,
+        width: area.right() - x,
+        ..area
+    }
+}
+
+/// Empties an area.
+pub fn clear(buffer: &mut Buffer, area: Rect) {
+    for position in area.intersection(*buffer.area()).positions() {
+        buffer[position].reset();
+    }
+}
+
+/// Writes a text over as many lines as it needs, and answers how many these are. Where the area has fewer, an ellipsis
+/// tells.
+pub fn wrapped(buffer: &mut Buffer, area: Rect, theme: &Theme, text: &str, role: Role) -> usize {
+    let text = theme.text(text);
+    let room = usize::from(area.width);
+    let lines = broken(&text, room);
+    let last = usize::from(area.height).min(lines.len()).saturating_sub(1);
+    for (index, &piece) in lines.iter().enumerate().take(last) {
+        line(buffer, row(area, index), theme, [(piece, role)]);
+    }
+    if let Some(&piece) = lines.get(last) {
+        // What is left over makes the last line too long, which shortens it.
+        let rest = if last + 1 < lines.len() {
+            lines[last..].join(" ")
+        } else {
+            piece.to_owned()
+        };
+        line(buffer, row(area, last), theme, [(rest.as_str(), role)]);
+    }
+    lines.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_too_long_is_shortened_and_says_so() {
+        let (unicode, ascii) = (Theme::plain(false), Theme::plain(true));
+        for (text, room, expected) in [
+            ("washer", 6, "washer"),
+            ("washer", 5, "wash…"),
+            ("a  washer", 3, "a…"),
+            ("washer  ", 7, "washer "),
+            ("字字字", 5, "字字…"),
+            ("字字字", 4, "字…"),
+            ("washer", 1, "…"),
+            ("washer", 0, ""),
+            ("", 0, ""),
+        ] {
+            let fitting = fitted(text, room, &unicode);
+            assert_eq!(fitting, expected, "{text} in {room}");
+            assert!(width(&fitting) <= room);
+        }
+        assert_eq!(fitted("washer", 5, &ascii), "wa...");
+        assert_eq!(fitted("washer", 2, &ascii), "wa");
+    }
+}
