@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use rustix::time::{ClockId, clock_gettime};
 use taxel::atlas::feature::{describe, values};
-use taxel::figure::Kind;
+use taxel::figure::FigureKind;
 use taxel::parameter::Parameter;
 use taxel::pose::grid::{Grid, Pose};
 use taxel::source::Source;
@@ -62,7 +62,7 @@ const MEASURED: [&str; 11] = [
 fn growing() -> Vec<Case> {
     let case = |name, side: f64, on: u8, place| Case {
         name,
-        source: figure(Kind::Hexagon, side, 0.0, 1.0),
+        source: figure(FigureKind::Hexagon, side, 0.0, 1.0),
         sensor: sensor(on, on, 0.5),
         place,
         ..cases().swap_remove(0)
@@ -130,7 +130,13 @@ fn touch_all(plane: &mut Plane, sources: &[Source]) {
     }
 }
 
-fn touch_peer(peer: &mut Peer, kind: Kind, sizes: [f32; 2], wall: Option<f32>, poses: &[Pose]) {
+fn touch_peer(
+    peer: &mut Peer,
+    kind: FigureKind,
+    sizes: [f32; 2],
+    wall: Option<f32>,
+    poses: &[Pose],
+) {
     for pose in poses {
         #[expect(clippy::cast_possible_truncation, reason = "the peer computes in f32")]
         let (corner, degrees) = ((pose.x0 as f32, pose.y0 as f32), pose.angle as f32);
@@ -146,22 +152,22 @@ fn touch_peer(peer: &mut Peer, kind: Kind, sizes: [f32; 2], wall: Option<f32>, p
             }};
         }
         match kind {
-            Kind::Ellipse => {
+            FigureKind::Ellipse => {
                 let (exterior, hole) = peer::ellipse(sizes, corner, degrees, wall);
                 black_box(peer.touch(&exterior, hole.as_ref()));
             }
-            Kind::Rectangle => polygon!(peer::rectangle(sizes, corner, degrees, wall)),
-            Kind::Triangle => polygon!(peer::regular::<3>(sizes.0, corner, degrees, wall)),
-            Kind::Pentagon => polygon!(peer::regular::<5>(sizes.0, corner, degrees, wall)),
-            Kind::Hexagon => polygon!(peer::regular::<6>(sizes.0, corner, degrees, wall)),
-            Kind::Heptagon => polygon!(peer::regular::<7>(sizes.0, corner, degrees, wall)),
-            Kind::Octagon => polygon!(peer::regular::<8>(sizes.0, corner, degrees, wall)),
+            FigureKind::Rectangle => polygon!(peer::rectangle(sizes, corner, degrees, wall)),
+            FigureKind::Triangle => polygon!(peer::regular::<3>(sizes.0, corner, degrees, wall)),
+            FigureKind::Pentagon => polygon!(peer::regular::<5>(sizes.0, corner, degrees, wall)),
+            FigureKind::Hexagon => polygon!(peer::regular::<6>(sizes.0, corner, degrees, wall)),
+            FigureKind::Heptagon => polygon!(peer::regular::<7>(sizes.0, corner, degrees, wall)),
+            FigureKind::Octagon => polygon!(peer::regular::<8>(sizes.0, corner, degrees, wall)),
         }
     }
 }
 
-/// Kind, sizes and wall of a figure, for the peer; none of a picture.
-fn sizes(source: &Source) -> Option<(Kind, [f32; 2], Option<f32>)> {
+/// FigureKind, sizes and wall of a figure, for the peer; none of a picture.
+fn sizes(source: &Source) -> Option<(FigureKind, [f32; 2], Option<f32>)> {
     let Source::Figure(figure) = source else {
         return None;
     };

@@ -6,9 +6,8 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use taxel::description::descriptor::{DESCRIPTORS, Description};
-use taxel::description::region::{Kind as RegionKind, Region, each_region, regions};
-use taxel::figure::{Figure, Kind};
+use taxel::description::{DESCRIPTORS, Description, Region, RegionKind, each_region, regions};
+use taxel::figure::{Figure, FigureKind};
 use taxel::parameter::Parameter;
 use taxel::sensor::Sensor;
 use taxel::touch::Plane;
@@ -26,7 +25,7 @@ use peer::{Outline, Peer};
 #[expect(unreachable_pub, reason = "written as one would for oneself")]
 mod peer;
 
-fn figure(kind: Kind, values: &[(Parameter, f64)]) -> Figure {
+fn figure(kind: FigureKind, values: &[(Parameter, f64)]) -> Figure {
     let value = |parameter| {
         let given = values.iter().find(|(of, _)| *of == parameter);
         given.map(|&(_, value)| value)
@@ -43,7 +42,7 @@ fn rectangle() -> Figure {
         (Y0, 6.1),
         (Angle, 30.0),
     ];
-    figure(Kind::Rectangle, &values)
+    figure(FigureKind::Rectangle, &values)
 }
 
 fn hexagon() -> Figure {
@@ -55,7 +54,7 @@ fn hexagon() -> Figure {
         (Angle, 17.0),
         (Thickness, 1.0),
     ];
-    figure(Kind::Hexagon, &values)
+    figure(FigureKind::Hexagon, &values)
 }
 
 fn circle() -> Figure {
@@ -68,7 +67,7 @@ fn circle() -> Figure {
         (Angle, 0.0),
         (Thickness, 2.0),
     ];
-    figure(Kind::Ellipse, &values)
+    figure(FigureKind::Ellipse, &values)
 }
 
 /// Every value of the table.

@@ -8,7 +8,7 @@
 
 use std::fmt::Write;
 
-use taxel::figure::{Figure, Kind};
+use taxel::figure::{Figure, FigureKind};
 use taxel::pose::grid::{Anchor, Grid, Ranges};
 use taxel::sensor::Sensor;
 use taxel::source::Source;
@@ -45,12 +45,12 @@ pub(crate) fn report(angles: &str) -> Result<String, String> {
         angle,
         ..Ranges::default()
     };
-    let surveys: Vec<Survey> = Kind::ALL
+    let surveys: Vec<Survey> = FigureKind::ALL
         .into_iter()
         .map(|kind| sweep(kind, ranges))
         .collect();
 
-    let names = Kind::ALL.map(Kind::name).join(" | ");
+    let names = FigureKind::ALL.map(FigureKind::name).join(" | ");
     let mut table = format!("| % of the mean | {names} |\n|---|{}\n", "---:|".repeat(7));
     for key in DESCRIBING {
         let _ = writeln!(
@@ -89,7 +89,7 @@ fn row(
     cells.collect::<Vec<_>>().join(" | ")
 }
 
-fn sweep(kind: Kind, ranges: Ranges) -> Survey {
+fn sweep(kind: FigureKind, ranges: Ranges) -> Survey {
     let sensor = Sensor::default();
     let figure = Source::Figure(Figure::default_of(kind, sensor.side()));
     let grid = Grid::new(figure, sensor, Anchor::Corner, ranges).expect("the paper's positions");

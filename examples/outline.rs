@@ -7,10 +7,8 @@
 
 use std::fmt::Write;
 
-use taxel::description::descriptor::Description;
-use taxel::description::region::{main_region, regions};
-use taxel::geometry::outline::{Ellipse, Pen, Point, Polygon, Side, Solid};
-use taxel::geometry::real::Real;
+use taxel::description::{Description, main_region, regions};
+use taxel::geometry::{Ellipse, Pen, Point, Polygon, Real, Side, Solid};
 use taxel::sensor::Sensor;
 use taxel::touch::Plane;
 

@@ -8,7 +8,7 @@
 
 use std::fmt::Write;
 
-use taxel::figure::{Figure, Kind};
+use taxel::figure::{Figure, FigureKind};
 use taxel::parameter::Parameter;
 use taxel::pose::grid::{Anchor, Grid, Ranges};
 use taxel::pose::range::DecimalRange;
@@ -53,11 +53,15 @@ pub(crate) fn report() -> String {
 
 fn sweep(x0: &str, y0: &str) -> Survey {
     let sensor = Sensor::default();
-    let ring = Figure::new(Kind::Ellipse, sensor.side(), |parameter| match parameter {
-        Parameter::RadiusX | Parameter::RadiusY => Some(4.0),
-        Parameter::Thickness => Some(2.0),
-        _ => Some(0.0),
-    })
+    let ring = Figure::new(
+        FigureKind::Ellipse,
+        sensor.side(),
+        |parameter| match parameter {
+            Parameter::RadiusX | Parameter::RadiusY => Some(4.0),
+            Parameter::Thickness => Some(2.0),
+            _ => Some(0.0),
+        },
+    )
     .expect("every value is in its range");
     let range = |text: &str| -> DecimalRange { text.parse().expect("a range") };
     let ranges = Ranges {

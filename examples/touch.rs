@@ -4,9 +4,8 @@
 
 use std::fmt::Write;
 
-use taxel::description::descriptor::{DESCRIPTORS, Description};
-use taxel::description::region::regions;
-use taxel::figure::{Figure, Kind};
+use taxel::description::{DESCRIPTORS, Description, regions};
+use taxel::figure::{Figure, FigureKind};
 use taxel::formats::value;
 use taxel::parameter::Parameter;
 use taxel::sensor::Sensor;
@@ -19,14 +18,18 @@ fn main() {
 /// The imprint, then each region with its descriptors.
 pub(crate) fn report() -> String {
     let sensor = Sensor::default();
-    let ring = Figure::new(Kind::Ellipse, sensor.side(), |parameter| match parameter {
-        Parameter::RadiusX | Parameter::RadiusY => Some(4.0),
-        Parameter::X0 => Some(1.99),
-        Parameter::Y0 => Some(1.47),
-        Parameter::Angle => Some(0.0),
-        Parameter::Thickness => Some(2.0),
-        _ => None,
-    })
+    let ring = Figure::new(
+        FigureKind::Ellipse,
+        sensor.side(),
+        |parameter| match parameter {
+            Parameter::RadiusX | Parameter::RadiusY => Some(4.0),
+            Parameter::X0 => Some(1.99),
+            Parameter::Y0 => Some(1.47),
+            Parameter::Angle => Some(0.0),
+            Parameter::Thickness => Some(2.0),
+            _ => None,
+        },
+    )
     .expect("every value is in its range");
     let imprint = Plane::new(sensor).touch(&ring);
 
@@ -36,7 +39,7 @@ pub(crate) fn report() -> String {
         let _ = writeln!(text, "\n{}", region.kind().name());
         for descriptor in DESCRIPTORS {
             let value = (descriptor.measure)(&description);
-            let value = value::text(value, descriptor.unit);
+            let value = value::text(value, descriptor.dimension);
             let value = value.as_deref().unwrap_or("–");
             let _ = writeln!(text, "{:<7} {value}", descriptor.symbol);
         }

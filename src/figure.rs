@@ -5,8 +5,7 @@
 //! horizontal side before they are turned; their centre is that of the circumscribed circle.
 //! Source: Purcaru and Niculescu; the sense of rotation and the form of the hole are conventions of this project.
 
-use crate::geometry::outline::{Ellipse, Extent, Pen, Point, Side, Solid, Turn};
-use crate::geometry::real::Real;
+use crate::geometry::{Ellipse, Extent, Pen, Point, Real, Side, Solid, Turn};
 use crate::parameter::{Parameter, ParameterError};
 
 /// What is said of a thickness that leaves no room for a hole.
@@ -14,7 +13,7 @@ pub const NO_ROOM: &str = "no room for a hole: solid";
 
 /// The kinds of figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Kind {
+pub enum FigureKind {
     /// Axes along x and y before rotation; a circle where its radii are equal.
     Ellipse,
     /// Sides along x and y before rotation.
@@ -31,7 +30,7 @@ pub enum Kind {
     Octagon,
 }
 
-impl Kind {
+impl FigureKind {
     /// All seven, in the paper's order.
     pub const ALL: [Self; 7] = [
         Self::Ellipse,
@@ -97,9 +96,9 @@ impl Kind {
 /// A figure on the sensory plane. Its values are always finite, its sizes and its thickness above 0.
 ///
 /// ```
-/// use taxel::figure::{Figure, Kind};
+/// use taxel::figure::{Figure, FigureKind};
 /// use taxel::parameter::Parameter;
-/// let ring = Figure::new(Kind::Ellipse, 16, |parameter| match parameter {
+/// let ring = Figure::new(FigureKind::Ellipse, 16, |parameter| match parameter {
 ///     Parameter::RadiusX | Parameter::RadiusY => Some(4.0),
 ///     Parameter::X0 => Some(1.99),
 ///     Parameter::Y0 => Some(1.47),
@@ -111,7 +110,7 @@ impl Kind {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figure {
-    kind: Kind,
+    kind: FigureKind,
     /// The values of `kind.sizes()`; the second is unused where there is one only.
     sizes: [f64; 2],
     x0: f64,
@@ -126,7 +125,7 @@ impl Figure {
     /// # Errors
     /// The first value that is out of range, or missing (the thickness may be).
     pub fn new(
-        kind: Kind,
+        kind: FigureKind,
         side: u8,
         mut value: impl FnMut(Parameter) -> Option<f64>,
     ) -> Result<Self, ParameterError> {
@@ -155,7 +154,7 @@ impl Figure {
 
     /// The figure that a new form shows: every parameter at its default, solid; on a sensor whose larger side is `side`,
     /// 1 to 64. On a small one it begins further up and to the left, in whole cells, so that as much as fits is there.
-    pub fn default_of(kind: Kind, side: u8) -> Self {
+    pub fn default_of(kind: FigureKind, side: u8) -> Self {
         let default = |parameter: Parameter| parameter.default(side);
         let size = |index: usize| {
             kind.sizes()
@@ -207,7 +206,7 @@ impl Figure {
     }
 
     /// Which kind of figure it is.
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> FigureKind {
         self.kind
     }
 
@@ -230,9 +229,9 @@ impl Figure {
     /// Whether it has a hole: it has a thickness, and that leaves room for one.
     ///
     /// ```
-    /// use taxel::figure::{Figure, Kind};
+    /// use taxel::figure::{Figure, FigureKind};
     /// use taxel::parameter::Parameter;
-    /// let square = Figure::default_of(Kind::Rectangle, 16).with(Parameter::Width, 6.0, 16)?;
+    /// let square = Figure::default_of(FigureKind::Rectangle, 16).with(Parameter::Width, 6.0, 16)?;
     /// assert!(!square.has_hole());
     /// assert!(square.with(Parameter::Thickness, 2.99, 16)?.has_hole());
     /// assert!(!square.with(Parameter::Thickness, 3.0, 16)?.has_hole());
@@ -251,7 +250,7 @@ impl Figure {
         let mut draw = |half: Point<T>, material: Side| {
             let across = turn.of(Point::new(half.x, T::ZERO));
             let along = turn.of(Point::new(T::ZERO, half.y));
-            if self.kind == Kind::Ellipse {
+            if self.kind == FigureKind::Ellipse {
                 return pen.ellipse(
                     &Ellipse {
                         centre,
@@ -330,7 +329,9 @@ impl Solid for Figure {
         let half = Point::new(first * T::HALF, second * T::HALF);
         match (self.kind, self.kind.corners()) {
             (_, Some(corners)) => self.draw_regular(corners, pen),
-            (Kind::Ellipse, None) => self.draw_round_or_square(Point::new(first, second), pen),
+            (FigureKind::Ellipse, None) => {
+                self.draw_round_or_square(Point::new(first, second), pen)
+            }
             (_, None) => self.draw_round_or_square(half, pen),
         }
     }
@@ -383,7 +384,7 @@ mod tests {
     #[test]
     fn a_new_figure_lies_on_the_sensor_whatever_its_size() {
         for side in 0..=64 {
-            for kind in Kind::ALL {
+            for kind in FigureKind::ALL {
                 let figure = Figure::default_of(kind, side);
                 let extent = Extent::of(&figure).expect("it has a boundary");
                 let side = f64::from(side.max(1));

@@ -6,15 +6,14 @@
 //! in a library of files. The program of the same name is a screen and a command line over it.
 //!
 //! ```
-//! use taxel::description::descriptor::Description;
-//! use taxel::description::region::{main_region, regions};
-//! use taxel::figure::{Figure, Kind};
+//! use taxel::description::{Description, main_region, regions};
+//! use taxel::figure::{Figure, FigureKind};
 //! use taxel::parameter::Parameter;
 //! use taxel::sensor::Sensor;
 //! use taxel::touch::Plane;
 //!
 //! // The paper's Fig. 1: an ellipse with radii of 4, a wall of 2.
-//! let figure = Figure::default_of(Kind::Ellipse, 16)
+//! let figure = Figure::default_of(FigureKind::Ellipse, 16)
 //!     .with(Parameter::X0, 1.99, 16)?
 //!     .with(Parameter::Y0, 1.47, 16)?
 //!     .with(Parameter::Thickness, 2.0, 16)?;

@@ -8,8 +8,7 @@
 
 use std::sync::Arc;
 
-use crate::geometry::outline::{Pen, Point, Solid, Turn};
-use crate::geometry::real::Real;
+use crate::geometry::{Pen, Point, Real, Solid, Turn};
 use crate::imprint::Imprint;
 use crate::parameter::{Parameter, ParameterError};
 

@@ -2,9 +2,8 @@
 
 use std::fmt;
 
-use crate::figure::{Figure, Kind};
-use crate::geometry::outline::{Pen, Solid};
-use crate::geometry::real::Real;
+use crate::figure::{Figure, FigureKind};
+use crate::geometry::{Pen, Real, Solid};
 use crate::parameter::{Parameter, ParameterError};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
 
@@ -60,7 +59,7 @@ impl Source {
     }
 
     /// The kind of figure; none of a picture.
-    pub fn kind(&self) -> Option<Kind> {
+    pub fn kind(&self) -> Option<FigureKind> {
         match self {
             Self::Figure(figure) => Some(figure.kind()),
             Self::Picture(_) => None,

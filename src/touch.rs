@@ -4,7 +4,7 @@
 //! cell. What reaches beyond the sensor is cut off.
 //!
 //! **Exactly the threshold is active**, in real arithmetic, for the decimals that the user wrote. Coverages are
-//! computed in `f64` first, with an error below 1e-11 ([`crate::geometry::overlap`]). One that lies within 1e-10 of
+//! computed in `f64` first, with an error below 1e-11 ([`crate::geometry::cell_area`]). One that lies within 1e-10 of
 //! the threshold is computed again with 32 digits ([`Double`]), and is active unless it falls short by more than 1e-20
 //! ([`Real::TIE`]).
 //!
@@ -13,9 +13,7 @@
 //! is exact, since its coverages are multiples of 1e-18; with more decimals a coverage can come nearer than 1e-20
 //! (0.9999999999 × 0.50000000005). Turned figures of hundredths come within 3e-11.
 
-use crate::geometry::outline::{Extent, Solid};
-use crate::geometry::overlap::{Overlap, cell};
-use crate::geometry::real::{Double, Real};
+use crate::geometry::{Double, Extent, Overlap, Real, Solid, cell_area};
 use crate::imprint::Imprint;
 use crate::sensor::Sensor;
 
@@ -27,11 +25,11 @@ const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 /// The sensory plane: a sensor that can be touched again and again without allocating, unless a coverage is in doubt.
 ///
 /// ```
-/// use taxel::figure::{Figure, Kind};
+/// use taxel::figure::{Figure, FigureKind};
 /// use taxel::sensor::Sensor;
 /// use taxel::touch::Plane;
 /// let mut plane = Plane::new(Sensor::default());
-/// let imprint = plane.touch(&Figure::default_of(Kind::Rectangle, 16));
+/// let imprint = plane.touch(&Figure::default_of(FigureKind::Rectangle, 16));
 /// assert_eq!(imprint.count(), 6 * 3);
 /// assert_eq!(plane.coverage(4, 4), 1.0);
 /// ```
@@ -123,7 +121,7 @@ impl Plane {
             let crossed = areas.crosses(row, column);
             let enough = match open {
                 Some((last, enough)) if last + 1 == column && !crossed => enough,
-                _ => cell::<Double>(solid, cell_column, cell_row) >= least,
+                _ => cell_area::<Double>(solid, cell_column, cell_row) >= least,
             };
             open = (!crossed).then_some((column, enough));
             active = active & !(1 << column) | u64::from(enough) << column;

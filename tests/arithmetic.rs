@@ -5,8 +5,7 @@
 mod common;
 
 use common::figure;
-use taxel::geometry::overlap::cell;
-use taxel::geometry::real::{Double, Real};
+use taxel::geometry::{Double, Real, cell_area};
 use taxel::sensor::Sensor;
 use taxel::touch::Plane;
 
@@ -322,7 +321,7 @@ fn areas_in_f64_hold_eleven_digits() {
         // Every seventh cell, each row beginning elsewhere.
         for row in 0..64_u8 {
             for column in (row % 7..64).step_by(7) {
-                let exact = cell::<Double>(&figure, column, row).to_f64();
+                let exact = cell_area::<Double>(&figure, column, row).to_f64();
                 let off = (plane.coverage(column, row) - exact).abs();
                 assert!(off < 2e-12, "{text} at {column}, {row}: {off:e}");
             }
@@ -383,7 +382,7 @@ fn areas_of_cells_hold_twenty_eight_digits() {
     ] {
         assert_near(
             text,
-            cell::<Double>(&figure(text, 16), column, row),
+            cell_area::<Double>(&figure(text, 16), column, row),
             expected,
             1e-28,
         );

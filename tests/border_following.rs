@@ -10,8 +10,7 @@ use std::collections::VecDeque;
 use std::f64::consts::{PI, SQRT_2};
 
 use common::Random;
-use taxel::description::descriptor::{DESCRIPTORS, Description, Value};
-use taxel::description::region::{Kind, main_region, regions};
+use taxel::description::{DESCRIPTORS, Description, RegionKind, Value, main_region, regions};
 use taxel::imprint::Imprint;
 
 /// Rows of taxels.
@@ -134,7 +133,7 @@ fn walk(filled: &Mask) -> (u32, u32) {
 
 /// What the plain implementation says of a region.
 struct Plain {
-    kind: Kind,
+    kind: RegionKind,
     nae: u32,
     values: Vec<(&'static str, Value)>,
 }
@@ -143,7 +142,7 @@ fn count(value: usize) -> u32 {
     u32::try_from(value).expect("at most 4096")
 }
 
-fn plain_region(kind: Kind, mask: &Mask) -> Plain {
+fn plain_region(kind: RegionKind, mask: &Mask) -> Plain {
     let mut filled = mask.clone();
     for (column, row) in taxels(&enclosed(mask)) {
         filled[row][column] = true;
@@ -238,12 +237,12 @@ fn compare(imprint: &Imprint) -> usize {
     let pieces = components(&mask, 1);
     let exteriors = pieces
         .iter()
-        .map(|piece| plain_region(Kind::Exterior, piece));
+        .map(|piece| plain_region(RegionKind::Exterior, piece));
     let expected: Vec<Plain> = exteriors
         .chain(
             components(&holes, 2)
                 .iter()
-                .map(|hole| plain_region(Kind::Hole, hole)),
+                .map(|hole| plain_region(RegionKind::Hole, hole)),
         )
         .collect();
 
@@ -263,8 +262,8 @@ fn compare(imprint: &Imprint) -> usize {
             );
         }
         match plain.kind {
-            Kind::Exterior => active += region.taxels().count(),
-            Kind::Hole => inactive += region.taxels().count(),
+            RegionKind::Exterior => active += region.taxels().count(),
+            RegionKind::Hole => inactive += region.taxels().count(),
         }
     }
     // Every taxel is in just one exterior, in just one hole, or outside.
@@ -277,12 +276,12 @@ fn compare(imprint: &Imprint) -> usize {
     );
     let most = expected
         .iter()
-        .filter(|plain| plain.kind == Kind::Exterior)
+        .filter(|plain| plain.kind == RegionKind::Exterior)
         .map(|plain| plain.nae)
         .max();
     let main = expected
         .iter()
-        .position(|plain| plain.kind == Kind::Exterior && Some(plain.nae) == most);
+        .position(|plain| plain.kind == RegionKind::Exterior && Some(plain.nae) == most);
     assert_eq!(main_region(&found), main, "{imprint}");
     found.len()
 }

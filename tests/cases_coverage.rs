@@ -7,7 +7,7 @@ mod common;
 use std::f64::consts::{PI, SQRT_2};
 
 use common::{figure, picture, sensor};
-use taxel::geometry::outline::{Ellipse, Pen, Point, Polygon, Side, Solid};
+use taxel::geometry::{Ellipse, Pen, Point, Polygon, Side, Solid};
 use taxel::touch::Plane;
 
 /// Columns and rows of the sensor.

@@ -9,15 +9,14 @@ use std::collections::HashSet;
 use std::f64::consts::SQRT_2;
 
 use common::{figure, grid, sensor};
-use taxel::description::descriptor::{DESCRIPTORS, Description, Value};
-use taxel::description::region::{Kind, main_region, regions};
+use taxel::description::{DESCRIPTORS, Description, RegionKind, Value, main_region, regions};
 use taxel::imprint::Imprint;
 use taxel::touch::Plane;
 
-/// Kind; NA, NAE, CE; the sums of x and of y; straight and diagonal steps; left, top, right, bottom.
-type Row = (Kind, [u32; 3], [f64; 2], [u32; 2], [u8; 4]);
+/// RegionKind; NA, NAE, CE; the sums of x and of y; straight and diagonal steps; left, top, right, bottom.
+type Row = (RegionKind, [u32; 3], [f64; 2], [u32; 2], [u8; 4]);
 
-use Kind::{Exterior, Hole};
+use RegionKind::{Exterior, Hole};
 
 fn assert_regions(name: &str, imprint: &Imprint, expected: &[Row]) {
     let found: Vec<Row> = regions(imprint)

@@ -6,8 +6,7 @@
 mod common;
 
 use common::{figure, picture, sensor};
-use taxel::geometry::outline::{Ellipse, Pen, Point, Polygon, Side, Solid};
-use taxel::geometry::real::Real;
+use taxel::geometry::{Ellipse, Pen, Point, Polygon, Real, Side, Solid};
 use taxel::touch::Plane;
 
 /// Columns and rows of the sensor: room for the circle of radius 13.

@@ -3,8 +3,8 @@
 
 use std::ops::ControlFlow;
 
-use taxel::description::descriptor::{DESCRIPTORS, Unit};
-use taxel::figure::{Figure, Kind};
+use taxel::description::{DESCRIPTORS, Dimension};
+use taxel::figure::{Figure, FigureKind};
 use taxel::formats::drawing::Drawing;
 use taxel::parameter::Parameter;
 use taxel::sensor::Sensor;
@@ -59,7 +59,7 @@ fn screen() -> (String, String) {
 
 /// The same touch, drawn in millimetres.
 fn touch() -> String {
-    let figure = Figure::default_of(Kind::Ellipse, 16);
+    let figure = Figure::default_of(FigureKind::Ellipse, 16);
     let figure = [
         (Parameter::X0, 1.99),
         (Parameter::Y0, 1.47),
@@ -94,12 +94,12 @@ fn pictures_are_those_of_the_program() {
 }
 
 fn descriptors() -> String {
-    let row = |descriptor: &taxel::description::descriptor::Descriptor| {
-        let unit = match descriptor.unit {
-            Unit::Count => "taxels",
-            Unit::Length => "cell sides",
-            Unit::Area => "cells",
-            Unit::Direction => "degrees",
+    let row = |descriptor: &taxel::description::Descriptor| {
+        let unit = match descriptor.dimension {
+            Dimension::Count => "taxels",
+            Dimension::Length => "cell sides",
+            Dimension::Area => "cells",
+            Dimension::Direction => "degrees",
             _ => "",
         };
         format!(

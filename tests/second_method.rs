@@ -11,8 +11,8 @@ mod common;
 use std::f64::consts::PI;
 
 use common::{Random, sensor};
-use taxel::figure::{Figure, Kind};
-use taxel::geometry::outline::Solid;
+use taxel::figure::{Figure, FigureKind};
+use taxel::geometry::Solid;
 use taxel::imprint::Imprint;
 use taxel::parameter::Parameter;
 use taxel::picture::Picture;
@@ -161,7 +161,7 @@ fn outlines(figure: &Figure) -> (Outline, Option<Outline>) {
         Outline::Polygon(points.iter().map(place).collect())
     };
     let corners = match figure.kind() {
-        Kind::Ellipse => {
+        FigureKind::Ellipse => {
             let (rx, ry) = (get(Parameter::RadiusX), get(Parameter::RadiusY));
             let ellipse = |rx: f64, ry: f64| {
                 let centre = (x0 + get(Parameter::RadiusX), y0 + get(Parameter::RadiusY));
@@ -170,7 +170,7 @@ fn outlines(figure: &Figure) -> (Outline, Option<Outline>) {
             let hole = (wall < rx.min(ry)).then(|| ellipse(rx - wall, ry - wall));
             return (ellipse(rx, ry), hole);
         }
-        Kind::Rectangle => {
+        FigureKind::Rectangle => {
             let (length, width) = (get(Parameter::Length), get(Parameter::Width));
             let centre = (x0 + length / 2.0, y0 + width / 2.0);
             let rectangle = |length: f64, width: f64| {
@@ -181,11 +181,11 @@ fn outlines(figure: &Figure) -> (Outline, Option<Outline>) {
             let hole = (inner.0 > 0.0 && inner.1 > 0.0).then(|| rectangle(inner.0, inner.1));
             return (rectangle(length, width), hole);
         }
-        Kind::Triangle => 3,
-        Kind::Pentagon => 5,
-        Kind::Hexagon => 6,
-        Kind::Heptagon => 7,
-        Kind::Octagon => 8,
+        FigureKind::Triangle => 3,
+        FigureKind::Pentagon => 5,
+        FigureKind::Hexagon => 6,
+        FigureKind::Heptagon => 7,
+        FigureKind::Octagon => 8,
     };
     let step = PI / f64::from(corners);
     let circumradius = get(Parameter::Side) / 2.0 / step.sin();
@@ -260,7 +260,7 @@ fn drawn_plane(random: &mut Random) -> Plane {
     Plane::new(sensor(columns, rows, threshold))
 }
 
-fn drawn_figure(random: &mut Random, kind: Kind, side: u8) -> Figure {
+fn drawn_figure(random: &mut Random, kind: FigureKind, side: u8) -> Figure {
     let wall = random.chance(400);
     // Small sensors get large figures, which reach beyond them; large sensors mostly small ones.
     let most = i32::from(side.min(if random.chance(100) { 64 } else { 9 }));
@@ -304,7 +304,7 @@ fn compare(plane: &mut Plane, solid: &(impl Solid + ToString), slow: &[f64]) -> 
     ties
 }
 
-fn compare_figures(kind: Kind, seed: u64) {
+fn compare_figures(kind: FigureKind, seed: u64) {
     let mut random = Random::new(seed);
     let mut ties = 0;
     for _ in 0..POSES {
@@ -324,37 +324,37 @@ fn compare_figures(kind: Kind, seed: u64) {
 
 #[test]
 fn ellipses() {
-    compare_figures(Kind::Ellipse, 1);
+    compare_figures(FigureKind::Ellipse, 1);
 }
 
 #[test]
 fn rectangles() {
-    compare_figures(Kind::Rectangle, 2);
+    compare_figures(FigureKind::Rectangle, 2);
 }
 
 #[test]
 fn triangles() {
-    compare_figures(Kind::Triangle, 3);
+    compare_figures(FigureKind::Triangle, 3);
 }
 
 #[test]
 fn pentagons() {
-    compare_figures(Kind::Pentagon, 4);
+    compare_figures(FigureKind::Pentagon, 4);
 }
 
 #[test]
 fn hexagons() {
-    compare_figures(Kind::Hexagon, 5);
+    compare_figures(FigureKind::Hexagon, 5);
 }
 
 #[test]
 fn heptagons() {
-    compare_figures(Kind::Heptagon, 6);
+    compare_figures(FigureKind::Heptagon, 6);
 }
 
 #[test]
 fn octagons() {
-    compare_figures(Kind::Octagon, 7);
+    compare_figures(FigureKind::Octagon, 7);
 }
 
 #[test]

@@ -7,8 +7,9 @@
 
 use std::sync::LazyLock;
 
-use crate::description::descriptor::{DESCRIPTORS, Description, Descriptor, Unit, Value};
-use crate::description::region::{Kind, each_region};
+use crate::description::{
+    DESCRIPTORS, Description, Descriptor, Dimension, RegionKind, Value, each_region,
+};
 use crate::imprint::Imprint;
 
 /// A number that describes an imprint's main region.
@@ -55,7 +56,7 @@ fn all() -> Vec<Quantity> {
         all.extend(parts.iter().map(|part| Quantity {
             key: format!("{}{part}", descriptor.key),
             descriptor,
-            circular: descriptor.unit == Unit::Direction && part.is_empty(),
+            circular: descriptor.dimension == Dimension::Direction && part.is_empty(),
         }));
     }
     all
@@ -103,7 +104,7 @@ pub fn describe(imprint: &Imprint) -> Note {
         description: None,
     };
     each_region(imprint, |region| {
-        if region.kind() == Kind::Hole {
+        if region.kind() == RegionKind::Hole {
             note.holes = note.holes.saturating_add(1);
             return;
         }

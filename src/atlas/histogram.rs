@@ -2,7 +2,7 @@
 
 use crate::atlas::Atlas;
 use crate::atlas::feature::Quantity;
-use crate::description::descriptor::Unit;
+use crate::description::Dimension;
 
 /// Poses counted in equal intervals of a value, each with its lower end; the last one with both.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +29,7 @@ impl Histogram {
     /// quantity, one per imprint ([`Atlas::values`]).
     ///
     /// ```
-    /// # use taxel::figure::{Figure, Kind};
+    /// # use taxel::figure::{Figure, FigureKind};
     /// # use taxel::sensor::Sensor;
     /// # use taxel::source::Source;
     /// # use taxel::pose::grid::{Anchor, Grid, Ranges};
@@ -37,7 +37,7 @@ impl Histogram {
     /// # use taxel::sweep::survey::{Survey, Watch};
     /// use taxel::atlas::histogram::Histogram;
     /// use taxel::atlas::feature::quantities;
-    /// let square = Source::Figure(Figure::default_of(Kind::Rectangle, 16));
+    /// let square = Source::Figure(Figure::default_of(FigureKind::Rectangle, 16));
     /// let grid = Grid::new(square, Sensor::default(), Anchor::Corner, Ranges::default())?;
     /// let survey = Survey::of(&grid, Shard::WHOLE, Watch::nothing());
     /// let na = Histogram::of(&survey.atlas, &quantities()[0], &survey.atlas.values(0), 10);
@@ -53,8 +53,8 @@ impl Histogram {
         let (start, width, bins) = if quantity.circular {
             around(most)
         } else if low <= high {
-            let least = match quantity.descriptor.unit {
-                Unit::Count => 1.0,
+            let least = match quantity.descriptor.dimension {
+                Dimension::Count => 1.0,
                 _ => 0.0,
             };
             straight(low, high, least, most)
@@ -147,7 +147,7 @@ fn straight(low: f64, high: f64, least: f64, most: usize) -> (f64, f64, usize) {
 mod tests {
     use super::*;
     use crate::atlas::feature::quantities;
-    use crate::figure::{Figure, Kind};
+    use crate::figure::{Figure, FigureKind};
     use crate::pose::grid::{Anchor, Grid, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
@@ -155,7 +155,7 @@ mod tests {
     use crate::sweep::survey::{Survey, Watch};
 
     fn survey(x0: &str) -> Survey {
-        let source = Source::Figure(Figure::default_of(Kind::Triangle, 16));
+        let source = Source::Figure(Figure::default_of(FigureKind::Triangle, 16));
         let ranges = Ranges {
             x0: x0.parse().expect("a range"),
             y0: "5:5.9:0.1".parse().expect("a range"),
@@ -236,7 +236,7 @@ mod tests {
 
     #[test]
     fn nothing_is_counted_where_nothing_is() {
-        let source = Source::Figure(Figure::default_of(Kind::Triangle, 16));
+        let source = Source::Figure(Figure::default_of(FigureKind::Triangle, 16));
         let ranges = Ranges {
             x0: "-16".parse().expect("a range"),
             y0: "-16".parse().expect("a range"),

@@ -66,7 +66,7 @@ fn turned(order: Ordering, descending: bool) -> Ordering {
 mod tests {
     use super::*;
     use crate::atlas::feature::quantities;
-    use crate::figure::{Figure, Kind};
+    use crate::figure::{Figure, FigureKind};
     use crate::pose::grid::{Anchor, Grid, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
@@ -75,7 +75,7 @@ mod tests {
 
     /// A rectangle that leaves the sensor: some poses are empty, and have no values.
     fn atlas() -> Atlas {
-        let source = Source::Figure(Figure::default_of(Kind::Rectangle, 16));
+        let source = Source::Figure(Figure::default_of(FigureKind::Rectangle, 16));
         let range = |text: &str| text.parse().expect("a range");
         let ranges = Ranges {
             x0: range("-8:15:0.5"),

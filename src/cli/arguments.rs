@@ -18,7 +18,7 @@ use crate::cli::flags::Given;
 use crate::cli::pitch::Pitch;
 use crate::cli::program::Script;
 use crate::cli::sweep::Wanted;
-use crate::figure::Kind;
+use crate::figure::FigureKind;
 use crate::formats::name::Name;
 use crate::parameter::Parameter;
 use crate::pose::grid::{Anchor, Ranges};
@@ -309,8 +309,8 @@ fn source(
 ) -> Result<(Source, Sensor), Failure> {
     // Required, and one of the names: there is always one.
     let kind = matches.get_one::<String>("kind");
-    let kind = kind.and_then(|name| Kind::from_name(name));
-    let kind = kind.unwrap_or(Kind::Ellipse);
+    let kind = kind.and_then(|name| FigureKind::from_name(name));
+    let kind = kind.unwrap_or(FigureKind::Ellipse);
     let given = Given::of(matches);
     if let Some(parameter) = given.foreign(kind) {
         let own = kind.parameters().map(|own| format!("--{}", own.flag()));

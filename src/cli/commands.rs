@@ -17,7 +17,7 @@ use crate::cli::flags;
 use crate::cli::program::{
     ascii, completions, config, config_file, look, man, record, script, size,
 };
-use crate::figure::Kind;
+use crate::figure::FigureKind;
 use crate::formats::name::{Name, NameError};
 use crate::parameter::Parameter;
 use crate::picture::PICTURE_PARAMETERS;
@@ -52,11 +52,15 @@ pub(super) fn all() -> Command {
 }
 
 fn figure() -> Command {
-    let kinds = Kind::ALL.into_iter().map(|kind| kind.name().to_owned());
+    let kinds = FigureKind::ALL
+        .into_iter()
+        .map(|kind| kind.name().to_owned());
     let kind = Arg::new("kind")
         .value_name("KIND")
         .required(true)
-        .value_parser(PossibleValuesParser::new(Kind::ALL.map(Kind::name)))
+        .value_parser(PossibleValuesParser::new(
+            FigureKind::ALL.map(FigureKind::name),
+        ))
         .hide_possible_values(true)
         .help(flags::wrapped(&list(kinds, "or"), 64));
     let parameters = flags::figure_parameters();
@@ -141,9 +145,11 @@ fn sweep() -> Command {
         .value_name("KIND")
         .required_unless_present("picture")
         .conflicts_with("picture")
-        .value_parser(PossibleValuesParser::new(Kind::ALL.map(Kind::name)))
+        .value_parser(PossibleValuesParser::new(
+            FigureKind::ALL.map(FigureKind::name),
+        ))
         .hide_possible_values(true)
-        .help("Kind of figure, as of 'taxel figure'");
+        .help("FigureKind of figure, as of 'taxel figure'");
     let picture = Arg::new("picture")
         .long("picture")
         .value_name("NAME|FILE")

@@ -3,7 +3,7 @@
 use clap::{Arg, ArgMatches};
 
 use crate::cli::failure::Failure;
-use crate::figure::{Figure, Kind};
+use crate::figure::{Figure, FigureKind};
 use crate::parameter::{PARAMETERS, Parameter, ParameterError, Unit, number};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
 use crate::sensor::{MAX_SIDE, SENSOR_PARAMETERS, Sensor};
@@ -27,8 +27,8 @@ pub(super) fn figure_parameters() -> impl Iterator<Item = Parameter> {
         .filter(|&parameter| kinds_with(parameter).next().is_some())
 }
 
-fn kinds_with(parameter: Parameter) -> impl Iterator<Item = Kind> {
-    Kind::ALL
+fn kinds_with(parameter: Parameter) -> impl Iterator<Item = FigureKind> {
+    FigureKind::ALL
         .into_iter()
         .filter(move |kind| kind.parameters().any(|own| own == parameter))
 }
@@ -165,14 +165,14 @@ impl Given {
     }
 
     /// The first flag that was given though this kind of figure has no such parameter.
-    pub(super) fn foreign(&self, kind: Kind) -> Option<Parameter> {
+    pub(super) fn foreign(&self, kind: FigureKind) -> Option<Parameter> {
         figure_parameters()
             .filter(|&parameter| kind.parameters().all(|own| own != parameter))
             .find(|&parameter| self.0.iter().any(|(given, _)| *given == parameter))
     }
 
     /// The default figure of a kind with what was given.
-    pub(super) fn figure(&self, kind: Kind, side: u8) -> Result<Figure, Failure> {
+    pub(super) fn figure(&self, kind: FigureKind, side: u8) -> Result<Figure, Failure> {
         let own: Vec<Parameter> = kind.parameters().collect();
         let figure = Figure::default_of(kind, side);
         self.fold(&own, figure, |figure, parameter, value| {

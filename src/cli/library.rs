@@ -12,7 +12,7 @@ use crate::cli::input::Content;
 use crate::cli::locale::Charset;
 use crate::cli::report;
 use crate::cli::shelf::Shelf;
-use crate::description::region::{Kind, regions};
+use crate::description::{RegionKind, regions};
 use crate::formats::shape::Shape;
 use crate::parameter::Parameter;
 use crate::quote::legible;
@@ -60,7 +60,9 @@ impl Line {
 impl Summary {
     fn of(shape: &Shape) -> Self {
         let regions = regions(&shape.imprint);
-        let holes = regions.iter().filter(|region| region.kind() == Kind::Hole);
+        let holes = regions
+            .iter()
+            .filter(|region| region.kind() == RegionKind::Hole);
         let holes = holes.count();
         Self {
             columns: shape.imprint.columns(),

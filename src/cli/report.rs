@@ -7,8 +7,7 @@
 use std::fmt::Write;
 
 use crate::cli::locale::Charset;
-use crate::description::descriptor::{DESCRIPTORS, Description, Descriptor, Unit};
-use crate::description::region::{Kind, regions};
+use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension, RegionKind, regions};
 use crate::formats::answer::Answer;
 use crate::formats::value;
 use crate::imprint::Imprint;
@@ -125,21 +124,21 @@ struct Quantity {
 fn quantities(pitch: Option<f64>) -> Vec<Quantity> {
     let mut all = Vec::new();
     for descriptor in DESCRIPTORS {
-        let (factor, unit) = match descriptor.unit {
-            Unit::Count | Unit::Ratio => (1.0, ""),
-            Unit::Length => (1.0, ", cells"),
-            Unit::Area => (1.0, ", cells²"),
-            Unit::Direction => (1.0, ", deg"),
-            Unit::Share => (100.0, ", %"),
+        let (factor, unit) = match descriptor.dimension {
+            Dimension::Count | Dimension::Ratio => (1.0, ""),
+            Dimension::Length => (1.0, ", cells"),
+            Dimension::Area => (1.0, ", cells²"),
+            Dimension::Direction => (1.0, ", deg"),
+            Dimension::Share => (100.0, ", %"),
         };
         all.push(Quantity {
             descriptor,
             factor,
             label: format!("{:<5}  {}{unit}", descriptor.symbol, descriptor.name),
         });
-        let metric = match (descriptor.unit, pitch) {
-            (Unit::Length, Some(pitch)) => Some((pitch, "mm")),
-            (Unit::Area, Some(pitch)) => Some((pitch * pitch, "mm²")),
+        let metric = match (descriptor.dimension, pitch) {
+            (Dimension::Length, Some(pitch)) => Some((pitch, "mm")),
+            (Dimension::Area, Some(pitch)) => Some((pitch * pitch, "mm²")),
             _ => None,
         };
         all.extend(metric.map(|(factor, unit)| Quantity {
@@ -173,8 +172,8 @@ fn columns(descriptions: &[Description], pitch: Option<f64>, charset: Charset) -
     let (mut exteriors, mut holes) = (0, 0);
     let column = |description: &Description| {
         let number = match description.kind {
-            Kind::Exterior => &mut exteriors,
-            Kind::Hole => &mut holes,
+            RegionKind::Exterior => &mut exteriors,
+            RegionKind::Hole => &mut holes,
         };
         *number += 1;
         let mut column = vec![format!("{} {number}", description.kind.name())];

@@ -8,14 +8,14 @@ use crate::imprint::{Bounds, Imprint};
 
 /// The steps of a chain by their kind, so that the length is the same number on every machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Steps {
-    /// Steps to a taxel beside, above or below: length 1.
+pub struct ChainSteps {
+    /// ChainSteps to a taxel beside, above or below: length 1.
     pub straight: u32,
-    /// Steps to a taxel across a corner: length √2.
+    /// ChainSteps to a taxel across a corner: length √2.
     pub diagonal: u32,
 }
 
-impl Steps {
+impl ChainSteps {
     /// The length of the closed chain; cell sides.
     pub fn length(&self) -> f64 {
         f64::from(self.straight) + f64::from(self.diagonal) * std::f64::consts::SQRT_2
@@ -34,16 +34,16 @@ fn windows(upper_left: u64, upper_right: u64, lower_left: u64, lower_right: u64)
 
 /// What is counted of a filled region.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Outline {
+pub(super) struct OutlineCounts {
     /// Its taxels.
     pub(super) taxels: u32,
     /// Those of them that have one of their four neighbours outside of it.
     pub(super) rim: u32,
     /// The steps around it.
-    pub(super) steps: Steps,
+    pub(super) steps: ChainSteps,
 }
 
-impl Outline {
+impl OutlineCounts {
     /// Counts a region without holes; `bounds` are its bounds.
     ///
     /// Regions are narrow, and counting a word's bits takes a dozen steps on a processor that is not known to have an
@@ -93,7 +93,7 @@ impl Outline {
         Self {
             taxels,
             rim: taxels - inner,
-            steps: Steps {
+            steps: ChainSteps {
                 // Each taxel is a corner of four windows; and by Euler's formula there are four windows with one taxel
                 // more than there are with three and twice those with a diagonal. So those with two neighbours, which
                 // have one step each, follow from the other kinds.

@@ -9,30 +9,28 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
-use crate::description::chain::Outline;
-use crate::description::region::{Kind, Region};
+use crate::description::chain::{ChainSteps, OutlineCounts};
+use crate::description::region::{Region, RegionKind};
 use crate::imprint::{Bounds, Imprint};
-
-pub use crate::description::chain::Steps;
 
 /// What is counted and summed up of one region; every descriptor follows from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Description {
     /// Whether a piece or a hole is described.
-    pub kind: Kind,
+    pub kind: RegionKind,
     /// Taxels of the region.
     pub na: u32,
     /// Taxels of the region with everything it encloses.
     pub nae: u32,
-    /// Outline taxels of the filled region.
+    /// OutlineCounts taxels of the filled region.
     pub ce: u32,
     /// Sum of the taxels' x coordinates.
     pub num_x: f64,
     /// Sum of their y coordinates.
     pub num_y: f64,
     /// The steps around the filled region.
-    pub steps: Steps,
+    pub steps: ChainSteps,
     /// The circumscribed rectangle.
     pub rect: Bounds,
 }
@@ -42,7 +40,7 @@ impl Description {
     pub fn of(region: &Region) -> Self {
         let (filled, rect) = (region.filled(), region.bounds());
         let (na, columns, rows) = sums(region.taxels(), rect);
-        let counted = Outline::of(filled, rect);
+        let counted = OutlineCounts::of(filled, rect);
         let half = f64::from(na) / 2.0;
         Self {
             kind: region.kind(),
@@ -138,7 +136,7 @@ pub enum Value {
 /// What a descriptor's number counts, and so how it goes over into millimetres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Unit {
+pub enum Dimension {
     /// Taxels, or another pure count.
     Count,
     /// Cell sides; times the pitch in mm.
@@ -164,7 +162,7 @@ pub struct Descriptor {
     /// What it is, in a few words.
     pub name: &'static str,
     /// What it counts.
-    pub unit: Unit,
+    pub dimension: Dimension,
     /// Whether it stands in the JSON answers, whose form is fixed; the others can be computed from these.
     pub in_answer: bool,
     /// How it follows from the counts and sums.
@@ -175,14 +173,14 @@ const fn row(
     key: &'static str,
     symbol: &'static str,
     name: &'static str,
-    unit: Unit,
+    dimension: Dimension,
     measure: fn(&Description) -> Value,
 ) -> Descriptor {
     Descriptor {
         key,
         symbol,
         name,
-        unit,
+        dimension,
         in_answer: true,
         measure,
     }
@@ -190,74 +188,92 @@ const fn row(
 
 /// The table, in the paper's order; `roundness` is what image analysis uses in place of F.
 pub const DESCRIPTORS: &[Descriptor] = &[
-    row("na", "NA", "active taxels", Unit::Count, |d| {
+    row("na", "NA", "active taxels", Dimension::Count, |d| {
         Value::Count(d.na)
     }),
-    row("nae", "NAE", "filled taxels", Unit::Count, |d| {
+    row("nae", "NAE", "filled taxels", Dimension::Count, |d| {
         Value::Count(d.nae)
     }),
-    row("ce", "CE", "outline taxels", Unit::Count, |d| {
+    row("ce", "CE", "outline taxels", Dimension::Count, |d| {
         Value::Count(d.ce)
     }),
-    row("num_x", "NumX", "sum of x", Unit::Length, |d| {
+    row("num_x", "NumX", "sum of x", Dimension::Length, |d| {
         Value::Number(d.num_x)
     }),
-    row("num_y", "NumY", "sum of y", Unit::Length, |d| {
+    row("num_y", "NumY", "sum of y", Dimension::Length, |d| {
         Value::Number(d.num_y)
     }),
-    row("cg", "CG", "centre of gravity", Unit::Length, |d| {
+    row("cg", "CG", "centre of gravity", Dimension::Length, |d| {
         Value::Point(d.cg())
     }),
-    row("p", "P", "outline length", Unit::Length, |d| {
+    row("p", "P", "outline length", Dimension::Length, |d| {
         Value::Number(d.steps.length())
     }),
-    row("f", "F", "P²/NAE", Unit::Ratio, |d| {
+    row("f", "F", "P²/NAE", Dimension::Ratio, |d| {
         Value::Number(d.steps.length() * d.steps.length() / f64::from(d.nae))
     }),
     Descriptor {
         in_answer: false,
-        ..row("roundness", "Round", "4π·NAE/P²", Unit::Ratio, |d| {
-            let length = d.steps.length();
-            if length > 0.0 {
-                Value::Number(4.0 * PI * f64::from(d.nae) / (length * length))
-            } else {
-                Value::None
-            }
-        })
+        ..row(
+            "roundness",
+            "Round",
+            "4π·NAE/P²",
+            Dimension::Ratio,
+            |d| {
+                let length = d.steps.length();
+                if length > 0.0 {
+                    Value::Number(4.0 * PI * f64::from(d.nae) / (length * length))
+                } else {
+                    Value::None
+                }
+            },
+        )
     },
-    row("rect", "Rect", "upright rectangle", Unit::Length, |d| {
-        Value::Rect(d.rect)
-    }),
-    row("cd", "CD", "rectangle's centre", Unit::Length, |d| {
+    row(
+        "rect",
+        "Rect",
+        "upright rectangle",
+        Dimension::Length,
+        |d| Value::Rect(d.rect),
+    ),
+    row("cd", "CD", "rectangle's centre", Dimension::Length, |d| {
         Value::Point(d.cd())
     }),
-    row("area", "Area", "rectangle's taxels", Unit::Area, |d| {
+    row("area", "Area", "rectangle's taxels", Dimension::Area, |d| {
         Value::Count(d.area())
     }),
-    row("diagonals", "Diag", "its diagonals", Unit::Direction, |d| {
-        Value::Pair(d.diagonals())
-    }),
+    row(
+        "diagonals",
+        "Diag",
+        "its diagonals",
+        Dimension::Direction,
+        |d| Value::Pair(d.diagonals()),
+    ),
     row(
         "side_ratio",
         "Ratio",
         "long / short side",
-        Unit::Ratio,
+        Dimension::Ratio,
         |d| {
             let sides = d.sides();
             Value::Number(sides.max_element() / sides.min_element())
         },
     ),
-    row("filling", "Fill", "NA/Area", Unit::Share, |d| {
+    row("filling", "Fill", "NA/Area", Dimension::Share, |d| {
         Value::Number(f64::from(d.na) / f64::from(d.area()))
     }),
-    row("cg_cd", "CG-CD", "distance CG to CD", Unit::Length, |d| {
-        Value::Number(d.cg().distance(d.cd()))
-    }),
+    row(
+        "cg_cd",
+        "CG-CD",
+        "distance CG to CD",
+        Dimension::Length,
+        |d| Value::Number(d.cg().distance(d.cd())),
+    ),
     row(
         "cg_cd_direction",
         "dir",
         "direction CG to CD",
-        Unit::Direction,
+        Dimension::Direction,
         Description::cg_cd_direction,
     ),
 ];

@@ -1,10 +1,14 @@
-//! What an imprint is described by: its regions, and the paper's descriptors of each.
+//! What describes an imprint: its regions, and the paper's descriptors of each.
 //!
-//! The object is 8-connected and the background 4-connected, so that a diagonal line of taxels is one piece and does
-//! enclose what is behind it. Everything here is integer arithmetic on the rows' words but for the last step.
+//! The object is 8-connected and the background 4-connected, so that a diagonal line of taxels is one piece and
+//! encloses what is behind it. All counting is integer arithmetic on the rows' words; only the last step divides.
 
-pub mod region;
+mod region;
 
 mod chain;
 
-pub mod descriptor;
+mod descriptor;
+
+pub use chain::ChainSteps;
+pub use descriptor::{DESCRIPTORS, Description, Descriptor, Dimension, Value};
+pub use region::{Region, RegionKind, each_region, main_region, regions};

@@ -13,14 +13,14 @@ use crate::imprint::{Bounds, Imprint};
 
 /// What a region is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Kind {
+pub enum RegionKind {
     /// A piece of the object.
     Exterior,
     /// A hole in it.
     Hole,
 }
 
-impl Kind {
+impl RegionKind {
     /// Its name, in JSON and on the screen.
     pub fn name(self) -> &'static str {
         match self {
@@ -33,14 +33,19 @@ impl Kind {
 /// A piece or a hole; never empty. Its taxels may be borrowed: an imprint is half a kilobyte.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Region<'a> {
-    kind: Kind,
+    kind: RegionKind,
     taxels: Cow<'a, Imprint>,
     filled: Cow<'a, Imprint>,
     bounds: Bounds,
 }
 
 impl<'a> Region<'a> {
-    fn borrowed(kind: Kind, taxels: &'a Imprint, filled: &'a Imprint, bounds: Bounds) -> Self {
+    fn borrowed(
+        kind: RegionKind,
+        taxels: &'a Imprint,
+        filled: &'a Imprint,
+        bounds: Bounds,
+    ) -> Self {
         Self {
             kind,
             taxels: Cow::Borrowed(taxels),
@@ -60,7 +65,7 @@ impl<'a> Region<'a> {
     }
 
     /// Whether it is a piece or a hole.
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> RegionKind {
         self.kind
     }
 
@@ -83,14 +88,14 @@ impl<'a> Region<'a> {
 /// All regions of an imprint, exteriors first. Empty for an empty imprint.
 ///
 /// ```
-/// use taxel::description::region::{regions, Kind};
+/// use taxel::description::{regions, RegionKind};
 /// use taxel::imprint::Imprint;
 /// let ring: Imprint = "\
 /// .##.
 /// #..#
 /// .##.".parse().unwrap();
 /// let regions = regions(&ring);
-/// assert_eq!(regions.iter().map(|region| region.kind()).collect::<Vec<_>>(), [Kind::Exterior, Kind::Hole]);
+/// assert_eq!(regions.iter().map(|region| region.kind()).collect::<Vec<_>>(), [RegionKind::Exterior, RegionKind::Hole]);
 /// assert_eq!(regions[1].taxels().to_string(), "....\n.##.\n....");
 /// ```
 pub fn regions(imprint: &Imprint) -> Vec<Region<'static>> {
@@ -102,8 +107,7 @@ pub fn regions(imprint: &Imprint) -> Vec<Region<'static>> {
 /// Shows all regions of an imprint one after another, in the order of [`regions`], and allocates nothing.
 ///
 /// ```
-/// use taxel::description::descriptor::Description;
-/// use taxel::description::region::each_region;
+/// use taxel::description::{Description, each_region};
 /// use taxel::imprint::Imprint;
 /// let two: Imprint = "##.#".parse().unwrap();
 /// let mut counts = Vec::new();
@@ -117,23 +121,38 @@ pub fn each_region(imprint: &Imprint, mut visit: impl FnMut(&Region)) {
     let mut holes = Imprint::empty(imprint.columns(), imprint.rows());
     let Some(holes_bounds) = enclosed(imprint, bounds, &mut holes) else {
         if is_stack(imprint, bounds, true) {
-            visit(&Region::borrowed(Kind::Exterior, imprint, imprint, bounds));
+            visit(&Region::borrowed(
+                RegionKind::Exterior,
+                imprint,
+                imprint,
+                bounds,
+            ));
         } else {
-            pieces(imprint, bounds, Kind::Exterior, false, &mut visit);
+            pieces(imprint, bounds, RegionKind::Exterior, false, &mut visit);
         }
         return;
     };
     let mut filled = *imprint;
     unite(&mut filled, &holes, holes_bounds);
     if is_stack(&filled, bounds, true) && is_runs(&holes, holes_bounds) {
-        visit(&Region::borrowed(Kind::Exterior, imprint, &filled, bounds));
+        visit(&Region::borrowed(
+            RegionKind::Exterior,
+            imprint,
+            &filled,
+            bounds,
+        ));
     } else {
-        pieces(imprint, bounds, Kind::Exterior, true, &mut visit);
+        pieces(imprint, bounds, RegionKind::Exterior, true, &mut visit);
     }
     if is_stack(&holes, holes_bounds, false) {
-        visit(&Region::borrowed(Kind::Hole, &holes, &holes, holes_bounds));
+        visit(&Region::borrowed(
+            RegionKind::Hole,
+            &holes,
+            &holes,
+            holes_bounds,
+        ));
     } else {
-        pieces(&holes, holes_bounds, Kind::Hole, true, &mut visit);
+        pieces(&holes, holes_bounds, RegionKind::Hole, true, &mut visit);
     }
 }
 
@@ -143,7 +162,7 @@ pub fn main_region(regions: &[Region]) -> Option<usize> {
     let exteriors = regions
         .iter()
         .enumerate()
-        .filter(|(_, region)| region.kind == Kind::Exterior);
+        .filter(|(_, region)| region.kind == RegionKind::Exterior);
     let largest = |best: Option<(usize, u32)>, (index, region): (usize, &Region)| {
         let area = region.filled.count();
         if best.is_some_and(|(_, most)| most >= area) {
@@ -194,12 +213,12 @@ fn rows(matrix: &Imprint, bounds: Bounds) -> &[u64] {
 fn pieces(
     matrix: &Imprint,
     bounds: Bounds,
-    kind: Kind,
+    kind: RegionKind,
     enclose: bool,
     visit: &mut impl FnMut(&Region),
 ) {
     let (mut rest, mut piece) = (*matrix, Imprint::empty(matrix.columns(), matrix.rows()));
-    let diagonal = kind == Kind::Exterior;
+    let diagonal = kind == RegionKind::Exterior;
     let (mut top, bottom) = (usize::from(bounds.top), usize::from(bounds.bottom));
     while top < bottom {
         let open = &mut rest.words_mut()[top..bottom];

@@ -2,8 +2,7 @@
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use crate::description::descriptor::{DESCRIPTORS, Description, Value};
-use crate::description::region::regions;
+use crate::description::{DESCRIPTORS, Description, Value, regions};
 use crate::imprint::Imprint;
 
 /// Serialises as `{"imprint":[…],"na":…,"regions":[{"kind":…,…},…]}`.

@@ -9,7 +9,7 @@ use std::fmt;
 use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use crate::figure::{Figure, Kind};
+use crate::figure::{Figure, FigureKind};
 use crate::formats::answer::Rows;
 use crate::formats::quote::without_place;
 use crate::imprint::{Imprint, ImprintError};
@@ -37,8 +37,8 @@ pub enum RecordError {
         expected: String,
     },
     /// A figure of another name than the seven.
-    #[error("figure: {found:?} is unknown, expected one of {}", Kind::ALL.map(Kind::name).join(", "))]
-    Kind {
+    #[error("figure: {found:?} is unknown, expected one of {}", FigureKind::ALL.map(FigureKind::name).join(", "))]
+    FigureKind {
         /// What was given.
         found: String,
     },
@@ -112,7 +112,7 @@ impl Values {
     ///
     /// # Errors
     /// The first value that is missing, out of range, or not of this kind.
-    pub(crate) fn figure(&self, kind: Kind, side: u8) -> Result<Figure, RecordError> {
+    pub(crate) fn figure(&self, kind: FigureKind, side: u8) -> Result<Figure, RecordError> {
         self.only(kind.name(), &kind.parameters().collect::<Vec<_>>())?;
         Ok(Figure::new(kind, side, |parameter| self.get(parameter))?)
     }
@@ -197,7 +197,7 @@ impl Record<'_> {
     ) -> Result<Source, RecordError> {
         match (&self.figure, &self.picture, &self.imprint) {
             (Some(name), None, None) => {
-                let kind = Kind::from_name(name).ok_or_else(|| RecordError::Kind {
+                let kind = FigureKind::from_name(name).ok_or_else(|| RecordError::FigureKind {
                     found: shortened(name),
                 })?;
                 Ok(Source::Figure(self.values.figure(kind, side)?))

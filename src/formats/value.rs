@@ -1,29 +1,29 @@
 //! Descriptor values as people read them: at most four decimals, shares in percent, directions in degrees.
 
-use crate::description::descriptor::{Unit, Value};
+use crate::description::{Dimension, Value};
 
 /// The text of a value; none where the value does not exist.
 ///
 /// ```
-/// use taxel::description::descriptor::{Unit, Value};
+/// use taxel::description::{Dimension, Value};
 /// use taxel::formats::value::text;
-/// assert_eq!(text(Value::Number(9.0 / 14.0), Unit::Share).as_deref(), Some("64.29 %"));
-/// assert_eq!(text(Value::Number(5.5), Unit::Length).as_deref(), Some("5.5"));
-/// assert_eq!(text(Value::None, Unit::Length), None);
+/// assert_eq!(text(Value::Number(9.0 / 14.0), Dimension::Share).as_deref(), Some("64.29 %"));
+/// assert_eq!(text(Value::Number(5.5), Dimension::Length).as_deref(), Some("5.5"));
+/// assert_eq!(text(Value::None, Dimension::Length), None);
 /// ```
-pub fn text(value: Value, unit: Unit) -> Option<String> {
+pub fn text(value: Value, unit: Dimension) -> Option<String> {
     match unit {
-        Unit::Direction => times(value, 1.0, 2).map(|text| format!("{text}°")),
-        Unit::Share => times(value, 100.0, 2).map(|text| format!("{text} %")),
+        Dimension::Direction => times(value, 1.0, 2).map(|text| format!("{text}°")),
+        Dimension::Share => times(value, 100.0, 2).map(|text| format!("{text} %")),
         _ => times(value, 1.0, 4),
     }
 }
 
 /// The text of a length in mm or an area in mm²; none of anything else, or where the value does not exist.
-pub fn in_millimetres(value: Value, unit: Unit, pitch_mm: f64) -> Option<String> {
+pub fn in_millimetres(value: Value, unit: Dimension, pitch_mm: f64) -> Option<String> {
     match unit {
-        Unit::Length => times(value, pitch_mm, 4).map(|text| format!("{text} mm")),
-        Unit::Area => times(value, pitch_mm * pitch_mm, 4).map(|text| format!("{text} mm²")),
+        Dimension::Length => times(value, pitch_mm, 4).map(|text| format!("{text} mm")),
+        Dimension::Area => times(value, pitch_mm * pitch_mm, 4).map(|text| format!("{text} mm²")),
         _ => None,
     }
 }

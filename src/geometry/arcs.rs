@@ -9,8 +9,8 @@
 //! the cells on its two sides; and all lines are computed before the way down begins, since a processor then works on
 //! several of them at once.
 
-use crate::geometry::curve::{Curve, Sums};
-use crate::geometry::grid::{Grid, index};
+use crate::geometry::cell_grid::{CellGrid, index};
+use crate::geometry::ellipse_cuts::{EllipseCuts, Sums};
 use crate::geometry::outline::{Ellipse, Point, Side};
 use crate::geometry::real::Real;
 
@@ -27,13 +27,13 @@ pub(crate) struct Arcs<T> {
 #[derive(Clone, Copy, Debug)]
 struct Way<T> {
     sums: Sums<T>,
-    /// The column's place in a row of the grid, which is the number of the line on its right; and that as a number.
-    place: usize,
+    /// The column's slot in a row of the grid, which is the number of the line on its right; and that as a number.
+    slot: usize,
     right: T,
 }
 
 /// A row of the grid that a half goes along.
-struct Row<T> {
+struct RowPass<T> {
     number: usize,
     start: usize,
     /// Whether the way down adds or takes away.
@@ -50,7 +50,7 @@ impl<T: Real> Arcs<T> {
         };
         let way = Way {
             sums,
-            place: 0,
+            slot: 0,
             right: T::ZERO,
         };
         Self {
@@ -60,8 +60,8 @@ impl<T: Real> Arcs<T> {
     }
 
     /// Draws an ellipse on a grid of the size given at first.
-    pub(crate) fn draw(&mut self, grid: &mut Grid<T>, ellipse: &Ellipse<T>, material: Side) {
-        let Some(curve) = Curve::of(ellipse) else {
+    pub(crate) fn draw(&mut self, grid: &mut CellGrid<T>, ellipse: &Ellipse<T>, material: Side) {
+        let Some(curve) = EllipseCuts::of(ellipse) else {
             return;
         };
         let (top, end) = (curve.top.y.max(T::ZERO), curve.bottom.y.min(grid.bottom()));
@@ -74,8 +74,8 @@ impl<T: Real> Arcs<T> {
         );
         let farthest = curve.left.x.abs().max(curve.right.x.abs());
         grid.weighs(farthest * (curve.bottom.y - curve.top.y) * T::HALF);
-        let (leftmost, mut line) = grid.place(curve.left.x);
-        let (rightmost, _) = grid.place(curve.right.x);
+        let (leftmost, mut line) = grid.locate(curve.left.x);
+        let (rightmost, _) = grid.locate(curve.right.x);
         for vertical in &mut self.vertical[leftmost..rightmost] {
             *vertical = curve.along(line);
             line = line + T::ONE;
@@ -96,7 +96,7 @@ impl<T: Real> Arcs<T> {
             };
             for (number, ends) in (first..).zip(self.horizontal[..=rows].windows(2)) {
                 let (mut way, goal) = (ends[0][side], ends[1][side]);
-                let row = Row {
+                let row = RowPass {
                     number: index(number),
                     start: grid.start(index(number)),
                     sign,
@@ -104,12 +104,12 @@ impl<T: Real> Arcs<T> {
                 };
                 // Above its turning point a half goes away from the middle, below it back.
                 if number < turn {
-                    self.go(grid, &row, &mut way, goal.place, 0);
+                    self.go(grid, &row, &mut way, goal.slot, 0);
                 } else {
                     if number == turn {
                         self.go(grid, &row, &mut way, far, 0);
                     }
-                    self.go(grid, &row, &mut way, goal.place, 1);
+                    self.go(grid, &row, &mut way, goal.slot, 1);
                 }
                 row.add(grid, &way, goal.sums);
             }
@@ -117,12 +117,12 @@ impl<T: Real> Arcs<T> {
     }
 
     /// Computes the ends of each row's pieces, from `top` to `end`. Gives the number of rows.
-    fn cross(&mut self, grid: &Grid<T>, curve: &Curve<T>, top: T, end: T) -> usize {
+    fn cross(&mut self, grid: &CellGrid<T>, curve: &EllipseCuts<T>, top: T, end: T) -> usize {
         let meet = |y: T| {
             curve.across(y).map(|(x, sums)| {
                 let x = x.max(curve.left.x).min(curve.right.x);
-                let (place, right) = grid.place(x);
-                Way { sums, place, right }
+                let (slot, right) = grid.locate(x);
+                Way { sums, slot, right }
             })
         };
         let mut line = T::whole(top.floor());
@@ -140,36 +140,43 @@ impl<T: Real> Arcs<T> {
     }
 
     /// Goes on to a column within a row, above or below the turning point.
-    fn go(&self, grid: &mut Grid<T>, row: &Row<T>, way: &mut Way<T>, place: usize, below: usize) {
-        while way.place < place {
-            let mut sums = self.vertical[way.place][below];
+    fn go(
+        &self,
+        grid: &mut CellGrid<T>,
+        row: &RowPass<T>,
+        way: &mut Way<T>,
+        slot: usize,
+        below: usize,
+    ) {
+        while way.slot < slot {
+            let mut sums = self.vertical[way.slot][below];
             sums.moment = sums.moment - row.quarter;
             row.add(grid, way, sums);
             *way = Way {
                 sums,
-                place: way.place + 1,
+                slot: way.slot + 1,
                 right: way.right + T::ONE,
             };
         }
-        while way.place > place {
-            let mut sums = self.vertical[way.place - 1][below];
+        while way.slot > slot {
+            let mut sums = self.vertical[way.slot - 1][below];
             sums.moment = sums.moment + row.quarter;
             row.add(grid, way, sums);
             *way = Way {
                 sums,
-                place: way.place - 1,
+                slot: way.slot - 1,
                 right: way.right - T::ONE,
             };
         }
     }
 }
 
-impl<T: Real> Row<T> {
+impl<T: Real> RowPass<T> {
     /// Adds the piece up to a point.
-    fn add(&self, grid: &mut Grid<T>, from: &Way<T>, to: Sums<T>) {
+    fn add(&self, grid: &mut CellGrid<T>, from: &Way<T>, to: Sums<T>) {
         let height = self.sign * (to.height - from.sums.height);
         let moment = self.sign * (to.moment - from.sums.moment);
         let here = from.right * height - moment;
-        grid.add(self.start + from.place, self.number, here, height);
+        grid.add(self.start + from.slot, self.number, here, height);
     }
 }

@@ -1,18 +1,28 @@
-//! Plane geometry: outlines that bound a shape, and the exact area of what they bound inside each cell of a grid.
+//! Plane geometry: outlines that bound a shape, and the exact area that they enclose in each cell of a grid.
 //!
-//! Frame: that of the sensory plane, x to the right, y **down**, the side of a cell as unit. Angles are degrees.
-//! The module knows nothing of sensors, figures or imprints.
+//! Frame: that of the sensory plane, x to the right, y **down**; the unit is the side of a cell. Angles are degrees.
+//! This room knows nothing of sensors, figures or imprints.
+//!
+//! A shape is anything that implements [`Solid`]: it draws its boundary with a [`Pen`], in numbers of any precision
+//! ([`Real`]). [`Polygon`] is one for vertices of your own.
 
 pub(crate) mod circle;
 
-pub mod real;
+mod real;
 
-pub mod outline;
+mod outline;
 
-mod curve;
+mod ellipse_cuts;
 
-mod grid;
+mod cell_grid;
 
 mod arcs;
 
-pub mod overlap;
+mod overlap;
+
+#[cfg(feature = "sweep")]
+pub(crate) use outline::Moving;
+pub use outline::{Ellipse, Extent, Pen, Point, Polygon, Side, Solid, Turn};
+pub(crate) use overlap::Overlap;
+pub use overlap::cell_area;
+pub use real::{Double, Real};

@@ -140,8 +140,7 @@ impl<T: Real, P: Pen<T>> Pen<T> for Moving<'_, T, P> {
 /// A type of one's own says how it is drawn, once, for every kind of number:
 ///
 /// ```
-/// use taxel::geometry::outline::{Ellipse, Pen, Point, Side, Solid};
-/// use taxel::geometry::real::Real;
+/// use taxel::geometry::{Ellipse, Pen, Point, Real, Side, Solid};
 /// use taxel::sensor::Sensor;
 /// use taxel::touch::Plane;
 ///
@@ -180,7 +179,7 @@ pub trait Solid {
 /// wound around twice counts twice: such polygons have no meaning here.
 ///
 /// ```
-/// use taxel::geometry::outline::{Extent, Polygon};
+/// use taxel::geometry::{Extent, Polygon};
 /// use taxel::sensor::Sensor;
 /// use taxel::touch::Plane;
 ///

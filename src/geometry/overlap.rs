@@ -1,22 +1,22 @@
 //! The exact area of a shape inside each cell of a grid.
 //!
 //! **Method.** The boundary is cut at the grid lines, and each piece adds to its own cell what the areas follow from
-//! (`grid`): straight edges here, ellipses in `arcs`.
+//! (`cell_grid`): straight edges here, ellipses in `arcs`.
 //!
 //! **Error.** A few roundings per piece, of sums below 10^4 for every shape of the program: under 1e-11 in `f64`, a
 //! tenth of what a touch takes for doubtful. Edges that are horizontal or vertical up to a rounding are harmless: what
 //! they contribute is as small as their height. Deciding a threshold exactly is the business of [`crate::touch`], which
-//! uses [`cell`] for it.
+//! uses [`cell_area`] for it.
 
 use crate::geometry::arcs::Arcs;
-use crate::geometry::grid::{Grid, index};
+use crate::geometry::cell_grid::{CellGrid, index};
 use crate::geometry::outline::{Ellipse, Moving, Pen, Point, Side, Solid};
 use crate::geometry::real::Real;
 
 /// A grid of `columns × rows` unit cells with its top left corner at the origin, that sums up what is drawn on it.
 #[derive(Clone, Debug)]
 pub(crate) struct Overlap<T> {
-    grid: Grid<T>,
+    grid: CellGrid<T>,
     arcs: Arcs<T>,
 }
 
@@ -24,7 +24,7 @@ impl<T: Real> Overlap<T> {
     /// An empty grid.
     pub(crate) fn new(columns: u8, rows: u8) -> Self {
         Self {
-            grid: Grid::new(columns, rows),
+            grid: CellGrid::new(columns, rows),
             arcs: Arcs::new(columns, rows),
         }
     }
@@ -35,7 +35,7 @@ impl<T: Real> Overlap<T> {
     }
 
     /// What has been drawn since.
-    pub(crate) fn grid(&self) -> &Grid<T> {
+    pub(crate) fn grid(&self) -> &CellGrid<T> {
         &self.grid
     }
 
@@ -50,7 +50,7 @@ impl<T: Real> Overlap<T> {
     }
 
     /// Draws a part of an edge that lies on the grid or at its rim.
-    fn inside(&mut self, edge: &Edge<T>, from: Point<T>, to: Point<T>) {
+    fn inside(&mut self, edge: &SlopedEdge<T>, from: Point<T>, to: Point<T>) {
         let ((mut row, top), (last, _)) = (from.y.cell(), to.y.cell());
         let down = row < last;
         let (mut line, step) = if down {
@@ -85,7 +85,7 @@ impl<T: Real> Overlap<T> {
     fn slice(
         &mut self,
         row: usize,
-        edge: &Edge<T>,
+        edge: &SlopedEdge<T>,
         (from, (first, first_left)): (Point<T>, (usize, T)),
         to: Point<T>,
     ) -> (usize, T) {
@@ -116,7 +116,7 @@ impl<T: Real> Overlap<T> {
 
     /// The part of an edge that lies on the grid, where it reaches beyond; what is left of the grid is drawn.
     #[cold]
-    fn clipped(&mut self, edge: &Edge<T>) -> Option<[Point<T>; 2]> {
+    fn clipped(&mut self, edge: &SlopedEdge<T>) -> Option<[Point<T>; 2]> {
         let (mut from, mut to) = (edge.left, edge.right);
         let (bottom, right) = (self.grid.bottom(), self.grid.right());
         let (low, high) = (from.y.min(to.y), from.y.max(to.y));
@@ -144,7 +144,7 @@ impl<T: Real> Overlap<T> {
     }
 
     /// Draws what lies left of the grid between two heights.
-    fn aside(&mut self, edge: &Edge<T>, from: T, to: T) {
+    fn aside(&mut self, edge: &SlopedEdge<T>, from: T, to: T) {
         let (top, end) = (from.min(to), from.max(to));
         let sign = if from < to { edge.sign } else { -edge.sign };
         let (mut here, mut row) = (top, top.floor());
@@ -159,7 +159,7 @@ impl<T: Real> Overlap<T> {
 }
 
 /// A straight edge, from left to right.
-struct Edge<T> {
+struct SlopedEdge<T> {
     left: Point<T>,
     right: Point<T>,
     /// Its way to the right for each step down.
@@ -173,7 +173,7 @@ struct Edge<T> {
     climb: T,
 }
 
-impl<T: Real> Edge<T> {
+impl<T: Real> SlopedEdge<T> {
     fn x_at(&self, y: T) -> T {
         self.left.x + (y - self.left.y) * self.slope
     }
@@ -197,7 +197,7 @@ impl<T: Real> Pen<T> for Overlap<T> {
             return;
         }
         let steepness = height / width;
-        let edge = Edge {
+        let edge = SlopedEdge {
             left,
             right,
             slope: width / height,
@@ -223,7 +223,7 @@ impl<T: Real> Pen<T> for Overlap<T> {
 }
 
 /// The area of a shape inside the one cell whose top left corner is (`column`, `row`), by the same method.
-pub fn cell<T: Real>(solid: &impl Solid, column: u8, row: u8) -> T {
+pub fn cell_area<T: Real>(solid: &impl Solid, column: u8, row: u8) -> T {
     let corner = Point::new(T::whole(-i32::from(column)), T::whole(-i32::from(row)));
     let mut overlap = Overlap::new(1, 1);
     solid.draw(&mut Moving {

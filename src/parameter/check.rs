@@ -3,12 +3,12 @@
 use crate::parameter::error::ParameterError;
 use crate::parameter::number;
 use crate::parameter::range::Range;
-use crate::parameter::table::{Decimals, LENGTH, PARAMETERS, Parameter, Row, Unit};
+use crate::parameter::table::{Decimals, LENGTH, PARAMETERS, Parameter, ParameterRow, Unit};
 use crate::quote::shortened;
 
 impl Parameter {
     /// Its row of the table.
-    pub fn row(self) -> &'static Row {
+    pub fn row(self) -> &'static ParameterRow {
         PARAMETERS
             .iter()
             .find(|row| row.parameter == self)

@@ -19,4 +19,4 @@ mod check;
 
 pub use error::ParameterError;
 pub use range::Range;
-pub use table::{PARAMETERS, Parameter, Row, Unit};
+pub use table::{PARAMETERS, Parameter, ParameterRow, Unit};

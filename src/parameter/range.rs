@@ -4,7 +4,7 @@ use std::fmt;
 
 /// One end of a range.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum End {
+pub(super) enum Bound {
     /// This number is allowed.
     At(f64),
     /// Only what lies beyond this number is.
@@ -16,17 +16,17 @@ pub(super) enum End {
 /// Which numbers are allowed. Shown as "above 0, up to 16".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
-    pub(super) low: End,
-    pub(super) high: End,
+    pub(super) low: Bound,
+    pub(super) high: Bound,
     pub(super) side: f64,
 }
 
 impl Range {
-    fn end(&self, end: End) -> (f64, bool) {
+    fn end(&self, end: Bound) -> (f64, bool) {
         match end {
-            End::At(value) => (value, true),
-            End::Beyond(value) => (value, false),
-            End::Side(factor) => (factor * self.side, true),
+            Bound::At(value) => (value, true),
+            Bound::Beyond(value) => (value, false),
+            Bound::Side(factor) => (factor * self.side, true),
         }
     }
 

@@ -1,6 +1,6 @@
 //! The table of parameters.
 
-use crate::parameter::range::End;
+use crate::parameter::range::Bound;
 
 /// A quantity that a user can set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -78,7 +78,7 @@ pub(super) enum Decimals {
 
 /// A row of [`PARAMETERS`].
 #[derive(Clone, Copy, Debug)]
-pub struct Row {
+pub struct ParameterRow {
     /// Which quantity.
     pub parameter: Parameter,
     /// Its name in files; that of its flag is [`Parameter::flag`].
@@ -93,15 +93,15 @@ pub struct Row {
     pub default: f64,
     /// One line for help texts.
     pub meaning: &'static str,
-    pub(super) low: End,
-    pub(super) high: End,
+    pub(super) low: Bound,
+    pub(super) high: Bound,
     /// The ends in forms, where these are others.
-    pub(super) form: Option<(End, End)>,
+    pub(super) form: Option<(Bound, Bound)>,
     pub(super) decimals: Decimals,
 }
 
 /// A length of a figure: above 0, up to the sensor's larger side.
-pub(super) const LENGTH: Row = Row {
+pub(super) const LENGTH: ParameterRow = ParameterRow {
     parameter: Parameter::Side,
     key: "side",
     label: "Side",
@@ -109,41 +109,41 @@ pub(super) const LENGTH: Row = Row {
     unit: Unit::Cells,
     default: 4.0,
     meaning: "side of the regular polygon",
-    low: End::Beyond(0.0),
-    high: End::Side(1.0),
+    low: Bound::Beyond(0.0),
+    high: Bound::Side(1.0),
     form: None,
     decimals: Decimals::Paper,
 };
 
 /// A position: in files also left of or above the sensor.
-const POSITION: Row = Row {
+const POSITION: ParameterRow = ParameterRow {
     default: 4.0,
-    low: End::Side(-1.0),
-    form: Some((End::At(0.0), End::Side(1.0))),
+    low: Bound::Side(-1.0),
+    form: Some((Bound::At(0.0), Bound::Side(1.0))),
     ..LENGTH
 };
 
 /// A scale: one taxel can be made as large as the largest sensor.
-const ZOOM: Row = Row {
+const ZOOM: ParameterRow = ParameterRow {
     unit: Unit::Ratio,
     default: 1.0,
-    high: End::At(64.0),
+    high: Bound::At(64.0),
     ..LENGTH
 };
 
 /// A side of the sensor.
-const COUNT: Row = Row {
+const COUNT: ParameterRow = ParameterRow {
     unit: Unit::Taxels,
     default: 16.0,
-    low: End::At(1.0),
-    high: End::At(64.0),
+    low: Bound::At(1.0),
+    high: Bound::At(64.0),
     decimals: Decimals::Fixed(0),
     ..LENGTH
 };
 
 /// The table, in the order of forms.
-pub const PARAMETERS: &[Row] = &[
-    Row {
+pub const PARAMETERS: &[ParameterRow] = &[
+    ParameterRow {
         parameter: Parameter::RadiusX,
         key: "radius_x",
         label: "Radius x",
@@ -151,7 +151,7 @@ pub const PARAMETERS: &[Row] = &[
         meaning: "half of the ellipse's width, before rotation",
         ..LENGTH
     },
-    Row {
+    ParameterRow {
         parameter: Parameter::RadiusY,
         key: "radius_y",
         label: "Radius y",
@@ -159,7 +159,7 @@ pub const PARAMETERS: &[Row] = &[
         meaning: "half of the ellipse's height, before rotation",
         ..LENGTH
     },
-    Row {
+    ParameterRow {
         parameter: Parameter::Length,
         key: "length",
         label: "Length",
@@ -168,7 +168,7 @@ pub const PARAMETERS: &[Row] = &[
         meaning: "the rectangle's side along x, before rotation",
         ..LENGTH
     },
-    Row {
+    ParameterRow {
         parameter: Parameter::Width,
         key: "width",
         label: "Width",
@@ -178,7 +178,7 @@ pub const PARAMETERS: &[Row] = &[
         ..LENGTH
     },
     LENGTH,
-    Row {
+    ParameterRow {
         parameter: Parameter::X0,
         key: "x0",
         label: "x0",
@@ -186,7 +186,7 @@ pub const PARAMETERS: &[Row] = &[
         meaning: "left of the bounding rectangle, before rotation",
         ..POSITION
     },
-    Row {
+    ParameterRow {
         parameter: Parameter::Y0,
         key: "y0",
         label: "y0",
@@ -194,7 +194,7 @@ pub const PARAMETERS: &[Row] = &[
         meaning: "top of the bounding rectangle, before rotation (y runs down)",
         ..POSITION
     },
-    Row {
+    ParameterRow {
         parameter: Parameter::Angle,
         key: "angle",
         label: "Angle",
@@ -202,12 +202,12 @@ pub const PARAMETERS: &[Row] = &[
         unit: Unit::Degrees,
         default: 0.0,
         meaning: "a figure turns clockwise about its centre, a picture counter-clockwise",
-        low: End::At(0.0),
-        high: End::Beyond(360.0),
-        form: Some((End::At(0.0), End::At(359.0))),
+        low: Bound::At(0.0),
+        high: Bound::Beyond(360.0),
+        form: Some((Bound::At(0.0), Bound::At(359.0))),
         decimals: Decimals::Fixed(0),
     },
-    Row {
+    ParameterRow {
         parameter: Parameter::Thickness,
         key: "thickness",
         label: "Thickness",
@@ -216,7 +216,7 @@ pub const PARAMETERS: &[Row] = &[
         meaning: "wall around one concentric hole; solid without it",
         ..LENGTH
     },
-    Row {
+    ParameterRow {
         parameter: Parameter::ZoomX,
         key: "zoom_x",
         label: "Zoom x",
@@ -224,7 +224,7 @@ pub const PARAMETERS: &[Row] = &[
         meaning: "scale along x, of the picture and of x0",
         ..ZOOM
     },
-    Row {
+    ParameterRow {
         parameter: Parameter::ZoomY,
         key: "zoom_y",
         label: "Zoom y",
@@ -232,7 +232,7 @@ pub const PARAMETERS: &[Row] = &[
         meaning: "scale along y, of the picture and of y0",
         ..ZOOM
     },
-    Row {
+    ParameterRow {
         parameter: Parameter::Columns,
         key: "columns",
         label: "Columns",
@@ -240,7 +240,7 @@ pub const PARAMETERS: &[Row] = &[
         meaning: "columns of the sensor",
         ..COUNT
     },
-    Row {
+    ParameterRow {
         parameter: Parameter::Rows,
         key: "rows",
         label: "Rows",
@@ -248,7 +248,7 @@ pub const PARAMETERS: &[Row] = &[
         meaning: "rows of the sensor",
         ..COUNT
     },
-    Row {
+    ParameterRow {
         parameter: Parameter::Threshold,
         key: "threshold",
         label: "Threshold",
@@ -256,11 +256,11 @@ pub const PARAMETERS: &[Row] = &[
         unit: Unit::Ratio,
         default: 0.5,
         meaning: "share of a cell that makes its taxel active",
-        high: End::At(1.0),
+        high: Bound::At(1.0),
         decimals: Decimals::Fixed(3),
         ..LENGTH
     },
-    Row {
+    ParameterRow {
         parameter: Parameter::Pitch,
         key: "pitch_mm",
         label: "Pitch",
@@ -268,7 +268,7 @@ pub const PARAMETERS: &[Row] = &[
         unit: Unit::Millimetres,
         default: 1.0,
         meaning: "side of a sensory cell",
-        high: End::At(1000.0),
+        high: Bound::At(1000.0),
         decimals: Decimals::Fixed(3),
         ..LENGTH
     },

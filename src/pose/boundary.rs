@@ -1,10 +1,9 @@
 //! The boundary of a shape, kept: drawn once for all positions that differ by a shift.
 //!
-//! In `f64` it is what bands are cut from; as [`Double`](crate::geometry::real::Double) it decides what `f64`
+//! In `f64` it is what bands are cut from; as [`Double`](crate::geometry::Double) it decides what `f64`
 //! cannot. Frame and units are those of the plane; the anchor of the shape lies at the origin.
 
-use crate::geometry::outline::{Ellipse, Extent, Moving, Pen, Point, Side, Solid};
-use crate::geometry::real::Real;
+use crate::geometry::{Ellipse, Extent, Moving, Pen, Point, Real, Side, Solid};
 
 /// Straight edges with the material on their right, and ellipses.
 #[derive(Clone, Debug)]

@@ -8,8 +8,7 @@
 //! figure the centre that it turns about, of a picture that of its scaled bounding rectangle, which then lies
 //! *at* the given point, whatever the zoom. Cells, degrees. Convention of this project.
 
-use crate::geometry::outline::{Moving, Pen, Point, Solid};
-use crate::geometry::real::Real;
+use crate::geometry::{Moving, Pen, Point, Real, Solid};
 use crate::parameter::{Parameter, ParameterError};
 use crate::pose::boundary::Boundary;
 use crate::pose::range::DecimalRange;
@@ -74,11 +73,11 @@ impl Ranges {
 /// A shape, a sensor and the poses to go through; all of them in range.
 ///
 /// ```
-/// use taxel::figure::{Figure, Kind};
+/// use taxel::figure::{Figure, FigureKind};
 /// use taxel::sensor::Sensor;
 /// use taxel::source::Source;
 /// use taxel::pose::grid::{Anchor, Grid, Ranges};
-/// let rectangle = Source::Figure(Figure::default_of(Kind::Rectangle, 16));
+/// let rectangle = Source::Figure(Figure::default_of(FigureKind::Rectangle, 16));
 /// let grid = Grid::new(rectangle, Sensor::default(), Anchor::Corner, Ranges::default())?;
 /// assert_eq!(grid.poses(), 3_600_000);
 /// let pose = grid.pose(10_203);

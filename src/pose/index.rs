@@ -38,13 +38,13 @@ impl Grid {
     /// Where the corner lies outside of what a shape's corner may be.
     ///
     /// ```
-    /// use taxel::figure::{Figure, Kind};
+    /// use taxel::figure::{Figure, FigureKind};
     /// use taxel::parameter::Parameter;
     /// use taxel::sensor::Sensor;
     /// use taxel::source::Source;
     /// use taxel::pose::grid::{Anchor, Grid, Ranges};
     /// // 6 × 3, its centre at 5, 5.
-    /// let rectangle = Source::Figure(Figure::default_of(Kind::Rectangle, 16));
+    /// let rectangle = Source::Figure(Figure::default_of(FigureKind::Rectangle, 16));
     /// let grid = Grid::new(rectangle, Sensor::default(), Anchor::Centre, Ranges::default())?;
     /// let first = grid.source_at(grid.pose(0))?;
     /// assert_eq!((first.get(Parameter::X0), first.get(Parameter::Y0)), (Some(2.0), Some(3.5)));
@@ -112,7 +112,7 @@ fn tidy(value: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Figure, Kind};
+    use crate::figure::{Figure, FigureKind};
     use crate::imprint::Imprint;
     use crate::picture::Picture;
     use crate::pose::grid::Ranges;
@@ -172,7 +172,7 @@ mod tests {
     /// Wherever the anchor is, the shape by itself leaves the imprint of its pose.
     #[test]
     fn a_pose_can_be_touched_by_itself() {
-        let triangle = Source::Figure(Figure::default_of(Kind::Triangle, 16));
+        let triangle = Source::Figure(Figure::default_of(FigureKind::Triangle, 16));
         for (source, anchor) in [
             (triangle.clone(), Anchor::Corner),
             (triangle, Anchor::Centre),
@@ -194,7 +194,7 @@ mod tests {
     #[test]
     fn another_shape_is_none_of_the_grid() {
         let sensor = Sensor::default();
-        let hexagon = Figure::default_of(Kind::Hexagon, 16);
+        let hexagon = Figure::default_of(FigureKind::Hexagon, 16);
         let grid = grid(Source::Figure(hexagon), Anchor::Corner);
         let with = |parameter, value| {
             Source::Figure(hexagon.with(parameter, value, 16).expect("in range"))
@@ -204,7 +204,7 @@ mod tests {
         assert!(!grid.is_of(&with(Parameter::Side, 1.5), &sensor));
         assert!(!grid.is_of(&with(Parameter::Thickness, 1.0), &sensor));
         assert!(!grid.is_of(&picture(), &sensor));
-        let octagon = Source::Figure(Figure::default_of(Kind::Octagon, 16));
+        let octagon = Source::Figure(Figure::default_of(FigureKind::Octagon, 16));
         assert!(!grid.is_of(&octagon, &sensor));
         let coarse = sensor.with(Parameter::Threshold, 0.7).expect("in range");
         assert!(!grid.is_of(grid.source(), &coarse));

@@ -5,7 +5,7 @@
 //! for regular polygons where that is a whole number of degrees (not the heptagon's), and any angle for circles. A
 //! picture that a half turn maps onto itself has 180°. Angles are compared as exact decimals.
 
-use crate::figure::Kind;
+use crate::figure::FigureKind;
 use crate::parameter::Parameter;
 use crate::source::Source;
 
@@ -29,13 +29,13 @@ pub(crate) fn period(source: &Source) -> Option<u32> {
     };
     let equal = |one: Parameter, other: Parameter| figure.get(one) == figure.get(other);
     match figure.kind() {
-        Kind::Ellipse if equal(Parameter::RadiusX, Parameter::RadiusY) => None,
-        Kind::Rectangle if equal(Parameter::Length, Parameter::Width) => Some(90),
-        Kind::Ellipse | Kind::Rectangle => Some(180),
-        Kind::Triangle => Some(120),
-        Kind::Pentagon => Some(72),
-        Kind::Hexagon => Some(60),
-        Kind::Heptagon => Some(360),
-        Kind::Octagon => Some(45),
+        FigureKind::Ellipse if equal(Parameter::RadiusX, Parameter::RadiusY) => None,
+        FigureKind::Rectangle if equal(Parameter::Length, Parameter::Width) => Some(90),
+        FigureKind::Ellipse | FigureKind::Rectangle => Some(180),
+        FigureKind::Triangle => Some(120),
+        FigureKind::Pentagon => Some(72),
+        FigureKind::Hexagon => Some(60),
+        FigureKind::Heptagon => Some(360),
+        FigureKind::Octagon => Some(45),
     }
 }

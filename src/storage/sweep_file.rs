@@ -238,7 +238,7 @@ fn begun(path: &Path, existing: Existing) -> Result<Unfinished, SweepFileError> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Figure, Kind as Figures};
+    use crate::figure::{Figure, FigureKind};
     use crate::pose::grid::{Anchor, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
@@ -250,7 +250,7 @@ mod tests {
             angle: "0".parse().expect("a range"),
             ..Ranges::default()
         };
-        let source = Source::Figure(Figure::default_of(Figures::Hexagon, 16));
+        let source = Source::Figure(Figure::default_of(FigureKind::Hexagon, 16));
         let grid = Grid::new(source, Sensor::default(), Anchor::Corner, ranges);
         Survey::of(&grid.expect("in range"), Shard::WHOLE, Watch::nothing())
     }

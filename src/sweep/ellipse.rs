@@ -8,7 +8,7 @@
 //! its value at the last touch of the outside, and as a rule the difference of the two stays above `t`. Whenever
 //! something of this does not hold the band is settled from nothing ([`crate::sweep::isolate`]).
 
-use crate::geometry::outline::{Ellipse, Side};
+use crate::geometry::{Ellipse, Side};
 use crate::sensor::MAX_SIDE;
 use crate::sweep::ellipse_band::Oval;
 use crate::sweep::isolate::Ring;

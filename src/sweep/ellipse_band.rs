@@ -5,8 +5,8 @@
 
 use std::f64::consts::FRAC_PI_4;
 
+use crate::geometry::Ellipse;
 use crate::geometry::circle::angle;
-use crate::geometry::outline::Ellipse;
 
 /// Bounds of sections are taken this much wider than computed.
 const SLACK: f64 = 1e-12;

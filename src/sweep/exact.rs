@@ -4,9 +4,7 @@
 //! short. The boundary is drawn once per turn in [`Double`] at the origin and shifted by the decimals that the ranges
 //! give, which is in real arithmetic the shape of the pose itself.
 
-use crate::geometry::outline::Point;
-use crate::geometry::overlap::Overlap;
-use crate::geometry::real::{Double, Real};
+use crate::geometry::{Double, Overlap, Point, Real};
 use crate::pose::boundary::Boundary;
 use crate::pose::grid::Grid;
 use crate::touch::least;

@@ -3,7 +3,7 @@
 //! A taxel in column `i` inside of a span from `a` to `b` is active while `i − b ≤ x0 ≤ i − a`. Where a value of x0 lies
 //! within [`NEAR`] of the end of a span, or in a span that is in doubt, [`Exact`] decides for that taxel and pose.
 
-use crate::geometry::real::Real;
+use crate::geometry::Real;
 use crate::sweep::events::Events;
 use crate::sweep::exact::Exact;
 use crate::sweep::span::{NEAR, Span, Spans};

@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use crate::geometry::outline::{Ellipse, Pen, Point, Side, Solid};
+use crate::geometry::{Ellipse, Pen, Point, Side, Solid};
 use crate::source::Source;
 
 /// Area and outline of the continuous figure.

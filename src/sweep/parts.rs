@@ -110,7 +110,7 @@ pub struct PartsError(&'static str);
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Figure, Kind};
+    use crate::figure::{Figure, FigureKind};
     use crate::pose::grid::{Anchor, Ranges};
     use crate::pose::range::DecimalRange;
     use crate::sensor::Sensor;
@@ -123,7 +123,7 @@ mod tests {
             angle: DecimalRange::whole(0),
             ..Ranges::default()
         };
-        let source = Source::Figure(Figure::default_of(Kind::Hexagon, 16));
+        let source = Source::Figure(Figure::default_of(FigureKind::Hexagon, 16));
         let grid = Grid::new(source, Sensor::default(), Anchor::Corner, ranges).expect("a grid");
         let shard = Shard::new(2, 2).expect("a shard");
         let parts = Survey::of(&grid, shard, Watch::nothing()).parts();

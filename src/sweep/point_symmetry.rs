@@ -10,7 +10,7 @@
 //! of the bounding rectangle of ellipses, rectangles and pictures that are not zoomed; those of a regular polygon are
 //! none. What the sensor cuts off has no image, so the shape must lie inside of it in all poses of the turn.
 
-use crate::figure::Kind;
+use crate::figure::FigureKind;
 use crate::parameter::Parameter;
 use crate::pose::grid::{Anchor, Grid};
 use crate::pose::range::DecimalRange;
@@ -49,8 +49,8 @@ fn twice_to_centre(grid: &Grid) -> Option<[f64; 2]> {
             let sizes = figure.kind().sizes();
             let size = |index: usize| figure.get(*sizes.get(index)?);
             match figure.kind() {
-                Kind::Ellipse => Some([2.0 * size(0)?, 2.0 * size(1)?]),
-                Kind::Rectangle => Some([size(0)?, size(1)?]),
+                FigureKind::Ellipse => Some([2.0 * size(0)?, 2.0 * size(1)?]),
+                FigureKind::Rectangle => Some([size(0)?, size(1)?]),
                 _ => None,
             }
         }
@@ -176,14 +176,14 @@ mod tests {
 
     #[test]
     fn only_what_a_half_turn_maps_onto_itself_has_images() {
-        let halved = |kind: Kind, anchor| {
+        let halved = |kind: FigureKind, anchor| {
             has_images(Source::Figure(Figure::default_of(kind, 16)), anchor, "1")
         };
         let (corner, centre) = (Anchor::Corner, Anchor::Centre);
-        assert!(halved(Kind::Rectangle, corner) && halved(Kind::Ellipse, corner));
-        assert!(halved(Kind::Hexagon, centre) && halved(Kind::Octagon, centre));
-        assert!(!halved(Kind::Hexagon, corner) && !halved(Kind::Octagon, corner));
-        assert!(!halved(Kind::Triangle, centre) && !halved(Kind::Heptagon, centre));
+        assert!(halved(FigureKind::Rectangle, corner) && halved(FigureKind::Ellipse, corner));
+        assert!(halved(FigureKind::Hexagon, centre) && halved(FigureKind::Octagon, centre));
+        assert!(!halved(FigureKind::Hexagon, corner) && !halved(FigureKind::Octagon, corner));
+        assert!(!halved(FigureKind::Triangle, centre) && !halved(FigureKind::Heptagon, centre));
         let picture = |rows: &str, anchor, zoom: &str| {
             let rows = rows.parse().expect("rows");
             has_images(Source::Picture(Picture::at_home(rows)), anchor, zoom)

@@ -10,7 +10,7 @@
 //! **Error.** `w` at a corner is a sum of shares of rises, each in [0, 1] of them, and `W` is summed up by
 //! trapezoids: nothing is extrapolated, so steep pieces do no harm. Below 1e-11.
 
-use crate::geometry::outline::Point;
+use crate::geometry::Point;
 use crate::sweep::span::{DOUBT, Level, STEEP, Spans};
 
 /// An edge, from its upper end.

@@ -6,8 +6,7 @@
 
 use crate::atlas::counter::Census;
 use crate::atlas::packing::Layout;
-use crate::geometry::outline::Extent;
-use crate::geometry::real::Real;
+use crate::geometry::{Extent, Real};
 use crate::pose::boundary::Boundary;
 use crate::pose::grid::Grid;
 use crate::sweep::ellipse::Elliptic;

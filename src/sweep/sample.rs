@@ -52,12 +52,12 @@ fn distinct_angles(grid: &Grid) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Figure, Kind};
+    use crate::figure::{Figure, FigureKind};
     use crate::pose::grid::{Anchor, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
 
-    fn sample(kind: Kind, ranges: Ranges) -> (u64, f64) {
+    fn sample(kind: FigureKind, ranges: Ranges) -> (u64, f64) {
         let source = Source::Figure(Figure::default_of(kind, 16));
         let grid = Grid::new(source, Sensor::default(), Anchor::Corner, ranges);
         let sample = Sample::of(&grid.expect("in range"));
@@ -67,17 +67,17 @@ mod tests {
     #[test]
     fn a_sample_is_small_and_symmetries_count() {
         let default = Ranges::default();
-        assert_eq!(sample(Kind::Heptagon, default), (10_000, 360.0));
-        assert_eq!(sample(Kind::Octagon, default), (10_000, 45.0));
+        assert_eq!(sample(FigureKind::Heptagon, default), (10_000, 360.0));
+        assert_eq!(sample(FigureKind::Octagon, default), (10_000, 45.0));
         // The default ellipse is a circle.
-        assert_eq!(sample(Kind::Ellipse, default), (10_000, 1.0));
+        assert_eq!(sample(FigureKind::Ellipse, default), (10_000, 1.0));
         let range = |text: &str| text.parse().expect("a range");
         let long = Ranges {
             x0: range("0:10:0.001"),
             y0: range("0:10:0.001"),
             ..default
         };
-        let (poses, times) = sample(Kind::Heptagon, long);
+        let (poses, times) = sample(FigureKind::Heptagon, long);
         assert_eq!((poses, times), (10_001, 360.0 * 10_001.0));
         let single = Ranges {
             x0: range("5"),
@@ -85,6 +85,6 @@ mod tests {
             angle: range("0"),
             ..default
         };
-        assert_eq!(sample(Kind::Triangle, single), (1, 1.0));
+        assert_eq!(sample(FigureKind::Triangle, single), (1, 1.0));
     }
 }

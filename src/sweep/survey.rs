@@ -52,7 +52,7 @@ impl Watch<'_> {
 /// All that a sweep found.
 ///
 /// ```
-/// use taxel::figure::{Figure, Kind};
+/// use taxel::figure::{Figure, FigureKind};
 /// use taxel::parameter::Parameter;
 /// use taxel::sensor::Sensor;
 /// use taxel::source::Source;
@@ -61,7 +61,7 @@ impl Watch<'_> {
 /// use taxel::sweep::survey::{Survey, Watch};
 ///
 /// // The paper's ring: over one cell of positions it leaves 393 different imprints.
-/// let ring = Figure::new(Kind::Ellipse, 16, |parameter| match parameter {
+/// let ring = Figure::new(FigureKind::Ellipse, 16, |parameter| match parameter {
 ///     Parameter::RadiusX | Parameter::RadiusY => Some(4.0),
 ///     Parameter::Thickness => Some(2.0),
 ///     _ => Some(0.0),

@@ -15,13 +15,13 @@ impl Survey {
     /// stopped before. Empty where a range leaves the grid. It takes as long as sweeping these poses does.
     ///
     /// ```
-    /// use taxel::figure::{Figure, Kind};
+    /// use taxel::figure::{Figure, FigureKind};
     /// use taxel::sensor::Sensor;
     /// use taxel::source::Source;
     /// use taxel::pose::grid::{Anchor, Grid, Ranges};
     /// use taxel::sweep::plan::Shard;
     /// use taxel::sweep::survey::{Survey, Watch};
-    /// let square = Source::Figure(Figure::default_of(Kind::Rectangle, 16));
+    /// let square = Source::Figure(Figure::default_of(FigureKind::Rectangle, 16));
     /// let ranges = Ranges { angle: "0".parse()?, ..Ranges::default() };
     /// let grid = Grid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
     /// let survey = Survey::of(&grid, Shard::WHOLE, Watch::nothing());
@@ -64,7 +64,7 @@ mod tests {
     use std::sync::atomic::{AtomicU64, Ordering};
 
     use super::*;
-    use crate::figure::{Figure, Kind};
+    use crate::figure::{Figure, FigureKind};
     use crate::imprint::Imprint;
     use crate::picture::Picture;
     use crate::pose::grid::{Anchor, Grid, Ranges};
@@ -78,7 +78,7 @@ mod tests {
     fn a_window_shows_what_touching_finds() {
         let range = |text: &str| text.parse().expect("a range");
         let imprint = Imprint::from_rows(["##.", ".##"]).expect("rows");
-        let ellipse = Source::Figure(Figure::default_of(Kind::Ellipse, 16));
+        let ellipse = Source::Figure(Figure::default_of(FigureKind::Ellipse, 16));
         for (source, zoom) in [
             (ellipse, "1"),
             (Source::Picture(Picture::at_home(imprint)), "1:2:0.5"),
@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn what_was_not_gone_through_has_no_number() {
-        let source = Source::Figure(Figure::default_of(Kind::Rectangle, 16));
+        let source = Source::Figure(Figure::default_of(FigureKind::Rectangle, 16));
         let grid = Grid::new(source, Sensor::default(), Anchor::Corner, Ranges::default());
         let grid = grid.expect("in range");
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();

@@ -1,7 +1,7 @@
 //! What several test files share: random numbers from a fixed seed, and short ways to write a shape down.
 #![allow(dead_code, reason = "every test file uses its own part of this one")]
 
-use taxel::figure::{Figure, Kind};
+use taxel::figure::{Figure, FigureKind};
 use taxel::imprint::Imprint;
 use taxel::parameter::Parameter;
 use taxel::picture::Picture;
@@ -78,7 +78,7 @@ fn value(text: &str, parameter: Parameter) -> Option<f64> {
 /// The figure `hexagon side=3 x0=2.1 y0=1.35 angle=17 thickness=1`; an angle that is not given is 0.
 pub(crate) fn figure(text: &str, side: u8) -> Figure {
     let name = text.split_whitespace().next().expect("a name first");
-    let kind = Kind::from_name(name).expect("one of the seven names");
+    let kind = FigureKind::from_name(name).expect("one of the seven names");
     let given =
         |parameter| value(text, parameter).or((parameter == Parameter::Angle).then_some(0.0));
     Figure::new(kind, side, given).expect("values in range")

@@ -4,8 +4,8 @@
 
 use std::path::Path;
 
-use taxel::description::region::regions;
-use taxel::figure::{Figure, Kind};
+use taxel::description::regions;
+use taxel::figure::{Figure, FigureKind};
 use taxel::formats::drawing::Drawing;
 use taxel::imprint::Imprint;
 use taxel::parameter::Parameter;
@@ -15,7 +15,7 @@ use taxel::touch::Plane;
 
 /// The paper's Fig. 1.
 fn ring() -> (Figure, Imprint) {
-    let figure = Figure::default_of(Kind::Ellipse, 16)
+    let figure = Figure::default_of(FigureKind::Ellipse, 16)
         .with(Parameter::X0, 1.99, 16)
         .and_then(|figure| figure.with(Parameter::Y0, 1.47, 16))
         .and_then(|figure| figure.with(Parameter::Thickness, 2.0, 16))
@@ -187,7 +187,7 @@ mod pixels {
 
     #[test]
     fn what_reaches_beyond_the_sensor_is_cut_off() {
-        let far = Figure::default_of(Kind::Ellipse, 16)
+        let far = Figure::default_of(FigureKind::Ellipse, 16)
             .with(Parameter::X0, 12.0, 16)
             .expect("in range");
         let imprint = Plane::new(Sensor::default()).touch(&far);

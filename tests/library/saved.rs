@@ -2,7 +2,7 @@
 
 use proptest::collection::vec;
 use proptest::prelude::*;
-use taxel::figure::{Figure, Kind};
+use taxel::figure::{Figure, FigureKind};
 use taxel::formats::name::Name;
 use taxel::formats::shape::Shape;
 use taxel::imprint::Imprint;
@@ -27,13 +27,13 @@ fn imprints() -> impl Strategy<Value = Imprint> {
 fn sources(side: u8) -> impl Strategy<Value = Option<Source>> {
     let reach = f64::from(side);
     let figure = (
-        0..Kind::ALL.len(),
+        0..FigureKind::ALL.len(),
         -reach..=reach,
         0.0..360.0,
         any::<bool>(),
     );
     let figure = figure.prop_map(move |(kind, x0, angle, hollow)| {
-        let figure = Figure::default_of(Kind::ALL[kind], side)
+        let figure = Figure::default_of(FigureKind::ALL[kind], side)
             .with(Parameter::X0, x0, side)
             .and_then(|figure| figure.with(Parameter::Angle, angle, side))
             .expect("in range");

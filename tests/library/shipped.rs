@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use taxel::description::region::{Kind, regions};
+use taxel::description::{RegionKind, regions};
 use taxel::imprint::Imprint;
 use taxel::parameter::Parameter;
 use taxel::picture::Picture;
@@ -46,7 +46,7 @@ fn there_are_shapes_of_all_sorts() {
             let regions = regions(&loaded.shape.imprint);
             let holes = regions
                 .iter()
-                .filter(|region| region.kind() == Kind::Hole)
+                .filter(|region| region.kind() == RegionKind::Hole)
                 .count();
             sort(regions.len() - holes, holes)
         };

@@ -1,8 +1,8 @@
 //! Shapes drawn at random, in hundredths of a cell side.
 
 use proptest::prelude::*;
-use taxel::figure::{Figure, Kind};
-use taxel::geometry::outline::Polygon;
+use taxel::figure::{Figure, FigureKind};
+use taxel::geometry::Polygon;
 use taxel::imprint::Imprint;
 use taxel::parameter::Parameter;
 use taxel::sensor::MAX_SIDE;
@@ -16,12 +16,12 @@ pub(crate) fn angle() -> impl Strategy<Value = i32> {
     prop_oneof![0..360, (0..24).prop_map(|step| step * 15)]
 }
 
-pub(crate) fn kind() -> impl Strategy<Value = Kind> {
-    proptest::sample::select(Kind::ALL.to_vec())
+pub(crate) fn kind() -> impl Strategy<Value = FigureKind> {
+    proptest::sample::select(FigureKind::ALL.to_vec())
 }
 
 /// A figure of hundredths: kind, two sizes, x0, y0, angle, wall.
-pub(crate) type Drawn = (Kind, (i32, i32), (i32, i32), i32, Option<i32>);
+pub(crate) type Drawn = (FigureKind, (i32, i32), (i32, i32), i32, Option<i32>);
 
 pub(crate) fn drawn(place: std::ops::Range<i32>) -> impl Strategy<Value = Drawn> {
     let sizes = (1..500, 1..500);
@@ -112,11 +112,11 @@ pub(crate) fn area(figure: &Figure) -> f64 {
     };
     let pi = std::f64::consts::PI;
     let corners = match figure.kind() {
-        Kind::Ellipse => {
+        FigureKind::Ellipse => {
             let (rx, ry) = (get(Parameter::RadiusX), get(Parameter::RadiusY));
             return less_hole(pi * rx * ry, (rx - wall, ry - wall), pi);
         }
-        Kind::Rectangle => {
+        FigureKind::Rectangle => {
             let (length, width) = (get(Parameter::Length), get(Parameter::Width));
             return less_hole(
                 length * width,
@@ -124,11 +124,11 @@ pub(crate) fn area(figure: &Figure) -> f64 {
                 1.0,
             );
         }
-        Kind::Triangle => 3.0,
-        Kind::Pentagon => 5.0,
-        Kind::Hexagon => 6.0,
-        Kind::Heptagon => 7.0,
-        Kind::Octagon => 8.0,
+        FigureKind::Triangle => 3.0,
+        FigureKind::Pentagon => 5.0,
+        FigureKind::Hexagon => 6.0,
+        FigureKind::Heptagon => 7.0,
+        FigureKind::Octagon => 8.0,
     };
     // n r² tan(π/n), with the inradius r.
     let factor = corners * (pi / corners).tan();

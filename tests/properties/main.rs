@@ -12,9 +12,9 @@ use common::sensor;
 use drawn::{angle, area, drawn, figure, hundredths, imprints, kind, moved, polygon, star};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use taxel::figure::{Figure, Kind};
+use taxel::figure::{Figure, FigureKind};
 use taxel::formats::shape::Shape;
-use taxel::geometry::outline::Extent;
+use taxel::geometry::Extent;
 use taxel::imprint::Imprint;
 use taxel::parameter::{PARAMETERS, Parameter};
 use taxel::picture::Picture;
@@ -67,7 +67,7 @@ proptest! {
         let side: u8 = if odd { 17 } else { 16 };
         let middle = i32::from(side) * 50;
         let sizes = if ellipse { half } else { (half.0 * 2, half.1 * 2) };
-        let kind = if ellipse { Kind::Ellipse } else { Kind::Rectangle };
+        let kind = if ellipse { FigureKind::Ellipse } else { FigureKind::Rectangle };
         let place = (middle - half.0, middle - half.1);
         let mut plane = Plane::new(sensor(side, side, 0.5));
         let mut at = |angle: i32| plane.touch(&figure(&(kind, sizes, place, angle, wall), side));
@@ -83,10 +83,10 @@ proptest! {
     fn a_regular_polygon_repeats_after_one_of_its_corners(drawn in drawn(300..900), steps in 1..8) {
         let (kind, sizes, place, angle, wall) = drawn;
         let corner = match kind {
-            Kind::Triangle => 120,
-            Kind::Pentagon => 72,
-            Kind::Hexagon => 60,
-            Kind::Octagon => 45,
+            FigureKind::Triangle => 120,
+            FigureKind::Pentagon => 72,
+            FigureKind::Hexagon => 60,
+            FigureKind::Octagon => 45,
             // A seventh of a turn is no whole number of degrees.
             _ => 360,
         };

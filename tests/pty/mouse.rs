@@ -147,10 +147,7 @@ fn what_is_copied_goes_to_the_clipboard_of_the_terminal() {
         copied(program).is_some_and(|text| text.starts_with("na\t52\nnae\t52\n"))
     });
     let lines = copied(&program).map(|text| text.lines().count());
-    assert_eq!(
-        lines,
-        Some(taxel::description::descriptor::DESCRIPTORS.len())
-    );
+    assert_eq!(lines, Some(taxel::description::DESCRIPTORS.len()));
     program.types(b"qy");
     program.ends_well(0);
 }

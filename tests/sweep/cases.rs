@@ -1,6 +1,6 @@
 //! The figures and pictures whose sweeps are compared with touching and measured, and the comparison.
 
-use taxel::figure::{Figure, Kind};
+use taxel::figure::{Figure, FigureKind};
 use taxel::parameter::Parameter;
 use taxel::picture::Picture;
 use taxel::pose::grid::{Anchor, Grid, Ranges};
@@ -23,7 +23,7 @@ pub(crate) struct Case {
 }
 
 /// A figure by its first and second size (the second of a regular polygon is not used) and its wall, 0 for none.
-pub(crate) fn figure(kind: Kind, first: f64, second: f64, wall: f64) -> Source {
+pub(crate) fn figure(kind: FigureKind, first: f64, second: f64, wall: f64) -> Source {
     let figure = Figure::new(kind, 64, |parameter| match parameter {
         Parameter::RadiusX | Parameter::Length | Parameter::Side => Some(first),
         Parameter::RadiusY | Parameter::Width => Some(second),
@@ -57,52 +57,79 @@ pub(crate) fn cases() -> Vec<Case> {
         zoom: "1",
     };
     let mut all = vec![
-        case("rectangle 6 x 3", figure(Kind::Rectangle, 6.0, 3.0, 0.0)),
-        case("square 4", figure(Kind::Rectangle, 4.0, 4.0, 0.0)),
-        case("square 0.7", figure(Kind::Rectangle, 0.7, 0.7, 0.0)),
+        case(
+            "rectangle 6 x 3",
+            figure(FigureKind::Rectangle, 6.0, 3.0, 0.0),
+        ),
+        case("square 4", figure(FigureKind::Rectangle, 4.0, 4.0, 0.0)),
+        case("square 0.7", figure(FigureKind::Rectangle, 0.7, 0.7, 0.0)),
         case(
             "rectangle 5.5 x 2.5 wall 1",
-            figure(Kind::Rectangle, 5.5, 2.5, 1.0),
+            figure(FigureKind::Rectangle, 5.5, 2.5, 1.0),
         ),
         // At 5 its corners are beyond the sensor.
         Case {
             place: "2.5:3.49:0.01",
             ..case(
                 "rectangle 10 x 8 wall 0.7",
-                figure(Kind::Rectangle, 10.0, 8.0, 0.7),
+                figure(FigureKind::Rectangle, 10.0, 8.0, 0.7),
             )
         },
         case(
             "rectangle 10 x 8 wall 0.7 beyond",
-            figure(Kind::Rectangle, 10.0, 8.0, 0.7),
+            figure(FigureKind::Rectangle, 10.0, 8.0, 0.7),
         ),
-        case("rectangle 9 x 0.5", figure(Kind::Rectangle, 9.0, 0.5, 0.0)),
+        case(
+            "rectangle 9 x 0.5",
+            figure(FigureKind::Rectangle, 9.0, 0.5, 0.0),
+        ),
         case(
             "rectangle 7 x 7 wall 0.25",
-            figure(Kind::Rectangle, 7.0, 7.0, 0.25),
+            figure(FigureKind::Rectangle, 7.0, 7.0, 0.25),
         ),
-        case("triangle 6", figure(Kind::Triangle, 6.0, 0.0, 0.0)),
-        case("triangle 8 wall 1", figure(Kind::Triangle, 8.0, 0.0, 1.0)),
-        case("pentagon 4", figure(Kind::Pentagon, 4.0, 0.0, 0.0)),
+        case("triangle 6", figure(FigureKind::Triangle, 6.0, 0.0, 0.0)),
+        case(
+            "triangle 8 wall 1",
+            figure(FigureKind::Triangle, 8.0, 0.0, 1.0),
+        ),
+        case("pentagon 4", figure(FigureKind::Pentagon, 4.0, 0.0, 0.0)),
         case(
             "pentagon 3.5 wall 0.8",
-            figure(Kind::Pentagon, 3.5, 0.0, 0.8),
+            figure(FigureKind::Pentagon, 3.5, 0.0, 0.8),
         ),
-        case("hexagon 3 wall 1", figure(Kind::Hexagon, 3.0, 0.0, 1.0)),
-        case("hexagon 4", figure(Kind::Hexagon, 4.0, 0.0, 0.0)),
-        case("heptagon 3", figure(Kind::Heptagon, 3.0, 0.0, 0.0)),
-        case("heptagon 3 wall 1", figure(Kind::Heptagon, 3.0, 0.0, 1.0)),
-        case("octagon 3 wall 1.5", figure(Kind::Octagon, 3.0, 0.0, 1.5)),
-        case("octagon 2", figure(Kind::Octagon, 2.0, 0.0, 0.0)),
-        case("ellipse 5 x 3", figure(Kind::Ellipse, 5.0, 3.0, 0.0)),
-        case("ellipse 5 x 3 wall 1", figure(Kind::Ellipse, 5.0, 3.0, 1.0)),
+        case(
+            "hexagon 3 wall 1",
+            figure(FigureKind::Hexagon, 3.0, 0.0, 1.0),
+        ),
+        case("hexagon 4", figure(FigureKind::Hexagon, 4.0, 0.0, 0.0)),
+        case("heptagon 3", figure(FigureKind::Heptagon, 3.0, 0.0, 0.0)),
+        case(
+            "heptagon 3 wall 1",
+            figure(FigureKind::Heptagon, 3.0, 0.0, 1.0),
+        ),
+        case(
+            "octagon 3 wall 1.5",
+            figure(FigureKind::Octagon, 3.0, 0.0, 1.5),
+        ),
+        case("octagon 2", figure(FigureKind::Octagon, 2.0, 0.0, 0.0)),
+        case("ellipse 5 x 3", figure(FigureKind::Ellipse, 5.0, 3.0, 0.0)),
+        case(
+            "ellipse 5 x 3 wall 1",
+            figure(FigureKind::Ellipse, 5.0, 3.0, 1.0),
+        ),
         case(
             "ellipse 4.5 x 1.5 wall 0.4",
-            figure(Kind::Ellipse, 4.5, 1.5, 0.4),
+            figure(FigureKind::Ellipse, 4.5, 1.5, 0.4),
         ),
-        case("ellipse 6 x 0.3", figure(Kind::Ellipse, 6.0, 0.3, 0.0)),
-        case("circle 4 wall 2", figure(Kind::Ellipse, 4.0, 4.0, 2.0)),
-        case("circle 0.5", figure(Kind::Ellipse, 0.5, 0.5, 0.0)),
+        case(
+            "ellipse 6 x 0.3",
+            figure(FigureKind::Ellipse, 6.0, 0.3, 0.0),
+        ),
+        case(
+            "circle 4 wall 2",
+            figure(FigureKind::Ellipse, 4.0, 4.0, 2.0),
+        ),
+        case("circle 0.5", figure(FigureKind::Ellipse, 0.5, 0.5, 0.0)),
     ];
     let beyond = |case| Case {
         place: "-1:0.99:0.01",
@@ -111,59 +138,62 @@ pub(crate) fn cases() -> Vec<Case> {
     all.extend([
         beyond(case(
             "hexagon 3 wall 1 beyond",
-            figure(Kind::Hexagon, 3.0, 0.0, 1.0),
+            figure(FigureKind::Hexagon, 3.0, 0.0, 1.0),
         )),
         beyond(case(
             "ellipse 5 x 3 wall 1 beyond",
-            figure(Kind::Ellipse, 5.0, 3.0, 1.0),
+            figure(FigureKind::Ellipse, 5.0, 3.0, 1.0),
         )),
         Case {
             sensor: sensor(8, 8, 0.5),
             place: "0:1.99:0.01",
             ..case(
                 "rectangle 8 x 8 wall 2 on 8 x 8",
-                figure(Kind::Rectangle, 8.0, 8.0, 2.0),
+                figure(FigureKind::Rectangle, 8.0, 8.0, 2.0),
             )
         },
         Case {
             sensor: sensor(33, 20, 0.5),
             ..case(
                 "octagon 6 wall 2 on 33 x 20",
-                figure(Kind::Octagon, 6.0, 0.0, 2.0),
+                figure(FigureKind::Octagon, 6.0, 0.0, 2.0),
             )
         },
         Case {
             sensor: sensor(16, 16, 1.0),
             ..case(
                 "rectangle 6 x 3, threshold 1",
-                figure(Kind::Rectangle, 6.0, 3.0, 0.0),
+                figure(FigureKind::Rectangle, 6.0, 3.0, 0.0),
             )
         },
         Case {
             sensor: sensor(16, 16, 1.0),
             ..case(
                 "circle 4 wall 2, threshold 1",
-                figure(Kind::Ellipse, 4.0, 4.0, 2.0),
+                figure(FigureKind::Ellipse, 4.0, 4.0, 2.0),
             )
         },
         Case {
             sensor: sensor(16, 16, 0.25),
             ..case(
                 "triangle 6 wall 1, threshold 0.25",
-                figure(Kind::Triangle, 6.0, 0.0, 1.0),
+                figure(FigureKind::Triangle, 6.0, 0.0, 1.0),
             )
         },
         Case {
             anchor: Anchor::Centre,
             place: "7.5:8.49:0.01",
-            ..case("triangle 6, centre", figure(Kind::Triangle, 6.0, 0.0, 0.0))
+            ..case(
+                "triangle 6, centre",
+                figure(FigureKind::Triangle, 6.0, 0.0, 0.0),
+            )
         },
         Case {
             anchor: Anchor::Centre,
             place: "7.5:8.49:0.01",
             ..case(
                 "pentagon 4 wall 1, centre",
-                figure(Kind::Pentagon, 4.0, 0.0, 1.0),
+                figure(FigureKind::Pentagon, 4.0, 0.0, 1.0),
             )
         },
         Case {
@@ -171,14 +201,14 @@ pub(crate) fn cases() -> Vec<Case> {
             place: "7.5:8.49:0.01",
             ..case(
                 "ellipse 4 x 2, centre",
-                figure(Kind::Ellipse, 4.0, 2.0, 0.0),
+                figure(FigureKind::Ellipse, 4.0, 2.0, 0.0),
             )
         },
         Case {
             place: "5:5.99:0.03",
             ..case(
                 "hexagon 3, steps of 0.03",
-                figure(Kind::Hexagon, 3.0, 0.0, 0.0),
+                figure(FigureKind::Hexagon, 3.0, 0.0, 0.0),
             )
         },
         case("picture: one taxel", picture("#")),

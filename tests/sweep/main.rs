@@ -11,7 +11,7 @@ mod ranges;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use cases::{cases, differences, figure, picture};
-use taxel::figure::Kind;
+use taxel::figure::FigureKind;
 use taxel::parameter::Parameter;
 use taxel::pose::grid::{Anchor, Grid, Ranges};
 use taxel::sensor::Sensor;
@@ -59,8 +59,8 @@ fn sweeps_equal_touches_at_every_step_of_a_cell() {
 #[test]
 fn nearly_upright_edges_do_no_harm() {
     for source in [
-        figure(Kind::Rectangle, 6.0, 3.0, 0.5),
-        figure(Kind::Ellipse, 5.0, 3.0, 1.0),
+        figure(FigureKind::Rectangle, 6.0, 3.0, 0.5),
+        figure(FigureKind::Ellipse, 5.0, 3.0, 1.0),
     ] {
         for angles in [
             "0.000000001",
@@ -77,13 +77,13 @@ fn nearly_upright_edges_do_no_harm() {
 #[test]
 fn steps_may_be_finer_than_the_crossings_are_sharp() {
     let grid = small(
-        figure(Kind::Hexagon, 3.0, 0.0, 1.0),
+        figure(FigureKind::Hexagon, 3.0, 0.0, 1.0),
         "5.49999:5.50001:0.0000005",
         "0:30:30",
     );
     assert_eq!(differences(&grid), Ok(0));
     let grid = small(
-        figure(Kind::Rectangle, 3.0, 2.0, 0.0),
+        figure(FigureKind::Rectangle, 3.0, 2.0, 0.0),
         "5.4999999999:5.5:0.000000000005",
         "0",
     );
@@ -110,16 +110,20 @@ fn threads_and_shards_do_not_matter() {
     let zoomed = cases().into_iter().find(|case| case.zoom.contains(':'));
     let grids = [
         small(
-            figure(Kind::Hexagon, 3.0, 0.0, 1.0),
+            figure(FigureKind::Hexagon, 3.0, 0.0, 1.0),
             "5:5.99:0.03",
             "0:359:5",
         ),
         small(
-            figure(Kind::Ellipse, 5.0, 3.0, 1.0),
+            figure(FigureKind::Ellipse, 5.0, 3.0, 1.0),
             "5:5.99:0.05",
             "0:200:10",
         ),
-        small(figure(Kind::Ellipse, 4.0, 4.0, 2.0), "-3:14:0.25", "0:3:1"),
+        small(
+            figure(FigureKind::Ellipse, 4.0, 4.0, 2.0),
+            "-3:14:0.25",
+            "0:3:1",
+        ),
         zoomed.expect("a case with zooms").grid("0:359:40", 5),
     ];
     for grid in grids {
@@ -154,32 +158,32 @@ fn rows_that_are_images_equal_those_gone_through() {
         };
         Grid::new(source, Sensor::default(), Anchor::Centre, ranges).expect("a grid")
     };
-    let tie = figure(Kind::Rectangle, 4.5, 2.5, 0.5);
+    let tie = figure(FigureKind::Rectangle, 4.5, 2.5, 0.5);
     for grid in [
         small(
-            figure(Kind::Rectangle, 6.0, 3.0, 0.0),
+            figure(FigureKind::Rectangle, 6.0, 3.0, 0.0),
             "5:5.99:0.05",
             "0:90:7.5",
         ),
         small(tie.clone(), "4:5.98:0.02", "0:180:45"),
         small(
-            figure(Kind::Rectangle, 3.3, 3.3, 0.7),
+            figure(FigureKind::Rectangle, 3.3, 3.3, 0.7),
             "5.05:6.04:0.05",
             "0:180:15",
         ),
         small(
-            figure(Kind::Ellipse, 5.0, 3.0, 1.0),
+            figure(FigureKind::Ellipse, 5.0, 3.0, 1.0),
             "2.5:3.49:0.05",
             "0:90:30",
         ),
         small(picture("##.# .##. #.##"), "5:5.99:0.05", "0:180:45"),
         centred(
-            figure(Kind::Hexagon, 3.0, 0.0, 1.0),
+            figure(FigureKind::Hexagon, 3.0, 0.0, 1.0),
             "7:7.99:0.03",
             "0:59:10",
         ),
         centred(
-            figure(Kind::Octagon, 2.0, 0.0, 0.5),
+            figure(FigureKind::Octagon, 2.0, 0.0, 0.5),
             "7.25:8.2:0.05",
             "0:44:9",
         ),
@@ -202,7 +206,7 @@ fn rows_that_are_images_equal_those_gone_through() {
 #[test]
 fn shards_are_merged_only_if_all_are_there() {
     let grid = small(
-        figure(Kind::Triangle, 6.0, 0.0, 0.0),
+        figure(FigureKind::Triangle, 6.0, 0.0, 0.0),
         "5:5.9:0.1",
         "0:40:10",
     );
@@ -225,7 +229,7 @@ fn shards_are_merged_only_if_all_are_there() {
         Err(MergeError::Count { shard: twice })
     );
     // Where the shape itself lay does not matter.
-    let moved = figure(Kind::Triangle, 6.0, 0.0, 0.0)
+    let moved = figure(FigureKind::Triangle, 6.0, 0.0, 0.0)
         .with(Parameter::Y0, 2.5, 16)
         .and_then(|source| source.with(Parameter::Angle, 77.0, 16));
     let moved = small(moved.expect("in range"), "5:5.9:0.1", "0:40:10");
@@ -234,7 +238,7 @@ fn shards_are_merged_only_if_all_are_there() {
         Ok(grid.poses())
     );
     let other = small(
-        figure(Kind::Triangle, 6.1, 0.0, 0.0),
+        figure(FigureKind::Triangle, 6.1, 0.0, 0.0),
         "5:5.9:0.1",
         "0:40:10",
     );
@@ -248,7 +252,7 @@ fn shards_are_merged_only_if_all_are_there() {
 #[test]
 fn a_stopped_sweep_keeps_what_is_complete() {
     let grid = small(
-        figure(Kind::Heptagon, 3.0, 0.0, 1.0),
+        figure(FigureKind::Heptagon, 3.0, 0.0, 1.0),
         "5:5.99:0.01",
         "0:100:1",
     );
@@ -287,7 +291,7 @@ fn a_stopped_sweep_keeps_what_is_complete() {
 #[test]
 fn the_paper_s_ring_has_393_imprints() {
     let survey = sweep(&small(
-        figure(Kind::Ellipse, 4.0, 4.0, 2.0),
+        figure(FigureKind::Ellipse, 4.0, 4.0, 2.0),
         "1:1.99:0.01",
         "0:359:1",
     ));

@@ -1,6 +1,6 @@
 //! Ranges and grids of poses: exact, or refused with the reason.
 
-use taxel::figure::Kind;
+use taxel::figure::FigureKind;
 use taxel::pose::grid::{Anchor, Grid, Ranges};
 use taxel::pose::range::{DecimalRange, MAX_VALUES};
 use taxel::sensor::Sensor;
@@ -96,7 +96,7 @@ fn grids_are_in_range_or_refused() {
     };
     let read = |text: &str| text.parse().expect("a range");
     let paper = Ranges::default();
-    let ring = || figure(Kind::Ellipse, 4.0, 4.0, 2.0);
+    let ring = || figure(FigureKind::Ellipse, 4.0, 4.0, 2.0);
     assert_eq!(grid(ring(), paper), Ok(3_600_000));
     let far = Ranges {
         x0: read("10:17:1"),

@@ -3,9 +3,8 @@
 use std::collections::HashMap;
 
 use taxel::atlas::feature::{quantities, values};
-use taxel::description::descriptor::Description;
-use taxel::description::region::{main_region, regions};
-use taxel::figure::Kind;
+use taxel::description::{Description, main_region, regions};
+use taxel::figure::FigureKind;
 use taxel::imprint::Imprint;
 use taxel::touch::Plane;
 
@@ -43,8 +42,8 @@ fn deviation(length: f64) -> f64 {
 #[test]
 fn statistics_equal_those_of_a_plain_loop() {
     for source in [
-        figure(Kind::Triangle, 5.3, 0.0, 0.9),
-        figure(Kind::Rectangle, 1.3, 0.6, 0.0),
+        figure(FigureKind::Triangle, 5.3, 0.0, 0.9),
+        figure(FigureKind::Rectangle, 1.3, 0.6, 0.0),
         picture("##.# .### ##.. #..#"),
     ] {
         let grid = small(source, "4:5.4:0.07", "3:351:29");
@@ -140,26 +139,26 @@ fn ideal_values_are_those_of_the_continuous_figure() {
             "{found:?}, {expected}"
         );
     };
-    let frame = || figure(Kind::Rectangle, 6.0, 3.0, 1.0);
+    let frame = || figure(FigureKind::Rectangle, 6.0, 3.0, 1.0);
     near(ideal(frame(), "na"), 14.0);
     near(ideal(frame(), "nae"), 18.0);
     near(ideal(frame(), "p"), 18.0);
     near(ideal(frame(), "f"), 18.0);
     near(
-        ideal(figure(Kind::Hexagon, 2.0, 0.0, 0.0), "na"),
+        ideal(figure(FigureKind::Hexagon, 2.0, 0.0, 0.0), "na"),
         6.0 * 3_f64.sqrt(),
     );
     near(
-        ideal(figure(Kind::Ellipse, 4.0, 4.0, 2.0), "na"),
+        ideal(figure(FigureKind::Ellipse, 4.0, 4.0, 2.0), "na"),
         12.0 * std::f64::consts::PI,
     );
     near(
-        ideal(figure(Kind::Ellipse, 4.0, 4.0, 2.0), "roundness"),
+        ideal(figure(FigureKind::Ellipse, 4.0, 4.0, 2.0), "roundness"),
         1.0,
     );
     // The complete elliptic integral of the second kind, from tables: 4·5·E(1 − 9/25).
     near(
-        ideal(figure(Kind::Ellipse, 5.0, 3.0, 0.0), "p"),
+        ideal(figure(FigureKind::Ellipse, 5.0, 3.0, 0.0), "p"),
         25.526_998_863_398_1,
     );
     assert_eq!(ideal(frame(), "ce"), None);
@@ -199,7 +198,7 @@ fn images(imprint: &Imprint) -> [Vec<(i32, i32)>; 8] {
 #[test]
 fn classes_equal_those_of_all_images_written_out() {
     for (source, place) in [
-        (figure(Kind::Rectangle, 3.0, 2.0, 0.0), "3:7.9:0.31"),
+        (figure(FigureKind::Rectangle, 3.0, 2.0, 0.0), "3:7.9:0.31"),
         (picture("##.# .###"), "-3:15:0.9"),
     ] {
         let survey = sweep(&small(source, place, "0:359:7"));

@@ -6,11 +6,11 @@
 //! inch.
 //!
 //! ```
-//! use taxel::figure::{Figure, Kind};
+//! use taxel::figure::{Figure, FigureKind};
 //! use taxel::formats::drawing::Drawing;
 //! use taxel::sensor::Sensor;
 //! use taxel::touch::Plane;
-//! let figure = Figure::default_of(Kind::Ellipse, 16);
+//! let figure = Figure::default_of(FigureKind::Ellipse, 16);
 //! let imprint = Plane::new(Sensor::default()).touch(&figure);
 //! let drawing = Drawing::new(&imprint).with_outline(&figure).with_pitch(2.5);
 //! assert!(drawing.svg().contains(">x / mm</text>"));
@@ -35,9 +35,8 @@ mod glyph;
 #[cfg(feature = "png")]
 mod png;
 
-use crate::description::descriptor::Description;
-use crate::description::region::{Region, main_region, regions};
-use crate::geometry::outline::Solid;
+use crate::description::{Description, Region, main_region, regions};
+use crate::geometry::Solid;
 use crate::imprint::Imprint;
 use crate::parameter::Parameter;
 use crate::sensor::MAX_SIDE;

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use crate::formats::drawing::scene;
 use crate::formats::drawing::scene::{Place, Step};
-use crate::geometry::outline::{Ellipse, Pen, Point, Side, Solid};
+use crate::geometry::{Ellipse, Pen, Point, Side, Solid};
 
 /// The whole boundary. Edges that follow each other are one piece, so that their corners are whole.
 pub(super) fn steps(solid: &impl Solid) -> Vec<Step> {
@@ -64,12 +64,12 @@ impl Pen<f64> for Tracer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Figure, Kind};
+    use crate::figure::{Figure, FigureKind};
     use crate::parameter::Parameter;
 
     #[test]
     fn rings_are_closed_pieces_in_either_sense() {
-        let frame = Figure::default_of(Kind::Rectangle, 16)
+        let frame = Figure::default_of(FigureKind::Rectangle, 16)
             .with(Parameter::Thickness, 1.0, 16)
             .expect("in range");
         let steps = steps(&frame);

@@ -1,7 +1,6 @@
 //! Where everything stands on the page: the plane with its axes, what is described on it, the legend below.
 
-use crate::description::descriptor::{Description, Value};
-use crate::description::region::Kind;
+use crate::description::{Description, RegionKind, Value};
 use crate::formats::drawing::axis::Marks;
 use crate::formats::drawing::scene::{Anchor, Line, Mark, Place, Step, circle, rectangle};
 use crate::formats::value;
@@ -275,9 +274,9 @@ impl Layout<'_> {
         let described = self.subject.described.as_ref().map(|(_, it)| *it);
         let na = described.map_or(0, |description| description.na);
         let what = match described.map(|description| description.kind) {
-            Some(Kind::Hole) => format!("taxels of the hole described: {na}"),
-            Some(Kind::Exterior) if na == all => format!("active taxels: {na}"),
-            Some(Kind::Exterior) => format!("active taxels of the region described: {na}"),
+            Some(RegionKind::Hole) => format!("taxels of the hole described: {na}"),
+            Some(RegionKind::Exterior) if na == all => format!("active taxels: {na}"),
+            Some(RegionKind::Exterior) => format!("active taxels of the region described: {na}"),
             None => "no active taxels".to_owned(),
         };
         row(self, &what, &|layout, place| {
@@ -288,7 +287,7 @@ impl Layout<'_> {
             layout.line("legend", rectangle(low, high), CELLS);
         });
         let others = match described.map(|description| description.kind) {
-            Some(Kind::Hole) => all,
+            Some(RegionKind::Hole) => all,
             _ => all - na,
         };
         if others > 0 {

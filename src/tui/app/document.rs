@@ -1,7 +1,6 @@
 //! What is on the matrix, what can be seen of it, and every earlier state of it.
 
-use crate::description::descriptor::Description;
-use crate::description::region::{Region, main_region, regions};
+use crate::description::{Description, Region, main_region, regions};
 use crate::formats::name::{Name, folded};
 use crate::formats::shape::Shape;
 use crate::imprint::Imprint;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::atlas::order::SortKey;
-use crate::figure::Kind;
+use crate::figure::FigureKind;
 use crate::pose::grid::Grid;
 use crate::source::Source;
 use crate::storage::unfinished::Existing;
@@ -28,7 +28,7 @@ impl PartialEq for Findings {
 
 /// What is swept, in a word: the kind of a figure, or a picture.
 pub fn name_of(source: &Source) -> &'static str {
-    source.kind().map_or("picture", Kind::name)
+    source.kind().map_or("picture", FigureKind::name)
 }
 
 /// The pages that they are shown on.

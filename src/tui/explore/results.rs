@@ -267,7 +267,7 @@ pub fn around(now: usize, by: i8, count: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Figure, Kind};
+    use crate::figure::{Figure, FigureKind};
     use crate::pose::grid::{Anchor, Grid, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
@@ -281,7 +281,7 @@ mod tests {
             angle: "0:80:20".parse().expect("a range"),
             ..Ranges::default()
         };
-        let source = Source::Figure(Figure::default_of(Kind::Heptagon, 16));
+        let source = Source::Figure(Figure::default_of(FigureKind::Heptagon, 16));
         let grid = Grid::new(source, Sensor::default(), Anchor::Corner, ranges);
         let survey = Survey::of(&grid.expect("in range"), Shard::WHOLE, Watch::nothing());
         let classes = survey.atlas.distinct_classes();

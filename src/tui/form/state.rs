@@ -1,6 +1,6 @@
 //! The forms of Figure, Picture and the sensor, which the matrix follows live.
 
-use crate::figure::{Figure, Kind};
+use crate::figure::{Figure, FigureKind};
 use crate::formats::value::counted;
 use crate::imprint::Imprint;
 use crate::parameter::{Parameter, ParameterError};
@@ -16,7 +16,7 @@ use crate::tui::keys::key::Arrow;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Subject {
     /// A figure of a kind, which can be changed in the form.
-    Figure(Kind),
+    Figure(FigureKind),
     /// A stored imprint, by its name.
     Picture(String, Box<Imprint>),
     /// The sensor.
@@ -44,7 +44,7 @@ impl FormDialog {
     pub fn figure(before: &Document) -> Self {
         let figure = match before.source {
             Some(Source::Figure(figure)) => figure,
-            _ => Figure::default_of(Kind::Ellipse, before.sensor.side()),
+            _ => Figure::default_of(FigureKind::Ellipse, before.sensor.side()),
         };
         Self::new(
             Subject::Figure(figure.kind()),
@@ -98,7 +98,7 @@ impl FormDialog {
     }
 
     /// The kind of figure that is chosen; none where there is nothing to choose.
-    pub fn kind(&self) -> Option<Kind> {
+    pub fn kind(&self) -> Option<FigureKind> {
         match self.subject {
             Subject::Figure(kind) => Some(kind),
             _ => None,
@@ -226,7 +226,7 @@ impl FormDialog {
     /// An arrow: chooses the kind, moves in a field or to another one.
     pub fn choose(&mut self, arrow: Arrow) {
         match (self.form.focus(), arrow) {
-            (None, Arrow::Left | Arrow::Up) => self.next_kind(Kind::ALL.len() - 1, |_| true),
+            (None, Arrow::Left | Arrow::Up) => self.next_kind(FigureKind::ALL.len() - 1, |_| true),
             (None, Arrow::Right | Arrow::Down) => self.next_kind(1, |_| true),
             (Some(_), Arrow::Left | Arrow::Right) => self.form.take(&Message::Choose(arrow)),
             (Some(_), Arrow::Up) => self.move_focus(-1),
@@ -246,8 +246,8 @@ impl FormDialog {
     }
 
     /// The first kind, `step` after `step` from the present one on, that fits; the present one where none does.
-    fn next_kind(&mut self, step: usize, fits: impl Fn(Kind) -> bool) {
-        let kinds = Kind::ALL;
+    fn next_kind(&mut self, step: usize, fits: impl Fn(FigureKind) -> bool) {
+        let kinds = FigureKind::ALL;
         let now = kinds
             .iter()
             .position(|&kind| Some(kind) == self.kind())

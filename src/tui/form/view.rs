@@ -3,7 +3,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::figure::{Kind, NO_ROOM};
+use crate::figure::{FigureKind, NO_ROOM};
 use crate::source::Source;
 use crate::tui::app::layout::FormRows;
 use crate::tui::app::state::App;
@@ -83,11 +83,14 @@ pub fn draw(app: &App, dialog: &FormDialog, buffer: &mut Buffer, area: Rect) -> 
 }
 
 /// The kind between angle brackets, and the letters that choose one.
-fn draw_kind(app: &App, kind: Kind, focused: bool, buffer: &mut Buffer, row: Rect) {
-    let label = format!("{:LABEL$}", "Kind");
+fn draw_kind(app: &App, kind: FigureKind, focused: bool, buffer: &mut Buffer, row: Rect) {
+    let label = format!("{:LABEL$}", "FigureKind");
     let name = format!("{:<9}", kind.name());
     let role = if focused { Role::Focus } else { Role::Text };
-    let mut letters: Vec<&str> = Kind::ALL.iter().map(|kind| &kind.name()[..1]).collect();
+    let mut letters: Vec<&str> = FigureKind::ALL
+        .iter()
+        .map(|kind| &kind.name()[..1])
+        .collect();
     letters.dedup();
     let letters = if focused {
         letters.join(" ")

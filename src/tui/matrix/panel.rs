@@ -3,7 +3,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use crate::description::descriptor::{DESCRIPTORS, Description, Descriptor, Value};
+use crate::description::{DESCRIPTORS, Description, Descriptor, Value};
 use crate::formats::value;
 use crate::tui::app::document::Seen;
 use crate::tui::app::state::App;
@@ -60,13 +60,14 @@ fn draw_descriptor(
 ) {
     let theme = app.theme();
     let measured = description.map_or(Value::None, descriptor.measure);
-    let text = value::text(measured, descriptor.unit);
+    let text = value::text(measured, descriptor.dimension);
     let text = text
         .as_deref()
         .map_or(theme.none().into(), |text| theme.text(text));
     // Millimetres where the user gave a pitch; a pitch of 1 says nothing new.
     let pitch = app.history.present().sensor.pitch_mm();
-    let scaled = value::in_millimetres(measured, descriptor.unit, pitch).filter(|_| pitch != 1.0);
+    let scaled =
+        value::in_millimetres(measured, descriptor.dimension, pitch).filter(|_| pitch != 1.0);
     let symbol = format!("{:SYMBOL$}", descriptor.symbol);
     let value = format!("{text:VALUE$}");
     // A word that is cut tells nothing.

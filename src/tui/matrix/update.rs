@@ -1,6 +1,6 @@
 //! What messages do while nothing lies over the matrix.
 
-use crate::description::descriptor::{DESCRIPTORS, Descriptor};
+use crate::description::{DESCRIPTORS, Descriptor};
 use crate::formats::value;
 use crate::storage::store::{Expected, Origin};
 use crate::tui::app::change::{
@@ -169,7 +169,7 @@ fn copy(app: &mut App, what: Copied) -> Option<Effect> {
         }
         (Copied::Descriptors, Some(description)) => {
             let line = |descriptor: &Descriptor| {
-                let value = value::text((descriptor.measure)(&description), descriptor.unit);
+                let value = value::text((descriptor.measure)(&description), descriptor.dimension);
                 format!("{}\t{}\n", descriptor.key, value.as_deref().unwrap_or("–"))
             };
             ("descriptors", DESCRIPTORS.iter().map(line).collect())

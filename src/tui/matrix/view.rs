@@ -4,7 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::{Modifier, Style};
 
-use crate::description::region::{Kind, Region};
+use crate::description::{Region, RegionKind};
 use crate::tui::app::document::Seen;
 use crate::tui::app::layout::Grid;
 use crate::tui::app::state::{App, Display};
@@ -125,7 +125,7 @@ fn role(seen: &Seen, chosen: Option<&Region>, column: u8, row: u8) -> Role {
     match (active, in_region) {
         (true, Some(_)) => Role::Chosen,
         (true, None) => Role::Active,
-        (false, Some(Kind::Hole)) => Role::Hole,
+        (false, Some(RegionKind::Hole)) => Role::Hole,
         (false, _) => Role::Inactive,
     }
 }

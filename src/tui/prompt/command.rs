@@ -3,7 +3,7 @@
 //! Names and flags are those of the program's own command line: `figure hexagon --side 3 --angle 17`,
 //! `load washer`, `sensor --columns 32 --rows 32`. What is not given is as it is now, or the default.
 
-use crate::figure::{Figure, Kind};
+use crate::figure::{Figure, FigureKind};
 use crate::formats::name::Name;
 use crate::parameter::Parameter;
 use crate::quote::shortened;
@@ -139,11 +139,11 @@ fn numbers(pairs: &[&str], side: u8) -> Result<Vec<(Parameter, f64)>, String> {
 
 fn figure(kind: &str, pairs: &[&str], app: &App) -> Result<Message, String> {
     let sensor = app.shown().sensor;
-    let kind = Kind::from_name(kind).ok_or_else(|| {
+    let kind = FigureKind::from_name(kind).ok_or_else(|| {
         format!(
             "figure: {:?} is unknown, expected one of {}",
             shortened(kind),
-            Kind::ALL.map(Kind::name).join(", ")
+            FigureKind::ALL.map(FigureKind::name).join(", ")
         )
     })?;
     let values = numbers(pairs, sensor.side())?;

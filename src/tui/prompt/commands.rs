@@ -1,6 +1,6 @@
 //! The table of commands: what a line at the foot of the screen may say, what it means, and how it is completed.
 
-use crate::figure::Kind;
+use crate::figure::FigureKind;
 use crate::parameter::Parameter;
 use crate::pose::grid::Ranges;
 use crate::sensor::SENSOR_PARAMETERS;
@@ -249,8 +249,8 @@ fn next_words(command: &Command, before: &str) -> Vec<String> {
         words(flags.collect(), said)
     };
     match (command.takes, &said[..]) {
-        (Takes::Figure, []) => Kind::ALL.map(|kind| kind.name().to_owned()).to_vec(),
-        (Takes::Figure, [kind, said @ ..]) => Kind::from_name(kind)
+        (Takes::Figure, []) => FigureKind::ALL.map(|kind| kind.name().to_owned()).to_vec(),
+        (Takes::Figure, [kind, said @ ..]) => FigureKind::from_name(kind)
             .map(|kind| flags(kind.parameters().collect(), said))
             .unwrap_or_default(),
         (Takes::Sensor, said) => flags(SENSOR_PARAMETERS.to_vec(), said),

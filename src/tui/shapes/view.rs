@@ -3,7 +3,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::description::region::{Kind, regions};
+use crate::description::{RegionKind, regions};
 use crate::storage::store::{Entry, Loaded, Origin};
 use crate::tui::app::layout::{LIST_HEAD, list, list_first};
 use crate::tui::app::message::{Erase, Message};
@@ -139,7 +139,7 @@ fn draw_preview(
     match read {
         Ok(loaded) => {
             let imprint = &loaded.shape.imprint;
-            let count = |wanted: Kind| {
+            let count = |wanted: RegionKind| {
                 regions(imprint)
                     .iter()
                     .filter(|region| region.kind() == wanted)
@@ -148,8 +148,8 @@ fn draw_preview(
             let facts = format!(
                 "NA {}, pieces {}, holes {}",
                 imprint.count(),
-                count(Kind::Exterior),
-                count(Kind::Hole)
+                count(RegionKind::Exterior),
+                count(RegionKind::Hole)
             );
             let source = loaded
                 .shape

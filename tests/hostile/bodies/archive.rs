@@ -3,7 +3,7 @@
 use std::cell::LazyCell;
 use std::io::{Cursor, Read, Write};
 
-use taxel::figure::{Figure, Kind};
+use taxel::figure::{Figure, FigureKind};
 use taxel::formats::archive::{read, write};
 use taxel::formats::atlas::{write_csv, write_jsonl};
 use taxel::formats::npy;
@@ -132,7 +132,7 @@ fn sound() -> Vec<Arrays> {
         angle: range("0:90:45"),
         ..Ranges::default()
     };
-    let rectangle = Figure::new(Kind::Rectangle, sensor.side(), |parameter| {
+    let rectangle = Figure::new(FigureKind::Rectangle, sensor.side(), |parameter| {
         Some(match parameter.row().key {
             "length" => 3.0,
             "width" => 2.0,

@@ -4,7 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use crate::atlas::histogram::Histogram;
-use crate::description::descriptor::Unit;
+use crate::description::Dimension;
 use crate::formats::value::{counted, fitting, grouped};
 use crate::tui::app::state::App;
 use crate::tui::explore::results::Results;
@@ -22,11 +22,11 @@ pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) {
     let number = |value: Option<f64>| {
         value.map_or_else(|| theme.none().to_owned(), |value| fitting(value, NUMBER))
     };
-    let unit = match quantity.descriptor.unit {
-        Unit::Count => "",
-        Unit::Length => ", cell sides",
-        Unit::Area => ", cells",
-        Unit::Direction => ", degrees",
+    let unit = match quantity.descriptor.dimension {
+        Dimension::Count => "",
+        Dimension::Length => ", cell sides",
+        Dimension::Area => ", cells",
+        Dimension::Direction => ", degrees",
         _ => ", ratio",
     };
     let title = format!("{}: {}{unit}", quantity.key, quantity.descriptor.name);
@@ -53,17 +53,17 @@ pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) {
     bars(
         app,
         &histogram,
-        quantity.descriptor.unit,
+        quantity.descriptor.dimension,
         buffer,
         write::below(page, 2),
     );
 }
 
 /// A line an interval.
-fn bars(app: &App, histogram: &Histogram, unit: Unit, buffer: &mut Buffer, area: Rect) {
+fn bars(app: &App, histogram: &Histogram, unit: Dimension, buffer: &mut Buffer, area: Rect) {
     let theme = app.theme();
     let decimals = histogram.decimals();
-    let single = unit == Unit::Count && histogram.width == 1.0;
+    let single = unit == Dimension::Count && histogram.width == 1.0;
     let label = |bin: usize| {
         let (from, to) = (histogram.from(bin), histogram.from(bin + 1));
         if single {

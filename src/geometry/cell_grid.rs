@@ -19,12 +19,12 @@ use crate::geometry::real::Real;
 
 /// A grid of `columns × rows` unit cells with its top left corner at the origin.
 #[derive(Clone, Debug)]
-pub(crate) struct Grid<T> {
+pub(crate) struct CellGrid<T> {
     columns: i32,
     rows: i32,
     /// The entries of a pair of rows: one before the first column, one a column, one behind the last.
     stride: usize,
-    entries: Vec<Entry<T>>,
+    entries: Vec<CellSums<T>>,
     /// How far anything drawn reaches: the least x and y, and the largest ones.
     low: Point<T>,
     high: Point<T>,
@@ -34,19 +34,19 @@ pub(crate) struct Grid<T> {
 
 /// What the pieces of boundary in a cell and in the one below it leave there, and in each cell further to the right.
 #[derive(Clone, Copy, Debug)]
-struct Entry<T> {
+struct CellSums<T> {
     here: [T; 2],
     beyond: [T; 2],
 }
 
-impl<T: Real> Entry<T> {
+impl<T: Real> CellSums<T> {
     const EMPTY: Self = Self {
         here: [T::ZERO; 2],
         beyond: [T::ZERO; 2],
     };
 }
 
-impl<T: Real> Grid<T> {
+impl<T: Real> CellGrid<T> {
     /// An empty grid.
     pub(crate) fn new(columns: u8, rows: u8) -> Self {
         let stride = usize::from(columns) + 2;
@@ -54,7 +54,7 @@ impl<T: Real> Grid<T> {
             columns: columns.into(),
             rows: rows.into(),
             stride,
-            entries: vec![Entry::EMPTY; stride * usize::from(rows).div_ceil(2)],
+            entries: vec![CellSums::EMPTY; stride * usize::from(rows).div_ceil(2)],
             low: Point::new(T::ZERO, T::ZERO),
             high: Point::new(T::ZERO, T::ZERO),
             moment: T::ZERO,
@@ -69,7 +69,7 @@ impl<T: Real> Grid<T> {
         if !rows.is_empty() && !drawn.is_empty() {
             for pair in rows.start / 2..rows.end.div_ceil(2) {
                 for entry in &mut self.entries[pair * self.stride..][drawn.clone()] {
-                    *entry = Entry::EMPTY;
+                    *entry = CellSums::EMPTY;
                 }
             }
         }
@@ -98,7 +98,7 @@ impl<T: Real> Grid<T> {
     /// The entries of these rows that may hold something; all others are empty. Where pieces lie follows from
     /// [`Real::cell`] too, and that never puts a larger number into a cell before.
     fn entries_drawn(&self) -> Range<usize> {
-        self.place(self.low.x).0..self.place(self.high.x).0 + 1
+        self.locate(self.low.x).0..self.locate(self.high.x).0 + 1
     }
 
     /// The columns that may hold something; all others are empty.
@@ -136,13 +136,13 @@ impl<T: Real> Grid<T> {
     /// Whether a piece of boundary that is not horizontal runs through a cell. Neighbours in a row through which none
     /// runs have the same area.
     pub(crate) fn crosses(&self, row: usize, column: usize) -> bool {
-        let Entry { here, beyond } = self.entries[row / 2 * self.stride + column + 1];
+        let CellSums { here, beyond } = self.entries[row / 2 * self.stride + column + 1];
         (here[row % 2], beyond[row % 2]) != (T::ZERO, T::ZERO)
     }
 
     /// The place in a row, from [`Self::start`] on, of the column that `x` lies in by [`Real::cell`], and that column's
     /// right end.
-    pub(crate) fn place(&self, x: T) -> (usize, T) {
+    pub(crate) fn locate(&self, x: T) -> (usize, T) {
         if x < T::ZERO {
             (0, T::ZERO)
         } else if x > self.right() {

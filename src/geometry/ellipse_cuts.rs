@@ -13,7 +13,7 @@ use crate::geometry::real::Real;
 
 /// An ellipse: its extreme points, and where it meets horizontal and vertical lines.
 #[derive(Clone, Debug)]
-pub(crate) struct Curve<T> {
+pub(crate) struct EllipseCuts<T> {
     centre: Point<T>,
     reach: Point<T>,
     inverse: Point<T>,
@@ -47,7 +47,7 @@ pub(crate) struct Sums<T> {
 /// Where a line meets an ellipse: the x, and what the way down the left or the right half comes to there.
 pub(crate) type Crossing<T> = (T, Sums<T>);
 
-impl<T: Real> Curve<T> {
+impl<T: Real> EllipseCuts<T> {
     /// Prepares an ellipse; none that is thinner than any tie.
     pub(crate) fn of(ellipse: &Ellipse<T>) -> Option<Self> {
         let (centre, reach, area) = (ellipse.centre, ellipse.reach(), ellipse.span());
