@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use taxel::storage::store::Library;
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::app::state::Options;
-use taxel::tui::explore::message::Told;
+use taxel::tui::explore::message::WorkerEvent;
 use taxel::tui::runtime::perform::World;
 use taxel::tui::script::Session;
 
@@ -29,7 +29,7 @@ const DEADLINE: Duration = Duration::from_secs(60);
 /// A program whose workers run beside it, and what they tell.
 struct Beside {
     session: Session,
-    told: Receiver<Told>,
+    told: Receiver<WorkerEvent>,
 }
 
 impl Beside {
@@ -55,7 +55,7 @@ impl Beside {
         while !self.session.screen().contains(text) {
             let told = self.told.recv_timeout(DEADLINE);
             let told = told.unwrap_or_else(|_| panic!("no {text:?} on\n{}", self.session.screen()));
-            self.session.send(Message::Told(told));
+            self.session.send(Message::Worker(told));
         }
     }
 
@@ -141,7 +141,7 @@ fn the_time_is_told_while_ranges_are_typed() {
     // Help lies over the form while it is told, and a click asks as a key does.
     program.press("<BS><BS>9<F1>");
     let told = program.told.recv_timeout(DEADLINE).expect("it is told");
-    program.session.send(Message::Told(told));
+    program.session.send(Message::Worker(told));
     program.press("<Esc>");
     shows(&program.session, &["poses, about "]);
     let anchor = |program: &mut Beside| {
@@ -204,7 +204,7 @@ fn the_imprint_of_a_row_is_the_one_on_the_matrix() {
             shows(&session, &["600 poses"]);
             for row in 0..12 {
                 press(&mut session, &format!("<Home><{row}x:Down><Enter>"));
-                let at = session.app().seen().imprint;
+                let at = session.app().reading().imprint;
                 shows(&session, &["on the matrix; u takes it back"]);
                 press(&mut session, "ej");
                 assert!(
@@ -214,7 +214,7 @@ fn the_imprint_of_a_row_is_the_one_on_the_matrix() {
                 );
                 press(&mut session, "<Enter>");
                 assert_eq!(
-                    session.app().seen().imprint,
+                    session.app().reading().imprint,
                     at,
                     "{start} {anchor}, row {row}"
                 );
@@ -233,7 +233,10 @@ fn work_is_stopped_by_every_key_that_leaves_it() {
         program.session.send(leaving);
         shows(&program.session, &["stopping"]);
     }
-    while !matches!(program.told.recv_timeout(DEADLINE), Ok(Told::Swept(..))) {}
+    while !matches!(
+        program.told.recv_timeout(DEADLINE),
+        Ok(WorkerEvent::Swept(..))
+    ) {}
 }
 
 /// The last column is the last that can be seen, so that one step back is seen too.
@@ -334,7 +337,7 @@ proptest! {
             // Some of what is told, at some time.
             if width % 3 != 0 {
                 while let Ok(told) = program.told.try_recv() {
-                    program.session.send(Message::Told(told));
+                    program.session.send(Message::Worker(told));
                 }
             }
             if height % 2 == 0 {

@@ -275,7 +275,7 @@ proptest! {
         let mut session = session_on(folder.path(), &keys);
         press(&mut session, "<Esc><Esc>");
         let before: Document = session.app().shown();
-        if session.app().seen().imprint.is_empty() {
+        if session.app().reading().imprint.is_empty() {
             return Ok(());
         }
         press(&mut session, "skept<Enter>");

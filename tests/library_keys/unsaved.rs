@@ -5,7 +5,7 @@ use std::sync::mpsc::channel;
 
 use taxel::storage::store::{Entry, Library, Origin};
 use taxel::tui::app::message::Message;
-use taxel::tui::explore::message::Told;
+use taxel::tui::explore::message::WorkerEvent;
 use taxel::tui::runtime::perform::World;
 
 use super::screen::press;
@@ -110,14 +110,14 @@ fn work_that_could_not_be_kept_is_kept_later() {
     }));
     let mut session = started(world, "<Space>");
     let reason = told.recv_timeout(std::time::Duration::from_secs(60));
-    let Ok(Told::Refused(reason)) = reason else {
+    let Ok(WorkerEvent::Refused(reason)) = reason else {
         panic!("nothing is told: {reason:?}");
     };
     assert!(
         reason.starts_with("unsaved work cannot be kept: "),
         "{reason}"
     );
-    session.send(Message::Told(Told::Refused(reason)));
+    session.send(Message::Worker(WorkerEvent::Refused(reason)));
     shows(&session, &["! unsaved work cannot be kept: "]);
     std::fs::remove_file(&journal).expect("removed");
     drop(session);

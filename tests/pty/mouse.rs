@@ -138,7 +138,7 @@ fn what_is_copied_goes_to_the_clipboard_of_the_terminal() {
     program.types(b"f\rY");
     program.shows("imprint sent to your terminal's clipboard (272 characters)");
     script.keys("f<CR>").expect("keys");
-    let imprint = script.app().seen().imprint.to_string() + "\n";
+    let imprint = script.app().reading().imprint.to_string() + "\n";
     program.until("the imprint", |program| {
         copied(program).as_ref() == Some(&imprint)
     });

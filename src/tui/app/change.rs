@@ -3,7 +3,7 @@
 use crate::formats::value::counted;
 use crate::parameter::Parameter;
 use crate::source::Source;
-use crate::tui::app::document::{Document, History, Origin, StoredName};
+use crate::tui::app::document::{Document, DocumentOrigin, History, StoredName};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Mode, Notice};
 use crate::tui::keys::key::Arrow;
@@ -27,7 +27,7 @@ pub(in crate::tui) fn change(app: &mut App, document: Document) {
 /// A document that comes from somewhere else, with the name that it is stored under, if it is.
 pub(in crate::tui) fn begin(app: &mut App, document: Document, name: Option<StoredName>) {
     let saved = document.clone();
-    app.history.begin(document, Origin { name, saved });
+    app.history.begin(document, DocumentOrigin { name, saved });
     app.mode = Mode::Draw;
     settle(app);
 }
@@ -41,7 +41,7 @@ pub(in crate::tui) fn settle(app: &mut App) {
     if present.source.is_none() {
         app.mode = Mode::Draw;
     }
-    let regions = app.seen().regions.len();
+    let regions = app.reading().regions.len();
     app.chosen = app.chosen.filter(|&index| index < regions);
 }
 
@@ -64,10 +64,7 @@ pub(in crate::tui) fn replace(app: &mut App, document: Document) {
     if *present == document {
         return;
     }
-    let dropped = present
-        .turned
-        .count()
-        .saturating_sub(document.turned.count());
+    let dropped = present.edits.count().saturating_sub(document.edits.count());
     change(app, document);
     if dropped > 0 {
         let taxels = counted(dropped.into(), "taxel");

@@ -4,10 +4,10 @@ use crate::tui::app::change::{refuse, replace};
 use crate::tui::app::dialog::{Dialog, Help, Question};
 use crate::tui::app::layout::Panes;
 use crate::tui::app::library_event::{choose, look};
-use crate::tui::app::message::{End, Message};
+use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::state::App;
 use crate::tui::explore;
-use crate::tui::explore::message::Exploring;
+use crate::tui::explore::message::ExploreMessage;
 use crate::tui::form::state::FormDialog;
 use crate::tui::keys::key::Arrow;
 use crate::tui::matrix;
@@ -15,14 +15,16 @@ use crate::tui::prompt::command::read;
 use crate::tui::prompt::commands::{Takes, wants_names};
 use crate::tui::prompt::name::NameDialog;
 use crate::tui::prompt::state::CommandDialog;
-use crate::tui::runtime::effect::{Effect, Request, TerminalEffect};
+use crate::tui::runtime::effect::{Effect, LibraryRequest, TerminalEffect};
 use crate::tui::shapes::state::ListDialog;
 
 /// Does what a message says.
 pub(in crate::tui) fn act(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> {
     let message = match (&dialog, message) {
         // Work that nobody waits for any more does not go on.
-        (Dialog::Running(_), Message::Cancel | Message::Quit) => Message::Explore(Exploring::Stop),
+        (Dialog::Running(_), Message::Cancel | Message::Quit) => {
+            Message::Explore(ExploreMessage::Stop)
+        }
         (_, message) => message,
     };
     if matches!(message, Message::Cancel | Message::Quit) {
@@ -95,8 +97,8 @@ fn in_list(app: &mut App, mut list: ListDialog, message: Message) -> Option<Effe
     match message {
         Message::Accept => return choose(app, list),
         Message::Scroll(lines) => list.go(lines),
-        Message::ScrollTo(End::First) => list.select(0),
-        Message::ScrollTo(End::Last) => list.select(usize::MAX),
+        Message::ScrollTo(Endpoint::First) => list.select(0),
+        Message::ScrollTo(Endpoint::Last) => list.select(usize::MAX),
         other => list.edit(&other),
     }
     app.dialogs.push(Dialog::List(list));
@@ -133,8 +135,8 @@ fn in_command(app: &mut App, mut dialog: CommandDialog, message: Message) -> Opt
             // The names are completed when they are known.
             return wanted.map(|names| {
                 Effect::Library(match names {
-                    Takes::Deleted => Request::Trash,
-                    _ => Request::List,
+                    Takes::Deleted => LibraryRequest::Trash,
+                    _ => LibraryRequest::List,
                 })
             });
         }

@@ -16,8 +16,8 @@ pub struct Document {
     pub sensor: Sensor,
     /// What touched it; nothing on a matrix that is only drawn on.
     pub source: Option<Source>,
-    /// The taxels that were turned over by hand since.
-    pub turned: Imprint,
+    /// The taxels switched by hand since then.
+    pub edits: Imprint,
 }
 
 impl Document {
@@ -26,7 +26,7 @@ impl Document {
         Self {
             sensor,
             source: None,
-            turned: Imprint::empty(sensor.columns(), sensor.rows()),
+            edits: Imprint::empty(sensor.columns(), sensor.rows()),
         }
     }
 
@@ -46,14 +46,14 @@ impl Document {
             source: shape.source.clone(),
             ..Self::empty(shape.sensor)
         };
-        let touched = Seen::of(&document).imprint;
-        document.turned = touched.differing(&shape.imprint);
+        let touched = Reading::of(&document).imprint;
+        document.edits = touched.differing(&shape.imprint);
         document
     }
 
     /// The shape to be stored under a name.
     pub fn to_shape(&self, name: Name) -> Shape {
-        let imprint = Seen::of(self).imprint;
+        let imprint = Reading::of(self).imprint;
         Shape {
             name,
             sensor: self.sensor,
@@ -77,12 +77,12 @@ impl Document {
             Some(source) if allowed(source) => Self {
                 sensor,
                 source: Some(source.clone()),
-                turned: self.turned.resized(columns, rows),
+                edits: self.edits.resized(columns, rows),
             },
             _ => Self {
                 sensor,
                 source: None,
-                turned: Seen::of(self).imprint.resized(columns, rows),
+                edits: Reading::of(self).imprint.resized(columns, rows),
             },
         }
     }
@@ -90,7 +90,7 @@ impl Document {
 
 /// Everything that follows from a document; computed here and nowhere else, and never stored beside it.
 #[derive(Clone, Debug)]
-pub struct Seen {
+pub struct Reading {
     /// The active taxels.
     pub imprint: Imprint,
     /// How much of each cell is covered, in reading order; none of a matrix that is only drawn on.
@@ -103,10 +103,10 @@ pub struct Seen {
     pub beyond: bool,
 }
 
-impl Seen {
+impl Reading {
     /// What can be seen of a document.
     pub fn of(document: &Document) -> Self {
-        let mut imprint = document.turned;
+        let mut imprint = document.edits;
         let mut coverages = None;
         if let Some(source) = &document.source {
             let mut plane = Plane::new(document.sensor);
@@ -153,7 +153,7 @@ impl Seen {
 /// Where documents come from: New, a loaded shape, a form. All states between two of these belong together, and know
 /// under which name they are stored.
 #[derive(Clone, Debug)]
-pub struct Origin {
+pub struct DocumentOrigin {
     /// The name that the document was loaded from or stored under.
     pub name: Option<StoredName>,
     /// What would be found again: work that differs from it is unsaved.
@@ -173,7 +173,7 @@ pub struct StoredName {
 
 /// A document and the number of its origin.
 #[derive(Clone, Debug, PartialEq)]
-struct State {
+struct Revision {
     document: Document,
     origin: usize,
 }
@@ -181,22 +181,22 @@ struct State {
 /// A document with all its earlier and, after undoing, later states. Going back to one brings back its name too.
 #[derive(Clone, Debug)]
 pub struct History {
-    past: Vec<State>,
-    present: State,
-    future: Vec<State>,
-    origins: Vec<Origin>,
+    past: Vec<Revision>,
+    present: Revision,
+    future: Vec<Revision>,
+    origins: Vec<DocumentOrigin>,
 }
 
 impl History {
     /// Begins with a document that there is nothing to save of.
     pub fn new(document: Document) -> Self {
-        let origins = vec![Origin {
+        let origins = vec![DocumentOrigin {
             name: None,
             saved: document.clone(),
         }];
         Self {
             past: Vec::new(),
-            present: State {
+            present: Revision {
                 document,
                 origin: 0,
             },
@@ -211,7 +211,7 @@ impl History {
     }
 
     /// Where it comes from.
-    pub fn origin(&self) -> &Origin {
+    pub fn origin(&self) -> &DocumentOrigin {
         // The number is that of one in the list: only `begin` makes numbers.
         self.origins
             .get(self.present.origin)
@@ -222,14 +222,14 @@ impl History {
     pub fn push(&mut self, document: Document) {
         if document != self.present.document {
             let origin = self.present.origin;
-            self.replace(State { document, origin });
+            self.replace(Revision { document, origin });
         }
     }
 
     /// A document that comes from somewhere else.
-    pub fn begin(&mut self, document: Document, origin: Origin) {
+    pub fn begin(&mut self, document: Document, origin: DocumentOrigin) {
         self.origins.push(origin);
-        self.replace(State {
+        self.replace(Revision {
             document,
             origin: self.origins.len() - 1,
         });
@@ -239,7 +239,7 @@ impl History {
     pub fn stored(&mut self, name: StoredName) {
         let saved = self.present.document.clone();
         if let Some(origin) = self.origins.get_mut(self.present.origin) {
-            *origin = Origin {
+            *origin = DocumentOrigin {
                 name: Some(name),
                 saved,
             };
@@ -253,7 +253,7 @@ impl History {
             let own = origin.name.as_ref();
             let own = own.filter(|stored| stored.owner == Owner::Own);
             if own.is_some_and(|stored| folded(&stored.name) == gone) {
-                *origin = Origin {
+                *origin = DocumentOrigin {
                     name: None,
                     saved: Document::empty(origin.saved.sensor),
                 };
@@ -279,7 +279,7 @@ impl History {
         self.past.pop_if(|past| *past == *present);
     }
 
-    fn replace(&mut self, state: State) {
+    fn replace(&mut self, state: Revision) {
         self.drop_empty_step();
         self.past.push(std::mem::replace(&mut self.present, state));
         self.future.clear();
@@ -320,7 +320,7 @@ mod tests {
     fn a_change_that_is_amended_away_is_none() {
         let empty = Document::empty(Sensor::default());
         let mut drawn = empty.clone();
-        drawn.turned.toggle(3, 4);
+        drawn.edits.toggle(3, 4);
         let mut history = History::new(empty.clone());
         history.push(drawn.clone());
         history.amend(empty.clone());
@@ -329,12 +329,12 @@ mod tests {
         history.push(drawn.clone());
         history.amend(empty.clone());
         history.amend(drawn.clone());
-        drawn.turned.toggle(5, 6);
+        drawn.edits.toggle(5, 6);
         history.push(drawn.clone());
         history.amend(empty.clone());
         history.push(drawn);
         assert!(history.undo() && history.present() == &empty);
-        assert!(history.undo() && history.present().turned.count() == 1);
+        assert!(history.undo() && history.present().edits.count() == 1);
         assert!(history.undo() && history.present() == &empty);
         assert!(!history.undo());
     }

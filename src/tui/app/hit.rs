@@ -3,9 +3,9 @@
 use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::dialog::Dialog;
-use crate::tui::app::layout::{FormRows, Grid, LIST_HEAD, Panes, list, list_first, menu};
+use crate::tui::app::layout::{FormRows, LIST_HEAD, Panes, TaxelGrid, list, list_first, menu};
 use crate::tui::app::message::Message;
-use crate::tui::app::state::{App, Page};
+use crate::tui::app::state::{App, NarrowPage};
 use crate::tui::explore::point;
 use crate::tui::explore::ranges::layout::RangeRows;
 
@@ -31,7 +31,7 @@ pub enum Target {
 /// What is at a place of the screen; nothing on a screen that is too small.
 pub fn at(app: &App, column: u16, row: u16) -> Option<Target> {
     let screen = Rect::new(0, 0, app.screen.0, app.screen.1);
-    let imprint = app.seen().imprint;
+    let imprint = app.reading().imprint;
     let panes = Panes::of(screen, &imprint)?;
     let place = Position::new(column, row);
     let inside = |area: Rect| area.contains(place);
@@ -68,11 +68,11 @@ pub fn at(app: &App, column: u16, row: u16) -> Option<Target> {
         }
         None if panes.panel.is_some_and(inside) => Some(Target::Panel),
         // The descriptors have the matrix's place.
-        None if panes.panel.is_none() && app.page == Page::Panel => {
+        None if panes.panel.is_none() && app.page == NarrowPage::Panel => {
             inside(panes.body).then_some(Target::Panel)
         }
         None if inside(panes.matrix) => {
-            let grid = Grid::of(panes.matrix, &imprint, app.cursor());
+            let grid = TaxelGrid::of(panes.matrix, &imprint, app.cursor());
             grid.taxel(column, row)
                 .map(|(column, row)| Target::Taxel(column, row, grid.whole))
         }

@@ -53,7 +53,7 @@ impl Panes {
     /// The panes of the screen as it is.
     pub fn shown(app: &App) -> Option<Self> {
         let (columns, rows) = app.screen;
-        Self::of(Rect::new(0, 0, columns, rows), &app.seen().imprint)
+        Self::of(Rect::new(0, 0, columns, rows), &app.reading().imprint)
     }
 
     /// The panes of a screen for a matrix; none on a screen that is too small for any.
@@ -192,14 +192,14 @@ pub fn menu(area: Rect, keymap: &Keymap) -> Vec<MenuItem<'_>> {
 
 /// Which part of one axis of the matrix is visible.
 #[derive(Clone, Copy, Debug)]
-pub struct Axis {
+pub struct AxisWindow {
     /// The first cell.
     pub first: u8,
     /// How many.
     pub count: u8,
 }
 
-impl Axis {
+impl AxisWindow {
     /// `cells` of which `room` can be seen, the cursor as near to the middle as the ends allow.
     fn new(cells: u8, room: u16, cursor: u8) -> Self {
         let count = u8::try_from(room).unwrap_or(u8::MAX).min(cells);
@@ -221,7 +221,7 @@ impl Axis {
 
 /// Where the taxels are.
 #[derive(Clone, Copy, Debug)]
-pub struct Grid {
+pub struct TaxelGrid {
     /// The column of the screen where the first visible taxel begins.
     pub x: u16,
     /// The row of the screen where it begins.
@@ -231,14 +231,14 @@ pub struct Grid {
     /// Rows of the screen that a taxel has.
     pub lines: u16,
     /// Visible columns.
-    pub columns: Axis,
+    pub columns: AxisWindow,
     /// Visible rows.
-    pub rows: Axis,
+    pub rows: AxisWindow,
     /// Whether all taxels are visible.
     pub whole: bool,
 }
 
-impl Grid {
+impl TaxelGrid {
     /// The taxels of a matrix in its pane, with the cursor at a taxel.
     pub fn of(area: Rect, imprint: &Imprint, cursor: (u8, u8)) -> Self {
         let (columns, rows) = (imprint.columns(), imprint.rows());
@@ -246,8 +246,8 @@ impl Grid {
         let fits_narrow_only = u16::from(columns) > room / 2 && u16::from(columns) <= room;
         let lines = scale(imprint, area.width, area.height);
         let cell = if fits_narrow_only { 1 } else { 2 * lines };
-        let columns_seen = Axis::new(columns, room / cell, cursor.0);
-        let rows_seen = Axis::new(rows, area.height.saturating_sub(1) / lines, cursor.1);
+        let columns_seen = AxisWindow::new(columns, room / cell, cursor.0);
+        let rows_seen = AxisWindow::new(rows, area.height.saturating_sub(1) / lines, cursor.1);
         let whole = columns_seen.count == columns && rows_seen.count == rows;
         Self {
             x: area.x + RULER.min(area.width),

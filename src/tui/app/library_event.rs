@@ -6,19 +6,19 @@ use crate::storage::store::{Expected, Loaded, Origin};
 use crate::tui::app::change::{begin, change, inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::{Document, StoredName};
-use crate::tui::app::message::{Answer, Left, Message};
+use crate::tui::app::message::{Leftover, LibraryEvent, Message};
 use crate::tui::app::state::{App, Mode};
 use crate::tui::form::state::FormDialog;
 use crate::tui::keys::binding::Context;
 use crate::tui::prompt::commands::{Takes, wants_names};
-use crate::tui::runtime::effect::{Effect, Request};
+use crate::tui::runtime::effect::{Effect, LibraryRequest};
 use crate::tui::shapes::purpose::Purpose;
 use crate::tui::shapes::state::ListDialog;
 
 /// Takes an answer.
-pub(in crate::tui) fn take(app: &mut App, answer: Answer) -> Option<Effect> {
+pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<Effect> {
     match answer {
-        Answer::List(Ok(entries)) => match app.dialogs.last_mut() {
+        LibraryEvent::List(Ok(entries)) => match app.dialogs.last_mut() {
             Some(Dialog::List(list)) => {
                 *list = ListDialog::new(list.purpose(), entries);
                 return look(app);
@@ -34,26 +34,26 @@ pub(in crate::tui) fn take(app: &mut App, answer: Answer) -> Option<Effect> {
             }
             _ => {}
         },
-        Answer::Trash(Ok(names)) => {
+        LibraryEvent::Trash(Ok(names)) => {
             if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
                 command.complete(&names);
             }
         }
-        Answer::Read(read) => {
+        LibraryEvent::Read(read) => {
             if let Some(Dialog::List(list)) = app.dialogs.last_mut() {
                 list.take(read);
             }
         }
-        Answer::Named(Purpose::Picture, Ok(loaded)) => {
+        LibraryEvent::Named(Purpose::Picture, Ok(loaded)) => {
             let name = loaded.shape.name.to_string();
             open_picture(app, &loaded.shape.imprint, name);
         }
-        Answer::Named(_, Ok(loaded)) => {
+        LibraryEvent::Named(_, Ok(loaded)) => {
             if let Err(text) = place(app, &loaded) {
                 refuse(app, text);
             }
         }
-        Answer::Stored(name, stamp) => {
+        LibraryEvent::Stored(name, stamp) => {
             inform(app, format!("saved as {name}"));
             app.history.stored(StoredName {
                 name,
@@ -61,37 +61,37 @@ pub(in crate::tui) fn take(app: &mut App, answer: Answer) -> Option<Effect> {
                 owner: Origin::Own,
             });
         }
-        Answer::Differs(shape, stamp, text) => {
+        LibraryEvent::Differs(shape, stamp, text) => {
             let yes = Message::Store(shape, Expected::Stamp(stamp));
             app.dialogs.push(Dialog::Question(Question::new(
                 format!("{text}. Replace it?"),
                 yes,
             )));
         }
-        Answer::Removed(name) => {
+        LibraryEvent::Removed(name) => {
             // What is on the matrix may be all that is left of it.
             app.history.removed(&name);
             let undo = app.key_of(&Message::Undo);
             inform(app, format!("{name} deleted; {undo} brings it back"));
             app.removed = Some(name);
         }
-        Answer::Restored(name) => {
+        LibraryEvent::Restored(name) => {
             app.removed = None;
             inform(app, format!("{name} is back"));
         }
-        Answer::Found(left) => offer(app, "", &left),
-        Answer::Recovered(shape) => {
+        LibraryEvent::Found(left) => offer(app, "", &left),
+        LibraryEvent::Recovered(shape) => {
             begin(app, Document::empty(shape.sensor), None);
             change(app, Document::of_shape(&shape));
             let save = app.key_of(&Message::Save);
             inform(app, format!("brought back; {save} saves it"));
         }
-        Answer::List(Err(text)) => {
+        LibraryEvent::List(Err(text)) => {
             app.dialogs
                 .pop_if(|dialog| matches!(dialog, Dialog::List(_)));
             refuse(app, text);
         }
-        Answer::GivenUp(name, left) => {
+        LibraryEvent::GivenUp(name, left) => {
             app.removed = Some(name.clone());
             if let Some(left) = left {
                 offer(app, &format!("{name} is in the trash. "), &left);
@@ -101,11 +101,13 @@ pub(in crate::tui) fn take(app: &mut App, answer: Answer) -> Option<Effect> {
                 inform(app, format!("{text} {name}; {undo} brings it back"));
             }
         }
-        Answer::NotGivenUp(reason) => {
+        LibraryEvent::NotGivenUp(reason) => {
             let text = "the unsaved work cannot be moved to the trash, and is offered again at the next start";
             refuse(app, format!("{text}: {reason}"));
         }
-        Answer::Named(_, Err(text)) | Answer::Trash(Err(text)) | Answer::Failed(text) => {
+        LibraryEvent::Named(_, Err(text))
+        | LibraryEvent::Trash(Err(text))
+        | LibraryEvent::Failed(text) => {
             refuse(app, text);
         }
     }
@@ -113,7 +115,7 @@ pub(in crate::tui) fn take(app: &mut App, answer: Answer) -> Option<Effect> {
 }
 
 /// Asks whether work shall be brought back that a program left when it died.
-fn offer(app: &mut App, before: &str, left: &Left) {
+fn offer(app: &mut App, before: &str, left: &Leftover) {
     let key = |answer| app.keymap().label(Context::Question, answer);
     let (yes, no) = (key(&Message::Accept), key(&Message::Decline));
     let later = key(&Message::Cancel);
@@ -139,7 +141,7 @@ pub(in crate::tui) fn look(app: &App) -> Option<Effect> {
         return None;
     };
     let unread = list.unread();
-    (!unread.is_empty()).then_some(Effect::Library(Request::Read(unread)))
+    (!unread.is_empty()).then_some(Effect::Library(LibraryRequest::Read(unread)))
 }
 
 /// The selected shape of a list is taken, for what the list is for.
@@ -199,7 +201,7 @@ fn place(app: &mut App, loaded: &Loaded) -> Result<(), String> {
             ));
         }
         Document {
-            turned: imprint,
+            edits: imprint,
             ..Document::empty(sensor)
         }
     };

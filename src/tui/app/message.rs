@@ -3,7 +3,7 @@
 use crate::formats::shape::Shape;
 use crate::storage::store::{Entry, Expected, Loaded};
 use crate::tui::app::document::Document;
-use crate::tui::explore::message::{Exploring, Told};
+use crate::tui::explore::message::{ExploreMessage, WorkerEvent};
 use crate::tui::keys::key::Arrow;
 use crate::tui::shapes::purpose::Purpose;
 
@@ -27,15 +27,15 @@ pub enum Message {
     /// Leave at once, giving up what is not saved.
     QuitNow,
     /// The end comes from outside, by a signal: leave at once, what is not saved stays in the journal.
-    Killed,
+    Terminate,
     /// Show all keys.
     Help,
     /// Move the cursor by one taxel.
     Cursor(Arrow),
     /// Move the cursor to the first or last column.
-    ToColumn(End),
+    ToColumn(Endpoint),
     /// Move the cursor to the first or last row.
-    ToRow(End),
+    ToRow(Endpoint),
     /// Move the cursor to a taxel: column, row.
     PointAt(u8, u8),
     /// Turn the taxel under the cursor over.
@@ -49,7 +49,7 @@ pub enum Message {
     /// Show the matrix in the next way: imprint, shades, percent.
     Display,
     /// Change between the matrix and the descriptors where there is no room for both.
-    Page,
+    SwitchPage,
     /// Take hold of the shape, or let it go.
     Grab,
     /// Move the shape by a step.
@@ -73,7 +73,7 @@ pub enum Message {
     /// Delete in the field.
     Erase(Erase),
     /// Move in the field to its start or end.
-    ToEdge(End),
+    ToEdge(Endpoint),
     /// Text that was pasted.
     Paste(String),
     /// Take what the dialog says, or answer yes.
@@ -85,7 +85,7 @@ pub enum Message {
     /// Scroll or go on in a list by lines.
     Scroll(i16),
     /// To the first or the last line of a list.
-    ScrollTo(End),
+    ScrollTo(Endpoint),
     /// The form of the sensor.
     Sensor,
     /// Scale the shape up or down.
@@ -105,7 +105,7 @@ pub enum Message {
     /// Throw such work away.
     GiveUp,
     /// What the library answers.
-    Answer(Answer),
+    Library(LibraryEvent),
     /// Ask whether the shape of that name shall be removed.
     AskRemove(String),
     /// Bring the shape of that name onto the matrix.
@@ -123,9 +123,9 @@ pub enum Message {
     /// Have the mouse reported, or leave it to the terminal.
     MouseOnOff,
     /// Something about the imprints of all poses.
-    Explore(Exploring),
+    Explore(ExploreMessage),
     /// What a worker tells.
-    Told(Told),
+    Worker(WorkerEvent),
     /// Draw everything anew.
     Redraw,
     /// Give the terminal back to the shell until it calls again.
@@ -143,7 +143,7 @@ pub enum Copied {
 
 /// What the library answers to a request. Errors are sentences.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Answer {
+pub enum LibraryEvent {
     /// Its list.
     List(Result<Vec<Entry>, String>),
     /// The names of its shapes that were deleted.
@@ -163,9 +163,9 @@ pub enum Answer {
     /// Work that a program left when it died.
     Recovered(Box<Shape>),
     /// A program left work when it died.
-    Found(Left),
+    Found(Leftover),
     /// Such work was thrown into the trash, under this name; and what is left then.
-    GivenUp(String, Option<Left>),
+    GivenUp(String, Option<Leftover>),
     /// It was not, and why.
     NotGivenUp(String),
     /// Nothing came of it.
@@ -174,7 +174,7 @@ pub enum Answer {
 
 /// Work that programs left when they died.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Left {
+pub struct Leftover {
     /// What the one that is offered is, in a few words.
     pub what: String,
     /// How many there are with it.
@@ -209,7 +209,7 @@ pub enum MouseKind {
 
 /// One of two ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum Endpoint {
     /// The first.
     First,
     /// The last.

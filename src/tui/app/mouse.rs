@@ -22,9 +22,9 @@ pub(in crate::tui) fn act(app: &mut App, mouse: Mouse) -> Option<Message> {
         }
         (MouseKind::Press, Some(Target::Taxel(column, row, whole))) => {
             app.notice = None;
-            app.paint = Some((!app.seen().imprint.get(column, row), (column, row)));
+            app.paint = Some((!app.reading().imprint.get(column, row), (column, row)));
             let mut document = app.history.present().clone();
-            document.turned.toggle(column, row);
+            document.edits.toggle(column, row);
             change(app, document);
             if whole {
                 app.cursor = (column, row);
@@ -54,7 +54,7 @@ pub(in crate::tui) fn act(app: &mut App, mouse: Mouse) -> Option<Message> {
 /// Sets the taxels of a straight line: over a slow connection a quick drag is told at a few places only. The taxels of a
 /// drag are one change: one undo takes all of them back.
 fn paint(app: &mut App, active: bool, from: (u8, u8), to: (u8, u8)) {
-    let imprint = app.seen().imprint;
+    let imprint = app.reading().imprint;
     let mut document = app.history.present().clone();
     let steps = from.0.abs_diff(to.0).max(from.1.abs_diff(to.1)).max(1);
     for step in 0..=steps {
@@ -69,7 +69,7 @@ fn paint(app: &mut App, active: bool, from: (u8, u8), to: (u8, u8)) {
         };
         let (column, row) = (between(from.0, to.0), between(from.1, to.1));
         if imprint.get(column, row) != active {
-            document.turned.toggle(column, row);
+            document.edits.toggle(column, row);
         }
     }
     app.history.amend(document);

@@ -5,7 +5,7 @@ use crate::formats::shape::Shape;
 use crate::sensor::Sensor;
 use crate::storage::journal::UNNAMED;
 use crate::tui::app::dialog::Dialog;
-use crate::tui::app::document::{Document, History, Seen, StoredName};
+use crate::tui::app::document::{Document, History, Reading, StoredName};
 use crate::tui::app::message::Message;
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
@@ -56,7 +56,7 @@ pub enum Display {
 
 /// What a screen shows that is too narrow for matrix and descriptors side by side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Page {
+pub enum NarrowPage {
     /// The matrix.
     Matrix,
     /// The descriptors.
@@ -97,13 +97,13 @@ impl NudgeStep {
 
 /// Whether the program runs, and how it ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Life {
+pub enum RunState {
     /// It runs.
     Running,
     /// Its end was asked for: what is not saved was given up.
     Quit,
     /// It ends without having asked: what is not saved stays in the journal.
-    Killed,
+    Terminated,
 }
 
 /// Something said to the user until the next key.
@@ -124,7 +124,7 @@ pub struct App {
     pub(in crate::tui) chosen: Option<usize>,
     pub(in crate::tui) mode: Mode,
     pub(in crate::tui) display: Display,
-    pub(in crate::tui) page: Page,
+    pub(in crate::tui) page: NarrowPage,
     pub(in crate::tui) step: NudgeStep,
     pub(in crate::tui) dialogs: Vec<Dialog>,
     pub(in crate::tui) notice: Option<Notice>,
@@ -144,7 +144,7 @@ pub struct App {
     pub(in crate::tui) screen: (u16, u16),
     pub(in crate::tui) theme: Theme,
     pub(in crate::tui) keymap: Keymap,
-    pub(in crate::tui) life: Life,
+    pub(in crate::tui) run_state: RunState,
 }
 
 impl App {
@@ -157,7 +157,7 @@ impl App {
             chosen: None,
             mode: Mode::Draw,
             display: Display::Imprint,
-            page: Page::Matrix,
+            page: NarrowPage::Matrix,
             step: NudgeStep::Hundredth,
             dialogs: Vec::new(),
             notice: None,
@@ -170,7 +170,7 @@ impl App {
             screen: (80, 24),
             theme: options.theme,
             keymap: Keymap::default(),
-            life: Life::Running,
+            run_state: RunState::Running,
         }
     }
 
@@ -237,8 +237,8 @@ impl App {
     }
 
     /// What can be seen of it.
-    pub fn seen(&self) -> Seen {
-        Seen::of(&self.shown())
+    pub fn reading(&self) -> Reading {
+        Reading::of(&self.shown())
     }
 
     /// Whether there is work that would be lost.
@@ -248,7 +248,7 @@ impl App {
 
     /// What is on the matrix and would be lost, to be kept in the journal. At an end that was asked for, it was given up.
     pub fn unsaved_work(&self) -> Option<Shape> {
-        if self.life == Life::Quit {
+        if self.run_state == RunState::Quit {
             return None;
         }
         let stored = self.stored_name().unwrap_or(UNNAMED);
@@ -280,7 +280,7 @@ impl App {
 
     /// Whether the program has come to its end.
     pub fn ended(&self) -> bool {
-        self.life != Life::Running
+        self.run_state != RunState::Running
     }
 
     /// How it looks.

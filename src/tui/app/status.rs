@@ -5,7 +5,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::formats::name::NameError;
 use crate::tui::app::dialog::Dialog;
-use crate::tui::app::document::Seen;
+use crate::tui::app::document::Reading;
 use crate::tui::app::layout::Panes;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Mode, Notice};
@@ -24,7 +24,7 @@ const EXPORT_LABEL: &str = "Export to: ";
 const BEYOND: &str = "; reaches beyond the sensor";
 
 /// Draws all of them; answers where the cursor is, where a name or a command is typed.
-pub fn draw(app: &App, seen: &Seen, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
+pub fn draw(app: &App, seen: &Reading, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
     let theme = app.theme();
     // Results have the place of what is said of the matrix.
     if !matches!(app.pane(), Some(Dialog::Results(_))) {
@@ -103,7 +103,7 @@ fn field(
 /// What made the imprint.
 fn source(app: &App) -> String {
     let document = app.shown();
-    let by_hand = document.turned.count();
+    let by_hand = document.edits.count();
     let name = app.stored_name().map_or(String::new(), |stored| {
         let changed = if app.unsaved() { "*" } else { "" };
         format!("{stored}{changed}: ")
@@ -126,7 +126,7 @@ fn source(app: &App) -> String {
 
 /// The taxel under the cursor, and how the shape is held. Everything has a place of its own, whatever is before it, and
 /// what changes together stands together: so little is sent over the line when the cursor moves.
-fn taxel(app: &App, seen: &Seen, panes: &Panes) -> String {
+fn taxel(app: &App, seen: &Reading, panes: &Panes) -> String {
     let (column, row) = app.cursor();
     let wide = |side: u8| (side - 1).to_string().len();
     let (across, down) = (wide(seen.imprint.columns()), wide(seen.imprint.rows()));
@@ -237,7 +237,7 @@ fn hints(app: &App, buffer: &mut Buffer, panes: &Panes) {
     let hinted = |context| app.keymap().of(context).filter(here);
     let own = || hinted(context).chain(hinted(screen).filter(move |_| screen != context));
     // Where the descriptors are a page of their own, its key comes first; elsewhere it does nothing.
-    let page = |binding: &&Binding| binding.does(&Message::Page);
+    let page = |binding: &&Binding| binding.does(&Message::SwitchPage);
     let first = own().filter(page).filter(|_| panes.panel.is_none());
     let bindings = first.chain(own().filter(|binding| !page(binding)));
     for (index, binding) in bindings.enumerate() {

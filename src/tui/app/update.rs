@@ -1,7 +1,7 @@
 //! The only writer of the state: a message goes in, and perhaps a wish for the world outside comes out.
 
 use crate::tui::app::message::Message;
-use crate::tui::app::state::{App, Life};
+use crate::tui::app::state::{App, RunState};
 use crate::tui::app::{dialog_update, library_event, mouse};
 use crate::tui::runtime::effect::{Effect, TerminalEffect};
 use crate::tui::{explore, matrix};
@@ -15,12 +15,12 @@ pub fn update(app: &mut App, message: Message) -> Option<Effect> {
             app.screen = (columns, rows);
             return Some(Effect::Terminal(TerminalEffect::Redraw));
         }
-        Message::Killed => {
-            app.life = Life::Killed;
+        Message::Terminate => {
+            app.run_state = RunState::Terminated;
             return None;
         }
-        Message::Answer(answer) => return library_event::take(app, answer),
-        Message::Told(told) => return explore::worker_event::hear(app, told),
+        Message::Library(answer) => return library_event::on_library(app, answer),
+        Message::Worker(told) => return explore::worker_event::on_worker(app, told),
         Message::Mouse(mouse) => {
             let meant = mouse::act(app, mouse)?;
             return update(app, meant);

@@ -25,13 +25,13 @@ use ratatui::Frame;
 
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::layout::{Panes, SMALLEST};
-use crate::tui::app::state::{App, Page};
+use crate::tui::app::state::{App, NarrowPage};
 use crate::tui::widget::theme::Role;
 
 /// Draws the whole screen.
 pub fn view(app: &App, frame: &mut Frame<'_>) {
     let area = frame.area();
-    let seen = app.seen();
+    let seen = app.reading();
     let theme = app.theme();
     let buffer = frame.buffer_mut();
     let Some(panes) = Panes::of(area, &seen.imprint) else {
@@ -72,7 +72,7 @@ pub fn view(app: &App, frame: &mut Frame<'_>) {
             cursor = matrix::view::draw(app, &seen, buffer, panes.matrix);
             panel::draw(app, &seen, buffer, panel);
         }
-        (_, None) if app.page == Page::Panel => panel::draw(app, &seen, buffer, panes.body),
+        (_, None) if app.page == NarrowPage::Panel => panel::draw(app, &seen, buffer, panes.body),
         (_, None) => cursor = matrix::view::draw(app, &seen, buffer, panes.matrix),
     }
     // A name and a command are typed in the line of notices.

@@ -70,7 +70,7 @@ pub enum Zoom {
 
 /// What a key or a command asks for.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Exploring {
+pub enum ExploreMessage {
     /// The last result, or a form for the first.
     Open,
     /// The form of ranges.
@@ -109,7 +109,7 @@ pub enum Exploring {
 
 /// How far a sweep is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Progress {
+pub struct SweepProgress {
     /// Poses done.
     pub poses: u64,
     /// In this time.
@@ -118,9 +118,9 @@ pub struct Progress {
 
 /// What a worker tells. Each piece of work has a number; what comes from an earlier one is not heard.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Told {
+pub enum WorkerEvent {
     /// How far it is.
-    Progress(u64, Progress),
+    Progress(u64, SweepProgress),
     /// How long a grid will take, about.
     Estimate(Box<Grid>, Duration),
     /// A sweep is over, at its end or because it was stopped.

@@ -6,7 +6,7 @@ use crate::tui::app::layout::Panes;
 use crate::tui::app::message::Message;
 use crate::tui::explore::imprints::layout::ImprintList;
 use crate::tui::explore::map::layout::MapPane;
-use crate::tui::explore::message::{ExplorePage, Exploring};
+use crate::tui::explore::message::{ExploreMessage, ExplorePage};
 use crate::tui::explore::panes::ResultPanes;
 use crate::tui::explore::results::Results;
 use crate::tui::explore::statistics::layout::StatisticsTable;
@@ -17,7 +17,7 @@ pub fn at(panes: &Panes, results: &Results, place: Position) -> Option<Message> 
     let mut tabs = parts.tabs(results.page());
     let tab = tabs.find(|(_, _, area)| area.contains(place));
     if let Some((page, ..)) = tab {
-        return Some(Message::Explore(Exploring::Page(page)));
+        return Some(Message::Explore(ExploreMessage::Page(page)));
     }
     match results.page() {
         ExplorePage::Imprints => {
@@ -26,17 +26,17 @@ pub fn at(panes: &Panes, results: &Results, place: Position) -> Option<Message> 
             Some(if row == results.selected() {
                 Message::Accept
             } else {
-                Message::Explore(Exploring::Select(row))
+                Message::Explore(ExploreMessage::Select(row))
             })
         }
         ExplorePage::Statistics => {
             let row = StatisticsTable::of(parts.page, results).row(place)?;
-            Some(Message::Explore(Exploring::Select(row)))
+            Some(Message::Explore(ExploreMessage::Select(row)))
         }
         ExplorePage::Histogram => None,
         ExplorePage::Map => {
             let (x0, y0) = MapPane::of(parts.page, results).pose(place)?;
-            Some(Message::Explore(Exploring::Point(x0, y0)))
+            Some(Message::Explore(ExploreMessage::Point(x0, y0)))
         }
     }
 }

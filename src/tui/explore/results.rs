@@ -8,7 +8,7 @@ use crate::atlas::order::{SortKey, sorted};
 use crate::imprint::Imprint;
 use crate::pose::grid::Place;
 use crate::sweep::survey::Survey;
-use crate::tui::app::message::End;
+use crate::tui::app::message::Endpoint;
 use crate::tui::explore::message::{ExplorePage, Findings, Zoom};
 use crate::tui::keys::key::Arrow;
 
@@ -181,17 +181,17 @@ impl Results {
     }
 
     /// To the first or the last row; in the map, along x0.
-    pub fn scroll_to(&mut self, end: End) {
+    pub fn scroll_to(&mut self, end: Endpoint) {
         let far = match end {
-            End::First => 0,
-            End::Last => usize::MAX,
+            Endpoint::First => 0,
+            Endpoint::Last => usize::MAX,
         };
         match self.page {
             ExplorePage::Imprints => self.select(far),
             ExplorePage::Statistics | ExplorePage::Histogram => self.choose_quantity(far),
             ExplorePage::Map => {
                 let last = self.survey().grid.counts()[0] - 1;
-                self.place[0] = if end == End::First { 0 } else { last };
+                self.place[0] = if end == Endpoint::First { 0 } else { last };
             }
         }
     }
@@ -326,7 +326,7 @@ mod tests {
         results.zoom(Zoom::X, 1);
         assert_eq!(results.place(), [9, 5, 4, 0, 0]);
         results.scroll(-3);
-        results.scroll_to(End::First);
+        results.scroll_to(Endpoint::First);
         results.turn(1);
         assert_eq!(results.place(), [0, 2, 0, 0, 0]);
         assert_eq!(results.pose(), Some(20));

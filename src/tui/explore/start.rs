@@ -8,22 +8,22 @@ use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Mode};
 use crate::tui::explore::export::is_poses;
-use crate::tui::explore::message::Exploring;
+use crate::tui::explore::message::ExploreMessage;
 use crate::tui::explore::ranges::state::{RangesForm, explored};
 use crate::tui::explore::results::Results;
-use crate::tui::explore::running::state::{Job, Running};
+use crate::tui::explore::running::state::{Running, WorkKind};
 use crate::tui::runtime::effect::{Effect, Work};
 
 /// What is asked for over the matrix or at a question.
-pub(crate) fn act(app: &mut App, asked: Exploring) -> Option<Effect> {
+pub(crate) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
     match asked {
-        Exploring::Open => open(app),
-        Exploring::Ranges => open_ranges(app),
-        Exploring::Start(grid) => Some(start(app, *grid)),
-        Exploring::Write(name, existing) => {
+        ExploreMessage::Open => open(app),
+        ExploreMessage::Ranges => open_ranges(app),
+        ExploreMessage::Start(grid) => Some(start(app, *grid)),
+        ExploreMessage::Write(name, existing) => {
             let found = Arc::clone(app.results_below()?.findings());
             let poses = is_poses(&name).then(|| found.survey.grid.poses());
-            let number = begin(app, Job::Write(name.clone(), poses));
+            let number = begin(app, WorkKind::Write(name.clone(), poses));
             Some(Effect::Work(Work::Write(number, found, name, existing)))
         }
         _ => None,
@@ -76,12 +76,12 @@ fn measure(form: &mut RangesForm) -> Option<Effect> {
 }
 
 fn start(app: &mut App, grid: Grid) -> Effect {
-    let number = begin(app, Job::Sweep(Box::new(grid.clone())));
+    let number = begin(app, WorkKind::Sweep(Box::new(grid.clone())));
     Effect::Work(Work::Sweep(number, Box::new(grid)))
 }
 
 /// A new piece of work, and its number.
-fn begin(app: &mut App, job: Job) -> u64 {
+fn begin(app: &mut App, job: WorkKind) -> u64 {
     app.works += 1;
     app.dialogs
         .push(Dialog::Running(Running::new(app.works, job)));
@@ -118,7 +118,7 @@ pub(crate) fn in_ranges(
 }
 
 pub(crate) fn in_running(app: &mut App, mut running: Running, message: &Message) -> Option<Effect> {
-    let stops = *message == Message::Explore(Exploring::Stop);
+    let stops = *message == Message::Explore(ExploreMessage::Stop);
     if stops {
         running.stopping = true;
         inform(app, "stopping");

@@ -6,12 +6,12 @@ use crate::storage::unfinished::Existing;
 use crate::touch::Plane;
 use crate::tui::app::change::{change, inform, refuse};
 use crate::tui::app::dialog::Dialog;
-use crate::tui::app::document::{Document, Seen};
+use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::layout::Panes;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
 use crate::tui::explore::export::{ExportDialog, is_poses};
-use crate::tui::explore::message::{ExplorePage, Exploring, name_of};
+use crate::tui::explore::message::{ExploreMessage, ExplorePage, name_of};
 use crate::tui::explore::panes::ResultPanes;
 use crate::tui::explore::results::Results;
 use crate::tui::explore::start::act;
@@ -30,16 +30,16 @@ pub(crate) fn in_results(
         Message::ScrollTo(end) => results.scroll_to(end),
         Message::Cursor(arrow) => results.move_cursor(arrow),
         Message::Paste(_) => inform(app, "pasted text goes into fields only"),
-        Message::Explore(Exploring::Export) => {
+        Message::Explore(ExploreMessage::Export) => {
             let name = format!("{}.csv", name_of(results.survey().grid.source()));
             app.dialogs.push(Dialog::Results(results));
             let dialog = ExportDialog::proposing(&name);
             app.dialogs.push(Dialog::Export(dialog));
             return None;
         }
-        Message::Explore(Exploring::Ranges) => {
+        Message::Explore(ExploreMessage::Ranges) => {
             app.dialogs.push(Dialog::Results(results));
-            return act(app, Exploring::Ranges);
+            return act(app, ExploreMessage::Ranges);
         }
         Message::Explore(asked) => look(app, &mut results, &asked),
         _ => {}
@@ -49,31 +49,33 @@ pub(crate) fn in_results(
 }
 
 /// What changes only what is looked at.
-fn look(app: &mut App, results: &mut Results, asked: &Exploring) {
+fn look(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
     match *asked {
-        Exploring::Page(page) => results.turn_to(page),
-        Exploring::NextPage(by) => results.next_page(by),
-        Exploring::Quantity(by) => results.next_quantity(by),
-        Exploring::Columns(by) => {
+        ExploreMessage::Page(page) => results.turn_to(page),
+        ExploreMessage::NextPage(by) => results.next_page(by),
+        ExploreMessage::Quantity(by) => results.next_quantity(by),
+        ExploreMessage::Columns(by) => {
             if let Some(panes) = Panes::shown(app) {
                 let page = ResultPanes::of(&panes).page;
                 let (_, visible) = StatisticsTable::of(page, results).columns;
                 results.move_columns(by, COLUMNS.len() - visible);
             }
         }
-        Exploring::Sort(by) => results.sort(by),
-        Exploring::Find => match results.id(&app.seen().imprint) {
+        ExploreMessage::Sort(by) => results.sort(by),
+        ExploreMessage::Find => match results.id(&app.reading().imprint) {
             Some(id) => {
                 results.find(id);
             }
             None => refuse(app, "the imprint on the matrix is not among these"),
         },
-        Exploring::Follow => follow(app, results),
-        Exploring::Select(row) if results.page() == ExplorePage::Imprints => results.select(row),
-        Exploring::Select(row) => results.choose_quantity(row),
-        Exploring::Point(x0, y0) => results.point(x0, y0),
-        Exploring::Angle(by) => results.turn(by),
-        Exploring::Zoomed(zoom, by) => results.zoom(zoom, by),
+        ExploreMessage::Follow => follow(app, results),
+        ExploreMessage::Select(row) if results.page() == ExplorePage::Imprints => {
+            results.select(row)
+        }
+        ExploreMessage::Select(row) => results.choose_quantity(row),
+        ExploreMessage::Point(x0, y0) => results.point(x0, y0),
+        ExploreMessage::Angle(by) => results.turn(by),
+        ExploreMessage::Zoomed(zoom, by) => results.zoom(zoom, by),
         _ => {}
     }
 }
@@ -113,13 +115,13 @@ fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
     };
     let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(pose));
     let mut document = Document::touched(app.history.present().sensor, source);
-    document.turned = Seen::of(&document).imprint.differing(&imprint);
+    document.edits = Reading::of(&document).imprint.differing(&imprint);
     let number = results.id(&imprint).map(|id| format!("imprint {id} "));
     change(app, document);
     app.chosen = None;
     let number = number.unwrap_or_default();
     let undo = app.key_of(&Message::Undo);
-    let explore = app.key_of(&Message::Explore(Exploring::Open));
+    let explore = app.key_of(&Message::Explore(ExploreMessage::Open));
     inform(
         app,
         format!("{number}on the matrix; {undo} takes it back, {explore} goes on exploring"),
@@ -137,7 +139,7 @@ pub(crate) fn in_export(
     if *message == Message::Accept {
         match dialog.name() {
             Ok(name) => match missing(app, &name) {
-                None => return act(app, Exploring::Write(name, Existing::Kept)),
+                None => return act(app, ExploreMessage::Write(name, Existing::Kept)),
                 Some(missing) => refuse(app, missing),
             },
             Err(error) => refuse(app, error),

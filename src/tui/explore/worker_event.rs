@@ -9,20 +9,20 @@ use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
 use crate::tui::explore::export::ExportDialog;
-use crate::tui::explore::message::{Exploring, Findings, Told};
+use crate::tui::explore::message::{ExploreMessage, Findings, WorkerEvent};
 use crate::tui::explore::results::Results;
-use crate::tui::explore::running::state::{Job, Running};
+use crate::tui::explore::running::state::{Running, WorkKind};
 use crate::tui::runtime::effect::Effect;
 
 /// Takes what a worker tells.
-pub(crate) fn hear(app: &mut App, told: Told) -> Option<Effect> {
+pub(crate) fn on_worker(app: &mut App, told: WorkerEvent) -> Option<Effect> {
     match told {
-        Told::Progress(number, progress) => {
+        WorkerEvent::Progress(number, progress) => {
             if let Some(running) = running(app, number) {
                 running.progress = Some(progress);
             }
         }
-        Told::Estimate(grid, time) => {
+        WorkerEvent::Estimate(grid, time) => {
             let mut dialogs = app.dialogs.iter_mut().rev();
             let form = dialogs.find_map(|dialog| match dialog {
                 Dialog::Ranges(form) => Some(form),
@@ -32,22 +32,22 @@ pub(crate) fn hear(app: &mut App, told: Told) -> Option<Effect> {
                 form.take_estimate(&grid, time);
             }
         }
-        Told::Swept(number, findings) => take_findings(app, number, findings),
-        Told::Written(number, name) => {
+        WorkerEvent::Swept(number, findings) => take_findings(app, number, findings),
+        WorkerEvent::Written(number, name) => {
             if finish(app, number).is_some() {
                 inform(app, format!("written: {name}"));
             }
         }
-        Told::Exists(number, name) => {
+        WorkerEvent::Exists(number, name) => {
             if let Some(place) = finish(app, number) {
                 let text = format!("{name} is there already. Replace it?");
-                let yes = Message::Explore(Exploring::Write(name, Existing::Replaced));
+                let yes = Message::Explore(ExploreMessage::Write(name, Existing::Replaced));
                 ask(app, place, Dialog::Question(Question::new(text, yes)));
             }
         }
-        Told::Failed(number, reason) => {
+        WorkerEvent::Failed(number, reason) => {
             let name = running(app, number).and_then(|running| match &running.job {
-                Job::Write(name, _) if !running.stopping => Some(name.clone()),
+                WorkKind::Write(name, _) if !running.stopping => Some(name.clone()),
                 _ => None,
             });
             if let Some(place) = finish(app, number) {
@@ -58,7 +58,7 @@ pub(crate) fn hear(app: &mut App, told: Told) -> Option<Effect> {
                 refuse(app, reason);
             }
         }
-        Told::Refused(reason) => refuse(app, reason),
+        WorkerEvent::Refused(reason) => refuse(app, reason),
     }
     None
 }

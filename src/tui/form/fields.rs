@@ -9,7 +9,7 @@ const LONGEST: usize = 24;
 
 /// A text field of one parameter.
 #[derive(Clone, Debug)]
-pub struct Field {
+pub struct ParameterField {
     parameter: Parameter,
     optional: bool,
     input: TextField,
@@ -19,7 +19,7 @@ pub struct Field {
     initial_text: String,
 }
 
-impl Field {
+impl ParameterField {
     /// A field that shows a value; empty without one.
     pub fn new(parameter: Parameter, value: Option<f64>, optional: bool) -> Self {
         let text = value
@@ -98,15 +98,15 @@ impl Field {
 
 /// Fields, one of which has the focus; or none, where something beside the form has it.
 #[derive(Clone, Debug)]
-pub struct Form {
-    fields: Vec<Field>,
+pub struct ParameterForm {
+    fields: Vec<ParameterField>,
     focus: Option<usize>,
     side: u8,
 }
 
-impl Form {
+impl ParameterForm {
     /// A form for a sensor whose larger side is `side`; no field has the focus.
-    pub fn new(fields: Vec<Field>, side: u8) -> Self {
+    pub fn new(fields: Vec<ParameterField>, side: u8) -> Self {
         Self {
             fields,
             focus: None,
@@ -115,12 +115,12 @@ impl Form {
     }
 
     /// Its fields, from the top.
-    pub fn fields(&self) -> &[Field] {
+    pub fn fields(&self) -> &[ParameterField] {
         &self.fields
     }
 
     /// Takes the fields out.
-    pub fn into_fields(self) -> Vec<Field> {
+    pub fn into_fields(self) -> Vec<ParameterField> {
         self.fields
     }
 
@@ -157,7 +157,7 @@ impl Form {
         fields.find_map(|(index, field)| Some((index, field.value(self.side).err()?)))
     }
 
-    fn focused(&mut self) -> Option<&mut Field> {
+    fn focused(&mut self) -> Option<&mut ParameterField> {
         self.fields.get_mut(self.focus?)
     }
 

@@ -7,14 +7,14 @@ use crate::parameter::{Parameter, ParameterError};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
 use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::source::Source;
-use crate::tui::app::document::{Document, Seen};
+use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
-use crate::tui::form::fields::{Field, Form};
+use crate::tui::form::fields::{ParameterField, ParameterForm};
 use crate::tui::keys::key::Arrow;
 
 /// What a form is about.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Subject {
+pub enum FormSubject {
     /// A figure of a kind, which can be changed in the form.
     Figure(FigureKind),
     /// A stored imprint, by its name.
@@ -26,10 +26,10 @@ pub enum Subject {
 /// A form with what it would make of the matrix.
 #[derive(Clone, Debug)]
 pub struct FormDialog {
-    subject: Subject,
-    form: Form,
+    subject: FormSubject,
+    form: ParameterForm,
     /// Fields of other kinds of figure, kept as they were typed.
-    hidden: Vec<Field>,
+    hidden: Vec<ParameterField>,
     /// What is on the matrix without the form.
     before: Document,
     /// What the fields make of it, while all of them are right.
@@ -47,7 +47,7 @@ impl FormDialog {
             _ => Figure::default_of(FigureKind::Ellipse, before.sensor.side()),
         };
         Self::new(
-            Subject::Figure(figure.kind()),
+            FormSubject::Figure(figure.kind()),
             before,
             Document::touched(before.sensor, Source::Figure(figure)),
         )
@@ -57,20 +57,20 @@ impl FormDialog {
     pub fn picture(before: &Document, picture: Picture, name: String) -> Self {
         let imprint = Box::new(*picture.imprint());
         let shown = Document::touched(before.sensor, Source::Picture(picture));
-        let mut dialog = Self::new(Subject::Picture(name, imprint), before, shown);
+        let mut dialog = Self::new(FormSubject::Picture(name, imprint), before, shown);
         dialog.form.set_focus(Some(0));
         dialog
     }
 
     /// The form of the sensor.
     pub fn sensor(before: &Document) -> Self {
-        let mut dialog = Self::new(Subject::Sensor, before, before.clone());
+        let mut dialog = Self::new(FormSubject::Sensor, before, before.clone());
         dialog.form.set_focus(Some(0));
         dialog
     }
 
-    fn new(subject: Subject, before: &Document, shown: Document) -> Self {
-        let form = Form::new(Vec::new(), before.sensor.side());
+    fn new(subject: FormSubject, before: &Document, shown: Document) -> Self {
+        let form = ParameterForm::new(Vec::new(), before.sensor.side());
         let mut dialog = Self {
             subject,
             form,
@@ -84,29 +84,29 @@ impl FormDialog {
     }
 
     /// What it is about.
-    pub fn subject(&self) -> &Subject {
+    pub fn subject(&self) -> &FormSubject {
         &self.subject
     }
 
     /// Its heading.
     pub fn title(&self) -> String {
         match &self.subject {
-            Subject::Figure(_) => "Figure".to_owned(),
-            Subject::Picture(name, _) => format!("Picture: {name}"),
-            Subject::Sensor => "Sensor".to_owned(),
+            FormSubject::Figure(_) => "Figure".to_owned(),
+            FormSubject::Picture(name, _) => format!("Picture: {name}"),
+            FormSubject::Sensor => "Sensor".to_owned(),
         }
     }
 
     /// The kind of figure that is chosen; none where there is nothing to choose.
     pub fn kind(&self) -> Option<FigureKind> {
         match self.subject {
-            Subject::Figure(kind) => Some(kind),
+            FormSubject::Figure(kind) => Some(kind),
             _ => None,
         }
     }
 
     /// The fields.
-    pub fn form(&self) -> &Form {
+    pub fn form(&self) -> &ParameterForm {
         &self.form
     }
 
@@ -118,7 +118,7 @@ impl FormDialog {
     /// What would be lost, in a sentence.
     pub fn warning(&self) -> Option<String> {
         let (columns, rows) = (self.shown.sensor.columns(), self.shown.sensor.rows());
-        let all = Seen::of(&self.before).imprint;
+        let all = Reading::of(&self.before).imprint;
         let lost = all.count() - all.resized(columns, rows).count();
         let taxels = counted(lost.into(), "active taxel");
         (lost > 0).then(|| format!("{taxels} will be cut"))
@@ -126,9 +126,9 @@ impl FormDialog {
 
     fn parameters(&self) -> Vec<Parameter> {
         match self.subject {
-            Subject::Figure(kind) => kind.parameters().collect(),
-            Subject::Picture(..) => PICTURE_PARAMETERS.to_vec(),
-            Subject::Sensor => SENSOR_PARAMETERS.to_vec(),
+            FormSubject::Figure(kind) => kind.parameters().collect(),
+            FormSubject::Picture(..) => PICTURE_PARAMETERS.to_vec(),
+            FormSubject::Sensor => SENSOR_PARAMETERS.to_vec(),
         }
     }
 
@@ -136,7 +136,9 @@ impl FormDialog {
     fn fill(&mut self) {
         let (side, focus) = (self.form.side(), self.form.focus());
         let mut known = std::mem::take(&mut self.hidden);
-        known.extend(std::mem::replace(&mut self.form, Form::new(Vec::new(), side)).into_fields());
+        known.extend(
+            std::mem::replace(&mut self.form, ParameterForm::new(Vec::new(), side)).into_fields(),
+        );
         let parameters = self.parameters();
         let fields = parameters.into_iter().map(|parameter| {
             let at = known
@@ -149,11 +151,11 @@ impl FormDialog {
         });
         let fields = fields.collect();
         self.hidden = known;
-        self.form = Form::new(fields, side);
+        self.form = ParameterForm::new(fields, side);
         self.form.set_focus(focus);
     }
 
-    fn new_field(&self, parameter: Parameter, side: u8) -> Field {
+    fn new_field(&self, parameter: Parameter, side: u8) -> ParameterField {
         let of_source = |source: &Source| source.get(parameter);
         let own = self.shown.source.as_ref().and_then(of_source);
         let own = own.or_else(|| self.shown.sensor.get(parameter));
@@ -163,16 +165,16 @@ impl FormDialog {
         } else {
             own.or_else(|| Some(parameter.default(side)))
         };
-        Field::new(parameter, value, optional)
+        ParameterField::new(parameter, value, optional)
     }
 
     /// Changes the fields by `change`, and the matrix follows.
-    pub fn edit(&mut self, change: impl FnOnce(&mut Form)) {
+    pub fn edit(&mut self, change: impl FnOnce(&mut ParameterForm)) {
         change(&mut self.form);
         if let Ok(document) = self.made() {
             self.shown = document;
             let typed = self.form.focus().and_then(|at| self.form.fields().get(at));
-            if typed.is_none_or(Field::fresh) {
+            if typed.is_none_or(ParameterField::fresh) {
                 self.settled = self.shown.clone();
             }
         } else {
@@ -188,15 +190,15 @@ impl FormDialog {
         let (sensor, side) = (self.before.sensor, self.form.side());
         let value = |parameter: Parameter| self.form.value(parameter);
         match &self.subject {
-            Subject::Figure(kind) => {
+            FormSubject::Figure(kind) => {
                 let figure = Figure::new(*kind, side, value)?;
                 Ok(Document::touched(sensor, Source::Figure(figure)))
             }
-            Subject::Picture(name, imprint) => {
+            FormSubject::Picture(name, imprint) => {
                 let picture = Picture::new(**imprint, side, value)?.named(name);
                 Ok(Document::touched(sensor, Source::Picture(picture)))
             }
-            Subject::Sensor => {
+            FormSubject::Sensor => {
                 let own = self
                     .parameters()
                     .into_iter()
@@ -256,7 +258,7 @@ impl FormDialog {
             .map(|count| kinds[(now + count * step) % kinds.len()])
             .find(|&kind| fits(kind));
         if let Some(kind) = next {
-            self.subject = Subject::Figure(kind);
+            self.subject = FormSubject::Figure(kind);
             self.fill();
             self.edit(|_| {});
         }

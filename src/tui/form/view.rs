@@ -7,7 +7,7 @@ use crate::figure::{FigureKind, NO_ROOM};
 use crate::source::Source;
 use crate::tui::app::layout::FormRows;
 use crate::tui::app::state::App;
-use crate::tui::form::fields::Field;
+use crate::tui::form::fields::ParameterField;
 use crate::tui::form::state::FormDialog;
 use crate::tui::widget::columns::narrow;
 use crate::tui::widget::theme::Role;
@@ -109,7 +109,13 @@ fn draw_kind(app: &App, kind: FigureKind, focused: bool, buffer: &mut Buffer, ro
 }
 
 /// Label and text; answers where the text cursor would be.
-fn draw_field(app: &App, field: &Field, focused: bool, buffer: &mut Buffer, row: Rect) -> Position {
+fn draw_field(
+    app: &App,
+    field: &ParameterField,
+    focused: bool,
+    buffer: &mut Buffer,
+    row: Rect,
+) -> Position {
     let theme = app.theme();
     let label = format!("{:LABEL$}", field.parameter().row().label);
     let (shown, cursor) = write::window(field.text(), field.cursor(), INPUT);
@@ -126,7 +132,7 @@ fn draw_field(app: &App, field: &Field, focused: bool, buffer: &mut Buffer, row:
 }
 
 /// What else there is to know about a field that may be empty, and whether that is about the value it has now.
-fn remark(field: &Field, dialog: &FormDialog) -> Option<(&'static str, bool)> {
+fn remark(field: &ParameterField, dialog: &FormDialog) -> Option<(&'static str, bool)> {
     if !field.optional() {
         return None;
     }
@@ -144,7 +150,7 @@ fn remark(field: &Field, dialog: &FormDialog) -> Option<(&'static str, bool)> {
 /// way first, then the remark, or the range where the remark is about the present value.
 fn draw_range(
     app: &App,
-    (field, side): (&Field, u8),
+    (field, side): (&ParameterField, u8),
     remark: Option<(&str, bool)>,
     buffer: &mut Buffer,
     area: Rect,

@@ -3,8 +3,8 @@
 //! Where the command line at the foot knows the same action, it has the same name.
 
 use crate::atlas::order::SortKey;
-use crate::tui::app::message::{Copied, End, Erase, Message};
-use crate::tui::explore::message::{ExplorePage, Exploring, Zoom};
+use crate::tui::app::message::{Copied, Endpoint, Erase, Message};
+use crate::tui::explore::message::{ExploreMessage, ExplorePage, Zoom};
 use crate::tui::keys::key::Arrow;
 
 /// All actions that keys have. Which of them belong to a place is what the table of keys has there.
@@ -20,10 +20,10 @@ pub const ACTIONS: &[(&str, Message)] = &[
     ("cursor-right", Message::Cursor(Arrow::Right)),
     ("cursor-up", Message::Cursor(Arrow::Up)),
     ("cursor-down", Message::Cursor(Arrow::Down)),
-    ("first-column", Message::ToColumn(End::First)),
-    ("last-column", Message::ToColumn(End::Last)),
-    ("first-row", Message::ToRow(End::First)),
-    ("last-row", Message::ToRow(End::Last)),
+    ("first-column", Message::ToColumn(Endpoint::First)),
+    ("last-column", Message::ToColumn(Endpoint::Last)),
+    ("first-row", Message::ToRow(Endpoint::First)),
+    ("last-row", Message::ToRow(Endpoint::Last)),
     ("toggle", Message::Toggle),
     ("undo", Message::Undo),
     ("redo", Message::Redo),
@@ -42,7 +42,7 @@ pub const ACTIONS: &[(&str, Message)] = &[
     ("zoom-in", Message::Zoom(1)),
     ("zoom-out", Message::Zoom(-1)),
     ("sensor", Message::Sensor),
-    ("panel", Message::Page),
+    ("panel", Message::SwitchPage),
     ("copy-descriptors", Message::Copy(Copied::Descriptors)),
     ("copy-imprint", Message::Copy(Copied::Imprint)),
     ("mouse", Message::MouseOnOff),
@@ -61,8 +61,8 @@ pub const ACTIONS: &[(&str, Message)] = &[
     ("erase-before", Message::Erase(Erase::Before)),
     ("erase-under", Message::Erase(Erase::Under)),
     ("erase-all", Message::Erase(Erase::All)),
-    ("to-start", Message::ToEdge(End::First)),
-    ("to-end", Message::ToEdge(End::Last)),
+    ("to-start", Message::ToEdge(Endpoint::First)),
+    ("to-end", Message::ToEdge(Endpoint::Last)),
     ("accept", Message::Accept),
     ("cancel", Message::Cancel),
     ("decline", Message::Decline),
@@ -70,76 +70,97 @@ pub const ACTIONS: &[(&str, Message)] = &[
     ("scroll-down", Message::Scroll(1)),
     ("page-up", Message::Scroll(-10)),
     ("page-down", Message::Scroll(10)),
-    ("first", Message::ScrollTo(End::First)),
-    ("last", Message::ScrollTo(End::Last)),
-    ("explore", Message::Explore(Exploring::Open)),
-    ("ranges", Message::Explore(Exploring::Ranges)),
-    ("stop", Message::Explore(Exploring::Stop)),
-    ("quit-at-once", Message::Killed),
+    ("first", Message::ScrollTo(Endpoint::First)),
+    ("last", Message::ScrollTo(Endpoint::Last)),
+    ("explore", Message::Explore(ExploreMessage::Open)),
+    ("ranges", Message::Explore(ExploreMessage::Ranges)),
+    ("stop", Message::Explore(ExploreMessage::Stop)),
+    ("quit-at-once", Message::Terminate),
     (
         "imprints",
-        Message::Explore(Exploring::Page(ExplorePage::Imprints)),
+        Message::Explore(ExploreMessage::Page(ExplorePage::Imprints)),
     ),
     (
         "statistics",
-        Message::Explore(Exploring::Page(ExplorePage::Statistics)),
+        Message::Explore(ExploreMessage::Page(ExplorePage::Statistics)),
     ),
     (
         "histogram",
-        Message::Explore(Exploring::Page(ExplorePage::Histogram)),
+        Message::Explore(ExploreMessage::Page(ExplorePage::Histogram)),
     ),
-    ("map", Message::Explore(Exploring::Page(ExplorePage::Map))),
-    ("next-page", Message::Explore(Exploring::NextPage(1))),
-    ("previous-page", Message::Explore(Exploring::NextPage(-1))),
-    ("next-descriptor", Message::Explore(Exploring::Quantity(1))),
+    (
+        "map",
+        Message::Explore(ExploreMessage::Page(ExplorePage::Map)),
+    ),
+    ("next-page", Message::Explore(ExploreMessage::NextPage(1))),
+    (
+        "previous-page",
+        Message::Explore(ExploreMessage::NextPage(-1)),
+    ),
+    (
+        "next-descriptor",
+        Message::Explore(ExploreMessage::Quantity(1)),
+    ),
     (
         "previous-descriptor",
-        Message::Explore(Exploring::Quantity(-1)),
+        Message::Explore(ExploreMessage::Quantity(-1)),
     ),
-    ("later-columns", Message::Explore(Exploring::Columns(1))),
-    ("earlier-columns", Message::Explore(Exploring::Columns(-1))),
+    (
+        "later-columns",
+        Message::Explore(ExploreMessage::Columns(1)),
+    ),
+    (
+        "earlier-columns",
+        Message::Explore(ExploreMessage::Columns(-1)),
+    ),
     (
         "sort-by-poses",
-        Message::Explore(Exploring::Sort(SortKey::Poses)),
+        Message::Explore(ExploreMessage::Sort(SortKey::Poses)),
     ),
     (
         "sort-by-first-pose",
-        Message::Explore(Exploring::Sort(SortKey::FirstPose)),
+        Message::Explore(ExploreMessage::Sort(SortKey::FirstPose)),
     ),
     (
         "sort-by-value",
-        Message::Explore(Exploring::Sort(SortKey::Value)),
+        Message::Explore(ExploreMessage::Sort(SortKey::Value)),
     ),
     (
         "sort-by-pieces",
-        Message::Explore(Exploring::Sort(SortKey::Pieces)),
+        Message::Explore(ExploreMessage::Sort(SortKey::Pieces)),
     ),
     (
         "sort-by-holes",
-        Message::Explore(Exploring::Sort(SortKey::Holes)),
+        Message::Explore(ExploreMessage::Sort(SortKey::Holes)),
     ),
-    ("find", Message::Explore(Exploring::Find)),
-    ("follow", Message::Explore(Exploring::Follow)),
-    ("export", Message::Explore(Exploring::Export)),
-    ("next-angle", Message::Explore(Exploring::Angle(1))),
-    ("previous-angle", Message::Explore(Exploring::Angle(-1))),
-    ("ten-angles-on", Message::Explore(Exploring::Angle(10))),
-    ("ten-angles-back", Message::Explore(Exploring::Angle(-10))),
+    ("find", Message::Explore(ExploreMessage::Find)),
+    ("follow", Message::Explore(ExploreMessage::Follow)),
+    ("export", Message::Explore(ExploreMessage::Export)),
+    ("next-angle", Message::Explore(ExploreMessage::Angle(1))),
+    (
+        "previous-angle",
+        Message::Explore(ExploreMessage::Angle(-1)),
+    ),
+    ("ten-angles-on", Message::Explore(ExploreMessage::Angle(10))),
+    (
+        "ten-angles-back",
+        Message::Explore(ExploreMessage::Angle(-10)),
+    ),
     (
         "next-zoom-x",
-        Message::Explore(Exploring::Zoomed(Zoom::X, 1)),
+        Message::Explore(ExploreMessage::Zoomed(Zoom::X, 1)),
     ),
     (
         "previous-zoom-x",
-        Message::Explore(Exploring::Zoomed(Zoom::X, -1)),
+        Message::Explore(ExploreMessage::Zoomed(Zoom::X, -1)),
     ),
     (
         "next-zoom-y",
-        Message::Explore(Exploring::Zoomed(Zoom::Y, 1)),
+        Message::Explore(ExploreMessage::Zoomed(Zoom::Y, 1)),
     ),
     (
         "previous-zoom-y",
-        Message::Explore(Exploring::Zoomed(Zoom::Y, -1)),
+        Message::Explore(ExploreMessage::Zoomed(Zoom::Y, -1)),
     ),
     ("redraw", Message::Redraw),
     ("suspend", Message::Suspend),

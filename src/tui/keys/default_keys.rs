@@ -4,13 +4,13 @@
 //! The arrows move the cursor, not `hjkl`: `l` is Load, as in the paper's menu.
 
 use crate::atlas::order::SortKey;
-use crate::tui::app::message::{Copied, End, Erase, Message};
-use crate::tui::explore::message::{ExplorePage, Exploring, Zoom};
+use crate::tui::app::message::{Copied, Endpoint, Erase, Message};
+use crate::tui::explore::message::{ExploreMessage, ExplorePage, Zoom};
 use crate::tui::keys::binding::{Binding, Context, bind};
 use crate::tui::keys::key::{Arrow, Key};
 
 use Arrow::{Down, Left, Right, Up};
-use End::{First, Last};
+use Endpoint::{First, Last};
 use Key::{
     BackTab, Backspace, Char, Ctrl, Delete, Enter, Esc, F1, Home, PageDown, PageUp, ShiftArrow, Tab,
 };
@@ -53,7 +53,7 @@ pub const KEYMAP: &[Binding] = table! {
             "region" "describe the next, the previous piece or hole";
         [Char('c') => Display] "coverage" "coverage in shades, in percent, the imprint again";
         [Char('g') => Grab] "grab" "hold the shape, to move it with the arrows";
-        [Char('e') => Explore(Exploring::Open)] "explore" "Explore: all imprints of the shape, over all poses";
+        [Char('e') => Explore(ExploreMessage::Open)] "explore" "Explore: all imprints of the shape, over all poses";
         [ShiftArrow(Left) => Nudge(Left), ShiftArrow(Right) => Nudge(Right),
             ShiftArrow(Up) => Nudge(Up), ShiftArrow(Down) => Nudge(Down)]
             "" "move the shape without holding it";
@@ -63,7 +63,7 @@ pub const KEYMAP: &[Binding] = table! {
         [Char('z') => Zoom(1), Char('Z') => Zoom(-1)]
             "" "zoom a picture in, out, by the current step";
         [Char('S') => Sensor] "" "Sensor: columns, rows, threshold, pitch";
-        [Char('i') => Page] "descriptors" "on a narrow screen: descriptors or matrix";
+        [Char('i') => SwitchPage] "descriptors" "on a narrow screen: descriptors or matrix";
         [Char('y') => Copy(Copied::Descriptors), Char('Y') => Copy(Copied::Imprint)]
             "" "copy descriptors, imprint to your terminal's clipboard";
         [Char('m') => MouseOnOff] "" "the mouse sets taxels, or selects text";
@@ -146,23 +146,23 @@ pub const KEYMAP: &[Binding] = table! {
     }
 
     Running {
-        [Esc => Explore(Exploring::Stop), Char('s') => Explore(Exploring::Stop), Ctrl('g') => Explore(Exploring::Stop)]
+        [Esc => Explore(ExploreMessage::Stop), Char('s') => Explore(ExploreMessage::Stop), Ctrl('g') => Explore(ExploreMessage::Stop)]
             "stop" "stop; a sweep keeps what is complete";
-        [Ctrl('c') => Killed] "quit" "quit at once; unsaved work is offered next time";
+        [Ctrl('c') => Terminate] "quit" "quit at once; unsaved work is offered next time";
     }
 
     Explore {
-        [Char('1') => Explore(Exploring::Page(ExplorePage::Imprints)),
-            Char('2') => Explore(Exploring::Page(ExplorePage::Statistics)),
-            Char('3') => Explore(Exploring::Page(ExplorePage::Histogram)),
-            Char('4') => Explore(Exploring::Page(ExplorePage::Map))] "" "imprints, statistics, histogram, map";
-        [Tab => Explore(Exploring::NextPage(1)), BackTab => Explore(Exploring::NextPage(-1))]
+        [Char('1') => Explore(ExploreMessage::Page(ExplorePage::Imprints)),
+            Char('2') => Explore(ExploreMessage::Page(ExplorePage::Statistics)),
+            Char('3') => Explore(ExploreMessage::Page(ExplorePage::Histogram)),
+            Char('4') => Explore(ExploreMessage::Page(ExplorePage::Map))] "" "imprints, statistics, histogram, map";
+        [Tab => Explore(ExploreMessage::NextPage(1)), BackTab => Explore(ExploreMessage::NextPage(-1))]
             "page" "next, previous page";
-        [Char('d') => Explore(Exploring::Quantity(1)), Char('D') => Explore(Exploring::Quantity(-1))]
+        [Char('d') => Explore(ExploreMessage::Quantity(1)), Char('D') => Explore(ExploreMessage::Quantity(-1))]
             "descriptor" "next, previous descriptor";
-        [Char('x') => Explore(Exploring::Export)]
+        [Char('x') => Explore(ExploreMessage::Export)]
             "export" "write a file: .csv .jsonl .npz imprints, .npy poses";
-        [Char('e') => Explore(Exploring::Ranges)] "ranges" "explore other ranges";
+        [Char('e') => Explore(ExploreMessage::Ranges)] "ranges" "explore other ranges";
         [Char('?') => Help] "help" "all keys";
         [Esc => Cancel, Ctrl('g') => Cancel, Char('q') => Cancel]
             "close" "back to the matrix; what was found is kept";
@@ -173,22 +173,22 @@ pub const KEYMAP: &[Binding] = table! {
         [PageUp => Scroll(-10), PageDown => Scroll(10)] "" "ten imprints back, on";
         [Home => ScrollTo(First), END => ScrollTo(Last)] "" "first, last imprint";
         [Enter => Accept] "to matrix" "put it onto the matrix, in its first pose";
-        [Char('n') => Explore(Exploring::Sort(SortKey::Poses)),
-            Char('f') => Explore(Exploring::Sort(SortKey::FirstPose)),
-            Char('v') => Explore(Exploring::Sort(SortKey::Value)),
-            Char('c') => Explore(Exploring::Sort(SortKey::Pieces)), Char('h') => Explore(Exploring::Sort(SortKey::Holes))]
+        [Char('n') => Explore(ExploreMessage::Sort(SortKey::Poses)),
+            Char('f') => Explore(ExploreMessage::Sort(SortKey::FirstPose)),
+            Char('v') => Explore(ExploreMessage::Sort(SortKey::Value)),
+            Char('c') => Explore(ExploreMessage::Sort(SortKey::Pieces)), Char('h') => Explore(ExploreMessage::Sort(SortKey::Holes))]
             "sort" "poses, 1st pose, value, pieces, holes; again: reversed";
-        [Char('j') => Explore(Exploring::Find)] "find" "jump to the imprint that is on the matrix";
-        [Char('g') => Explore(Exploring::Follow)] "map" "go to its first pose on the map";
+        [Char('j') => Explore(ExploreMessage::Find)] "find" "jump to the imprint that is on the matrix";
+        [Char('g') => Explore(ExploreMessage::Follow)] "map" "go to its first pose on the map";
     }
 
     Statistics {
         [UP => Scroll(-1), DOWN => Scroll(1), PageUp => Scroll(-10), PageDown => Scroll(10)]
             "" "choose a descriptor";
         [Home => ScrollTo(First), END => ScrollTo(Last)] "" "first, last descriptor";
-        [LEFT => Explore(Exploring::Columns(-1)), RIGHT => Explore(Exploring::Columns(1))]
+        [LEFT => Explore(ExploreMessage::Columns(-1)), RIGHT => Explore(ExploreMessage::Columns(1))]
             "columns" "earlier, later columns";
-        [Enter => Explore(Exploring::Page(ExplorePage::Histogram))] "histogram" "its histogram";
+        [Enter => Explore(ExploreMessage::Page(ExplorePage::Histogram))] "histogram" "its histogram";
     }
 
     Histogram {
@@ -202,15 +202,15 @@ pub const KEYMAP: &[Binding] = table! {
             "" "to the next pose; each letter is an imprint";
         [PageUp => Scroll(-10), PageDown => Scroll(10)] "" "ten poses up, down";
         [Home => ScrollTo(First), END => ScrollTo(Last)] "" "to the first, the last x0";
-        [Char('<') => Explore(Exploring::Angle(-1)), Char('>') => Explore(Exploring::Angle(1))]
+        [Char('<') => Explore(ExploreMessage::Angle(-1)), Char('>') => Explore(ExploreMessage::Angle(1))]
             "angle" "previous, next angle";
-        [Char('(') => Explore(Exploring::Angle(-10)), Char(')') => Explore(Exploring::Angle(10))]
+        [Char('(') => Explore(ExploreMessage::Angle(-10)), Char(')') => Explore(ExploreMessage::Angle(10))]
             "" "ten angles back, on";
-        [Char('z') => Explore(Exploring::Zoomed(Zoom::X, 1)), Char('Z') => Explore(Exploring::Zoomed(Zoom::X, -1)),
-            Char('w') => Explore(Exploring::Zoomed(Zoom::Y, 1)), Char('W') => Explore(Exploring::Zoomed(Zoom::Y, -1))]
+        [Char('z') => Explore(ExploreMessage::Zoomed(Zoom::X, 1)), Char('Z') => Explore(ExploreMessage::Zoomed(Zoom::X, -1)),
+            Char('w') => Explore(ExploreMessage::Zoomed(Zoom::Y, 1)), Char('W') => Explore(ExploreMessage::Zoomed(Zoom::Y, -1))]
             "" "next, previous zoom x, zoom y of a picture";
         [Enter => Accept] "to matrix" "put this pose onto the matrix";
-        [Char('g') => Explore(Exploring::Follow)] "list" "go to its imprint in the list";
+        [Char('g') => Explore(ExploreMessage::Follow)] "list" "go to its imprint in the list";
     }
 
     Export {

@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 
 use crate::description::{DESCRIPTORS, Description, Descriptor, Value};
 use crate::formats::value;
-use crate::tui::app::document::Seen;
+use crate::tui::app::document::Reading;
 use crate::tui::app::state::App;
 use crate::tui::widget::theme::Role;
 use crate::tui::widget::write;
@@ -15,7 +15,7 @@ const SYMBOL: usize = 7;
 const VALUE: usize = 17;
 
 /// Draws the panel. Where it has fewer lines than there are descriptors, they stand in several columns.
-pub fn draw(app: &App, seen: &Seen, buffer: &mut Buffer, area: Rect) {
+pub fn draw(app: &App, seen: &Reading, buffer: &mut Buffer, area: Rect) {
     let theme = app.theme();
     let described = seen.region(app.chosen).zip(seen.description(app.chosen));
     let title = match &described {

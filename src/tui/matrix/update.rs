@@ -9,15 +9,15 @@ use crate::tui::app::change::{
 use crate::tui::app::dialog::{Dialog, Help, Question};
 use crate::tui::app::document::{Document, History};
 use crate::tui::app::layout::Panes;
-use crate::tui::app::message::{Copied, End, Message};
-use crate::tui::app::state::{App, Display, Life, Mode, Page};
+use crate::tui::app::message::{Copied, Endpoint, Message};
+use crate::tui::app::state::{App, Display, Mode, NarrowPage, RunState};
 use crate::tui::explore;
 use crate::tui::explore::results::around;
 use crate::tui::form::state::FormDialog;
 use crate::tui::keys::key::Arrow;
 use crate::tui::prompt::name::NameDialog;
 use crate::tui::prompt::state::CommandDialog;
-use crate::tui::runtime::effect::{Effect, Request, TerminalEffect};
+use crate::tui::runtime::effect::{Effect, LibraryRequest, TerminalEffect};
 use crate::tui::shapes::purpose::Purpose;
 use crate::tui::shapes::state::ListDialog;
 
@@ -36,7 +36,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::Picture => return Some(open_list(app, Purpose::Picture)),
         Message::Figure => open_form(app, FormDialog::figure(app.history.present())),
         Message::Sensor => open_form(app, FormDialog::sensor(app.history.present())),
-        Message::Save if app.seen().imprint.is_empty() => {
+        Message::Save if app.reading().imprint.is_empty() => {
             refuse(app, "nothing to save: the matrix is empty");
         }
         Message::Save => {
@@ -45,19 +45,22 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
             app.dialogs.push(Dialog::Name(NameDialog::new(name)));
         }
         Message::Store(shape, expected) => {
-            return Some(Effect::Library(Request::Store(shape, expected)));
+            return Some(Effect::Library(LibraryRequest::Store(shape, expected)));
         }
         Message::AskRemove(name) => {
             let question = Question::new(format!("Delete {name}?"), Message::Remove(name));
             app.dialogs.push(Dialog::Question(question));
         }
         Message::LoadNamed(name) => {
-            return Some(Effect::Library(Request::Named(Purpose::Load, name)));
+            return Some(Effect::Library(LibraryRequest::Named(Purpose::Load, name)));
         }
         Message::PictureNamed(name) => {
-            return Some(Effect::Library(Request::Named(Purpose::Picture, name)));
+            return Some(Effect::Library(LibraryRequest::Named(
+                Purpose::Picture,
+                name,
+            )));
         }
-        Message::Restore(name) => return Some(Effect::Library(Request::Restore(name))),
+        Message::Restore(name) => return Some(Effect::Library(LibraryRequest::Restore(name))),
         Message::Become(document) => {
             app.mode = Mode::Draw;
             replace(app, *document);
@@ -82,9 +85,9 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
             let question = Question::new(text, Message::Store(shape, Expected::Stamp(stamp)));
             app.dialogs.push(Dialog::Question(question));
         }
-        Message::Remove(name) => return Some(Effect::Library(Request::Remove(name))),
-        Message::Recover => return Some(Effect::Library(Request::Recover)),
-        Message::GiveUp => return Some(Effect::Library(Request::GiveUp)),
+        Message::Remove(name) => return Some(Effect::Library(LibraryRequest::Remove(name))),
+        Message::Recover => return Some(Effect::Library(LibraryRequest::Recover)),
+        Message::GiveUp => return Some(Effect::Library(LibraryRequest::GiveUp)),
         Message::Quit if app.unsaved() || app.history.left_unsaved() => {
             let what = if app.unsaved() {
                 "The imprint"
@@ -95,7 +98,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
             let question = Question::new(text, Message::QuitNow);
             app.dialogs.push(Dialog::Question(question));
         }
-        Message::Quit | Message::QuitNow => app.life = Life::Quit,
+        Message::Quit | Message::QuitNow => app.run_state = RunState::Quit,
         Message::Explore(asked) => return explore::start::act(app, asked),
         Message::Help => {
             let help = Help::new(app.context());
@@ -105,7 +108,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
             return app
                 .removed
                 .take()
-                .map(|name| Effect::Library(Request::Restore(name)));
+                .map(|name| Effect::Library(LibraryRequest::Restore(name)));
         }
         other => edit(app, &other),
     }
@@ -124,7 +127,7 @@ fn edit(app: &mut App, message: &Message) {
         Message::ToRow(end) => app.cursor.1 = at_end(end, sensor.rows()),
         Message::Toggle => {
             let mut document = app.history.present().clone();
-            document.turned.toggle(app.cursor.0, app.cursor.1);
+            document.edits.toggle(app.cursor.0, app.cursor.1);
             change(app, document);
         }
         Message::Undo => travel(app, History::undo, "nothing to undo"),
@@ -137,13 +140,13 @@ fn edit(app: &mut App, message: &Message) {
                 Display::Percent => Display::Imprint,
             };
         }
-        Message::Page if Panes::shown(app).is_some_and(|panes| panes.panel.is_some()) => {
+        Message::SwitchPage if Panes::shown(app).is_some_and(|panes| panes.panel.is_some()) => {
             inform(app, "matrix and descriptors are both in sight");
         }
-        Message::Page => {
+        Message::SwitchPage => {
             app.page = match app.page {
-                Page::Matrix => Page::Panel,
-                Page::Panel => Page::Matrix,
+                NarrowPage::Matrix => NarrowPage::Panel,
+                NarrowPage::Panel => NarrowPage::Matrix,
             };
         }
         Message::Grab if app.mode == Mode::Grab => app.mode = Mode::Draw,
@@ -160,7 +163,7 @@ fn edit(app: &mut App, message: &Message) {
 
 /// The text goes to the terminal, which puts it into its clipboard or does not: it never says.
 fn copy(app: &mut App, what: Copied) -> Option<Effect> {
-    let seen = app.seen();
+    let seen = app.reading();
     let (name, text) = match (what, seen.description(app.chosen)) {
         (Copied::Imprint, _) => ("imprint", seen.imprint.to_string() + "\n"),
         (Copied::Descriptors, None) => {
@@ -192,13 +195,13 @@ fn open_list(app: &mut App, purpose: Purpose) -> Effect {
     app.mode = Mode::Draw;
     app.dialogs
         .push(Dialog::List(ListDialog::new(purpose, Vec::new())));
-    Effect::Library(Request::List)
+    Effect::Library(LibraryRequest::List)
 }
 
-fn at_end(end: End, count: u8) -> u8 {
+fn at_end(end: Endpoint, count: u8) -> u8 {
     match end {
-        End::First => 0,
-        End::Last => count - 1,
+        Endpoint::First => 0,
+        Endpoint::Last => count - 1,
     }
 }
 
@@ -219,7 +222,7 @@ fn move_cursor(app: &mut App, arrow: Arrow) {
 
 /// Selects the region that comes `by` further on, the first after the last.
 fn choose_region(app: &mut App, by: i8) {
-    let seen = app.seen();
+    let seen = app.reading();
     let Some((now, _)) = seen.region(app.chosen) else {
         return inform(app, NO_REGION);
     };

@@ -5,17 +5,17 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::{Modifier, Style};
 
 use crate::description::{Region, RegionKind};
-use crate::tui::app::document::Seen;
-use crate::tui::app::layout::Grid;
+use crate::tui::app::document::Reading;
+use crate::tui::app::layout::TaxelGrid;
 use crate::tui::app::state::{App, Display};
 use crate::tui::widget::theme::Role;
 use crate::tui::widget::write;
 
 /// Draws the matrix; answers where the cursor is.
-pub fn draw(app: &App, seen: &Seen, buffer: &mut Buffer, area: Rect) -> Option<Position> {
+pub fn draw(app: &App, seen: &Reading, buffer: &mut Buffer, area: Rect) -> Option<Position> {
     let imprint = &seen.imprint;
     let theme = app.theme();
-    let grid = Grid::of(area, imprint, app.cursor());
+    let grid = TaxelGrid::of(area, imprint, app.cursor());
     let (cell, columns, rows) = (grid.cell, grid.columns, grid.rows);
     // A number wants four characters with the space before the next one.
     let every = match cell {
@@ -70,7 +70,7 @@ pub fn draw(app: &App, seen: &Seen, buffer: &mut Buffer, area: Rect) -> Option<P
 /// here; the second one still tells the state: a blank is an inactive taxel.
 fn draw_taxel(
     app: &App,
-    seen: &Seen,
+    seen: &Reading,
     role: Role,
     (column, row): (u8, u8),
     buffer: &mut Buffer,
@@ -117,7 +117,7 @@ fn draw_taxel(
 }
 
 /// What a taxel is to the region that is described.
-fn role(seen: &Seen, chosen: Option<&Region>, column: u8, row: u8) -> Role {
+fn role(seen: &Reading, chosen: Option<&Region>, column: u8, row: u8) -> Role {
     let active = seen.imprint.get(column, row);
     let in_region = chosen
         .filter(|region| region.taxels().get(column, row))
@@ -131,7 +131,7 @@ fn role(seen: &Seen, chosen: Option<&Region>, column: u8, row: u8) -> Role {
 }
 
 /// A drawn taxel counts as covered.
-fn coverage(seen: &Seen, column: u8, row: u8) -> f64 {
+fn coverage(seen: &Reading, column: u8, row: u8) -> f64 {
     let drawn = if seen.imprint.get(column, row) {
         1.0
     } else {

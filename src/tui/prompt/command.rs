@@ -13,7 +13,7 @@ use crate::tui::app::document::Document;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
 use crate::tui::keys::binding::Context;
-use crate::tui::prompt::commands::{Command, Takes, find};
+use crate::tui::prompt::commands::{PromptCommand, Takes, find};
 use crate::tui::shapes::purpose::Purpose;
 
 /// What a line asks for.
@@ -56,7 +56,7 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
             })
         }
         (Takes::Deleted, _) => Ok(Message::Restore(name_of(rest)?.to_string())),
-        (Takes::Name, _) if app.seen().imprint.is_empty() => {
+        (Takes::Name, _) if app.reading().imprint.is_empty() => {
             Err("nothing to save: the matrix is empty".to_owned())
         }
         (Takes::Name, _) => Ok(app.storing(name_of(rest)?)),
@@ -94,7 +94,7 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
 }
 
 /// What a command takes, and that something else was found.
-fn unexpected(command: &Command, rest: &str) -> String {
+fn unexpected(command: &PromptCommand, rest: &str) -> String {
     let words = command.words.iter().map(|(word, _)| *word);
     let mut taken: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
     taken.extend(Some(command.takes.form()).filter(|form| !form.is_empty()));

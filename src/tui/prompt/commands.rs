@@ -4,8 +4,8 @@ use crate::figure::FigureKind;
 use crate::parameter::Parameter;
 use crate::pose::grid::Ranges;
 use crate::sensor::SENSOR_PARAMETERS;
-use crate::tui::app::message::{Copied, End, Message};
-use crate::tui::explore::message::Exploring;
+use crate::tui::app::message::{Copied, Endpoint, Message};
+use crate::tui::explore::message::ExploreMessage;
 use crate::tui::keys::key::Arrow;
 use crate::tui::shapes::purpose::Purpose;
 
@@ -57,7 +57,7 @@ impl Takes {
 
 /// A command.
 #[derive(Clone, Debug)]
-pub struct Command {
+pub struct PromptCommand {
     /// The first word.
     pub name: &'static str,
     /// Words that may follow, each with what the line then means; an empty one is the name alone.
@@ -70,12 +70,12 @@ const fn command(
     name: &'static str,
     words: &'static [(&'static str, Message)],
     takes: Takes,
-) -> Command {
-    Command { name, words, takes }
+) -> PromptCommand {
+    PromptCommand { name, words, takes }
 }
 
 /// All commands, by name. Every action of a key is the meaning of a line.
-pub const COMMANDS: &[Command] = &[
+pub const COMMANDS: &[PromptCommand] = &[
     command(
         "copy",
         &[
@@ -93,10 +93,10 @@ pub const COMMANDS: &[Command] = &[
             ("right", Message::Cursor(Arrow::Right)),
             ("up", Message::Cursor(Arrow::Up)),
             ("down", Message::Cursor(Arrow::Down)),
-            ("start", Message::ToColumn(End::First)),
-            ("end", Message::ToColumn(End::Last)),
-            ("top", Message::ToRow(End::First)),
-            ("bottom", Message::ToRow(End::Last)),
+            ("start", Message::ToColumn(Endpoint::First)),
+            ("end", Message::ToColumn(Endpoint::Last)),
+            ("top", Message::ToRow(Endpoint::First)),
+            ("bottom", Message::ToRow(Endpoint::Last)),
         ],
         Takes::Taxel,
     ),
@@ -107,7 +107,7 @@ pub const COMMANDS: &[Command] = &[
     ),
     command(
         "explore",
-        &[("", Message::Explore(Exploring::Open))],
+        &[("", Message::Explore(ExploreMessage::Open))],
         Takes::Ranges,
     ),
     command("figure", &[("", Message::Figure)], Takes::Figure),
@@ -127,7 +127,7 @@ pub const COMMANDS: &[Command] = &[
         ],
         Takes::Nothing,
     ),
-    command("panel", &[("", Message::Page)], Takes::Nothing),
+    command("panel", &[("", Message::SwitchPage)], Takes::Nothing),
     command(
         "picture",
         &[("", Message::Picture)],
@@ -169,7 +169,7 @@ pub const COMMANDS: &[Command] = &[
 ];
 
 /// The command of that name, or of its short form.
-pub fn find(name: &str) -> Option<&'static Command> {
+pub fn find(name: &str) -> Option<&'static PromptCommand> {
     let name = match name {
         "q" => "quit",
         "q!" => "quit!",
@@ -179,7 +179,7 @@ pub fn find(name: &str) -> Option<&'static Command> {
 }
 
 /// The command that a line begins with, and what follows; none while its name is not followed by a space.
-fn begun(line: &str) -> Option<(&'static Command, &str)> {
+fn begun(line: &str) -> Option<(&'static PromptCommand, &str)> {
     let (name, rest) = line.trim_start().split_once(' ')?;
     Some((find(name)?, rest.trim_start()))
 }
@@ -231,7 +231,7 @@ pub fn complete(line: &str, names: &[String]) -> (String, Vec<String>) {
 }
 
 /// The words that may come next in a line whose words so far are known.
-fn next_words(command: &Command, before: &str) -> Vec<String> {
+fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
     let said: Vec<&str> = before.split_whitespace().collect();
     let words = |flags: Vec<String>, said: &[&str]| {
         // A flag is followed by its value.

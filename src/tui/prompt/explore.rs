@@ -7,7 +7,7 @@ use crate::pose::range::DecimalRange;
 use crate::quote::shortened;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
-use crate::tui::explore::message::Exploring;
+use crate::tui::explore::message::ExploreMessage;
 use crate::tui::explore::ranges::state::explored;
 
 /// What the flags ask for; ranges that are not given are the defaults.
@@ -65,5 +65,5 @@ pub(in crate::tui) fn read(words: &[&str], app: &App) -> Result<Message, String>
     }
     let grid = Grid::new(source, document.sensor, anchor, ranges);
     let grid = grid.map_err(|error| error.to_string())?;
-    Ok(Message::Explore(Exploring::Start(Box::new(grid))))
+    Ok(Message::Explore(ExploreMessage::Start(Box::new(grid))))
 }

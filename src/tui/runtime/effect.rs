@@ -13,7 +13,7 @@ use crate::tui::shapes::purpose::Purpose;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Effect {
     /// Ask the library; what it answers is the next message.
-    Library(Request),
+    Library(LibraryRequest),
     /// Have a worker do something.
     Work(Work),
     /// Have the terminal do something.
@@ -48,7 +48,7 @@ pub enum Work {
 
 /// What is asked of the library.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Request {
+pub enum LibraryRequest {
     /// Its list.
     List,
     /// The names of its shapes that were deleted.

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use crate::formats::shape::Shape;
 use crate::storage::journal::Journal;
 use crate::tui::app::state::App;
-use crate::tui::explore::message::Told;
+use crate::tui::explore::message::WorkerEvent;
 use crate::tui::runtime::workers::Post;
 
 /// How long changes are gathered before they are written: a second at most is lost.
@@ -175,7 +175,7 @@ impl Writer {
             Err(error) => {
                 self.pending = Pending::Failed(shape);
                 if let Some(post) = self.post.as_ref().filter(|_| !self.told) {
-                    post(Told::Refused(format!(
+                    post(WorkerEvent::Refused(format!(
                         "unsaved work cannot be kept: {error}"
                     )));
                     self.told = true;

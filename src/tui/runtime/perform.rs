@@ -15,10 +15,10 @@ use crate::formats::value::counted;
 use crate::storage::error::LibraryError;
 use crate::storage::journal::{Journal, Orphan, UNNAMED};
 use crate::storage::store::{Expected, Library};
-use crate::tui::app::message::{Answer, Left, Message};
+use crate::tui::app::message::{Leftover, LibraryEvent, Message};
 use crate::tui::app::state::App;
 use crate::tui::app::update::update;
-use crate::tui::runtime::effect::{Effect, Request, TerminalEffect};
+use crate::tui::runtime::effect::{Effect, LibraryRequest, TerminalEffect};
 
 /// The world: a library, the work that died programs left in it, and the journal of this one.
 #[derive(Debug)]
@@ -111,10 +111,10 @@ impl World {
 
     /// What there is to say at the start: that a program left work when it died.
     pub fn greeting(&self) -> Option<Message> {
-        Some(Message::Answer(Answer::Found(self.left()?)))
+        Some(Message::Library(LibraryEvent::Found(self.left()?)))
     }
 
-    fn left(&self) -> Option<Left> {
+    fn left(&self) -> Option<Leftover> {
         let (orphan, waiting) = self.orphan.as_ref()?;
         let taxels = counted(orphan.shape.imprint.count().into(), "taxel");
         let what = match orphan.shape.name.as_str() {
@@ -122,7 +122,7 @@ impl World {
             name => format!("{taxels} of {name}"),
         };
         let waiting = *waiting;
-        Some(Left { what, waiting })
+        Some(Leftover { what, waiting })
     }
 
     /// Does what a message says, with all that follows from it. What is left is for the terminal.
@@ -132,7 +132,7 @@ impl World {
             match update(app, next) {
                 Some(Effect::Library(request)) => next = self.perform(request),
                 Some(Effect::Work(work)) => match self.workers.perform(work) {
-                    Some(told) => next = Message::Told(told),
+                    Some(told) => next = Message::Worker(told),
                     None => break None,
                 },
                 Some(Effect::Terminal(effect)) => break Some(effect),
@@ -148,37 +148,41 @@ impl World {
         self.keeper.flush();
     }
 
-    fn perform(&mut self, request: Request) -> Message {
+    fn perform(&mut self, request: LibraryRequest) -> Message {
         let answer = match request {
-            Request::List => Answer::List(self.library.list().map_err(|error| error.to_string())),
-            Request::Trash => {
-                Answer::Trash(self.library.in_trash().map_err(|error| error.to_string()))
+            LibraryRequest::List => {
+                LibraryEvent::List(self.library.list().map_err(|error| error.to_string()))
             }
-            Request::Read(names) => {
+            LibraryRequest::Trash => {
+                LibraryEvent::Trash(self.library.in_trash().map_err(|error| error.to_string()))
+            }
+            LibraryRequest::Read(names) => {
                 let read = |name: &str| self.library.load(name).map_err(|error| error.to_string());
-                Answer::Read(
+                LibraryEvent::Read(
                     names
                         .iter()
                         .map(|(index, name)| (*index, read(name)))
                         .collect(),
                 )
             }
-            Request::Named(purpose, name) => {
+            LibraryRequest::Named(purpose, name) => {
                 let loaded = self.library.load(&name).map(Box::new);
-                Answer::Named(purpose, loaded.map_err(|error| error.to_string()))
+                LibraryEvent::Named(purpose, loaded.map_err(|error| error.to_string()))
             }
-            Request::Store(shape, expected) => match self.library.save(&shape, expected) {
-                Ok(stamp) => Answer::Stored(shape.name.to_string(), stamp),
+            LibraryRequest::Store(shape, expected) => match self.library.save(&shape, expected) {
+                Ok(stamp) => LibraryEvent::Stored(shape.name.to_string(), stamp),
                 Err(error) => match error {
                     LibraryError::Exists { stamp, .. } | LibraryError::Changed { stamp, .. } => {
-                        Answer::Differs(shape, stamp, error.to_string())
+                        LibraryEvent::Differs(shape, stamp, error.to_string())
                     }
-                    _ => Answer::Failed(error.to_string()),
+                    _ => LibraryEvent::Failed(error.to_string()),
                 },
             },
-            Request::Remove(name) => done(self.library.delete(&name), Answer::Removed),
-            Request::Restore(name) => done(self.library.restore(&name), Answer::Restored),
-            Request::Recover => match self.orphan.take() {
+            LibraryRequest::Remove(name) => done(self.library.delete(&name), LibraryEvent::Removed),
+            LibraryRequest::Restore(name) => {
+                done(self.library.restore(&name), LibraryEvent::Restored)
+            }
+            LibraryRequest::Recover => match self.orphan.take() {
                 Some((orphan, _)) => {
                     let shape = orphan.shape.clone();
                     // It is in this program's journal before it is taken out of that of the dead one.
@@ -186,20 +190,20 @@ impl World {
                     if self.keeper.flush() {
                         orphan.discard();
                     }
-                    Answer::Recovered(Box::new(shape))
+                    LibraryEvent::Recovered(Box::new(shape))
                 }
-                None => Answer::Failed("no unsaved work is left".to_owned()),
+                None => LibraryEvent::Failed("no unsaved work is left".to_owned()),
             },
-            Request::GiveUp => self.give_up(),
+            LibraryRequest::GiveUp => self.give_up(),
         };
-        Message::Answer(answer)
+        Message::Library(answer)
     }
 
     /// Unsaved work that is not wanted goes the way of a deleted shape. Only where it is gone is there other work to
     /// offer: this one again would be asked about without end.
-    fn give_up(&mut self) -> Answer {
+    fn give_up(&mut self) -> LibraryEvent {
         let Some((orphan, _)) = self.orphan.take() else {
-            return Answer::Failed("no unsaved work is left".to_owned());
+            return LibraryEvent::Failed("no unsaved work is left".to_owned());
         };
         let mut shape = orphan.shape.clone();
         if let Ok(name) = Name::new(UNNAMED) {
@@ -209,13 +213,13 @@ impl World {
             Ok(name) => {
                 orphan.discard();
                 self.orphan = self.newest_orphan();
-                Answer::GivenUp(name, self.left())
+                LibraryEvent::GivenUp(name, self.left())
             }
-            Err(error) => Answer::NotGivenUp(error.to_string()),
+            Err(error) => LibraryEvent::NotGivenUp(error.to_string()),
         }
     }
 }
 
-fn done(result: Result<String, LibraryError>, answer: fn(String) -> Answer) -> Answer {
-    result.map_or_else(|error| Answer::Failed(error.to_string()), answer)
+fn done(result: Result<String, LibraryError>, answer: fn(String) -> LibraryEvent) -> LibraryEvent {
+    result.map_or_else(|error| LibraryEvent::Failed(error.to_string()), answer)
 }

@@ -17,11 +17,11 @@ use crate::sweep::plan::Shard;
 use crate::sweep::sample::Sample;
 use crate::sweep::survey::{Survey, Watch};
 use crate::tui::explore::export::is_poses;
-use crate::tui::explore::message::{Findings, Progress, Told};
+use crate::tui::explore::message::{Findings, SweepProgress, WorkerEvent};
 use crate::tui::runtime::effect::Work;
 
 /// Takes what workers tell, from any thread.
-pub type Post = Arc<dyn Fn(Told) + Send + Sync>;
+pub type Post = Arc<dyn Fn(WorkerEvent) + Send + Sync>;
 
 /// How far a sweep is is told no more often than this.
 const PAUSE: Duration = Duration::from_millis(100);
@@ -57,7 +57,7 @@ impl Workers {
     }
 
     /// Begins a piece of work, or does it: then the answer is what it tells at its end.
-    pub(in crate::tui) fn perform(&mut self, work: Work) -> Option<Told> {
+    pub(in crate::tui) fn perform(&mut self, work: Work) -> Option<WorkerEvent> {
         match work {
             Work::Stop => {
                 self.stop.store(true, Ordering::Relaxed);
@@ -70,7 +70,7 @@ impl Workers {
                 let stop = Arc::clone(&self.measuring);
                 std::thread::spawn(move || {
                     if let Some(time) = measure(&grid, &stop) {
-                        post(Told::Estimate(grid, time));
+                        post(WorkerEvent::Estimate(grid, time));
                     }
                 });
                 None
@@ -154,15 +154,20 @@ impl<'a> Clock<'a> {
         {
             *last = Instant::now();
             let elapsed = self.start.elapsed();
-            (self.post)(Told::Progress(self.number, Progress { poses, elapsed }));
+            (self.post)(WorkerEvent::Progress(
+                self.number,
+                SweepProgress { poses, elapsed },
+            ));
         }
     }
 }
 
 /// What a worker tells that panicked: otherwise the program would wait for it for ever.
-fn guarded(number: u64, work: impl FnOnce() -> Told) -> Told {
+fn guarded(number: u64, work: impl FnOnce() -> WorkerEvent) -> WorkerEvent {
     let told = catch_unwind(AssertUnwindSafe(work));
-    told.unwrap_or_else(|_| Told::Failed(number, "the work failed; this is a bug".to_owned()))
+    told.unwrap_or_else(|_| {
+        WorkerEvent::Failed(number, "the work failed; this is a bug".to_owned())
+    })
 }
 
 /// How long a grid takes, about; nothing where that is no longer asked.
@@ -181,7 +186,7 @@ fn measure(grid: &Grid, stop: &AtomicBool) -> Option<Duration> {
     Duration::try_from_secs_f64(best * sample.times).ok()
 }
 
-fn sweep(number: u64, grid: &Grid, stop: &AtomicBool, clock: Option<&Clock<'_>>) -> Told {
+fn sweep(number: u64, grid: &Grid, stop: &AtomicBool, clock: Option<&Clock<'_>>) -> WorkerEvent {
     let progress = |poses: u64| going(poses, stop, clock);
     let watch = Watch {
         progress: &progress,
@@ -189,7 +194,7 @@ fn sweep(number: u64, grid: &Grid, stop: &AtomicBool, clock: Option<&Clock<'_>>)
     };
     let survey = Survey::of(grid, Shard::WHOLE, watch);
     let classes = survey.atlas.distinct_classes();
-    Told::Swept(number, Arc::new(Findings { survey, classes }))
+    WorkerEvent::Swept(number, Arc::new(Findings { survey, classes }))
 }
 
 /// Takes note of poses that are done; answers whether to go on.
@@ -207,23 +212,25 @@ fn write(
     existing: Existing,
     stop: &AtomicBool,
     clock: Option<&Clock<'_>>,
-) -> Told {
+) -> WorkerEvent {
     let survey = &findings.survey;
     let written = if is_poses(name) {
         write_poses(survey, name, existing, stop, clock)
     } else {
         match AtlasFile::new(name) {
             Ok(file) => file.write(survey, existing, stop).map(|()| true),
-            Err(expected) => return Told::Failed(number, format!("{name}: {expected}")),
+            Err(expected) => return WorkerEvent::Failed(number, format!("{name}: {expected}")),
         }
     };
     match written {
-        Ok(true) => Told::Written(number, name.to_owned()),
+        Ok(true) => WorkerEvent::Written(number, name.to_owned()),
         Err(error) if error.exists() && existing == Existing::Kept => {
-            Told::Exists(number, name.to_owned())
+            WorkerEvent::Exists(number, name.to_owned())
         }
-        Err(error) if !stop.load(Ordering::Relaxed) => Told::Failed(number, error.to_string()),
-        _ => Told::Failed(number, "stopped; nothing was written".to_owned()),
+        Err(error) if !stop.load(Ordering::Relaxed) => {
+            WorkerEvent::Failed(number, error.to_string())
+        }
+        _ => WorkerEvent::Failed(number, "stopped; nothing was written".to_owned()),
     }
 }
 

@@ -210,7 +210,7 @@ fn act(session: &mut Session, line: usize, command: &Command) -> Result<(), Fail
         }
         Command::Signal(name) if name == "TSTP" => session.send(Message::Redraw),
         // What is not saved is in the journal already; the program ends without a question.
-        Command::Signal(_) => session.send(Message::Killed),
+        Command::Signal(_) => session.send(Message::Terminate),
         _ => {
             let message = "Size and Set come before all that needs a screen";
             return Err(wrong(line, message.to_owned()));
@@ -382,7 +382,7 @@ fn screen(session: &Session, name: &str, settings: &Settings) -> String {
 fn state(session: &Session) -> Value {
     let app = session.app();
     let document = app.shown();
-    let seen = app.seen();
+    let seen = app.reading();
     let answer = serde_json::to_value(Answer(&seen.imprint)).unwrap_or_default();
     let (column, row) = app.cursor();
     json!({

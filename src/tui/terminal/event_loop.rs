@@ -12,7 +12,7 @@ use rustix::io::Errno;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
 use crate::tui::app::view::view;
-use crate::tui::explore::message::Told;
+use crate::tui::explore::message::WorkerEvent;
 use crate::tui::runtime::effect::TerminalEffect;
 use crate::tui::runtime::mailbox::Mailbox;
 use crate::tui::runtime::perform::World;
@@ -45,7 +45,7 @@ pub(in crate::tui) fn run(
     }));
     if !matches!(ended, Ok(Ok(Outcome::Quit))) {
         // The end comes from outside: what is not saved stays in the journal.
-        let _ = talk.world.handle(&mut talk.app, Message::Killed);
+        let _ = talk.world.handle(&mut talk.app, Message::Terminate);
         talk.world.secure();
     }
     let left = session::leave();
@@ -282,7 +282,7 @@ impl<'a> Talk<'a> {
 
     /// Says that something cannot be done here.
     fn refuse(&mut self, reason: &str) {
-        let told = Message::Told(Told::Refused(reason.to_owned()));
+        let told = Message::Worker(WorkerEvent::Refused(reason.to_owned()));
         let _ = self.world.handle(&mut self.app, told);
     }
 

@@ -64,6 +64,6 @@ pub fn run(
     watch: &mut dyn FnMut(&Input),
 ) -> io::Result<Outcome> {
     let (sender, mailbox) = mailbox::new()?;
-    let world = world.with_workers(Arc::new(move |told| sender.send(Message::Told(told))));
+    let world = world.with_workers(Arc::new(move |told| sender.send(Message::Worker(told))));
     event_loop::run(app, world, settings, mailbox, watch)
 }

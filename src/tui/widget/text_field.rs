@@ -2,7 +2,7 @@
 
 use tui_input::{Input, InputRequest};
 
-use crate::tui::app::message::{End, Erase, Message};
+use crate::tui::app::message::{Endpoint, Erase, Message};
 use crate::tui::keys::key::Arrow;
 
 /// A line of text with a cursor in it.
@@ -79,8 +79,8 @@ impl TextField {
             }
             Message::Choose(Arrow::Left) => InputRequest::GoToPrevChar,
             Message::Choose(Arrow::Right) => InputRequest::GoToNextChar,
-            Message::ToEdge(End::First) => InputRequest::GoToStart,
-            Message::ToEdge(End::Last) => InputRequest::GoToEnd,
+            Message::ToEdge(Endpoint::First) => InputRequest::GoToStart,
+            Message::ToEdge(Endpoint::Last) => InputRequest::GoToEnd,
             Message::Erase(Erase::All) => InputRequest::DeleteLine,
             Message::Erase(Erase::Before) => InputRequest::DeletePrevChar,
             Message::Erase(Erase::Under) => InputRequest::DeleteNextChar,
@@ -125,7 +125,7 @@ mod tests {
             ("abxc".to_owned(), 3)
         );
         assert_eq!(
-            after(&[Message::ToEdge(End::First), erase(Erase::Under)]),
+            after(&[Message::ToEdge(Endpoint::First), erase(Erase::Under)]),
             ("bc".to_owned(), 0)
         );
         assert_eq!(after(&[left, erase(Erase::Before)]), ("ac".to_owned(), 1));

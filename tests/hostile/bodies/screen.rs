@@ -55,7 +55,7 @@ fn is_sound(app: &App) {
     let shown = app.shown();
     let (column, row) = app.cursor();
     assert!(column < shown.sensor.columns() && row < shown.sensor.rows());
-    let seen = app.seen();
+    let seen = app.reading();
     assert_eq!(seen.imprint.columns(), shown.sensor.columns());
     assert_eq!(seen.imprint.rows(), shown.sensor.rows());
     assert!(app.chosen().is_none() || seen.region(app.chosen()).is_some());
@@ -209,7 +209,7 @@ pub(crate) fn session(bytes: &[u8]) {
             }
             0xf0..0xf8 => session.send(Message::Redraw),
             0xf8..0xfc => session.send(Message::Suspend),
-            _ => session.send(Message::Killed),
+            _ => session.send(Message::Terminate),
         }
         is_sound(session.app());
         if session.app().ended() {

@@ -12,7 +12,7 @@ use crate::pose::grid::{Anchor, Grid, GridError, MAX_POSES, Ranges};
 use crate::pose::range::DecimalRange;
 use crate::sensor::Sensor;
 use crate::source::Source;
-use crate::tui::app::document::{Document, Seen};
+use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
 use crate::tui::explore::message::name_of;
 use crate::tui::keys::key::Arrow;
@@ -47,7 +47,7 @@ impl RangeField {
 
 /// What is wrong, and in which field; of none, where it is wrong with all of them together.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Trouble {
+pub struct RangesError {
     /// The field's number.
     pub field: Option<usize>,
     /// For a place that shows the field beside it; in lines, where it is wrong with all of them.
@@ -59,7 +59,7 @@ pub struct Trouble {
 /// What is explored of a document: its figure or picture, or what is drawn as a picture; nothing of an empty matrix.
 pub fn explored(document: &Document) -> Option<Source> {
     document.source.clone().or_else(|| {
-        let imprint = Seen::of(document).imprint;
+        let imprint = Reading::of(document).imprint;
         (!imprint.is_empty()).then(|| Source::Picture(Picture::at_home(imprint)))
     })
 }
@@ -82,7 +82,7 @@ impl RangesForm {
     /// The form for what is explored of a document. The ranges are those of an earlier sweep, or the defaults.
     pub fn new(document: &Document, source: Source, earlier: Option<&Grid>) -> Self {
         let by_hand = match document.source {
-            Some(_) => document.turned.count(),
+            Some(_) => document.edits.count(),
             None => 0,
         };
         let ranges = earlier.map_or_else(Ranges::default, |grid| *grid.ranges());
@@ -164,9 +164,9 @@ impl RangesForm {
     }
 
     /// What is wrong with a field.
-    pub fn trouble(&self, index: usize) -> Option<Trouble> {
+    pub fn trouble(&self, index: usize) -> Option<RangesError> {
         let field = self.fields.get(index)?;
-        let wrong = |brief: String, full: String| Trouble {
+        let wrong = |brief: String, full: String| RangesError {
             field: Some(index),
             brief,
             full,
@@ -190,7 +190,7 @@ impl RangesForm {
     ///
     /// # Errors
     /// The first thing that is wrong.
-    pub fn grid(&self) -> Result<Grid, Trouble> {
+    pub fn grid(&self) -> Result<Grid, RangesError> {
         if let Some(trouble) = (0..self.fields.len()).find_map(|index| self.trouble(index)) {
             return Err(trouble);
         }
@@ -208,7 +208,7 @@ impl RangesForm {
             zoom_y: range(Parameter::ZoomY).unwrap_or(default.zoom_y),
         };
         let grid = Grid::new(self.source.clone(), self.sensor, self.anchor, ranges);
-        grid.map_err(|error: GridError| Trouble {
+        grid.map_err(|error: GridError| RangesError {
             field: None,
             brief: match &error {
                 GridError::Poses { poses } => {

@@ -1,11 +1,11 @@
 //! Work under way: what it is, and how far.
 
 use crate::pose::grid::Grid;
-use crate::tui::explore::message::Progress;
+use crate::tui::explore::message::SweepProgress;
 
 /// What is done.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Job {
+pub enum WorkKind {
     /// A grid is gone through.
     Sweep(Box<Grid>),
     /// A file of this name is written; of so many poses, where it holds all of them.
@@ -18,16 +18,16 @@ pub struct Running {
     /// Its number.
     pub number: u64,
     /// What it is.
-    pub job: Job,
+    pub job: WorkKind,
     /// How far it is; none before the first word of it.
-    pub progress: Option<Progress>,
+    pub progress: Option<SweepProgress>,
     /// Whether it was told to stop.
     pub stopping: bool,
 }
 
 impl Running {
     /// Work that begins.
-    pub fn new(number: u64, job: Job) -> Self {
+    pub fn new(number: u64, job: WorkKind) -> Self {
         Self {
             number,
             job,
@@ -39,15 +39,15 @@ impl Running {
     /// How many poses there are in all, where it is about poses.
     pub fn poses(&self) -> Option<u64> {
         match &self.job {
-            Job::Sweep(grid) => Some(grid.poses()),
-            Job::Write(_, poses) => *poses,
+            WorkKind::Sweep(grid) => Some(grid.poses()),
+            WorkKind::Write(_, poses) => *poses,
         }
     }
 
     /// Poses a second; none before that can be told.
     #[expect(clippy::cast_precision_loss, reason = "for reading")]
     pub fn rate(&self) -> Option<f64> {
-        let Progress { poses, elapsed } = self.progress?;
+        let SweepProgress { poses, elapsed } = self.progress?;
         let seconds = elapsed.as_secs_f64();
         (seconds > 0.0 && poses > 0).then(|| poses as f64 / seconds)
     }
@@ -67,11 +67,11 @@ mod tests {
 
     #[test]
     fn rate_and_rest_are_those_of_what_was_done() {
-        let mut running = Running::new(1, Job::Write("a.npy".to_owned(), Some(1000)));
+        let mut running = Running::new(1, WorkKind::Write("a.npy".to_owned(), Some(1000)));
         assert_eq!((running.rate(), running.left()), (None, None));
         let progress = |poses, millis| {
             let elapsed = Duration::from_millis(millis);
-            Some(Progress { poses, elapsed })
+            Some(SweepProgress { poses, elapsed })
         };
         running.progress = progress(0, 100);
         assert_eq!((running.rate(), running.left()), (None, None));

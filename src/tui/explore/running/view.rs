@@ -9,7 +9,7 @@ use crate::formats::value::{counted, grouped};
 use crate::tui::app::state::App;
 use crate::tui::explore::message::name_of;
 use crate::tui::explore::ranges::view::about;
-use crate::tui::explore::running::state::{Job, Running};
+use crate::tui::explore::running::state::{Running, WorkKind};
 use crate::tui::widget::theme::Role;
 use crate::tui::widget::write;
 
@@ -22,11 +22,11 @@ pub fn draw(app: &App, running: &Running, buffer: &mut Buffer, area: Rect) {
     write::clear(buffer, area);
     let inner = write::right_of(area, area.x.saturating_add(2));
     let (title, end) = match &running.job {
-        Job::Sweep(grid) => (
+        WorkKind::Sweep(grid) => (
             format!("Exploring: {}", name_of(grid.source())),
             "stop keeps what is complete",
         ),
-        Job::Write(name, _) => (format!("Writing {name}"), "stop leaves nothing behind"),
+        WorkKind::Write(name, _) => (format!("Writing {name}"), "stop leaves nothing behind"),
     };
     // On a low screen what matters most comes first.
     let spaced = usize::from(area.height >= 9);
