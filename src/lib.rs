@@ -75,10 +75,10 @@
 //! ```text
 //!                     brings                                           on top of
 //! (none)              all but what stands below; glam and serde only
-//! json                formats::shape, formats::job
+//! json                formats::StoredShape, Job
 //! sweep               pose, atlas, sweep; formats::atlas, archive;     json
-//!                     storage::sweep_file, unfinished
-//! png                 formats::drawing::Drawing::png
+//!                     storage::AtlasFile, PoseFile, UnfinishedFile
+//! png                 formats::Drawing::png
 //! library             storage                                          json
 //! tui                 tui                                              library, sweep
 //! cli (the default)   cli, and the program                             tui, png

@@ -2,7 +2,8 @@
 
 use proptest::collection::vec;
 use proptest::prelude::*;
-use taxel::formats::exchange::{ExchangeError, Format, MAX_BYTES, read};
+use taxel::formats::imprint_file::MAX_BYTES;
+use taxel::formats::{ImprintFormat, ImprintFormatError, read_imprint};
 use taxel::imprint::Imprint;
 
 /// An imprint of any size; rows of few bits, of many, or of all.
@@ -23,8 +24,8 @@ fn imprints() -> impl Strategy<Value = Imprint> {
     })
 }
 
-fn form() -> impl Strategy<Value = Format> {
-    proptest::sample::select(Format::ALL)
+fn form() -> impl Strategy<Value = ImprintFormat> {
+    proptest::sample::select(ImprintFormat::ALL)
 }
 
 proptest! {
@@ -32,7 +33,7 @@ proptest! {
 
     #[test]
     fn what_is_written_reads_back(imprint in imprints(), form in form()) {
-        prop_assert_eq!(read(&form.write(&imprint)), Ok(imprint));
+        prop_assert_eq!(read_imprint(&form.write(&imprint)), Ok(imprint));
     }
 
     #[test]
@@ -45,8 +46,8 @@ proptest! {
             bytes[at] = byte;
         }
         bytes.truncate(cut % (bytes.len() + 1));
-        match read(&bytes) {
-            Ok(imprint) => prop_assert_eq!(read(&form.write(&imprint)), Ok(imprint)),
+        match read_imprint(&bytes) {
+            Ok(imprint) => prop_assert_eq!(read_imprint(&form.write(&imprint)), Ok(imprint)),
             Err(error) => prop_assert!(error.to_string().len() < 300, "{}", error),
         }
     }
@@ -57,7 +58,7 @@ proptest! {
         rest in vec(any::<u8>(), 0..200)
     ) {
         let bytes = [start.as_bytes(), &rest].concat();
-        if let Err(error) = read(&bytes) {
+        if let Err(error) = read_imprint(&bytes) {
             prop_assert!(error.to_string().len() < 300, "{}", error);
         }
     }
@@ -76,14 +77,17 @@ fn each_form_is_told_by_its_first_bytes() {
         b"+1\t-0\t1\n1\t1\t1",
         b"True,False,True\nTrue,True,True",
     ] {
-        assert_eq!(read(bytes), Ok(cup), "{bytes:?}");
+        assert_eq!(read_imprint(bytes), Ok(cup), "{bytes:?}");
     }
-    assert_eq!(read(&vec![b'1'; MAX_BYTES + 1]), Err(ExchangeError::Large));
+    assert_eq!(
+        read_imprint(&vec![b'1'; MAX_BYTES + 1]),
+        Err(ImprintFormatError::Large)
+    );
 }
 
 #[test]
 fn errors_name_the_form_and_the_place() {
-    let told = |bytes: &[u8]| read(bytes).map_err(|error| error.to_string());
+    let told = |bytes: &[u8]| read_imprint(bytes).map_err(|error| error.to_string());
     for (bytes, message) in [
         (&b""[..], "found 0 lines, expected 1 to 64"),
         (b"#x", "line 1, column 2: found 'x', expected '#' or '.'"),
@@ -103,8 +107,8 @@ fn errors_name_the_form_and_the_place() {
 
 #[test]
 fn endings_tell_the_form() {
-    assert_eq!(Format::of_ending("PBM"), Some(Format::Pbm));
-    assert_eq!(Format::of_ending("npy"), Some(Format::Npy));
-    assert_eq!(Format::of_ending("pbm-plain"), None);
-    assert_eq!(Format::of_ending("svg"), None);
+    assert_eq!(ImprintFormat::of_ending("PBM"), Some(ImprintFormat::Pbm));
+    assert_eq!(ImprintFormat::of_ending("npy"), Some(ImprintFormat::Npy));
+    assert_eq!(ImprintFormat::of_ending("pbm-plain"), None);
+    assert_eq!(ImprintFormat::of_ending("svg"), None);
 }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use taxel::description::{DESCRIPTORS, Dimension};
 use taxel::figure::{Figure, FigureKind};
-use taxel::formats::drawing::Drawing;
+use taxel::formats::Drawing;
 use taxel::parameter::Parameter;
 use taxel::sensor::Sensor;
 use taxel::source::Source;

@@ -5,8 +5,7 @@
 use std::path::PathBuf;
 
 use serde_json::Value;
-use taxel::formats::answer::Answer;
-use taxel::formats::job::Job;
+use taxel::formats::{DescribedImprint, Job};
 use taxel::sensor::Sensor;
 use taxel::touch::Plane;
 
@@ -34,7 +33,7 @@ fn every_reference_pose_is_answered_alike() {
             Err("no names here".to_owned())
         });
         let imprint = read.expect("a reference job is valid").imprint(&mut plane);
-        let answer = serde_json::to_value(Answer(&imprint)).expect("an answer is JSON");
+        let answer = serde_json::to_value(DescribedImprint(&imprint)).expect("an answer is JSON");
         if let Some(difference) = difference(&answer, &case["answer"]) {
             differing.push(format!("line {}: {job}: {difference}", number + 1));
         }

@@ -169,11 +169,7 @@ fn what_does_not_hold_is_told_with_its_line() {
 #[test]
 fn a_signal_keeps_unsaved_work() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
-    let world = || {
-        World::new(taxel::storage::store::Library::open(
-            folder.path().to_owned(),
-        ))
-    };
+    let world = || World::new(taxel::storage::Library::open(folder.path().to_owned()));
     let settings = settings(false, false);
     run(
         "Keys f<Enter>\nSignal HUP\nQuit",

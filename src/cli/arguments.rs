@@ -19,13 +19,13 @@ use crate::cli::pitch::Pitch;
 use crate::cli::program::Script;
 use crate::cli::sweep::Wanted;
 use crate::figure::FigureKind;
-use crate::formats::name::Name;
+use crate::formats::Name;
 use crate::parameter::Parameter;
 use crate::pose::grid::{Anchor, Ranges};
 use crate::pose::range::DecimalRange;
 use crate::sensor::Sensor;
 use crate::source::Source;
-use crate::storage::sweep_file::AtlasFile;
+use crate::storage::AtlasFile;
 use crate::sweep::plan::Shard;
 
 /// What is asked for, and with which settings.

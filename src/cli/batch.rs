@@ -8,8 +8,7 @@ use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 
 use crate::cli::failure::Failure;
 use crate::cli::report;
-use crate::formats::answer::Answer;
-use crate::formats::job::Job;
+use crate::formats::{DescribedImprint, Job};
 use crate::imprint::Imprint;
 use crate::quote::legible;
 use crate::sensor::Sensor;
@@ -44,7 +43,7 @@ pub(super) fn answer_lines(
         };
         answer.clear();
         match result {
-            Ok(imprint) => serde_json::to_writer(&mut answer, &Answer(&imprint))
+            Ok(imprint) => serde_json::to_writer(&mut answer, &DescribedImprint(&imprint))
                 .map_err(|error| Failure::Write(error.into()))?,
             Err(message) => {
                 bad += 1;

@@ -18,13 +18,13 @@ use crate::cli::program::{
     ascii, completions, config, config_file, look, man, record, script, size,
 };
 use crate::figure::FigureKind;
-use crate::formats::name::{Name, NameError};
+use crate::formats::{Name, NameError};
 use crate::parameter::Parameter;
 use crate::picture::PICTURE_PARAMETERS;
 use crate::pose::grid::Ranges;
 use crate::pose::range::{DecimalRange, RangeError};
 use crate::sensor::SENSOR_PARAMETERS;
-use crate::storage::sweep_file::{AtlasFile, is_poses};
+use crate::storage::{AtlasFile, is_poses};
 use crate::sweep::plan::{Shard, ShardError};
 
 /// All commands.

@@ -12,7 +12,7 @@ use crate::cli::failure::Failure;
 use crate::cli::locale::Charset;
 use crate::parameter::Parameter;
 use crate::sensor::Sensor;
-use crate::storage::place;
+use crate::storage::location;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
@@ -141,7 +141,7 @@ impl Effective {
         let set = |name| variable(name).filter(|value| !value.is_empty());
         let config = &loaded.config;
         let written = config.library.as_ref().map(|own| Written {
-            value: place::below_home(&own.value),
+            value: location::below_home(&own.value),
             line: own.line,
         });
         let mut sensor = Sensor::default();
@@ -190,9 +190,9 @@ impl Effective {
             ),
             library: settled(
                 chosen.library.map(|folder| (Some(folder), "library")),
-                set(place::VARIABLE).map(|folder| (Some(folder.into()), place::VARIABLE)),
+                set(location::VARIABLE).map(|folder| (Some(folder.into()), location::VARIABLE)),
                 written.as_ref(),
-                place::folder(None, None).ok(),
+                location::folder(None, None).ok(),
             ),
             sensor: chosen.sensor.sensor(sensor)?,
             of_sensor,

@@ -8,11 +8,10 @@ use crate::cli::failure::Failure;
 use crate::cli::input::Content;
 use crate::cli::pitch::Pitch;
 use crate::cli::shelf::Shelf;
-use crate::formats::drawing::Drawing;
-use crate::formats::exchange::Format as ImprintFormat;
+use crate::formats::{Drawing, ImprintFormat};
 use crate::imprint::Imprint;
 use crate::source::Source;
-use crate::storage::unfinished::{Existing, Unfinished, Whole};
+use crate::storage::{Existing, FinishedFile, UnfinishedFile};
 
 /// What a file is to hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -130,7 +129,7 @@ pub(super) enum Begun {
     /// It has none: it is for standard output.
     Content(Vec<u8>),
     /// A file.
-    File(Whole),
+    File(FinishedFile),
 }
 
 impl Begun {
@@ -160,17 +159,17 @@ pub(super) fn put(path: &Path, content: &[u8], existing: Existing) -> Result<(),
     keep(whole(path, content, existing)?)
 }
 
-fn whole(path: &Path, content: &[u8], existing: Existing) -> Result<Whole, Failure> {
-    let written = Unfinished::new(path, existing).and_then(|mut file| {
+fn whole(path: &Path, content: &[u8], existing: Existing) -> Result<FinishedFile, Failure> {
+    let written = UnfinishedFile::new(path, existing).and_then(|mut file| {
         file.output.write_all(content)?;
-        file.whole()
+        file.finish()
     });
     written.map_err(|error| failure(path, error))
 }
 
-fn keep(whole: Whole) -> Result<(), Failure> {
+fn keep(whole: FinishedFile) -> Result<(), Failure> {
     let path = whole.path().to_owned();
-    whole.keep().map_err(|error| failure(&path, error))
+    whole.persist().map_err(|error| failure(&path, error))
 }
 
 fn failure(path: &Path, error: io::Error) -> Failure {

@@ -4,11 +4,10 @@ use std::io;
 
 use crate::cli::input::InputError;
 use crate::cli::locale::Charset;
-use crate::formats::archive::ArchiveError;
+use crate::formats::ArchiveError;
 use crate::pose::grid::GridError;
 use crate::quote::legible;
-use crate::storage::error::LibraryError;
-use crate::storage::sweep_file::SweepFileError;
+use crate::storage::{LibraryError, SweepFileError};
 use crate::sweep::survey::MergeError;
 use crate::tui::script::runner;
 

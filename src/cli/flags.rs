@@ -7,7 +7,7 @@ use crate::figure::{Figure, FigureKind};
 use crate::parameter::{PARAMETERS, Parameter, ParameterError, Unit, number};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
 use crate::sensor::{MAX_SIDE, SENSOR_PARAMETERS, Sensor};
-use crate::storage::unfinished::Existing;
+use crate::storage::Existing;
 
 /// Help texts are broken so that they fit 80 columns beside the flags.
 const HELP_WIDTH: usize = 52;

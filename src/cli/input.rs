@@ -4,9 +4,8 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::PathBuf;
 
-use crate::formats::exchange;
-use crate::formats::exchange::ExchangeError;
-use crate::formats::shape::{MAX_BYTES, Shape, ShapeError};
+use crate::formats::shape::MAX_BYTES;
+use crate::formats::{ImprintFormatError, ShapeError, StoredShape, imprint_file};
 use crate::imprint::Imprint;
 use crate::quote::legible;
 
@@ -36,7 +35,7 @@ pub(super) enum Content {
     /// An imprint alone.
     Imprint(Imprint),
     /// A stored shape.
-    Shape(Shape),
+    Shape(StoredShape),
 }
 
 /// Why a file cannot be described.
@@ -50,7 +49,7 @@ pub(super) enum InputError {
     Large,
     /// No imprint.
     #[error(transparent)]
-    Imprint(#[from] ExchangeError),
+    Imprint(#[from] ImprintFormatError),
     /// JSON, but no shape.
     #[error("{}", legible(&.0.to_string()))]
     Shape(#[from] ShapeError),
@@ -65,9 +64,9 @@ pub(super) fn read(place: &Place) -> Result<Content, InputError> {
     // Some editors begin every text with a byte order mark.
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
     if bytes.trim_ascii_start().starts_with(b"{") {
-        Ok(Content::Shape(Shape::read(bytes)?))
+        Ok(Content::Shape(StoredShape::read(bytes)?))
     } else {
-        Ok(Content::Imprint(exchange::read(bytes)?))
+        Ok(Content::Imprint(imprint_file::read(bytes)?))
     }
 }
 

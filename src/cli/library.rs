@@ -13,16 +13,16 @@ use crate::cli::locale::Charset;
 use crate::cli::report;
 use crate::cli::shelf::Shelf;
 use crate::description::{RegionKind, regions};
-use crate::formats::shape::Shape;
+use crate::formats::StoredShape;
 use crate::parameter::Parameter;
 use crate::quote::legible;
 use crate::sensor::Sensor;
-use crate::storage::store::{Entry, Library, Origin};
+use crate::storage::{Library, LibraryEntry, ShapeOrigin};
 
 /// A line of the list.
 struct Line {
     name: String,
-    origin: Origin,
+    origin: ShapeOrigin,
     /// What the file holds, or why it is broken.
     found: Result<Summary, String>,
 }
@@ -37,7 +37,7 @@ struct Summary {
 }
 
 impl Line {
-    fn of(library: &Library, entry: Entry) -> Self {
+    fn of(library: &Library, entry: LibraryEntry) -> Self {
         let found = library.load(&entry.name);
         Self {
             found: found
@@ -51,14 +51,14 @@ impl Line {
     fn origin(&self) -> &'static str {
         match (&self.found, self.origin) {
             (Err(_), _) => "broken",
-            (_, Origin::Own) => "own",
-            (_, Origin::Shipped) => "shipped",
+            (_, ShapeOrigin::Own) => "own",
+            (_, ShapeOrigin::Shipped) => "shipped",
         }
     }
 }
 
 impl Summary {
-    fn of(shape: &Shape) -> Self {
+    fn of(shape: &StoredShape) -> Self {
         let regions = regions(&shape.imprint);
         let holes = regions
             .iter()
@@ -145,7 +145,7 @@ pub(super) fn show(
 pub(super) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String, Failure> {
     let shape = match shelf.find(what)? {
         Content::Shape(shape) => shape.renamed(saving.name),
-        Content::Imprint(imprint) => Shape {
+        Content::Imprint(imprint) => StoredShape {
             name: saving.name,
             sensor: [
                 (Parameter::Columns, imprint.columns()),

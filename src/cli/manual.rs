@@ -15,7 +15,7 @@ use crate::cli::commands;
 use crate::cli::examples::{ENVIRONMENT, FILES};
 use crate::cli::export;
 use crate::cli::failure::Failure;
-use crate::storage::unfinished::Existing;
+use crate::storage::Existing;
 
 /// The program's own page.
 pub(super) fn main_page() -> Result<Vec<u8>, Failure> {

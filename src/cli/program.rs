@@ -10,7 +10,7 @@ use crate::cli::config::AUTO;
 use crate::cli::examples::{COMPLETIONS_EXAMPLES, CONFIG_EXAMPLES, MAN_EXAMPLES, SCRIPT_EXAMPLES};
 use crate::cli::flags;
 use crate::cli::input::Place;
-use crate::storage::unfinished::Existing;
+use crate::storage::Existing;
 use crate::tui::script::command;
 use crate::tui::widget::theme::{ColorDepth, Palette};
 

@@ -8,8 +8,7 @@ use std::fmt::Write;
 
 use crate::cli::locale::Charset;
 use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension, RegionKind, regions};
-use crate::formats::answer::Answer;
-use crate::formats::value;
+use crate::formats::{DescribedImprint, value};
 use crate::imprint::Imprint;
 use crate::parameter::number::short;
 use crate::sensor::Sensor;
@@ -22,7 +21,7 @@ const WIDTH: usize = 80;
 /// The answer as one line of JSON.
 pub(super) fn json(imprint: &Imprint) -> String {
     // Cannot fail: every key is a text and every number finite.
-    let mut line = serde_json::to_string(&Answer(imprint)).unwrap_or_default();
+    let mut line = serde_json::to_string(&DescribedImprint(imprint)).unwrap_or_default();
     line.push('\n');
     line
 }

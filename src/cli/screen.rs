@@ -8,8 +8,7 @@ use crate::cli::effective::Effective;
 use crate::cli::failure::Failure;
 use crate::cli::locale::Charset;
 use crate::cli::shelf::Shelf;
-use crate::storage::journal::Orphan;
-use crate::storage::store::{Library, Origin};
+use crate::storage::{Library, Orphan, ShapeOrigin};
 use crate::tui::app::state::{App, Options};
 use crate::tui::runtime::perform::World;
 use crate::tui::script::record::Recorder;
@@ -121,7 +120,7 @@ impl Record {
 /// What the program finds at its start: the user's shapes, but for those that cannot be read, and unsaved work.
 fn found(library: &Library) -> Result<Vec<Setting>, Failure> {
     let own = library.list()?;
-    let own = own.iter().filter(|entry| entry.origin == Origin::Own);
+    let own = own.iter().filter(|entry| entry.origin == ShapeOrigin::Own);
     let shapes = own.filter_map(|entry| library.load(&entry.name).ok());
     let shapes = shapes.map(|loaded| Setting::Shape(Box::new(loaded.shape)));
     let left = Orphan::all(library).into_iter();

@@ -9,10 +9,9 @@ use std::path::PathBuf;
 use crate::cli::failure::Failure;
 use crate::cli::input;
 use crate::cli::input::{Content, InputError, Place};
-use crate::formats::shape::Shape;
+use crate::formats::StoredShape;
 use crate::imprint::Imprint;
-use crate::storage::error::LibraryError;
-use crate::storage::store::{Expected, Library};
+use crate::storage::{Expected, Library, LibraryError};
 
 /// The library, opened when it is used first.
 #[derive(Debug)]
@@ -106,7 +105,7 @@ impl Shelf {
 
     /// Stores a shape, in place of an own one of that name only by `force`; answers the name that it has there, which may
     /// differ in upper and lower case.
-    pub(super) fn save(&self, shape: &Shape, force: bool) -> Result<String, Failure> {
+    pub(super) fn save(&self, shape: &StoredShape, force: bool) -> Result<String, Failure> {
         let library = self.library()?;
         let saved = match library.save(shape, Expected::Nothing) {
             Err(LibraryError::Exists { stamp, .. }) if force => {

@@ -16,11 +16,9 @@ use crate::cli::failure::Failure;
 use crate::cli::locale::Charset;
 use crate::cli::progress::Progress;
 use crate::cli::summary::Summary;
-use crate::formats::archive;
-use crate::formats::archive::ArchiveError;
+use crate::formats::{ArchiveError, archive};
 use crate::pose::grid::Grid;
-use crate::storage::sweep_file::{AtlasFile, PoseFile, Whole};
-use crate::storage::unfinished::Existing;
+use crate::storage::{AtlasFile, Existing, FinishedSweepFile, PoseFile};
 use crate::sweep::plan::Shard;
 use crate::sweep::survey::{Survey, Watch};
 
@@ -82,7 +80,7 @@ pub(super) fn sweep(
     };
     let survey = pool.install(|| Survey::of(grid, shard, watch));
     progress.finish();
-    let poses = poses.map(PoseFile::whole).transpose()?;
+    let poses = poses.map(PoseFile::finish).transpose()?;
     if !survey.complete() {
         return Err(signals.failure());
     }
@@ -115,13 +113,13 @@ fn leave(
     survey: &Survey,
     start: Instant,
     wanted: &Wanted,
-    poses: Option<Whole>,
+    poses: Option<FinishedSweepFile>,
     charset: Charset,
     signals: &Signals,
 ) -> Result<String, Failure> {
     let atlas = match &wanted.atlas {
         Some(file) => {
-            let whole = file.whole(survey, wanted.existing, &signals.stopped);
+            let whole = file.prepare(survey, wanted.existing, &signals.stopped);
             if signals.stopped.load(Ordering::Relaxed) {
                 return Err(signals.failure());
             }
@@ -131,7 +129,7 @@ fn leave(
     };
     // All files or none, as far as a machine can be asked for that.
     for file in atlas.into_iter().chain(poses) {
-        file.keep()?;
+        file.persist()?;
     }
     let summary = Summary::new(survey, start.elapsed());
     Ok(if wanted.json {

@@ -11,7 +11,7 @@ use crate::cli::input::Content;
 use crate::cli::locale::Charset;
 use crate::cli::report;
 use crate::cli::shelf::Shelf;
-use crate::formats::shape::Shape;
+use crate::formats::StoredShape;
 use crate::parameter::Parameter;
 use crate::picture::Picture;
 use crate::sensor::Sensor;
@@ -46,7 +46,7 @@ pub(super) fn touch(
         begun = Some(export.begin(&imprint, Some(&source), &title, pitch)?);
     }
     if let Some(Saving { name, force }) = saving {
-        let shape = Shape {
+        let shape = StoredShape {
             name,
             sensor,
             imprint,

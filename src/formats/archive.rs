@@ -17,7 +17,7 @@ use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 use crate::atlas::feature::{quantities, values};
 use crate::formats::atlas::{place, value};
 use crate::formats::npy;
-use crate::formats::npy::Kind;
+use crate::formats::npy::Dtype;
 use crate::formats::record::{Record, RecordError, Values};
 use crate::pose::grid::{Anchor, Grid, GridError, Ranges};
 use crate::pose::range::RangeError;
@@ -81,16 +81,16 @@ pub fn write(survey: &Survey, output: impl Write + Seek) -> Result<(), ArchiveEr
         partly_off: parts.partly_off,
     })
     .map_err(|error| ArchiveError::Io(error.into()))?;
-    archive.add("header", Kind::U8, &[header.len() as u64], &header)?;
+    archive.add("header", Dtype::U8, &[header.len() as u64], &header)?;
     let count = parts.counts.len() as u64;
     let words =
         |words: &[u64]| -> Vec<u8> { words.iter().flat_map(|word| word.to_le_bytes()).collect() };
     let height = u64::from(grid.sensor().rows());
-    archive.add("rows", Kind::U64, &[count, height], &words(&parts.rows))?;
-    archive.add("count", Kind::U64, &[count], &words(&parts.counts))?;
+    archive.add("rows", Dtype::U64, &[count, height], &words(&parts.rows))?;
+    archive.add("count", Dtype::U64, &[count], &words(&parts.counts))?;
     archive.add(
         "first_pose",
-        Kind::U64,
+        Dtype::U64,
         &[count],
         &words(&parts.first_poses),
     )?;
@@ -101,15 +101,15 @@ pub fn write(survey: &Survey, output: impl Write + Seek) -> Result<(), ArchiveEr
         let own = own.iter().map(|&parameter| value(&pose, parameter));
         first.extend(own.flat_map(f64::to_le_bytes));
     }
-    archive.add("first", Kind::F64, &[count, own.len() as u64], &first)?;
+    archive.add("first", Dtype::F64, &[count, own.len() as u64], &first)?;
     let small = |of: fn(&crate::atlas::feature::Note) -> u16| {
         let notes = survey.atlas.entries().map(|entry| entry.note);
         notes
             .flat_map(|note| of(&note).to_le_bytes())
             .collect::<Vec<u8>>()
     };
-    archive.add("pieces", Kind::U16, &[count], &small(|note| note.pieces))?;
-    archive.add("holes", Kind::U16, &[count], &small(|note| note.holes))?;
+    archive.add("pieces", Dtype::U16, &[count], &small(|note| note.pieces))?;
+    archive.add("holes", Dtype::U16, &[count], &small(|note| note.holes))?;
     let mut columns = vec![Vec::with_capacity(parts.counts.len() * 8); quantities().len()];
     for entry in survey.atlas.entries() {
         let mut row = vec![f64::NAN; columns.len()];
@@ -121,10 +121,10 @@ pub fn write(survey: &Survey, output: impl Write + Seek) -> Result<(), ArchiveEr
         }
     }
     for (quantity, column) in quantities().iter().zip(columns) {
-        archive.add(&quantity.key, Kind::F64, &[count], &column)?;
+        archive.add(&quantity.key, Dtype::F64, &[count], &column)?;
     }
     let length = parts.spread.len() as u64;
-    archive.add("spread", Kind::U64, &[length], &words(&parts.spread))?;
+    archive.add("spread", Dtype::U64, &[length], &words(&parts.spread))?;
     archive.0.finish()?.flush()?;
     Ok(())
 }
@@ -135,7 +135,7 @@ impl<W: Write + Seek> Arrays<W> {
     fn add(
         &mut self,
         name: &str,
-        kind: Kind,
+        kind: Dtype,
         shape: &[u64],
         numbers: &[u8],
     ) -> Result<(), ArchiveError> {
@@ -175,7 +175,7 @@ pub fn read(input: impl Read + Seek) -> Result<Survey, ArchiveError> {
         Ok(bytes)
     };
     let header = array("header")?;
-    let header = npy::content(&header, Kind::U8).ok_or(ArchiveError::Array("header"))?;
+    let header = npy::content(&header, Dtype::U8).ok_or(ArchiveError::Array("header"))?;
     let header: Header<Record<'_>, Values> = serde_json::from_slice(header)
         .map_err(|error| ArchiveError::Header(crate::formats::quote::message(&error)))?;
     if header.format != FORMAT {

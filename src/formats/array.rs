@@ -6,7 +6,7 @@
 use std::fmt;
 
 use crate::formats::npy;
-use crate::formats::npy::Kind;
+use crate::formats::npy::Dtype;
 use crate::imprint::Imprint;
 use crate::quote::shortened;
 use crate::sensor::MAX_SIDE;
@@ -185,7 +185,7 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ArrayError> {
 /// The file.
 pub fn write(imprint: &Imprint) -> Vec<u8> {
     let shape = [imprint.rows(), imprint.columns()].map(u64::from);
-    let mut file = npy::header(Kind::Bool, &shape);
+    let mut file = npy::header(Dtype::Bool, &shape);
     for row in 0..imprint.rows() {
         file.extend((0..imprint.columns()).map(|column| u8::from(imprint.get(column, row))));
     }

@@ -10,7 +10,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::atlas::Entry;
 use crate::atlas::feature::{quantities, values};
-use crate::formats::answer::{Entry as Main, Rows};
+use crate::formats::described::{RegionRecord, Rows};
 use crate::parameter::Parameter;
 use crate::pose::grid::{Grid, Pose};
 use crate::sweep::survey::Survey;
@@ -98,7 +98,7 @@ impl Serialize for Line<'_> {
         map.serialize_entry("first", &First(&survey.grid, entry.first_pose))?;
         map.serialize_entry("pieces", &entry.note.pieces)?;
         map.serialize_entry("holes", &entry.note.holes)?;
-        map.serialize_entry("main", &entry.note.description.map(Main))?;
+        map.serialize_entry("main", &entry.note.description.map(RegionRecord))?;
         map.serialize_entry("imprint", &Rows(&entry.imprint))?;
         map.end()
     }

@@ -5,7 +5,7 @@
 
 pub mod value;
 
-pub mod answer;
+mod described;
 
 #[cfg(feature = "json")]
 mod quote;
@@ -14,10 +14,7 @@ mod quote;
 mod record;
 
 #[cfg(feature = "json")]
-pub use record::RecordError;
-
-#[cfg(feature = "json")]
-pub mod job;
+mod job;
 
 pub mod name;
 
@@ -34,14 +31,31 @@ pub mod table;
 
 pub mod array;
 
-pub mod exchange;
+pub mod imprint_file;
 
 pub(crate) mod xml;
 
-pub mod drawing;
+mod drawing;
 
 #[cfg(feature = "sweep")]
 pub mod atlas;
 
 #[cfg(feature = "sweep")]
 pub mod archive;
+
+pub use described::DescribedImprint;
+pub use drawing::Drawing;
+pub use imprint_file::{ImprintFormat, ImprintFormatError, read as read_imprint};
+pub use name::{Name, NameError};
+
+#[cfg(feature = "json")]
+pub use job::{Job, JobError};
+
+#[cfg(feature = "json")]
+pub use record::RecordError;
+
+#[cfg(feature = "json")]
+pub use shape::{ShapeError, StoredShape};
+
+#[cfg(feature = "sweep")]
+pub use archive::ArchiveError;

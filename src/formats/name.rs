@@ -83,10 +83,10 @@ impl Name {
     /// Whether two names are the same on a file system that ignores case.
     ///
     /// ```
-    /// use taxel::formats::name::Name;
+    /// use taxel::formats::Name;
     /// let name = Name::new("ΟΔΟΣ.2")?;
     /// assert!(name.same("οδοσ.2") && name.same("οδος.2") && !name.same("οδος"));
-    /// # Ok::<(), taxel::formats::name::NameError>(())
+    /// # Ok::<(), taxel::formats::NameError>(())
     /// ```
     pub fn same(&self, other: &str) -> bool {
         folded(&self.0) == folded(other)

@@ -12,7 +12,7 @@ const ALIGNMENT: usize = 64;
 /// What an array is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Kind {
+pub enum Dtype {
     /// `bool`, a byte each.
     Bool,
     /// `uint8`.
@@ -27,7 +27,7 @@ pub enum Kind {
     F64,
 }
 
-impl Kind {
+impl Dtype {
     fn code(self) -> &'static str {
         match self {
             Self::Bool => "|b1",
@@ -43,12 +43,12 @@ impl Kind {
 /// What stands before the numbers of an array of that shape.
 ///
 /// ```
-/// use taxel::formats::npy::{Kind, header};
-/// let header = header(Kind::U32, &[360, 100]);
+/// use taxel::formats::npy::{Dtype, header};
+/// let header = header(Dtype::U32, &[360, 100]);
 /// assert!(header.starts_with(b"\x93NUMPY\x01\x00\x76\x00{'descr': '<u4', 'fortran_order': False, 'shape': (360, 100), }"));
 /// assert_eq!((header.len(), header.last()), (128, Some(&b'\n')));
 /// ```
-pub fn header(kind: Kind, shape: &[u64]) -> Vec<u8> {
+pub fn header(kind: Dtype, shape: &[u64]) -> Vec<u8> {
     let mut sides = String::new();
     for side in shape {
         // Cannot fail: a String takes everything.
@@ -90,8 +90,8 @@ pub struct Header {
 /// The header of a file, and the numbers behind it; none of what is no array, or one of records.
 ///
 /// ```
-/// use taxel::formats::npy::{Kind, header, parse};
-/// let file = [header(Kind::U8, &[1, 2]), vec![7, 8]].concat();
+/// use taxel::formats::npy::{Dtype, header, parse};
+/// let file = [header(Dtype::U8, &[1, 2]), vec![7, 8]].concat();
 /// let (header, numbers) = parse(&file).expect("just written");
 /// assert_eq!((header.code.as_str(), &header.shape[..], numbers), ("|u1", &[1, 2][..], &[7, 8][..]));
 /// ```
@@ -176,7 +176,7 @@ fn tuple(text: &str) -> Option<Vec<u64>> {
 }
 
 /// The numbers of a file that [`header`] could have begun, with its kind; none of anything else.
-pub fn content(file: &[u8], kind: Kind) -> Option<&[u8]> {
+pub fn content(file: &[u8], kind: Dtype) -> Option<&[u8]> {
     let rest = file.strip_prefix(MAGIC)?;
     let (length, rest) = rest.split_first_chunk::<2>()?;
     let (text, numbers) = rest.split_at_checked(u16::from_le_bytes(*length).into())?;
@@ -186,7 +186,7 @@ pub fn content(file: &[u8], kind: Kind) -> Option<&[u8]> {
 
 /// The same as whole numbers.
 pub fn words(file: &[u8]) -> Option<Vec<u64>> {
-    let chunks = content(file, Kind::U64)?.chunks_exact(8);
+    let chunks = content(file, Dtype::U64)?.chunks_exact(8);
     if !chunks.remainder().is_empty() {
         return None;
     }

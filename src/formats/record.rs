@@ -10,7 +10,7 @@ use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, MapAccess, SeqAcce
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::figure::{Figure, FigureKind};
-use crate::formats::answer::Rows;
+use crate::formats::described::Rows;
 use crate::formats::quote::without_place;
 use crate::imprint::{Imprint, ImprintError};
 use crate::parameter::{PARAMETERS, Parameter, ParameterError};
@@ -145,14 +145,14 @@ impl Values {
 
 /// Rows of text, or a name.
 #[derive(Clone, Debug)]
-pub(crate) enum Content<'a> {
+pub(crate) enum RowsOrName<'a> {
     /// Rows of `#` and `.`, not checked yet.
     Rows(Vec<Cow<'a, str>>),
     /// A name.
     Name(Cow<'a, str>),
 }
 
-impl Content<'_> {
+impl RowsOrName<'_> {
     /// The imprint in the rows; a name is looked up.
     ///
     /// # Errors
@@ -176,9 +176,9 @@ pub(crate) struct Record<'a> {
     /// A figure's name.
     pub(crate) figure: Option<Cow<'a, str>>,
     /// A picture's rows or name.
-    pub(crate) picture: Option<Content<'a>>,
+    pub(crate) picture: Option<RowsOrName<'a>>,
     /// A whole matrix.
-    pub(crate) imprint: Option<Content<'a>>,
+    pub(crate) imprint: Option<RowsOrName<'a>>,
     /// A sensor.
     pub(crate) sensor: Option<Values>,
     /// All keys that are parameters.
@@ -332,19 +332,19 @@ impl<'de> Deserialize<'de> for Text<'de> {
     }
 }
 
-impl<'de: 'a, 'a> Deserialize<'de> for Content<'a> {
+impl<'de: 'a, 'a> Deserialize<'de> for RowsOrName<'a> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct ContentVisitor;
         impl<'de> Visitor<'de> for ContentVisitor {
-            type Value = Content<'de>;
+            type Value = RowsOrName<'de>;
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("rows of '#' and '.'")
             }
             fn visit_borrowed_str<E: Error>(self, text: &'de str) -> Result<Self::Value, E> {
-                Ok(Content::Name(Cow::Borrowed(text)))
+                Ok(RowsOrName::Name(Cow::Borrowed(text)))
             }
             fn visit_str<E: Error>(self, text: &str) -> Result<Self::Value, E> {
-                Ok(Content::Name(Cow::Owned(text.to_owned())))
+                Ok(RowsOrName::Name(Cow::Owned(text.to_owned())))
             }
             fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Self::Value, A::Error> {
                 let mut rows = Vec::new();
@@ -355,7 +355,7 @@ impl<'de: 'a, 'a> Deserialize<'de> for Content<'a> {
                         while list.next_element::<IgnoredAny>()?.is_some() {}
                     }
                 }
-                Ok(Content::Rows(rows))
+                Ok(RowsOrName::Rows(rows))
             }
         }
         deserializer.deserialize_any(ContentVisitor)

@@ -4,10 +4,10 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::fmt;
 
-use crate::formats::answer::Rows;
+use crate::formats::described::Rows;
 use crate::formats::name::{Name, NameError};
 use crate::formats::quote::message;
-use crate::formats::record::{Content, Record, RecordError, Values};
+use crate::formats::record::{Record, RecordError, RowsOrName, Values};
 use crate::imprint::Imprint;
 use crate::quote::shortened;
 use crate::sensor::Sensor;
@@ -19,10 +19,10 @@ pub const FORMAT: &str = "taxel-shape/1";
 /// No shape file is larger; what is larger is not read.
 pub const MAX_BYTES: usize = 1 << 20;
 
-/// A shape as it is stored; made by [`Shape::new`] or [`Shape::read`].
+/// A shape as it is stored; made by [`StoredShape::new`] or [`StoredShape::read`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Shape {
+pub struct StoredShape {
     /// Its name.
     pub name: Name,
     /// The sensor that it was made on.
@@ -75,7 +75,7 @@ pub enum ShapeError {
     },
 }
 
-impl Shape {
+impl StoredShape {
     /// A shape of these parts.
     ///
     /// # Errors
@@ -153,7 +153,7 @@ impl Shape {
     }
 }
 
-impl Serialize for Shape {
+impl Serialize for StoredShape {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("format", FORMAT)?;
@@ -174,7 +174,7 @@ struct File<'a> {
     format: bool,
     name: Option<String>,
     sensor: Option<Values>,
-    imprint: Option<Content<'a>>,
+    imprint: Option<RowsOrName<'a>>,
     source: Option<Record<'a>>,
 }
 

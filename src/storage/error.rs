@@ -3,8 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
-use crate::formats::name::NameError;
-use crate::formats::shape::ShapeError;
+use crate::formats::{NameError, ShapeError};
 
 /// Why something was not done. Whatever it was, nothing was lost.
 #[derive(Debug, thiserror::Error)]

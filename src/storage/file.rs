@@ -7,7 +7,7 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::path::Path;
 
 use crate::formats::shape::MAX_BYTES;
-use crate::storage::error::LibraryError;
+use crate::storage::LibraryError;
 
 /// Puts the place and the doing to an error of the system.
 pub(crate) fn system(doing: &'static str, path: &Path) -> impl FnOnce(io::Error) -> LibraryError {

@@ -7,12 +7,12 @@ use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use crate::formats::shape::Shape;
-use crate::storage::error::LibraryError;
+use crate::formats::StoredShape;
+use crate::storage::LibraryError;
 use crate::storage::file;
 use crate::storage::file::system;
-use crate::storage::lock::{Found, Lock};
-use crate::storage::store::Library;
+use crate::storage::library::Library;
+use crate::storage::lock::{Lock, LockAttempt};
 
 /// The name of unsaved work that has none.
 pub const UNNAMED: &str = "unsaved";
@@ -39,7 +39,7 @@ impl Journal {
     ///
     /// # Errors
     /// What the system refuses. The shape kept before is still there.
-    pub fn keep(&mut self, shape: &Shape) -> Result<(), LibraryError> {
+    pub fn keep(&mut self, shape: &StoredShape) -> Result<(), LibraryError> {
         match self.write(shape) {
             // Somebody has removed the folder: another one is made.
             Err(LibraryError::System { error, .. }) if error.kind() == ErrorKind::NotFound => {
@@ -50,7 +50,7 @@ impl Journal {
         }
     }
 
-    fn write(&mut self, shape: &Shape) -> Result<(), LibraryError> {
+    fn write(&mut self, shape: &StoredShape) -> Result<(), LibraryError> {
         let path = self.file()?;
         file::write(&path, &temporary_of(&path), shape.write().as_bytes())
     }
@@ -69,11 +69,11 @@ impl Journal {
                 continue;
             }
             let lock = match Lock::at(&lock_of(&path))? {
-                Found::Free(lock) => Some(lock),
-                Found::Held => continue,
+                LockAttempt::Free(lock) => Some(lock),
+                LockAttempt::Held => continue,
                 // What is kept can be found in the folder; nobody can tell whether its program still runs, so it is
                 // not offered.
-                Found::Unknown => None,
+                LockAttempt::Unknown => None,
             };
             self.open = Some((path.clone(), lock));
             return Ok(path);
@@ -94,7 +94,7 @@ impl Journal {
 #[derive(Debug)]
 pub struct Orphan {
     /// What was on its matrix.
-    pub shape: Shape,
+    pub shape: StoredShape,
     path: PathBuf,
     lock: Lock,
 }
@@ -142,7 +142,7 @@ impl Orphan {
             }
             content => content.ok()?,
         };
-        let shape = Shape::read(&content).ok()?;
+        let shape = StoredShape::read(&content).ok()?;
         if is_saved(library, &shape) {
             remove(&path, Some(lock));
             return None;
@@ -157,8 +157,8 @@ impl Orphan {
 }
 
 /// Whether a library holds just this under its name, or there is nothing to hold.
-fn is_saved(library: &Library, shape: &Shape) -> bool {
-    let same = |saved: &Shape| {
+fn is_saved(library: &Library, shape: &StoredShape) -> bool {
+    let same = |saved: &StoredShape| {
         (saved.sensor, saved.imprint, &saved.source) == (shape.sensor, shape.imprint, &shape.source)
     };
     shape.imprint.is_empty() && shape.source.is_none()

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use crate::storage::error::LibraryError;
+use crate::storage::LibraryError;
 use crate::storage::file::names;
-use crate::storage::store::{Library, TEMPORARY, name_of};
+use crate::storage::library::{Library, TEMPORARY, name_of};
 
 impl Library {
     /// Everything in the folder that is neither a shape nor in its usual place, with what it is, by path. None of it

@@ -7,7 +7,7 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use crate::storage::error::LibraryError;
+use crate::storage::LibraryError;
 use crate::storage::file::{regular, system};
 
 /// How long writing waits for another program. Holding takes milliseconds, unless that program is stopped.
@@ -47,15 +47,17 @@ impl Lock {
     }
 
     /// The lock at a path, if it is to be had.
-    pub(crate) fn at(path: &Path) -> Result<Found, LibraryError> {
+    pub(crate) fn at(path: &Path) -> Result<LockAttempt, LibraryError> {
         let file = open(path)?;
         loop {
             match file.try_lock() {
                 // Whoever had it may have removed the file: then this is the lock of nothing.
-                Ok(()) if is_at(&file, path) => return Ok(Found::Free(Self { _file: file })),
-                Ok(()) | Err(TryLockError::WouldBlock) => return Ok(Found::Held),
+                Ok(()) if is_at(&file, path) => return Ok(LockAttempt::Free(Self { _file: file })),
+                Ok(()) | Err(TryLockError::WouldBlock) => return Ok(LockAttempt::Held),
                 Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Interrupted => {}
-                Err(TryLockError::Error(error)) if knows_none(&error) => return Ok(Found::Unknown),
+                Err(TryLockError::Error(error)) if knows_none(&error) => {
+                    return Ok(LockAttempt::Unknown);
+                }
                 Err(TryLockError::Error(error)) => return Err(system("lock it", path)(error)),
             }
         }
@@ -64,7 +66,7 @@ impl Lock {
     /// The lock at a path; none where it cannot be had, for whatever reason.
     pub(crate) fn if_free(path: &Path) -> Option<Self> {
         match Self::at(path) {
-            Ok(Found::Free(lock)) => Some(lock),
+            Ok(LockAttempt::Free(lock)) => Some(lock),
             _ => None,
         }
     }
@@ -72,7 +74,7 @@ impl Lock {
 
 /// What became of a try to lock.
 #[derive(Debug)]
-pub(crate) enum Found {
+pub(crate) enum LockAttempt {
     /// It was free, and is ours.
     Free(Lock),
     /// Somebody else has it.

@@ -17,10 +17,10 @@
 //! ```
 
 #[cfg(feature = "library")]
-pub mod error;
+mod error;
 
 #[cfg(feature = "library")]
-pub mod place;
+pub mod location;
 
 #[cfg(feature = "library")]
 mod file;
@@ -32,22 +32,40 @@ mod lock;
 pub mod shipped;
 
 #[cfg(feature = "library")]
-pub mod store;
+mod library;
 
 #[cfg(feature = "library")]
-pub mod trash;
+mod trash;
 
 #[cfg(feature = "library")]
-pub mod journal;
+mod journal;
 
 #[cfg(feature = "library")]
 mod leftover;
 
 #[cfg(feature = "sweep")]
-mod latch;
+mod first_error;
 
 #[cfg(feature = "sweep")]
-pub mod unfinished;
+mod unfinished;
 
 #[cfg(feature = "sweep")]
-pub mod sweep_file;
+mod sweep_file;
+
+#[cfg(feature = "library")]
+pub use error::LibraryError;
+
+#[cfg(feature = "library")]
+pub use journal::{Journal, Orphan, UNNAMED};
+
+#[cfg(feature = "library")]
+pub use library::{Expected, Library, LibraryEntry, LoadedShape, ShapeOrigin};
+
+#[cfg(feature = "library")]
+pub use trash::TRASH_KEPT;
+
+#[cfg(feature = "sweep")]
+pub use sweep_file::{AtlasFile, FinishedSweepFile, PoseFile, SweepFileError, is_poses};
+
+#[cfg(feature = "sweep")]
+pub use unfinished::{Existing, FinishedFile, UnfinishedFile};

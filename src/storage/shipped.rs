@@ -1,8 +1,7 @@
 //! The shapes that come with the program, compiled in. They were made with the program itself, by `library/make`.
 
-use crate::formats::name::Name;
-use crate::formats::shape::Shape;
-use crate::storage::error::LibraryError;
+use crate::formats::{Name, StoredShape};
+use crate::storage::LibraryError;
 use crate::storage::file::stamp;
 
 macro_rules! shapes {
@@ -54,12 +53,16 @@ pub(crate) fn has(name: &Name) -> bool {
 }
 
 /// The shape of that name with its stamp; none where no shape of that name comes with the program.
-pub(crate) fn load(name: &Name) -> Option<Result<(Shape, u64), LibraryError>> {
+pub(crate) fn load(name: &Name) -> Option<Result<(StoredShape, u64), LibraryError>> {
     let &(name, text) = SHIPPED.iter().find(|(shipped, _)| name.same(shipped))?;
     let broken = |error| LibraryError::Broken {
         path: format!("{name}.json").into(),
         error,
     };
     let loaded = |shape| (shape, stamp(text.as_bytes()));
-    Some(Shape::read(text.as_bytes()).map(loaded).map_err(broken))
+    Some(
+        StoredShape::read(text.as_bytes())
+            .map(loaded)
+            .map_err(broken),
+    )
 }

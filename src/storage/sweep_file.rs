@@ -7,15 +7,13 @@ use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::formats::archive;
-use crate::formats::archive::ArchiveError;
 use crate::formats::atlas::{write_csv, write_jsonl};
-use crate::formats::npy;
-use crate::formats::npy::Kind;
+use crate::formats::npy::Dtype;
+use crate::formats::{ArchiveError, archive, npy};
 use crate::pose::grid::Grid;
-use crate::storage::latch::Latch;
+use crate::storage::first_error::FirstErrorWriter;
 use crate::storage::unfinished;
-use crate::storage::unfinished::{Existing, Unfinished};
+use crate::storage::unfinished::{Existing, UnfinishedFile};
 use crate::sweep::survey::Survey;
 
 /// Why a file was not written.
@@ -47,11 +45,11 @@ impl SweepFileError {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AtlasFile {
     path: PathBuf,
-    format: Format,
+    format: AtlasFormat,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
+enum AtlasFormat {
     Csv,
     JsonLines,
     Archive,
@@ -67,9 +65,9 @@ impl AtlasFile {
         let ending = path.extension().and_then(|ending| ending.to_str());
         let ending = ending.map(str::to_ascii_lowercase);
         let format = match ending.as_deref() {
-            Some("csv") => Format::Csv,
-            Some("jsonl") => Format::JsonLines,
-            Some("npz") => Format::Archive,
+            Some("csv") => AtlasFormat::Csv,
+            Some("jsonl") => AtlasFormat::JsonLines,
+            Some("npz") => AtlasFormat::Archive,
             _ => return Err("expected a name that ends in .csv, .jsonl or .npz"),
         };
         Ok(Self { path, format })
@@ -93,32 +91,32 @@ impl AtlasFile {
         existing: Existing,
         stopped: &AtomicBool,
     ) -> Result<(), SweepFileError> {
-        self.whole(survey, existing, stopped)?.keep()
+        self.prepare(survey, existing, stopped)?.persist()
     }
 
     /// The same without its name yet, so that several files can appear together.
     ///
     /// # Errors
     /// Those of the system, with the file's name.
-    pub fn whole(
+    pub fn prepare(
         &self,
         survey: &Survey,
         existing: Existing,
         stopped: &AtomicBool,
-    ) -> Result<Whole, SweepFileError> {
+    ) -> Result<FinishedSweepFile, SweepFileError> {
         let mut file = begun(&self.path, existing)?;
-        let mut output = Latch::new(&mut file.output, stopped);
+        let mut output = FirstErrorWriter::new(&mut file.output, stopped);
         let written = match self.format {
-            Format::Csv => write_csv(survey, &mut output).map_err(ArchiveError::from),
-            Format::JsonLines => write_jsonl(survey, &mut output).map_err(ArchiveError::from),
-            Format::Archive => archive::write(survey, &mut output),
+            AtlasFormat::Csv => write_csv(survey, &mut output).map_err(ArchiveError::from),
+            AtlasFormat::JsonLines => write_jsonl(survey, &mut output).map_err(ArchiveError::from),
+            AtlasFormat::Archive => archive::write(survey, &mut output),
         };
         let written = match output.error {
             Some(error) => Err(error.into()),
             None => written,
         };
         written.map_err(|error| SweepFileError::new(&self.path, error))?;
-        Whole::of(file)
+        FinishedSweepFile::of(file)
     }
 }
 
@@ -132,7 +130,7 @@ pub fn is_poses(name: &Path) -> bool {
 /// there are several.
 #[derive(Debug)]
 pub struct PoseFile {
-    file: Unfinished,
+    file: UnfinishedFile,
     start: u64,
     /// What went wrong first.
     error: Option<io::Error>,
@@ -163,7 +161,7 @@ impl PoseFile {
         if shape[..2] == [1, 1] {
             shape.drain(..2);
         }
-        let header = npy::header(Kind::U32, &shape);
+        let header = npy::header(Dtype::U32, &shape);
         if let Err(error) = file.output.write_all(&header) {
             return Err(SweepFileError::new(file.path(), error));
         }
@@ -199,22 +197,22 @@ impl PoseFile {
     ///
     /// # Errors
     /// What went wrong first, with the file's name.
-    pub fn whole(self) -> Result<Whole, SweepFileError> {
+    pub fn finish(self) -> Result<FinishedSweepFile, SweepFileError> {
         match self.error {
             Some(error) => Err(SweepFileError::new(self.file.path(), error)),
-            None => Whole::of(self.file),
+            None => FinishedSweepFile::of(self.file),
         }
     }
 }
 
 /// A file that lacks only its name. Dropped, nothing is left of it.
 #[derive(Debug)]
-pub struct Whole(unfinished::Whole);
+pub struct FinishedSweepFile(unfinished::FinishedFile);
 
-impl Whole {
-    fn of(file: Unfinished) -> Result<Self, SweepFileError> {
+impl FinishedSweepFile {
+    fn of(file: UnfinishedFile) -> Result<Self, SweepFileError> {
         let path = file.path().to_owned();
-        let whole = file.whole();
+        let whole = file.finish();
         whole
             .map(Self)
             .map_err(|error| SweepFileError::new(&path, error))
@@ -224,15 +222,15 @@ impl Whole {
     ///
     /// # Errors
     /// Those of the system, with the file's name.
-    pub fn keep(self) -> Result<(), SweepFileError> {
+    pub fn persist(self) -> Result<(), SweepFileError> {
         let path = self.0.path().to_owned();
-        let kept = self.0.keep();
+        let kept = self.0.persist();
         kept.map_err(|error| SweepFileError::new(&path, error))
     }
 }
 
-fn begun(path: &Path, existing: Existing) -> Result<Unfinished, SweepFileError> {
-    Unfinished::new(path, existing).map_err(|error| SweepFileError::new(path, error))
+fn begun(path: &Path, existing: Existing) -> Result<UnfinishedFile, SweepFileError> {
+    UnfinishedFile::new(path, existing).map_err(|error| SweepFileError::new(path, error))
 }
 
 #[cfg(test)]
@@ -304,8 +302,8 @@ mod tests {
         let survey = survey();
         let file = PoseFile::new(&path, &survey.grid, Existing::Kept).expect("begun");
         std::fs::write(&path, "mine").expect("written");
-        let whole = file.whole().expect("written");
-        assert!(whole.keep().expect_err("it is there").exists());
+        let whole = file.finish().expect("written");
+        assert!(whole.persist().expect_err("it is there").exists());
         assert_eq!(std::fs::read(&path).ok().as_deref(), Some(&b"mine"[..]));
         assert_eq!(files(folder.path()), ["poses.npy"]);
     }

@@ -1,21 +1,20 @@
 //! Deleting moves a shape into a trash inside the library, from where it comes back.
 //!
-//! The files there have a running number before their name; the last [`KEPT`] are kept.
+//! The files there have a running number before their name; the last [`TRASH_KEPT`] are kept.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::formats::name::{Name, folded};
-use crate::formats::shape::Shape;
-use crate::storage::error::LibraryError;
-use crate::storage::file;
+use crate::formats::name::folded;
+use crate::formats::{Name, StoredShape};
+use crate::storage::LibraryError;
 use crate::storage::file::system;
+use crate::storage::library::{Library, TEMPORARY};
 use crate::storage::lock::Lock;
-use crate::storage::shipped;
-use crate::storage::store::{Library, TEMPORARY};
+use crate::storage::{file, shipped};
 
 /// How many deleted shapes are kept.
-pub const KEPT: usize = 50;
+pub const TRASH_KEPT: usize = 50;
 
 /// A file in the trash.
 struct Deleted {
@@ -76,7 +75,7 @@ impl Library {
     ///
     /// # Errors
     /// What the system refuses; then it is nowhere.
-    pub fn throw_away(&self, shape: &Shape) -> Result<String, LibraryError> {
+    pub fn throw_away(&self, shape: &StoredShape) -> Result<String, LibraryError> {
         file::make_folder(self.folder())?;
         let _lock = Lock::of(self.folder())?;
         file::make_inner_folder(&self.trash())?;
@@ -159,7 +158,7 @@ impl Library {
 
 /// Makes room for one more.
 fn forget_oldest(mut deleted: Vec<Deleted>) {
-    for old in deleted.drain(..deleted.len().saturating_sub(KEPT - 1)) {
+    for old in deleted.drain(..deleted.len().saturating_sub(TRASH_KEPT - 1)) {
         // One too many does no harm.
         let _ = fs::remove_file(old.path);
     }

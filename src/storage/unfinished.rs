@@ -19,14 +19,14 @@ pub enum Existing {
 
 /// A file that has another name until it is whole. Dropped, nothing is left of it.
 #[derive(Debug)]
-pub struct Unfinished {
+pub struct UnfinishedFile {
     path: PathBuf,
     existing: Existing,
     /// What is written here is its content.
     pub output: BufWriter<NamedTempFile>,
 }
 
-impl Unfinished {
+impl UnfinishedFile {
     /// Begins a file that will be at the path.
     ///
     /// # Errors
@@ -73,11 +73,11 @@ impl Unfinished {
     ///
     /// # Errors
     /// Those of the system.
-    pub fn whole(self) -> io::Result<Whole> {
+    pub fn finish(self) -> io::Result<FinishedFile> {
         let file = self.output.into_inner();
         let file = file.map_err(io::IntoInnerError::into_error)?;
         file.as_file().sync_all()?;
-        Ok(Whole {
+        Ok(FinishedFile {
             path: self.path,
             existing: self.existing,
             file,
@@ -87,13 +87,13 @@ impl Unfinished {
 
 /// A file that lacks only its name. Dropped, nothing is left of it.
 #[derive(Debug)]
-pub struct Whole {
+pub struct FinishedFile {
     path: PathBuf,
     existing: Existing,
     file: NamedTempFile,
 }
 
-impl Whole {
+impl FinishedFile {
     /// Where it will be.
     pub fn path(&self) -> &Path {
         &self.path
@@ -103,7 +103,7 @@ impl Whole {
     ///
     /// # Errors
     /// Those of the system.
-    pub fn keep(self) -> io::Result<()> {
+    pub fn persist(self) -> io::Result<()> {
         let named = match self.existing {
             Existing::Replaced => self.file.persist(&self.path),
             Existing::Kept => self.file.persist_noclobber(&self.path),

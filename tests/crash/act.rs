@@ -7,8 +7,7 @@ use std::io::{Write, stdout};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use taxel::storage::journal::{Journal, Orphan};
-use taxel::storage::store::{Expected, Library};
+use taxel::storage::{Expected, Journal, Library, Orphan};
 
 use super::state::shape;
 

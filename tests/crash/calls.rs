@@ -10,7 +10,7 @@ use super::state::each;
 use super::state::program;
 use super::strace;
 use super::strace::Call;
-use taxel::storage::error::LibraryError;
+use taxel::storage::LibraryError;
 
 /// Something that is done to a library, and what may have become of it.
 #[derive(Clone, Copy)]

@@ -9,8 +9,7 @@ use super::state::State;
 use super::state::finish;
 use super::state::shape;
 use super::state::taxel;
-use taxel::storage::journal::{Journal, Orphan};
-use taxel::storage::store::{Expected, Library, Origin};
+use taxel::storage::{Expected, Journal, Library, Orphan, ShapeOrigin};
 
 /// The exit status of a program that may not mount.
 const NOT_ALLOWED: i32 = 77;
@@ -126,7 +125,7 @@ pub(crate) fn on_read_only_disk(folder: &Path) {
     }
     let library = Library::open(folder.to_owned());
     let own = library.list().expect("listed").into_iter();
-    let own = own.filter(|entry| entry.origin == Origin::Own).count();
+    let own = own.filter(|entry| entry.origin == ShapeOrigin::Own).count();
     assert_eq!(own, 1);
     let one = library.load("one").expect("loaded");
     let work = Orphan::all(&library);
@@ -135,7 +134,7 @@ pub(crate) fn on_read_only_disk(folder: &Path) {
         let message = error.expect("refused");
         assert!(message.contains("Read-only file system"), "{message}");
     };
-    let text = |error: taxel::storage::error::LibraryError| error.to_string();
+    let text = |error: taxel::storage::LibraryError| error.to_string();
     read_only(
         library
             .save(&shape("one", 2), Expected::Stamp(one.stamp))

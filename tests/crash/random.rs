@@ -8,7 +8,7 @@ use super::calls;
 use super::state::State;
 use super::state::each;
 use super::strace;
-use taxel::storage::error::LibraryError;
+use taxel::storage::LibraryError;
 
 /// Kills in a run of all tests.
 const KILLS: usize = 300;

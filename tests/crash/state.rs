@@ -6,31 +6,28 @@ use std::process::{Command, Output, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use taxel::formats::name::Name;
-use taxel::formats::shape::Shape;
+use taxel::formats::{Name, StoredShape};
 use taxel::imprint::Imprint;
 use taxel::sensor::Sensor;
-use taxel::storage::error::LibraryError;
-use taxel::storage::journal::Orphan;
-use taxel::storage::store::{Expected, Library, Origin};
+use taxel::storage::{Expected, Library, LibraryError, Orphan, ShapeOrigin};
 use tempfile::TempDir;
 
 /// No start takes so long, on the busiest machine.
 const DEADLINE: Duration = Duration::from_secs(20);
 
 /// A shape that carries a number.
-pub(crate) fn shape(name: &str, version: u32) -> Shape {
+pub(crate) fn shape(name: &str, version: u32) -> StoredShape {
     let mut imprint = Imprint::empty(16, 16);
     for row in 0..16 {
         // Every row tells the number, so that no part of another file passes for it.
         imprint.set_word(row, u64::from(version >> (row % 2 * 16) & 0xffff));
     }
     let name = Name::new(name).expect("a name");
-    Shape::new(name, Sensor::default(), imprint, None).expect("16 x 16 both")
+    StoredShape::new(name, Sensor::default(), imprint, None).expect("16 x 16 both")
 }
 
 /// The number that a shape carries.
-pub(crate) fn version(shape: &Shape) -> u32 {
+pub(crate) fn version(shape: &StoredShape) -> u32 {
     let word = |row: usize| u32::try_from(shape.imprint.words()[row]).expect("16 bits");
     let version = word(0) | word(1) << 16;
     assert_eq!(shape.imprint, self::shape("x", version).imprint, "torn");
@@ -114,7 +111,7 @@ impl State {
         let saved = self.library().save(&shape("after", 5), expected);
         assert!(saved.is_ok(), "saving goes on: {saved:?}");
         let own = self.library().list().expect("listed").into_iter();
-        for entry in own.filter(|entry| entry.origin == Origin::Own) {
+        for entry in own.filter(|entry| entry.origin == ShapeOrigin::Own) {
             assert!(self.version(&entry.name).is_some());
         }
     }

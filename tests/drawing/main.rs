@@ -6,7 +6,7 @@ use std::path::Path;
 
 use taxel::description::regions;
 use taxel::figure::{Figure, FigureKind};
-use taxel::formats::drawing::Drawing;
+use taxel::formats::Drawing;
 use taxel::imprint::Imprint;
 use taxel::parameter::Parameter;
 use taxel::picture::Picture;

@@ -76,7 +76,7 @@ fn what_is_usual_is_read() {
         }
     }
     for seed in seeds("shape") {
-        assert!(taxel::formats::shape::Shape::read(&seed).is_ok());
+        assert!(taxel::formats::StoredShape::read(&seed).is_ok());
     }
 }
 

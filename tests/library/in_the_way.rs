@@ -8,8 +8,7 @@ use std::sync::mpsc::channel;
 use std::time::Duration;
 
 use rustix::fs::{CWD, FileType, Mode, mknodat};
-use taxel::storage::journal::{Journal, Orphan};
-use taxel::storage::store::{Expected, Library};
+use taxel::storage::{Expected, Journal, Library, Orphan};
 
 use super::Scratch;
 use super::is_root;

@@ -1,20 +1,19 @@
 //! Unsaved work: kept, offered back, never taken from a program that runs.
 
-use taxel::formats::shape::Shape;
-use taxel::storage::journal::{Journal, Orphan};
-use taxel::storage::store::Expected;
+use taxel::formats::StoredShape;
+use taxel::storage::{Expected, Journal, Orphan};
 
 use super::Scratch;
 use super::files;
 use super::shape;
 
-fn offered(scratch: &Scratch) -> Vec<Shape> {
+fn offered(scratch: &Scratch) -> Vec<StoredShape> {
     let orphans = Orphan::all(&scratch.library);
     orphans.into_iter().map(|orphan| orphan.shape).collect()
 }
 
 /// Work that a program left when it died.
-fn left(scratch: &Scratch, work: &Shape) {
+fn left(scratch: &Scratch, work: &StoredShape) {
     let mut journal = Journal::new(&scratch.library);
     journal.keep(work).expect("kept");
 }

@@ -18,12 +18,10 @@ mod trash;
 
 use std::path::{Path, PathBuf};
 
-use taxel::formats::name::Name;
-use taxel::formats::shape::Shape;
+use taxel::formats::{Name, StoredShape};
 use taxel::imprint::Imprint;
 use taxel::sensor::Sensor;
-use taxel::storage::error::LibraryError;
-use taxel::storage::store::{Expected, Library, Origin};
+use taxel::storage::{Expected, Library, LibraryError, ShapeOrigin};
 use tempfile::TempDir;
 
 /// A library in a folder that goes with it.
@@ -79,7 +77,7 @@ impl Scratch {
     /// The names of one's own shapes as they are listed.
     fn own(&self) -> Vec<String> {
         let entries = self.library.list().expect("listed").into_iter();
-        let own = entries.filter(|entry| entry.origin == Origin::Own);
+        let own = entries.filter(|entry| entry.origin == ShapeOrigin::Own);
         own.map(|entry| entry.name).collect()
     }
 }
@@ -94,11 +92,11 @@ fn files(folder: &Path) -> Vec<String> {
 }
 
 /// A shape that carries a number below 65,536.
-fn shape(name: &str, number: usize) -> Shape {
+fn shape(name: &str, number: usize) -> StoredShape {
     let mut imprint = Imprint::empty(16, 16);
     imprint.set_word(0, u64::try_from(number).expect("small"));
     let name = Name::new(name).expect("a name");
-    Shape::new(name, Sensor::default(), imprint, None).expect("16 x 16 both")
+    StoredShape::new(name, Sensor::default(), imprint, None).expect("16 x 16 both")
 }
 
 /// The message of a refusal, without the folder.

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use taxel::storage::store::Library;
+use taxel::storage::Library;
 
 use super::Scratch;
 use super::shape;

@@ -1,8 +1,7 @@
 //! Names: none leads out of the folder, upper and lower case are one, the file's name counts.
 
-use taxel::formats::name::{Name, NameError};
-use taxel::storage::error::LibraryError;
-use taxel::storage::store::Expected;
+use taxel::formats::{Name, NameError};
+use taxel::storage::{Expected, LibraryError};
 
 use super::Scratch;
 use super::refusal;

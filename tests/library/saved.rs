@@ -3,14 +3,13 @@
 use proptest::collection::vec;
 use proptest::prelude::*;
 use taxel::figure::{Figure, FigureKind};
-use taxel::formats::name::Name;
-use taxel::formats::shape::Shape;
+use taxel::formats::{Name, StoredShape};
 use taxel::imprint::Imprint;
 use taxel::parameter::Parameter;
 use taxel::picture::Picture;
 use taxel::sensor::Sensor;
 use taxel::source::Source;
-use taxel::storage::store::{Expected, Origin};
+use taxel::storage::{Expected, ShapeOrigin};
 
 use super::Scratch;
 
@@ -59,7 +58,7 @@ fn sources(side: u8) -> impl Strategy<Value = Option<Source>> {
     prop_oneof![Just(None), figure.prop_map(Some), picture.prop_map(Some)]
 }
 
-fn shapes() -> impl Strategy<Value = Shape> {
+fn shapes() -> impl Strategy<Value = StoredShape> {
     (imprints(), 1e-6..=1.0, 1e-6..=1000.0)
         .prop_flat_map(|(imprint, threshold, pitch)| {
             let sensor = Sensor::new(imprint.columns(), imprint.rows())
@@ -71,7 +70,7 @@ fn shapes() -> impl Strategy<Value = Shape> {
         })
         .prop_map(|(name, imprint, sensor, source)| {
             let name = Name::new(&name).expect("by the rules");
-            Shape::new(name, sensor, imprint, source).expect("of one size")
+            StoredShape::new(name, sensor, imprint, source).expect("of one size")
         })
 }
 
@@ -84,7 +83,7 @@ proptest! {
         let stamp = scratch.library.save(&first, Expected::Nothing).expect("saved");
         let loaded = scratch.library.load(first.name.as_str()).expect("loaded");
         prop_assert_eq!(&loaded.shape, &first);
-        prop_assert_eq!((loaded.stamp, loaded.origin), (stamp, Origin::Own));
+        prop_assert_eq!((loaded.stamp, loaded.origin), (stamp, ShapeOrigin::Own));
         // Another in its place, then through the trash.
         let second = second.renamed(first.name.clone());
         scratch.library.save(&second, Expected::Stamp(stamp)).expect("replaced");

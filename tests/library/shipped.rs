@@ -6,8 +6,7 @@ use taxel::description::{RegionKind, regions};
 use taxel::imprint::Imprint;
 use taxel::parameter::Parameter;
 use taxel::picture::Picture;
-use taxel::storage::shipped;
-use taxel::storage::store::{Library, Loaded, Origin};
+use taxel::storage::{Library, LoadedShape, ShapeOrigin, shipped};
 use taxel::touch::Plane;
 
 use super::Scratch;
@@ -15,7 +14,7 @@ use super::files;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/library");
 
-fn all() -> Vec<Loaded> {
+fn all() -> Vec<LoadedShape> {
     let scratch = Scratch::new();
     shipped::names()
         .map(|name| scratch.library.load(name).expect("whole"))
@@ -42,7 +41,7 @@ fn there_are_shapes_of_all_sorts() {
     let all = all();
     assert!(all.len() >= 16, "{}", all.len());
     let with = |sort: fn(usize, usize) -> bool| {
-        let fits = |loaded: &&Loaded| {
+        let fits = |loaded: &&LoadedShape| {
             let regions = regions(&loaded.shape.imprint);
             let holes = regions
                 .iter()
@@ -56,8 +55,8 @@ fn there_are_shapes_of_all_sorts() {
     assert!(with(|_, holes| holes == 1) >= 4);
     assert!(with(|_, holes| holes > 1) >= 4);
     assert!(with(|pieces, _| pieces > 1) >= 4);
-    for Loaded { shape, origin, .. } in all {
-        assert_eq!(origin, Origin::Shipped);
+    for LoadedShape { shape, origin, .. } in all {
+        assert_eq!(origin, ShapeOrigin::Shipped);
         if let Some(source) = shape.source {
             let touched = Plane::new(shape.sensor).touch(&source);
             assert_eq!(touched, shape.imprint, "{}", shape.name);
@@ -100,7 +99,7 @@ fn shifted(imprint: &Imprint, right: i16, down: i16) -> Imprint {
 #[test]
 fn a_picture_without_angle_and_zoom_is_a_plain_shift_everywhere() {
     let mut positions = 0;
-    for Loaded { shape, .. } in all() {
+    for LoadedShape { shape, .. } in all() {
         let (imprint, sensor) = (shape.imprint, shape.sensor);
         let bounds = imprint.bounds().expect("not empty");
         let home = Picture::at_home(imprint);

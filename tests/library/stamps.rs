@@ -3,8 +3,7 @@
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
-use taxel::storage::error::LibraryError;
-use taxel::storage::store::{Expected, Library};
+use taxel::storage::{Expected, Library, LibraryError};
 
 use super::Scratch;
 use super::refusal;

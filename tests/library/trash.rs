@@ -1,7 +1,6 @@
 //! Deleting and bringing back.
 
-use taxel::storage::error::LibraryError;
-use taxel::storage::trash::KEPT;
+use taxel::storage::{LibraryError, TRASH_KEPT};
 
 use super::Scratch;
 use super::files;
@@ -50,13 +49,13 @@ fn the_last_deleted_comes_back_first_and_never_over_another() {
 #[test]
 fn the_last_fifty_are_kept() {
     let scratch = Scratch::new();
-    for number in 0..KEPT + 5 {
+    for number in 0..TRASH_KEPT + 5 {
         let name = format!("shape {number}");
         scratch.save(&name, 1);
         scratch.library.delete(&name).expect("deleted");
     }
     let trash = files(&scratch.path(".trash"));
-    assert_eq!(trash.len(), KEPT);
+    assert_eq!(trash.len(), TRASH_KEPT);
     assert_eq!(
         trash.first().map(String::as_str),
         Some("0000000006 shape 5.json")
@@ -82,7 +81,7 @@ fn shapes_that_come_with_the_program_are_not_deleted() {
         refusal(scratch.library.delete("nothing"), &scratch),
         "no shape is called \"nothing\""
     );
-    let nowhere = taxel::storage::store::Library::open(scratch.path("nowhere"));
+    let nowhere = taxel::storage::Library::open(scratch.path("nowhere"));
     assert_eq!(
         refusal(nowhere.delete("nothing"), &scratch),
         "no shape is called \"nothing\""

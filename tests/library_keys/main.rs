@@ -5,7 +5,7 @@ mod unsaved;
 use std::path::Path;
 
 use proptest::prelude::*;
-use taxel::storage::store::Library;
+use taxel::storage::Library;
 use taxel::tui::app::document::Document;
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::runtime::perform::World;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::mpsc::channel;
 
-use taxel::storage::store::{Entry, Library, Origin};
+use taxel::storage::{Library, LibraryEntry, ShapeOrigin};
 use taxel::tui::app::message::Message;
 use taxel::tui::explore::message::WorkerEvent;
 use taxel::tui::runtime::perform::World;
@@ -65,7 +65,7 @@ fn unsaved_work_that_cannot_go_to_the_trash_stays() {
     assert!(later.app().ended());
     drop(later);
     let listed = Library::open(folder.path().to_owned()).list();
-    let own = |entry: &Entry| entry.origin == Origin::Own;
+    let own = |entry: &LibraryEntry| entry.origin == ShapeOrigin::Own;
     assert!(!listed.expect("listed").iter().any(own));
     let again = session_on(folder.path(), "");
     shows(&again, &["Unsaved work was left: 1 taxel."]);

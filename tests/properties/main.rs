@@ -13,7 +13,7 @@ use drawn::{angle, area, drawn, figure, hundredths, imprints, kind, moved, polyg
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use taxel::figure::{Figure, FigureKind};
-use taxel::formats::shape::Shape;
+use taxel::formats::StoredShape;
 use taxel::geometry::Extent;
 use taxel::imprint::Imprint;
 use taxel::parameter::{PARAMETERS, Parameter};
@@ -219,9 +219,9 @@ proptest! {
                 Some(Source::Figure(figure(&drawn, side).with(Parameter::Y0, long(numbers[1]), side).expect("in range")))
             }
         };
-        let name = taxel::formats::name::Name::new(&name).expect("the names of the test are right");
-        let shape = Shape::new(name, sensor, imprint, source).expect("of one size");
-        prop_assert_eq!(Shape::read(shape.write().as_bytes()), Ok(shape));
+        let name = taxel::formats::Name::new(&name).expect("the names of the test are right");
+        let shape = StoredShape::new(name, sensor, imprint, source).expect("of one size");
+        prop_assert_eq!(StoredShape::read(shape.write().as_bytes()), Ok(shape));
     }
 
     #[test]

@@ -3,8 +3,7 @@
 use std::time::Duration;
 
 use rustix::process::Signal;
-use taxel::storage::journal::Orphan;
-use taxel::storage::store::Library;
+use taxel::storage::{Library, Orphan};
 use taxel::tui::app::state::{App, Options};
 use taxel::tui::runtime::perform::World;
 use taxel::tui::terminal;

@@ -4,20 +4,19 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use taxel::formats::shape::Shape;
-use taxel::storage::journal::Journal;
-use taxel::storage::store::{Expected, Library};
+use taxel::formats::StoredShape;
+use taxel::storage::{Expected, Journal, Library};
 
 use crate::program::{Program, Start, TAXEL};
 
 /// A shape with this first row, on 12 x 10 taxels.
-fn shape(name: &str, row: &str) -> Shape {
+fn shape(name: &str, row: &str) -> StoredShape {
     let text = format!(
         "{{\"format\":\"taxel-shape/1\",\"name\":\"{name}\",\"sensor\":{{\"columns\":12,\"rows\":10}},\
           \"imprint\":[\"{row}\"{}]}}",
         ",\"............\"".repeat(9)
     );
-    Shape::read(text.as_bytes()).expect("a shape")
+    StoredShape::read(text.as_bytes()).expect("a shape")
 }
 
 /// What `taxel script` prints.

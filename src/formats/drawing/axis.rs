@@ -5,10 +5,10 @@ const STEPS: f64 = 8.0;
 
 /// Where the marks of an axis stand, in its unit, with their labels.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Marks(pub(super) Vec<(f64, String)>);
+pub(super) struct Ticks(pub(super) Vec<(f64, String)>);
 
-impl Marks {
-    /// Marks from 0 to `length`, at steps of 1, 2 or 5 times a power of ten, none smaller than `least`.
+impl Ticks {
+    /// Ticks from 0 to `length`, at steps of 1, 2 or 5 times a power of ten, none smaller than `least`.
     pub(super) fn new(length: f64, least: f64) -> Self {
         let smallest = (length / STEPS).max(least);
         let power = 10_f64.powf(smallest.log10().floor());
@@ -40,7 +40,7 @@ mod tests {
     use super::*;
 
     fn labels(length: f64, least: f64) -> Vec<String> {
-        let Marks(marks) = Marks::new(length, least);
+        let Ticks(marks) = Ticks::new(length, least);
         marks.into_iter().map(|(_, label)| label).collect()
     }
 

@@ -3,7 +3,7 @@
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 
 use crate::formats::drawing::ink::Ink;
-use crate::formats::drawing::scene::{Anchor, Place};
+use crate::formats::drawing::scene::{Position, TextAnchor};
 
 const WEIGHT: FontWeight = FontWeight::Regular;
 /// Eight points at four pixels.
@@ -12,13 +12,13 @@ const HEIGHT: RasterHeight = RasterHeight::Size32;
 const ABOVE: i32 = 26;
 
 /// Writes a line of text; the place, in pixels, is on its base line.
-pub(super) fn write(ink: &mut Ink, text: &str, place: Place, anchor: Anchor, upright: bool) {
+pub(super) fn write(ink: &mut Ink, text: &str, place: Position, anchor: TextAnchor, upright: bool) {
     let step = whole_of(get_raster_width(WEIGHT, HEIGHT));
     let width = step.saturating_mul(whole_of(text.chars().count()));
     let back = match anchor {
-        Anchor::Start => 0,
-        Anchor::Middle => width / 2,
-        Anchor::End => width,
+        TextAnchor::Start => 0,
+        TextAnchor::Middle => width / 2,
+        TextAnchor::End => width,
     };
     let (x, y) = (rounded(place.0), rounded(place.1));
     let mut along = -back;

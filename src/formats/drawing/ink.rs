@@ -4,7 +4,7 @@
 //! larger, a tenth of it. Here a pixel's share of a rectangle is the product of two overlaps, and its share of a line
 //! follows from its distance: within half a pixel of the edge it falls from 1 to 0. So ends and corners are round.
 
-use crate::formats::drawing::scene::{Line, Place, Step};
+use crate::formats::drawing::scene::{Position, Segment, Stroke};
 
 /// Straight pieces of a cubic curve. An ellipse has eight curves: no piece is off by more than 0.04 pixels of 600.
 const PIECES: u8 = 32;
@@ -41,7 +41,7 @@ impl Ink {
     }
 
     /// The corners of the page.
-    fn all(&self) -> (Place, Place) {
+    fn all(&self) -> (Position, Position) {
         ((0.0, 0.0), (self.width.into(), self.height.into()))
     }
 
@@ -58,7 +58,7 @@ impl Ink {
     }
 
     /// Fills rectangles that do not overlap; where they touch no seam is left.
-    pub(super) fn fill(&mut self, rectangles: &[(Place, Place)], grey: u8) {
+    pub(super) fn fill(&mut self, rectangles: &[(Position, Position)], grey: u8) {
         let mut shares = Shares::new(self);
         for &(low, high) in rectangles {
             let overlap = |at: u32, low: f64, high: f64| {
@@ -73,7 +73,12 @@ impl Ink {
     }
 
     /// Draws a path's line, only inside `within` where that is given.
-    pub(super) fn stroke(&mut self, steps: &[Step], line: Line, within: Option<(Place, Place)>) {
+    pub(super) fn stroke(
+        &mut self,
+        steps: &[Segment],
+        line: Stroke,
+        within: Option<(Position, Position)>,
+    ) {
         let within = within.unwrap_or(self.all());
         let mut pieces = flat(steps);
         if let Some(dash) = line.dash {
@@ -132,8 +137,8 @@ impl Shares {
     )]
     fn each(
         &mut self,
-        (low, high): (Place, Place),
-        within: (Place, Place),
+        (low, high): (Position, Position),
+        within: (Position, Position),
         share: impl Fn(f64, u32, u32) -> f64,
     ) {
         let pixels = |low: f64, high: f64, least: f64, most: f64| {
@@ -151,7 +156,7 @@ impl Shares {
 }
 
 /// From a place to a straight piece.
-fn distance(place: Place, from: Place, to: Place) -> f64 {
+fn distance(place: Position, from: Position, to: Position) -> f64 {
     let (way, off) = (
         (to.0 - from.0, to.1 - from.1),
         (place.0 - from.0, place.1 - from.1),
@@ -166,10 +171,10 @@ fn distance(place: Place, from: Place, to: Place) -> f64 {
 }
 
 /// The pieces of a path as corners.
-fn flat(steps: &[Step]) -> Vec<Vec<Place>> {
-    let mut pieces: Vec<Vec<Place>> = Vec::new();
+fn flat(steps: &[Segment]) -> Vec<Vec<Position>> {
+    let mut pieces: Vec<Vec<Position>> = Vec::new();
     for step in steps {
-        if let Step::Move(to) = step {
+        if let Segment::Move(to) = step {
             pieces.push(vec![*to]);
             continue;
         }
@@ -181,7 +186,7 @@ fn flat(steps: &[Step]) -> Vec<Vec<Place>> {
             continue;
         };
         match *step {
-            Step::Curve(first, second, to) => piece.extend((1..=PIECES).map(|part| {
+            Segment::Curve(first, second, to) => piece.extend((1..=PIECES).map(|part| {
                 let ahead = f64::from(part) / f64::from(PIECES);
                 let behind = 1.0 - ahead;
                 let shares = [
@@ -191,25 +196,25 @@ fn flat(steps: &[Step]) -> Vec<Vec<Place>> {
                     ahead * ahead * ahead,
                 ];
                 let corners = [from, first, second, to];
-                let along = |of: fn(Place) -> f64| -> f64 {
+                let along = |of: fn(Position) -> f64| -> f64 {
                     let terms = shares.iter().zip(corners);
                     terms.map(|(share, corner)| share * of(corner)).sum()
                 };
                 (along(|place| place.0), along(|place| place.1))
             })),
-            Step::Close => piece.push(start),
-            Step::Line(to) | Step::Move(to) => piece.push(to),
+            Segment::Close => piece.push(start),
+            Segment::Line(to) | Segment::Move(to) => piece.push(to),
         }
     }
     pieces
 }
 
 /// The dashes along pieces; each piece begins with one.
-fn dashed(pieces: &[Vec<Place>], [dash, gap]: [f64; 2]) -> Vec<Vec<Place>> {
+fn dashed(pieces: &[Vec<Position>], [dash, gap]: [f64; 2]) -> Vec<Vec<Position>> {
     let mut dashes = Vec::new();
     for piece in pieces {
         let (mut left, mut drawn) = (dash, true);
-        let mut open: Vec<Place> = piece.first().copied().into_iter().collect();
+        let mut open: Vec<Position> = piece.first().copied().into_iter().collect();
         for pair in piece.windows(2) {
             let (mut from, to) = (pair[0], pair[1]);
             loop {
@@ -254,9 +259,9 @@ mod tests {
 
     #[test]
     fn lines_have_their_width_and_stay_within() {
-        let line = vec![Step::Move((-5.0, 2.0)), Step::Line((50.0, 2.0))];
+        let line = vec![Segment::Move((-5.0, 2.0)), Segment::Line((50.0, 2.0))];
         let mut page = Ink::new(3, 4);
-        page.stroke(&line, Line::black(2.0), Some(((1.0, 0.0), (2.0, 4.0))));
+        page.stroke(&line, Stroke::black(2.0), Some(((1.0, 0.0), (2.0, 4.0))));
         let column = |x: usize| (0..4).map(|y| page.pixels()[y * 3 + x]).collect::<Vec<_>>();
         assert_eq!(column(1), [255, 0, 0, 255]);
         assert_eq!((column(0), column(2)), (vec![255; 4], vec![255; 4]));
@@ -276,8 +281,12 @@ mod tests {
     fn what_is_far_away_or_no_number_draws_nothing() {
         let mut page = Ink::new(2, 2);
         for far in [1e300, -1e300, f64::NAN, f64::INFINITY] {
-            let line = [Step::Move((far, far)), Step::Line((far, 1.0)), Step::Close];
-            page.stroke(&line, Line::black(1.0), None);
+            let line = [
+                Segment::Move((far, far)),
+                Segment::Line((far, 1.0)),
+                Segment::Close,
+            ];
+            page.stroke(&line, Stroke::black(1.0), None);
             page.darken(i32::MAX, -1, 255);
         }
         assert_eq!(page.pixels().len(), 4);

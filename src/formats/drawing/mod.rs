@@ -7,7 +7,7 @@
 //!
 //! ```
 //! use taxel::figure::{Figure, FigureKind};
-//! use taxel::formats::drawing::Drawing;
+//! use taxel::formats::Drawing;
 //! use taxel::sensor::Sensor;
 //! use taxel::touch::Plane;
 //! let figure = Figure::default_of(FigureKind::Ellipse, 16);
@@ -40,8 +40,8 @@ use crate::geometry::Solid;
 use crate::imprint::Imprint;
 use crate::parameter::Parameter;
 use crate::sensor::MAX_SIDE;
-use page::{Page, Subject};
-use scene::Step;
+use page::{DrawingPage, Subject};
+use scene::Segment;
 
 /// Wider ones would make the page wider than paper.
 const LONGEST_TITLE: usize = 100;
@@ -56,7 +56,7 @@ pub struct Drawing {
     regions: Vec<Region<'static>>,
     chosen: Option<usize>,
     /// In cell sides.
-    outline: Vec<Step>,
+    outline: Vec<Segment>,
     pitch_mm: Option<f64>,
     title: Option<String>,
 }
@@ -125,10 +125,10 @@ impl Drawing {
         png::write(&self.page())
     }
 
-    fn page(&self) -> Page {
+    fn page(&self) -> DrawingPage {
         let region = self.chosen.and_then(|index| self.regions.get(index));
         let described = region.map(|region| (region.taxels(), Description::of(region)));
-        Page::of(&Subject {
+        DrawingPage::of(&Subject {
             imprint: &self.imprint,
             described,
             outline: &self.outline,

@@ -3,11 +3,11 @@
 use std::collections::VecDeque;
 
 use crate::formats::drawing::scene;
-use crate::formats::drawing::scene::{Place, Step};
+use crate::formats::drawing::scene::{Position, Segment};
 use crate::geometry::{Ellipse, Pen, Point, Side, Solid};
 
 /// The whole boundary. Edges that follow each other are one piece, so that their corners are whole.
-pub(super) fn steps(solid: &impl Solid) -> Vec<Step> {
+pub(super) fn steps(solid: &impl Solid) -> Vec<Segment> {
     let mut tracer = Tracer::default();
     solid.draw(&mut tracer);
     tracer.end(false);
@@ -17,19 +17,19 @@ pub(super) fn steps(solid: &impl Solid) -> Vec<Step> {
 /// Writes down what is drawn.
 #[derive(Debug, Default)]
 struct Tracer {
-    steps: Vec<Step>,
+    steps: Vec<Segment>,
     /// The corners of the piece under way. It grows at its end, or at its start where a ring is drawn backwards.
-    piece: VecDeque<Place>,
+    piece: VecDeque<Position>,
 }
 
 impl Tracer {
     /// Writes down the piece under way.
     fn end(&mut self, closed: bool) {
         let mut corners = self.piece.drain(..);
-        self.steps.extend(corners.next().map(Step::Move));
-        self.steps.extend(corners.map(Step::Line));
+        self.steps.extend(corners.next().map(Segment::Move));
+        self.steps.extend(corners.map(Segment::Line));
         if closed {
-            self.steps.push(Step::Close);
+            self.steps.push(Segment::Close);
         }
     }
 }
@@ -73,10 +73,18 @@ mod tests {
             .with(Parameter::Thickness, 1.0, 16)
             .expect("in range");
         let steps = steps(&frame);
-        let count = |wanted: fn(&Step) -> bool| steps.iter().filter(|step| wanted(step)).count();
-        assert_eq!(count(|step| matches!(step, Step::Move(_))), 2, "{steps:?}");
-        assert_eq!(count(|step| matches!(step, Step::Line(_))), 6, "{steps:?}");
-        assert_eq!(count(|step| matches!(step, Step::Close)), 2, "{steps:?}");
+        let count = |wanted: fn(&Segment) -> bool| steps.iter().filter(|step| wanted(step)).count();
+        assert_eq!(
+            count(|step| matches!(step, Segment::Move(_))),
+            2,
+            "{steps:?}"
+        );
+        assert_eq!(
+            count(|step| matches!(step, Segment::Line(_))),
+            6,
+            "{steps:?}"
+        );
+        assert_eq!(count(|step| matches!(step, Segment::Close)), 2, "{steps:?}");
     }
 
     #[test]
@@ -84,7 +92,7 @@ mod tests {
         let circle = scene::ellipse((1.0, 2.0), (3.0, 0.0), (0.0, 3.0));
         let mut from = (4.0, 2.0);
         for step in circle {
-            let Step::Curve(a, b, to) = step else {
+            let Segment::Curve(a, b, to) = step else {
                 continue;
             };
             for part in 0..=10 {

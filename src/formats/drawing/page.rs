@@ -1,8 +1,10 @@
 //! Where everything stands on the page: the plane with its axes, what is described on it, the legend below.
 
 use crate::description::{Description, RegionKind, Value};
-use crate::formats::drawing::axis::Marks;
-use crate::formats::drawing::scene::{Anchor, Line, Mark, Place, Step, circle, rectangle};
+use crate::formats::drawing::axis::Ticks;
+use crate::formats::drawing::scene::{
+    Element, Position, Segment, Stroke, TextAnchor, circle, rectangle,
+};
 use crate::formats::value;
 use crate::imprint::Imprint;
 
@@ -22,24 +24,24 @@ const SWATCH: f64 = 16.0;
 /// Taxels of the region that is described, and others; the lines between cells.
 const DESCRIBED: u8 = 168;
 const OTHER: u8 = 220;
-const CELLS: Line = Line {
+const CELLS: Stroke = Stroke {
     width: 0.4,
     grey: 150,
     dash: None,
 };
 /// Through the taxels of other regions: a shade alone is lost on a bad printer.
-const HATCH: Line = Line {
+const HATCH: Stroke = Stroke {
     width: 0.5,
     grey: 110,
     dash: None,
 };
-const OUTLINE: Line = Line::black(1.3);
-const RECTANGLE: Line = Line {
+const OUTLINE: Stroke = Stroke::black(1.3);
+const RECTANGLE: Stroke = Stroke {
     width: 0.9,
     grey: 0,
     dash: Some([4.0, 2.5]),
 };
-const POINT: Line = Line::black(1.1);
+const POINT: Stroke = Stroke::black(1.1);
 
 /// What a page shows.
 pub(super) struct Subject<'a> {
@@ -47,38 +49,38 @@ pub(super) struct Subject<'a> {
     /// The taxels of a region and its description.
     pub(super) described: Option<(&'a Imprint, Description)>,
     /// In cell sides.
-    pub(super) outline: &'a [Step],
+    pub(super) outline: &'a [Segment],
     pub(super) pitch_mm: Option<f64>,
     pub(super) title: Option<&'a str>,
 }
 
 /// A page: its size in points, where the plane is on it, and what it shows.
-pub(super) struct Page {
-    pub(super) size: Place,
+pub(super) struct DrawingPage {
+    pub(super) size: Position,
     /// Top left and bottom right corner of the sensory plane.
-    pub(super) plane: (Place, Place),
+    pub(super) plane: (Position, Position),
     pub(super) title: String,
-    pub(super) marks: Vec<Mark>,
+    pub(super) marks: Vec<Element>,
 }
 
 /// The page while it is laid out.
 struct Layout<'a> {
     subject: &'a Subject<'a>,
-    marks: Vec<Mark>,
-    corner: Place,
+    marks: Vec<Element>,
+    corner: Position,
     cell: f64,
     /// How far down and to the right something stands.
-    end: Place,
+    end: Position,
 }
 
-impl Page {
+impl DrawingPage {
     /// Lays out what is to be shown.
     pub(super) fn of(subject: &Subject<'_>) -> Self {
         let (columns, rows) = (subject.imprint.columns(), subject.imprint.rows());
         let pitch = subject.pitch_mm.unwrap_or(1.0);
         // In cells no mark stands between two of them.
         let least = subject.pitch_mm.map_or(1.0, |_| 0.0);
-        let marks = |side: u8| Marks::new(f64::from(side) * pitch, least);
+        let marks = |side: u8| Ticks::new(f64::from(side) * pitch, least);
         let (across, along) = (marks(columns), marks(rows));
         let title = subject.title.map_or(0.0, |_| ROW);
         let corner = (
@@ -95,7 +97,7 @@ impl Page {
         let plane = (corner, layout.place((columns.into(), rows.into())));
         layout.end = plane.1;
         if let Some(title) = subject.title {
-            layout.text(title, (corner.0, MARGIN + TEXT), Anchor::Start);
+            layout.text(title, (corner.0, MARGIN + TEXT), TextAnchor::Start);
         }
         layout.taxels();
         layout.axes(&across, &along, plane);
@@ -119,16 +121,16 @@ fn advance(characters: usize) -> f64 {
 
 impl Layout<'_> {
     /// Where a point of the plane, in cell sides, is on the page.
-    fn place(&self, (x, y): Place) -> Place {
+    fn place(&self, (x, y): Position) -> Position {
         (self.corner.0 + x * self.cell, self.corner.1 + y * self.cell)
     }
 
-    fn text(&mut self, text: &str, place: Place, anchor: Anchor) {
-        if anchor == Anchor::Start {
+    fn text(&mut self, text: &str, place: Position, anchor: TextAnchor) {
+        if anchor == TextAnchor::Start {
             let end = place.0 + advance(text.chars().count());
             self.end.0 = self.end.0.max(end);
         }
-        self.marks.push(Mark::Text {
+        self.marks.push(Element::Text {
             text: text.to_owned(),
             place,
             anchor,
@@ -136,16 +138,16 @@ impl Layout<'_> {
         });
     }
 
-    fn filled(&mut self, what: &'static str, rectangles: Vec<(Place, Place)>, grey: u8) {
-        self.marks.push(Mark::Fill {
+    fn filled(&mut self, what: &'static str, rectangles: Vec<(Position, Position)>, grey: u8) {
+        self.marks.push(Element::Fill {
             what,
             rectangles,
             grey,
         });
     }
 
-    fn line(&mut self, what: &'static str, steps: Vec<Step>, line: Line) {
-        self.marks.push(Mark::Line {
+    fn line(&mut self, what: &'static str, steps: Vec<Segment>, line: Stroke) {
+        self.marks.push(Element::Line {
             what,
             steps,
             line,
@@ -185,40 +187,44 @@ impl Layout<'_> {
         let mut lines = Vec::new();
         for column in 0..=imprint.columns() {
             let x = f64::from(column);
-            lines.push(Step::Move(self.place((x, 0.0))));
-            lines.push(Step::Line(self.place((x, rows))));
+            lines.push(Segment::Move(self.place((x, 0.0))));
+            lines.push(Segment::Line(self.place((x, rows))));
         }
         for row in 0..=imprint.rows() {
             let y = f64::from(row);
-            lines.push(Step::Move(self.place((0.0, y))));
-            lines.push(Step::Line(self.place((columns, y))));
+            lines.push(Segment::Move(self.place((0.0, y))));
+            lines.push(Segment::Line(self.place((columns, y))));
         }
         self.line("cells", lines, CELLS);
     }
 
     /// The frame, the marks of both axes, what they are and their unit.
-    fn axes(&mut self, across: &Marks, along: &Marks, (from, to): (Place, Place)) {
+    fn axes(&mut self, across: &Ticks, along: &Ticks, (from, to): (Position, Position)) {
         let scale = self.cell / self.subject.pitch_mm.unwrap_or(1.0);
         let unit = self.unit();
         let mut ticks = rectangle(from, to);
         for (value, label) in &across.0 {
             let x = from.0 + value * scale;
-            ticks.extend([Step::Move((x, from.1 - 3.0)), Step::Line((x, from.1))]);
-            self.text(label, (x, from.1 - 5.0), Anchor::Middle);
+            ticks.extend([Segment::Move((x, from.1 - 3.0)), Segment::Line((x, from.1))]);
+            self.text(label, (x, from.1 - 5.0), TextAnchor::Middle);
         }
         for (value, label) in &along.0 {
             let y = from.1 + value * scale;
-            ticks.extend([Step::Move((from.0 - 3.0, y)), Step::Line((from.0, y))]);
-            self.text(label, (from.0 - 5.0, y + TEXT * 0.35), Anchor::End);
+            ticks.extend([Segment::Move((from.0 - 3.0, y)), Segment::Line((from.0, y))]);
+            self.text(label, (from.0 - 5.0, y + TEXT * 0.35), TextAnchor::End);
         }
-        self.line("axes", ticks, Line::black(0.6));
+        self.line("axes", ticks, Stroke::black(0.6));
         let middle = (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1));
         let above = from.1 - 5.0 - TEXT * 1.5;
-        self.text(&format!("x / {unit}"), (middle.0, above), Anchor::Middle);
-        self.marks.push(Mark::Text {
+        self.text(
+            &format!("x / {unit}"),
+            (middle.0, above),
+            TextAnchor::Middle,
+        );
+        self.marks.push(Element::Text {
             text: format!("y / {unit}"),
             place: (MARGIN + TEXT, middle.1),
-            anchor: Anchor::Middle,
+            anchor: TextAnchor::Middle,
             upright: true,
         });
     }
@@ -226,9 +232,9 @@ impl Layout<'_> {
     fn outline(&mut self) {
         let place = |place| self.place(place);
         let steps = self.subject.outline.iter().map(|step| step.map(place));
-        let steps: Vec<Step> = steps.collect();
+        let steps: Vec<Segment> = steps.collect();
         if !steps.is_empty() {
-            self.marks.push(Mark::Line {
+            self.marks.push(Element::Line {
                 what: "outline",
                 steps,
                 line: OUTLINE,
@@ -262,14 +268,14 @@ impl Layout<'_> {
         let told = |value: Value| value::times(value, pitch, 4).unwrap_or_default();
         let unit = self.unit();
         let mut y = self.end.1 + ROW * 1.4;
-        let mut row = |layout: &mut Self, text: &str, sign: &dyn Fn(&mut Self, Place)| {
+        let mut row = |layout: &mut Self, text: &str, sign: &dyn Fn(&mut Self, Position)| {
             sign(layout, (layout.corner.0 + SWATCH / 2.0, y - TEXT * 0.35));
             let place = (layout.corner.0 + SWATCH + 6.0, y);
-            layout.text(text, place, Anchor::Start);
+            layout.text(text, place, TextAnchor::Start);
             layout.end.1 = y + TEXT * 0.3;
             y += ROW;
         };
-        let box_of = |(x, y): Place| ((x - 6.0, y - 4.0), (x + 6.0, y + 4.0));
+        let box_of = |(x, y): Position| ((x - 6.0, y - 4.0), (x + 6.0, y + 4.0));
         let all = self.subject.imprint.count();
         let described = self.subject.described.as_ref().map(|(_, it)| *it);
         let na = described.map_or(0, |description| description.na);
@@ -302,9 +308,9 @@ impl Layout<'_> {
                 },
             );
         }
-        let stretch = |(x, y): Place| {
+        let stretch = |(x, y): Position| {
             let half = SWATCH / 2.0;
-            vec![Step::Move((x - half, y)), Step::Line((x + half, y))]
+            vec![Segment::Move((x - half, y)), Segment::Line((x + half, y))]
         };
         if !self.subject.outline.is_empty() {
             row(self, "outline", &|layout, place| {
@@ -334,19 +340,19 @@ impl Layout<'_> {
 }
 
 /// A stroke through each cell, from its lower left corner up.
-fn hatch(cells: &[(Place, Place)]) -> Vec<Step> {
-    let stroke = |&((left, top), (right, bottom)): &(Place, Place)| {
-        [Step::Move((left, bottom)), Step::Line((right, top))]
+fn hatch(cells: &[(Position, Position)]) -> Vec<Segment> {
+    let stroke = |&((left, top), (right, bottom)): &(Position, Position)| {
+        [Segment::Move((left, bottom)), Segment::Line((right, top))]
     };
     cells.iter().flat_map(stroke).collect()
 }
 
 /// An upright cross.
-fn cross((x, y): Place, arm: f64) -> Vec<Step> {
+fn cross((x, y): Position, arm: f64) -> Vec<Segment> {
     vec![
-        Step::Move((x - arm, y)),
-        Step::Line((x + arm, y)),
-        Step::Move((x, y - arm)),
-        Step::Line((x, y + arm)),
+        Segment::Move((x - arm, y)),
+        Segment::Line((x + arm, y)),
+        Segment::Move((x, y - arm)),
+        Segment::Line((x, y + arm)),
     ]
 }

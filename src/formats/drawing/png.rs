@@ -6,8 +6,8 @@ use png::{BitDepth, ColorType, Encoder, PixelDimensions, Unit};
 
 use crate::formats::drawing::glyph;
 use crate::formats::drawing::ink::Ink;
-use crate::formats::drawing::page::Page;
-use crate::formats::drawing::scene::{Line, Mark, Place};
+use crate::formats::drawing::page::DrawingPage;
+use crate::formats::drawing::scene::{Element, Position, Stroke};
 
 /// Pixels a point.
 const SCALE: f64 = 4.0;
@@ -15,13 +15,13 @@ const SCALE: f64 = 4.0;
 const DOTS_A_METRE: u32 = 11_339;
 
 /// The file.
-pub(super) fn write(page: &Page) -> io::Result<Vec<u8>> {
-    let place = |(x, y): Place| (x * SCALE, y * SCALE);
+pub(super) fn write(page: &DrawingPage) -> io::Result<Vec<u8>> {
+    let place = |(x, y): Position| (x * SCALE, y * SCALE);
     let plane = (place(page.plane.0), place(page.plane.1));
     let mut ink = Ink::new(pixels(page.size.0), pixels(page.size.1));
     for mark in &page.marks {
         match mark {
-            Mark::Fill {
+            Element::Fill {
                 rectangles, grey, ..
             } => {
                 let scaled = rectangles
@@ -29,21 +29,21 @@ pub(super) fn write(page: &Page) -> io::Result<Vec<u8>> {
                     .map(|&(low, high)| (place(low), place(high)));
                 ink.fill(&scaled.collect::<Vec<_>>(), *grey);
             }
-            Mark::Line {
+            Element::Line {
                 steps,
                 line,
                 clipped,
                 ..
             } => {
                 let steps: Vec<_> = steps.iter().map(|step| step.map(place)).collect();
-                let line = Line {
+                let line = Stroke {
                     width: line.width * SCALE,
                     dash: line.dash.map(|dash| dash.map(|length| length * SCALE)),
                     ..*line
                 };
                 ink.stroke(&steps, line, clipped.then_some(plane));
             }
-            Mark::Text {
+            Element::Text {
                 text,
                 place: at,
                 anchor,

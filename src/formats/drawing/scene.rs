@@ -1,24 +1,24 @@
 //! What a page is made of: paths and texts, in points from its top left corner, y down.
 
 /// A point of the page, or of the plane in cell sides.
-pub(super) type Place = (f64, f64);
+pub(super) type Position = (f64, f64);
 
 /// A piece of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Step {
+pub(super) enum Segment {
     /// Begins a new piece.
-    Move(Place),
+    Move(Position),
     /// A straight line.
-    Line(Place),
+    Line(Position),
     /// A cubic curve: two control points, the end.
-    Curve(Place, Place, Place),
+    Curve(Position, Position, Position),
     /// Back to where the piece began.
     Close,
 }
 
-impl Step {
+impl Segment {
     /// The step with each of its points moved by a function.
-    pub(super) fn map(self, place: impl Fn(Place) -> Place) -> Self {
+    pub(super) fn map(self, place: impl Fn(Position) -> Position) -> Self {
         match self {
             Self::Move(to) => Self::Move(place(to)),
             Self::Line(to) => Self::Line(place(to)),
@@ -29,24 +29,24 @@ impl Step {
 }
 
 /// A rectangle's path.
-pub(super) fn rectangle((left, top): Place, (right, bottom): Place) -> Vec<Step> {
+pub(super) fn rectangle((left, top): Position, (right, bottom): Position) -> Vec<Segment> {
     vec![
-        Step::Move((left, top)),
-        Step::Line((right, top)),
-        Step::Line((right, bottom)),
-        Step::Line((left, bottom)),
-        Step::Close,
+        Segment::Move((left, top)),
+        Segment::Line((right, top)),
+        Segment::Line((right, bottom)),
+        Segment::Line((left, bottom)),
+        Segment::Close,
     ]
 }
 
 /// A circle's path.
-pub(super) fn circle((x, y): Place, radius: f64) -> Vec<Step> {
+pub(super) fn circle((x, y): Position, radius: f64) -> Vec<Segment> {
     ellipse((x, y), (radius, 0.0), (0.0, radius))
 }
 
 /// The path of an ellipse, the image of the unit circle: its centre, and where the circle's two axes go. Eight cubic
 /// curves, which stray from it by 4·10⁻⁶ of its size.
-pub(super) fn ellipse(centre: Place, across: Place, along: Place) -> Vec<Step> {
+pub(super) fn ellipse(centre: Position, across: Position, along: Position) -> Vec<Segment> {
     const PARTS: u8 = 8;
     let part = std::f64::consts::TAU / f64::from(PARTS);
     // The usual length of a circle's control arms.
@@ -57,23 +57,23 @@ pub(super) fn ellipse(centre: Place, across: Place, along: Place) -> Vec<Step> {
             centre.1 + across.1 * u + along.1 * v,
         )
     };
-    let mut steps = vec![Step::Move(image(1.0, 0.0))];
+    let mut steps = vec![Segment::Move(image(1.0, 0.0))];
     for index in 0..PARTS {
         let (sin, cos) = (f64::from(index) * part).sin_cos();
         let (next_sin, next_cos) = (f64::from(index + 1) * part).sin_cos();
-        steps.push(Step::Curve(
+        steps.push(Segment::Curve(
             image(cos - arm * sin, sin + arm * cos),
             image(next_cos + arm * next_sin, next_sin - arm * next_cos),
             image(next_cos, next_sin),
         ));
     }
-    steps.push(Step::Close);
+    steps.push(Segment::Close);
     steps
 }
 
 /// How a line is drawn; with round ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Line {
+pub(super) struct Stroke {
     /// Points.
     pub(super) width: f64,
     /// 0 black, 255 white.
@@ -82,7 +82,7 @@ pub(super) struct Line {
     pub(super) dash: Option<[f64; 2]>,
 }
 
-impl Line {
+impl Stroke {
     /// An unbroken black line.
     pub(super) const fn black(width: f64) -> Self {
         Self {
@@ -95,7 +95,7 @@ impl Line {
 
 /// Which point of a text stands at its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Anchor {
+pub(super) enum TextAnchor {
     /// Where it begins.
     Start,
     /// The middle.
@@ -106,12 +106,12 @@ pub(super) enum Anchor {
 
 /// A thing on the page; later ones lie on earlier ones.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Mark {
+pub(super) enum Element {
     /// Rectangles that do not overlap, by two corners each, filled.
     Fill {
         /// What it is, in a word.
         what: &'static str,
-        rectangles: Vec<(Place, Place)>,
+        rectangles: Vec<(Position, Position)>,
         /// 0 black, 255 white.
         grey: u8,
     },
@@ -119,15 +119,15 @@ pub(super) enum Mark {
     Line {
         /// What it is, in a word.
         what: &'static str,
-        steps: Vec<Step>,
-        line: Line,
+        steps: Vec<Segment>,
+        line: Stroke,
         clipped: bool,
     },
     /// A line of text; the place is on its base line. An upright one runs upwards.
     Text {
         text: String,
-        place: Place,
-        anchor: Anchor,
+        place: Position,
+        anchor: TextAnchor,
         upright: bool,
     },
 }

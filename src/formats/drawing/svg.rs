@@ -1,12 +1,12 @@
 //! A page as SVG: one element a mark, text as text.
 
-use crate::formats::drawing::page::{Page, TEXT};
-use crate::formats::drawing::scene::{Anchor, Line, Mark, Place, Step, rectangle};
+use crate::formats::drawing::page::{DrawingPage, TEXT};
+use crate::formats::drawing::scene::{Element, Position, Segment, Stroke, TextAnchor, rectangle};
 use crate::formats::value::decimal;
 use crate::formats::xml::escaped;
 
 /// The file.
-pub(super) fn write(page: &Page) -> String {
+pub(super) fn write(page: &DrawingPage) -> String {
     let (width, height) = (number(page.size.0), number(page.size.1));
     let title = escaped(&page.title);
     let mut svg = format!(
@@ -19,7 +19,7 @@ pub(super) fn write(page: &Page) -> String {
     );
     for mark in &page.marks {
         svg += &match mark {
-            Mark::Fill {
+            Element::Fill {
                 what,
                 rectangles,
                 grey,
@@ -31,7 +31,7 @@ pub(super) fn write(page: &Page) -> String {
                 let fill = paint(*grey);
                 format!("<path class=\"{what}\" fill=\"{fill}\" d=\"{data}\"/>\n")
             }
-            Mark::Line {
+            Element::Line {
                 what,
                 steps,
                 line,
@@ -45,7 +45,7 @@ pub(super) fn write(page: &Page) -> String {
                     path
                 }
             }
-            Mark::Text {
+            Element::Text {
                 text,
                 place,
                 anchor,
@@ -58,7 +58,7 @@ pub(super) fn write(page: &Page) -> String {
 
 /// What is inside a rectangle of the page only. An inner viewport needs no name, which could be that of another
 /// drawing's on the same web page.
-fn cut_off(inner: &str, ((left, top), (right, bottom)): (Place, Place)) -> String {
+fn cut_off(inner: &str, ((left, top), (right, bottom)): (Position, Position)) -> String {
     let (x, y) = (number(left), number(top));
     let (width, height) = (number(right - left), number(bottom - top));
     format!(
@@ -67,12 +67,12 @@ fn cut_off(inner: &str, ((left, top), (right, bottom)): (Place, Place)) -> Strin
     )
 }
 
-fn label(text: &str, (x, y): Place, anchor: Anchor, upright: bool) -> String {
+fn label(text: &str, (x, y): Position, anchor: TextAnchor, upright: bool) -> String {
     let (x, y) = (number(x), number(y));
     let anchor = match anchor {
-        Anchor::Start => "start",
-        Anchor::Middle => "middle",
-        Anchor::End => "end",
+        TextAnchor::Start => "start",
+        TextAnchor::Middle => "middle",
+        TextAnchor::End => "end",
     };
     let turned = if upright {
         format!(" transform=\"rotate(-90 {x} {y})\"")
@@ -83,18 +83,18 @@ fn label(text: &str, (x, y): Place, anchor: Anchor, upright: bool) -> String {
     format!("<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\"{turned}>{text}</text>\n")
 }
 
-fn data(steps: &[Step]) -> String {
-    let at = |(x, y): Place| format!("{} {}", number(x), number(y));
+fn data(steps: &[Segment]) -> String {
+    let at = |(x, y): Position| format!("{} {}", number(x), number(y));
     let steps = steps.iter().map(|step| match step {
-        Step::Move(to) => format!("M{}", at(*to)),
-        Step::Line(to) => format!("L{}", at(*to)),
-        Step::Curve(a, b, to) => format!("C{} {} {}", at(*a), at(*b), at(*to)),
-        Step::Close => "Z".to_owned(),
+        Segment::Move(to) => format!("M{}", at(*to)),
+        Segment::Line(to) => format!("L{}", at(*to)),
+        Segment::Curve(a, b, to) => format!("C{} {} {}", at(*a), at(*b), at(*to)),
+        Segment::Close => "Z".to_owned(),
     });
     steps.collect()
 }
 
-fn stroke(line: Line) -> String {
+fn stroke(line: Stroke) -> String {
     let dash = line.dash.map_or(String::new(), |[dash, gap]| {
         format!(" stroke-dasharray=\"{dash} {gap}\"")
     });

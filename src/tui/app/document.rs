@@ -1,12 +1,12 @@
 //! What is on the matrix, what can be seen of it, and every earlier state of it.
 
 use crate::description::{Description, Region, main_region, regions};
-use crate::formats::name::{Name, folded};
-use crate::formats::shape::Shape;
+use crate::formats::name::folded;
+use crate::formats::{Name, StoredShape};
 use crate::imprint::Imprint;
 use crate::sensor::Sensor;
 use crate::source::Source;
-use crate::storage::store::Origin as Owner;
+use crate::storage::ShapeOrigin;
 use crate::touch::{Plane, reaches_beyond};
 
 /// What is on the matrix. Plain and small, so that a list of earlier documents is the undo history.
@@ -41,7 +41,7 @@ impl Document {
 
 impl Document {
     /// The document of a stored shape: touched by its source, and by hand what differs from that.
-    pub fn of_shape(shape: &Shape) -> Self {
+    pub fn of_shape(shape: &StoredShape) -> Self {
         let mut document = Self {
             source: shape.source.clone(),
             ..Self::empty(shape.sensor)
@@ -52,9 +52,9 @@ impl Document {
     }
 
     /// The shape to be stored under a name.
-    pub fn to_shape(&self, name: Name) -> Shape {
+    pub fn to_shape(&self, name: Name) -> StoredShape {
         let imprint = Reading::of(self).imprint;
-        Shape {
+        StoredShape {
             name,
             sensor: self.sensor,
             imprint,
@@ -168,7 +168,7 @@ pub struct StoredName {
     /// What its file held when it was read or written last.
     pub stamp: u64,
     /// Whether the file is the user's.
-    pub owner: Owner,
+    pub owner: ShapeOrigin,
 }
 
 /// A document and the number of its origin.
@@ -251,7 +251,7 @@ impl History {
         let gone = folded(name);
         for origin in &mut self.origins {
             let own = origin.name.as_ref();
-            let own = own.filter(|stored| stored.owner == Owner::Own);
+            let own = own.filter(|stored| stored.owner == ShapeOrigin::Own);
             if own.is_some_and(|stored| folded(&stored.name) == gone) {
                 *origin = DocumentOrigin {
                     name: None,

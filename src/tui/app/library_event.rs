@@ -2,7 +2,7 @@
 
 use crate::imprint::Imprint;
 use crate::picture::Picture;
-use crate::storage::store::{Expected, Loaded, Origin};
+use crate::storage::{Expected, LoadedShape, ShapeOrigin};
 use crate::tui::app::change::{begin, change, inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::{Document, StoredName};
@@ -27,7 +27,7 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
                 let mut names = entries;
                 match wants_names(command.field.text()) {
                     Some(Takes::Shape(Purpose::Load | Purpose::Picture)) => {}
-                    _ => names.retain(|entry| entry.origin == Origin::Own),
+                    _ => names.retain(|entry| entry.origin == ShapeOrigin::Own),
                 }
                 let names: Vec<String> = names.into_iter().map(|entry| entry.name).collect();
                 command.complete(&names);
@@ -58,7 +58,7 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
             app.history.stored(StoredName {
                 name,
                 stamp,
-                owner: Origin::Own,
+                owner: ShapeOrigin::Own,
             });
         }
         LibraryEvent::Differs(shape, stamp, text) => {
@@ -185,7 +185,7 @@ fn open_picture(app: &mut App, imprint: &Imprint, name: String) {
 
 /// Brings a shape onto the matrix: with its sensor where that has as many columns and rows, as it is where its taxels
 /// fit, else not at all.
-fn place(app: &mut App, loaded: &Loaded) -> Result<(), String> {
+fn place(app: &mut App, loaded: &LoadedShape) -> Result<(), String> {
     let (shape, sensor) = (&loaded.shape, app.history.present().sensor);
     let own = (shape.sensor.columns(), shape.sensor.rows());
     let here = (sensor.columns(), sensor.rows());

@@ -1,7 +1,7 @@
 //! What a key means: the only things that change the program.
 
-use crate::formats::shape::Shape;
-use crate::storage::store::{Entry, Expected, Loaded};
+use crate::formats::StoredShape;
+use crate::storage::{Expected, LibraryEntry, LoadedShape};
 use crate::tui::app::document::Document;
 use crate::tui::explore::message::{ExploreMessage, WorkerEvent};
 use crate::tui::keys::key::Arrow;
@@ -95,9 +95,9 @@ pub enum Message {
     /// The screen has this many columns and rows.
     Resized(u16, u16),
     /// Store the shape, with what is expected to be in its place.
-    Store(Box<Shape>, Expected),
+    Store(Box<StoredShape>, Expected),
     /// Ask whether the shape shall be stored over a file that holds this.
-    Replace(Box<Shape>, u64),
+    Replace(Box<StoredShape>, u64),
     /// Remove the shape of that name.
     Remove(String),
     /// Bring back work that a program left when it died.
@@ -145,23 +145,23 @@ pub enum Copied {
 #[derive(Clone, Debug, PartialEq)]
 pub enum LibraryEvent {
     /// Its list.
-    List(Result<Vec<Entry>, String>),
+    List(Result<Vec<LibraryEntry>, String>),
     /// The names of its shapes that were deleted.
     Trash(Result<Vec<String>, String>),
     /// Some of its shapes, by their place in the list.
-    Read(Vec<(usize, Result<Loaded, String>)>),
+    Read(Vec<(usize, Result<LoadedShape, String>)>),
     /// The shape that was asked for by its name, and what for.
-    Named(Purpose, Result<Box<Loaded>, String>),
+    Named(Purpose, Result<Box<LoadedShape>, String>),
     /// A shape was stored under this name, and this is what its file holds.
     Stored(String, u64),
     /// It was not: the file holds something else, which is to be asked about.
-    Differs(Box<Shape>, u64, String),
+    Differs(Box<StoredShape>, u64, String),
     /// It was removed.
     Removed(String),
     /// It was brought back.
     Restored(String),
     /// Work that a program left when it died.
-    Recovered(Box<Shape>),
+    Recovered(Box<StoredShape>),
     /// A program left work when it died.
     Found(Leftover),
     /// Such work was thrown into the trash, under this name; and what is left then.

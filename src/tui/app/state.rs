@@ -1,9 +1,8 @@
 //! The state of the program. Everybody may read it; only [`crate::tui::app::update`] writes it.
 
-use crate::formats::name::Name;
-use crate::formats::shape::Shape;
+use crate::formats::{Name, StoredShape};
 use crate::sensor::Sensor;
-use crate::storage::journal::UNNAMED;
+use crate::storage::UNNAMED;
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::{Document, History, Reading, StoredName};
 use crate::tui::app::message::Message;
@@ -247,7 +246,7 @@ impl App {
     }
 
     /// What is on the matrix and would be lost, to be kept in the journal. At an end that was asked for, it was given up.
-    pub fn unsaved_work(&self) -> Option<Shape> {
+    pub fn unsaved_work(&self) -> Option<StoredShape> {
         if self.run_state == RunState::Quit {
             return None;
         }

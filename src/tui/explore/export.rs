@@ -1,7 +1,7 @@
 //! The field for the name of a file that what was found is written to.
 
 use crate::quote::shortened;
-use crate::storage::sweep_file::AtlasFile;
+use crate::storage::AtlasFile;
 use crate::tui::widget::text_field::TextField;
 
 /// No name is longer: that of a Linux file with its folders.

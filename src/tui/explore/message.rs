@@ -7,7 +7,7 @@ use crate::atlas::order::SortKey;
 use crate::figure::FigureKind;
 use crate::pose::grid::Grid;
 use crate::source::Source;
-use crate::storage::unfinished::Existing;
+use crate::storage::Existing;
 use crate::sweep::survey::Survey;
 
 /// What a sweep found, whole or in part.

@@ -2,7 +2,7 @@
 
 use crate::atlas::statistics::COLUMNS;
 use crate::formats::value::grouped;
-use crate::storage::unfinished::Existing;
+use crate::storage::Existing;
 use crate::touch::Plane;
 use crate::tui::app::change::{change, inform, refuse};
 use crate::tui::app::dialog::Dialog;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::formats::value::grouped;
-use crate::storage::unfinished::Existing;
+use crate::storage::Existing;
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::Message;

@@ -2,7 +2,7 @@
 
 use crate::description::{DESCRIPTORS, Descriptor};
 use crate::formats::value;
-use crate::storage::store::{Expected, Origin};
+use crate::storage::{Expected, ShapeOrigin};
 use crate::tui::app::change::{
     begin, change, inform, movable, nudge, refuse, replace, shift, travel, turn, zoom,
 };
@@ -40,7 +40,9 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
             refuse(app, "nothing to save: the matrix is empty");
         }
         Message::Save => {
-            let own = app.stored().filter(|stored| stored.owner == Origin::Own);
+            let own = app
+                .stored()
+                .filter(|stored| stored.owner == ShapeOrigin::Own);
             let name = own.map_or("", |stored| &stored.name);
             app.dialogs.push(Dialog::Name(NameDialog::new(name)));
         }

@@ -4,11 +4,11 @@
 //! `load washer`, `sensor --columns 32 --rows 32`. What is not given is as it is now, or the default.
 
 use crate::figure::{Figure, FigureKind};
-use crate::formats::name::Name;
+use crate::formats::Name;
 use crate::parameter::Parameter;
 use crate::quote::shortened;
 use crate::source::Source;
-use crate::storage::store::{Expected, Origin};
+use crate::storage::{Expected, ShapeOrigin};
 use crate::tui::app::document::Document;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
@@ -187,7 +187,7 @@ impl App {
     pub(in crate::tui) fn storing(&self, name: Name) -> Message {
         let own = self
             .stored()
-            .filter(|stored| stored.owner == Origin::Own && name.same(&stored.name));
+            .filter(|stored| stored.owner == ShapeOrigin::Own && name.same(&stored.name));
         let stamp = own.map(|stored| stored.stamp);
         let shape = Box::new(self.history.present().to_shape(name));
         match stamp {

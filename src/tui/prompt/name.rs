@@ -1,6 +1,7 @@
 //! The field for a name to store under, checked while typing.
 
-use crate::formats::name::{LONGEST, Name, NameError};
+use crate::formats::name::LONGEST;
+use crate::formats::{Name, NameError};
 use crate::tui::widget::text_field::TextField;
 
 /// A few characters more than a name may have are taken, so that the message about it is seen.

@@ -2,10 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::formats::shape::Shape;
+use crate::formats::StoredShape;
 use crate::pose::grid::Grid;
-use crate::storage::store::Expected;
-use crate::storage::unfinished::Existing;
+use crate::storage::{Existing, Expected};
 use crate::tui::explore::message::Findings;
 use crate::tui::shapes::purpose::Purpose;
 
@@ -58,7 +57,7 @@ pub enum LibraryRequest {
     /// A shape by its name, and what for.
     Named(Purpose, String),
     /// To store a shape in place of what is expected there.
-    Store(Box<Shape>, Expected),
+    Store(Box<StoredShape>, Expected),
     /// To remove a shape.
     Remove(String),
     /// To bring back the shape of that name that was removed last.

@@ -5,8 +5,8 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use crate::formats::shape::Shape;
-use crate::storage::journal::Journal;
+use crate::formats::StoredShape;
+use crate::storage::Journal;
 use crate::tui::app::state::App;
 use crate::tui::explore::message::WorkerEvent;
 use crate::tui::runtime::workers::Post;
@@ -19,11 +19,11 @@ const GATHER: Duration = Duration::from_millis(400);
 pub(in crate::tui) struct Keeper {
     notes: Option<Sender<Note>>,
     thread: Option<JoinHandle<()>>,
-    last: Option<Shape>,
+    last: Option<StoredShape>,
 }
 
 enum Note {
-    Keep(Box<Shape>),
+    Keep(Box<StoredShape>),
     Clear,
     /// Answers whether everything is written.
     Flush(Sender<bool>),
@@ -76,7 +76,7 @@ impl Keeper {
         }
     }
 
-    pub(in crate::tui) fn keep(&mut self, shape: Shape) {
+    pub(in crate::tui) fn keep(&mut self, shape: StoredShape) {
         self.last = Some(shape.clone());
         self.send(Note::Keep(Box::new(shape)));
     }
@@ -112,10 +112,10 @@ impl Drop for Keeper {
 enum Pending {
     Nothing,
     /// A shape that waits for others, since then.
-    Since(Box<Shape>, Instant),
+    Since(Box<StoredShape>, Instant),
     /// One that could not be written: it waits for the next note, not for the clock. A disk that is full now may have
     /// room at the next change, or when all of it has to be written.
-    Failed(Box<Shape>),
+    Failed(Box<StoredShape>),
 }
 
 /// The thread's end: gathers changes for a moment, then writes the last one.

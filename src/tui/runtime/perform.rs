@@ -9,12 +9,9 @@ use crate::tui::runtime::journal_writer::Keeper;
 use crate::tui::runtime::workers::Workers;
 use tempfile::TempDir;
 
-use crate::formats::name::Name;
-use crate::formats::shape::Shape;
 use crate::formats::value::counted;
-use crate::storage::error::LibraryError;
-use crate::storage::journal::{Journal, Orphan, UNNAMED};
-use crate::storage::store::{Expected, Library};
+use crate::formats::{Name, StoredShape};
+use crate::storage::{Expected, Journal, Library, LibraryError, Orphan, UNNAMED};
 use crate::tui::app::message::{Leftover, LibraryEvent, Message};
 use crate::tui::app::state::App;
 use crate::tui::app::update::update;
@@ -83,7 +80,7 @@ impl World {
     ///
     /// # Errors
     /// What the system or the library refuses, in a sentence.
-    pub fn furnished(shapes: &[Shape], leftovers: &[Shape]) -> Result<Self, String> {
+    pub fn furnished(shapes: &[StoredShape], leftovers: &[StoredShape]) -> Result<Self, String> {
         let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
         let library = Library::open(folder.path().join("library"));
         let told = |error: LibraryError| error.to_string();

@@ -11,8 +11,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crate::pose::grid::Grid;
-use crate::storage::sweep_file::{AtlasFile, PoseFile, SweepFileError};
-use crate::storage::unfinished::Existing;
+use crate::storage::{AtlasFile, Existing, PoseFile, SweepFileError};
 use crate::sweep::plan::Shard;
 use crate::sweep::sample::Sample;
 use crate::sweep::survey::{Survey, Watch};
@@ -252,9 +251,9 @@ fn write_poses(
         rows: Some(&mut take),
     };
     let complete = Survey::of(&survey.grid, Shard::WHOLE, watch).complete();
-    let whole = file.whole()?;
+    let whole = file.finish()?;
     if complete {
-        whole.keep()?;
+        whole.persist()?;
     }
     Ok(complete)
 }

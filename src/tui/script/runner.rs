@@ -4,9 +4,9 @@ use std::ops::ControlFlow;
 
 use serde_json::{Value, json};
 
-use crate::formats::answer::Answer;
+use crate::formats::DescribedImprint;
 use crate::quote::shortened;
-use crate::storage::store::Library;
+use crate::storage::Library;
 use crate::tui::app::message::{Message, Mouse, MouseKind};
 use crate::tui::app::state::{App, Options};
 use crate::tui::keys::key::Key;
@@ -383,7 +383,7 @@ fn state(session: &Session) -> Value {
     let app = session.app();
     let document = app.shown();
     let seen = app.reading();
-    let answer = serde_json::to_value(Answer(&seen.imprint)).unwrap_or_default();
+    let answer = serde_json::to_value(DescribedImprint(&seen.imprint)).unwrap_or_default();
     let (column, row) = app.cursor();
     json!({
         "document": { "sensor": document.sensor, "source": document.source, "name": app.stored_name() },

@@ -12,7 +12,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use crate::formats::shape::Shape;
+use crate::formats::StoredShape;
 use crate::parameter::{Parameter, ParameterError};
 use crate::quote::shortened;
 use crate::sensor::{MAX_SIDE, SENSOR_PARAMETERS};
@@ -37,9 +37,9 @@ pub enum Setting {
     /// The library's folder.
     Library(PathBuf),
     /// A shape of the user's.
-    Shape(Box<Shape>),
+    Shape(Box<StoredShape>),
     /// Unsaved work that waits.
-    Leftover(Box<Shape>),
+    Leftover(Box<StoredShape>),
 }
 
 const SWITCH: [(&str, bool); 2] = [("on", true), ("off", false)];
@@ -94,8 +94,8 @@ fn number(parameter: Parameter, value: &str) -> Result<Setting, ParameterError> 
     Ok(Setting::Sensor(parameter, value))
 }
 
-fn shape(name: &str, value: &str) -> Result<Box<Shape>, String> {
-    Shape::read(value.as_bytes())
+fn shape(name: &str, value: &str) -> Result<Box<StoredShape>, String> {
+    StoredShape::read(value.as_bytes())
         .map(Box::new)
         .map_err(|error| format!("Set {name}: {error}"))
 }
@@ -125,7 +125,7 @@ fn name_of<T: Copy + PartialEq>(value: T, choices: &[(&'static str, T)]) -> &'st
     choice.map_or("", |(name, _)| name)
 }
 
-fn in_a_line(shape: &Shape) -> String {
+fn in_a_line(shape: &StoredShape) -> String {
     // A shape is plain text and numbers: there is nothing that JSON has no form for.
     serde_json::to_string(shape).unwrap_or_default()
 }
@@ -154,7 +154,7 @@ mod tests {
     fn what_is_written_is_read() {
         let shape = b"{\"format\":\"taxel-shape/1\",\"name\":\"a b\",\"sensor\":{\"columns\":2,\"rows\":1,\"threshold\":0.1},\
                       \"imprint\":[\"#.\"]}";
-        let shape = Box::new(Shape::read(shape).expect("a shape"));
+        let shape = Box::new(StoredShape::read(shape).expect("a shape"));
         let options = Options {
             sensor: Sensor::default(),
             theme: Theme {

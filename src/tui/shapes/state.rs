@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::formats::name::{LONGEST, folded};
-use crate::storage::store::{Entry, Loaded, Origin};
+use crate::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
 use crate::tui::app::message::Message;
 use crate::tui::shapes::purpose::Purpose;
 use crate::tui::widget::text_field::TextField;
@@ -15,19 +15,19 @@ const AHEAD: usize = 64;
 #[derive(Clone, Debug)]
 pub struct ListDialog {
     purpose: Purpose,
-    entries: Vec<Entry>,
+    entries: Vec<LibraryEntry>,
     filter: TextField,
     /// The entries that the filter leaves, by their place in `entries`.
     matching: Vec<usize>,
     selected: usize,
-    read: HashMap<usize, Result<Loaded, String>>,
+    read: HashMap<usize, Result<LoadedShape, String>>,
 }
 
 impl ListDialog {
     /// The list of a library. Only the user's own shapes can be removed.
-    pub fn new(purpose: Purpose, mut entries: Vec<Entry>) -> Self {
+    pub fn new(purpose: Purpose, mut entries: Vec<LibraryEntry>) -> Self {
         if purpose == Purpose::Delete {
-            entries.retain(|entry| entry.origin == Origin::Own);
+            entries.retain(|entry| entry.origin == ShapeOrigin::Own);
         }
         let mut list = Self {
             purpose,
@@ -57,7 +57,9 @@ impl ListDialog {
     }
 
     /// The shapes that the filter leaves, with their content where it was read.
-    pub fn rows(&self) -> impl ExactSizeIterator<Item = (&Entry, Option<&Result<Loaded, String>>)> {
+    pub fn rows(
+        &self,
+    ) -> impl ExactSizeIterator<Item = (&LibraryEntry, Option<&Result<LoadedShape, String>>)> {
         self.matching
             .iter()
             .map(|index| (&self.entries[*index], self.read.get(index)))
@@ -69,7 +71,7 @@ impl ListDialog {
     }
 
     /// The selected shape.
-    pub fn choice(&self) -> Option<(&Entry, Option<&Result<Loaded, String>>)> {
+    pub fn choice(&self) -> Option<(&LibraryEntry, Option<&Result<LoadedShape, String>>)> {
         self.rows().nth(self.selected)
     }
 
@@ -93,7 +95,7 @@ impl ListDialog {
     fn sift(&mut self) {
         let wanted = folded(self.filter());
         // The name itself, names that begin with what was typed, names that have it somewhere.
-        let rank = |entry: &Entry| {
+        let rank = |entry: &LibraryEntry| {
             let name = folded(&entry.name);
             let at = name.find(&wanted)?;
             Some(match at {
@@ -122,7 +124,7 @@ impl ListDialog {
     }
 
     /// Takes the content of shapes, by their place in the list.
-    pub fn take(&mut self, read: Vec<(usize, Result<Loaded, String>)>) {
+    pub fn take(&mut self, read: Vec<(usize, Result<LoadedShape, String>)>) {
         self.read.extend(read);
     }
 }

@@ -4,7 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::description::{RegionKind, regions};
-use crate::storage::store::{Entry, Loaded, Origin};
+use crate::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
 use crate::tui::app::layout::{LIST_HEAD, list, list_first};
 use crate::tui::app::message::{Erase, Message};
 use crate::tui::app::state::App;
@@ -84,8 +84,8 @@ pub fn draw(app: &App, dialog: &ListDialog, buffer: &mut Buffer, body: Rect) -> 
 
 fn draw_row(
     app: &App,
-    entry: &Entry,
-    read: Option<&Result<Loaded, String>>,
+    entry: &LibraryEntry,
+    read: Option<&Result<LoadedShape, String>>,
     selected: bool,
     buffer: &mut Buffer,
     row: Rect,
@@ -106,7 +106,7 @@ fn draw_row(
         Some(Err(_)) => "broken  ".to_owned(),
         None => "        ".to_owned(),
     };
-    let origin = if entry.origin == Origin::Shipped {
+    let origin = if entry.origin == ShapeOrigin::Shipped {
         "shipped"
     } else {
         ""
@@ -124,8 +124,8 @@ fn draw_row(
 
 fn draw_preview(
     app: &App,
-    entry: &Entry,
-    read: &Result<Loaded, String>,
+    entry: &LibraryEntry,
+    read: &Result<LoadedShape, String>,
     buffer: &mut Buffer,
     area: Rect,
 ) {

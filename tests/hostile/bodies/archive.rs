@@ -105,7 +105,7 @@ pub(crate) fn with_spread(choice: usize, change: impl FnOnce(&mut Vec<u64>)) -> 
     let mut words = npy::words(content).expect("they are words");
     change(&mut words);
     let length = u64::try_from(words.len()).expect("it is in memory");
-    *content = npy::header(npy::Kind::U64, &[length]);
+    *content = npy::header(npy::Dtype::U64, &[length]);
     content.extend(words.into_iter().flat_map(u64::to_le_bytes));
     packed(&arrays)
 }

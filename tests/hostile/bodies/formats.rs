@@ -1,12 +1,8 @@
 //! Texts and arrays: shapes, jobs, imprints in every form, ranges, headers of numpy, settings.
 
 use taxel::cli::config::Config;
-use taxel::formats::answer::Answer;
-use taxel::formats::exchange;
-use taxel::formats::exchange::Format;
-use taxel::formats::job::Job;
-use taxel::formats::npy::{Kind, content, header, words};
-use taxel::formats::shape::Shape;
+use taxel::formats::npy::{Dtype, content, header, words};
+use taxel::formats::{DescribedImprint, ImprintFormat, Job, StoredShape, imprint_file};
 use taxel::imprint::Imprint;
 use taxel::pose::range::{DecimalRange, MAX_VALUES};
 use taxel::sensor::{SENSOR_PARAMETERS, Sensor};
@@ -17,9 +13,9 @@ use super::is_short;
 
 /// A file of the library.
 pub(crate) fn shape(bytes: &[u8]) {
-    match Shape::read(bytes) {
+    match StoredShape::read(bytes) {
         Ok(shape) => {
-            let again = Shape::read(shape.write().as_bytes());
+            let again = StoredShape::read(shape.write().as_bytes());
             assert_eq!(again.as_ref(), Ok(&shape));
         }
         Err(error) => is_short(&error.to_string()),
@@ -36,7 +32,8 @@ pub(crate) fn job(bytes: &[u8]) {
         Ok(job) => {
             let mut plane = Plane::new(Sensor::default());
             let imprint = job.imprint(&mut plane);
-            let answer = serde_json::to_string(&Answer(&imprint)).expect("every number is finite");
+            let answer =
+                serde_json::to_string(&DescribedImprint(&imprint)).expect("every number is finite");
             assert!(!answer.contains('\n'));
         }
         Err(error) => is_short(&error.to_string()),
@@ -56,10 +53,10 @@ pub(crate) fn imprint(bytes: &[u8]) {
 
 /// An imprint as other programs write it: text, PBM, CSV, NPY.
 pub(crate) fn exchange(bytes: &[u8]) {
-    match exchange::read(bytes) {
+    match imprint_file::read(bytes) {
         Ok(imprint) => {
-            for form in Format::ALL {
-                assert_eq!(exchange::read(&form.write(&imprint)), Ok(imprint));
+            for form in ImprintFormat::ALL {
+                assert_eq!(imprint_file::read(&form.write(&imprint)), Ok(imprint));
             }
         }
         Err(error) => is_short(&error.to_string()),
@@ -113,14 +110,14 @@ pub(crate) fn range(bytes: &[u8]) {
 
 /// A file of numpy.
 pub(crate) fn npy(bytes: &[u8]) {
-    for kind in [Kind::U8, Kind::U16, Kind::U32, Kind::U64, Kind::F64] {
+    for kind in [Dtype::U8, Dtype::U16, Dtype::U32, Dtype::U64, Dtype::F64] {
         if let Some(numbers) = content(bytes, kind) {
             let length = u64::try_from(numbers.len()).expect("it is in memory");
             let again = [&header(kind, &[length]), numbers].concat();
             assert_eq!(content(&again, kind), Some(numbers));
         }
     }
-    let numbers = content(bytes, Kind::U64).map(<[u8]>::len);
+    let numbers = content(bytes, Dtype::U64).map(<[u8]>::len);
     let words = words(bytes).map(|words| words.len() * 8);
     assert_eq!(words, numbers.filter(|length| length.is_multiple_of(8)));
 }

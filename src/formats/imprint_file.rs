@@ -3,26 +3,23 @@
 //! Which form a file has is told by its first bytes when it is read, by the ending of its name when it is written.
 //!
 //! ```
-//! use taxel::formats::exchange::{Format, read};
+//! use taxel::formats::imprint_file::{ImprintFormat, read};
 //! let cup = read(b"P1\n3 2\n101\n111\n")?;
-//! let format = Format::of_ending("csv").unwrap();
+//! let format = ImprintFormat::of_ending("csv").unwrap();
 //! assert_eq!(format.write(&cup), b"1,0,1\n1,1,1\n");
-//! for format in Format::ALL {
+//! for format in ImprintFormat::ALL {
 //!     assert_eq!(read(&format.write(&cup))?, cup);
 //! }
-//! # Ok::<(), taxel::formats::exchange::ExchangeError>(())
+//! # Ok::<(), taxel::formats::ImprintFormatError>(())
 //! ```
 
 use std::fmt;
 
-use crate::formats::array;
 use crate::formats::array::ArrayError;
-use crate::formats::pbm;
 use crate::formats::pbm::PbmError;
-use crate::formats::table;
 use crate::formats::table::TableError;
-use crate::formats::text;
 use crate::formats::text::TextError;
+use crate::formats::{array, pbm, table, text};
 use crate::imprint::Imprint;
 
 /// No file of an imprint is larger; a larger one is refused unread. 1 MiB.
@@ -31,7 +28,7 @@ pub const MAX_BYTES: usize = 1 << 20;
 /// How an imprint is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
-pub enum Format {
+pub enum ImprintFormat {
     /// Rows of `#` and `.`.
     Text,
     /// A raw portable bitmap, `P4`.
@@ -44,7 +41,7 @@ pub enum Format {
     Npy,
 }
 
-impl Format {
+impl ImprintFormat {
     /// All of them.
     pub const ALL: &'static [Self] = &[Self::Text, Self::Pbm, Self::PlainPbm, Self::Csv, Self::Npy];
 
@@ -83,7 +80,7 @@ impl Format {
 /// Why bytes are no imprint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum ExchangeError {
+pub enum ImprintFormatError {
     /// Too many of them.
     Large,
     /// No text of `#` and `.`.
@@ -96,7 +93,7 @@ pub enum ExchangeError {
     Array(ArrayError),
 }
 
-impl fmt::Display for ExchangeError {
+impl fmt::Display for ImprintFormatError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Large => f.write_str("larger than 1 MiB, which no imprint is"),
@@ -108,7 +105,7 @@ impl fmt::Display for ExchangeError {
     }
 }
 
-impl std::error::Error for ExchangeError {}
+impl std::error::Error for ImprintFormatError {}
 
 /// The imprint in any bytes, of any form.
 ///
@@ -117,21 +114,21 @@ impl std::error::Error for ExchangeError {}
 ///
 /// # Errors
 /// What is wrong first, and where.
-pub fn read(bytes: &[u8]) -> Result<Imprint, ExchangeError> {
+pub fn read(bytes: &[u8]) -> Result<Imprint, ImprintFormatError> {
     if bytes.len() > MAX_BYTES {
-        return Err(ExchangeError::Large);
+        return Err(ImprintFormatError::Large);
     }
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     match (bytes, text.trim_ascii_start()) {
-        ([0x93, ..], _) => array::read(bytes).map_err(ExchangeError::Array),
-        ([b'P', b'0'..=b'9', ..], _) => pbm::read(bytes).map_err(ExchangeError::Pbm),
+        ([0x93, ..], _) => array::read(bytes).map_err(ImprintFormatError::Array),
+        ([b'P', b'0'..=b'9', ..], _) => pbm::read(bytes).map_err(ImprintFormatError::Pbm),
         (
             _,
             [
                 b'0'..=b'9' | b'"' | b'+' | b'-' | b'T' | b't' | b'F' | b'f',
                 ..,
             ],
-        ) => table::read(text).map_err(ExchangeError::Table),
-        _ => text::read(text).map_err(ExchangeError::Text),
+        ) => table::read(text).map_err(ImprintFormatError::Table),
+        _ => text::read(text).map_err(ImprintFormatError::Text),
     }
 }

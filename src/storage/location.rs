@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use crate::storage::error::LibraryError;
+use crate::storage::LibraryError;
 
 /// The variable that names the folder.
 pub const VARIABLE: &str = "TAXEL_LIBRARY";

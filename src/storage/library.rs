@@ -5,19 +5,17 @@ use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use crate::formats::name::{Name, folded};
-use crate::formats::shape::Shape;
-use crate::storage::error::LibraryError;
-use crate::storage::file;
+use crate::formats::name::folded;
+use crate::formats::{Name, StoredShape};
+use crate::storage::LibraryError;
 use crate::storage::file::{stamp, system};
-use crate::storage::lock;
 use crate::storage::lock::Lock;
-use crate::storage::shipped;
+use crate::storage::{file, lock, shipped};
 
 /// Where a shape comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
-pub enum Origin {
+pub enum ShapeOrigin {
     /// The user's folder.
     Own,
     /// The program.
@@ -27,23 +25,23 @@ pub enum Origin {
 /// A line of the list: what is known without opening the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct Entry {
+pub struct LibraryEntry {
     /// The shape's name: its file's, without `.json`.
     pub name: String,
     /// Where it comes from.
-    pub origin: Origin,
+    pub origin: ShapeOrigin,
 }
 
 /// A shape with what its file held, to tell later whether somebody else has written it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Loaded {
+pub struct LoadedShape {
     /// The shape, under the name of its file.
-    pub shape: Shape,
+    pub shape: StoredShape,
     /// What the file held.
     pub stamp: u64,
     /// Where it comes from.
-    pub origin: Origin,
+    pub origin: ShapeOrigin,
 }
 
 /// What the writer believes to be in the place it writes to.
@@ -88,19 +86,19 @@ impl Library {
     ///
     /// # Errors
     /// Where the folder is there but cannot be read.
-    pub fn list(&self) -> Result<Vec<Entry>, LibraryError> {
-        let own = |name| Entry {
+    pub fn list(&self) -> Result<Vec<LibraryEntry>, LibraryError> {
+        let own = |name| LibraryEntry {
             name,
-            origin: Origin::Own,
+            origin: ShapeOrigin::Own,
         };
-        let mut entries: Vec<Entry> = self.own_names()?.into_iter().map(own).collect();
+        let mut entries: Vec<LibraryEntry> = self.own_names()?.into_iter().map(own).collect();
         entries.sort_by_cached_key(|entry| (folded(&entry.name), entry.name.clone()));
-        let key = |entry: &Entry| folded(&entry.name);
-        let shipped: Vec<Entry> = shipped::names()
+        let key = |entry: &LibraryEntry| folded(&entry.name);
+        let shipped: Vec<LibraryEntry> = shipped::names()
             .filter(|name| entries.binary_search_by_key(&folded(name), key).is_err())
-            .map(|name| Entry {
+            .map(|name| LibraryEntry {
                 name: name.to_owned(),
-                origin: Origin::Shipped,
+                origin: ShapeOrigin::Shipped,
             })
             .collect();
         entries.extend(shipped);
@@ -135,27 +133,28 @@ impl Library {
     ///
     /// # Errors
     /// Where there is none, or its file is broken or cannot be read.
-    pub fn load(&self, name: &str) -> Result<Loaded, LibraryError> {
+    pub fn load(&self, name: &str) -> Result<LoadedShape, LibraryError> {
         let name = Name::new(name)?;
         let Some(own) = self.own_name(&name)? else {
             let unknown = || LibraryError::Unknown {
                 name: name.to_string(),
             };
             let (shape, stamp) = shipped::load(&name).ok_or_else(unknown)??;
-            return Ok(Loaded {
+            return Ok(LoadedShape {
                 shape,
                 stamp,
-                origin: Origin::Shipped,
+                origin: ShapeOrigin::Shipped,
             });
         };
         let path = self.path(&own);
         let content = file::read(&path)?;
-        let shape = Shape::read(&content).map_err(|error| LibraryError::Broken { path, error })?;
+        let shape =
+            StoredShape::read(&content).map_err(|error| LibraryError::Broken { path, error })?;
         // A file that was renamed by hand goes by its new name.
-        Ok(Loaded {
+        Ok(LoadedShape {
             shape: shape.renamed(Name::new(&own)?),
             stamp: stamp(&content),
-            origin: Origin::Own,
+            origin: ShapeOrigin::Own,
         })
     }
 
@@ -172,7 +171,7 @@ impl Library {
     /// # Errors
     /// [`LibraryError::Exists`] where the name is taken, [`LibraryError::Changed`] where the file holds something else
     /// than expected, [`LibraryError::Shipped`] for the name of a shipped shape; or what the system refuses.
-    pub fn save(&self, shape: &Shape, expected: Expected) -> Result<u64, LibraryError> {
+    pub fn save(&self, shape: &StoredShape, expected: Expected) -> Result<u64, LibraryError> {
         let name = &shape.name;
         file::make_folder(&self.folder)?;
         let lock = Lock::of(&self.folder)?;

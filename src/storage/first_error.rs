@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Writes until something goes wrong or it is to stop; from then on it only takes note of what would have been written,
 /// since a zip whose writer fails complains on standard error, where the screen is.
-pub(crate) struct Latch<'a, W> {
+pub(crate) struct FirstErrorWriter<'a, W> {
     output: W,
     stopped: &'a AtomicBool,
     /// What went wrong first.
@@ -14,7 +14,7 @@ pub(crate) struct Latch<'a, W> {
     end: u64,
 }
 
-impl<'a, W: Write + Seek> Latch<'a, W> {
+impl<'a, W: Write + Seek> FirstErrorWriter<'a, W> {
     pub(crate) fn new(output: W, stopped: &'a AtomicBool) -> Self {
         Self {
             output,
@@ -38,7 +38,7 @@ impl<'a, W: Write + Seek> Latch<'a, W> {
     }
 }
 
-impl<W: Write + Seek> Write for Latch<'_, W> {
+impl<W: Write + Seek> Write for FirstErrorWriter<'_, W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let _ = self.attempt(|output| output.write_all(bytes));
         self.place += bytes.len() as u64;
@@ -52,7 +52,7 @@ impl<W: Write + Seek> Write for Latch<'_, W> {
     }
 }
 
-impl<W: Write + Seek> Seek for Latch<'_, W> {
+impl<W: Write + Seek> Seek for FirstErrorWriter<'_, W> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         let _ = self.attempt(|output| output.seek(to));
         let place = match to {

@@ -8,16 +8,16 @@ use crate::imprint::Imprint;
 /// Serialises as `{"imprint":[…],"na":…,"regions":[{"kind":…,…},…]}`.
 ///
 /// ```
-/// use taxel::formats::answer::Answer;
+/// use taxel::formats::DescribedImprint;
 /// use taxel::imprint::Imprint;
 /// let one: Imprint = "..\n.#".parse().unwrap();
-/// let json = serde_json::to_string(&Answer(&one)).unwrap();
+/// let json = serde_json::to_string(&DescribedImprint(&one)).unwrap();
 /// assert!(json.starts_with(r#"{"imprint":["..",".#"],"na":1,"regions":[{"kind":"exterior","na":1,"nae":1,"ce":1,"#));
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Answer<'a>(pub &'a Imprint);
+pub struct DescribedImprint<'a>(pub &'a Imprint);
 
-impl Serialize for Answer<'_> {
+impl Serialize for DescribedImprint<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let regions = regions(self.0);
         let mut map = serializer.serialize_map(Some(3))?;
@@ -27,7 +27,7 @@ impl Serialize for Answer<'_> {
             "regions",
             &regions
                 .iter()
-                .map(|region| Entry(Description::of(region)))
+                .map(|region| RegionRecord(Description::of(region)))
                 .collect::<Vec<_>>(),
         )?;
         map.end()
@@ -53,9 +53,9 @@ impl Serialize for Rows<'_> {
 
 /// A region by its descriptors.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Entry(pub Description);
+pub(crate) struct RegionRecord(pub Description);
 
-impl Serialize for Entry {
+impl Serialize for RegionRecord {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("kind", self.0.kind.name())?;
