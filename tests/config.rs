@@ -1,7 +1,7 @@
 //! The file of settings and the keys that it changes: what it may say, what it refuses and where, and what the screen
 //! then shows.
 
-use taxel::cli::config::Config;
+use taxel::cli::settings::file::Config;
 use taxel::tui::app::state::{App, Options};
 use taxel::tui::keys::binding::Context;
 use taxel::tui::keys::default_keys::KEYMAP;

@@ -167,7 +167,7 @@ fn the_file_of_settings_is_one() {
     let text = std::fs::read_to_string(README).expect("the README is there");
     let (_, rest) = text.split_once("```toml\n").expect("a file of settings");
     let (file, _) = rest.split_once("```").expect("its end");
-    let config = taxel::cli::config::Config::read(file).expect("right");
+    let config = taxel::cli::settings::file::Config::read(file).expect("right");
     assert_eq!((config.sensor().len(), config.changes().len()), (4, 2));
 }
 

@@ -7,67 +7,29 @@
 //! other end is no error: the program stops there. Apart from the screen nothing writes an escape code, but for the bar of
 //! a sweep on a terminal.
 
-mod locale;
+mod error;
+
+mod output;
 
 mod input;
 
-pub mod config;
-
-mod failure;
-
-mod progress;
-
-mod summary;
-
-mod sweep;
-
-mod shelf;
-
-mod pitch;
-
-mod export;
-
-mod flags;
-
-mod examples;
-
-mod completions;
-
-mod program;
-
-mod commands;
-
-mod manual;
-
-mod chosen;
-
-mod effective;
-
 mod arguments;
 
-mod report;
+pub mod settings;
 
-mod touch;
-
-mod describe;
-
-mod library;
-
-mod batch;
-
-mod screen;
-
-mod script;
+mod commands;
 
 use std::ffi::OsString;
 use std::io::{self, Write};
 
-use arguments::{Asked, Chore, Request, Swept};
-use export::Exported;
-use failure::Failure;
-use locale::Charset;
-use shelf::Shelf;
-use touch::Touched;
+use arguments::definitions;
+use arguments::request::{self, Asked, Chore, Request, Swept};
+use commands::export::Exported;
+use commands::touch::Touched;
+use commands::{batch, completions, describe, export, library, man, screen, script, sweep, touch};
+use error::CliError;
+use input::shapes::Shelf;
+use output::charset::Charset;
 
 use crate::pose::grid::Grid;
 
@@ -87,12 +49,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 }
 
 /// Does it; the characters that may be written are those of the settings once these are known.
-fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, Failure> {
+fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, CliError> {
     let Asked {
         request,
         library_named,
         settings,
-    } = arguments::read(arguments)?;
+    } = request::read(arguments)?;
     let charset = settings.charset(*characters);
     *characters = charset;
     let shelf = Shelf::new(settings.library().cloned(), library_named);
@@ -134,16 +96,16 @@ fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, Fai
             let (shard, jobs) = (asked.shard, asked.jobs);
             print(&sweep::sweep(&grid, shard, jobs, &asked.wanted, charset)?)?;
         }
-        Request::Completions(shell) => write(&completions::script(shell, commands::all()))?,
-        Request::Man(None) => write(&manual::main_page()?)?,
-        Request::Man(Some(folder)) => manual::write(&folder)?,
+        Request::Completions(shell) => write(&completions::script(shell, definitions::all()))?,
+        Request::Man(None) => write(&man::main_page()?)?,
+        Request::Man(Some(folder)) => man::write(&folder)?,
         Request::Merge(files, wanted) => print(&sweep::merge(&files, &wanted, charset)?)?,
         Request::Library(chore) => self::chore(chore, &shelf, charset)?,
     }
     Ok(0)
 }
 
-fn chore(chore: Chore, shelf: &Shelf, charset: Charset) -> Result<(), Failure> {
+fn chore(chore: Chore, shelf: &Shelf, charset: Charset) -> Result<(), CliError> {
     match chore {
         Chore::List(json) => print(&library::list(shelf, json, charset)?),
         Chore::Show(name, form) => print(&library::show(shelf, name.as_str(), form, charset)?),
@@ -160,13 +122,13 @@ fn chore(chore: Chore, shelf: &Shelf, charset: Charset) -> Result<(), Failure> {
             print(&text)?;
             match broken {
                 0 => Ok(()),
-                _ => Err(Failure::Shapes { broken, shapes }),
+                _ => Err(CliError::Shapes { broken, shapes }),
             }
         }
     }
 }
 
-fn answer(touched: &Touched, charset: Charset) -> Result<(), Failure> {
+fn answer(touched: &Touched, charset: Charset) -> Result<(), CliError> {
     write(&touched.answer)?;
     for note in &touched.notes {
         // Where it cannot be written, the exit status still tells.
@@ -175,14 +137,14 @@ fn answer(touched: &Touched, charset: Charset) -> Result<(), Failure> {
     Ok(())
 }
 
-fn print(text: &str) -> Result<(), Failure> {
+fn print(text: &str) -> Result<(), CliError> {
     write(text.as_bytes())
 }
 
-fn write(bytes: &[u8]) -> Result<(), Failure> {
+fn write(bytes: &[u8]) -> Result<(), CliError> {
     let mut output = io::stdout().lock();
     output
         .write_all(bytes)
         .and_then(|()| output.flush())
-        .map_err(Failure::Write)
+        .map_err(CliError::Write)
 }

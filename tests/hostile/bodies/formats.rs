@@ -1,6 +1,6 @@
 //! Texts and arrays: shapes, jobs, imprints in every form, ranges, headers of numpy, settings.
 
-use taxel::cli::config::Config;
+use taxel::cli::settings::file::Config;
 use taxel::formats::npy::{Dtype, content, header, words};
 use taxel::formats::{DescribedImprint, ImprintFormat, Job, StoredShape, imprint_file};
 use taxel::imprint::Imprint;

@@ -2,7 +2,7 @@
 //!
 //! It is TOML. All of it may be left out; what it does not know it refuses, and every refusal tells its place:
 //! ```
-//! use taxel::cli::config::Config;
+//! use taxel::cli::settings::file::Config;
 //! let config = Config::read("theme = 'light'\n[sensor]\ncolumns = 32\n[keys.matrix]\nx = 'toggle'\n").unwrap();
 //! assert_eq!(config.sensor()[0].line, 3);
 //! let error = Config::read("theme = 'light'\ncolour = 'never'\n").unwrap_err();
@@ -23,7 +23,7 @@ use crate::tui::keys::keymap::{Change, Keymap, RemapError};
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
 /// What stands for a choice that the program makes.
-pub(super) const AUTO: &str = "auto";
+pub(crate) const AUTO: &str = "auto";
 
 /// The keys at the top of the file, in the order in which they are told.
 const TOP: [&str; 7] = [
@@ -31,7 +31,7 @@ const TOP: [&str; 7] = [
 ];
 
 /// The parameters of a sensor, each under the name of its flag.
-pub(super) const SENSOR: [(&str, Parameter); 4] = [
+pub(crate) const SENSOR: [(&str, Parameter); 4] = [
     ("columns", Parameter::Columns),
     ("rows", Parameter::Rows),
     ("threshold", Parameter::Threshold),
@@ -39,7 +39,7 @@ pub(super) const SENSOR: [(&str, Parameter); 4] = [
 ];
 
 /// Which characters may be written.
-pub(super) const CHARSETS: [(&str, bool); 2] = [("ascii", true), ("unicode", false)];
+pub(crate) const CHARSETS: [(&str, bool); 2] = [("ascii", true), ("unicode", false)];
 
 /// Something that the file says, and on which line.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,13 +56,13 @@ pub const MAX_BYTES: usize = 64 << 10;
 /// What the file says; nothing where it is silent. Of a choice none is `auto`.
 #[derive(Clone, Debug, Default)]
 pub struct Config {
-    pub(super) theme: Option<Written<Option<Palette>>>,
-    pub(super) color: Option<Written<Option<ColorDepth>>>,
+    pub(crate) theme: Option<Written<Option<Palette>>>,
+    pub(crate) color: Option<Written<Option<ColorDepth>>>,
     /// Whether characters are ASCII only.
-    pub(super) charset: Option<Written<Option<bool>>>,
-    pub(super) mouse: Option<Written<bool>>,
+    pub(crate) charset: Option<Written<Option<bool>>>,
+    pub(crate) mouse: Option<Written<bool>>,
     /// An absolute path, or one below the user's home that starts with `~/`.
-    pub(super) library: Option<Written<String>>,
+    pub(crate) library: Option<Written<String>>,
     sensor: Vec<Written<(Parameter, f64)>>,
     changes: Vec<Written<Change>>,
     keymap: Keymap,

@@ -2,7 +2,7 @@
 
 use clap::{Arg, ArgMatches};
 
-use crate::cli::failure::Failure;
+use crate::cli::error::CliError;
 use crate::figure::{Figure, FigureKind};
 use crate::parameter::{PARAMETERS, Parameter, ParameterError, Unit, number};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
@@ -20,7 +20,7 @@ struct Number {
 }
 
 /// All parameters that some figure has, in the order of the table.
-pub(super) fn figure_parameters() -> impl Iterator<Item = Parameter> {
+pub(crate) fn figure_parameters() -> impl Iterator<Item = Parameter> {
     PARAMETERS
         .iter()
         .map(|row| row.parameter)
@@ -34,7 +34,7 @@ fn kinds_with(parameter: Parameter) -> impl Iterator<Item = FigureKind> {
 }
 
 /// The flag of a parameter; its range and default are those of the default sensor.
-pub(super) fn arg(parameter: Parameter) -> Arg {
+pub(crate) fn arg(parameter: Parameter) -> Arg {
     let default = match parameter {
         Parameter::Thickness | Parameter::Pitch => String::new(),
         _ => format!("; default {}", parameter.default(Sensor::default().side())),
@@ -43,7 +43,7 @@ pub(super) fn arg(parameter: Parameter) -> Arg {
 }
 
 /// The same where a stored shape has values of its own, which stay as they are unless others are given.
-pub(super) fn arg_with_own(parameter: Parameter) -> Arg {
+pub(crate) fn arg_with_own(parameter: Parameter) -> Arg {
     match parameter {
         Parameter::Angle | Parameter::ZoomX | Parameter::ZoomY | Parameter::Pitch => arg(parameter),
         _ => arg_with(parameter, "; default its own"),
@@ -83,14 +83,14 @@ fn parse(text: &str) -> Result<Number, String> {
 }
 
 /// As clap writes its own help texts.
-pub(super) fn capitalised(text: &str) -> String {
+pub(crate) fn capitalised(text: &str) -> String {
     let mut characters = text.chars();
     let first = characters.next().map(|first| first.to_ascii_uppercase());
     first.into_iter().chain(characters).collect()
 }
 
 /// Breaks a text at spaces into lines of at most `width` characters, or of one word.
-pub(super) fn wrapped(text: &str, width: usize) -> String {
+pub(crate) fn wrapped(text: &str, width: usize) -> String {
     let mut lines = String::new();
     let mut used = 0;
     for word in text.split(' ') {
@@ -110,11 +110,11 @@ pub(super) fn wrapped(text: &str, width: usize) -> String {
 
 /// The values that were given by flags, not checked yet.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Given(Vec<(Parameter, Number)>);
+pub(crate) struct Given(Vec<(Parameter, Number)>);
 
 impl Given {
     /// Those of a command; it needs not have all the flags.
-    pub(super) fn of(matches: &ArgMatches) -> Self {
+    pub(crate) fn of(matches: &ArgMatches) -> Self {
         let given = |parameter: Parameter| {
             let number = matches.try_get_one::<Number>(parameter.row().key);
             Some((parameter, number.ok().flatten()?.clone()))
@@ -124,12 +124,12 @@ impl Given {
     }
 
     /// The name of the first flag.
-    pub(super) fn first(&self) -> Option<String> {
+    pub(crate) fn first(&self) -> Option<String> {
         self.0.first().map(|(parameter, _)| parameter.flag())
     }
 
     /// Whether a value was given.
-    pub(super) fn has(&self, parameter: Parameter) -> bool {
+    pub(crate) fn has(&self, parameter: Parameter) -> bool {
         self.0.iter().any(|(given, _)| *given == parameter)
     }
 
@@ -139,10 +139,10 @@ impl Given {
         own: &[Parameter],
         mut thing: T,
         with: impl Fn(T, Parameter, f64) -> Result<T, ParameterError>,
-    ) -> Result<T, Failure> {
+    ) -> Result<T, CliError> {
         for (parameter, number) in &self.0 {
             if own.contains(parameter) {
-                thing = with(thing, *parameter, number.value).map_err(|error| Failure::Range {
+                thing = with(thing, *parameter, number.value).map_err(|error| CliError::Range {
                     flag: parameter.flag(),
                     text: number.text.clone(),
                     expected: error.expected(),
@@ -153,26 +153,26 @@ impl Given {
     }
 
     /// A sensor with what was given.
-    pub(super) fn sensor(&self, sensor: Sensor) -> Result<Sensor, Failure> {
+    pub(crate) fn sensor(&self, sensor: Sensor) -> Result<Sensor, CliError> {
         self.fold(&SENSOR_PARAMETERS, sensor, Sensor::with)
     }
 
     /// The pitch in mm, where one was given.
-    pub(super) fn pitch(&self) -> Result<Option<f64>, Failure> {
+    pub(crate) fn pitch(&self) -> Result<Option<f64>, CliError> {
         self.fold(&[Parameter::Pitch], None, |_, parameter, value| {
             parameter.check(value, MAX_SIDE).map(Some)
         })
     }
 
     /// The first flag that was given though this kind of figure has no such parameter.
-    pub(super) fn foreign(&self, kind: FigureKind) -> Option<Parameter> {
+    pub(crate) fn foreign(&self, kind: FigureKind) -> Option<Parameter> {
         figure_parameters()
             .filter(|&parameter| kind.parameters().all(|own| own != parameter))
             .find(|&parameter| self.0.iter().any(|(given, _)| *given == parameter))
     }
 
     /// The default figure of a kind with what was given.
-    pub(super) fn figure(&self, kind: FigureKind, side: u8) -> Result<Figure, Failure> {
+    pub(crate) fn figure(&self, kind: FigureKind, side: u8) -> Result<Figure, CliError> {
         let own: Vec<Parameter> = kind.parameters().collect();
         let figure = Figure::default_of(kind, side);
         self.fold(&own, figure, |figure, parameter, value| {
@@ -181,7 +181,7 @@ impl Given {
     }
 
     /// A picture with what was given.
-    pub(super) fn picture(&self, picture: Picture, side: u8) -> Result<Picture, Failure> {
+    pub(crate) fn picture(&self, picture: Picture, side: u8) -> Result<Picture, CliError> {
         self.fold(&PICTURE_PARAMETERS, picture, |picture, parameter, value| {
             picture.with(parameter, value, side)
         })
@@ -189,7 +189,7 @@ impl Given {
 }
 
 /// What happens to files that are there, by `--force`.
-pub(super) fn existing(matches: &ArgMatches) -> Existing {
+pub(crate) fn existing(matches: &ArgMatches) -> Existing {
     if matches.get_flag("force") {
         Existing::Replaced
     } else {

@@ -6,17 +6,17 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgGroup, Command, value_parser};
 
-use crate::cli::examples::{
+use crate::cli::arguments::help::{
     ABOUT, BATCH_EXAMPLES, CHECK_EXAMPLES, DELETE_EXAMPLES, DESCRIBE_EXAMPLES, EXAMPLES,
     EXPORT_EXAMPLES, FIGURE_EXAMPLES, LIBRARY_EXAMPLES, LIST_EXAMPLES, MERGE_EXAMPLES,
     PATH_EXAMPLES, PICTURE_EXAMPLES, RESTORE_EXAMPLES, SAVE_EXAMPLES, SHOW_EXAMPLES,
     SWEEP_EXAMPLES,
 };
-use crate::cli::export;
-use crate::cli::flags;
-use crate::cli::program::{
+use crate::cli::arguments::parameters;
+use crate::cli::arguments::program::{
     ascii, completions, config, config_file, look, man, record, script, size,
 };
+use crate::cli::commands::export;
 use crate::figure::FigureKind;
 use crate::formats::{Name, NameError};
 use crate::parameter::Parameter;
@@ -28,7 +28,7 @@ use crate::storage::{AtlasFile, is_poses};
 use crate::sweep::plan::{Shard, ShardError};
 
 /// All commands.
-pub(super) fn all() -> Command {
+pub(crate) fn all() -> Command {
     Command::new("taxel")
         .version(env!("TAXEL_VERSION"))
         .about(ABOUT)
@@ -62,13 +62,13 @@ fn figure() -> Command {
             FigureKind::ALL.map(FigureKind::name),
         ))
         .hide_possible_values(true)
-        .help(flags::wrapped(&list(kinds, "or"), 64));
-    let parameters = flags::figure_parameters();
+        .help(parameters::wrapped(&list(kinds, "or"), 64));
+    let own = parameters::figure_parameters();
     Command::new("figure")
         .about("Touch a figure and describe its imprint")
         .after_help(FIGURE_EXAMPLES)
         .arg(kind)
-        .args(parameters.map(|parameter| flags::arg(parameter).help_heading("Figure")))
+        .args(own.map(|parameter| parameters::arg(parameter).help_heading("Figure")))
         .args(sensor())
         .args(keeping())
         .group(kept())
@@ -76,7 +76,7 @@ fn figure() -> Command {
 }
 
 fn picture() -> Command {
-    let own = |parameter: Parameter| flags::arg_with_own(parameter);
+    let own = |parameter: Parameter| parameters::arg_with_own(parameter);
     Command::new("picture")
         .about("Move, zoom and turn a stored shape and describe its imprint")
         .after_help(PICTURE_EXAMPLES)
@@ -130,7 +130,7 @@ fn format() -> Arg {
         .value_name("FORMAT")
         .value_parser(PossibleValuesParser::new(names))
         .hide_possible_values(true)
-        .help(flags::wrapped(&help, 52))
+        .help(parameters::wrapped(&help, 52))
 }
 
 fn batch() -> Command {
@@ -155,7 +155,7 @@ fn sweep() -> Command {
         .value_name("NAME|FILE")
         .value_parser(value_parser!(OsString))
         .help("Sweep a stored shape instead");
-    let sizes = flags::figure_parameters().filter(|parameter| {
+    let sizes = parameters::figure_parameters().filter(|parameter| {
         Ranges::default()
             .by_parameter()
             .iter()
@@ -165,14 +165,17 @@ fn sweep() -> Command {
         .by_parameter()
         .map(|(parameter, default)| {
             let (row, flag) = (parameter.row(), parameter.flag());
-            let help = format!("{}; default {default}", flags::capitalised(row.meaning));
+            let help = format!(
+                "{}; default {default}",
+                parameters::capitalised(row.meaning)
+            );
             Arg::new(format!("range_{}", row.key))
                 .long(flag)
                 .value_name("START:END:STEP")
                 .allow_hyphen_values(true)
                 .value_parser(parse_range)
                 .help_heading("Grid")
-                .help(flags::wrapped(&help, 46))
+                .help(parameters::wrapped(&help, 46))
         });
     let anchor = Arg::new("anchor")
         .long("anchor")
@@ -202,7 +205,7 @@ fn sweep() -> Command {
         .after_help(SWEEP_EXAMPLES)
         .arg(kind)
         .arg(picture)
-        .args(sizes.map(|parameter| flags::arg(parameter).help_heading("Figure")))
+        .args(sizes.map(|parameter| parameters::arg(parameter).help_heading("Figure")))
         .args(ranges)
         .arg(anchor)
         .args(sensor_of_imprints())
@@ -303,7 +306,7 @@ fn sensor_of_imprints() -> Vec<Arg> {
 }
 
 fn of_sensor(parameters: &[Parameter]) -> Vec<Arg> {
-    let flag = |&parameter: &Parameter| flags::arg(parameter).help_heading("Sensor");
+    let flag = |&parameter: &Parameter| parameters::arg(parameter).help_heading("Sensor");
     parameters.iter().map(flag).collect()
 }
 
@@ -326,7 +329,7 @@ fn keeping() -> [Arg; 4] {
         .value_name("FILE")
         .value_parser(value_parser!(PathBuf))
         .help_heading("Export")
-        .help(flags::wrapped(
+        .help(parameters::wrapped(
             "Write the imprint, or a drawing of it; '-' for standard output, in place of the table",
             52,
         ));
@@ -383,7 +386,7 @@ fn json() -> Arg {
 }
 
 /// "a, b or c", and the like with another word.
-pub(super) fn list(names: impl Iterator<Item = String>, word: &str) -> String {
+pub(crate) fn list(names: impl Iterator<Item = String>, word: &str) -> String {
     let names: Vec<String> = names.collect();
     match names.split_last() {
         Some((last, [])) => last.clone(),

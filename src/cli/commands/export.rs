@@ -4,10 +4,10 @@ use std::ffi::OsStr;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use crate::cli::failure::Failure;
-use crate::cli::input::Content;
-use crate::cli::pitch::Pitch;
-use crate::cli::shelf::Shelf;
+use crate::cli::error::CliError;
+use crate::cli::input::content::Content;
+use crate::cli::input::shapes::Shelf;
+use crate::cli::settings::pitch::Pitch;
 use crate::formats::{Drawing, ImprintFormat};
 use crate::imprint::Imprint;
 use crate::source::Source;
@@ -44,14 +44,14 @@ impl Format {
 }
 
 /// The names of all formats, as `--format` takes them.
-pub(super) fn names() -> Vec<&'static str> {
+pub(crate) fn names() -> Vec<&'static str> {
     let imprints = ImprintFormat::ALL.iter().map(|format| format.name());
     imprints.chain(["svg", "png"]).collect()
 }
 
 /// A file that is to be written.
 #[derive(Clone, Debug)]
-pub(super) struct Export {
+pub(crate) struct Export {
     /// Standard output where there is none.
     path: Option<PathBuf>,
     format: Format,
@@ -63,7 +63,7 @@ impl Export {
     ///
     /// # Errors
     /// Where neither tells the format.
-    pub(super) fn new(
+    pub(crate) fn new(
         path: &Path,
         format: Option<&str>,
         existing: Existing,
@@ -90,13 +90,13 @@ impl Export {
     }
 
     /// Writes an imprint, all but for the name of the file.
-    pub(super) fn begin(
+    pub(crate) fn begin(
         &self,
         imprint: &Imprint,
         source: Option<&Source>,
         title: &str,
         pitch: Option<f64>,
-    ) -> Result<Begun, Failure> {
+    ) -> Result<Begun, CliError> {
         let draw = || {
             let mut drawing = Drawing::new(imprint);
             if let Some(source) = source {
@@ -114,7 +114,7 @@ impl Export {
         let content = match self.format {
             Format::Imprint(format) => format.write(imprint),
             Format::Svg => draw().svg().into_bytes(),
-            Format::Png => draw().png().map_err(Failure::Write)?,
+            Format::Png => draw().png().map_err(CliError::Write)?,
         };
         match &self.path {
             None => Ok(Begun::Content(content)),
@@ -125,7 +125,7 @@ impl Export {
 
 /// An export that lacks only its name. Dropped, nothing is left of it.
 #[derive(Debug)]
-pub(super) enum Begun {
+pub(crate) enum Begun {
     /// It has none: it is for standard output.
     Content(Vec<u8>),
     /// A file.
@@ -134,7 +134,7 @@ pub(super) enum Begun {
 
 impl Begun {
     /// Gives the file its name, and what is to be said of it; or gives the content.
-    pub(super) fn end(self) -> Result<Exported, Failure> {
+    pub(crate) fn end(self) -> Result<Exported, CliError> {
         match self {
             Self::Content(content) => Ok(Exported::Content(content)),
             Self::File(whole) => {
@@ -147,7 +147,7 @@ impl Begun {
 
 /// What is left of an export for standard output.
 #[derive(Clone, Debug)]
-pub(super) enum Exported {
+pub(crate) enum Exported {
     /// The file itself.
     Content(Vec<u8>),
     /// Where it is.
@@ -155,11 +155,11 @@ pub(super) enum Exported {
 }
 
 /// Writes a file whole.
-pub(super) fn put(path: &Path, content: &[u8], existing: Existing) -> Result<(), Failure> {
+pub(crate) fn put(path: &Path, content: &[u8], existing: Existing) -> Result<(), CliError> {
     keep(whole(path, content, existing)?)
 }
 
-fn whole(path: &Path, content: &[u8], existing: Existing) -> Result<FinishedFile, Failure> {
+fn whole(path: &Path, content: &[u8], existing: Existing) -> Result<FinishedFile, CliError> {
     let written = UnfinishedFile::new(path, existing).and_then(|mut file| {
         file.output.write_all(content)?;
         file.finish()
@@ -167,26 +167,26 @@ fn whole(path: &Path, content: &[u8], existing: Existing) -> Result<FinishedFile
     written.map_err(|error| failure(path, error))
 }
 
-fn keep(whole: FinishedFile) -> Result<(), Failure> {
+fn keep(whole: FinishedFile) -> Result<(), CliError> {
     let path = whole.path().to_owned();
     whole.persist().map_err(|error| failure(&path, error))
 }
 
-fn failure(path: &Path, error: io::Error) -> Failure {
+fn failure(path: &Path, error: io::Error) -> CliError {
     let name = path.to_string_lossy().into_owned();
     match error.kind() {
-        ErrorKind::AlreadyExists => Failure::Taken { name },
-        _ => Failure::File { name, error },
+        ErrorKind::AlreadyExists => CliError::Taken { name },
+        _ => CliError::File { name, error },
     }
 }
 
 /// Writes the shape of that name, else what is in that file. A stored shape is drawn with the outline that made it.
-pub(super) fn export(
+pub(crate) fn export(
     shelf: &Shelf,
     what: &OsStr,
     export: &Export,
     pitch: Pitch,
-) -> Result<Exported, Failure> {
+) -> Result<Exported, CliError> {
     let begun = match shelf.find(what)? {
         Content::Imprint(imprint) => {
             let title = Path::new(what)

@@ -12,10 +12,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
-use crate::cli::failure::Failure;
-use crate::cli::locale::Charset;
-use crate::cli::progress::Progress;
-use crate::cli::summary::Summary;
+use crate::cli::error::CliError;
+use crate::cli::output::charset::Charset;
+use crate::cli::output::progress::Progress;
+use crate::cli::output::sweep_summary::Summary;
 use crate::formats::{ArchiveError, archive};
 use crate::pose::grid::Grid;
 use crate::storage::{AtlasFile, Existing, FinishedSweepFile, PoseFile};
@@ -24,37 +24,37 @@ use crate::sweep::survey::{Survey, Watch};
 
 /// What a sweep or a merge is to leave.
 #[derive(Clone, Debug)]
-pub(super) struct Wanted {
-    pub(super) atlas: Option<AtlasFile>,
-    pub(super) poses: Option<PathBuf>,
-    pub(super) existing: Existing,
-    pub(super) json: bool,
-    pub(super) quiet: bool,
+pub(crate) struct Wanted {
+    pub(crate) atlas: Option<AtlasFile>,
+    pub(crate) poses: Option<PathBuf>,
+    pub(crate) existing: Existing,
+    pub(crate) json: bool,
+    pub(crate) quiet: bool,
 }
 
-fn refused(path: &Path, error: impl Into<ArchiveError>) -> Failure {
-    Failure::Atlas {
+fn refused(path: &Path, error: impl Into<ArchiveError>) -> CliError {
+    CliError::Atlas {
         name: path.to_string_lossy().into_owned(),
         error: error.into(),
     }
 }
 
 /// Sweeps a shard of a grid on so many threads, and gives what is to be printed.
-pub(super) fn sweep(
+pub(crate) fn sweep(
     grid: &Grid,
     shard: Shard,
     jobs: usize,
     wanted: &Wanted,
     charset: Charset,
-) -> Result<String, Failure> {
+) -> Result<String, CliError> {
     let start = Instant::now();
-    let signals = Signals::heard().map_err(Failure::System)?;
+    let signals = Signals::heard().map_err(CliError::System)?;
     let stopped = &signals.stopped;
     if let Some(file) = &wanted.atlas {
         file.check(wanted.existing)?;
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
-    let pool = pool.map_err(|error| Failure::System(io::Error::other(error)))?;
+    let pool = pool.map_err(|error| CliError::System(io::Error::other(error)))?;
     let mut poses = match &wanted.poses {
         Some(path) => Some(PoseFile::new(path, grid, wanted.existing)?),
         None => None,
@@ -88,11 +88,11 @@ pub(super) fn sweep(
 }
 
 /// Puts shards together, and gives what is to be printed.
-pub(super) fn merge(
+pub(crate) fn merge(
     files: &[PathBuf],
     wanted: &Wanted,
     charset: Charset,
-) -> Result<String, Failure> {
+) -> Result<String, CliError> {
     let start = Instant::now();
     if let Some(file) = &wanted.atlas {
         file.check(wanted.existing)?;
@@ -105,7 +105,7 @@ pub(super) fn merge(
     }
     let survey = Survey::merge(surveys)?;
     // Until here an interrupt ends the program, which has left nothing.
-    let signals = Signals::heard().map_err(Failure::System)?;
+    let signals = Signals::heard().map_err(CliError::System)?;
     leave(&survey, start, wanted, None, charset, &signals)
 }
 
@@ -116,7 +116,7 @@ fn leave(
     poses: Option<FinishedSweepFile>,
     charset: Charset,
     signals: &Signals,
-) -> Result<String, Failure> {
+) -> Result<String, CliError> {
     let atlas = match &wanted.atlas {
         Some(file) => {
             let whole = file.prepare(survey, wanted.existing, &signals.stopped);
@@ -163,8 +163,8 @@ impl Signals {
         Ok(Self { stopped, last })
     }
 
-    fn failure(&self) -> Failure {
+    fn failure(&self) -> CliError {
         let signal = self.last.load(Ordering::Relaxed);
-        Failure::Stopped(u8::try_from(signal).unwrap_or_default())
+        CliError::Stopped(u8::try_from(signal).unwrap_or_default())
     }
 }

@@ -11,7 +11,7 @@ use crate::quote::legible;
 
 /// Where input comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Place {
+pub(crate) enum Place {
     /// A file.
     File(PathBuf),
     /// Standard input, written `-`.
@@ -20,7 +20,7 @@ pub(super) enum Place {
 
 impl Place {
     /// Its name in messages.
-    pub(super) fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         match self {
             Self::File(path) => path.to_string_lossy().into_owned(),
             Self::Standard => "standard input".to_owned(),
@@ -31,7 +31,7 @@ impl Place {
 /// What was read.
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
-pub(super) enum Content {
+pub(crate) enum Content {
     /// An imprint alone.
     Imprint(Imprint),
     /// A stored shape.
@@ -40,7 +40,7 @@ pub(super) enum Content {
 
 /// Why a file cannot be described.
 #[derive(Debug, thiserror::Error)]
-pub(super) enum InputError {
+pub(crate) enum InputError {
     /// It cannot be opened or read.
     #[error("cannot read: {0}")]
     Read(#[from] io::Error),
@@ -56,7 +56,7 @@ pub(super) enum InputError {
 }
 
 /// Reads the content of a place: a stored shape where its first character is `{`, an imprint otherwise.
-pub(super) fn read(place: &Place) -> Result<Content, InputError> {
+pub(crate) fn read(place: &Place) -> Result<Content, InputError> {
     let bytes = match place {
         Place::File(path) => bytes(File::open(path)?)?,
         Place::Standard => bytes(io::stdin().lock())?,

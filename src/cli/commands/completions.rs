@@ -7,7 +7,7 @@ use clap_complete::shells::{Bash, Fish, Zsh};
 
 /// A shell that completions can be written for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Shell {
+pub(crate) enum Shell {
     Bash,
     Zsh,
     Fish,
@@ -15,10 +15,10 @@ pub(super) enum Shell {
 
 impl Shell {
     /// All of them.
-    pub(super) const ALL: [Self; 3] = [Self::Bash, Self::Zsh, Self::Fish];
+    pub(crate) const ALL: [Self; 3] = [Self::Bash, Self::Zsh, Self::Fish];
 
     /// As it is called.
-    pub(super) fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Bash => "bash",
             Self::Zsh => "zsh",
@@ -27,13 +27,13 @@ impl Shell {
     }
 
     /// The one of that name.
-    pub(super) fn from_name(name: &str) -> Option<Self> {
+    pub(crate) fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|shell| shell.name() == name)
     }
 }
 
 /// The completions of all commands as a script of that shell.
-pub(super) fn script(shell: Shell, mut all: Command) -> Vec<u8> {
+pub(crate) fn script(shell: Shell, mut all: Command) -> Vec<u8> {
     let (mut script, name) = (Vec::new(), "taxel");
     match shell {
         Shell::Bash => generate(Bash, &mut all, name, &mut script),

@@ -1,12 +1,12 @@
 //! `taxel describe`: what is stored under a name or in a file, shown.
 
-use crate::cli::arguments::Form;
-use crate::cli::input::Content;
-use crate::cli::locale::Charset;
-use crate::cli::report;
+use crate::cli::arguments::request::Form;
+use crate::cli::input::content::Content;
+use crate::cli::output::charset::Charset;
+use crate::cli::output::report;
 
 /// The imprint with what describes it. A stored shape says what made it.
-pub(super) fn content(content: &Content, form: Form, charset: Charset) -> String {
+pub(crate) fn content(content: &Content, form: Form, charset: Charset) -> String {
     let imprint = match content {
         Content::Imprint(imprint) => imprint,
         Content::Shape(shape) => &shape.imprint,

@@ -6,16 +6,16 @@ use std::ffi::OsStr;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
-use crate::cli::failure::Failure;
-use crate::cli::input;
-use crate::cli::input::{Content, InputError, Place};
+use crate::cli::error::CliError;
+use crate::cli::input::content;
+use crate::cli::input::content::{Content, InputError, Place};
 use crate::formats::StoredShape;
 use crate::imprint::Imprint;
 use crate::storage::{Expected, Library, LibraryError};
 
 /// The library, opened when it is used first.
 #[derive(Debug)]
-pub(super) struct Shelf {
+pub(crate) struct Shelf {
     folder: Option<PathBuf>,
     /// Whether the arguments name it.
     asked: bool,
@@ -26,7 +26,7 @@ pub(super) struct Shelf {
 
 impl Shelf {
     /// The library in that folder, where there is a place for one; and whether the arguments name it.
-    pub(super) fn new(folder: Option<PathBuf>, asked: bool) -> Self {
+    pub(crate) fn new(folder: Option<PathBuf>, asked: bool) -> Self {
         Self {
             folder,
             asked,
@@ -36,7 +36,7 @@ impl Shelf {
     }
 
     /// The library.
-    pub(super) fn library(&self) -> Result<Library, LibraryError> {
+    pub(crate) fn library(&self) -> Result<Library, LibraryError> {
         let mut library = self.library.borrow_mut();
         if library.is_none() {
             *library = self.folder.clone().map(Library::open);
@@ -45,14 +45,14 @@ impl Shelf {
     }
 
     /// The library that the arguments name, if they do.
-    pub(super) fn named(&self) -> Result<Option<Library>, LibraryError> {
+    pub(crate) fn named(&self) -> Result<Option<Library>, LibraryError> {
         self.asked.then(|| self.library()).transpose()
     }
 
     /// The shape of that name, else the content of that file; of standard input for `-`.
-    pub(super) fn find(&self, what: &OsStr) -> Result<Content, Failure> {
+    pub(crate) fn find(&self, what: &OsStr) -> Result<Content, CliError> {
         let read = |place: &Place| {
-            input::read(place).map_err(|error| Failure::Input {
+            content::read(place).map_err(|error| CliError::Input {
                 name: place.name(),
                 error,
             })
@@ -71,7 +71,7 @@ impl Shelf {
             // A library that cannot be read is told of unless there is such a file.
             Some(Err(error)) => {
                 return match read(&Place::File(what.into())) {
-                    Err(Failure::Input {
+                    Err(CliError::Input {
                         error: InputError::Read(missing),
                         ..
                     }) if missing.kind() == ErrorKind::NotFound => Err(error.into()),
@@ -81,18 +81,18 @@ impl Shelf {
         };
         match (read(&Place::File(what.into())), nowhere) {
             (
-                Err(Failure::Input {
+                Err(CliError::Input {
                     error: InputError::Read(error),
                     ..
                 }),
                 Some(name),
-            ) if error.kind() == ErrorKind::NotFound => Err(Failure::Nowhere { name }),
+            ) if error.kind() == ErrorKind::NotFound => Err(CliError::Nowhere { name }),
             (result, _) => result,
         }
     }
 
     /// The imprint of the shape of that name; read once.
-    pub(super) fn imprint(&self, name: &str) -> Result<Imprint, LibraryError> {
+    pub(crate) fn imprint(&self, name: &str) -> Result<Imprint, LibraryError> {
         if let Some(imprint) = self.found.borrow().get(name) {
             return Ok(*imprint);
         }
@@ -105,13 +105,13 @@ impl Shelf {
 
     /// Stores a shape, in place of an own one of that name only by `force`; answers the name that it has there, which may
     /// differ in upper and lower case.
-    pub(super) fn save(&self, shape: &StoredShape, force: bool) -> Result<String, Failure> {
+    pub(crate) fn save(&self, shape: &StoredShape, force: bool) -> Result<String, CliError> {
         let library = self.library()?;
         let saved = match library.save(shape, Expected::Nothing) {
             Err(LibraryError::Exists { stamp, .. }) if force => {
                 library.save(shape, Expected::Stamp(stamp))
             }
-            Err(LibraryError::Exists { name, .. }) => return Err(Failure::Taken { name }),
+            Err(LibraryError::Exists { name, .. }) => return Err(CliError::Taken { name }),
             saved => saved,
         };
         saved?;

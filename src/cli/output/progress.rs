@@ -9,13 +9,13 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-use crate::cli::locale::Charset;
+use crate::cli::output::charset::Charset;
 
 /// A line comes this often where there is no terminal.
 const PAUSE: Duration = Duration::from_secs(10);
 
 /// Shows the progress of so many poses.
-pub(super) struct Progress {
+pub(crate) struct Progress {
     all: u64,
     done: AtomicU64,
     shown: Shown,
@@ -29,7 +29,7 @@ enum Shown {
 }
 
 impl Progress {
-    pub(super) fn new(all: u64, quiet: bool, charset: Charset) -> Self {
+    pub(crate) fn new(all: u64, quiet: bool, charset: Charset) -> Self {
         let shown = if quiet {
             Shown::Nothing
         } else if std::io::stderr().is_terminal() {
@@ -64,7 +64,7 @@ impl Progress {
     }
 
     /// So many poses more are done.
-    pub(super) fn add(&self, poses: u64) {
+    pub(crate) fn add(&self, poses: u64) {
         let done = self.done.fetch_add(poses, Ordering::Relaxed) + poses;
         match &self.shown {
             Shown::Nothing => {}
@@ -97,7 +97,7 @@ impl Progress {
     }
 
     /// Takes the bar away.
-    pub(super) fn finish(&self) {
+    pub(crate) fn finish(&self) {
         if let Shown::Bar(bar) = &self.shown {
             bar.finish_and_clear();
         }

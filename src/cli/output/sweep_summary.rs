@@ -6,18 +6,18 @@ use std::time::Duration;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::atlas::statistics::{COLUMNS, Column, Statistic};
-use crate::cli::locale::Charset;
+use crate::cli::output::charset::Charset;
 use crate::sweep::survey::Survey;
 
 /// A survey, and how long it took.
-pub(super) struct Summary<'a> {
+pub(crate) struct Summary<'a> {
     survey: &'a Survey,
     classes: (usize, usize),
     took: Duration,
 }
 
 impl<'a> Summary<'a> {
-    pub(super) fn new(survey: &'a Survey, took: Duration) -> Self {
+    pub(crate) fn new(survey: &'a Survey, took: Duration) -> Self {
         Self {
             survey,
             classes: survey.atlas.distinct_classes(),
@@ -26,7 +26,7 @@ impl<'a> Summary<'a> {
     }
 
     /// One line of JSON.
-    pub(super) fn json(&self) -> String {
+    pub(crate) fn json(&self) -> String {
         // Cannot fail: every key is a text and every number finite.
         let mut line = serde_json::to_string(self).unwrap_or_default();
         line.push('\n');
@@ -34,7 +34,7 @@ impl<'a> Summary<'a> {
     }
 
     /// Counts, and a table of the statistics.
-    pub(super) fn text(&self, charset: Charset) -> String {
+    pub(crate) fn text(&self, charset: Charset) -> String {
         let Survey {
             grid,
             poses,

@@ -6,10 +6,10 @@ use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::PathBuf;
 
-use crate::cli::chosen::Chosen;
-use crate::cli::config::{AUTO, CHARSETS, Config, MAX_BYTES, SENSOR, Written, Wrong};
-use crate::cli::failure::Failure;
-use crate::cli::locale::Charset;
+use crate::cli::error::CliError;
+use crate::cli::output::charset::Charset;
+use crate::cli::settings::file::{AUTO, CHARSETS, Config, MAX_BYTES, SENSOR, Written, Wrong};
+use crate::cli::settings::flags::Chosen;
 use crate::parameter::Parameter;
 use crate::sensor::Sensor;
 use crate::storage::location;
@@ -19,11 +19,11 @@ use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
 /// The variable that names the file.
-pub(super) const VARIABLE: &str = "TAXEL_CONFIG";
+pub(crate) const VARIABLE: &str = "TAXEL_CONFIG";
 
 /// The file of settings.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Loaded {
+pub(crate) struct Loaded {
     /// Where it is, or would be.
     path: Option<PathBuf>,
     there: bool,
@@ -32,7 +32,7 @@ pub(super) struct Loaded {
 
 impl Loaded {
     /// The file asked for, else that of the variable, else the user's own, which may be missing.
-    pub(super) fn find(asked: Option<PathBuf>) -> Result<Self, Failure> {
+    pub(crate) fn find(asked: Option<PathBuf>) -> Result<Self, CliError> {
         let variable = std::env::var_os(VARIABLE).filter(|value| !value.is_empty());
         if let Some(path) = asked.or_else(|| variable.map(PathBuf::from)) {
             return Self::read(path, false);
@@ -44,9 +44,9 @@ impl Loaded {
         )
     }
 
-    fn read(path: PathBuf, may_be_missing: bool) -> Result<Self, Failure> {
+    fn read(path: PathBuf, may_be_missing: bool) -> Result<Self, CliError> {
         let name = path.display();
-        let failure = |message: String| Failure::Settings {
+        let failure = |message: String| CliError::Settings {
             place: name.to_string(),
             message,
         };
@@ -62,7 +62,7 @@ impl Loaded {
             return Err(failure(Wrong::Large.to_string()));
         }
         let text = String::from_utf8(bytes).map_err(|_| failure("no UTF-8 text".to_owned()))?;
-        let config = Config::read(&text).map_err(|error| Failure::Settings {
+        let config = Config::read(&text).map_err(|error| CliError::Settings {
             place: format!("{name}:{}:{}", error.line, error.column),
             message: error.wrong.to_string(),
         })?;
@@ -120,7 +120,7 @@ fn settled<T: Clone>(
 
 /// All settings. Of a choice none is `auto`.
 #[derive(Clone, Debug)]
-pub(super) struct Effective {
+pub(crate) struct Effective {
     loaded: Loaded,
     theme: Settled<Option<Palette>>,
     color: Settled<Option<ColorDepth>>,
@@ -133,11 +133,11 @@ pub(super) struct Effective {
 
 impl Effective {
     /// What holds with these flags, this environment and this file.
-    pub(super) fn new(
+    pub(crate) fn new(
         loaded: Loaded,
         chosen: Chosen,
         variable: impl Fn(&'static str) -> Option<OsString>,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, CliError> {
         let set = |name| variable(name).filter(|value| !value.is_empty());
         let config = &loaded.config;
         let written = config.library.as_ref().map(|own| Written {
@@ -201,32 +201,32 @@ impl Effective {
     }
 
     /// What colours are chosen for.
-    pub(super) fn theme(&self) -> Option<Palette> {
+    pub(crate) fn theme(&self) -> Option<Palette> {
         self.theme.value
     }
 
     /// How many colours.
-    pub(super) fn color(&self) -> Option<ColorDepth> {
+    pub(crate) fn color(&self) -> Option<ColorDepth> {
         self.color.value
     }
 
     /// Whether the mouse is reported.
-    pub(super) fn mouse(&self) -> bool {
+    pub(crate) fn mouse(&self) -> bool {
         self.mouse.value
     }
 
     /// The library's folder, where there is one.
-    pub(super) fn library(&self) -> Option<&PathBuf> {
+    pub(crate) fn library(&self) -> Option<&PathBuf> {
         self.library.value.as_ref()
     }
 
     /// The sensor.
-    pub(super) fn sensor(&self) -> Sensor {
+    pub(crate) fn sensor(&self) -> Sensor {
         self.sensor
     }
 
     /// The pitch in mm, where one is set.
-    pub(super) fn pitch(&self) -> Option<f64> {
+    pub(crate) fn pitch(&self) -> Option<f64> {
         let set = |(_, parameter, origin): &&(_, Parameter, Origin)| {
             *parameter == Parameter::Pitch && *origin != Origin::Default
         };
@@ -235,12 +235,12 @@ impl Effective {
     }
 
     /// The keys.
-    pub(super) fn keymap(&self) -> &Keymap {
+    pub(crate) fn keymap(&self) -> &Keymap {
         self.loaded.config.keymap()
     }
 
     /// The characters that may be written: what is set, else those of the locale.
-    pub(super) fn charset(&self, locale: Charset) -> Charset {
+    pub(crate) fn charset(&self, locale: Charset) -> Charset {
         match self.charset.value {
             Some(true) => Charset::Ascii,
             Some(false) => Charset::Unicode,
@@ -249,12 +249,12 @@ impl Effective {
     }
 
     /// Whether the characters are ASCII only, where that is not left to the locale and the terminal.
-    pub(super) fn ascii(&self) -> Option<bool> {
+    pub(crate) fn ascii(&self) -> Option<bool> {
         self.charset.value
     }
 
     /// All of them as a file of settings, each with where it comes from.
-    pub(super) fn text(&self, charset: Charset) -> String {
+    pub(crate) fn text(&self, charset: Charset) -> String {
         let mut text = match &self.loaded.path {
             Some(path) => {
                 let missing = if self.loaded.there {

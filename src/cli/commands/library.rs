@@ -5,13 +5,13 @@ use std::fmt::Write;
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use crate::cli::arguments::{Form, Saving};
-use crate::cli::describe;
-use crate::cli::failure::Failure;
-use crate::cli::input::Content;
-use crate::cli::locale::Charset;
-use crate::cli::report;
-use crate::cli::shelf::Shelf;
+use crate::cli::arguments::request::{Form, Saving};
+use crate::cli::commands::describe;
+use crate::cli::error::CliError;
+use crate::cli::input::content::Content;
+use crate::cli::input::shapes::Shelf;
+use crate::cli::output::charset::Charset;
+use crate::cli::output::report;
 use crate::description::{RegionKind, regions};
 use crate::formats::StoredShape;
 use crate::parameter::Parameter;
@@ -94,13 +94,13 @@ impl Serialize for Line {
 }
 
 /// Reads every shape.
-fn lines(library: &Library) -> Result<Vec<Line>, Failure> {
+fn lines(library: &Library) -> Result<Vec<Line>, CliError> {
     let entries = library.list()?.into_iter();
     Ok(entries.map(|entry| Line::of(library, entry)).collect())
 }
 
 /// All shapes.
-pub(super) fn list(shelf: &Shelf, json: bool, charset: Charset) -> Result<String, Failure> {
+pub(crate) fn list(shelf: &Shelf, json: bool, charset: Charset) -> Result<String, CliError> {
     let lines = lines(&shelf.library()?)?;
     if json {
         // Cannot fail: every key is a text and every number finite.
@@ -131,18 +131,18 @@ pub(super) fn list(shelf: &Shelf, json: bool, charset: Charset) -> Result<String
 }
 
 /// One shape.
-pub(super) fn show(
+pub(crate) fn show(
     shelf: &Shelf,
     name: &str,
     form: Form,
     charset: Charset,
-) -> Result<String, Failure> {
+) -> Result<String, CliError> {
     let shape = shelf.library()?.load(name)?.shape;
     Ok(describe::content(&Content::Shape(shape), form, charset))
 }
 
 /// Stores what is found under a name or in a file. An imprint alone is a whole matrix.
-pub(super) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String, Failure> {
+pub(crate) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String, CliError> {
     let shape = match shelf.find(what)? {
         Content::Shape(shape) => shape.renamed(saving.name),
         Content::Imprint(imprint) => StoredShape {
@@ -165,7 +165,7 @@ pub(super) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String
 }
 
 /// Moves a shape into the trash.
-pub(super) fn delete(shelf: &Shelf, name: &str) -> Result<String, Failure> {
+pub(crate) fn delete(shelf: &Shelf, name: &str) -> Result<String, CliError> {
     let name = shelf.library()?.delete(name)?;
     Ok(format!(
         "deleted {name}; taxel library restore brings it back\n"
@@ -173,13 +173,13 @@ pub(super) fn delete(shelf: &Shelf, name: &str) -> Result<String, Failure> {
 }
 
 /// Brings a shape back.
-pub(super) fn restore(shelf: &Shelf, name: &str) -> Result<String, Failure> {
+pub(crate) fn restore(shelf: &Shelf, name: &str) -> Result<String, CliError> {
     let name = shelf.library()?.restore(name)?;
     Ok(format!("restored {name}\n"))
 }
 
 /// Reads every file; what it says, and how many shapes are broken of how many.
-pub(super) fn check(shelf: &Shelf, charset: Charset) -> Result<(String, usize, usize), Failure> {
+pub(crate) fn check(shelf: &Shelf, charset: Charset) -> Result<(String, usize, usize), CliError> {
     let library = shelf.library()?;
     let lines = lines(&library)?;
     let mut text = String::new();

@@ -3,14 +3,14 @@
 
 use std::ffi::OsStr;
 
-use crate::cli::arguments::{Form, Kept, Saving};
-use crate::cli::export::{Begun, Exported};
-use crate::cli::failure::Failure;
-use crate::cli::flags::Given;
-use crate::cli::input::Content;
-use crate::cli::locale::Charset;
-use crate::cli::report;
-use crate::cli::shelf::Shelf;
+use crate::cli::arguments::parameters::Given;
+use crate::cli::arguments::request::{Form, Kept, Saving};
+use crate::cli::commands::export::{Begun, Exported};
+use crate::cli::error::CliError;
+use crate::cli::input::content::Content;
+use crate::cli::input::shapes::Shelf;
+use crate::cli::output::charset::Charset;
+use crate::cli::output::report;
 use crate::formats::StoredShape;
 use crate::parameter::Parameter;
 use crate::picture::Picture;
@@ -19,22 +19,22 @@ use crate::source::Source;
 use crate::touch::Plane;
 
 /// What a touch has to say.
-pub(super) struct Touched {
+pub(crate) struct Touched {
     /// The imprint with what describes it; or the file that is for standard output, in its place.
-    pub(super) answer: Vec<u8>,
+    pub(crate) answer: Vec<u8>,
     /// What was done besides and the answer does not tell, a line each.
-    pub(super) notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
 }
 
 /// Touches a source, and stores the shape or writes a file where that is asked for.
-pub(super) fn touch(
+pub(crate) fn touch(
     source: Source,
     sensor: Sensor,
     form: Form,
     Kept { saving, export }: Kept,
     shelf: &Shelf,
     charset: Charset,
-) -> Result<Touched, Failure> {
+) -> Result<Touched, CliError> {
     let imprint = Plane::new(sensor).touch(&source);
     let (Form::Json(pitch) | Form::Table(pitch)) = form;
     let pitch = pitch.of(Some(&sensor));
@@ -79,11 +79,11 @@ pub(super) fn touch(
 }
 
 /// A stored shape as a picture, moved as the values say, and the sensor that touches it.
-pub(super) fn picture(
+pub(crate) fn picture(
     what: &OsStr,
     given: &Given,
     shelf: &Shelf,
-) -> Result<(Source, Sensor), Failure> {
+) -> Result<(Source, Sensor), CliError> {
     let (picture, sensor) = match shelf.find(what)? {
         Content::Shape(shape) => {
             let picture = Picture::at_home(shape.imprint);

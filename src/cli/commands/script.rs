@@ -4,13 +4,13 @@ use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::ops::ControlFlow;
 
-use crate::cli::effective::Effective;
-use crate::cli::export;
-use crate::cli::failure::Failure;
-use crate::cli::input::Place;
-use crate::cli::locale::Charset;
-use crate::cli::program::Script;
-use crate::cli::shelf::Shelf;
+use crate::cli::arguments::program::Script;
+use crate::cli::commands::export;
+use crate::cli::error::CliError;
+use crate::cli::input::content::Place;
+use crate::cli::input::shapes::Shelf;
+use crate::cli::output::charset::Charset;
+use crate::cli::settings::resolved::Effective;
 use crate::formats::Name;
 use crate::formats::name::folded;
 use crate::tui::app::state::Options;
@@ -25,21 +25,21 @@ use crate::tui::widget::theme::{ColorDepth, Palette, Theme};
 const MOST_BYTES: u64 = 16 << 20;
 
 /// Runs a script, and prints what it asks for as it comes.
-pub(super) fn run(
+pub(crate) fn run(
     asked: &Script,
     settings: &Effective,
     shelf: &Shelf,
     charset: Charset,
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     let name = asked.place.as_ref().map(Place::name);
     let script = match &asked.place {
-        Some(place) => text(place).map_err(|error| Failure::NoScript {
+        Some(place) => text(place).map_err(|error| CliError::NoScript {
             name: place.name(),
             error: error.into(),
         })?,
         None => String::new(),
     };
-    let keys = parse(asked.keys.as_deref().unwrap_or("")).map_err(|error| Failure::Script {
+    let keys = parse(asked.keys.as_deref().unwrap_or("")).map_err(|error| CliError::Script {
         name: None,
         failure: runner::Failure::Script(ScriptError {
             line: 0,
@@ -48,7 +48,7 @@ pub(super) fn run(
     })?;
     let world = match shelf.named()? {
         Some(library) => World::quiet(library),
-        None => World::scratch().map_err(Failure::Screen)?,
+        None => World::scratch().map_err(CliError::Screen)?,
     };
     let plain = Theme::plain(charset == Charset::Ascii);
     let options = Options {
@@ -73,7 +73,7 @@ pub(super) fn run(
     };
     let (mut output, mut lost) = (io::stdout().lock(), None);
     if let Some(folder) = &asked.drawings {
-        fs::create_dir_all(folder).map_err(|error| Failure::File {
+        fs::create_dir_all(folder).map_err(|error| CliError::File {
             name: folder.to_string_lossy().into_owned(),
             error,
         })?;
@@ -85,7 +85,7 @@ pub(super) fn run(
                 let written = output.write_all(text.as_bytes());
                 written
                     .and_then(|()| output.flush())
-                    .map_err(Failure::Write)
+                    .map_err(CliError::Write)
             }
             (Shown::Screen(name, session), Some(folder)) => {
                 let name = names.next(name);
@@ -105,7 +105,7 @@ pub(super) fn run(
     let result = runner::run_shown(&script, &keys, &running, world, &mut show);
     match lost {
         Some(failure) => Err(failure),
-        None => result.map_err(|failure| Failure::Script { name, failure }),
+        None => result.map_err(|failure| CliError::Script { name, failure }),
     }
 }
 

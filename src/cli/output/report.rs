@@ -6,7 +6,7 @@
 
 use std::fmt::Write;
 
-use crate::cli::locale::Charset;
+use crate::cli::output::charset::Charset;
 use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension, RegionKind, regions};
 use crate::formats::{DescribedImprint, value};
 use crate::imprint::Imprint;
@@ -19,7 +19,7 @@ use crate::touch::reaches_beyond;
 const WIDTH: usize = 80;
 
 /// The answer as one line of JSON.
-pub(super) fn json(imprint: &Imprint) -> String {
+pub(crate) fn json(imprint: &Imprint) -> String {
     // Cannot fail: every key is a text and every number finite.
     let mut line = serde_json::to_string(&DescribedImprint(imprint)).unwrap_or_default();
     line.push('\n');
@@ -28,7 +28,7 @@ pub(super) fn json(imprint: &Imprint) -> String {
 
 /// JSON that quotes what others wrote, with all but ASCII escaped: the same bytes in every locale, and safe on a
 /// terminal.
-pub(super) fn ascii_json(json: &str) -> String {
+pub(crate) fn ascii_json(json: &str) -> String {
     let mut ascii = String::with_capacity(json.len());
     for unit in json.encode_utf16() {
         match u8::try_from(unit) {
@@ -41,7 +41,7 @@ pub(super) fn ascii_json(json: &str) -> String {
 }
 
 /// What made the imprint, and whether all of it is on the sensor.
-pub(super) fn made(source: &Source, sensor: &Sensor) -> Vec<String> {
+pub(crate) fn made(source: &Source, sensor: &Sensor) -> Vec<String> {
     let mut lines = vec![source.to_string()];
     if reaches_beyond(source, sensor) {
         lines.push(format!("the {} reaches beyond the sensor", source.noun()));
@@ -50,7 +50,7 @@ pub(super) fn made(source: &Source, sensor: &Sensor) -> Vec<String> {
 }
 
 /// The size of the matrix, of its cells where a pitch is known, the sensor's threshold, and the active taxels.
-pub(super) fn size(imprint: &Imprint, sensor: Option<&Sensor>, pitch: Option<f64>) -> String {
+pub(crate) fn size(imprint: &Imprint, sensor: Option<&Sensor>, pitch: Option<f64>) -> String {
     let cells = pitch.map_or(String::new(), |pitch| format!(" of {} mm", short(pitch)));
     let threshold = sensor.map_or(String::new(), |sensor| {
         format!(", threshold {}", short(sensor.threshold()))
@@ -60,7 +60,7 @@ pub(super) fn size(imprint: &Imprint, sensor: Option<&Sensor>, pitch: Option<f64
 }
 
 /// The matrix, the lines that say what made it, and the table of its regions.
-pub(super) fn table(
+pub(crate) fn table(
     imprint: &Imprint,
     made: &[String],
     pitch: Option<f64>,

@@ -1,12 +1,12 @@
 //! The longer texts of the help: what a command is for, and examples of it. None is wider than 80 columns.
 
-pub(super) const ABOUT: &str = "\
+pub(crate) const ABOUT: &str = "\
 Which shapes can a robot recognise by one touch?
 
 Touches figures with a matrix of tactile sensors, computes the exact imprint and
 describes it. Without a command the screen opens, where all of this is live.";
 
-pub(super) const EXAMPLES: &str = "\
+pub(crate) const EXAMPLES: &str = "\
 All lengths are in sides of a sensory cell, x to the right, y down.
 Exit status: 0 done, 1 the input was wrong, 2 the command was, 128 + n ended by
 signal n.
@@ -21,7 +21,7 @@ Examples:
   taxel export washer washer.svg
   taxel batch < poses.jsonl > answers.jsonl";
 
-pub(super) const FIGURE_EXAMPLES: &str = "\
+pub(crate) const FIGURE_EXAMPLES: &str = "\
 Ranges are those of the 16 x 16 sensor: on another one its larger side takes the
 place of 16. A flag that is not given takes its default.
 
@@ -32,7 +32,7 @@ Examples:
   taxel figure hexagon --side 6 --thickness 2.5 --save \"my nut\"
   taxel figure ellipse --angle 30 --radius-x 6 --export oval.svg";
 
-pub(super) const PICTURE_EXAMPLES: &str = "\
+pub(crate) const PICTURE_EXAMPLES: &str = "\
 A name of the library goes before a file of the same name. A file is a stored
 shape or an imprint. The sensor is that of the stored shape; an imprint alone
 lies on one of 16 x 16, or of its own size where that is larger. What is not
@@ -43,7 +43,7 @@ Examples:
   taxel picture key --angle 30 --zoom-x 0.8 --zoom-y 0.8 --json
   taxel picture imprint.txt --x0 2 --save \"moved imprint\"";
 
-pub(super) const DESCRIBE_EXAMPLES: &str = "\
+pub(crate) const DESCRIBE_EXAMPLES: &str = "\
 An imprint is text, a line a row, '#' for an active taxel and '.' for an
 inactive one; or a bitmap (PBM), a table of 0 and 1 (CSV) or an array of numpy
 (NPY); at most 64 x 64. A stored shape is a JSON file. A name of the library
@@ -55,7 +55,7 @@ Examples:
   taxel describe ./washer.json --json
   printf '.##.\\n#..#\\n.##.\\n' | taxel describe -";
 
-pub(super) const EXPORT_EXAMPLES: &str = "\
+pub(crate) const EXPORT_EXAMPLES: &str = "\
 The ending of TO tells the form:
   .txt  rows of '#' and '.'         .svg  a drawing: matrix, outline where it is
   .pbm  a bitmap, P4                      known, rectangle, CG, CD, axes, legend
@@ -70,7 +70,7 @@ Examples:
   taxel export key - --format pbm-plain
   taxel figure hexagon --angle 17 --export hexagon.png";
 
-pub(super) const BATCH_EXAMPLES: &str = r###"Each line is a JSON object:
+pub(crate) const BATCH_EXAMPLES: &str = r###"Each line is a JSON object:
   {"figure":"hexagon","side":3,"x0":2.1,"y0":1.35,"angle":17,"thickness":1}
   {"picture":["##","#."],"x0":5,"y0":3,"angle":10,"zoom_x":1.5,"zoom_y":1}
   {"picture":"washer","x0":2,"y0":2,"angle":0,"zoom_x":1,"zoom_y":1}
@@ -88,7 +88,7 @@ Examples:
   taxel batch < poses.jsonl > answers.jsonl
   echo '{"imprint":["##","#."]}' | taxel batch"###;
 
-pub(super) const SCRIPT_EXAMPLES: &str = r#"One command a line; places are column,row of the screen, from 0:
+pub(crate) const SCRIPT_EXAMPLES: &str = r#"One command a line; places are column,row of the screen, from 0:
   Size 80x24          Set ascii on        Set theme light   Set columns 8
   Set library "DIR"   Set shape {...}     Set leftover {}   Set mouse off
   Resize 100x30
@@ -108,7 +108,7 @@ Examples:
   taxel script test.taxel --svg . --force
   echo 'State /regions/0/f' | taxel script -k 'fh<Enter>' -"#;
 
-pub(super) const CONFIG_EXAMPLES: &str = r#"What is printed is a file of settings itself. Yours is config.toml in the folder
+pub(crate) const CONFIG_EXAMPLES: &str = r#"What is printed is a file of settings itself. Yours is config.toml in the folder
 taxel among your settings, or the file that --config or TAXEL_CONFIG names:
   theme = "light"               # as --theme, --color; charset = "ascii"
   library = "~/shapes"
@@ -126,19 +126,19 @@ Examples:
   taxel config --theme light --columns 32 | grep flag
   TAXEL_CONFIG=/dev/null taxel config | grep keys"#;
 
-pub(super) const COMPLETIONS_EXAMPLES: &str = "\
+pub(crate) const COMPLETIONS_EXAMPLES: &str = "\
 Examples:
   taxel completions bash > ~/.local/share/bash-completion/completions/taxel
   taxel completions zsh > ~/.zfunc/_taxel    # a folder of your fpath
   taxel completions fish > ~/.config/fish/completions/taxel.fish";
 
-pub(super) const MAN_EXAMPLES: &str = "\
+pub(crate) const MAN_EXAMPLES: &str = "\
 Examples:
   taxel man | man -l -
   taxel man ~/.local/share/man/man1 && man taxel-figure";
 
 /// Of the manual only.
-pub(super) const ENVIRONMENT: &str = "
+pub(crate) const ENVIRONMENT: &str = "
   TAXEL_LIBRARY    the library's folder
   TAXEL_CONFIG     the file of settings
   NO_COLOR         no colours, where it is not empty
@@ -148,13 +148,13 @@ pub(super) const ENVIRONMENT: &str = "
   COLUMNS, LINES   the size of a terminal that does not tell it";
 
 /// Of the manual only.
-pub(super) const FILES: &str = "
+pub(crate) const FILES: &str = "
   ~/.config/taxel/config.toml
                    settings; 'taxel config' shows what it can say
   ~/.local/share/taxel/library
                    the shapes, one JSON file each";
 
-pub(super) const SWEEP_EXAMPLES: &str = "\
+pub(crate) const SWEEP_EXAMPLES: &str = "\
 A range is START:END:STEP with the end included, or one number; decimals are
 exact. What is not given has the paper's resolution: one cell
 by hundredths and every whole degree, 3.6 million poses. Figures are solid, the
@@ -168,14 +168,14 @@ Examples:
   taxel sweep hexagon --side 12 --columns 64 --rows 64 --x0 20:20.99:0.01 \\
     --shard 3/40 --atlas hexagon-3.npz --quiet";
 
-pub(super) const MERGE_EXAMPLES: &str = "\
+pub(crate) const MERGE_EXAMPLES: &str = "\
 All shards together give the same atlas as one sweep of the whole grid.
 
 Examples:
   taxel merge hexagon-*.npz --atlas hexagon.npz
   taxel merge a.npz b.npz --atlas both.csv --json";
 
-pub(super) const LIBRARY_EXAMPLES: &str = "\
+pub(crate) const LIBRARY_EXAMPLES: &str = "\
 A library is a folder with one JSON file a shape. The shapes that come with the
 program are always listed; they can be copied, not changed. A name has 1 to 64
 letters, digits, spaces, '-', '_', '.'; upper and lower case are the same.
@@ -188,7 +188,7 @@ Examples:
   taxel library save ring imprint.txt
   taxel library --library ./shapes check";
 
-pub(super) const LIST_EXAMPLES: &str = "\
+pub(crate) const LIST_EXAMPLES: &str = "\
 Size in columns x rows, active taxels, pieces and holes. What cannot be read is
 listed as broken, with the reason.
 
@@ -196,13 +196,13 @@ Examples:
   taxel library list
   taxel library list --json";
 
-pub(super) const SHOW_EXAMPLES: &str = "\
+pub(crate) const SHOW_EXAMPLES: &str = "\
 Examples:
   taxel library show washer
   taxel library show \"my nut\" --pitch 2.5
   taxel library show key --json";
 
-pub(super) const SAVE_EXAMPLES: &str = "\
+pub(crate) const SAVE_EXAMPLES: &str = "\
 A file is a stored shape or an imprint. A name of the library goes
 before a file of the same name: so a shape is copied.
 
@@ -211,25 +211,25 @@ Examples:
   taxel library save \"my washer\" washer
   printf '.##.\\n#..#\\n.##.\\n' | taxel library save ring - --force";
 
-pub(super) const DELETE_EXAMPLES: &str = "\
+pub(crate) const DELETE_EXAMPLES: &str = "\
 The last 50 that were deleted are kept.
 
 Examples:
   taxel library delete ring
   taxel library restore ring";
 
-pub(super) const RESTORE_EXAMPLES: &str = "\
+pub(crate) const RESTORE_EXAMPLES: &str = "\
 Of several deleted ones of that name the last comes back.
 
 Examples:
   taxel library restore ring";
 
-pub(super) const PATH_EXAMPLES: &str = "\
+pub(crate) const PATH_EXAMPLES: &str = "\
 Examples:
   taxel library path
   ls \"$(taxel library path)\"";
 
-pub(super) const CHECK_EXAMPLES: &str = "\
+pub(crate) const CHECK_EXAMPLES: &str = "\
 Reads every shape, and tells what else lies in the folder. The exit status is 1
 where a shape is broken.
 

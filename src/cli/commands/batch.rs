@@ -6,8 +6,8 @@
 
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 
-use crate::cli::failure::Failure;
-use crate::cli::report;
+use crate::cli::error::CliError;
+use crate::cli::output::report;
 use crate::formats::{DescribedImprint, Job};
 use crate::imprint::Imprint;
 use crate::quote::legible;
@@ -21,18 +21,18 @@ const MAX_LINE: usize = 1 << 20;
 const CHUNK: usize = 1 << 16;
 
 /// Answers each line of `input`; pictures by name are looked up.
-pub(super) fn answer_lines(
+pub(crate) fn answer_lines(
     sensor: Sensor,
     lookup: &dyn Fn(&str) -> Result<Imprint, String>,
     input: impl Read,
     output: impl Write,
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     let mut lines = Lines::new(input);
     let mut output = BufWriter::with_capacity(CHUNK, output);
     let mut plane = Plane::new(sensor);
     let mut answer = Vec::new();
     let (mut number, mut answered, mut bad) = (0_u64, 0_u64, 0_u64);
-    while let Some(line) = lines.next(|| output.flush().map_err(Failure::Write))? {
+    while let Some(line) = lines.next(|| output.flush().map_err(CliError::Write))? {
         number += 1;
         let result = match line {
             Line::Content(content) if content.trim_ascii().is_empty() => continue,
@@ -44,7 +44,7 @@ pub(super) fn answer_lines(
         answer.clear();
         match result {
             Ok(imprint) => serde_json::to_writer(&mut answer, &DescribedImprint(&imprint))
-                .map_err(|error| Failure::Write(error.into()))?,
+                .map_err(|error| CliError::Write(error.into()))?,
             Err(message) => {
                 bad += 1;
                 refuse(&mut answer, &format!("line {number}: {message}"));
@@ -52,11 +52,11 @@ pub(super) fn answer_lines(
         }
         answered += 1;
         answer.push(b'\n');
-        output.write_all(&answer).map_err(Failure::Write)?;
+        output.write_all(&answer).map_err(CliError::Write)?;
     }
-    output.flush().map_err(Failure::Write)?;
+    output.flush().map_err(CliError::Write)?;
     if bad > 0 {
-        return Err(Failure::Lines {
+        return Err(CliError::Lines {
             bad,
             lines: answered,
         });
@@ -95,8 +95,8 @@ impl<R: Read> Lines<R> {
     /// The next line; none at the end. `pause` is called before each read that may have to wait.
     fn next(
         &mut self,
-        mut pause: impl FnMut() -> Result<(), Failure>,
-    ) -> Result<Option<Line<'_>>, Failure> {
+        mut pause: impl FnMut() -> Result<(), CliError>,
+    ) -> Result<Option<Line<'_>>, CliError> {
         self.line.clear();
         let mut any = false;
         let mut long = false;
@@ -107,7 +107,7 @@ impl<R: Read> Lines<R> {
             let bytes = match self.input.fill_buf() {
                 Ok(bytes) => bytes,
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
-                Err(error) => return Err(Failure::Read(error)),
+                Err(error) => return Err(CliError::Read(error)),
             };
             if bytes.is_empty() {
                 break;

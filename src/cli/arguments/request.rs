@@ -7,17 +7,17 @@ use clap::ArgMatches;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 
-use crate::cli::chosen::Chosen;
-use crate::cli::commands;
-use crate::cli::completions::Shell;
-use crate::cli::effective::{Effective, Loaded};
-use crate::cli::export::Export;
-use crate::cli::failure::Failure;
-use crate::cli::flags;
-use crate::cli::flags::Given;
-use crate::cli::pitch::Pitch;
-use crate::cli::program::Script;
-use crate::cli::sweep::Wanted;
+use crate::cli::arguments::definitions;
+use crate::cli::arguments::parameters;
+use crate::cli::arguments::parameters::Given;
+use crate::cli::arguments::program::Script;
+use crate::cli::commands::completions::Shell;
+use crate::cli::commands::export::Export;
+use crate::cli::commands::sweep::Wanted;
+use crate::cli::error::CliError;
+use crate::cli::settings::flags::Chosen;
+use crate::cli::settings::pitch::Pitch;
+use crate::cli::settings::resolved::{Effective, Loaded};
 use crate::figure::FigureKind;
 use crate::formats::Name;
 use crate::parameter::Parameter;
@@ -30,16 +30,16 @@ use crate::sweep::plan::Shard;
 
 /// What is asked for, and with which settings.
 #[derive(Clone, Debug)]
-pub(super) struct Asked {
-    pub(super) request: Request,
+pub(crate) struct Asked {
+    pub(crate) request: Request,
     /// Whether the arguments name the library's folder.
-    pub(super) library_named: bool,
-    pub(super) settings: Effective,
+    pub(crate) library_named: bool,
+    pub(crate) settings: Effective,
 }
 
 /// What is to be done.
 #[derive(Clone, Debug)]
-pub(super) enum Request {
+pub(crate) enum Request {
     /// To print this text.
     Help(String),
     /// The screen, of so many columns and rows whatever the terminal says, and recorded or not.
@@ -72,20 +72,20 @@ pub(super) enum Request {
 
 /// A grid and how it is gone through.
 #[derive(Clone, Debug)]
-pub(super) struct Sweep {
-    pub(super) what: Swept,
-    pub(super) anchor: Anchor,
-    pub(super) ranges: Ranges,
-    pub(super) shard: Shard,
+pub(crate) struct Sweep {
+    pub(crate) what: Swept,
+    pub(crate) anchor: Anchor,
+    pub(crate) ranges: Ranges,
+    pub(crate) shard: Shard,
     /// Threads; 0 for as many as there are cores.
-    pub(super) jobs: usize,
-    pub(super) wanted: Wanted,
+    pub(crate) jobs: usize,
+    pub(crate) wanted: Wanted,
 }
 
 /// What is swept.
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
-pub(super) enum Swept {
+pub(crate) enum Swept {
     /// A figure.
     Figure(Source, Sensor),
     /// A stored shape, on a sensor changed as the values say.
@@ -94,7 +94,7 @@ pub(super) enum Swept {
 
 /// What is to be done with the library.
 #[derive(Clone, Debug)]
-pub(super) enum Chore {
+pub(crate) enum Chore {
     /// To list it; as JSON or not.
     List(bool),
     /// To describe one of its shapes.
@@ -113,22 +113,22 @@ pub(super) enum Chore {
 
 /// What is to be kept of a touch.
 #[derive(Clone, Debug)]
-pub(super) struct Kept {
-    pub(super) saving: Option<Saving>,
-    pub(super) export: Option<Export>,
+pub(crate) struct Kept {
+    pub(crate) saving: Option<Saving>,
+    pub(crate) export: Option<Export>,
 }
 
 /// The name that a shape is to be stored under.
 #[derive(Clone, Debug)]
-pub(super) struct Saving {
-    pub(super) name: Name,
+pub(crate) struct Saving {
+    pub(crate) name: Name,
     /// Whether an own shape of that name is replaced.
-    pub(super) force: bool,
+    pub(crate) force: bool,
 }
 
 /// How an imprint and its descriptors are shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Form {
+pub(crate) enum Form {
     /// One line of JSON; what is drawn beside it is in mm where a pitch is known.
     Json(Pitch),
     /// The matrix and a table, in mm too where a pitch is known.
@@ -136,8 +136,8 @@ pub(super) enum Form {
 }
 
 /// What the arguments ask for; the first is the program's own name.
-pub(super) fn read(arguments: Vec<OsString>) -> Result<Asked, Failure> {
-    let mut command = commands::all();
+pub(crate) fn read(arguments: Vec<OsString>) -> Result<Asked, CliError> {
+    let mut command = definitions::all();
     let matches = match command.try_get_matches_from_mut(arguments) {
         Ok(matches) => matches,
         Err(error) if error.use_stderr() => return Err(error.into()),
@@ -189,7 +189,7 @@ fn of_screen(matches: &ArgMatches) -> Option<String> {
     flags.into_iter().find(given).map(str::to_owned)
 }
 
-fn effective(loaded: Loaded, matches: &ArgMatches) -> Result<Effective, Failure> {
+fn effective(loaded: Loaded, matches: &ArgMatches) -> Result<Effective, CliError> {
     Effective::new(loaded, Chosen::of(matches), std::env::var_os)
 }
 
@@ -199,7 +199,7 @@ fn request(
     own: &ArgMatches,
     command: &mut clap::Command,
     settings: &Effective,
-) -> Result<Request, Failure> {
+) -> Result<Request, CliError> {
     Ok(match name {
         "figure" => {
             let (figure, sensor) = source(own, command, "figure", settings)?;
@@ -241,7 +241,7 @@ fn sweep(
     matches: &ArgMatches,
     command: &mut clap::Command,
     settings: &Effective,
-) -> Result<Sweep, Failure> {
+) -> Result<Sweep, CliError> {
     let given = Given::of(matches);
     let mut ranges = Ranges::default();
     let read = |parameter: Parameter, range: &mut DecimalRange| {
@@ -254,7 +254,7 @@ fn sweep(
     read(Parameter::ZoomX, &mut ranges.zoom_x);
     read(Parameter::ZoomY, &mut ranges.zoom_y);
     let what = if let Some(picture) = matches.get_one::<OsString>("picture") {
-        let size = flags::figure_parameters().find(|&parameter| given.has(parameter));
+        let size = parameters::figure_parameters().find(|&parameter| given.has(parameter));
         if let Some(size) = size {
             let message = format!("'--{}' does not belong to a picture", size.flag());
             return Err(misused(command, "sweep", &message));
@@ -285,14 +285,14 @@ fn wanted(matches: &ArgMatches) -> Wanted {
     Wanted {
         atlas: matches.get_one::<AtlasFile>("atlas").cloned(),
         poses: poses.ok().flatten().cloned(),
-        existing: flags::existing(matches),
+        existing: parameters::existing(matches),
         json: matches.get_flag("json"),
         quiet: matches.get_flag("quiet"),
     }
 }
 
 /// An error that shows the usage of the command that it is made by.
-fn misused(command: &mut clap::Command, name: &str, message: &str) -> Failure {
+fn misused(command: &mut clap::Command, name: &str, message: &str) -> CliError {
     let error = command.find_subcommand_mut(name).map_or_else(
         || clap::Error::raw(ErrorKind::ArgumentConflict, format!("{message}\n")),
         |command| command.error(ErrorKind::ArgumentConflict, message),
@@ -306,7 +306,7 @@ fn source(
     command: &mut clap::Command,
     name: &str,
     settings: &Effective,
-) -> Result<(Source, Sensor), Failure> {
+) -> Result<(Source, Sensor), CliError> {
     // Required, and one of the names: there is always one.
     let kind = matches.get_one::<String>("kind");
     let kind = kind.and_then(|name| FigureKind::from_name(name));
@@ -318,7 +318,7 @@ fn source(
             "'--{}' does not belong to '{}', which takes {}",
             parameter.flag(),
             kind.name(),
-            commands::list(own, "and")
+            definitions::list(own, "and")
         );
         return Err(misused(command, name, &message));
     }
@@ -327,7 +327,7 @@ fn source(
     Ok((figure, sensor))
 }
 
-fn chore(matches: &ArgMatches, settings: &Effective) -> Result<Chore, Failure> {
+fn chore(matches: &ArgMatches, settings: &Effective) -> Result<Chore, CliError> {
     let Some((command, own)) = matches.subcommand() else {
         // Required: there is always one.
         return Ok(Chore::Path);
@@ -353,7 +353,7 @@ fn what(matches: &ArgMatches) -> OsString {
     what.cloned().unwrap_or_default()
 }
 
-fn kept(matches: &ArgMatches, command: &mut clap::Command, name: &str) -> Result<Kept, Failure> {
+fn kept(matches: &ArgMatches, command: &mut clap::Command, name: &str) -> Result<Kept, CliError> {
     let path = matches.get_one::<PathBuf>("export");
     let export = path.map(|path| export(matches, path, command, name));
     Ok(Kept {
@@ -368,9 +368,9 @@ fn export(
     path: &Path,
     command: &mut clap::Command,
     name: &str,
-) -> Result<Export, Failure> {
+) -> Result<Export, CliError> {
     let format = matches.get_one::<String>("format").map(String::as_str);
-    let export = Export::new(path, format, flags::existing(matches));
+    let export = Export::new(path, format, parameters::existing(matches));
     export.map_err(|message| misused(command, name, &message))
 }
 
@@ -380,14 +380,14 @@ fn saving(matches: &ArgMatches) -> Option<Saving> {
     Some(Saving { name, force })
 }
 
-fn pitch(matches: &ArgMatches, settings: &Effective) -> Result<Pitch, Failure> {
+fn pitch(matches: &ArgMatches, settings: &Effective) -> Result<Pitch, CliError> {
     Ok(Pitch {
         given: Given::of(matches).pitch()?,
         usual: settings.pitch(),
     })
 }
 
-fn form(matches: &ArgMatches, settings: &Effective) -> Result<Form, Failure> {
+fn form(matches: &ArgMatches, settings: &Effective) -> Result<Form, CliError> {
     let pitch = pitch(matches, settings)?;
     Ok(if matches.get_flag("json") {
         Form::Json(pitch)

@@ -11,26 +11,26 @@ use clap::Command;
 use clap_mangen::Man;
 use clap_mangen::roff::{Roff, roman};
 
-use crate::cli::commands;
-use crate::cli::examples::{ENVIRONMENT, FILES};
-use crate::cli::export;
-use crate::cli::failure::Failure;
+use crate::cli::arguments::definitions;
+use crate::cli::arguments::help::{ENVIRONMENT, FILES};
+use crate::cli::commands::export;
+use crate::cli::error::CliError;
 use crate::storage::Existing;
 
 /// The program's own page.
-pub(super) fn main_page() -> Result<Vec<u8>, Failure> {
-    page(&built()).map_err(Failure::Write)
+pub(crate) fn main_page() -> Result<Vec<u8>, CliError> {
+    page(&built()).map_err(CliError::Write)
 }
 
 /// Writes all pages into a folder, which is made where it is not there.
-pub(super) fn write(folder: &Path) -> Result<(), Failure> {
-    fs::create_dir_all(folder).map_err(|error| Failure::File {
+pub(crate) fn write(folder: &Path) -> Result<(), CliError> {
+    fs::create_dir_all(folder).map_err(|error| CliError::File {
         name: folder.display().to_string(),
         error,
     })?;
     for command in all(&built()) {
         let file = folder.join(format!("{}.1", name(command)));
-        let page = page(command).map_err(Failure::Write)?;
+        let page = page(command).map_err(CliError::Write)?;
         // Those of an earlier version go.
         export::put(&file, &page, Existing::Replaced)?;
     }
@@ -39,7 +39,7 @@ pub(super) fn write(folder: &Path) -> Result<(), Failure> {
 
 /// The commands with all that clap adds to them, but for its `help`, of which there is nothing to say.
 fn built() -> Command {
-    let mut all = commands::all().disable_help_subcommand(true);
+    let mut all = definitions::all().disable_help_subcommand(true);
     all.build();
     all
 }

@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 /// The characters that may be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Charset {
+pub(crate) enum Charset {
     /// Space to `~`.
     Ascii,
     /// All that can be seen.
@@ -19,7 +19,7 @@ impl Charset {
     /// The arguments are looked at before they are read, so that a message about them keeps to ASCII too. Of the
     /// variables `LC_ALL`, `LC_CTYPE`, `LANG` the first that is set and not empty decides, as POSIX has it; where
     /// none is, the locale is `C`.
-    pub(super) fn of(
+    pub(crate) fn of(
         arguments: &[OsString],
         variable: impl Fn(&'static str) -> Option<OsString>,
     ) -> Self {
@@ -44,7 +44,7 @@ impl Charset {
     }
 
     /// An active and an inactive taxel, two columns of the terminal each, so that cells look square.
-    pub(super) fn taxels(self) -> (&'static str, &'static str) {
+    pub(crate) fn taxels(self) -> (&'static str, &'static str) {
         match self {
             Self::Ascii => ("# ", ". "),
             Self::Unicode => ("██", "· "),
@@ -53,7 +53,7 @@ impl Charset {
 
     /// One line of text as it may be written: control characters are escaped, since text from files and arguments
     /// must not steer the terminal.
-    pub(super) fn line(self, text: &str) -> Cow<'_, str> {
+    pub(crate) fn line(self, text: &str) -> Cow<'_, str> {
         if text.chars().all(|character| self.has(character)) {
             return Cow::Borrowed(text);
         }
@@ -76,7 +76,7 @@ impl Charset {
     }
 
     /// The same for text of several lines.
-    pub(super) fn lines(self, text: &str) -> String {
+    pub(crate) fn lines(self, text: &str) -> String {
         let lines: Vec<Cow<'_, str>> = text.split('\n').map(|line| self.line(line)).collect();
         lines.join("\n")
     }

@@ -2,8 +2,8 @@
 
 use std::io;
 
-use crate::cli::input::InputError;
-use crate::cli::locale::Charset;
+use crate::cli::input::content::InputError;
+use crate::cli::output::charset::Charset;
 use crate::formats::ArchiveError;
 use crate::pose::grid::GridError;
 use crate::quote::legible;
@@ -13,7 +13,7 @@ use crate::tui::script::runner;
 
 /// Why a command was not done, or not wholly.
 #[derive(Debug, thiserror::Error)]
-pub(super) enum Failure {
+pub(crate) enum CliError {
     /// The command itself is wrong.
     #[error(transparent)]
     Usage(#[from] clap::Error),
@@ -148,7 +148,7 @@ pub(super) enum Failure {
     Screen(io::Error),
 }
 
-impl From<SweepFileError> for Failure {
+impl From<SweepFileError> for CliError {
     fn from(error: SweepFileError) -> Self {
         if error.exists() {
             Self::Taken { name: error.name }
@@ -158,14 +158,14 @@ impl From<SweepFileError> for Failure {
     }
 }
 
-impl Failure {
+impl CliError {
     /// Nobody reads on: `taxel batch | head -1`. No failure of ours.
     fn is_closed_pipe(&self) -> bool {
         matches!(self, Self::Write(error) | Self::Screen(error) if error.kind() == io::ErrorKind::BrokenPipe)
     }
 
     /// The exit status.
-    pub(super) fn status(&self) -> u8 {
+    pub(crate) fn status(&self) -> u8 {
         match self {
             _ if self.is_closed_pipe() => 0,
             Self::Usage(_)
@@ -186,7 +186,7 @@ impl Failure {
     }
 
     /// What standard error shows, with its line end; nothing for a closed pipe.
-    pub(super) fn message(&self, charset: Charset) -> Option<String> {
+    pub(crate) fn message(&self, charset: Charset) -> Option<String> {
         match self {
             _ if self.is_closed_pipe() => None,
             Self::Script { .. } => Some(charset.lines(&format!("error: {self}\n"))),

@@ -4,17 +4,17 @@ use crate::sensor::Sensor;
 
 /// What is known of the pitch, in mm, besides a stored shape.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Pitch {
+pub(crate) struct Pitch {
     /// By a flag.
-    pub(super) given: Option<f64>,
+    pub(crate) given: Option<f64>,
     /// By the settings.
-    pub(super) usual: Option<f64>,
+    pub(crate) usual: Option<f64>,
 }
 
 impl Pitch {
     /// The pitch that counts: that of the flag, else of the sensor, else of the settings; none where nobody has said one.
     /// The default of a sensor, which every stored shape has that was never told otherwise, says nothing.
-    pub(super) fn of(self, sensor: Option<&Sensor>) -> Option<f64> {
+    pub(crate) fn of(self, sensor: Option<&Sensor>) -> Option<f64> {
         let own = sensor.map(Sensor::pitch_mm);
         let own = own.filter(|&pitch| pitch != Sensor::default().pitch_mm());
         self.given.or(own).or(self.usual)

@@ -4,10 +4,10 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use crate::cli::effective::Effective;
-use crate::cli::failure::Failure;
-use crate::cli::locale::Charset;
-use crate::cli::shelf::Shelf;
+use crate::cli::error::CliError;
+use crate::cli::input::shapes::Shelf;
+use crate::cli::output::charset::Charset;
+use crate::cli::settings::resolved::Effective;
 use crate::storage::{Library, Orphan, ShapeOrigin};
 use crate::tui::app::state::{App, Options};
 use crate::tui::runtime::perform::World;
@@ -17,13 +17,13 @@ use crate::tui::terminal;
 use crate::tui::terminal::settings::{Flags, Settings};
 
 /// Runs the program on the terminal; the exit status tells how it ended.
-pub(super) fn screen(
+pub(crate) fn screen(
     settings: &Effective,
     size: Option<(u16, u16)>,
     record: Option<PathBuf>,
     shelf: &Shelf,
     charset: Charset,
-) -> Result<u8, Failure> {
+) -> Result<u8, CliError> {
     // A locale without UTF-8 is as good as a flag; one with it does not speak for the terminal.
     let ascii = (charset == Charset::Ascii).then_some(true);
     let flags = Flags {
@@ -59,7 +59,7 @@ pub(super) fn screen(
             let _ = writeln!(io::stderr().lock(), "{}", charset.line(&message));
         }
     }
-    Ok(ended.map_err(Failure::Screen)?.status())
+    Ok(ended.map_err(CliError::Screen)?.status())
 }
 
 /// A record that is being written.
@@ -73,16 +73,16 @@ struct Record {
 
 impl Record {
     /// A new file: one that is there may be the record of something else.
-    fn begin(path: PathBuf, options: &Options, library: &Library) -> Result<Self, Failure> {
+    fn begin(path: PathBuf, options: &Options, library: &Library) -> Result<Self, CliError> {
         // All that may fail before there is a file, which would be in the way of the next try.
         let mut start = of_options(options);
         start.extend(found(library)?);
         let file = File::create_new(&path).map_err(|error| match error.kind() {
-            ErrorKind::AlreadyExists => Failure::Recorded {
+            ErrorKind::AlreadyExists => CliError::Recorded {
                 name: path.to_string_lossy().into_owned(),
                 free: free(&path).to_string_lossy().into_owned(),
             },
-            _ => Failure::Record {
+            _ => CliError::Record {
                 name: path.to_string_lossy().into_owned(),
                 error,
             },
@@ -118,7 +118,7 @@ impl Record {
 }
 
 /// What the program finds at its start: the user's shapes, but for those that cannot be read, and unsaved work.
-fn found(library: &Library) -> Result<Vec<Setting>, Failure> {
+fn found(library: &Library) -> Result<Vec<Setting>, CliError> {
     let own = library.list()?;
     let own = own.iter().filter(|entry| entry.origin == ShapeOrigin::Own);
     let shapes = own.filter_map(|entry| library.load(&entry.name).ok());

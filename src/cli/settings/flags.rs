@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use clap::ArgMatches;
 
-use crate::cli::flags::Given;
+use crate::cli::arguments::parameters::Given;
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
 /// What a flag with several words says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Choice<T> {
+pub(crate) enum Choice<T> {
     /// `auto`: the program chooses, whatever the file says.
     Auto,
     /// One of the others.
@@ -18,7 +18,7 @@ pub(super) enum Choice<T> {
 
 impl<T> Choice<T> {
     /// What was chosen, if it is not left to the program.
-    pub(super) fn made(self) -> Option<T> {
+    pub(crate) fn made(self) -> Option<T> {
         match self {
             Self::Auto => None,
             Self::Made(value) => Some(value),
@@ -28,18 +28,18 @@ impl<T> Choice<T> {
 
 /// What the flags say; nothing where they are silent.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Chosen {
-    pub(super) theme: Option<Choice<Palette>>,
-    pub(super) color: Option<Choice<ColorDepth>>,
-    pub(super) ascii: bool,
-    pub(super) no_mouse: bool,
-    pub(super) library: Option<PathBuf>,
-    pub(super) sensor: Given,
+pub(crate) struct Chosen {
+    pub(crate) theme: Option<Choice<Palette>>,
+    pub(crate) color: Option<Choice<ColorDepth>>,
+    pub(crate) ascii: bool,
+    pub(crate) no_mouse: bool,
+    pub(crate) library: Option<PathBuf>,
+    pub(crate) sensor: Given,
 }
 
 impl Chosen {
     /// Those of a command; it needs not have all the flags.
-    pub(super) fn of(matches: &ArgMatches) -> Self {
+    pub(crate) fn of(matches: &ArgMatches) -> Self {
         let chosen = |name: &str| {
             let chosen = matches.try_get_one::<String>(name).ok().flatten();
             chosen.map(String::as_str)

@@ -5,34 +5,36 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
-use crate::cli::completions::Shell;
-use crate::cli::config::AUTO;
-use crate::cli::examples::{COMPLETIONS_EXAMPLES, CONFIG_EXAMPLES, MAN_EXAMPLES, SCRIPT_EXAMPLES};
-use crate::cli::flags;
-use crate::cli::input::Place;
+use crate::cli::arguments::help::{
+    COMPLETIONS_EXAMPLES, CONFIG_EXAMPLES, MAN_EXAMPLES, SCRIPT_EXAMPLES,
+};
+use crate::cli::arguments::parameters;
+use crate::cli::commands::completions::Shell;
+use crate::cli::input::content::Place;
+use crate::cli::settings::file::AUTO;
 use crate::storage::Existing;
 use crate::tui::script::command;
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
 /// A script and how it is run.
 #[derive(Clone, Debug)]
-pub(super) struct Script {
+pub(crate) struct Script {
     /// Where its lines come from, where they do.
-    pub(super) place: Option<Place>,
+    pub(crate) place: Option<Place>,
     /// Keys that are pressed before.
-    pub(super) keys: Option<String>,
-    pub(super) size: (u16, u16),
-    pub(super) styles: bool,
-    pub(super) json: bool,
+    pub(crate) keys: Option<String>,
+    pub(crate) size: (u16, u16),
+    pub(crate) styles: bool,
+    pub(crate) json: bool,
     /// The folder that its screens are drawn into, if they are.
-    pub(super) drawings: Option<PathBuf>,
+    pub(crate) drawings: Option<PathBuf>,
     /// What happens to drawings that are there already.
-    pub(super) existing: Existing,
+    pub(crate) existing: Existing,
 }
 
 impl Script {
     /// What the arguments of [`script`] ask for.
-    pub(super) fn of(matches: &ArgMatches) -> Self {
+    pub(crate) fn of(matches: &ArgMatches) -> Self {
         let place = matches.get_one::<PathBuf>("file").map(|file| {
             if file.as_os_str() == "-" {
                 Place::Standard
@@ -54,12 +56,12 @@ impl Script {
             styles: matches.get_flag("styles"),
             json: matches.get_flag("json"),
             drawings: matches.get_one::<PathBuf>("svg").cloned(),
-            existing: flags::existing(matches),
+            existing: parameters::existing(matches),
         }
     }
 }
 
-pub(super) fn script() -> Command {
+pub(crate) fn script() -> Command {
     let file = Arg::new("file")
         .value_name("FILE")
         .value_parser(value_parser!(PathBuf))
@@ -92,7 +94,7 @@ pub(super) fn script() -> Command {
         .args([file, keys, size(), styles, json, svg, force])
 }
 
-pub(super) fn completions() -> Command {
+pub(crate) fn completions() -> Command {
     let shell = Arg::new("shell")
         .value_name("SHELL")
         .required(true)
@@ -105,7 +107,7 @@ pub(super) fn completions() -> Command {
         .arg(shell)
 }
 
-pub(super) fn man() -> Command {
+pub(crate) fn man() -> Command {
     let folder = Arg::new("folder")
         .value_name("DIR")
         .value_parser(value_parser!(PathBuf))
@@ -117,7 +119,7 @@ pub(super) fn man() -> Command {
 }
 
 /// How the screen looks, where the environment does not say it well.
-pub(super) fn look() -> [Arg; 3] {
+pub(crate) fn look() -> [Arg; 3] {
     let choice = |name: &'static str, values: Vec<&'static str>, help: &'static str| {
         let values = std::iter::once(AUTO).chain(values);
         Arg::new(name)
@@ -148,7 +150,7 @@ pub(super) fn look() -> [Arg; 3] {
     .map(|arg| arg.help_heading("Terminal"))
 }
 
-pub(super) fn record() -> Arg {
+pub(crate) fn record() -> Arg {
     Arg::new("record")
         .long("record")
         .value_name("FILE")
@@ -156,14 +158,14 @@ pub(super) fn record() -> Arg {
         .help("Write what is typed as a script, to a new file")
 }
 
-pub(super) fn config() -> Command {
+pub(crate) fn config() -> Command {
     Command::new("config")
         .about("Print the settings and where each comes from")
         .after_help(CONFIG_EXAMPLES)
         .args(look())
 }
 
-pub(super) fn config_file() -> Arg {
+pub(crate) fn config_file() -> Arg {
     Arg::new("config")
         .long("config")
         .value_name("FILE")
@@ -171,7 +173,7 @@ pub(super) fn config_file() -> Arg {
         .help("Settings in place of your own")
 }
 
-pub(super) fn size() -> Arg {
+pub(crate) fn size() -> Arg {
     Arg::new("size")
         .long("size")
         .value_name("CxR")
@@ -183,8 +185,8 @@ fn parse_size(text: &str) -> Result<(u16, u16), String> {
     command::size(text)
 }
 
-/// Declared for the help only: [`crate::cli::locale::Charset`] has seen it before.
-pub(super) fn ascii() -> Arg {
+/// Declared for the help only: [`crate::cli::output::charset::Charset`] has seen it before.
+pub(crate) fn ascii() -> Arg {
     Arg::new("ascii")
         .long("ascii")
         .action(ArgAction::SetTrue)
