@@ -32,7 +32,7 @@ use peer::{Outline, Peer};
 #[expect(dead_code, reason = "another benchmark looks at more of it")]
 mod peer;
 
-#[path = "../tests/sweep/cases.rs"]
+#[path = "../tests/imprints/sweep/cases.rs"]
 #[expect(
     dead_code,
     reason = "compares with touching, which is no matter of time"

@@ -1,10 +1,10 @@
 //! Sweeps compared with touching pose by pose over the paper's whole grid: every difference counts.
 //!
-//! `cargo run --release --example sweep_check [-- NAME]` takes the figures and pictures of `tests/sweep/cases.rs` (or
+//! `cargo run --release --example sweep_check [-- NAME]` takes the figures and pictures of `tests/imprints/sweep/cases.rs` (or
 //! those whose name contains NAME), each over 100 × 100 positions and 360 angles, and ends with status 1 where any pose
 //! differs. About four minutes on one core; the sweeps are a hundredth of that.
 
-#[path = "../tests/sweep/cases.rs"]
+#[path = "../tests/imprints/sweep/cases.rs"]
 mod cases;
 
 use std::process::ExitCode;

@@ -3,7 +3,7 @@
 
 use libfuzzer_sys::fuzz_target;
 
-#[path = "../../tests/hostile/bodies/mod.rs"]
+#[path = "../../tests/files/hostile/bodies/mod.rs"]
 #[allow(dead_code, reason = "every target has one of the bodies")]
 mod bodies;
 

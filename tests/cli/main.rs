@@ -1,5 +1,7 @@
 //! The program as users run it: arguments and standard input in, text and exit status out.
 
+mod config;
+
 mod figure;
 
 mod describe;

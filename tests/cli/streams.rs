@@ -81,7 +81,7 @@ fn the_help_comes_by_flag_and_by_command() {
 
 #[test]
 fn the_version_is_that_of_the_package() {
-    // An optimised build tells its commit too: tests/version.rs.
+    // An optimised build tells its commit too: tests/house/version.rs.
     let version = concat!("taxel ", env!("CARGO_PKG_VERSION"));
     let shown = taxel("--version", "").stdout;
     let commit = shown.strip_prefix(version).map(str::trim_end);

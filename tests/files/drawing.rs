@@ -1,0 +1,217 @@
+//! Drawings of touches: the SVG as it is, the PNG pixel by pixel where it matters.
+//!
+//! `INSTA_UPDATE=always cargo test --test files drawing` writes the SVG files anew; then look at them.
+
+use std::path::Path;
+
+use taxel::description::regions;
+use taxel::figure::{Figure, FigureKind};
+use taxel::formats::Drawing;
+use taxel::imprint::Imprint;
+use taxel::parameter::Parameter;
+use taxel::picture::Picture;
+use taxel::sensor::Sensor;
+use taxel::touch::Plane;
+
+/// The paper's Fig. 1.
+fn ring() -> (Figure, Imprint) {
+    let figure = Figure::default_of(FigureKind::Ellipse, 16)
+        .with(Parameter::X0, 1.99, 16)
+        .and_then(|figure| figure.with(Parameter::Y0, 1.47, 16))
+        .and_then(|figure| figure.with(Parameter::Thickness, 2.0, 16))
+        .expect("in range");
+    let imprint = Plane::new(Sensor::default()).touch(&figure);
+    (figure, imprint)
+}
+
+fn golden(name: &str, svg: &str) {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files/drawing"));
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.bind(|| insta::assert_snapshot!(name, svg));
+}
+
+#[test]
+fn the_papers_figure_in_millimetres() {
+    let (figure, imprint) = ring();
+    let drawing = Drawing::new(&imprint).with_outline(&figure);
+    let drawing = drawing.with_pitch(2.5).with_title("Fig. 1 <of the paper>");
+    golden("ring", &drawing.svg());
+}
+
+#[test]
+fn pieces_a_hole_and_a_picture_in_cells() {
+    let imprint: Imprint = "#####..\n#...#..\n#.#.#.#\n#...#.#\n#####.."
+        .parse()
+        .expect("rows");
+    let picture = Picture::at_home(imprint);
+    golden(
+        "pieces",
+        &Drawing::new(&imprint).with_outline(&picture).svg(),
+    );
+    let hole = regions(&imprint).len() - 1;
+    golden("hole", &Drawing::new(&imprint).with_region(hole).svg());
+}
+
+#[test]
+fn what_there_is_not_is_not_drawn() {
+    let empty = Drawing::new(&Imprint::empty(1, 2)).svg();
+    golden("empty", &empty);
+    for absent in ["rectangle", "CG", "CD", "outline", "cg"] {
+        assert!(!empty.contains(absent), "{absent} in\n{empty}");
+    }
+    let imprint = Imprint::empty(3, 3);
+    let plain = Drawing::new(&imprint).svg();
+    let pitched = |mm: f64| Drawing::new(&imprint).with_pitch(mm).svg();
+    for mm in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert_eq!(pitched(mm), plain, "{mm} is no pitch");
+    }
+    assert_eq!(Drawing::new(&imprint).with_region(7).svg(), plain);
+}
+
+#[test]
+fn every_size_and_title_has_a_page_of_bounded_size() {
+    let long = "é<&>\"\u{1b}".repeat(1000);
+    for (columns, rows) in [(1, 1), (1, 64), (64, 1), (64, 64), (3, 2)] {
+        let imprint = Imprint::empty(columns, rows);
+        let svg = Drawing::new(&imprint)
+            .with_title(&long)
+            .with_pitch(0.001)
+            .svg();
+        let open = svg.matches('<').count();
+        assert_eq!(open, svg.matches('>').count());
+        assert!(
+            svg.chars()
+                .all(|character| character == '\n' || !character.is_control())
+        );
+        let head = svg.lines().next().expect("a first line");
+        let size = head.split("viewBox=\"0 0 ").nth(1).expect("a view box");
+        let sides: Vec<f64> = size
+            .trim_end_matches("\">")
+            .split(' ')
+            .map(|side| side.parse().expect("a number"))
+            .collect();
+        assert!(
+            sides.iter().all(|side| (40.0..700.0).contains(side)),
+            "{head}"
+        );
+    }
+}
+
+#[cfg(feature = "png")]
+mod pixels {
+    use super::*;
+
+    /// Width, height and pixels of a file.
+    fn decoded(file: &[u8]) -> (usize, usize, Vec<u8>) {
+        let decoder = png::Decoder::new(std::io::Cursor::new(file));
+        let mut reader = decoder.read_info().expect("a PNG");
+        let mut pixels = vec![0; reader.output_buffer_size().expect("it fits")];
+        let info = reader.next_frame(&mut pixels).expect("an image");
+        assert_eq!(
+            (info.color_type, info.bit_depth),
+            (png::ColorType::Grayscale, png::BitDepth::Eight)
+        );
+        let dots = reader.info().pixel_dims.expect("a resolution");
+        assert_eq!((dots.xppu, dots.unit), (11_339, png::Unit::Meter));
+        let (width, height) = (info.width as usize, info.height as usize);
+        assert_eq!(pixels.len(), width * height);
+        (width, height, pixels)
+    }
+
+    /// The left and top of the plane, and the side of a cell, in points, as the SVG has them.
+    fn frame(svg: &str, columns: u8) -> (f64, f64, f64) {
+        let axes = svg.split("class=\"axes\"").nth(1).expect("axes");
+        let data = axes.split("d=\"M").nth(1).expect("a path");
+        let corners: Vec<f64> = data
+            .split(['L', ' ', 'Z'])
+            .take(4)
+            .map(|number| number.parse().expect("a number"))
+            .collect();
+        let cell = (corners[2] - corners[0]) / f64::from(columns);
+        (corners[0], corners[1], cell)
+    }
+
+    #[test]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "pixels of a page"
+    )]
+    fn taxels_lines_and_text_are_where_the_svg_has_them() {
+        let (figure, imprint) = ring();
+        let drawing = Drawing::new(&imprint).with_outline(&figure);
+        let (left, top, cell) = frame(&drawing.svg(), imprint.columns());
+        let (width, _, pixels) = decoded(&drawing.png().expect("it is encoded"));
+        let at = |x: f64, y: f64| {
+            let (x, y) = ((left + x * cell) * 4.0, (top + y * cell) * 4.0);
+            pixels[y as usize * width + x as usize]
+        };
+        // A quarter of a cell off the corner: away from the outline in these taxels, and from the lines of the cells.
+        let mut compared = 0;
+        for (column, row) in [
+            (4, 3),
+            (7, 3),
+            (3, 6),
+            (9, 6),
+            (5, 8),
+            (0, 0),
+            (15, 15),
+            (12, 4),
+            (5, 5),
+            (1, 2),
+        ] {
+            let expected = if imprint.get(column, row) { 168 } else { 255 };
+            let found = at(f64::from(column) + 0.25, f64::from(row) + 0.25);
+            assert_eq!(found, expected, "taxel {column}, {row}");
+            compared += usize::from(imprint.get(column, row));
+        }
+        assert!(compared >= 4);
+        // The outline is black where it is: to the right of its centre, by its radius.
+        assert!(at(5.99 + 4.0, 5.47) < 30 && at(5.99 + 2.0, 5.47) < 30);
+        // CG and CD: (6, 5.5), the cross in the middle of the circle.
+        assert!(at(6.0, 5.5) < 30 && at(6.0 + 3.5 / cell, 5.5) < 60);
+        assert_eq!(
+            at(6.0 + 1.5 / cell, 5.5 + 1.3 / cell),
+            255,
+            "between cross and circle"
+        );
+        // Some ink above the plane, where the numbers of the columns stand.
+        let row = |y: f64| ((top + y) * 4.0) as usize;
+        let ink = pixels[row(-12.0) * width..row(-5.0) * width]
+            .iter()
+            .filter(|&&pixel| pixel < 100);
+        assert!(ink.count() > 200);
+    }
+
+    #[test]
+    fn what_reaches_beyond_the_sensor_is_cut_off() {
+        let far = Figure::default_of(FigureKind::Ellipse, 16)
+            .with(Parameter::X0, 12.0, 16)
+            .expect("in range");
+        let imprint = Plane::new(Sensor::default()).touch(&far);
+        let drawing = Drawing::new(&imprint);
+        let (width, height, without) = decoded(&drawing.png().expect("it is encoded"));
+        let (left, top, cell) = frame(&drawing.svg(), 16);
+        let (_, _, with) = decoded(&drawing.with_outline(&far).png().expect("it is encoded"));
+        // The legend below has a line more, so the page is longer; above it only the plane may differ.
+        let side = 16.0 * cell;
+        let mut differing = 0;
+        for y in 0..height {
+            for x in 0..width {
+                let (from, to) = (x + y * width, x + y * width);
+                let inside = |pixel: usize, low: f64| {
+                    let point = (f64::from(u32::try_from(pixel).expect("small")) + 0.5) / 4.0 - low;
+                    (-0.3..side + 0.3).contains(&point)
+                };
+                let above = f64::from(u32::try_from(y).expect("small")) / 4.0 < top + side;
+                if above && without[from] != with[to] {
+                    differing += 1;
+                    assert!(inside(x, left) && inside(y, top), "pixel {x}, {y}");
+                }
+            }
+        }
+        assert!(differing > 1000);
+    }
+}

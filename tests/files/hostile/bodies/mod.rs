@@ -1,0 +1,54 @@
+//! What is done with hostile bytes: by property tests here, by the fuzz targets in `fuzz/`. Each must end without a
+//! panic, whatever the bytes are; what is read must come back the same when it is written and read again; and a
+//! message stays short however long the input is that it quotes.
+
+mod archive;
+
+mod formats;
+
+mod keys;
+
+mod screen;
+
+pub(crate) use archive::with_spread;
+pub(crate) use screen::session_of;
+
+/// A body: what it is called, here and as a fuzz target; the folder of usual inputs in `tests/files/hostile/seeds`; and what it
+/// does with bytes.
+pub(crate) type Body = (&'static str, &'static str, fn(&[u8]));
+
+/// All of them.
+pub(crate) const BODIES: [Body; 15] = [
+    ("shape", "shape", formats::shape),
+    ("job", "job", formats::job),
+    ("imprint", "imprint", formats::imprint),
+    ("exchange", "exchange", formats::exchange),
+    ("range", "range", formats::range),
+    ("npy", "npy", formats::npy),
+    ("archive", "archive", archive::archive),
+    ("arrays", "arrays", archive::arrays),
+    ("config", "config", formats::config),
+    ("keys", "keys", keys::keys),
+    ("terminal", "terminal", keys::terminal),
+    ("command", "command", screen::command),
+    ("script", "script", screen::script),
+    ("play", "script", screen::play),
+    ("session", "session", screen::session),
+];
+
+/// The body of that name.
+pub(crate) fn body(name: &str) -> fn(&[u8]) {
+    let found = BODIES.into_iter().find(|(own, ..)| *own == name);
+    found.expect("there is a body of that name").2
+}
+
+/// No message is longer, however long the input that it quotes.
+const LONGEST_MESSAGE: usize = 1000;
+
+fn is_short(message: &str) {
+    let length = message.chars().count();
+    assert!(
+        length <= LONGEST_MESSAGE,
+        "a message of {length} characters"
+    );
+}

@@ -1,0 +1,67 @@
+//! What was found, by the targets and while they were written.
+
+use taxel::atlas::feature::quantities;
+use taxel::pose::range::DecimalRange;
+
+use super::bodies::{body, session_of, with_spread};
+
+/// A form that shows a smaller sensor: the cursor stood beside it, and the coverage of another taxel was told.
+#[test]
+fn the_cursor_is_on_the_sensor_that_a_form_shows() {
+    body("session")(&[0, 0x07, b'S', b'1']);
+    let session = session_of("f<Enter>S8<Tab>8");
+    assert_eq!(session.app().cursor(), (7, 7));
+    assert!(session.screen().contains("column 7, row 7"));
+}
+
+/// Two decimals of 16 digits can be one `f64`: they were taken, and written as another range.
+#[test]
+fn ranges_come_back_as_they_were() {
+    for text in ["9007.199254740991", "1:1.5:7", "1.0:2.55:1", "-0:0.10:0.05"] {
+        body("range")(text.as_bytes());
+    }
+    let read = |text: &str| text.parse::<DecimalRange>();
+    assert!(read("9007.199254740991").is_err());
+    assert_eq!(read("1:1.5:7"), read("1"));
+    assert_eq!(read("1.0:2.55:1"), read("1:2:1"));
+}
+
+/// A turn in the sums of an archive says how many look like it: each was added up by itself.
+#[test]
+fn turns_that_stand_for_many_are_added_at_once() {
+    let archive = with_spread(1, |words| {
+        let turn = words.split_off(3 * quantities().len());
+        assert_eq!(turn.len(), 3 + 5 * quantities().len(), "one is open");
+        for number in 0..5000 {
+            words.extend([number, turn[1], 1_000_000]);
+            words.extend(&turn[3..]);
+        }
+    });
+    body("archive")(&archive);
+}
+
+/// Sums that say that directions cancel at each angle, while all together do not: the deviation was infinite.
+#[test]
+fn directions_that_contradict_each_other_have_a_finite_deviation() {
+    let archive = with_spread(2, |words| {
+        words.truncate(3 * quantities().len());
+        words.fill(0);
+    });
+    body("archive")(&archive);
+}
+
+/// Reading a pattern of a mebibyte took 138 MiB.
+#[test]
+fn a_long_pattern_is_refused() {
+    let pattern = format!("Expect /{}/", "a".repeat(20_000));
+    let error = taxel::tui::script::command::read(&pattern).expect_err("it is long");
+    assert!(error.to_string().contains("has 20000 bytes"), "{error}");
+}
+
+/// By the fuzzer: what was quoted is longer than it was, where each character of it has to be escaped.
+#[test]
+fn unknown_words_are_quoted_in_short() {
+    body("command")(&[&b"x"[..], &[0x1e; 200]].concat());
+    body("script")(&[&b"Set "[..], &[0x05; 200]].concat());
+    body("script")(&[&b"Set ascii "[..], &[0x05; 200]].concat());
+}

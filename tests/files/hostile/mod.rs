@@ -1,0 +1,170 @@
+//! Hostile input: random and mutated bytes, and a mebibyte of each kind of malice. No panic, at most 64 MiB. The times
+//! are told, not held: `cargo test --release --test files hostile -- --nocapture --test-threads=1` measures them.
+
+mod bodies;
+
+mod found;
+
+mod malice;
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+use self::bodies::{BODIES, body};
+use proptest::collection::vec;
+use proptest::prelude::*;
+use taxel::tui::app::message::Message;
+
+/// The usual inputs of a body.
+fn seeds(folder: &str) -> Vec<Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/files/hostile/seeds")
+        .join(folder);
+    let files = std::fs::read_dir(folder).expect("every body has usual inputs");
+    let mut files: Vec<_> = files
+        .map(|file| file.expect("the folder can be read").path())
+        .collect();
+    files.sort();
+    let read = |path| std::fs::read(path).expect("a file that can be read");
+    files.into_iter().map(read).collect()
+}
+
+/// A change of some bytes: where, how many go, what comes.
+fn changes() -> impl Strategy<Value = Vec<(usize, usize, Vec<u8>)>> {
+    let piece = prop_oneof![
+        vec(any::<u8>(), 0..4),
+        proptest::sample::select(
+            &[
+                "\"", "\\", "{", "}", "[", "]", ",", ":", "1e999", "-0", "null", "\u{fffd}", "<",
+                ">", "9x:"
+            ][..]
+        )
+        .prop_map(|piece| piece.as_bytes().to_vec()),
+    ];
+    vec((any::<usize>(), 0..5_usize, piece), 1..6)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(3000))]
+
+    #[test]
+    fn random_bytes_are_refused(index in 0..BODIES.len(), bytes in vec(any::<u8>(), 0..200)) {
+        BODIES[index].2(&bytes);
+    }
+
+    #[test]
+    fn mutated_bytes_are_read_or_refused(
+        index in 0..BODIES.len(), seed in any::<usize>(), changes in changes()
+    ) {
+        let (_, folder, read) = BODIES[index];
+        let mut bytes = seeds(folder).swap_remove(seed % seeds(folder).len());
+        for (at, gone, new) in changes {
+            let at = at % (bytes.len() + 1);
+            let end = (at + gone).min(bytes.len());
+            bytes.splice(at..end, new);
+        }
+        read(&bytes);
+    }
+}
+
+#[test]
+fn what_is_usual_is_read() {
+    for (_, folder, read) in BODIES {
+        for seed in seeds(folder) {
+            read(&seed);
+        }
+    }
+    for seed in seeds("shape") {
+        assert!(taxel::formats::StoredShape::read(&seed).is_ok());
+    }
+}
+
+/// Wherever text can be pasted, so much of it is taken as there is room for, and the program goes on.
+#[test]
+fn a_mebibyte_is_pasted_everywhere() {
+    for (opens, leaves) in [
+        ("", "q"),
+        ("f<Tab>", "<Esc>q"),
+        ("S", "<Esc>q"),
+        ("l", "<Esc>q"),
+        (":", "<Esc>q"),
+        (" s", "<Esc>qy"),
+        ("?", "<Esc>q"),
+    ] {
+        let mut session = bodies::session_of(opens);
+        for text in ["7", "a\n", "\u{301}", "\x1b[2J"] {
+            let times = malice::SIZE / text.len();
+            session.send(Message::Paste(text.repeat(times)));
+            let screen = session.screen();
+            assert_eq!(screen.lines().count(), 24, "{opens:?}, {text:?}");
+            assert!(!screen.contains('\x1b'), "{opens:?}, {text:?}: {screen}");
+        }
+        session.keys(leaves).expect("the keys are right");
+        assert!(session.app().ended(), "{opens:?}: {}", session.screen());
+    }
+}
+
+const VARIABLE: &str = "TAXEL_HOSTILE";
+
+/// One input in a process of its own, which this test is when the variable is set.
+#[test]
+fn one() {
+    let Ok(asked) = std::env::var(VARIABLE) else {
+        return;
+    };
+    let (name, malice) = asked.split_once(':').expect("a body and a malice");
+    let index: usize = malice.parse().expect("a number");
+    let bytes = malice::all(name)[index].1();
+    assert!(bytes.len() >= malice::SIZE / 2 && bytes.len() <= malice::SIZE);
+    let start = Instant::now();
+    body(name)(&bytes);
+    println!("TOOK {} µs", start.elapsed().as_micros());
+    // The most memory that this process has ever had.
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    if let Some(line) = status.lines().find(|line| line.starts_with("VmHWM:")) {
+        println!("{line}");
+    }
+}
+
+/// Reads a number behind a word.
+fn number(said: &str, word: &str) -> Option<u64> {
+    let line = said.lines().find(|line| line.contains(word))?;
+    let digits = line.split(word).nth(1)?.trim().split(' ').next()?;
+    digits.parse().ok()
+}
+
+#[test]
+fn a_mebibyte_of_malice_takes_little_memory() {
+    for (name, ..) in BODIES {
+        let mut slowest = (0, "");
+        let mut largest = (0, "");
+        for (index, (what, _)) in malice::all(name).into_iter().enumerate() {
+            let output = Command::new(std::env::current_exe().expect("this binary"))
+                .args(["--exact", "hostile::one", "--nocapture"])
+                .env(VARIABLE, format!("{name}:{index}"))
+                .stderr(Stdio::piped())
+                .output()
+                .expect("it runs");
+            let said = String::from_utf8_lossy(&output.stdout).into_owned();
+            assert!(
+                output.status.success(),
+                "{name}, {what}: {said}{}",
+                String::from_utf8_lossy(&output.stderr)
+            );
+            let took = number(&said, "TOOK").expect("it says how long it took");
+            slowest = slowest.max((took, what));
+            // Only where the system tells.
+            let kibibytes = number(&said, "VmHWM:").unwrap_or_default();
+            assert!(kibibytes <= 64 << 10, "{name}, {what}: {kibibytes} KiB");
+            largest = largest.max((kibibytes, what));
+        }
+        eprintln!(
+            "{name}: at most {} µs ({}), the process at most {} MiB ({})",
+            slowest.0,
+            slowest.1,
+            largest.0 >> 10,
+            largest.1
+        );
+    }
+}

@@ -1,0 +1,11 @@
+//! What is written and read: files of other programs, drawings, the stored shapes, and hostile bytes.
+
+mod drawing;
+
+mod exchange;
+
+#[cfg(feature = "cli")]
+mod hostile;
+
+#[cfg(feature = "cli")]
+mod library;

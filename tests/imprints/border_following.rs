@@ -1,0 +1,388 @@
+//! Regions and descriptors against a plain implementation: flood fill by queue, and border following.
+//!
+//! The filled region is walked around as by Moore's neighbour tracing. A part one taxel wide is passed twice, and the
+//! first taxel can be passed before the walk is over, so the walk ends by Jacob Eliosoff's criterion: at the first
+//! taxel, about to leave it in the first direction again.
+
+use std::collections::VecDeque;
+use std::f64::consts::{PI, SQRT_2};
+
+use crate::common::Random;
+use taxel::description::{DESCRIPTORS, Description, RegionKind, Value, main_region, regions};
+use taxel::imprint::Imprint;
+
+/// Rows of taxels.
+type Mask = Vec<Vec<bool>>;
+
+/// Around a taxel, clockwise as seen from the one on its left: column and row. Odd ones are across a corner.
+const AROUND: [(isize, isize); 8] = [
+    (-1, 0),
+    (-1, -1),
+    (0, -1),
+    (1, -1),
+    (1, 0),
+    (1, 1),
+    (0, 1),
+    (-1, 1),
+];
+
+fn at(mask: &Mask, column: isize, row: isize) -> bool {
+    let row = usize::try_from(row).ok().and_then(|row| mask.get(row));
+    let column = usize::try_from(column).ok();
+    column.is_some_and(|column| row.is_some_and(|row| row.get(column) == Some(&true)))
+}
+
+fn blank(mask: &Mask) -> Mask {
+    vec![vec![false; mask[0].len()]; mask.len()]
+}
+
+fn taxels(mask: &Mask) -> Vec<(usize, usize)> {
+    let row = |(j, row): (usize, &Vec<bool>)| {
+        let active = row.iter().enumerate().filter(|&(_, &active)| active);
+        active.map(move |(i, _)| (i, j)).collect::<Vec<_>>()
+    };
+    mask.iter().enumerate().flat_map(row).collect()
+}
+
+/// The component of `mask` that holds a taxel; every `stride`-th neighbour counts: 1 all eight, 2 the four beside.
+fn component(mask: &Mask, start: (usize, usize), stride: usize) -> Mask {
+    let mut found = blank(mask);
+    let mut queue = VecDeque::from([start]);
+    found[start.1][start.0] = true;
+    while let Some((column, row)) = queue.pop_front() {
+        for (dx, dy) in AROUND.iter().step_by(stride) {
+            let (x, y) = (
+                column.wrapping_add_signed(*dx),
+                row.wrapping_add_signed(*dy),
+            );
+            if x < mask[0].len() && y < mask.len() && mask[y][x] && !found[y][x] {
+                found[y][x] = true;
+                queue.push_back((x, y));
+            }
+        }
+    }
+    found
+}
+
+fn components(mask: &Mask, stride: usize) -> Vec<Mask> {
+    let (mut rest, mut found) = (mask.clone(), Vec::new());
+    for (column, row) in taxels(mask) {
+        if rest[row][column] {
+            let piece = component(&rest, (column, row), stride);
+            for (i, j) in taxels(&piece) {
+                rest[j][i] = false;
+            }
+            found.push(piece);
+        }
+    }
+    found
+}
+
+/// The inactive taxels that are cut off from the outside: the matrix gets a rim, which is flooded.
+fn enclosed(mask: &Mask) -> Mask {
+    let mut open = vec![vec![true; mask[0].len() + 2]; mask.len() + 2];
+    for (column, row) in taxels(mask) {
+        open[row + 1][column + 1] = false;
+    }
+    let outside = component(&open, (0, 0), 2);
+    let inner = |row: usize, column: usize| !mask[row][column] && !outside[row + 1][column + 1];
+    (0..mask.len())
+        .map(|row| {
+            (0..mask[0].len())
+                .map(|column| inner(row, column))
+                .collect()
+        })
+        .collect()
+}
+
+/// Straight and diagonal steps of the walk around a filled region.
+fn walk(filled: &Mask) -> (u32, u32) {
+    let signed = |value: usize| isize::try_from(value).expect("a small number");
+    let start = taxels(filled)[0];
+    let start = (signed(start.0), signed(start.1));
+    // Nothing is active left of the first taxel in reading order, so the search begins there.
+    let next = |(column, row): (isize, isize), from: usize| {
+        (0..8).map(|turn| (from + turn) % 8).find(|&direction| {
+            let (dx, dy) = AROUND[direction];
+            at(filled, column + dx, row + dy)
+        })
+    };
+    let Some(first) = next(start, 0) else {
+        return (0, 0);
+    };
+    let (mut here, mut direction) = (start, first);
+    let (mut straight, mut diagonal) = (0, 0);
+    loop {
+        let (dx, dy) = AROUND[direction];
+        here = (here.0 + dx, here.1 + dy);
+        if direction % 2 == 0 {
+            straight += 1;
+        } else {
+            diagonal += 1;
+        }
+        // Back to the last inactive taxel that was looked at, as seen from the new place.
+        let from = (direction + if direction % 2 == 0 { 6 } else { 5 }) % 8;
+        direction = next(here, from).expect("at least the way back");
+        if here == start && direction == first {
+            return (straight, diagonal);
+        }
+    }
+}
+
+/// What the plain implementation says of a region.
+struct Plain {
+    kind: RegionKind,
+    nae: u32,
+    values: Vec<(&'static str, Value)>,
+}
+
+fn count(value: usize) -> u32 {
+    u32::try_from(value).expect("at most 4096")
+}
+
+fn plain_region(kind: RegionKind, mask: &Mask) -> Plain {
+    let mut filled = mask.clone();
+    for (column, row) in taxels(&enclosed(mask)) {
+        filled[row][column] = true;
+    }
+    let (own, all) = (taxels(mask), taxels(&filled));
+    let number = |value: usize| f64::from(count(value));
+    let sum =
+        |of: fn(&(usize, usize)) -> usize| own.iter().map(|t| number(of(t)) + 0.5).sum::<f64>();
+    let least = |of: fn(&(usize, usize)) -> usize| all.iter().map(of).min().expect("not empty");
+    let most = |of: fn(&(usize, usize)) -> usize| all.iter().map(of).max().expect("not empty") + 1;
+    let (left, top, right, bottom) = (least(|t| t.0), least(|t| t.1), most(|t| t.0), most(|t| t.1));
+    let (width, height) = (number(right - left), number(bottom - top));
+    let open = |&&(column, row): &&(usize, usize)| {
+        let (x, y) = (column.cast_signed(), row.cast_signed());
+        AROUND
+            .iter()
+            .step_by(2)
+            .any(|(dx, dy)| !at(&filled, x + dx, y + dy))
+    };
+    let (straight, diagonal) = walk(&filled);
+    let p = f64::from(straight) + f64::from(diagonal) * SQRT_2;
+    let (na, nae) = (number(own.len()), number(all.len()));
+    let (num_x, num_y) = (sum(|t| t.0), sum(|t| t.1));
+    let cg = glam::DVec2::new(num_x / na, num_y / na);
+    let cd = glam::DVec2::new(number(left + right) / 2.0, number(top + bottom) / 2.0);
+    let way = cd - cg;
+    let distance = (way.x * way.x + way.y * way.y).sqrt();
+    // As a rule of signs, not by negating y: a flat way points to 0 or to 180.
+    let steep = if way.y == 0.0 { 0.0 } else { -way.y };
+    let flat = (height / width).atan() * 180.0 / PI;
+    let existing = |exists: bool, value: f64| {
+        if exists {
+            Value::Number(value)
+        } else {
+            Value::None
+        }
+    };
+    let side = |value: usize| u8::try_from(value).expect("at most 64");
+    let rect = taxel::imprint::Bounds {
+        left: side(left),
+        top: side(top),
+        right: side(right),
+        bottom: side(bottom),
+    };
+    let values = vec![
+        ("na", Value::Count(count(own.len()))),
+        ("nae", Value::Count(count(all.len()))),
+        ("ce", Value::Count(count(all.iter().filter(open).count()))),
+        ("num_x", Value::Number(num_x)),
+        ("num_y", Value::Number(num_y)),
+        ("cg", Value::Point(cg)),
+        ("p", Value::Number(p)),
+        ("f", Value::Number(p * p / nae)),
+        ("roundness", existing(p > 0.0, 4.0 * PI * nae / (p * p))),
+        ("rect", Value::Rect(rect)),
+        ("cd", Value::Point(cd)),
+        ("area", Value::Count(count((right - left) * (bottom - top)))),
+        ("diagonals", Value::Pair([flat, 180.0 - flat])),
+        (
+            "side_ratio",
+            Value::Number(width.max(height) / width.min(height)),
+        ),
+        ("filling", Value::Number(na / (width * height))),
+        ("cg_cd", Value::Number(distance)),
+        (
+            "cg_cd_direction",
+            existing(distance >= 1e-9, steep.atan2(way.x) * 180.0 / PI),
+        ),
+    ];
+    Plain {
+        kind,
+        nae: count(all.len()),
+        values,
+    }
+}
+
+fn alike(found: Value, expected: Value) -> bool {
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+    match (found, expected) {
+        (Value::Number(a), Value::Number(b)) => near(a, b),
+        (Value::Point(a), Value::Point(b)) => near(a.x, b.x) && near(a.y, b.y),
+        (Value::Pair(a), Value::Pair(b)) => near(a[0], b[0]) && near(a[1], b[1]),
+        (a, b) => a == b,
+    }
+}
+
+/// Compares everything that is said of an imprint; gives the number of regions.
+fn compare(imprint: &Imprint) -> usize {
+    let row = |j: u8| (0..imprint.columns()).map(|i| imprint.get(i, j)).collect();
+    let mask: Mask = (0..imprint.rows()).map(row).collect();
+    let holes = enclosed(&mask);
+    let pieces = components(&mask, 1);
+    let exteriors = pieces
+        .iter()
+        .map(|piece| plain_region(RegionKind::Exterior, piece));
+    let expected: Vec<Plain> = exteriors
+        .chain(
+            components(&holes, 2)
+                .iter()
+                .map(|hole| plain_region(RegionKind::Hole, hole)),
+        )
+        .collect();
+
+    let found = regions(imprint);
+    assert_eq!(found.len(), expected.len(), "{imprint}");
+    let (mut active, mut inactive) = (0, 0);
+    for (region, plain) in found.iter().zip(&expected) {
+        assert_eq!(region.kind(), plain.kind, "{imprint}");
+        let description = Description::of(region);
+        for descriptor in DESCRIPTORS {
+            let expected = plain.values.iter().find(|(key, _)| *key == descriptor.key);
+            let (key, expected) = *expected.expect("a descriptor that this test knows");
+            let value = (descriptor.measure)(&description);
+            assert!(
+                alike(value, expected),
+                "{key}: {value:?}, expected {expected:?}\n{region:?}\n{imprint}"
+            );
+        }
+        match plain.kind {
+            RegionKind::Exterior => active += region.taxels().count(),
+            RegionKind::Hole => inactive += region.taxels().count(),
+        }
+    }
+    // Every taxel is in just one exterior, in just one hole, or outside.
+    let outside = taxels(&enclosed_or(&mask, &holes)).len();
+    assert_eq!(active, imprint.count(), "{imprint}");
+    assert_eq!(
+        active + inactive + count(outside),
+        u32::from(imprint.columns()) * u32::from(imprint.rows()),
+        "{imprint}"
+    );
+    let most = expected
+        .iter()
+        .filter(|plain| plain.kind == RegionKind::Exterior)
+        .map(|plain| plain.nae)
+        .max();
+    let main = expected
+        .iter()
+        .position(|plain| plain.kind == RegionKind::Exterior && Some(plain.nae) == most);
+    assert_eq!(main_region(&found), main, "{imprint}");
+    found.len()
+}
+
+/// What is neither active nor in a hole.
+fn enclosed_or(mask: &Mask, holes: &Mask) -> Mask {
+    let mut outside = blank(mask);
+    for (row, line) in outside.iter_mut().enumerate() {
+        for (column, open) in line.iter_mut().enumerate() {
+            *open = !mask[row][column] && !holes[row][column];
+        }
+    }
+    outside
+}
+
+fn drawn_size(random: &mut Random) -> Imprint {
+    match random.whole(0, 999) {
+        0..=19 => Imprint::empty(1, 1),
+        20..=39 => Imprint::empty(1, 64),
+        40..=59 => Imprint::empty(64, 1),
+        60..=64 => Imprint::empty(64, 64),
+        65..=79 => Imprint::empty(random.side(1, 64), random.side(1, 64)),
+        _ => Imprint::empty(random.side(1, 14), random.side(1, 14)),
+    }
+}
+
+#[test]
+fn random_noise() {
+    let mut random = Random::new(11);
+    let mut found = 0;
+    for _ in 0..70_000 {
+        let mut imprint = drawn_size(&mut random);
+        let density = u64::from(random.side(1, 49)) * 20;
+        for row in 0..imprint.rows() {
+            for column in 0..imprint.columns() {
+                imprint.set(column, row, random.chance(density));
+            }
+        }
+        found += compare(&imprint);
+    }
+    println!("{found} regions");
+}
+
+#[test]
+fn random_blobs() {
+    let mut random = Random::new(12);
+    for _ in 0..40_000 {
+        let mut imprint = drawn_size(&mut random);
+        let (columns, rows) = (imprint.columns(), imprint.rows());
+        // Rectangles put down and taken away again, then a walk that may be one taxel wide.
+        for _ in 0..random.whole(0, 4) {
+            let (left, top) = (random.side(0, columns - 1), random.side(0, rows - 1));
+            let (right, bottom) = (random.side(left, columns - 1), random.side(top, rows - 1));
+            let active = random.chance(700);
+            (top..=bottom).for_each(|j| (left..=right).for_each(|i| imprint.set(i, j, active)));
+        }
+        let (mut column, mut row) = (random.side(0, columns - 1), random.side(0, rows - 1));
+        for _ in 0..random.whole(0, 60) {
+            imprint.set(column, row, true);
+            let step = |value: u8, side: u8, random: &mut Random| {
+                (value + random.side(0, 2)).saturating_sub(1).min(side - 1)
+            };
+            (column, row) = (
+                step(column, columns, &mut random),
+                step(row, rows, &mut random),
+            );
+        }
+        compare(&imprint);
+    }
+}
+
+#[test]
+fn spirals_checkerboards_and_combs() {
+    for side in 1..=64_u8 {
+        let checkerboard = |i: u8, j: u8| (i + j).is_multiple_of(2);
+        let comb = |i: u8, j: u8| i.is_multiple_of(2) || j == 0;
+        let ring = |i: u8, j: u8| i.min(j).min(side - 1 - i).min(side - 1 - j);
+        let rings = |i: u8, j: u8| ring(i, j).is_multiple_of(2);
+        // Rings joined into one arm: each ring but the last opens where the next one begins.
+        let spiral = |i: u8, j: u8| {
+            let ring = ring(i, j);
+            let gap = i == ring && j == ring + 1 && rings(i, j);
+            let bridge = ring % 2 == 1 && j == ring + 1 && i == ring;
+            (rings(i, j) && !gap) || bridge
+        };
+        let grate = |i: u8, j: u8| i % 3 != 1 || j % 3 != 1;
+        let patterns: [&dyn Fn(u8, u8) -> bool; 5] =
+            [&checkerboard, &comb, &rings, &spiral, &grate];
+        for pattern in patterns {
+            for turned in [false, true] {
+                let mut imprint = Imprint::empty(side, side);
+                for row in 0..side {
+                    for column in 0..side {
+                        let (i, j) = if turned {
+                            (side - 1 - row, column)
+                        } else {
+                            (column, row)
+                        };
+                        imprint.set(column, row, pattern(i, j));
+                    }
+                }
+                compare(&imprint);
+            }
+        }
+    }
+}

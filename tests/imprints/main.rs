@@ -1,0 +1,25 @@
+//! From a shape to its imprint, regions and descriptors: by hand, by a second method, and over whole grids of poses.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod arithmetic;
+
+mod border_following;
+
+mod coverage;
+
+mod regions;
+
+mod second_method;
+
+mod ties;
+
+#[cfg(feature = "json")]
+mod properties;
+
+#[cfg(feature = "json")]
+mod reference;
+
+#[cfg(feature = "sweep")]
+mod sweep;

@@ -1,0 +1,299 @@
+//! Sweeps: identical to touching pose by pose, whatever the threads and the shards, and summed up as they should be.
+
+#![expect(clippy::cast_precision_loss, reason = "numbers of poses in a test")]
+
+mod cases;
+
+mod statistics;
+
+mod ranges;
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use self::cases::{cases, differences, figure, picture};
+use taxel::figure::FigureKind;
+use taxel::parameter::Parameter;
+use taxel::pose::grid::{Anchor, Grid, Ranges};
+use taxel::sensor::Sensor;
+use taxel::source::Source;
+use taxel::sweep::plan::Shard;
+use taxel::sweep::survey::{MergeError, Survey, Watch};
+
+fn sweep(grid: &Grid) -> Survey {
+    Survey::of(grid, Shard::WHOLE, Watch::nothing())
+}
+
+fn small(source: Source, place: &str, angles: &str) -> Grid {
+    let read = |text: &str| text.parse().expect("a range");
+    let ranges = Ranges {
+        x0: read(place),
+        y0: read(place),
+        angle: read(angles),
+        ..Ranges::default()
+    };
+    Grid::new(source, Sensor::default(), Anchor::Corner, ranges).expect("a grid")
+}
+
+#[test]
+fn sweeps_equal_touches_at_all_sorts_of_angles() {
+    for case in cases() {
+        let grid = case.grid("0:359:15", 5);
+        assert_eq!(differences(&grid), Ok(0), "{}", case.name);
+        let grid = case.grid("1.37:359:61.03", 9);
+        assert_eq!(differences(&grid), Ok(0), "{}", case.name);
+    }
+}
+
+#[test]
+fn sweeps_equal_touches_at_every_step_of_a_cell() {
+    for case in cases().iter().step_by(4) {
+        assert_eq!(
+            differences(&case.grid("0:90:30", 1)),
+            Ok(0),
+            "{}",
+            case.name
+        );
+    }
+}
+
+#[test]
+fn nearly_upright_edges_do_no_harm() {
+    for source in [
+        figure(FigureKind::Rectangle, 6.0, 3.0, 0.5),
+        figure(FigureKind::Ellipse, 5.0, 3.0, 1.0),
+    ] {
+        for angles in [
+            "0.000000001",
+            "0.00001:0.00003:0.00001",
+            "89.9999",
+            "90.001:90.003:0.001",
+        ] {
+            let grid = small(source.clone(), "5:5.99:0.05", angles);
+            assert_eq!(differences(&grid), Ok(0), "{angles}");
+        }
+    }
+}
+
+#[test]
+fn steps_may_be_finer_than_the_crossings_are_sharp() {
+    let grid = small(
+        figure(FigureKind::Hexagon, 3.0, 0.0, 1.0),
+        "5.49999:5.50001:0.0000005",
+        "0:30:30",
+    );
+    assert_eq!(differences(&grid), Ok(0));
+    let grid = small(
+        figure(FigureKind::Rectangle, 3.0, 2.0, 0.0),
+        "5.4999999999:5.5:0.000000000005",
+        "0",
+    );
+    assert_eq!(differences(&grid), Ok(0));
+}
+
+/// All that can be said of a survey, in one text.
+fn told(survey: &Survey) -> String {
+    let entries: Vec<_> = survey.atlas.entries().collect();
+    let Survey {
+        poses,
+        partly_off,
+        statistics,
+        ..
+    } = survey;
+    format!(
+        "{poses} {partly_off} {:?} {entries:?} {statistics:?}",
+        survey.atlas.distinct_classes()
+    )
+}
+
+#[test]
+fn threads_and_shards_do_not_matter() {
+    let zoomed = cases().into_iter().find(|case| case.zoom.contains(':'));
+    let grids = [
+        small(
+            figure(FigureKind::Hexagon, 3.0, 0.0, 1.0),
+            "5:5.99:0.03",
+            "0:359:5",
+        ),
+        small(
+            figure(FigureKind::Ellipse, 5.0, 3.0, 1.0),
+            "5:5.99:0.05",
+            "0:200:10",
+        ),
+        small(
+            figure(FigureKind::Ellipse, 4.0, 4.0, 2.0),
+            "-3:14:0.25",
+            "0:3:1",
+        ),
+        zoomed.expect("a case with zooms").grid("0:359:40", 5),
+    ];
+    for grid in grids {
+        let threads = |count| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build();
+            pool.expect("a pool").install(|| sweep(&grid))
+        };
+        let whole = told(&threads(1));
+        assert_eq!(told(&threads(2)), whole);
+        assert_eq!(told(&threads(5)), whole);
+        for of in [1, 2, 3, 7, 40] {
+            let shards = (1..=of).map(|number| {
+                let shard = Shard::new(number, of).expect("a shard");
+                Survey::of(&grid, shard, Watch::nothing())
+            });
+            let merged = Survey::merge(shards.collect::<Vec<_>>().into_iter().rev());
+            assert_eq!(told(&merged.expect("all shards")), whole, "{of} shards");
+        }
+    }
+}
+
+/// Shards of one row each have no other row that one could be the image of.
+#[test]
+fn rows_that_are_images_equal_those_gone_through() {
+    let centred = |source, place: &str, angles: &str| {
+        let read = |text: &str| text.parse().expect("a range");
+        let ranges = Ranges {
+            x0: read(place),
+            y0: read("7.04:8.03:0.03"),
+            angle: read(angles),
+            ..Ranges::default()
+        };
+        Grid::new(source, Sensor::default(), Anchor::Centre, ranges).expect("a grid")
+    };
+    let tie = figure(FigureKind::Rectangle, 4.5, 2.5, 0.5);
+    for grid in [
+        small(
+            figure(FigureKind::Rectangle, 6.0, 3.0, 0.0),
+            "5:5.99:0.05",
+            "0:90:7.5",
+        ),
+        small(tie.clone(), "4:5.98:0.02", "0:180:45"),
+        small(
+            figure(FigureKind::Rectangle, 3.3, 3.3, 0.7),
+            "5.05:6.04:0.05",
+            "0:180:15",
+        ),
+        small(
+            figure(FigureKind::Ellipse, 5.0, 3.0, 1.0),
+            "2.5:3.49:0.05",
+            "0:90:30",
+        ),
+        small(picture("##.# .##. #.##"), "5:5.99:0.05", "0:180:45"),
+        centred(
+            figure(FigureKind::Hexagon, 3.0, 0.0, 1.0),
+            "7:7.99:0.03",
+            "0:59:10",
+        ),
+        centred(
+            figure(FigureKind::Octagon, 2.0, 0.0, 0.5),
+            "7.25:8.2:0.05",
+            "0:44:9",
+        ),
+        // At the rim of the sensor at some angles and beyond it at others: no images there.
+        small(tie, "0.5:1.48:0.02", "0:45:15"),
+    ] {
+        let whole = sweep(&grid);
+        let rows = u32::try_from(grid.rows()).expect("a small grid");
+        let one_by_one = (1..=rows).map(|number| {
+            let row = Shard::new(number, rows).expect("a shard");
+            Survey::of(&grid, row, Watch::nothing())
+        });
+        let merged = Survey::merge(one_by_one).expect("all shards");
+        assert_eq!(told(&whole), told(&merged), "{:?}", grid.source());
+        assert_eq!(differences(&grid), Ok(0), "{:?}", grid.source());
+        assert!(whole.atlas.len() > 50, "{:?}", grid.source());
+    }
+}
+
+#[test]
+fn shards_are_merged_only_if_all_are_there() {
+    let grid = small(
+        figure(FigureKind::Triangle, 6.0, 0.0, 0.0),
+        "5:5.9:0.1",
+        "0:40:10",
+    );
+    let shard = |grid: &Grid, number, of| {
+        Survey::of(
+            grid,
+            Shard::new(number, of).expect("a shard"),
+            Watch::nothing(),
+        )
+    };
+    let merge = |surveys: Vec<Survey>| Survey::merge(surveys).map(|survey| survey.poses);
+    assert_eq!(merge(vec![]), Err(MergeError::Nothing));
+    assert_eq!(
+        merge(vec![shard(&grid, 1, 3), shard(&grid, 2, 3)]),
+        Err(MergeError::Missing { number: 3, of: 3 })
+    );
+    let twice = Shard::new(1, 2).expect("a shard");
+    assert_eq!(
+        merge(vec![shard(&grid, 1, 2), shard(&grid, 1, 2)]),
+        Err(MergeError::Count { shard: twice })
+    );
+    // Where the shape itself lay does not matter.
+    let moved = figure(FigureKind::Triangle, 6.0, 0.0, 0.0)
+        .with(Parameter::Y0, 2.5, 16)
+        .and_then(|source| source.with(Parameter::Angle, 77.0, 16));
+    let moved = small(moved.expect("in range"), "5:5.9:0.1", "0:40:10");
+    assert_eq!(
+        merge(vec![shard(&grid, 1, 2), shard(&moved, 2, 2)]),
+        Ok(grid.poses())
+    );
+    let other = small(
+        figure(FigureKind::Triangle, 6.1, 0.0, 0.0),
+        "5:5.9:0.1",
+        "0:40:10",
+    );
+    let foreign = Shard::new(2, 2).expect("a shard");
+    assert_eq!(
+        merge(vec![shard(&grid, 1, 2), shard(&other, 2, 2)]),
+        Err(MergeError::Foreign { shard: foreign })
+    );
+}
+
+#[test]
+fn a_stopped_sweep_keeps_what_is_complete() {
+    let grid = small(
+        figure(FigureKind::Heptagon, 3.0, 0.0, 1.0),
+        "5:5.99:0.01",
+        "0:100:1",
+    );
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let pool = pool.expect("a pool");
+    let done = AtomicU64::new(0);
+    let stopped_after = |most: u64| {
+        done.store(0, Ordering::Relaxed);
+        let enough = |poses| done.fetch_add(poses, Ordering::Relaxed) + poses < most;
+        let watch = Watch {
+            progress: &enough,
+            rows: None,
+        };
+        pool.install(|| Survey::of(&grid, Shard::WHOLE, watch))
+    };
+    let survey = stopped_after(500_000);
+    assert!(!survey.complete());
+    assert_eq!(done.load(Ordering::Relaxed), 500_000);
+    // Whole turns, and at most the last sixteen of them are lost.
+    assert!((340_000..500_000).contains(&survey.poses) && survey.poses % 10_000 == 0);
+    assert_eq!(
+        survey.atlas.entries().map(|entry| entry.count).sum::<u64>(),
+        survey.poses
+    );
+    assert!(survey.statistics[0].poses == survey.poses && survey.statistics[0].sd_angle.is_some());
+    let incomplete = MergeError::Incomplete {
+        shard: Shard::WHOLE,
+    };
+    assert_eq!(Survey::merge([survey]).err(), Some(incomplete));
+    // Not even a turn is waited for.
+    let survey = stopped_after(1);
+    assert_eq!((survey.poses, survey.atlas.len()), (0, 0));
+    assert!(done.load(Ordering::Relaxed) <= 5_000);
+}
+
+#[test]
+fn the_paper_s_ring_has_393_imprints() {
+    let survey = sweep(&small(
+        figure(FigureKind::Ellipse, 4.0, 4.0, 2.0),
+        "1:1.99:0.01",
+        "0:359:1",
+    ));
+    assert_eq!((survey.poses, survey.atlas.len()), (3_600_000, 393));
+}

@@ -1,0 +1,138 @@
+//! Ranges and grids of poses: exact, or refused with the reason.
+
+use taxel::figure::FigureKind;
+use taxel::pose::grid::{Anchor, Grid, Ranges};
+use taxel::pose::range::{DecimalRange, MAX_VALUES};
+use taxel::sensor::Sensor;
+
+use super::cases::{figure, picture};
+
+#[test]
+fn ranges_are_exact_or_refused() {
+    let range = |text: &str| text.parse::<DecimalRange>();
+    let values = |text: &str| range(text).expect("a range").values().collect::<Vec<_>>();
+    assert_eq!(values("0:0.3:0.1"), [0.0, 0.1, 0.2, 0.3]);
+    assert_eq!(values("-0.02:0.02:0.01"), [-0.02, -0.01, 0.0, 0.01, 0.02]);
+    assert_eq!(values("1:2:0.3"), [1.0, 1.3, 1.6, 1.9]);
+    assert_eq!(values(" 7.50 "), [7.5]);
+    assert_eq!(values("3:3:1"), [3.0]);
+    let hundredths = range("5:5.99:0.01").expect("a range");
+    for (index, value) in (500..600).zip(hundredths.values()) {
+        assert_eq!(
+            value,
+            format!("{}.{:02}", index / 100, index % 100)
+                .parse::<f64>()
+                .expect("a number")
+        );
+    }
+    let refused = |text: &str| range(text).expect_err("no range").to_string();
+    assert_eq!(
+        refused("1:2:0.00"),
+        "step 0.00 leads nowhere, expected one above 0"
+    );
+    assert_eq!(
+        refused("2:1:0.1"),
+        "2:1:0.1 ends before it starts, expected an end from 2 on"
+    );
+    assert_eq!(
+        refused("1:2:-0.1"),
+        "step -0.1 leads nowhere, expected one above 0"
+    );
+    assert_eq!(refused("2:1:-1"), refused("1:2:-1"));
+    assert_eq!(
+        refused("9999999999999999"),
+        "\"9999999999999999\" is not a decimal number of at most 15 digits, 12 of them behind the point"
+    );
+    assert_eq!(
+        refused("1:2"),
+        "\"1:2\" is no range, expected a number or start:end:step"
+    );
+    assert!(refused("1:2:x").starts_with("\"x\" is not a decimal number"));
+    assert!(refused("1e5").starts_with("\"1e5\" is not"));
+    for odd in [
+        "",
+        ":",
+        "::",
+        ".",
+        "-",
+        "1:2:3:4",
+        "0.0000000000001",
+        "99999999999999999999",
+        "NaN",
+        "+-1",
+    ] {
+        assert!(range(odd).is_err(), "{odd}");
+    }
+    assert_eq!(
+        refused("0:10:0.000001"),
+        format!("10000001 values, expected at most {MAX_VALUES}")
+    );
+}
+
+#[test]
+fn parts_beyond_the_end_are_none() {
+    let far = i64::MAX.unsigned_abs();
+    for text in ["5:5.99:0.01", "1", "999999999999998:999999999999999:1"] {
+        let range: DecimalRange = text.parse().expect("a range");
+        let count = range.count();
+        assert_eq!(range.part(0..count), Some(range));
+        for indices in [
+            far..far + 1,
+            far - 1..far,
+            0..far,
+            u64::MAX - 1..u64::MAX,
+            count..count,
+            count..count + 1,
+        ] {
+            assert_eq!(range.part(indices.clone()), None, "{text}: {indices:?}");
+        }
+    }
+}
+
+#[test]
+fn grids_are_in_range_or_refused() {
+    let grid = |source, ranges| {
+        Grid::new(source, Sensor::default(), Anchor::Corner, ranges).map(|grid| grid.poses())
+    };
+    let read = |text: &str| text.parse().expect("a range");
+    let paper = Ranges::default();
+    let ring = || figure(FigureKind::Ellipse, 4.0, 4.0, 2.0);
+    assert_eq!(grid(ring(), paper), Ok(3_600_000));
+    let far = Ranges {
+        x0: read("10:17:1"),
+        ..paper
+    };
+    assert_eq!(
+        grid(ring(), far).expect_err("no grid").to_string(),
+        "x0: 17 is out of range, expected -16 to 16"
+    );
+    let round = Ranges {
+        angle: read("0:360:1"),
+        ..paper
+    };
+    assert!(
+        grid(ring(), round)
+            .expect_err("no grid")
+            .to_string()
+            .starts_with("angle: 360 is out of range")
+    );
+    let zoomed = Ranges {
+        zoom_x: read("1:2:0.5"),
+        ..paper
+    };
+    assert_eq!(
+        grid(ring(), zoomed).expect_err("no grid").to_string(),
+        "zoom_x, zoom_y: a figure has none, only pictures have"
+    );
+    assert_eq!(grid(picture("##"), zoomed), Ok(3 * 3_600_000));
+    let fine = read("0:0.999999:0.000001");
+    let many = Ranges {
+        x0: fine,
+        y0: fine,
+        ..paper
+    };
+    assert_eq!(
+        grid(ring(), many).expect_err("no grid").to_string(),
+        "360000000000000 poses, expected at most 1000000000000"
+    );
+}

@@ -1,0 +1,219 @@
+//! What a sweep sums up, against a plain loop over all its poses; ideal values; classes of imprints.
+
+use std::collections::HashMap;
+
+use taxel::atlas::feature::{quantities, values};
+use taxel::description::{Description, main_region, regions};
+use taxel::figure::FigureKind;
+use taxel::imprint::Imprint;
+use taxel::touch::Plane;
+
+use super::cases::{figure, picture};
+use super::{small, sweep};
+
+/// Sum of squares about the mean over the number.
+fn variance(values: &[f64]) -> f64 {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    values
+        .iter()
+        .map(|value| (value - mean).powi(2))
+        .sum::<f64>()
+        / count
+}
+
+/// Length of the mean unit vector, and its direction in degrees.
+fn resultant(degrees: &[f64]) -> (f64, f64) {
+    let mean = |part: fn(f64) -> f64| {
+        degrees
+            .iter()
+            .map(|angle| part(angle.to_radians()))
+            .sum::<f64>()
+            / degrees.len() as f64
+    };
+    let (x, y) = (mean(f64::cos), mean(f64::sin));
+    (x.hypot(y), y.atan2(x).to_degrees())
+}
+
+fn deviation(length: f64) -> f64 {
+    (-2.0 * length.ln()).sqrt().to_degrees()
+}
+
+#[test]
+fn statistics_equal_those_of_a_plain_loop() {
+    for source in [
+        figure(FigureKind::Triangle, 5.3, 0.0, 0.9),
+        figure(FigureKind::Rectangle, 1.3, 0.6, 0.0),
+        picture("##.# .### ##.. #..#"),
+    ] {
+        let grid = small(source, "4:5.4:0.07", "3:351:29");
+        let survey = sweep(&grid);
+        let mut plane = Plane::new(*grid.sensor());
+        let mut turns: Vec<Vec<Vec<f64>>> = Vec::new();
+        let turn = grid.ranges().x0.count() * grid.ranges().y0.count();
+        for number in 0..grid.poses() {
+            if number % turn == 0 {
+                turns.push(vec![Vec::new(); quantities().len()]);
+            }
+            let regions = regions(&plane.touch(&grid.placed(grid.pose(number))));
+            let Some(main) = main_region(&regions) else {
+                continue;
+            };
+            let description = Description::of(&regions[main]);
+            let lists = turns.last_mut().expect("a turn");
+            values(&description, |index, value| lists[index].push(value));
+        }
+        for (index, statistic) in survey.statistics.iter().enumerate() {
+            let key = &statistic.quantity.key;
+            let by_turn: Vec<&[f64]> = turns.iter().map(|lists| &lists[index][..]).collect();
+            let all = by_turn.concat();
+            assert_eq!(statistic.poses, all.len() as u64, "{key}");
+            if all.is_empty() {
+                assert!(statistic.mean.is_none() && statistic.sd_angle.is_none());
+                continue;
+            }
+            let near = |found: Option<f64>, expected: f64, what: &str| {
+                let found = found.unwrap_or(f64::NAN);
+                let error = (found - expected).abs();
+                assert!(
+                    error < 1e-9 * expected.abs().max(1.0),
+                    "{key} {what}: {found}, {expected}"
+                );
+            };
+            let weighted = |of: &dyn Fn(&[f64]) -> f64| {
+                let sum = by_turn.iter().filter(|turn| !turn.is_empty());
+                sum.map(|turn| of(turn) * turn.len() as f64).sum::<f64>() / all.len() as f64
+            };
+            if statistic.quantity.circular {
+                let (length, direction) = resultant(&all);
+                let turns = weighted(&|turn| resultant(turn).0);
+                near(statistic.mean, direction, "mean");
+                near(statistic.sd, deviation(length), "sd");
+                near(statistic.sd_position, deviation(turns), "position");
+                near(statistic.sd_angle, deviation(length / turns), "angle");
+                continue;
+            }
+            let mean = all.iter().sum::<f64>() / all.len() as f64;
+            near(
+                statistic.min,
+                all.iter().copied().fold(f64::INFINITY, f64::min),
+                "min",
+            );
+            near(
+                statistic.max,
+                all.iter().copied().fold(0.0, f64::max),
+                "max",
+            );
+            near(statistic.mean, mean, "mean");
+            near(statistic.sd, variance(&all).sqrt(), "sd");
+            if mean == 0.0 {
+                assert_eq!(statistic.cv, None, "{key}");
+            } else {
+                near(statistic.cv, variance(&all).sqrt() / mean, "cv");
+            }
+            near(
+                statistic.sd_position,
+                weighted(&variance).sqrt(),
+                "position",
+            );
+            let of_turn =
+                |turn: &[f64]| (turn.iter().sum::<f64>() / turn.len() as f64 - mean).powi(2);
+            near(statistic.sd_angle, weighted(&of_turn).sqrt(), "angle");
+        }
+    }
+}
+
+#[test]
+fn ideal_values_are_those_of_the_continuous_figure() {
+    let ideal = |source, key: &str| {
+        let survey = sweep(&small(source, "4", "0"));
+        let found = survey
+            .statistics
+            .iter()
+            .find(|statistic| statistic.quantity.key == key);
+        found.expect("a quantity").ideal
+    };
+    let near = |found: Option<f64>, expected: f64| {
+        assert!(
+            (found.expect("an ideal value") - expected).abs() < 1e-9,
+            "{found:?}, {expected}"
+        );
+    };
+    let frame = || figure(FigureKind::Rectangle, 6.0, 3.0, 1.0);
+    near(ideal(frame(), "na"), 14.0);
+    near(ideal(frame(), "nae"), 18.0);
+    near(ideal(frame(), "p"), 18.0);
+    near(ideal(frame(), "f"), 18.0);
+    near(
+        ideal(figure(FigureKind::Hexagon, 2.0, 0.0, 0.0), "na"),
+        6.0 * 3_f64.sqrt(),
+    );
+    near(
+        ideal(figure(FigureKind::Ellipse, 4.0, 4.0, 2.0), "na"),
+        12.0 * std::f64::consts::PI,
+    );
+    near(
+        ideal(figure(FigureKind::Ellipse, 4.0, 4.0, 2.0), "roundness"),
+        1.0,
+    );
+    // The complete elliptic integral of the second kind, from tables: 4·5·E(1 − 9/25).
+    near(
+        ideal(figure(FigureKind::Ellipse, 5.0, 3.0, 0.0), "p"),
+        25.526_998_863_398_1,
+    );
+    assert_eq!(ideal(frame(), "ce"), None);
+    assert_eq!(ideal(picture("##"), "na"), None);
+}
+
+type Map = fn((i32, i32)) -> (i32, i32);
+
+/// The eight images of a set of taxels, each moved to the top left corner.
+fn images(imprint: &Imprint) -> [Vec<(i32, i32)>; 8] {
+    let taxels: Vec<(i32, i32)> = imprint
+        .active()
+        .map(|(x, y)| (i32::from(x), i32::from(y)))
+        .collect();
+    let maps: [Map; 8] = [
+        |(x, y)| (x, y),
+        |(x, y)| (-x, y),
+        |(x, y)| (x, -y),
+        |(x, y)| (-x, -y),
+        |(x, y)| (y, x),
+        |(x, y)| (-y, x),
+        |(x, y)| (y, -x),
+        |(x, y)| (-y, -x),
+    ];
+    maps.map(|map| {
+        let mut image: Vec<_> = taxels.iter().copied().map(map).collect();
+        let left = image.iter().map(|taxel| taxel.0).min().unwrap_or(0);
+        let top = image.iter().map(|taxel| taxel.1).min().unwrap_or(0);
+        for taxel in &mut image {
+            *taxel = (taxel.0 - left, taxel.1 - top);
+        }
+        image.sort_unstable();
+        image
+    })
+}
+
+#[test]
+fn classes_equal_those_of_all_images_written_out() {
+    for (source, place) in [
+        (figure(FigureKind::Rectangle, 3.0, 2.0, 0.0), "3:7.9:0.31"),
+        (picture("##.# .###"), "-3:15:0.9"),
+    ] {
+        let survey = sweep(&small(source, place, "0:359:7"));
+        let mut shifted = HashMap::new();
+        let mut symmetric = HashMap::new();
+        for entry in survey.atlas.entries() {
+            let images = images(&entry.imprint);
+            *shifted.entry(images[0].clone()).or_insert(0) += 1;
+            *symmetric.entry(images.into_iter().min()).or_insert(0) += 1;
+            assert_eq!(survey.atlas.find(&entry.imprint), Some(entry.id));
+        }
+        assert_eq!(
+            survey.atlas.distinct_classes(),
+            (shifted.len(), symmetric.len())
+        );
+        assert!(symmetric.len() < shifted.len() && shifted.len() < survey.atlas.len());
+    }
+}

@@ -1,0 +1,101 @@
+//! What was found is written to files.
+
+use std::path::Path;
+use std::process::Command;
+
+use taxel::tui::app::message::Message;
+use taxel::tui::script::Session;
+
+use super::Beside;
+use super::SHORT;
+use crate::session::press;
+use crate::session::session;
+use crate::session::shows;
+
+fn type_in(session: &mut Session, text: &str) {
+    session.send(Message::Paste(text.to_owned()));
+}
+
+fn export(session: &mut Session, path: &Path) {
+    press(session, "x");
+    type_in(session, path.to_str().expect("a name"));
+    press(session, "<Enter>");
+}
+
+/// The same bytes as the command line writes, each of them whole.
+#[test]
+fn files_are_those_of_the_command_line() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let mut session = session("fp<Enter>");
+    press(&mut session, SHORT);
+    for name in ["a.csv", "a.jsonl", "a.npz", "a.npy"] {
+        let (own, other) = (
+            folder.path().join(name),
+            folder.path().join(format!("cli-{name}")),
+        );
+        export(&mut session, &own);
+        shows(&session, &["written: "]);
+        let flag = if name == "a.npy" {
+            "--poses"
+        } else {
+            "--atlas"
+        };
+        let status = Command::new(env!("CARGO_BIN_EXE_taxel"))
+            .args("sweep pentagon --x0 5:5.9:0.1 --y0 5:5.9:0.1 --angle 0:50:10 --quiet".split(' '))
+            .arg(flag)
+            .arg(&other)
+            .output()
+            .expect("it runs");
+        assert!(status.status.success(), "{status:?}");
+        let read = |path: &Path| std::fs::read(path).expect("it is there");
+        if name == "a.npz" {
+            // The header holds where the shape was.
+            assert_eq!(read(&own).len(), read(&other).len());
+        } else {
+            assert!(read(&own) == read(&other), "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_file_that_is_there_is_asked_about() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let path = folder.path().join("mine.csv");
+    std::fs::write(&path, "mine").expect("written");
+    let mut program = Beside::new("fp<Enter>");
+    program.press(SHORT);
+    program.until("pentagon: 600 poses");
+    export(&mut program.session, &path);
+    program.until("is there already. Replace it?");
+    program.press("n");
+    assert_eq!(std::fs::read(&path).ok().as_deref(), Some(&b"mine"[..]));
+    export(&mut program.session, &path);
+    program.until("is there already. Replace it?");
+    program.press("n");
+    // Help that lies over the work gives way to the question.
+    export(&mut program.session, &path);
+    program.press("<F1>");
+    program.until("is there already. Replace it?");
+    shows(&program.session, &["pentagon: 600 poses"]);
+    program.press("y");
+    program.until("written: ");
+    let text = std::fs::read_to_string(&path).expect("it is there");
+    assert!(text.starts_with("id,count,share"), "{text:.50}");
+    let names = std::fs::read_dir(folder.path()).expect("a folder").count();
+    assert_eq!(names, 1, "nothing else is left there");
+}
+
+/// What is under way when the program ends is given up, and no part of a file stays.
+#[test]
+fn no_part_of_a_file_is_left_at_the_end() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let mut program = Beside::new("fh<Enter>");
+    program.press(":explore --x0 5:5.999:0.001 --y0 5:5.999:0.001 --angle 0:59:1<Enter>");
+    program.until("60,000,000 poses, ");
+    program.until("distinct imprints");
+    export(&mut program.session, &folder.path().join("poses.npy"));
+    shows(&program.session, &["stop leaves nothing behind"]);
+    drop(program);
+    let names = std::fs::read_dir(folder.path()).expect("a folder").count();
+    assert_eq!(names, 0);
+}

@@ -1,0 +1,352 @@
+//! Exploring with workers beside the program: what is shown while they run, stopping, files, and any keys at any time.
+
+mod files;
+
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, channel};
+use std::time::Duration;
+
+use proptest::prelude::*;
+use taxel::storage::Library;
+use taxel::tui::app::message::{Message, Mouse, MouseKind};
+use taxel::tui::app::state::Options;
+use taxel::tui::explore::message::WorkerEvent;
+use taxel::tui::runtime::perform::World;
+use taxel::tui::script::Session;
+
+use crate::session::{press, session, shows};
+
+/// Hundreds of seconds of work, on any machine.
+const LONG: &str = ":explore --x0 0:9.999:0.001 --y0 0:9.999:0.001<Enter>";
+/// Next to none.
+const SHORT: &str = ":explore --x0 5:5.9:0.1 --y0 5:5.9:0.1 --angle 0:50:10<Enter>";
+
+/// Nothing takes so long, on the busiest machine.
+const DEADLINE: Duration = Duration::from_secs(60);
+
+/// A program whose workers run beside it, and what they tell.
+struct Beside {
+    session: Session,
+    told: Receiver<WorkerEvent>,
+}
+
+impl Beside {
+    fn new(keys: &str) -> Self {
+        let world = World::scratch().expect("there is a folder for temporary files");
+        Self::within(world, keys)
+    }
+
+    fn within(world: World, keys: &str) -> Self {
+        let (post, told) = channel();
+        let world = world.with_workers(Arc::new(move |told| {
+            // The test may be over.
+            let _ = post.send(told);
+        }));
+        let options = Options::plain(false);
+        let mut session = Session::new(&options, world, 80, 24);
+        press(&mut session, keys);
+        Self { session, told }
+    }
+
+    /// Passes on what workers tell until something is on the screen.
+    fn until(&mut self, text: &str) {
+        while !self.session.screen().contains(text) {
+            let told = self.told.recv_timeout(DEADLINE);
+            let told = told.unwrap_or_else(|_| panic!("no {text:?} on\n{}", self.session.screen()));
+            self.session.send(Message::Worker(told));
+        }
+    }
+
+    fn press(&mut self, keys: &str) {
+        press(&mut self.session, keys);
+    }
+}
+
+#[test]
+fn work_is_shown_and_stopped_and_what_is_complete_is_kept() {
+    let mut program = Beside::new("fr<Enter>");
+    program.press(LONG);
+    shows(
+        &program.session,
+        &[
+            "0 of 36,000,000,000 poses, 0 %",
+            "stop keeps what is complete",
+            "Esc stop",
+        ],
+    );
+    program.until("poses a second, about");
+    // Nothing on the matrix changes meanwhile, and nothing else is begun.
+    program.press("n<Space>e<Enter>");
+    shows(
+        &program.session,
+        &["of 36,000,000,000 poses", "rectangle length 6.00"],
+    );
+    program.session.resize(30, 8);
+    program.session.resize(80, 24);
+    program.press("s");
+    shows(&program.session, &["stopping"]);
+    program.until("distinct imprints");
+    shows(
+        &program.session,
+        &["a part: ", " of 36,000,000,000 poses", "stopped after "],
+    );
+    program.press("xposes.npy<Enter>");
+    shows(&program.session, &[".npy needs all poses: only "]);
+    program.press("<Esc>4))");
+    shows(&program.session, &["not swept"]);
+    program.press("g");
+    shows(&program.session, &["this pose was not swept"]);
+}
+
+#[test]
+fn escape_stops_too_and_the_end_does_not_wait() {
+    let mut program = Beside::new("fr<Enter>");
+    program.press(LONG);
+    program.until("poses a second");
+    program.press("<Esc>");
+    program.until("a part: ");
+    // Other ranges from there; the program ends while they are gone through.
+    program.press("e<C-u>");
+    program.press("0:9.999:0.001<Enter>");
+    program.until("poses a second");
+    program.press("<C-c>");
+    assert!(program.session.app().ended());
+}
+
+/// Ctrl-C asks nothing; the work on the matrix is offered by the next program.
+#[test]
+fn ctrl_c_while_a_sweep_runs_keeps_unsaved_work() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let world = || World::new(Library::open(folder.path().to_owned()));
+    let mut program = Beside::within(world(), "fr<Enter>");
+    program.press(LONG);
+    program.until("poses a second");
+    program.press("<C-c>");
+    assert!(program.session.app().ended());
+    drop(program);
+    let next = Beside::within(world(), "");
+    shows(&next.session, &["Unsaved work was left: 18 taxels"]);
+}
+
+#[test]
+fn the_time_is_told_while_ranges_are_typed() {
+    let mut program = Beside::new("fh<Enter>e");
+    shows(&program.session, &["3,600,000 poses"]);
+    program.until("3,600,000 poses, ");
+    program.press("0:9.99:0.001<Tab>0:9.99:0.001<Tab>0:359.9:0.1");
+    shows(&program.session, &["359,352,291,600 poses"]);
+    program.until("359,352,291,600 poses, about ");
+    // Help lies over the form while it is told, and a click asks as a key does.
+    program.press("<BS><BS>9<F1>");
+    let told = program.told.recv_timeout(DEADLINE).expect("it is told");
+    program.session.send(Message::Worker(told));
+    program.press("<Esc>");
+    shows(&program.session, &["poses, about "]);
+    let anchor = |program: &mut Beside| {
+        let screen = program.session.screen();
+        let row = screen.lines().position(|line| line.contains("Anchor"));
+        let row = u16::try_from(row.expect("the anchor")).expect("small");
+        let (kind, column) = (MouseKind::Press, 50);
+        program
+            .session
+            .send(Message::Mouse(Mouse { kind, column, row }));
+    };
+    anchor(&mut program);
+    anchor(&mut program);
+    shows(&program.session, &["< centre >"]);
+    program.until("poses, about ");
+    // What was measured before is not taken for another grid's.
+    program.press("<S-Tab><End><BS>5");
+    assert!(
+        !program.session.screen().contains("poses, about"),
+        "{}",
+        program.session.screen()
+    );
+}
+
+#[test]
+fn results_wait_where_they_were() {
+    let mut program = Beside::new("fp<Enter>");
+    program.press(SHORT);
+    program.until("pentagon: 600 poses");
+    program.press("3ddq");
+    shows(&program.session, &["pentagon side 4.00"]);
+    // Moved it is the same shape, larger it is not.
+    program.press("<S-Right>e");
+    shows(
+        &program.session,
+        &["pentagon: 600 poses", "ce: outline taxels"],
+    );
+    program.press("qf<Tab>5<Enter>e");
+    shows(&program.session, &["Explore: pentagon"]);
+    program.press("<Esc>ue");
+    shows(&program.session, &["pentagon: 600 poses"]);
+    // Another sensor is another matter.
+    program.press("qS20<Enter>e");
+    shows(&program.session, &["Explore: pentagon"]);
+}
+
+#[test]
+fn the_imprint_of_a_row_is_the_one_on_the_matrix() {
+    for start in [
+        "fr<Enter>",
+        "fe<Tab>3<Tab>2<Enter>",
+        "<Space><Right><Space><Down><Space>",
+    ] {
+        for anchor in ["corner", "centre"] {
+            let mut session = session(start);
+            let command = format!(
+                ":explore --x0 5:5.9:0.1 --y0 5:5.9:0.1 --angle 0:50:10 --anchor {anchor}<Enter>"
+            );
+            press(&mut session, &command);
+            shows(&session, &["600 poses"]);
+            for row in 0..12 {
+                press(&mut session, &format!("<Home><{row}x:Down><Enter>"));
+                let at = session.app().reading().imprint;
+                shows(&session, &["on the matrix; u takes it back"]);
+                press(&mut session, "ej");
+                assert!(
+                    !session.screen().contains("not among these"),
+                    "{}",
+                    session.screen()
+                );
+                press(&mut session, "<Enter>");
+                assert_eq!(
+                    session.app().reading().imprint,
+                    at,
+                    "{start} {anchor}, row {row}"
+                );
+                press(&mut session, "e");
+            }
+        }
+    }
+}
+
+/// Whatever key closes the dialog of work under way, the work does not go on unseen.
+#[test]
+fn work_is_stopped_by_every_key_that_leaves_it() {
+    let mut program = Beside::new("fr<Enter>");
+    program.press(LONG);
+    for leaving in [Message::Cancel, Message::Quit] {
+        program.session.send(leaving);
+        shows(&program.session, &["stopping"]);
+    }
+    while !matches!(
+        program.told.recv_timeout(DEADLINE),
+        Ok(WorkerEvent::Swept(..))
+    ) {}
+}
+
+/// The last column is the last that can be seen, so that one step back is seen too.
+#[test]
+fn columns_of_statistics_end_with_the_last() {
+    let mut session = session("fp<Enter>");
+    press(&mut session, SHORT);
+    session.resize(60, 24);
+    press(&mut session, "2<7x:Right>");
+    let last = session.screen();
+    press(&mut session, "<Left>");
+    assert_ne!(session.screen(), last);
+    press(&mut session, "<Right>");
+    assert_eq!(session.screen(), last);
+}
+
+fn any_keys() -> impl Strategy<Value = Vec<&'static str>> {
+    let key = prop::sample::select(vec![
+        "e",
+        "e<Enter>",
+        "<Enter>",
+        "<Esc>",
+        "1",
+        "2",
+        "3",
+        "4",
+        "<Tab>",
+        "<S-Tab>",
+        "d",
+        "D",
+        "n",
+        "f",
+        "v",
+        "c",
+        "h",
+        "j",
+        "g",
+        "<Up>",
+        "<Down>",
+        "<Left>",
+        "<Right>",
+        "<Home>",
+        "<End>",
+        "<PageUp>",
+        "<PageDown>",
+        "<lt>",
+        ">",
+        "(",
+        ")",
+        "z",
+        "Z",
+        "w",
+        "W",
+        "?",
+        "s",
+        "q",
+        "y",
+        "x<C-u>",
+        "a.txt",
+        "<BS>",
+        "<C-u>",
+        "5:6:0.5",
+        "0:350:10",
+        "-3",
+        "fr<Enter>",
+        "fe<Tab>3<Enter>",
+        "<Space>",
+        "u",
+        "U",
+        "S8<Enter>",
+        "<Space><Right><Space>",
+        SHORT,
+        ":explore --x0 -9:9:0.7 --y0 -9:15:1.1 --anchor centre<Enter>",
+        ":explore --zoom-x 1:3:0.5<Enter>",
+    ]);
+    prop::collection::vec(key, 0..60)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 150, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Whatever is pressed, on whatever size, whenever workers tell something: no panic, nothing impossible on the
+    /// screen, and every key is answered.
+    #[test]
+    fn any_keys_at_any_time(
+        keys in any_keys(),
+        sizes in prop::collection::vec((1_u16..=120, 1_u16..=50), 60),
+        clicks in prop::collection::vec((0_u16..120, 0_u16..50), 60),
+    ) {
+        let mut program = Beside::new("fr<Enter>");
+        program.press(SHORT);
+        program.until("rectangle: 600 poses");
+        for ((key, (width, height)), (column, row)) in keys.into_iter().zip(sizes).zip(clicks) {
+            if program.session.app().ended() {
+                break;
+            }
+            program.press(key);
+            // Some of what is told, at some time.
+            if width % 3 != 0 {
+                while let Ok(told) = program.told.try_recv() {
+                    program.session.send(Message::Worker(told));
+                }
+            }
+            if height % 2 == 0 {
+                program.session.resize(width, height);
+            }
+            let kind = [MouseKind::Press, MouseKind::ScrollUp, MouseKind::ScrollDown][usize::from(width % 3)];
+            if !program.session.app().ended() && height % 5 == 0 {
+                program.session.send(Message::Mouse(Mouse { kind, column, row }));
+            }
+            let screen = program.session.screen();
+            prop_assert!(!screen.contains("NaN") && !screen.contains("inf "), "{key}\n{screen}");
+        }
+    }
+}

@@ -1,0 +1,299 @@
+//! The library on the screen: what Load, Save, Delete, Picture, the sensor and the mouse do.
+
+mod unsaved;
+
+use std::path::Path;
+
+use proptest::prelude::*;
+use taxel::storage::Library;
+use taxel::tui::app::document::Document;
+use taxel::tui::app::message::{Message, Mouse, MouseKind};
+use taxel::tui::runtime::perform::World;
+use taxel::tui::script::Session;
+
+use crate::session::{press, session, shows, started};
+
+/// On a library that stays.
+fn session_on(folder: &Path, keys: &str) -> Session {
+    started(World::new(Library::open(folder.to_owned())), keys)
+}
+
+fn mouse(session: &mut Session, kind: MouseKind, column: u16, row: u16) {
+    session.send(Message::Mouse(Mouse { kind, column, row }));
+}
+
+#[test]
+fn a_shape_is_saved_and_comes_back() {
+    let mut session = session("f<Enter>smine");
+    shows(&session, &["Save as: mine"]);
+    press(&mut session, "<Enter>");
+    shows(&session, &["saved as mine", "mine: ellipse rx 4.00"]);
+    press(&mut session, "n");
+    shows(&session, &["empty"]);
+    press(&mut session, "lmine<Enter>");
+    shows(
+        &session,
+        &[
+            "mine loaded",
+            "mine: ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0°",
+            "NA 52 in all",
+        ],
+    );
+    press(&mut session, "q");
+    assert!(session.app().ended(), "what is loaded is saved");
+}
+
+#[test]
+fn names_are_checked_while_they_are_typed() {
+    let mut session = session("<Space>s");
+    for (keys, text) in [
+        ("a/b", "! '/' cannot be in a name"),
+        ("<C-u>.hidden", "! a name cannot start with '.'"),
+        ("<C-u>a ", "! a name cannot end with a space"),
+        ("<C-u><Enter>", "! a name is missing"),
+        ("<C-u>ok<Left>x<Home>y<End>z<BS><Del>", "Save as: yoxk"),
+    ] {
+        press(&mut session, keys);
+        shows(&session, &[text]);
+    }
+    press(&mut session, "<Esc>");
+    shows(&session, &["Space toggle"]);
+}
+
+#[test]
+fn saving_over_another_shape_asks() {
+    let mut session = session("<Space>sone<Enter>n<Space><Right><Space>sone<Enter>");
+    shows(&session, &["\"one\" is there already. Replace it? (y/n)"]);
+    press(&mut session, "nlone<Enter>");
+    shows(&session, &["NA 1 in all"]);
+    // One's own shape too, and a name in other letters is the same name.
+    press(&mut session, "<Right><Right><Space>s<Enter>");
+    shows(&session, &["one*:", "Replace one? (y/n)"]);
+    press(&mut session, "y");
+    shows(&session, &["saved as one"]);
+    press(&mut session, "n<Space>sOne<Enter>");
+    shows(&session, &["\"one\" is there already"]);
+    press(&mut session, "ynlone<Enter>");
+    shows(&session, &["NA 1 in all"]);
+}
+
+#[test]
+fn two_programs_do_not_overwrite_each_other_unseen() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let mut first = session_on(folder.path(), "<Space>sshared<Enter>");
+    let mut second = session_on(folder.path(), "lshared<Enter><Right><Space>s<Enter>y");
+    shows(&second, &["saved as shared"]);
+    press(&mut first, "<Down><Space>s<Enter>y");
+    shows(
+        &first,
+        &["\"shared\" was changed by another program since it was loaded. Replace it?"],
+    );
+    press(&mut first, "n");
+    press(&mut second, "nlshared<Enter>");
+    shows(&second, &["NA 2 in all"]);
+}
+
+#[test]
+fn undo_brings_back_the_name_too() {
+    let mut session = session("<Space>saaa<Enter>n<Space><Right><Space>sbbb<Enter>");
+    press(&mut session, "laaa<Enter>lbbb<Enter>");
+    shows(&session, &["bbb: drawn by hand", "NA 2 in all"]);
+    press(&mut session, "u");
+    shows(&session, &["aaa: drawn by hand", "NA 1 in all"]);
+    press(&mut session, "s");
+    shows(&session, &["Save as: aaa"]);
+    press(&mut session, "<Esc>U");
+    shows(&session, &["bbb: drawn by hand"]);
+    // Nothing is left to save of an empty matrix.
+    press(&mut session, "lwasher<Enter>nq");
+    assert!(session.app().ended());
+}
+
+#[test]
+fn deleting_asks_and_is_undone() {
+    let mut session = session("<Space>sone<Enter>dn");
+    shows(&session, &["Delete  filter: n", "> one"]);
+    press(&mut session, "<Enter>");
+    shows(&session, &["Delete one? (y/n)"]);
+    press(&mut session, "nd<Enter>y");
+    shows(&session, &["one deleted; u brings it back"]);
+    press(&mut session, "d");
+    shows(&session, &["there are no shapes of your own"]);
+    press(&mut session, "<Esc>u");
+    shows(&session, &["one is back"]);
+    press(&mut session, "lone<Enter>");
+    shows(&session, &["one loaded"]);
+    // After something else was done, u takes that back instead.
+    press(&mut session, "d<Enter>y<Right><Space>u");
+    shows(&session, &["NA 1 in all"]);
+}
+
+#[test]
+fn a_picture_starts_where_it_is_and_follows() {
+    let mut session = session("<Space><Right><Space>spair<Enter>ppair<Enter>");
+    shows(
+        &session,
+        &[
+            "Picture: pair",
+            "x0        8.00",
+            "y0        8.00",
+            "Zoom x    1.00",
+            "NA 2 in all",
+        ],
+    );
+    press(&mut session, "2<Enter>");
+    shows(
+        &session,
+        &[
+            "picture of pair at 2.00, 8.00, 0°, zoom 1.00 x 1.00",
+            "NA 2 in all",
+        ],
+    );
+    press(&mut session, "g++<Down>");
+    shows(&session, &["picture of pair at 2.00, 9.00"]);
+    press(&mut session, "z");
+    shows(
+        &session,
+        &[
+            "pair*: picture of pair at 2.00, 9.00, 0°, zoom 2.00…; reaches beyond the sensor",
+            "NA 0 in all",
+        ],
+    );
+    press(&mut session, "uu>");
+    shows(&session, &["picture of pair at 2.00, 8.00, 359°"]);
+    press(&mut session, "f<Enter>z");
+    shows(&session, &["a figure has no zoom; f changes its size"]);
+}
+
+#[test]
+fn the_sensor_is_changed_and_what_is_cut_is_said() {
+    let mut session = session("<Space>S");
+    shows(
+        &session,
+        &["Sensor", "Columns   16", "Threshold 0.5", "Pitch     1"],
+    );
+    press(&mut session, "8<Tab>4");
+    shows(&session, &["! 1 active taxel will be cut", "NA 0 in all"]);
+    press(&mut session, "<Enter>");
+    shows(&session, &["column 7, row 3"]);
+    press(&mut session, "u");
+    shows(&session, &["NA 1 in all"]);
+    press(&mut session, "S65");
+    shows(&session, &["! expected 1 to 64, a whole number"]);
+    press(&mut session, "<Esc>f<Enter>S<Tab><Tab><Tab>2.5<Enter>");
+    shows(&session, &["58.2843 mm", "400 mm²"]);
+    // A figure that a small sensor does not allow is kept as a drawing.
+    press(&mut session, "fr<3x:Tab>0<Tab>0<Enter>S5<Tab>5<Enter>");
+    shows(&session, &["drawn by hand", "NA 15 in all"]);
+}
+
+#[test]
+fn a_shape_of_another_sensor_is_placed_where_it_fits() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    drop(session_on(folder.path(), "<Space>smiddle<Enter>"));
+    let mut session = session_on(folder.path(), "S32<Tab>32<Enter>lmiddle<Enter>");
+    shows(&session, &["middle loaded", "NA 1 in all"]);
+    press(&mut session, "S4<Tab>4<Enter>lmiddle<Enter>");
+    shows(
+        &session,
+        &["! middle is 16 x 16 and does not fit on 4 x 4 taxels"],
+    );
+}
+
+#[test]
+fn the_mouse_draws_and_points() {
+    let mut session = session("");
+    // Column 2, row 1 of the matrix: 3 columns of ruler, 2 a taxel; the menu and the ruler above.
+    mouse(&mut session, MouseKind::Press, 7, 3);
+    shows(&session, &["column  2, row  1    active", "NA 1 in all"]);
+    mouse(&mut session, MouseKind::Drag, 9, 3);
+    mouse(&mut session, MouseKind::Drag, 11, 4);
+    mouse(&mut session, MouseKind::Drag, 7, 3);
+    mouse(&mut session, MouseKind::Release, 7, 3);
+    // Between two places that are told the line is drawn.
+    shows(&session, &["NA 4 in all"]);
+    mouse(&mut session, MouseKind::Drag, 20, 10);
+    shows(&session, &["NA 4 in all"]);
+    press(&mut session, "u");
+    shows(&session, &["NA 0 in all"]);
+    // "f Figure", then the field Radius y, then a place without anything.
+    mouse(&mut session, MouseKind::Press, 20, 0);
+    shows(&session, &["Kind", "Radius x"]);
+    mouse(&mut session, MouseKind::Press, 50, 5);
+    press(&mut session, "2");
+    shows(&session, &["ellipse rx 4.00 ry 2.00"]);
+    mouse(&mut session, MouseKind::Press, 79, 18);
+    mouse(&mut session, MouseKind::Press, 65535, 65535);
+    press(&mut session, "<Enter>?");
+    mouse(&mut session, MouseKind::ScrollDown, 5, 5);
+    assert!(
+        !session.screen().contains("On the matrix"),
+        "the wheel scrolls help"
+    );
+}
+
+/// Keys of every kind that change the document.
+fn any_keys() -> impl Strategy<Value = String> {
+    let key = prop::sample::select(vec![
+        "<Space>",
+        "<Left>",
+        "<Right>",
+        "<Up>",
+        "<Down>",
+        "u",
+        "U",
+        "n",
+        "g",
+        "<Enter>",
+        "<Esc>",
+        "f",
+        "fh<Enter>",
+        "fr<Tab>3<Enter>",
+        "f<6x:Tab>1<Enter>",
+        ">",
+        ")",
+        "<lt>",
+        "+",
+        "<S-Left>",
+        "<Tab>",
+        "c",
+        "S8<Enter>",
+        "S<Esc>",
+        "p<Esc>",
+    ]);
+    prop::collection::vec(key, 0..40).prop_map(|keys| keys.concat())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn whatever_was_done_is_saved_and_loaded_alike(keys in any_keys()) {
+        let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+        let mut session = session_on(folder.path(), &keys);
+        press(&mut session, "<Esc><Esc>");
+        let before: Document = session.app().shown();
+        if session.app().reading().imprint.is_empty() {
+            return Ok(());
+        }
+        press(&mut session, "skept<Enter>");
+        prop_assert!(session.screen().contains("saved as kept"), "{}", session.screen());
+        let mut other = session_on(folder.path(), "");
+        let (columns, rows) = (before.sensor.columns(), before.sensor.rows());
+        press(&mut other, &format!("S{columns}<Tab>{rows}<Enter>lkept<Enter>"));
+        prop_assert_eq!(other.app().shown(), before);
+    }
+}
+
+#[test]
+fn the_shape_whose_name_was_typed_comes_first() {
+    let mut session =
+        session("<Space>sturned washer<Enter><Space><Right><Space>s<C-u>washers<Enter>");
+    press(&mut session, "lwasher");
+    let screen = session.screen();
+    let line = |name: &str| screen.lines().position(|line| line.contains(name));
+    assert!(line("> washer  ") < line("washers "), "{screen}");
+    assert!(line("washers ") < line("turned washer"), "{screen}");
+    press(&mut session, "<Enter>");
+    assert_eq!(session.app().stored_name(), Some("washer"));
+}

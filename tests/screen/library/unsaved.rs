@@ -1,0 +1,126 @@
+//! Work that is not saved: kept while the program runs, offered when it died, thrown away where that can be undone.
+
+use std::sync::Arc;
+use std::sync::mpsc::channel;
+
+use taxel::storage::{Library, LibraryEntry, ShapeOrigin};
+use taxel::tui::app::message::Message;
+use taxel::tui::explore::message::WorkerEvent;
+use taxel::tui::runtime::perform::World;
+
+use super::session_on;
+use crate::session::press;
+use crate::session::session;
+use crate::session::shows;
+use crate::session::started;
+
+#[test]
+fn unsaved_work_is_offered_back_once() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let lost = session_on(folder.path(), "f<Enter><Space>");
+    // Saved work is not offered, and a running program's work is its own.
+    let running = session_on(folder.path(), "<Space>");
+    assert!(!running.screen().contains("Unsaved work"));
+    drop((lost, running));
+    let mut later = session_on(folder.path(), "");
+    shows(
+        &later,
+        &["Unsaved work was left (1 of 2): 1 taxel. Bring it back?"],
+    );
+    press(&mut later, "n");
+    shows(
+        &later,
+        &["unsaved 1 is in the trash. Unsaved work was left: 51 taxels."],
+    );
+    press(&mut later, "y");
+    shows(
+        &later,
+        &["ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0° + 1 by hand"],
+    );
+    // What was not wanted is in the trash.
+    press(&mut later, ":restore unsaved 1<Enter>lunsaved 1<Enter>");
+    shows(&later, &["unsaved 1 loaded", "NA 1 in all"]);
+    press(&mut later, "uu<Space>smine<Enter>q");
+    assert!(later.app().ended());
+    drop(later);
+    assert!(
+        !session_on(folder.path(), "")
+            .screen()
+            .contains("Unsaved work")
+    );
+}
+
+/// Where it cannot be thrown away, nothing is left of the attempt, and it is not asked about again and again.
+#[test]
+fn unsaved_work_that_cannot_go_to_the_trash_stays() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    drop(session_on(folder.path(), "<Space>"));
+    std::fs::write(folder.path().join(".trash"), "in the way").expect("written");
+    let mut later = session_on(folder.path(), "n");
+    shows(
+        &later,
+        &["! the unsaved work cannot be moved to the trash, and is offered again at"],
+    );
+    press(&mut later, "q");
+    assert!(later.app().ended());
+    drop(later);
+    let listed = Library::open(folder.path().to_owned()).list();
+    let own = |entry: &LibraryEntry| entry.origin == ShapeOrigin::Own;
+    assert!(!listed.expect("listed").iter().any(own));
+    let again = session_on(folder.path(), "");
+    shows(&again, &["Unsaved work was left: 1 taxel."]);
+}
+
+#[test]
+fn all_unsaved_work_that_is_thrown_away_can_be_brought_back() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let first = session_on(folder.path(), "<Space>");
+    let second = session_on(folder.path(), "<Space><Right><Space>");
+    drop((first, second));
+    let mut later = session_on(folder.path(), "n");
+    press(&mut later, "n");
+    shows(
+        &later,
+        &["the unsaved work is in the trash as unsaved 2; u brings it back"],
+    );
+    press(&mut later, "u:restore unsaved 1<Enter>lunsaved<Enter>");
+    shows(&later, &["unsaved 1 loaded"]);
+}
+
+#[test]
+fn a_drawing_whose_file_was_deleted_is_unsaved() {
+    let mut session = session("<Space>sa<Enter>da<Enter>yq");
+    shows(&session, &["The imprint is not saved. Quit anyway?"]);
+    press(&mut session, "<Esc>s");
+    shows(&session, &["Save as:"]);
+    press(&mut session, "a<Enter>");
+    shows(&session, &["saved as a"]);
+}
+
+/// A journal that cannot be written is told of once, and what was not written is tried again at the end.
+#[test]
+fn work_that_could_not_be_kept_is_kept_later() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let journal = folder.path().join(".journal");
+    std::fs::write(&journal, "in the way").expect("written");
+    let (post, told) = channel();
+    let world = World::new(Library::open(folder.path().to_owned()));
+    let world = world.with_workers(Arc::new(move |told| {
+        let _ = post.send(told);
+    }));
+    let mut session = started(world, "<Space>");
+    let reason = told.recv_timeout(std::time::Duration::from_secs(60));
+    let Ok(WorkerEvent::Refused(reason)) = reason else {
+        panic!("nothing is told: {reason:?}");
+    };
+    assert!(
+        reason.starts_with("unsaved work cannot be kept: "),
+        "{reason}"
+    );
+    session.send(Message::Worker(WorkerEvent::Refused(reason)));
+    shows(&session, &["! unsaved work cannot be kept: "]);
+    std::fs::remove_file(&journal).expect("removed");
+    drop(session);
+    let later = session_on(folder.path(), "");
+    shows(&later, &["Unsaved work was left: 1 taxel."]);
+}

@@ -1,0 +1,19 @@
+//! The program's screen: in memory, driven by keys and scripts, and the real program in a pseudo-terminal.
+
+mod session;
+
+mod keys;
+
+mod library;
+
+mod prompt;
+
+mod screens;
+
+mod scripts;
+
+#[cfg(feature = "cli")]
+mod explore;
+
+#[cfg(feature = "cli")]
+mod pty;

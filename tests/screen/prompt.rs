@@ -1,0 +1,334 @@
+//! The command line at the foot of the screen, and help in every place.
+
+use taxel::tui::app::message::Message;
+use taxel::tui::keys::binding::Context;
+use taxel::tui::keys::default_keys::KEYMAP;
+use taxel::tui::prompt::commands::COMMANDS;
+
+use crate::session::{press, session, shows};
+
+/// Whoever has no such key, or cannot press it, has a word.
+#[test]
+fn every_action_has_a_command() {
+    let said: Vec<&Message> = COMMANDS
+        .iter()
+        .flat_map(|command| command.words.iter().map(|(_, message)| message))
+        .collect();
+    let places = [Context::Matrix, Context::Grab, Context::Everywhere];
+    let actions = KEYMAP
+        .iter()
+        .filter(|binding| places.contains(&binding.context))
+        .flat_map(|binding| binding.keys.iter())
+        // The command line itself, and degrees, which are a number there.
+        .filter(|(_, message)| !matches!(message, Message::Command | Message::Turn(_)));
+    for (key, message) in actions {
+        assert!(said.contains(&message), "{key}: {message:?}");
+    }
+}
+
+/// No name stands twice, and none is the short form of another.
+#[test]
+fn commands_are_found_by_their_names() {
+    for command in COMMANDS {
+        let found = taxel::tui::prompt::commands::find(command.name).expect("it is there");
+        assert_eq!(format!("{found:?}"), format!("{command:?}"));
+    }
+}
+
+#[test]
+fn the_cursor_and_the_shape_are_moved_by_words() {
+    for (line, shown) in [
+        ("cursor left", "column  7, row  8"),
+        ("cursor start", "column  0, row  8"),
+        ("cursor bottom", "column  8, row 15"),
+        ("cursor 3 12", "column  3, row 12"),
+        (
+            "cursor 16 0",
+            "! there is no such taxel: columns are 0 to 15, rows 0 to 15",
+        ),
+        (
+            "cursor far",
+            "! cursor takes left, right, up, down, start, end, top, bottom or COLUMN ROW",
+        ),
+        ("nudge right", "at 4.01, 4.00"),
+        ("move 0.5 -1.25", "at 4.50, 2.75"),
+        ("move 0 -100", "! y0: -96 is out of range"),
+        ("move 1", "! move takes DX DY, found \"1\""),
+        ("move far away", "! move takes DX DY, found \"far away\""),
+        ("step larger", "ellipse"),
+        ("region previous", "there is no other region"),
+        ("help", "On the matrix"),
+        ("suspend", "ellipse"),
+        ("sensor --rows 8 --rows 9", "! --rows is given twice"),
+        (
+            "figure hexagon --side 3 --angle 5 --side 4",
+            "! --side is given twice",
+        ),
+    ] {
+        let session = session(&format!("f<Enter>:{line}<Enter>"));
+        shows(&session, &[shown]);
+    }
+    let session = session("f<Enter>:step larger<Enter>:nudge up<Enter>:grab<Enter>");
+    shows(&session, &["at 4.00, 3.90", "held, step 0.1"]);
+}
+
+#[test]
+fn restore_says_what_it_misses() {
+    let mut session = session("<Space>:restore<Enter>");
+    // It used to take back the toggle.
+    shows(
+        &session,
+        &[
+            "! restore needs the name of a deleted shape; Tab shows them",
+            "drawn by hand",
+        ],
+    );
+    press(
+        &mut session,
+        "<Esc>sone<Enter>:save two<Enter>:delete one<Enter>y:delete two<Enter>y",
+    );
+    press(&mut session, ":restore <Tab>");
+    shows(&session, &[":restore    two one"]);
+    press(&mut session, "o<Tab><Enter>");
+    shows(&session, &["one is back"]);
+    press(&mut session, ":delete one<Enter>y:restore<Enter>");
+    shows(&session, &["one is back"]);
+}
+
+#[test]
+fn names_and_flags_are_completed() {
+    let mut session = session("<Space>:save mine<Enter>:load mi<Tab>");
+    shows(&session, &[":load mine"]);
+    press(&mut session, "<Enter>");
+    shows(&session, &["mine loaded"]);
+    // Only one's own can be deleted.
+    press(&mut session, ":delete <Tab>");
+    shows(&session, &[":delete mine"]);
+    press(&mut session, "<C-u>load wash<Tab><Enter>");
+    shows(&session, &["washer loaded"]);
+    press(&mut session, ":figure rect<Tab>--l<Tab>2 --w<Tab>3<Enter>");
+    shows(&session, &["rectangle length 2.00 width 3.00"]);
+}
+
+/// As many candidates as fit, and how many more there are.
+#[test]
+fn candidates_fit_on_the_screen() {
+    for width in [80, 60, 40] {
+        let mut session = session(":");
+        session.resize(width, 24);
+        press(&mut session, "<Tab>");
+        let screen = session.screen();
+        let line = screen
+            .lines()
+            .find(|line| line.starts_with(':'))
+            .expect("the line");
+        let shown = line.trim_start_matches(':').split_whitespace();
+        let shown = shown.take_while(|word| *word != "…").count();
+        let told = format!("… {} more", COMMANDS.len() - shown);
+        assert!(line.ends_with(&told), "{line:?} at {width}: {told}");
+        assert!(line.chars().count() <= width.into(), "{line:?}");
+    }
+}
+
+#[test]
+fn earlier_lines_come_back_one_by_one() {
+    let mut session = session(":new<Enter>:grab<Enter>:new<Enter>:new<Enter>:z<Up>");
+    for (keys, shown) in [
+        ("", ":new"),
+        ("<Up>", ":grab"),
+        ("<Up>", ":new"),
+        ("<Up>", ":new"),
+        ("<Down>", ":grab"),
+        ("<Down><Down>", ":z"),
+        ("<Down>", ":z"),
+    ] {
+        press(&mut session, keys);
+        let screen = session.screen();
+        let line = screen.lines().find(|line| line.starts_with(':'));
+        assert_eq!(line, Some(shown), "{keys}");
+    }
+}
+
+/// Help tells the keys of the place where it is asked for, and leads back there.
+#[test]
+fn help_is_everywhere() {
+    for (keys, back, title, row, foreign) in [
+        (
+            "f?",
+            "Radius x",
+            "In a form",
+            "change the number by its last decimal",
+            "On the matrix",
+        ),
+        (
+            "f<Tab>2?",
+            "rx 2.00",
+            "In a form",
+            "take it; refused while a field is wrong",
+            "Saving",
+        ),
+        (
+            "l?",
+            "filter:",
+            "In the list of shapes",
+            "clear the filter",
+            "On the matrix",
+        ),
+        (
+            "<Space>s<F1>",
+            "Save as:",
+            "Saving",
+            "store under this name",
+            "On the matrix",
+        ),
+        (
+            ":<F1>",
+            "Enter do it",
+            "In the command line",
+            "complete the word",
+            "On the matrix",
+        ),
+        (
+            "<Space>q?",
+            "(y/n)",
+            "At a question",
+            "no answer now",
+            "On the matrix",
+        ),
+        (
+            "f<Enter>g?",
+            "held, step",
+            "While a shape is held",
+            "let the shape go",
+            "In a form",
+        ),
+        (
+            "<F1>",
+            "? Help",
+            "On the matrix",
+            "empty the matrix",
+            "In a form",
+        ),
+    ] {
+        let mut session = session(keys);
+        shows(&session, &[title, row]);
+        assert!(!session.screen().contains(foreign), "{keys}: {foreign}");
+        press(&mut session, "<Esc>");
+        assert!(!session.screen().contains(row), "{keys}: help is closed");
+        shows(&session, &[back]);
+    }
+    // Text is text where it can be some.
+    shows(&session("<Space>sa?"), &["'?' cannot be in a name"]);
+    shows(&session(":a?"), &[":a?"]);
+}
+
+/// A long list says where one is, and that there is more.
+#[test]
+fn a_long_help_says_that_there_is_more() {
+    let mut session = session("?");
+    shows(&session, &["lines 1-19 of", "more below"]);
+    press(&mut session, "<Down>");
+    shows(&session, &["lines 2-20 of", "more below"]);
+    press(&mut session, "<30x:PageDown>");
+    shows(&session, &["the end"]);
+    press(&mut session, "<Up>");
+    shows(&session, &["more below"]);
+    press(&mut session, "<30x:PageUp>");
+    shows(&session, &["lines 1-19 of"]);
+    press(&mut session, "<Esc>f?");
+    assert!(
+        !session.screen().contains("lines 1-"),
+        "{}",
+        session.screen()
+    );
+    session.resize(60, 12);
+    shows(&session, &["lines 1-9 of", "more below"]);
+}
+
+#[test]
+fn commands_do_what_keys_do() {
+    let mut session = session(":");
+    shows(&session, &["Enter do it"]);
+    press(
+        &mut session,
+        "figure hexagon --side 3 --x0 2.1 --angle 17 --thickness 1<Enter>",
+    );
+    shows(
+        &session,
+        &["hexagon side 3.00 at 2.10, 4.00, 17°, wall 1.00"],
+    );
+    press(
+        &mut session,
+        ":turn -20<Enter>:undo<Enter>:save mine<Enter>:new<Enter>:load mine<Enter>",
+    );
+    shows(&session, &["mine loaded", "hexagon side 3.00"]);
+    press(&mut session, ":picture mine<Enter>");
+    shows(&session, &["Picture: mine"]);
+    press(&mut session, "<Esc>:delete mine<Enter>");
+    shows(&session, &["Delete mine? (y/n)"]);
+    press(&mut session, "y:restore mine<Enter>");
+    shows(&session, &["mine is back"]);
+    press(
+        &mut session,
+        ":sensor --columns 8 --pitch 2.5<Enter>:undo<Enter>:redo<Enter>",
+    );
+    shows(&session, &["column 7,"]);
+    press(&mut session, ":copy descriptors<Enter>");
+    shows(
+        &session,
+        &["descriptors sent to your terminal's clipboard ("],
+    );
+    for (line, message) in [
+        ("fly", "! \"fly\" is unknown; Tab shows the commands"),
+        (
+            "figure blob",
+            "! figure: \"blob\" is unknown, expected one of ellipse,",
+        ),
+        ("figure hexagon --side", "! --side needs a number"),
+        ("figure hexagon --side 99", "! Side: 99 is out of range"),
+        (
+            "figure hexagon --length 2",
+            "! --length: the hexagon has none",
+        ),
+        (
+            "figure hexagon side 2",
+            "! expected a flag like --side, found side",
+        ),
+        ("undo now", "! undo takes nothing, found \"now\""),
+        ("turn round", "! turn takes whole degrees from -360 to 360"),
+        ("zoom", "! zoom takes in or out"),
+        ("save a/b", "! '/' cannot be in a name"),
+        ("load nowhere", "! no shape is called \"nowhere\""),
+    ] {
+        press(&mut session, &format!(":{line}<Enter>"));
+        shows(&session, &[message]);
+        press(&mut session, "<Esc>");
+    }
+    press(&mut session, ":quit!<Enter>");
+    assert!(session.app().ended());
+}
+
+#[test]
+fn the_shape_is_turned_and_zoomed_by_commands() {
+    let mut session = session("f<Enter>:turn -20<Enter>");
+    shows(&session, &["340°"]);
+    press(
+        &mut session,
+        ":picture washer<Enter><Enter>:zoom in<Enter>:zoom in<Enter>:zoom out<Enter>",
+    );
+    shows(&session, &["zoom 1.01 x 1.01"]);
+}
+
+#[test]
+fn commands_are_completed_and_recalled() {
+    let mut session = session(":re<Tab>");
+    shows(&session, &[":re   redo redraw region restore"]);
+    press(&mut session, "g<Tab>");
+    shows(&session, &[":region"]);
+    press(&mut session, "<C-u>figure hex<Tab>--side 3<Enter>");
+    shows(&session, &["hexagon side 3.00"]);
+    press(&mut session, ":new<Enter>:<Up><Up>");
+    shows(&session, &[":figure hexagon --side 3"]);
+    press(&mut session, "<Down>");
+    shows(&session, &[":new"]);
+}

@@ -1,0 +1,162 @@
+//! What it costs: bytes, wake-ups, memory, time. The figures are printed: `cargo test --test screen pty -- --nocapture`.
+
+use std::time::{Duration, Instant};
+
+use super::program::{Program, Start};
+use super::screens::session;
+
+/// Most bytes of a move of the cursor.
+const MOVE: usize = 60;
+/// Of a toggle: a dozen descriptors change, at a dozen places.
+const TOGGLE: usize = 170;
+/// Of the first one on an empty matrix: all descriptors appear.
+const FIRST_TOGGLE: usize = 225;
+
+#[test]
+fn bytes_at_80_x_24() {
+    for variables in [
+        &[("TERM", "xterm-256color"), ("LANG", "C.UTF-8")][..],
+        &[("TERM", "xterm"), ("LANG", "C.UTF-8")],
+        &[("TERM", "linux"), ("LANG", "C")],
+        &[("TERM", "vt100"), ("LANG", "C")],
+        &[("TERM", "dumb"), ("LANG", "C")],
+    ] {
+        let mut program = Program::start(&Start {
+            variables,
+            ..Start::default()
+        });
+        let ascii = !variables.contains(&("LANG", "C.UTF-8"));
+        let mut script = session(ascii, (80, 24));
+        let first = program.written(|program| program.shows("? Help"));
+        println!(
+            "{variables:?}: first frame {first} bytes in {} reads",
+            program.reads
+        );
+        assert!(first <= 2200, "first frame: {first} bytes");
+        let mut press = |name: &str, notation: &str, bytes: &[u8], most: usize| {
+            let written = program.written(|program| {
+                program.types(bytes);
+                script.keys(notation).expect("keys");
+                if variables.contains(&("TERM", "dumb")) {
+                    program.agrees_plainly(&script);
+                } else {
+                    program.agrees(&script);
+                }
+            });
+            println!("  {name}: {written} bytes");
+            if std::env::var_os("PTY_SHOW").is_some() {
+                let sent = &program.bytes[program.bytes.len() - written..];
+                println!("    {}", String::from_utf8_lossy(sent).escape_debug());
+            }
+            assert!(written <= most, "{name}: {written} bytes, at most {most}");
+        };
+        let arrows: [(&str, &str, &[u8]); 4] = [
+            ("left", "<Left>", b"\x1b[D"),
+            ("up", "<Up>", b"\x1b[A"),
+            ("right", "<Right>", b"\x1b[C"),
+            ("down", "<Down>", b"\x1b[B"),
+        ];
+        for (name, notation, bytes) in arrows {
+            press(name, notation, bytes, MOVE);
+        }
+        // Esc says nothing here; what it had written would be counted with the move.
+        press(
+            "nothing, then right",
+            "<Esc><Right>",
+            b"\x1b\x1b\x1b[C",
+            MOVE,
+        );
+        press("a figure", "f<CR>", b"f\r", 4000);
+        // Over all of it, its edges and the corners of the matrix.
+        for (turns, index) in [(10, 0), (5, 1), (10, 2), (6, 3), (12, 0), (7, 1)] {
+            let (name, notation, bytes) = arrows[index];
+            for turn in 0..turns {
+                press(&format!("{name} {turn} on a figure"), notation, bytes, MOVE);
+            }
+        }
+        press("first column", "<Home>", b"\x1b[H", MOVE);
+        press("last row", "<PageDown>", b"\x1b[6~", MOVE);
+        press("last column", "<End>", b"\x1b[F", MOVE);
+        press("first row", "<PageUp>", b"\x1b[5~", MOVE);
+        press(
+            "to the middle",
+            "<8x:Left><8x:Down>",
+            &b"\x1b[D\x1b[B".repeat(8),
+            8 * 2 * MOVE,
+        );
+        press("toggle that makes a hole", "<Space>", b" ", TOGGLE);
+        press("toggle back", "<Space>", b" ", TOGGLE);
+        press("help", "?", b"?", 2500);
+        press("help closed", "<Esc>", b"\x1b\x1b", 2500);
+        press("empty", "n", b"n", 2500);
+        press("first toggle", "<Space>", b" ", FIRST_TOGGLE);
+        for name in ["second toggle", "third toggle"] {
+            press("right, off an active taxel", "<Right>", b"\x1b[C", MOVE);
+            press(name, "<Space>", b" ", TOGGLE);
+        }
+    }
+}
+
+#[test]
+fn nothing_is_done_for_nothing() {
+    let mut program = Program::start(&Start::default());
+    program.written(|program| program.shows("? Help"));
+    let switches = |program: &Program| (program.status("voluntary_ctxt_switches"), program.cpu());
+    // On a busy machine it may still be on its way to sleep.
+    let mut before = switches(&program);
+    program.until("sleep", |program| {
+        program.read(Duration::from_millis(500));
+        let now = switches(program);
+        std::mem::replace(&mut before, now) == now
+    });
+    let written = program.bytes.len();
+    let end = Instant::now() + Duration::from_secs(10);
+    while let Some(left) = end.checked_duration_since(Instant::now()) {
+        program.read(left);
+    }
+    let after = switches(&program);
+    let written = program.bytes.len() - written;
+    println!(
+        "10 idle seconds: {} wake-ups, {written} bytes; resident {} kB",
+        after.0 - before.0,
+        program.status("VmHWM")
+    );
+    assert_eq!((after, written), (before, 0));
+    assert!(program.status("VmHWM") <= 8 * 1024);
+}
+
+/// A sweep wakes the program about ten times a second, and when it is stopped nothing does.
+#[test]
+fn a_stopped_sweep_leaves_nothing_awake() {
+    let mut program = Program::started(&Start::default());
+    program.types(b"fr\r:explore --x0 0:9.999:0.001 --y0 0:9.999:0.001\r");
+    program.shows("poses a second");
+    program.types(b"\x1b\x1b");
+    program.shows("a part: ");
+    let count = |program: &Program| (program.wake_ups(), program.bytes.len());
+    // Threads take a moment to fall asleep, on a busy machine a longer one; then nothing happens for three seconds.
+    let still = (0..10).any(|_| {
+        let before = count(&program);
+        let end = Instant::now() + Duration::from_secs(3);
+        while let Some(left) = end.checked_duration_since(Instant::now()) {
+            program.read(left);
+        }
+        count(&program) == before
+    });
+    assert!(
+        still,
+        "wake-ups of each thread, and bytes: {:?}",
+        count(&program)
+    );
+}
+
+#[test]
+fn the_first_frame_comes_quickly() {
+    let times = (0..7).map(|_| {
+        let start = Instant::now();
+        Program::started(&Start::default());
+        start.elapsed()
+    });
+    // The launcher's own time is in it.
+    println!("started and drawn in {:?}", times.min().expect("some"));
+}

@@ -1,0 +1,198 @@
+//! How it ends: by a key, by a signal, by a lost line, by a panic. The terminal is left as it was, each time.
+
+use std::time::Duration;
+
+use rustix::process::Signal;
+use taxel::storage::{Library, Orphan};
+use taxel::tui::app::state::{App, Options};
+use taxel::tui::runtime::perform::World;
+use taxel::tui::terminal;
+use taxel::tui::terminal::input::Input;
+use taxel::tui::terminal::settings::{Flags, Settings};
+
+use super::program::{Program, Start, TAXEL};
+
+/// What is open when the end comes: keys, and what then is on the screen.
+const STATES: [(&[u8], &str); 9] = [
+    (b"", "? Help"),
+    (b"f\t2", "rx 2.00"),
+    (b"l", "filter:"),
+    (b" ", "NA 1 in all"),
+    (b"f\rq", "(y/n)"),
+    (b"?", "On the matrix"),
+    // Running work: a sweep that takes minutes.
+    (
+        b"fr\r:explore --x0 0:9.999:0.001 --y0 0:9.999:0.001\r",
+        "poses a second",
+    ),
+    // Half of a paste, half of a key: here a reader that waits for the rest would not hear anything else.
+    (b" \x1b[200~12", "NA 1 in all"),
+    (b" \x1b[1;", "NA 1 in all"),
+];
+
+fn in_state(start: &Start<'_>, (keys, shown): (&[u8], &str)) -> Program {
+    let mut program = Program::started(start);
+    program.types(keys);
+    program.shows(shown);
+    program
+}
+
+#[test]
+fn every_signal_in_every_state_leaves_the_terminal_as_it_was() {
+    for state in STATES {
+        for (signal, status) in [
+            (Signal::HUP, 129),
+            (Signal::INT, 130),
+            (Signal::QUIT, 131),
+            (Signal::TERM, 143),
+        ] {
+            let mut program = in_state(&Start::default(), state);
+            program.signal(signal);
+            program.ends_well(status);
+        }
+    }
+}
+
+/// What is not saved waits in the library, whatever the end was.
+#[test]
+fn unsaved_work_is_kept_at_every_end() {
+    let ends = [
+        Some(Signal::HUP),
+        Some(Signal::INT),
+        Some(Signal::QUIT),
+        Some(Signal::TERM),
+        None,
+    ];
+    for end in ends {
+        let folder = tempfile::tempdir().expect("a folder");
+        let start = Start {
+            library: Some(folder.path()),
+            ..Start::default()
+        };
+        // At once, before it is time to write the journal.
+        let mut program = in_state(&start, (b" \x1b[C \x1b[C ", "NA 3 in all"));
+        match end {
+            Some(signal) => program.signal(signal),
+            None => program.hang_up(),
+        }
+        program.ends();
+        let left = Orphan::all(&Library::open(folder.path().to_owned()));
+        let taxels: Vec<u32> = left.iter().map(|left| left.shape.imprint.count()).collect();
+        assert_eq!(taxels, [3], "{end:?}");
+    }
+    // Saved or given up, nothing is left.
+    for keys in [&b"  q"[..], b" qy", b" sname\rq"] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let start = Start {
+            library: Some(folder.path()),
+            ..Start::default()
+        };
+        let mut program = Program::started(&start);
+        program.types(keys);
+        program.ends_well(0);
+        let left = Orphan::all(&Library::open(folder.path().to_owned()));
+        assert!(left.is_empty(), "{left:?}");
+    }
+}
+
+#[test]
+fn keys_end_it_with_status_0() {
+    for keys in [&b"q"[..], b"\x03", b" qy", b"f\r\x03y"] {
+        let mut program = Program::started(&Start::default());
+        program.types(keys);
+        program.ends_well(0);
+    }
+}
+
+/// Ctrl-C while a sweep runs: nobody waits for the sweep, and unsaved work is kept.
+#[test]
+fn a_running_sweep_does_not_hold_it() {
+    let took = (0..3).map(|_| {
+        let mut program = in_state(&Start::default(), STATES[6]);
+        program.types(b"\x03");
+        let (ended, took) = program.ends();
+        assert_eq!(ended.code(), Some(0));
+        program.is_left();
+        took
+    });
+    println!("ended within {:?}", took.min().expect("three times"));
+}
+
+/// Whether the system says so or not, and whatever was half typed.
+#[test]
+fn a_lost_line_ends_it() {
+    let ignoring = ["sh", "-c", "trap '' HUP; exec \"$0\"", TAXEL];
+    let mut slowest = Duration::ZERO;
+    for state in STATES {
+        for (command, controlling) in [(&[TAXEL][..], true), (&ignoring, true), (&[TAXEL], false)] {
+            let start = Start {
+                command,
+                controlling,
+                ..Start::default()
+            };
+            let mut program = in_state(&start, state);
+            program.hang_up();
+            let (ended, took) = program.ends();
+            assert_eq!(ended.code(), Some(129), "{command:?}");
+            slowest = slowest.max(took);
+        }
+    }
+    // How long that takes depends on what else the machine does: told, not held.
+    println!("a lost line ends it within {slowest:?}");
+}
+
+/// A terminal that takes no more output cannot keep it from its end.
+#[test]
+fn a_stuck_line_does_not_hold_it() {
+    let mut program = Program::started(&Start::default());
+    for _ in 0..150 {
+        program.types(b"\x0c");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    program.signal(Signal::TERM);
+    // Nothing is read from it until it has ended.
+    let master = program.take_master();
+    let (ended, took) = program.ends();
+    assert_eq!(ended.code(), Some(143));
+    println!("a stuck line holds it for {took:?}");
+    drop(master);
+}
+
+/// The program with something that fails at the first key; a child of the next test.
+#[test]
+#[ignore = "only as a child of other tests"]
+fn panics() {
+    let _ = rustix::process::setsid();
+    let _ = rustix::process::ioctl_tiocsctty(std::io::stdin());
+    let settings = Settings::from_environment(std::env::var_os, &Flags::default());
+    let app = App::new(&Options::plain(true));
+    let world = World::scratch().expect("a folder");
+    let outcome = terminal::run(app, world, &settings, &mut |input| {
+        assert!(!matches!(input, Input::Key(_)), "on purpose");
+    });
+    println!("{outcome:?}");
+}
+
+#[test]
+fn a_panic_leaves_the_terminal_as_it_was() {
+    let own = std::env::current_exe().expect("this test");
+    let own = own.to_str().expect("a name");
+    let command = [
+        own,
+        "--exact",
+        "pty::ends::panics",
+        "--ignored",
+        "--nocapture",
+    ];
+    let mut program = Program::started(&Start {
+        command: &command,
+        ..Start::default()
+    });
+    assert!(program.screen().alternate_screen());
+    program.types(b" ");
+    let (ended, _) = program.ends();
+    assert_ne!(ended.code(), Some(0));
+    program.is_left();
+    // It is told after the screen is left.
+    program.shows("on purpose");
+}

@@ -1,0 +1,169 @@
+//! The mouse and the clipboard, as bytes: what a terminal reports, and what it is asked to do.
+
+use taxel::tui::app::message::{Message, Mouse, MouseKind};
+use taxel::tui::script::Session;
+
+use super::program::{Program, Start};
+use super::screens::session;
+
+/// The same to both: the report of a terminal (SGR, places from 1), and what it means.
+fn point(program: &mut Program, script: &mut Session, kind: MouseKind, column: u16, row: u16) {
+    let (button, end) = match kind {
+        MouseKind::Press => (0, 'M'),
+        MouseKind::Drag => (32, 'M'),
+        MouseKind::Release => (0, 'm'),
+        MouseKind::ScrollUp => (64, 'M'),
+        MouseKind::ScrollDown => (65, 'M'),
+    };
+    let report = format!("\x1b[<{button};{};{}{end}", column + 1, row + 1);
+    program.types(report.as_bytes());
+    script.send(Message::Mouse(Mouse { kind, column, row }));
+    program.agrees(script);
+}
+
+#[test]
+fn it_clicks_drags_and_scrolls() {
+    use MouseKind::{Drag, Press, Release, ScrollDown, ScrollUp};
+    let mut program = Program::started(&Start::default());
+    let mut script = session(false, (80, 24));
+    assert_eq!(program.count(b"\x1b[?1000h\x1b[?1006h"), 1);
+    let mut act = |acts: &[(MouseKind, u16, u16)], shown: &str| {
+        for &(kind, column, row) in acts {
+            point(&mut program, &mut script, kind, column, row);
+        }
+        assert!(script.screen().contains(shown), "{}", script.screen());
+    };
+    // A taxel: the ruler has three columns, the menu and the other ruler two rows.
+    act(
+        &[(Press, 3 + 2 * 5, 2 + 4), (Release, 13, 6)],
+        "NA 1 in all",
+    );
+    // From that one on, a few told places; the line between them is drawn.
+    act(
+        &[
+            (Press, 13, 7),
+            (Drag, 17, 7),
+            (Drag, 17, 11),
+            (Release, 17, 11),
+        ],
+        "NA 8 in all",
+    );
+    // The button let go: moving on does nothing.
+    act(&[(Drag, 25, 15)], "NA 8 in all");
+    // Outside of everything, and where no terminal has a place.
+    act(
+        &[(Press, 79, 23), (Release, 79, 23), (Press, 999, 999)],
+        "NA 8 in all",
+    );
+    // The menu's Load; a row; the wheel.
+    act(&[(Press, 10, 0), (Release, 10, 0)], "filter:");
+    act(
+        &[(ScrollDown, 5, 8), (ScrollDown, 5, 8), (ScrollUp, 5, 8)],
+        "filter:",
+    );
+    act(&[(Press, 5, 4), (Release, 5, 4)], "filter:");
+    act(&[(Press, 5, 4)], "loaded");
+    // The old form of reports, of terminals that do not know the new one.
+    program.types(b"\x1b[M \x24\x25\x1b[M#\x24\x25");
+    for kind in [Press, Release] {
+        script.send(Message::Mouse(Mouse {
+            kind,
+            column: 3,
+            row: 4,
+        }));
+    }
+    program.agrees(&script);
+    program.types(b"qy");
+    program.ends_well(0);
+}
+
+#[test]
+fn m_gives_it_back_to_the_terminal_and_takes_it_again() {
+    let mut program = Program::started(&Start::default());
+    assert_eq!(
+        program.screen().mouse_protocol_mode(),
+        vt100::MouseProtocolMode::PressRelease
+    );
+    program.types(b"m");
+    program.shows("the mouse selects text");
+    program.until("no mouse", |program| {
+        program.screen().mouse_protocol_mode() == vt100::MouseProtocolMode::None
+    });
+    program.types(b"m");
+    program.shows("the mouse sets taxels");
+    program.until("the mouse", |program| {
+        program.screen().mouse_protocol_mode() == vt100::MouseProtocolMode::PressRelease
+    });
+    program.types(b"q");
+    program.ends_well(0);
+    let mut program = Program::started(&Start {
+        command: &[super::program::TAXEL, "--no-mouse"],
+        ..Start::default()
+    });
+    program.types(b"q");
+    program.ends_well(0);
+    assert_eq!(program.count(b"?1000h"), 0);
+}
+
+/// What stands between the marks of OSC 52, decoded.
+fn copied(program: &Program) -> Option<String> {
+    let text = String::from_utf8_lossy(&program.bytes).into_owned();
+    let (_, rest) = text.rsplit_once("\x1b]52;c;")?;
+    let (code, _) = rest.split_once('\x07')?;
+    let digit = |letter: u8| match letter {
+        b'A'..=b'Z' => Some(letter - b'A'),
+        b'a'..=b'z' => Some(letter - b'a' + 26),
+        b'0'..=b'9' => Some(letter - b'0' + 52),
+        b'+' => Some(62),
+        b'/' => Some(63),
+        _ => None,
+    };
+    let mut bytes = Vec::new();
+    let (mut held, mut bits) = (0_u32, 0);
+    for six in code.bytes().map_while(digit) {
+        held = held << 6 | u32::from(six);
+        bits += 6;
+        if bits >= 8 {
+            bits -= 8;
+            bytes.extend((held >> bits).to_be_bytes().last());
+        }
+    }
+    String::from_utf8(bytes).ok()
+}
+
+#[test]
+fn what_is_copied_goes_to_the_clipboard_of_the_terminal() {
+    let mut program = Program::started(&Start::default());
+    let mut script = session(false, (80, 24));
+    program.types(b"f\rY");
+    program.shows("imprint sent to your terminal's clipboard (272 characters)");
+    script.keys("f<CR>").expect("keys");
+    let imprint = script.app().reading().imprint.to_string() + "\n";
+    program.until("the imprint", |program| {
+        copied(program).as_ref() == Some(&imprint)
+    });
+    program.types(b"y");
+    program.until("the descriptors", |program| {
+        copied(program).is_some_and(|text| text.starts_with("na\t52\nnae\t52\n"))
+    });
+    let lines = copied(&program).map(|text| text.lines().count());
+    assert_eq!(lines, Some(taxel::description::DESCRIPTORS.len()));
+    program.types(b"qy");
+    program.ends_well(0);
+}
+
+/// A terminal that would show the text is not sent it, and its user is told.
+#[test]
+fn nothing_is_copied_where_there_is_no_clipboard() {
+    for term in ["dumb", "vt100", "linux"] {
+        let mut program = Program::started(&Start {
+            variables: &[("TERM", term), ("LANG", "C.UTF-8")],
+            ..Start::default()
+        });
+        program.types(b"Y");
+        program.shows("! this terminal has no clipboard; s saves");
+        program.types(b"q");
+        program.ends_well(0);
+        assert_eq!(program.count(b"\x1b]52"), 0, "{term}");
+    }
+}

@@ -1,0 +1,399 @@
+//! The program in a pseudo-terminal, with an emulator at the other end.
+//!
+//! A child has to make the pseudo-terminal its own before it becomes the program, which safe Rust cannot do between
+//! fork and exec. So the test's own binary is started first, as [`launch`], and then replaced.
+
+use std::env;
+use std::os::fd::{AsFd, OwnedFd};
+use std::os::unix::process::{CommandExt, ExitStatusExt};
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::fs::{Mode, OFlags};
+use rustix::process::{Pid, Signal, kill_process};
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+use rustix::termios::{Termios, Winsize, tcgetattr, tcsetwinsize};
+use taxel::tui::script::Session;
+
+use super::drawn::{emulator, of_emulator, of_session, side};
+
+/// The real binary.
+pub(crate) const TAXEL: &str = env!("CARGO_BIN_EXE_taxel");
+
+/// Nothing takes so long, on the busiest machine. Only what fails waits for it.
+const DEADLINE: Duration = Duration::from_secs(120);
+/// The output is taken to be over after such a silence, where its length is counted.
+const SILENCE: Duration = Duration::from_millis(60);
+
+/// How a program is started.
+pub(crate) struct Start<'a> {
+    pub(crate) command: &'a [&'a str],
+    pub(crate) variables: &'a [(&'a str, &'a str)],
+    /// Columns and rows.
+    pub(crate) size: (u16, u16),
+    /// Whether the pseudo-terminal becomes its controlling terminal.
+    pub(crate) controlling: bool,
+    /// Its library; none: an empty one that goes with the program.
+    pub(crate) library: Option<&'a Path>,
+}
+
+impl Default for Start<'_> {
+    fn default() -> Self {
+        Self {
+            command: &[TAXEL],
+            variables: &[("TERM", "xterm-256color"), ("LANG", "C.UTF-8")],
+            size: (80, 24),
+            controlling: true,
+            library: None,
+        }
+    }
+}
+
+/// A running program.
+pub(crate) struct Program {
+    child: Child,
+    /// None after a hang-up.
+    master: Option<OwnedFd>,
+    slave: OwnedFd,
+    before: Termios,
+    emulator: vt100::Parser,
+    /// Its library, which goes with it.
+    _library: tempfile::TempDir,
+    /// All that it has written.
+    pub(crate) bytes: Vec<u8>,
+    /// How much of it the emulator has been given.
+    shown: usize,
+    /// How many reads that took.
+    pub(crate) reads: usize,
+}
+
+/// The part that runs in the child. Without its variables it is a test that does nothing.
+pub(crate) fn launch() {
+    let Ok(command) = env::var("PTY_COMMAND") else {
+        return;
+    };
+    let stdin = std::io::stdin();
+    rustix::process::setsid().expect("a new session");
+    if env::var("PTY_CONTROLLING").is_ok() {
+        rustix::process::ioctl_tiocsctty(&stdin).expect("a controlling terminal");
+    }
+    let file = || Stdio::from(stdin.as_fd().try_clone_to_owned().expect("a file"));
+    let mut words = command.split('\x1f');
+    let error = Command::new(words.next().expect("a command"))
+        .args(words)
+        .env_remove("PTY_COMMAND")
+        .env_remove("PTY_CONTROLLING")
+        .stdout(file())
+        .stderr(file())
+        .exec();
+    panic!("{command}: {error}");
+}
+
+impl Program {
+    pub(crate) fn start(start: &Start<'_>) -> Self {
+        let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).expect("a pseudo-terminal");
+        grantpt(&master).expect("granted");
+        unlockpt(&master).expect("unlocked");
+        let name = ptsname(&master, Vec::new()).expect("a name");
+        let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC;
+        let slave = rustix::fs::open(name, flags, Mode::empty()).expect("its other end");
+        rustix::io::fcntl_setfd(&master, rustix::io::FdFlags::CLOEXEC).expect("not inherited");
+        set_size(&master, start.size);
+        let before = tcgetattr(&slave).expect("attributes");
+        let library = tempfile::tempdir().expect("a folder");
+        let mut command = Command::new(env::current_exe().expect("this test"));
+        command
+            .args(["--exact", "pty::launcher", "--ignored", "--nocapture"])
+            .env_clear()
+            .envs(start.variables.iter().copied())
+            .env("TAXEL_LIBRARY", start.library.unwrap_or(library.path()))
+            .env("TAXEL_CONFIG", "/dev/null")
+            .env("PTY_COMMAND", start.command.join("\x1f"))
+            .stdin(slave.try_clone().expect("a file"))
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
+        if start.controlling {
+            command.env("PTY_CONTROLLING", "1");
+        }
+        let child = command.spawn().expect("started");
+        let (columns, rows) = match start.size {
+            (0, 0) => (80, 24),
+            size => size,
+        };
+        Self {
+            _library: library,
+            child,
+            master: Some(master),
+            slave,
+            before,
+            emulator: emulator(columns, rows),
+            bytes: Vec::new(),
+            shown: 0,
+            reads: 0,
+        }
+    }
+
+    /// Started, and its first screen is there.
+    pub(crate) fn started(start: &Start<'_>) -> Self {
+        let mut program = Self::start(start);
+        program.shows("? Help");
+        program
+    }
+
+    pub(crate) fn pid(&self) -> Pid {
+        Pid::from_child(&self.child)
+    }
+
+    pub(crate) fn signal(&self, signal: Signal) {
+        kill_process(self.pid(), signal).expect("it runs");
+    }
+
+    pub(crate) fn screen(&self) -> &vt100::Screen {
+        self.emulator.screen()
+    }
+
+    /// Types bytes, which must be few.
+    pub(crate) fn types(&self, bytes: &[u8]) {
+        let master = self.master.as_ref().expect("a terminal");
+        assert_eq!(rustix::io::write(master, bytes), Ok(bytes.len()));
+    }
+
+    pub(crate) fn resize(&mut self, size: (u16, u16)) {
+        set_size(self.master.as_ref().expect("a terminal"), size);
+        self.emulator.set_size(side(size.1), side(size.0));
+    }
+
+    /// The emulator's memory of a screen that some other program had.
+    pub(crate) fn forget(&mut self) {
+        let (rows, columns) = self.screen().size();
+        self.emulator = emulator(columns.get(), rows.get());
+    }
+
+    /// Reads what there is within a time; answers whether there was anything.
+    pub(crate) fn read(&mut self, time: Duration) -> bool {
+        let master = self.master.as_ref().expect("a terminal");
+        let mut fds = [PollFd::new(master, PollFlags::IN)];
+        let time = Timespec::try_from(time).expect("short");
+        if poll(&mut fds, Some(&time)).unwrap_or(0) == 0 {
+            return false;
+        }
+        let mut buffer = [0; 1 << 14];
+        let count = rustix::io::read(master, &mut buffer).unwrap_or(0);
+        self.bytes.extend(&buffer[..count]);
+        // The emulator loses a character that comes in two pieces.
+        let waiting = &self.bytes[self.shown..];
+        let whole = std::str::from_utf8(waiting).map_or_else(|error| error.valid_up_to(), str::len);
+        self.emulator.process(&waiting[..whole]);
+        self.shown += whole;
+        self.reads += 1;
+        count > 0
+    }
+
+    /// Reads until something holds.
+    pub(crate) fn until(&mut self, what: &str, mut holds: impl FnMut(&mut Self) -> bool) {
+        let start = Instant::now();
+        while !holds(self) {
+            assert!(
+                start.elapsed() < DEADLINE,
+                "waited in vain for {what}, modes {:?}, on\n{}",
+                self.modes_on(),
+                self.screen().contents()
+            );
+            self.read(Duration::from_millis(5));
+        }
+    }
+
+    pub(crate) fn shows(&mut self, text: &str) {
+        self.until(text, |program| program.screen().contents().contains(text));
+    }
+
+    /// The screen's rows as a script has them.
+    pub(crate) fn rows(&self) -> String {
+        let (_, columns) = self.screen().size();
+        let rows = self.screen().rows(0, columns.get());
+        let rows: String = rows.map(|row| row.trim_end().to_owned() + "\n").collect();
+        rows.trim_end().to_owned()
+    }
+
+    /// Reads until the characters are those of a script; of a terminal that has no styles.
+    pub(crate) fn agrees_plainly(&mut self, session: &Session) {
+        let (rows, at) = (session.screen(), session.cursor());
+        self.until("the screen of the script", |program| {
+            let hidden = program.screen().hide_cursor();
+            let same = hidden || program.screen().cursor_position() == (at.y, at.x);
+            same && program.rows() == rows.trim_end()
+        });
+    }
+
+    /// Reads until the screen is that of a script: characters, styles, and the cursor where there is one.
+    pub(crate) fn agrees(&mut self, session: &Session) {
+        let expected = of_session(session);
+        let (cells, _) = expected.rsplit_once('\n').expect("rows");
+        let start = Instant::now();
+        let agrees = |screen: &vt100::Screen| {
+            let found = of_emulator(screen);
+            found == expected || screen.hide_cursor() && found.starts_with(cells)
+        };
+        while !agrees(self.screen()) {
+            assert!(
+                start.elapsed() < DEADLINE,
+                "expected\n{expected}\nfound\n{}",
+                of_emulator(self.screen())
+            );
+            self.read(Duration::from_millis(5));
+        }
+    }
+
+    /// How many bytes it writes from here on until it falls silent; `act` waits for what it has to show.
+    pub(crate) fn written(&mut self, act: impl FnOnce(&mut Self)) -> usize {
+        let before = self.bytes.len();
+        act(self);
+        while self.read(SILENCE) {}
+        self.bytes.len() - before
+    }
+
+    /// Cuts the line.
+    pub(crate) fn hang_up(&mut self) {
+        self.master = None;
+    }
+
+    /// Keeps the line but reads nothing from it any more.
+    pub(crate) fn take_master(&mut self) -> Option<OwnedFd> {
+        self.master.take()
+    }
+
+    /// Whether it runs, sleeps, is stopped.
+    pub(crate) fn state(&self) -> char {
+        let file = format!("/proc/{}/stat", self.child.id());
+        let text = std::fs::read_to_string(file).expect("it runs");
+        let (_, rest) = text.rsplit_once(") ").expect("a name");
+        rest.chars().next().expect("a state")
+    }
+
+    /// Waits for the end; answers how, and after how long.
+    pub(crate) fn ends(&mut self) -> (ExitStatus, Duration) {
+        let start = Instant::now();
+        loop {
+            if let Some(status) = self.child.try_wait().expect("a child") {
+                let took = start.elapsed();
+                while self.master.is_some() && self.read(Duration::ZERO) {}
+                return (status, took);
+            }
+            assert!(start.elapsed() < DEADLINE, "it does not end");
+            if self.master.is_none() || !self.read(Duration::from_millis(2)) {
+                sleep(Duration::from_millis(1));
+            }
+        }
+    }
+
+    /// Waits for the end with an exit status, and finds the terminal as it was.
+    pub(crate) fn ends_well(&mut self, status: i32) {
+        let (ended, _) = self.ends();
+        assert_eq!((ended.code(), ended.signal()), (Some(status), None));
+        self.is_left();
+    }
+
+    /// The terminal's attributes are what they were, and no mode is left on.
+    pub(crate) fn is_left(&mut self) {
+        self.no_mode_is_on();
+        let now = tcgetattr(&self.slave).expect("attributes");
+        assert_eq!(format!("{now:?}"), format!("{:?}", self.before));
+    }
+
+    /// No mode is left on. The last bytes may still be on their way here when the program has ended.
+    pub(crate) fn no_mode_is_on(&mut self) {
+        self.until("no mode to be on", |program| program.modes_on().is_empty());
+    }
+
+    /// Which modes are on.
+    fn modes_on(&self) -> Vec<&'static str> {
+        let screen = self.screen();
+        let mouse = screen.mouse_protocol_mode() != vt100::MouseProtocolMode::None
+            || screen.mouse_protocol_encoding() != vt100::MouseProtocolEncoding::Default;
+        let keys = screen.application_cursor() || screen.application_keypad();
+        let plain = [screen.bold(), screen.dim(), screen.inverse()] == [false; 3]
+            && screen.fgcolor() == vt100::Color::Default;
+        // The emulator does not know this one: what was begun must have been ended.
+        let held = self.count(b"\x1b[?2026l") < self.count(b"\x1b[?2026h");
+        [
+            ("second screen", screen.alternate_screen()),
+            ("hidden cursor", screen.hide_cursor()),
+            ("marked paste", screen.bracketed_paste()),
+            ("other keys", keys),
+            ("mouse", mouse),
+            ("style", !plain),
+            ("held frame", held),
+        ]
+        .into_iter()
+        .filter_map(|(name, on)| on.then_some(name))
+        .collect()
+    }
+
+    /// How often it has written something.
+    pub(crate) fn count(&self, mark: &[u8]) -> usize {
+        let found = self
+            .bytes
+            .windows(mark.len())
+            .filter(|found| *found == mark);
+        found.count()
+    }
+
+    /// A number of /proc/PID/status.
+    pub(crate) fn status(&self, name: &str) -> u64 {
+        let file = format!("/proc/{}/status", self.child.id());
+        let text = std::fs::read_to_string(file).expect("it runs");
+        let line = text.lines().find_map(|line| line.strip_prefix(name));
+        let number = line.and_then(|rest| rest.trim_start_matches(':').split_whitespace().next());
+        number
+            .and_then(|number| number.parse().ok())
+            .expect("a number")
+    }
+
+    /// How often each of its threads has given the processor up of itself.
+    pub(crate) fn wake_ups(&self) -> Vec<u64> {
+        let folder = format!("/proc/{}/task", self.child.id());
+        let tasks = std::fs::read_dir(folder).expect("it runs").flatten();
+        let switches = tasks.map(|task| {
+            let text = std::fs::read_to_string(task.path().join("status")).expect("it runs");
+            let line = text
+                .lines()
+                .find_map(|line| line.strip_prefix("voluntary_ctxt_switches:"));
+            let number = line.and_then(|number| number.trim().parse().ok());
+            number.expect("a number")
+        });
+        switches.collect()
+    }
+
+    /// Its processor time in hundredths of a second.
+    pub(crate) fn cpu(&self) -> u64 {
+        let file = format!("/proc/{}/stat", self.child.id());
+        let text = std::fs::read_to_string(file).expect("it runs");
+        let fields = text.rsplit_once(')').expect("a name").1.split_whitespace();
+        fields
+            .skip(11)
+            .take(2)
+            .map(|field| field.parse::<u64>().expect("a number"))
+            .sum()
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        // It has ended already, or its test has failed.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+fn set_size(master: &OwnedFd, (columns, rows): (u16, u16)) {
+    let size = Winsize {
+        ws_row: rows,
+        ws_col: columns,
+        ws_xpixel: 0,
+        ws_ypixel: 0,
+    };
+    tcsetwinsize(master, size).expect("a size");
+}

@@ -1,0 +1,177 @@
+//! What `--record` writes is a script that shows the same screens.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use taxel::formats::StoredShape;
+use taxel::storage::{Expected, Journal, Library};
+
+use super::program::{Program, Start, TAXEL};
+
+/// A shape with this first row, on 12 x 10 taxels.
+fn shape(name: &str, row: &str) -> StoredShape {
+    let text = format!(
+        "{{\"format\":\"taxel-shape/1\",\"name\":\"{name}\",\"sensor\":{{\"columns\":12,\"rows\":10}},\
+          \"imprint\":[\"{row}\"{}]}}",
+        ",\"............\"".repeat(9)
+    );
+    StoredShape::read(text.as_bytes()).expect("a shape")
+}
+
+/// What `taxel script` prints.
+fn replayed(script: &str, folder: &Path) -> Output {
+    let file = folder.join("replayed.taxel");
+    fs::write(&file, script).expect("a file");
+    Command::new(TAXEL)
+        .arg("script")
+        .arg(&file)
+        .env("LANG", "C.UTF-8")
+        .env_remove("LC_ALL")
+        .output()
+        .expect("it runs")
+}
+
+#[test]
+fn a_record_shows_the_same_screens() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let place = folder.path().join("library");
+    let library = Library::open(place.clone());
+    library
+        .save(&shape("a b", "..##........"), Expected::Nothing)
+        .expect("saved");
+    Journal::new(&library)
+        .keep(&shape("lost", ".#.#.#......"))
+        .expect("kept");
+    let record = folder.path().join("record.taxel");
+    let name = record.to_str().expect("a name");
+    let command = [
+        TAXEL,
+        "--record",
+        name,
+        "--columns",
+        "12",
+        "--rows",
+        "10",
+        "--threshold",
+        "0.6",
+        "--pitch",
+        "2",
+        "--theme",
+        "light",
+        "--ascii",
+    ];
+    let mut program = Program::start(&Start {
+        command: &command,
+        library: Some(&place),
+        size: (72, 22),
+        ..Start::default()
+    });
+    program.shows("Unsaved work was left: 3 taxels of lost");
+    // Keys, and what is then on the screen.
+    let acts: [(&[u8], &str); 10] = [
+        (b"y", "brought back"),
+        (b"fr\t3.57\x1b[D\x7f\r", "rectangle length 3.70"),
+        (
+            b"\x1b[<0;4;3M\x1b[<32;14;3M\x1b[<32;14;7M\x1b[<0;14;7m",
+            "by hand",
+        ),
+        (b"\x1b[1;2C", "dropped"),
+        (b"s\xe3\x80\x80a\x1b[200~ b\"c \x1b[201~", "! "),
+        (b"\x15new one\r", "saved as new one"),
+        (b"l", "filter:"),
+        (b"\x1b[<65;5;5M", "> "),
+        (b"\x1bla b\r", "a b loaded"),
+        (b":figure hexagon --side 2\r\x1b[<0;6;5Mg", "held"),
+    ];
+    for (index, (bytes, shown)) in acts.into_iter().enumerate() {
+        if index == 6 {
+            program.resize((90, 26));
+        }
+        program.types(bytes);
+        program.shows(shown);
+        program.until("the screen of its record", |program| {
+            let record = fs::read_to_string(&record).expect("a record");
+            let output = replayed(&format!("{record}Screen\n"), folder.path());
+            let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+            let screen = printed.split_once('\n').map_or("", |(_, screen)| screen);
+            screen.trim_end() == program.rows()
+        });
+    }
+    program.signal(rustix::process::Signal::TERM);
+    program.ends_well(143);
+    let whole = fs::read_to_string(&record).expect("a record");
+    for line in [
+        "Set ascii on",
+        "Set theme light",
+        "Set mouse on",
+        "Set threshold 0.6",
+        "Keys <U+3000>",
+        "Resize 90x26",
+        "Signal TERM",
+    ] {
+        assert!(
+            whole.lines().any(|own| own == line),
+            "no {line:?} in\n{whole}"
+        );
+    }
+    let output = replayed(&format!("{whole}Quit\n"), folder.path());
+    assert!(output.status.success(), "{output:?}");
+    // The library of the record is untouched by all that.
+    assert_eq!(
+        library
+            .list()
+            .expect("a list")
+            .iter()
+            .filter(|own| own.name == "new one")
+            .count(),
+        1
+    );
+}
+
+/// A file that is there is not replaced; a record of nothing leaves none.
+#[test]
+fn a_record_does_not_replace_a_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("walk.taxel");
+    fs::write(&file, "mine").expect("a file");
+    fs::write(folder.path().join("walk-2.taxel"), "mine too").expect("a file");
+    let run = |name: &Path| {
+        Command::new(TAXEL)
+            .arg("--record")
+            .arg(name)
+            .env("TAXEL_LIBRARY", folder.path().join("library"))
+            .stdin(std::process::Stdio::null())
+            .output()
+            .expect("it runs")
+    };
+    let output = run(&file);
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    let shown = file.display();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        told.starts_with(&format!("error: {shown} is there already")),
+        "{told}"
+    );
+    assert!(told.contains("walk-3.taxel would be a new one"), "{told}");
+    assert_eq!(fs::read_to_string(&file).expect("it is there"), "mine");
+    let nowhere = folder.path().join("no/walk.taxel");
+    let told = String::from_utf8_lossy(&run(&nowhere).stderr).into_owned();
+    assert!(
+        told.starts_with(&format!("error: {}: cannot record: ", nowhere.display())),
+        "{told}"
+    );
+    // There is no terminal: nothing is recorded.
+    let none = folder.path().join("none.taxel");
+    let command = format!(
+        "'{TAXEL}' --record '{}' </dev/null 2>&1 | cat; echo left",
+        none.display()
+    );
+    let mut program = Program::start(&Start {
+        command: &["sh", "-c", &command],
+        controlling: false,
+        ..Start::default()
+    });
+    program.shows("left");
+    assert!(!none.exists());
+}

@@ -1,0 +1,256 @@
+//! The program's own screens: each `tests/scripts/NAME.taxel` prints what stands in `NAME.snap` beside it.
+//!
+//! `INSTA_UPDATE=always cargo test --test screen scripts` writes them anew; then read the difference. The same scripts run on the
+//! real program in a pseudo-terminal (`tests/screen/pty`).
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use taxel::tui::app::state::Options;
+use taxel::tui::keys::keymap::Keymap;
+use taxel::tui::runtime::perform::World;
+use taxel::tui::script::runner::{Failure, Settings, run};
+
+fn settings(styles: bool, json: bool) -> Settings {
+    Settings {
+        options: Options::plain(false),
+        size: (80, 24),
+        styles,
+        json,
+        keymap: Keymap::default(),
+    }
+}
+
+fn output(script: &str, json: bool) -> Result<String, Failure> {
+    let settings = settings(true, json);
+    let world = World::scratch().expect("there is a folder for temporary files");
+    let mut printed = String::new();
+    run(script, &[], &settings, world, |text| {
+        printed.push_str(text);
+        ControlFlow::Continue(())
+    })
+    .map(|()| printed)
+}
+
+#[test]
+fn every_script_prints_its_screens() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scripts");
+    let files = std::fs::read_dir(&folder)
+        .expect("the folder is there")
+        .flatten();
+    let mut scripts: Vec<_> = files
+        .map(|file| file.path())
+        .filter(|path| path.extension().is_some_and(|end| end == "taxel"))
+        .collect();
+    scripts.sort();
+    assert!(scripts.len() >= 30, "the scripts are there");
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path(&folder);
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    for path in scripts {
+        let script = std::fs::read_to_string(&path).expect("a script can be read");
+        let printed = output(&script, false)
+            .unwrap_or_else(|failure| panic!("{}: {failure}", path.display()));
+        let name = path
+            .file_stem()
+            .and_then(|name| name.to_str())
+            .expect("a name");
+        // Every row ends in a bar, so that no editor takes blanks away.
+        let shown: String = printed.lines().map(|line| format!("{line}|\n")).collect();
+        settings.bind(|| insta::assert_snapshot!(name, shown));
+    }
+}
+
+#[test]
+fn a_script_answers_alike_every_time() {
+    let script = "Keys f<Enter>smine<Enter><Tab>c\nScreen one\nState\nKeys l\nScreen two\n";
+    let first = output(script, true).expect("it holds");
+    assert_eq!(output(script, true).expect("it holds"), first);
+    assert_eq!(first.lines().count(), 3);
+    for line in first.lines() {
+        let _: serde_json::Value = serde_json::from_str(line).expect("a line is JSON");
+    }
+}
+
+#[test]
+fn what_does_not_hold_is_told_with_its_line() {
+    let told = |script: &str| {
+        output(script, false)
+            .expect_err("it does not hold")
+            .to_string()
+    };
+    for (script, message) in [
+        (
+            "Keys f\nExpect /zzz/",
+            "line 2: no /zzz/ on the screen\n  | n New",
+        ),
+        ("ExpectNot /New/", "line 1: /New/ is on the screen"),
+        (
+            "ExpectAt 0,0 \"x\"",
+            "line 1: at 0,0 there is \"n\", expected \"x\"",
+        ),
+        (
+            "ExpectStyle 0,0 reverse",
+            "line 1: at 0,0 is style B, expected R",
+        ),
+        ("Click \"zzz\"", "line 1: no \"zzz\" to click on"),
+        ("Quit", "line 1: the program has not ended"),
+        ("State /nowhere", "line 1: the state has no \"/nowhere\""),
+        ("Keys q\nKeys f", "line 2: the program had already ended"),
+        (
+            "Signal TERM\nResize 10x10",
+            "line 2: the program had already ended",
+        ),
+        (
+            "\n\nFly",
+            "line 3: \"Fly\" is unknown, expected one of Size",
+        ),
+        (
+            "Keys <Foo>",
+            "line 1: key \"<Foo>\" at character 1 is unknown",
+        ),
+        (
+            "Keys <20000x:Down>",
+            "line 1: key \"<20000x:Down>\" at character 1: a key is repeated at most 10,000 times",
+        ),
+        (
+            "ExpectAt 3,4",
+            "line 1: expected a place like 12,5 and then more",
+        ),
+        ("Size 80", "line 1: expected a size like 80x24"),
+        (
+            "Click 1",
+            "line 1: expected column,row like 12,5, found \"1\"",
+        ),
+        (
+            "Type x",
+            "line 1: expected a text in double quotes, found x",
+        ),
+        ("Expect zzz", "line 1: expected a pattern between slashes"),
+        ("Expect /(/", "line 1: pattern /(/"),
+        (
+            "ExpectStyle 0,0 pink",
+            "line 1: style \"pink\" is unknown, expected plain, reverse",
+        ),
+        (
+            "Signal KILL",
+            "line 1: signal \"KILL\" is unknown, expected one of HUP",
+        ),
+        ("Wait now", "line 1: Wait stands alone"),
+        ("Screen\nSize 10x10", "line 2: Size and Set come before"),
+        (
+            "Set ascii maybe",
+            "line 1: Set ascii takes one of on, off, found \"maybe\"",
+        ),
+        (
+            "Set theme pink",
+            "line 1: Set theme takes one of dark, light, mono, found \"pink\"",
+        ),
+        (
+            "Set seed 7",
+            "line 1: \"seed\" cannot be set, expected one of ascii, color",
+        ),
+        (
+            "Size 80x24\nSet columns 65",
+            "line 2: columns: 65 is out of range",
+        ),
+        ("Set shape {}", "line 1: Set shape: format: missing"),
+        (
+            "Set library nowhere",
+            "line 1: expected a folder in double quotes, found nowhere",
+        ),
+    ] {
+        let found = told(script);
+        assert!(found.starts_with(message), "{script:?}: {found}");
+    }
+}
+
+#[test]
+fn a_signal_keeps_unsaved_work() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let world = || World::new(taxel::storage::Library::open(folder.path().to_owned()));
+    let settings = settings(false, false);
+    run(
+        "Keys f<Enter>\nSignal HUP\nQuit",
+        &[],
+        &settings,
+        world(),
+        |_| ControlFlow::Continue(()),
+    )
+    .expect("it holds");
+    run(
+        "Expect /Unsaved work was left: 52 taxels/\nKeys y\nExpect /rx 4.00/",
+        &[],
+        &settings,
+        world(),
+        |_| ControlFlow::Continue(()),
+    )
+    .expect("it holds");
+}
+
+const PAIR: &str = "{\"format\":\"taxel-shape/1\",\"name\":\"pair\",\"sensor\":{\"columns\":4,\"rows\":3},\
+                    \"imprint\":[\"....\",\".##.\",\"....\"]}";
+
+/// A script says how the program starts and what it finds.
+#[test]
+fn a_script_sets_the_scene() {
+    let script = format!(
+        "Size 60x20\nSet ascii on\nSet columns 4\nSet rows 3\nSet threshold 0.75\nSet pitch 2\nSet shape {PAIR}\n\
+         Expect /column 2, row 1/\nState /document/sensor\nKeys lpair<Enter>\nExpect /pair loaded/\nScreen"
+    );
+    let printed = output(&script, false).expect("it holds");
+    assert!(printed.is_ascii(), "{printed}");
+    let sensor = printed.lines().next().expect("the state");
+    for part in [
+        "\"columns\":4",
+        "\"rows\":3",
+        "\"threshold\":0.75",
+        "\"pitch_mm\":2",
+    ] {
+        assert!(sensor.contains(part), "{sensor}");
+    }
+    let script = format!(
+        "Set leftover {PAIR}\nExpect /Unsaved work was left: 2 taxels of pair/\nKeys y\nExpect /brought back/\n\
+         Expect /NA 2 in all/"
+    );
+    output(&script, false).expect("it holds");
+    let both = format!("Set library \"/nowhere\"\nSet shape {PAIR}");
+    let told = output(&both, false).expect_err("it does not hold");
+    assert_eq!(
+        told.to_string(),
+        "line 1: Set library cannot stand beside Set shape or Set leftover"
+    );
+}
+
+/// What is printed is there before the script is at its end.
+#[test]
+fn a_script_prints_as_it_goes() {
+    let world = World::scratch().expect("there is a folder for temporary files");
+    let mut printed = 0;
+    let stopped = run(
+        "Screen\nScreen\nScreen",
+        &[],
+        &settings(false, false),
+        world,
+        |_| {
+            printed += 1;
+            if printed == 2 {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        },
+    );
+    assert_eq!(stopped, Err(Failure::Stopped));
+    assert_eq!(printed, 2);
+}
+
+/// A wide character has two columns, and nothing is seen of what stood in the second.
+#[test]
+fn wide_characters_cover_what_was_there() {
+    let script = "Keys <Space>sfoobar<Enter>s<C-u>\nType \"字字\"\nKeys <Enter>\n\
+                  Expect /saved as 字字/\nExpect /(?m)^字字: drawn by hand$/\n\
+                  ExpectAt 2,20 \"字: drawn\"\nExpectAt 4,20 \": drawn\"";
+    output(script, false).expect("it holds");
+}
