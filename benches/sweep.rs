@@ -11,13 +11,12 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use rustix::time::{ClockId, clock_gettime};
-use taxel::atlas::feature::{describe, values};
+use taxel::atlas::{ImprintSummary, feature_values};
 use taxel::figure::FigureKind;
 use taxel::parameter::Parameter;
-use taxel::pose::grid::{Grid, Pose};
+use taxel::pose::{Pose, PoseGrid};
 use taxel::source::Source;
-use taxel::sweep::plan::Shard;
-use taxel::sweep::survey::{Survey, Watch};
+use taxel::sweep::Sweep;
 use taxel::touch::Plane;
 
 use cases::{Case, cases, figure, sensor};
@@ -97,13 +96,13 @@ fn least(times: &[f64]) -> f64 {
 }
 
 /// Poses spread over the grid.
-fn sample(grid: &Grid) -> impl Iterator<Item = Pose> + '_ {
+fn sample(grid: &PoseGrid) -> impl Iterator<Item = Pose> + '_ {
     let stride = grid.poses() / SAMPLE.min(grid.poses());
     (0..SAMPLE.min(grid.poses())).map(move |index| grid.pose(index * stride))
 }
 
 /// A source in each pose, made before the time is taken.
-fn placed(grid: &Grid) -> Vec<Source> {
+fn placed(grid: &PoseGrid) -> Vec<Source> {
     let side = grid.sensor().side();
     let set = |source: Source, parameter, value| {
         source
@@ -121,9 +120,9 @@ fn placed(grid: &Grid) -> Vec<Source> {
 
 fn touch_all(plane: &mut Plane, sources: &[Source]) {
     for source in sources {
-        let note = describe(&plane.touch(source));
-        if let Some(description) = &note.description {
-            values(description, |_, value| {
+        let summary = ImprintSummary::of(&plane.touch(source));
+        if let Some(description) = &summary.description {
+            feature_values(description, |_, value| {
                 black_box(value);
             });
         }
@@ -202,11 +201,11 @@ impl Pools {
     }
 
     /// Sweeps on one and on two threads.
-    fn sweep(&self, grid: &Grid, times: &mut Times) {
+    fn sweep(&self, grid: &PoseGrid, times: &mut Times) {
         let [one, two] = self.0.each_ref().map(|pool| {
             seconds(|| {
-                let survey = pool.install(|| Survey::of(grid, Shard::WHOLE, Watch::nothing()));
-                times.distinct = black_box(survey).atlas.len();
+                let result = pool.install(|| Sweep::new(grid).run());
+                times.distinct = black_box(result).atlas.len();
             })
         });
         times.one.push(one[0]);
@@ -216,7 +215,7 @@ impl Pools {
 }
 
 #[expect(clippy::cast_precision_loss, reason = "for reading")]
-fn measure(pools: &Pools, grid: &Grid) -> Times {
+fn measure(pools: &Pools, grid: &PoseGrid) -> Times {
     let poses: Vec<Pose> = sample(grid).collect();
     let sources = placed(grid);
     let mut plane = Plane::new(*grid.sensor());
@@ -236,12 +235,12 @@ fn measure(pools: &Pools, grid: &Grid) -> Times {
 }
 
 #[expect(clippy::cast_precision_loss, reason = "for reading")]
-fn per_pose(times: &[f64], grid: &Grid) -> f64 {
+fn per_pose(times: &[f64], grid: &PoseGrid) -> f64 {
     least(times) * 1e9 / grid.poses() as f64
 }
 
 /// A row of the table of the paper's grid.
-fn print(name: &str, grid: &Grid, times: &Times) {
+fn print(name: &str, grid: &PoseGrid, times: &Times) {
     let own = per_pose(&times.one, grid);
     let [one, two] = times.walls.each_ref().map(|walls| least(walls));
     let touch = per_pose(&times.touch, grid);

@@ -9,11 +9,10 @@
 use std::fmt::Write;
 
 use taxel::figure::{Figure, FigureKind};
-use taxel::pose::grid::{Anchor, Grid, Ranges};
+use taxel::pose::{Anchor, PoseGrid, Ranges};
 use taxel::sensor::Sensor;
 use taxel::source::Source;
-use taxel::sweep::plan::Shard;
-use taxel::sweep::survey::{Survey, Watch};
+use taxel::sweep::{Sweep, SweepResult};
 
 /// Those that describe the shape.
 const DESCRIBING: [&str; 8] = [
@@ -45,7 +44,7 @@ pub(crate) fn report(angles: &str) -> Result<String, String> {
         angle,
         ..Ranges::default()
     };
-    let surveys: Vec<Survey> = FigureKind::ALL
+    let results: Vec<SweepResult> = FigureKind::ALL
         .into_iter()
         .map(|kind| sweep(kind, ranges))
         .collect();
@@ -56,42 +55,43 @@ pub(crate) fn report(angles: &str) -> Result<String, String> {
         let _ = writeln!(
             table,
             "| `{key}` | {} |",
-            row(&surveys, key, |part| part.sd)
+            row(&results, key, |part| part.sd)
         );
-        let position = row(&surveys, key, |part| part.sd_position);
+        let position = row(&results, key, |part| part.sd_position);
         let _ = writeln!(table, "| from the position | {position} |");
         let _ = writeln!(
             table,
             "| from the angle | {} |",
-            row(&surveys, key, |part| part.sd_angle)
+            row(&results, key, |part| part.sd_angle)
         );
     }
     Ok(table)
 }
 
-/// A deviation of a quantity in percent of its mean, for each figure.
+/// A deviation of a feature in percent of its mean, for each figure.
 fn row(
-    surveys: &[Survey],
+    results: &[SweepResult],
     key: &str,
-    deviation: fn(&taxel::atlas::statistics::Statistic) -> Option<f64>,
+    deviation: fn(&taxel::atlas::Statistic) -> Option<f64>,
 ) -> String {
-    let percent = |survey: &Survey| {
-        let statistic = survey
+    let percent = |result: &SweepResult| {
+        let statistic = result
             .statistics
             .iter()
-            .find(|found| found.quantity.key == key)?;
+            .find(|found| found.feature.key == key)?;
         Some(100.0 * deviation(statistic)? / statistic.mean?)
     };
-    let cells = surveys.iter().map(|survey| match percent(survey) {
+    let cells = results.iter().map(|result| match percent(result) {
         Some(percent) => format!("{percent:.1}"),
         None => "–".to_owned(),
     });
     cells.collect::<Vec<_>>().join(" | ")
 }
 
-fn sweep(kind: FigureKind, ranges: Ranges) -> Survey {
+fn sweep(kind: FigureKind, ranges: Ranges) -> SweepResult {
     let sensor = Sensor::default();
     let figure = Source::Figure(Figure::default_of(kind, sensor.side()));
-    let grid = Grid::new(figure, sensor, Anchor::Corner, ranges).expect("the paper's positions");
-    Survey::of(&grid, Shard::WHOLE, Watch::nothing())
+    let grid =
+        PoseGrid::new(figure, sensor, Anchor::Corner, ranges).expect("the paper's positions");
+    Sweep::new(&grid).run()
 }

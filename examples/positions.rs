@@ -10,12 +10,10 @@ use std::fmt::Write;
 
 use taxel::figure::{Figure, FigureKind};
 use taxel::parameter::Parameter;
-use taxel::pose::grid::{Anchor, Grid, Ranges};
-use taxel::pose::range::DecimalRange;
+use taxel::pose::{Anchor, DecimalRange, PoseGrid, Ranges};
 use taxel::sensor::Sensor;
 use taxel::source::Source;
-use taxel::sweep::plan::Shard;
-use taxel::sweep::survey::{Survey, Watch};
+use taxel::sweep::{Sweep, SweepResult};
 
 /// What is gone through, the ranges of x0 and y0, and what the paper says of it.
 const EXPERIMENTS: [(&str, &str, &str, &str); 3] = [
@@ -39,19 +37,19 @@ pub(crate) fn report() -> String {
         "| positions | poses | the paper | distinct | up to shifts | up to symmetry |\n|---|---|---|---|---|---|\n",
     );
     for (name, x0, y0, claimed) in EXPERIMENTS {
-        let survey = sweep(x0, y0);
-        let (shifts, symmetry) = survey.atlas.distinct_classes();
+        let result = sweep(x0, y0);
+        let (shifts, symmetry) = result.atlas.distinct_classes();
         let _ = writeln!(
             table,
             "| {name} | {} | {claimed} | {} | {shifts} | {symmetry} |",
-            survey.poses,
-            survey.atlas.len(),
+            result.poses,
+            result.atlas.len(),
         );
     }
     table
 }
 
-fn sweep(x0: &str, y0: &str) -> Survey {
+fn sweep(x0: &str, y0: &str) -> SweepResult {
     let sensor = Sensor::default();
     let ring = Figure::new(
         FigureKind::Ellipse,
@@ -70,7 +68,7 @@ fn sweep(x0: &str, y0: &str) -> Survey {
         angle: range("0"),
         ..Ranges::default()
     };
-    let grid = Grid::new(Source::Figure(ring), sensor, Anchor::Corner, ranges)
+    let grid = PoseGrid::new(Source::Figure(ring), sensor, Anchor::Corner, ranges)
         .expect("ranges of figures on the sensor");
-    Survey::of(&grid, Shard::WHOLE, Watch::nothing())
+    Sweep::new(&grid).run()
 }

@@ -4,7 +4,7 @@
 //! higher than wide are kept, which are four unless it is a square; the one whose rows come first in order stands
 //! for all. Rows are compared as whole numbers, from the top.
 
-use crate::atlas::counter::Census;
+use crate::atlas::counter::ImprintCounter;
 use crate::atlas::packing::Layout;
 use crate::imprint::Imprint;
 use crate::sensor::MAX_SIDE;
@@ -13,8 +13,8 @@ use crate::sensor::MAX_SIDE;
 #[derive(Debug)]
 pub(crate) struct Classes {
     layout: Layout,
-    shifts: Census,
-    symmetry: Census,
+    shifts: ImprintCounter,
+    symmetry: ImprintCounter,
     key: Vec<u64>,
 }
 
@@ -34,8 +34,8 @@ impl Classes {
         let words = layout.words();
         Self {
             layout,
-            shifts: Census::new(words),
-            symmetry: Census::new(words),
+            shifts: ImprintCounter::new(words),
+            symmetry: ImprintCounter::new(words),
             key: vec![0; words],
         }
     }

@@ -12,7 +12,7 @@ pub(crate) struct Tally {
 
 /// Keys of one length, counted.
 #[derive(Clone, Debug)]
-pub(crate) struct Census {
+pub(crate) struct ImprintCounter {
     /// Words in a key.
     length: usize,
     keys: Vec<u64>,
@@ -25,7 +25,7 @@ pub(crate) struct Census {
 /// The half of a slot that holds the index.
 const INDEX: u64 = 0xffff_ffff;
 
-impl Census {
+impl ImprintCounter {
     pub(crate) fn new(length: usize) -> Self {
         Self {
             length,

@@ -3,19 +3,18 @@
 //! A point `cg` gives `cg_x` and `cg_y`; a rectangle `rect` gives `rect_left`, `rect_top`, `rect_right` and
 //! `rect_bottom`; the two diagonals give `diagonals_1`, in (0, 90), and `diagonals_2`, in (90, 180): neither
 //! comes near the end of its range, so both are taken as plain numbers. The one direction that goes all around,
-//! `cg_cd_direction`, is [`Quantity::circular`].
+//! `cg_cd_direction`, is [`Feature::circular`].
 
 use std::sync::LazyLock;
 
-use crate::description::{
-    DESCRIPTORS, Description, Descriptor, Dimension, RegionKind, Value, each_region,
-};
+use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension, Value};
+use crate::description::{RegionKind, each_region};
 use crate::imprint::Imprint;
 
 /// A number that describes an imprint's main region.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct Quantity {
+pub struct Feature {
     /// Its name in JSON and CSV.
     pub key: String,
     /// What it is a part of.
@@ -27,22 +26,22 @@ pub struct Quantity {
 /// All of them, in the order of [`DESCRIPTORS`].
 ///
 /// ```
-/// use taxel::atlas::feature::quantities;
-/// let keys: Vec<&str> = quantities().iter().map(|quantity| quantity.key.as_str()).collect();
+/// use taxel::atlas::features;
+/// let keys: Vec<&str> = features().iter().map(|feature| feature.key.as_str()).collect();
 /// assert_eq!(keys[..8], ["na", "nae", "ce", "num_x", "num_y", "cg_x", "cg_y", "p"]);
 /// assert_eq!(keys.len(), 23);
 /// ```
-pub fn quantities() -> &'static [Quantity] {
-    static ALL: LazyLock<Vec<Quantity>> = LazyLock::new(all);
+pub fn features() -> &'static [Feature] {
+    static ALL: LazyLock<Vec<Feature>> = LazyLock::new(all);
     &ALL
 }
 
-fn all() -> Vec<Quantity> {
+fn all() -> Vec<Feature> {
     // An imprint of which every descriptor exists shows which parts each one has.
     let mut corner = Imprint::empty(2, 2);
     corner.set_word(0, 0b11);
     corner.set_word(1, 0b01);
-    let Some(sample) = describe(&corner).description else {
+    let Some(sample) = ImprintSummary::of(&corner).description else {
         return Vec::new();
     };
     let mut all = Vec::new();
@@ -53,7 +52,7 @@ fn all() -> Vec<Quantity> {
             Value::Rect(_) => &["_left", "_top", "_right", "_bottom"],
             _ => &[""],
         };
-        all.extend(parts.iter().map(|part| Quantity {
+        all.extend(parts.iter().map(|part| Feature {
             key: format!("{}{part}", descriptor.key),
             descriptor,
             circular: descriptor.dimension == Dimension::Direction && part.is_empty(),
@@ -62,8 +61,8 @@ fn all() -> Vec<Quantity> {
     all
 }
 
-/// Gives the value of each quantity that has one, with the quantity's number in [`quantities`].
-pub fn values(description: &Description, mut take: impl FnMut(usize, f64)) {
+/// Gives the value of each feature that has one, with the feature's number in [`features`].
+pub fn feature_values(description: &Description, mut take: impl FnMut(usize, f64)) {
     let mut index = 0;
     for descriptor in DESCRIPTORS {
         let mut part = |value: f64| {
@@ -87,7 +86,7 @@ pub fn values(description: &Description, mut take: impl FnMut(usize, f64)) {
 /// What an atlas says of an imprint beside where it occurs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Note {
+pub struct ImprintSummary {
     /// Number of its pieces, 8-connected.
     pub pieces: u16,
     /// Number of its holes.
@@ -96,24 +95,26 @@ pub struct Note {
     pub description: Option<Description>,
 }
 
-/// Counts the regions of an imprint and describes the main one.
-pub fn describe(imprint: &Imprint) -> Note {
-    let mut note = Note {
-        pieces: 0,
-        holes: 0,
-        description: None,
-    };
-    each_region(imprint, |region| {
-        if region.kind() == RegionKind::Hole {
-            note.holes = note.holes.saturating_add(1);
-            return;
-        }
-        note.pieces = note.pieces.saturating_add(1);
-        // The main region: the piece with the largest filled area, the first of equals.
-        let best = note.description.as_ref();
-        if best.is_none_or(|best| region.filled().count() > best.nae) {
-            note.description = Some(Description::of(region));
-        }
-    });
-    note
+impl ImprintSummary {
+    /// Counts the regions of an imprint and describes the main one.
+    pub fn of(imprint: &Imprint) -> Self {
+        let mut summary = Self {
+            pieces: 0,
+            holes: 0,
+            description: None,
+        };
+        each_region(imprint, |region| {
+            if region.kind() == RegionKind::Hole {
+                summary.holes = summary.holes.saturating_add(1);
+                return;
+            }
+            summary.pieces = summary.pieces.saturating_add(1);
+            // The main region: the piece with the largest filled area, the first of equals.
+            let best = summary.description.as_ref();
+            if best.is_none_or(|best| region.filled().count() > best.nae) {
+                summary.description = Some(Description::of(region));
+            }
+        });
+        summary
+    }
 }

@@ -1,14 +1,14 @@
-//! How often which values of a quantity occur, over all poses.
+//! How often which values of a feature occur, over all poses.
 
-use crate::atlas::Atlas;
-use crate::atlas::feature::Quantity;
+use crate::atlas::distinct::Atlas;
+use crate::atlas::feature::Feature;
 use crate::description::Dimension;
 
 /// Poses counted in equal intervals of a value, each with its lower end; the last one with both.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Histogram {
-    /// Where the first interval begins, in the quantity's own unit.
+    /// Where the first interval begins, in the feature's own unit.
     pub start: f64,
     /// How wide they are: 1, 2 or 5 times a power of ten, so that all ends are short decimals; a divisor of 360 for
     /// directions that go all around.
@@ -26,34 +26,33 @@ const ARCS: [f64; 12] = [
 
 impl Histogram {
     /// Counts the poses of an atlas in at most `most` intervals, or as few as there can be. `values` are those of the
-    /// quantity, one per imprint ([`Atlas::values`]).
+    /// feature, one per imprint ([`Atlas::values`]).
     ///
     /// ```
     /// # use taxel::figure::{Figure, FigureKind};
     /// # use taxel::sensor::Sensor;
     /// # use taxel::source::Source;
-    /// # use taxel::pose::grid::{Anchor, Grid, Ranges};
-    /// # use taxel::sweep::plan::Shard;
-    /// # use taxel::sweep::survey::{Survey, Watch};
-    /// use taxel::atlas::histogram::Histogram;
-    /// use taxel::atlas::feature::quantities;
+    /// # use taxel::pose::{Anchor, PoseGrid, Ranges};
+    /// # use taxel::sweep::Sweep;
+    /// use taxel::atlas::Histogram;
+    /// use taxel::atlas::features;
     /// let square = Source::Figure(Figure::default_of(FigureKind::Rectangle, 16));
-    /// let grid = Grid::new(square, Sensor::default(), Anchor::Corner, Ranges::default())?;
-    /// let survey = Survey::of(&grid, Shard::WHOLE, Watch::nothing());
-    /// let na = Histogram::of(&survey.atlas, &quantities()[0], &survey.atlas.values(0), 10);
+    /// let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, Ranges::default())?;
+    /// let result = Sweep::new(&grid).run();
+    /// let na = Histogram::of(&result.atlas, &features()[0], &result.atlas.values(0), 10);
     /// assert_eq!((na.width, na.without), (1.0, 0));
     /// assert_eq!(na.poses.iter().sum::<u64>(), 3_600_000);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn of(atlas: &Atlas, quantity: &Quantity, values: &[Option<f64>], most: usize) -> Self {
+    pub fn of(atlas: &Atlas, feature: &Feature, values: &[Option<f64>], most: usize) -> Self {
         let found = values.iter().copied().flatten();
         let (low, high) = found.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
             (low.min(value), high.max(value))
         });
-        let (start, width, bins) = if quantity.circular {
+        let (start, width, bins) = if feature.circular {
             around(most)
         } else if low <= high {
-            let least = match quantity.descriptor.dimension {
+            let least = match feature.descriptor.dimension {
                 Dimension::Count => 1.0,
                 _ => 0.0,
             };
@@ -80,7 +79,7 @@ impl Histogram {
         histogram
     }
 
-    /// Where an interval begins, in the quantity's own unit.
+    /// Where an interval begins, in the feature's own unit.
     #[expect(clippy::cast_precision_loss, reason = "few of them")]
     pub fn from(&self, bin: usize) -> f64 {
         self.start + self.width * bin as f64
@@ -146,15 +145,14 @@ fn straight(low: f64, high: f64, least: f64, most: usize) -> (f64, f64, usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::atlas::feature::quantities;
+    use crate::atlas::feature::features;
     use crate::figure::{Figure, FigureKind};
-    use crate::pose::grid::{Anchor, Grid, Ranges};
+    use crate::pose::{Anchor, PoseGrid, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
-    use crate::sweep::plan::Shard;
-    use crate::sweep::survey::{Survey, Watch};
+    use crate::sweep::{Sweep, SweepResult};
 
-    fn survey(x0: &str) -> Survey {
+    fn result(x0: &str) -> SweepResult {
         let source = Source::Figure(Figure::default_of(FigureKind::Triangle, 16));
         let ranges = Ranges {
             x0: x0.parse().expect("a range"),
@@ -162,27 +160,27 @@ mod tests {
             angle: "0:350:10".parse().expect("a range"),
             ..Ranges::default()
         };
-        let grid = Grid::new(source, Sensor::default(), Anchor::Corner, ranges);
-        Survey::of(&grid.expect("in range"), Shard::WHOLE, Watch::nothing())
+        let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
+        Sweep::new(&grid.expect("in range")).run()
     }
 
     /// Every pose is in one interval or has no value, and the intervals hold what they say.
     #[test]
     fn all_poses_are_counted_where_their_value_is() {
-        let survey = survey("-5:15:0.5");
-        for (index, quantity) in quantities().iter().enumerate() {
-            let values = survey.atlas.values(index);
+        let result = result("-5:15:0.5");
+        for (index, feature) in features().iter().enumerate() {
+            let values = result.atlas.values(index);
             for most in [1, 2, 7, 15, 100] {
-                let histogram = Histogram::of(&survey.atlas, quantity, &values, most);
+                let histogram = Histogram::of(&result.atlas, feature, &values, most);
                 let poses: u64 = histogram.poses.iter().sum();
-                assert_eq!(poses + histogram.without, survey.poses, "{}", quantity.key);
-                assert_eq!(poses, survey.statistics[index].poses, "{}", quantity.key);
+                assert_eq!(poses + histogram.without, result.poses, "{}", feature.key);
+                assert_eq!(poses, result.statistics[index].poses, "{}", feature.key);
                 assert!(
                     (1..=most).contains(&histogram.poses.len()),
                     "{}",
-                    quantity.key
+                    feature.key
                 );
-                let counts: Vec<u64> = survey.atlas.counts().collect();
+                let counts: Vec<u64> = result.atlas.counts().collect();
                 for (bin, &poses) in histogram.poses.iter().enumerate() {
                     let (from, to) = (histogram.from(bin), histogram.from(bin + 1));
                     let last = bin + 1 == histogram.poses.len();
@@ -194,7 +192,7 @@ mod tests {
                     let expected = values.iter().zip(&counts);
                     let expected = expected.filter(|(value, _)| inside(value));
                     let expected: u64 = expected.map(|(_, count)| count).sum();
-                    assert_eq!(poses, expected, "{} from {from}", quantity.key);
+                    assert_eq!(poses, expected, "{} from {from}", feature.key);
                 }
             }
         }
@@ -242,12 +240,12 @@ mod tests {
             y0: "-16".parse().expect("a range"),
             ..Ranges::default()
         };
-        let grid = Grid::new(source, Sensor::default(), Anchor::Corner, ranges);
-        let survey = Survey::of(&grid.expect("in range"), Shard::WHOLE, Watch::nothing());
-        for (index, quantity) in quantities().iter().enumerate() {
-            let histogram = Histogram::of(&survey.atlas, quantity, &survey.atlas.values(index), 15);
-            let empty = survey.statistics[index].poses == 0;
-            assert_eq!(histogram.poses.is_empty(), empty, "{}", quantity.key);
+        let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
+        let result = Sweep::new(&grid.expect("in range")).run();
+        for (index, feature) in features().iter().enumerate() {
+            let histogram = Histogram::of(&result.atlas, feature, &result.atlas.values(index), 15);
+            let empty = result.statistics[index].poses == 0;
+            assert_eq!(histogram.poses.is_empty(), empty, "{}", feature.key);
             assert_eq!(histogram.without, if empty { 360 } else { 0 });
         }
     }

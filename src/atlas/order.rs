@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use crate::atlas::Atlas;
+use crate::atlas::distinct::Atlas;
 
 /// What an atlas can be sorted by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,15 +25,19 @@ pub enum SortKey {
 /// [`SortKey::Value`], one per imprint ([`Atlas::values`]); imprints beyond their end have none.
 pub fn sorted(atlas: &Atlas, values: &[Option<f64>], by: SortKey, descending: bool) -> Vec<u32> {
     let count = u32::try_from(atlas.len()).unwrap_or(u32::MAX);
-    let notes = |of: fn(&crate::atlas::feature::Note) -> u16| {
-        let keys: Vec<u64> = atlas.notes().iter().map(|note| of(note).into()).collect();
+    let summaries = |of: fn(&crate::atlas::feature::ImprintSummary) -> u16| {
+        let keys: Vec<u64> = atlas
+            .summaries()
+            .iter()
+            .map(|summary| of(summary).into())
+            .collect();
         keys
     };
     let keys: Vec<u64> = match by {
         SortKey::FirstPose => (0..count).map(u64::from).collect(),
         SortKey::Poses => atlas.counts().collect(),
-        SortKey::Pieces => notes(|note| note.pieces),
-        SortKey::Holes => notes(|note| note.holes),
+        SortKey::Pieces => summaries(|summary| summary.pieces),
+        SortKey::Holes => summaries(|summary| summary.holes),
         SortKey::Value => return by_value(count, values, descending),
     };
     let mut ids: Vec<(u64, u32)> = keys.into_iter().zip(0..count).collect();
@@ -65,13 +69,12 @@ fn turned(order: Ordering, descending: bool) -> Ordering {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::atlas::feature::quantities;
+    use crate::atlas::feature::features;
     use crate::figure::{Figure, FigureKind};
-    use crate::pose::grid::{Anchor, Grid, Ranges};
+    use crate::pose::{Anchor, PoseGrid, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
-    use crate::sweep::plan::Shard;
-    use crate::sweep::survey::{Survey, Watch};
+    use crate::sweep::Sweep;
 
     /// A rectangle that leaves the sensor: some poses are empty, and have no values.
     fn atlas() -> Atlas {
@@ -83,8 +86,8 @@ mod tests {
             angle: range("0:30:30"),
             ..Ranges::default()
         };
-        let grid = Grid::new(source, Sensor::default(), Anchor::Corner, ranges);
-        Survey::of(&grid.expect("in range"), Shard::WHOLE, Watch::nothing()).atlas
+        let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
+        Sweep::new(&grid.expect("in range")).run().atlas
     }
 
     #[test]
@@ -93,7 +96,7 @@ mod tests {
         let count = u32::try_from(atlas.len()).expect("few");
         let values = atlas.values(0);
         assert_eq!(values.len(), atlas.len());
-        assert!(values.contains(&None) && quantities()[0].key == "na");
+        assert!(values.contains(&None) && features()[0].key == "na");
         for by in [
             SortKey::FirstPose,
             SortKey::Poses,
@@ -112,9 +115,9 @@ mod tests {
                     match by {
                         SortKey::FirstPose => Some(entry.first_pose as f64),
                         SortKey::Poses => Some(entry.count as f64),
-                        SortKey::Pieces => Some(entry.note.pieces.into()),
-                        SortKey::Holes => Some(entry.note.holes.into()),
-                        SortKey::Value => entry.note.description.map(|one| one.na.into()),
+                        SortKey::Pieces => Some(entry.summary.pieces.into()),
+                        SortKey::Holes => Some(entry.summary.holes.into()),
+                        SortKey::Value => entry.summary.description.map(|one| one.na.into()),
                     }
                 };
                 for pair in ids.windows(2) {

@@ -1,7 +1,7 @@
-//! Statistics of every quantity over all poses that have one, and how much of them comes from where.
+//! Statistics of every feature over all poses that have one, and how much of them comes from where.
 //!
 //! Mean, standard deviation (of the population) and coefficient of variation are weighted by how often each imprint
-//! occurs. The variance of a quantity is the mean of its variances at a fixed turn (one angle, one pair of zooms), plus
+//! occurs. The variance of a feature is the mean of its variances at a fixed turn (one angle, one pair of zooms), plus
 //! the variance of its means at these: **`sd_position`** is the root of the first part, **`sd_angle`** that of the
 //! second, each turn weighted by its poses that have a value (which usually are as many for all), so
 //! `sd² = sd_position² + sd_angle²`.
@@ -16,17 +16,17 @@
 
 use rayon::prelude::*;
 
-use crate::atlas::feature::{Quantity, quantities};
+use crate::atlas::feature::{Feature, features};
 use crate::atlas::sums::{Wide, fixed, mean, signed_mean};
 use crate::atlas::values::{Table, places};
 use crate::atlas::variance::{Spread, Sum};
 
-/// What is known of one quantity over all poses that have it. None where no pose has it.
+/// What is known of one feature over all poses that have it. None where no pose has it.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Statistic {
     /// Which one.
-    pub quantity: &'static Quantity,
+    pub feature: &'static Feature,
     /// Number of poses that have it.
     pub poses: u64,
     /// Smallest; none of a direction.
@@ -50,7 +50,7 @@ pub struct Statistic {
 /// A column of the statistics.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
-pub struct Column {
+pub struct StatisticColumn {
     /// Its name in JSON.
     pub key: &'static str,
     /// Its heading.
@@ -60,7 +60,7 @@ pub struct Column {
 }
 
 /// All of them, in their order.
-pub const COLUMNS: &[Column] = &[
+pub const STATISTIC_COLUMNS: &[StatisticColumn] = &[
     column("min", "min", |row| row.min),
     column("mean", "mean", |row| row.mean),
     column("max", "max", |row| row.max),
@@ -75,8 +75,8 @@ const fn column(
     key: &'static str,
     title: &'static str,
     value: fn(&Statistic) -> Option<f64>,
-) -> Column {
-    Column { key, title, value }
+) -> StatisticColumn {
+    StatisticColumn { key, title, value }
 }
 
 /// What is summed up over all imprints.
@@ -118,14 +118,9 @@ impl Total {
         self
     }
 
-    fn statistic(
-        &self,
-        quantity: &'static Quantity,
-        between: Wide,
-        ideal: Option<f64>,
-    ) -> Statistic {
+    fn statistic(&self, feature: &'static Feature, between: Wide, ideal: Option<f64>) -> Statistic {
         let mut statistic = Statistic {
-            quantity,
+            feature,
             poses: self.sum.poses,
             min: None,
             mean: None,
@@ -140,7 +135,7 @@ impl Total {
         if poses == 0 {
             return statistic;
         }
-        if quantity.circular {
+        if feature.circular {
             self.directions(&mut statistic, between);
             return statistic;
         }
@@ -179,7 +174,7 @@ impl Total {
     }
 }
 
-/// The statistics of all quantities. `counts` says how often each imprint of the table occurs.
+/// The statistics of all features. `counts` says how often each imprint of the table occurs.
 pub(crate) fn statistics(
     table: &Table,
     counts: &[u64],
@@ -204,10 +199,8 @@ pub(crate) fn statistics(
                 .map(|(one, other)| one.merged(other))
                 .collect()
         });
-    let parts = totals.iter().zip(quantities()).zip(spread.closed());
+    let parts = totals.iter().zip(features()).zip(spread.closed());
     parts
-        .map(|((total, quantity), between)| {
-            total.statistic(quantity, between, ideal(&quantity.key))
-        })
+        .map(|((total, feature), between)| total.statistic(feature, between, ideal(&feature.key)))
         .collect()
 }

@@ -4,12 +4,12 @@
 
 use std::collections::BTreeMap;
 
-use crate::atlas::feature::quantities;
+use crate::atlas::feature::features;
 use crate::atlas::sums::{Wide, fixed, signed};
 use crate::atlas::values::{Table, places};
-use crate::pose::range::MAX_VALUES;
+use crate::pose::MAX_VALUES;
 
-/// How many poses have a quantity and the sum of its values; of a direction the sums of cosines and of sines.
+/// How many poses have a feature and the sum of its values; of a direction the sums of cosines and of sines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Sum {
     pub(crate) poses: u64,
@@ -65,7 +65,7 @@ pub(crate) struct TurnSums {
 impl TurnSums {
     /// Of imprints with how many poses of one turn show each.
     pub(crate) fn of(table: &Table, times: u64, counted: impl Iterator<Item = (u32, u64)>) -> Self {
-        let mut sums = vec![Sum::default(); quantities().len()];
+        let mut sums = vec![Sum::default(); features().len()];
         let places = places();
         let mut poses = 0;
         for (id, count) in counted {
@@ -93,7 +93,7 @@ impl TurnSums {
 pub(crate) struct Spread {
     /// Poses of a turn of the grid.
     full: u64,
-    /// Of each quantity, over the turns that are complete: the sum of (sum² / poses), or of the vectors' lengths.
+    /// Of each feature, over the turns that are complete: the sum of (sum² / poses), or of the vectors' lengths.
     between: Vec<Wide>,
     /// Turns of which something is missing still.
     open: BTreeMap<u64, TurnSums>,
@@ -104,7 +104,7 @@ impl Spread {
     pub(crate) fn new(full: u64) -> Self {
         Self {
             full,
-            between: vec![Wide::default(); quantities().len()],
+            between: vec![Wide::default(); features().len()],
             open: BTreeMap::new(),
         }
     }
@@ -138,7 +138,7 @@ impl Spread {
         }
     }
 
-    /// As words: three per quantity, then each open turn.
+    /// As words: three per feature, then each open turn.
     pub(crate) fn words(&self) -> Vec<u64> {
         let halves = |sum: i128| {
             let bits = sum.cast_unsigned();
@@ -159,7 +159,7 @@ impl Spread {
 
     /// From words; none where these are not as many as they must be.
     pub(crate) fn from_words(full: u64, words: &[u64]) -> Option<Self> {
-        let count = quantities().len();
+        let count = features().len();
         let (between, open) = words.split_at_checked(3 * count)?;
         let whole =
             |words: &[u64]| (u128::from(words[0]) | u128::from(words[1]) << 64).cast_signed();
@@ -199,12 +199,12 @@ impl Spread {
 }
 
 fn close(between: &mut [Wide], turn: &TurnSums) {
-    let quantities = between.iter_mut().zip(&turn.sums).zip(quantities());
-    for ((between, sum), quantity) in quantities {
+    let features = between.iter_mut().zip(&turn.sums).zip(features());
+    for ((between, sum), feature) in features {
         if sum.poses == 0 {
             continue;
         }
-        let part = if quantity.circular {
+        let part = if feature.circular {
             Wide::rounded(sum.length())
         } else {
             Wide::square_over(sum.total(), sum.poses)

@@ -5,10 +5,10 @@ use std::io;
 use crate::cli::input::content::InputError;
 use crate::cli::output::charset::Charset;
 use crate::formats::ArchiveError;
-use crate::pose::grid::GridError;
+use crate::pose::GridError;
 use crate::quote::legible;
 use crate::storage::{LibraryError, SweepFileError};
-use crate::sweep::survey::MergeError;
+use crate::sweep::MergeError;
 use crate::tui::script::runner;
 
 /// Why a command was not done, or not wholly.

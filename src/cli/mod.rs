@@ -31,7 +31,7 @@ use error::CliError;
 use input::shapes::Shelf;
 use output::charset::Charset;
 
-use crate::pose::grid::Grid;
+use crate::pose::PoseGrid;
 
 /// Does what the arguments ask for, the first of which is the program's own name, and gives the exit status.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
@@ -92,7 +92,7 @@ fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, Cli
                 Swept::Figure(figure, sensor) => (figure, sensor),
                 Swept::Picture(what, given) => touch::picture(&what, &given, &shelf)?,
             };
-            let grid = Grid::new(source, sensor, asked.anchor, asked.ranges)?;
+            let grid = PoseGrid::new(source, sensor, asked.anchor, asked.ranges)?;
             let (shard, jobs) = (asked.shard, asked.jobs);
             print(&sweep::sweep(&grid, shard, jobs, &asked.wanted, charset)?)?;
         }

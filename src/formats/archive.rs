@@ -2,7 +2,7 @@
 //!
 //! Per imprint, in order: `rows` (a word per row of the sensor, bit `i` for column `i`; shaped imprints × rows),
 //! `count`, `first_pose` (its number in the grid), `first` (its values; imprints × parameters), `pieces`, `holes` and an
-//! array for each quantity, NaN where it does not exist, since arrays have no other word for that. Before them `header`,
+//! array for each feature, NaN where it does not exist, since arrays have no other word for that. Before them `header`,
 //! JSON as bytes: format, source, sensor, anchor, ranges, shard and how many poses there were; and `spread`, the sums
 //! that shards are merged by. The archive is a zip without compression and without dates: equal atlases are
 //! equal files.
@@ -14,18 +14,15 @@ use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
-use crate::atlas::feature::{quantities, values};
+use crate::atlas::{feature_values, features};
 use crate::formats::atlas::{place, value};
 use crate::formats::npy;
 use crate::formats::npy::Dtype;
 use crate::formats::record::{Record, RecordError, Values};
-use crate::pose::grid::{Anchor, Grid, GridError, Ranges};
-use crate::pose::range::RangeError;
+use crate::pose::{Anchor, GridError, PoseGrid, RangeError, Ranges};
 use crate::quote::shortened;
 use crate::sensor::Sensor;
-use crate::sweep::parts::{Parts, PartsError};
-use crate::sweep::plan::{Shard, ShardError};
-use crate::sweep::survey::Survey;
+use crate::sweep::{Parts, PartsError, Shard, ShardError, SweepResult};
 
 /// What the header must say first.
 pub const FORMAT: &str = "taxel-atlas/1";
@@ -58,9 +55,9 @@ struct Header<Shape, Size> {
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write(survey: &Survey, output: impl Write + Seek) -> Result<(), ArchiveError> {
+pub fn write(result: &SweepResult, output: impl Write + Seek) -> Result<(), ArchiveError> {
     let mut archive = Arrays(ZipWriter::new(output));
-    let (grid, parts) = (&survey.grid, survey.parts());
+    let (grid, parts) = (&result.grid, result.parts());
     let ranges = grid.ranges();
     let header = serde_json::to_vec(&Header {
         format: FORMAT.to_owned(),
@@ -76,7 +73,7 @@ pub fn write(survey: &Survey, output: impl Write + Seek) -> Result<(), ArchiveEr
         angle: ranges.angle.to_string(),
         zoom_x: ranges.zoom_x.to_string(),
         zoom_y: ranges.zoom_y.to_string(),
-        shard: survey.shard.to_string(),
+        shard: result.shard.to_string(),
         poses: parts.poses,
         partly_off: parts.partly_off,
     })
@@ -102,26 +99,36 @@ pub fn write(survey: &Survey, output: impl Write + Seek) -> Result<(), ArchiveEr
         first.extend(own.flat_map(f64::to_le_bytes));
     }
     archive.add("first", Dtype::F64, &[count, own.len() as u64], &first)?;
-    let small = |of: fn(&crate::atlas::feature::Note) -> u16| {
-        let notes = survey.atlas.entries().map(|entry| entry.note);
-        notes
-            .flat_map(|note| of(&note).to_le_bytes())
+    let small = |of: fn(&crate::atlas::ImprintSummary) -> u16| {
+        let summaries = result.atlas.entries().map(|entry| entry.summary);
+        summaries
+            .flat_map(|summary| of(&summary).to_le_bytes())
             .collect::<Vec<u8>>()
     };
-    archive.add("pieces", Dtype::U16, &[count], &small(|note| note.pieces))?;
-    archive.add("holes", Dtype::U16, &[count], &small(|note| note.holes))?;
-    let mut columns = vec![Vec::with_capacity(parts.counts.len() * 8); quantities().len()];
-    for entry in survey.atlas.entries() {
+    archive.add(
+        "pieces",
+        Dtype::U16,
+        &[count],
+        &small(|summary| summary.pieces),
+    )?;
+    archive.add(
+        "holes",
+        Dtype::U16,
+        &[count],
+        &small(|summary| summary.holes),
+    )?;
+    let mut columns = vec![Vec::with_capacity(parts.counts.len() * 8); features().len()];
+    for entry in result.atlas.entries() {
         let mut row = vec![f64::NAN; columns.len()];
-        if let Some(description) = &entry.note.description {
-            values(description, |index, value| row[index] = value);
+        if let Some(description) = &entry.summary.description {
+            feature_values(description, |index, value| row[index] = value);
         }
         for (column, value) in columns.iter_mut().zip(row) {
             column.extend(value.to_le_bytes());
         }
     }
-    for (quantity, column) in quantities().iter().zip(columns) {
-        archive.add(&quantity.key, Dtype::F64, &[count], &column)?;
+    for (feature, column) in features().iter().zip(columns) {
+        archive.add(&feature.key, Dtype::F64, &[count], &column)?;
     }
     let length = parts.spread.len() as u64;
     archive.add("spread", Dtype::U64, &[length], &words(&parts.spread))?;
@@ -154,7 +161,7 @@ impl<W: Write + Seek> Arrays<W> {
 ///
 /// # Errors
 /// What is wrong with it; any bytes are taken.
-pub fn read(input: impl Read + Seek) -> Result<Survey, ArchiveError> {
+pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
     let mut archive = ZipArchive::new(input)?;
     let mut array = |name: &'static str| {
         let file = archive.by_name(&format!("{name}.npy"));
@@ -202,7 +209,7 @@ pub fn read(input: impl Read + Seek) -> Result<Survey, ArchiveError> {
         zoom_y: header.zoom_y.parse()?,
     };
     let shard: Shard = header.shard.parse()?;
-    let grid = Grid::new(source, sensor, anchor, ranges)?;
+    let grid = PoseGrid::new(source, sensor, anchor, ranges)?;
     let mut words = |name: &'static str| {
         let array = array(name)?;
         npy::words(&array).ok_or(ArchiveError::Array(name))
@@ -215,7 +222,7 @@ pub fn read(input: impl Read + Seek) -> Result<Survey, ArchiveError> {
         first_poses: words("first_pose")?,
         spread: words("spread")?,
     };
-    Ok(Survey::from_parts(grid, shard, &parts)?)
+    Ok(SweepResult::from_parts(grid, shard, &parts)?)
 }
 
 /// Why an archive cannot be written or read.

@@ -3,7 +3,8 @@
 //! In `f64` it is what bands are cut from; as [`Double`](crate::geometry::Double) it decides what `f64`
 //! cannot. Frame and units are those of the plane; the anchor of the shape lies at the origin.
 
-use crate::geometry::{Ellipse, Extent, Moving, Pen, Point, Real, Side, Solid};
+use crate::geometry::Real;
+use crate::geometry::{Ellipse, Extent, Moving, Pen, Point, Side, Solid};
 
 /// Straight edges with the material on their right, and ellipses.
 #[derive(Clone, Debug)]

@@ -8,7 +8,8 @@
 //! figure the centre that it turns about, of a picture that of its scaled bounding rectangle, which then lies
 //! *at* the given point, whatever the zoom. Cells, degrees. Convention of this project.
 
-use crate::geometry::{Moving, Pen, Point, Real, Solid};
+use crate::geometry::Real;
+use crate::geometry::{Moving, Pen, Point, Solid};
 use crate::parameter::{Parameter, ParameterError};
 use crate::pose::boundary::Boundary;
 use crate::pose::range::DecimalRange;
@@ -76,23 +77,23 @@ impl Ranges {
 /// use taxel::figure::{Figure, FigureKind};
 /// use taxel::sensor::Sensor;
 /// use taxel::source::Source;
-/// use taxel::pose::grid::{Anchor, Grid, Ranges};
+/// use taxel::pose::{Anchor, PoseGrid, Ranges};
 /// let rectangle = Source::Figure(Figure::default_of(FigureKind::Rectangle, 16));
-/// let grid = Grid::new(rectangle, Sensor::default(), Anchor::Corner, Ranges::default())?;
+/// let grid = PoseGrid::new(rectangle, Sensor::default(), Anchor::Corner, Ranges::default())?;
 /// assert_eq!(grid.poses(), 3_600_000);
 /// let pose = grid.pose(10_203);
 /// assert_eq!((pose.x0, pose.y0, pose.angle), (5.03, 5.02, 1.0));
-/// # Ok::<(), taxel::pose::grid::GridError>(())
+/// # Ok::<(), taxel::pose::GridError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Grid {
+pub struct PoseGrid {
     source: Source,
     sensor: Sensor,
     anchor: Anchor,
     ranges: Ranges,
 }
 
-impl Grid {
+impl PoseGrid {
     /// The grid; the position, angle and zoom that `source` itself has do not matter: it is put into the first pose.
     ///
     /// # Errors
@@ -165,12 +166,12 @@ impl Grid {
     }
 
     /// How many values each range has.
-    pub fn counts(&self) -> Place {
+    pub fn counts(&self) -> PoseIndex {
         self.ranges.by_parameter().map(|(_, range)| range.count())
     }
 
     /// Where the pose of that number is; beyond the last one, the places begin again.
-    pub fn place(&self, number: u64) -> Place {
+    pub fn place(&self, number: u64) -> PoseIndex {
         let mut rest = number;
         self.counts().map(|count| {
             let index = rest % count;
@@ -249,7 +250,7 @@ impl Grid {
 }
 
 /// Which value of each range, counted from 0, from the fastest: x0, y0, angle, zoom x, zoom y.
-pub type Place = [u64; 5];
+pub type PoseIndex = [u64; 5];
 
 /// Values of one pose: cells, degrees, ratios.
 #[derive(Clone, Copy, Debug, PartialEq)]

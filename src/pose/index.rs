@@ -1,13 +1,13 @@
 //! Poses by their places along the ranges of a grid, and as shapes that can be touched by themselves.
 
 use crate::parameter::{Parameter, ParameterError};
-use crate::pose::grid::{Anchor, Grid, Place, Pose, centre};
+use crate::pose::grid::{Anchor, Pose, PoseGrid, PoseIndex, centre};
 use crate::sensor::Sensor;
 use crate::source::Source;
 
-impl Grid {
+impl PoseGrid {
     /// The number of the pose at a place; of a place beyond the grid, that of the nearest one in it.
-    pub fn number(&self, place: Place) -> u64 {
+    pub fn number(&self, place: PoseIndex) -> u64 {
         let values = place.into_iter().zip(self.counts());
         values.rev().fold(0, |number, (index, count)| {
             number * count + index.min(count - 1)
@@ -15,7 +15,7 @@ impl Grid {
     }
 
     /// So many values of each range from a place on, as a grid of their own; none where it would leave this one.
-    pub fn part(&self, from: Place, counts: Place) -> Option<Self> {
+    pub fn part(&self, from: PoseIndex, counts: PoseIndex) -> Option<Self> {
         let mut ranges = *self.ranges();
         let all = [
             &mut ranges.x0,
@@ -42,10 +42,10 @@ impl Grid {
     /// use taxel::parameter::Parameter;
     /// use taxel::sensor::Sensor;
     /// use taxel::source::Source;
-    /// use taxel::pose::grid::{Anchor, Grid, Ranges};
+    /// use taxel::pose::{Anchor, PoseGrid, Ranges};
     /// // 6 × 3, its centre at 5, 5.
     /// let rectangle = Source::Figure(Figure::default_of(FigureKind::Rectangle, 16));
-    /// let grid = Grid::new(rectangle, Sensor::default(), Anchor::Centre, Ranges::default())?;
+    /// let grid = PoseGrid::new(rectangle, Sensor::default(), Anchor::Centre, Ranges::default())?;
     /// let first = grid.source_at(grid.pose(0))?;
     /// assert_eq!((first.get(Parameter::X0), first.get(Parameter::Y0)), (Some(2.0), Some(3.5)));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -118,7 +118,7 @@ mod tests {
     use crate::pose::grid::Ranges;
     use crate::touch::Plane;
 
-    fn grid(source: Source, anchor: Anchor) -> Grid {
+    fn grid(source: Source, anchor: Anchor) -> PoseGrid {
         let range = |text: &str| text.parse().expect("a range");
         let zoomed = source.kind().is_none();
         let zoom = if zoomed { "0.5:1.5:0.25" } else { "1" };
@@ -130,7 +130,7 @@ mod tests {
             zoom_x: range(zoom),
             zoom_y: range(zoom),
         };
-        Grid::new(source, Sensor::default(), anchor, ranges).expect("in range")
+        PoseGrid::new(source, Sensor::default(), anchor, ranges).expect("in range")
     }
 
     fn picture() -> Source {

@@ -1,11 +1,16 @@
 //! Poses: where a shape lies. Exact decimal ranges an axis, the grid they span, and the index of each pose in it.
 
-pub mod range;
+mod range;
 
-pub(crate) mod boundary;
+mod boundary;
 
-pub mod grid;
+mod grid;
 
-pub(crate) mod symmetry;
+mod symmetry;
 
-pub mod index;
+mod index;
+
+pub(crate) use boundary::Boundary;
+pub use grid::{Anchor, GridError, MAX_POSES, Placed, Pose, PoseGrid, PoseIndex, Ranges};
+pub use range::{DecimalRange, MAX_VALUES, RangeError};
+pub(crate) use symmetry::period;

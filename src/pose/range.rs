@@ -23,12 +23,12 @@ const MAX_UNITS: i64 = 999_999_999_999_999;
 /// Decimals from a start to an end in equal steps; never empty.
 ///
 /// ```
-/// use taxel::pose::range::DecimalRange;
+/// use taxel::pose::DecimalRange;
 /// let range: DecimalRange = "5:5.99:0.01".parse()?;
 /// assert_eq!((range.count(), range.value(0), range.value(37), range.last()), (100, 5.0, 5.37, 5.99));
 /// assert_eq!(range.to_string(), "5:5.99:0.01");
 /// assert_eq!("1:2:0".parse::<DecimalRange>().unwrap_err().to_string(), "step 0 leads nowhere, expected one above 0");
-/// # Ok::<(), taxel::pose::range::RangeError>(())
+/// # Ok::<(), taxel::pose::RangeError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DecimalRange {
@@ -98,11 +98,11 @@ impl DecimalRange {
     /// Some neighbouring values of it as a range of their own; none where there are none, or fewer than that.
     ///
     /// ```
-    /// use taxel::pose::range::DecimalRange;
+    /// use taxel::pose::DecimalRange;
     /// let range: DecimalRange = "5:5.99:0.01".parse()?;
     /// assert_eq!(range.part(10..20).map(|part| part.to_string()).as_deref(), Some("5.1:5.19:0.01"));
     /// assert_eq!(range.part(90..101), None);
-    /// # Ok::<(), taxel::pose::range::RangeError>(())
+    /// # Ok::<(), taxel::pose::RangeError>(())
     /// ```
     pub fn part(&self, indices: std::ops::Range<u64>) -> Option<Self> {
         if indices.is_empty() || indices.end > self.count {

@@ -10,11 +10,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::formats::atlas::{write_csv, write_jsonl};
 use crate::formats::npy::Dtype;
 use crate::formats::{ArchiveError, archive, npy};
-use crate::pose::grid::Grid;
+use crate::pose::PoseGrid;
 use crate::storage::first_error::FirstErrorWriter;
 use crate::storage::unfinished;
 use crate::storage::unfinished::{Existing, UnfinishedFile};
-use crate::sweep::survey::Survey;
+use crate::sweep::SweepResult;
 
 /// Why a file was not written.
 #[derive(Debug, thiserror::Error)]
@@ -81,17 +81,17 @@ impl AtlasFile {
         begun(&self.path, existing).map(drop)
     }
 
-    /// Writes the atlas of a survey; nothing of it is left where `stopped` becomes true on the way.
+    /// Writes the atlas of a result; nothing of it is left where `stopped` becomes true on the way.
     ///
     /// # Errors
     /// Those of the system, with the file's name.
     pub fn write(
         &self,
-        survey: &Survey,
+        result: &SweepResult,
         existing: Existing,
         stopped: &AtomicBool,
     ) -> Result<(), SweepFileError> {
-        self.prepare(survey, existing, stopped)?.persist()
+        self.prepare(result, existing, stopped)?.persist()
     }
 
     /// The same without its name yet, so that several files can appear together.
@@ -100,16 +100,16 @@ impl AtlasFile {
     /// Those of the system, with the file's name.
     pub fn prepare(
         &self,
-        survey: &Survey,
+        result: &SweepResult,
         existing: Existing,
         stopped: &AtomicBool,
     ) -> Result<FinishedSweepFile, SweepFileError> {
         let mut file = begun(&self.path, existing)?;
         let mut output = FirstErrorWriter::new(&mut file.output, stopped);
         let written = match self.format {
-            AtlasFormat::Csv => write_csv(survey, &mut output).map_err(ArchiveError::from),
-            AtlasFormat::JsonLines => write_jsonl(survey, &mut output).map_err(ArchiveError::from),
-            AtlasFormat::Archive => archive::write(survey, &mut output),
+            AtlasFormat::Csv => write_csv(result, &mut output).map_err(ArchiveError::from),
+            AtlasFormat::JsonLines => write_jsonl(result, &mut output).map_err(ArchiveError::from),
+            AtlasFormat::Archive => archive::write(result, &mut output),
         };
         let written = match output.error {
             Some(error) => Err(error.into()),
@@ -144,7 +144,7 @@ impl PoseFile {
     /// Those of the system, with the file's name.
     pub fn new(
         path: impl Into<PathBuf>,
-        grid: &Grid,
+        grid: &PoseGrid,
         existing: Existing,
     ) -> Result<Self, SweepFileError> {
         let mut file = begun(&path.into(), existing)?;
@@ -237,20 +237,19 @@ fn begun(path: &Path, existing: Existing) -> Result<UnfinishedFile, SweepFileErr
 mod tests {
     use super::*;
     use crate::figure::{Figure, FigureKind};
-    use crate::pose::grid::{Anchor, Ranges};
+    use crate::pose::{Anchor, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
-    use crate::sweep::plan::Shard;
-    use crate::sweep::survey::Watch;
+    use crate::sweep::Sweep;
 
-    fn survey() -> Survey {
+    fn result() -> SweepResult {
         let ranges = Ranges {
             angle: "0".parse().expect("a range"),
             ..Ranges::default()
         };
         let source = Source::Figure(Figure::default_of(FigureKind::Hexagon, 16));
-        let grid = Grid::new(source, Sensor::default(), Anchor::Corner, ranges);
-        Survey::of(&grid.expect("in range"), Shard::WHOLE, Watch::nothing())
+        let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
+        Sweep::new(&grid.expect("in range")).run()
     }
 
     fn files(folder: &Path) -> Vec<String> {
@@ -263,22 +262,22 @@ mod tests {
     #[test]
     fn a_file_is_whole_or_not_there() {
         let folder = tempfile::tempdir().expect("a folder");
-        let survey = survey();
+        let result = result();
         for name in ["a.csv", "a.jsonl", "a.npz"] {
             let path = folder.path().join(name);
             let file = AtlasFile::new(&path).expect("a form");
             let stopped = AtomicBool::new(true);
-            let refused = file.write(&survey, Existing::Kept, &stopped);
+            let refused = file.write(&result, Existing::Kept, &stopped);
             let refused = refused.expect_err("stopped").to_string();
             assert!(refused.contains("stopped"), "{refused}");
             assert_eq!(files(folder.path()), [""; 0], "nothing is left");
             let going = AtomicBool::new(false);
-            file.write(&survey, Existing::Kept, &going)
+            file.write(&result, Existing::Kept, &going)
                 .expect("written");
             let first = std::fs::read(&path).expect("it is there");
-            let again = file.write(&survey, Existing::Kept, &going);
+            let again = file.write(&result, Existing::Kept, &going);
             assert!(again.expect_err("it is there").exists());
-            file.write(&survey, Existing::Replaced, &going)
+            file.write(&result, Existing::Replaced, &going)
                 .expect("written again");
             assert_eq!(std::fs::read(&path).ok(), Some(first));
             std::fs::remove_file(&path).expect("it is there");
@@ -287,7 +286,7 @@ mod tests {
         let nowhere = folder.path().join("nowhere/a.csv");
         let nowhere = AtlasFile::new(nowhere).expect("a form");
         let going = AtomicBool::new(false);
-        let error = nowhere.write(&survey, Existing::Kept, &going);
+        let error = nowhere.write(&result, Existing::Kept, &going);
         let error = error.expect_err("there is no such folder").to_string();
         assert!(
             error.ends_with("a.csv: No such file or directory (os error 2)"),
@@ -299,8 +298,8 @@ mod tests {
     fn a_file_that_came_meanwhile_is_kept() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("poses.npy");
-        let survey = survey();
-        let file = PoseFile::new(&path, &survey.grid, Existing::Kept).expect("begun");
+        let result = result();
+        let file = PoseFile::new(&path, &result.grid, Existing::Kept).expect("begun");
         std::fs::write(&path, "mine").expect("written");
         let whole = file.finish().expect("written");
         assert!(whole.persist().expect_err("it is there").exists());

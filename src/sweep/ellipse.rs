@@ -122,7 +122,7 @@ fn follow(ring: &Ring, tracks: &mut Tracks) -> Option<Found> {
     })
 }
 
-/// Takes note of where the passages are, as far as the spans tell.
+/// Takes summary of where the passages are, as far as the spans tell.
 fn learn(spans: &Spans, tracks: &mut Tracks) {
     let all = spans.all();
     match (spans.sharp(), all) {

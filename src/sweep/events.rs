@@ -3,7 +3,7 @@
 //! Events are kept by the step at which they happen, in lists without an order of their own, and a bit per step tells
 //! where to look. Playing them back gives one imprint per run of steps at which nothing happens.
 
-use crate::atlas::packing::Layout;
+use crate::atlas::Layout;
 
 /// Which taxels are active at first, and which turn over at which step.
 #[derive(Clone, Debug)]

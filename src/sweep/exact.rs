@@ -4,9 +4,10 @@
 //! short. The boundary is drawn once per turn in [`Double`] at the origin and shifted by the decimals that the ranges
 //! give, which is in real arithmetic the shape of the pose itself.
 
-use crate::geometry::{Double, Overlap, Point, Real};
-use crate::pose::boundary::Boundary;
-use crate::pose::grid::Grid;
+use crate::geometry::Overlap;
+use crate::geometry::Point;
+use crate::geometry::{Double, Real};
+use crate::pose::{Boundary, PoseGrid};
 use crate::touch::least;
 
 /// How many values of x0 and of y0 are kept as places.
@@ -15,7 +16,7 @@ const REMEMBERED: usize = 128;
 /// The shape of one turn, ready for exact decisions.
 #[derive(Debug)]
 pub(crate) struct Exact<'a> {
-    grid: &'a Grid,
+    grid: &'a PoseGrid,
     turn: u64,
     boundary: Option<Boundary<Double>>,
     /// Where the anchor lies for the values of x0 and of y0 asked for last.
@@ -25,7 +26,7 @@ pub(crate) struct Exact<'a> {
 }
 
 impl<'a> Exact<'a> {
-    pub(crate) fn new(grid: &'a Grid, turn: u64) -> Self {
+    pub(crate) fn new(grid: &'a PoseGrid, turn: u64) -> Self {
         Self {
             grid,
             turn,

@@ -28,7 +28,7 @@ impl Ideal {
         Some(ideal)
     }
 
-    /// The value of the quantity of that name.
+    /// The value of the feature of that name.
     pub(crate) fn get(&self, key: &str) -> Option<f64> {
         match key {
             "na" => Some(self.area),

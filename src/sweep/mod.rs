@@ -8,7 +8,7 @@
 //! active are spans along x: of shapes of straight edges, convex or not, so pictures too, in `polygon`; of ellipses in
 //! `ellipse`, with `settle` for what it is not sure of. From the spans follow the steps at which taxels turn over
 //! (`mark`, `events`), and so the runs of one imprint each (`runs`). What `f64` can't decide is decided with 32 digits
-//! (`exact`). Each imprint is counted once per run (`census`) and described once per sweep (`atlas`).
+//! (`exact`). Each imprint is counted once per run (`counter`) and described once per sweep (`atlas`).
 //!
 //! **What is not gone through.** Angles at which the shape looks the same (`symmetry`); and, where a half turn of the
 //! plane maps the poses of one angle onto each other, one half of their rows (`half_turn`, `images`). Both by exact decimals.
@@ -17,7 +17,7 @@
 
 mod point_symmetry;
 
-pub mod plan;
+mod plan;
 
 mod exact;
 
@@ -43,10 +43,14 @@ mod runs;
 
 mod ideal;
 
-pub mod survey;
+mod result;
 
-mod window;
+mod run;
 
-pub mod sample;
+mod sample;
 
-pub mod parts;
+pub use plan::{Shard, ShardError};
+pub(crate) use result::Parts;
+pub use result::{MergeError, PartsError, SweepResult};
+pub use run::{Sweep, TakeRow};
+pub use sample::TimingSample;

@@ -9,15 +9,14 @@ use std::ops::Range;
 use std::str::FromStr;
 use std::sync::Arc;
 
-use crate::pose::grid::Grid;
-use crate::pose::symmetry::period;
+use crate::pose::{PoseGrid, period};
 use crate::quote::shortened;
 use crate::sweep::point_symmetry::HalfTurn;
 
 /// One of `of` nearly equal pieces of a grid, `number` from 1.
 ///
 /// ```
-/// use taxel::sweep::plan::Shard;
+/// use taxel::sweep::Shard;
 /// let shard: Shard = "2/3".parse().unwrap();
 /// assert_eq!(shard.rows(10), 3..6);
 /// assert!("4/3".parse::<Shard>().is_err());
@@ -113,7 +112,7 @@ const TASKS: u64 = 16;
 /// The tasks of one block of turns (all angles at one pair of zooms) inside of the rows of a shard, in the order in
 /// which they meet a new imprint first. Made one by one as they are asked for: a large grid has millions.
 pub(crate) fn tasks(
-    grid: &Grid,
+    grid: &PoseGrid,
     shard: &Range<u64>,
     block: u64,
 ) -> impl Iterator<Item = Task> + use<> {

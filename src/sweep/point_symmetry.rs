@@ -12,9 +12,7 @@
 
 use crate::figure::FigureKind;
 use crate::parameter::Parameter;
-use crate::pose::grid::{Anchor, Grid};
-use crate::pose::range::DecimalRange;
-use crate::pose::symmetry::period;
+use crate::pose::{Anchor, DecimalRange, PoseGrid, period};
 use crate::source::Source;
 
 /// How the poses of a turn are mapped onto each other.
@@ -27,7 +25,7 @@ pub(crate) struct HalfTurn {
 impl HalfTurn {
     /// None where the shape or the ranges are not mapped onto themselves. Whether the shape lies inside of the sensor is
     /// for the caller to see.
-    pub(crate) fn of(grid: &Grid) -> Option<Self> {
+    pub(crate) fn of(grid: &PoseGrid) -> Option<Self> {
         if period(grid.source()).is_some_and(|period| 180 % period != 0) {
             return None;
         }
@@ -40,7 +38,7 @@ impl HalfTurn {
 }
 
 /// Twice the way from the anchor to the centre, along x and y; none where it is no decimal. Cells.
-fn twice_to_centre(grid: &Grid) -> Option<[f64; 2]> {
+fn twice_to_centre(grid: &PoseGrid) -> Option<[f64; 2]> {
     if grid.anchor() == Anchor::Centre {
         return Some([0.0; 2]);
     }
@@ -132,7 +130,7 @@ mod tests {
     use super::*;
     use crate::figure::Figure;
     use crate::picture::Picture;
-    use crate::pose::grid::Ranges;
+    use crate::pose::Ranges;
     use crate::sensor::Sensor;
 
     fn has_images(source: Source, anchor: Anchor, zoom: &str) -> bool {
@@ -140,7 +138,7 @@ mod tests {
             zoom_x: zoom.parse().expect("a range"),
             ..Ranges::default()
         };
-        let grid = Grid::new(source, Sensor::default(), anchor, ranges).expect("a grid");
+        let grid = PoseGrid::new(source, Sensor::default(), anchor, ranges).expect("a grid");
         HalfTurn::of(&grid).is_some()
     }
 

@@ -4,11 +4,10 @@
 //! of each is the half-turned one, moved by whole cells. What is counted, and in which order, is the same as if
 //! the row had been gone through itself.
 
-use crate::atlas::counter::Census;
-use crate::atlas::packing::Layout;
+use crate::atlas::{ImprintCounter, Layout};
 use crate::sweep::point_symmetry::HalfTurn;
 
-/// The runs of several rows: index in a census, and length.
+/// The runs of several rows: index in a counter, and length.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Runs {
     list: Vec<(u32, u32)>,
@@ -41,7 +40,7 @@ impl Runs {
 pub(crate) struct Images<'a> {
     layout: &'a Layout,
     half_turn: HalfTurn,
-    /// By index in the census: those of its images, by whether x0 comes round, and y0.
+    /// By index in the counter: those of its images, by whether x0 comes round, and y0.
     known: Vec<[Option<u32>; 4]>,
     key: Vec<u64>,
     /// The runs of the row under way, which can't be added to those that it is made from before it is done.
@@ -67,7 +66,7 @@ impl<'a> Images<'a> {
     /// Counts the image of a row; `first` is the number of its first pose.
     pub(crate) fn add(
         &mut self,
-        census: &mut Census,
+        counter: &mut ImprintCounter,
         runs: &mut Runs,
         (source, round): (usize, bool),
         first: u64,
@@ -86,8 +85,8 @@ impl<'a> Images<'a> {
                     continue;
                 }
                 let index = usize::try_from(index).unwrap_or(0);
-                let image = self.image(census, index, [after, round], pose);
-                census.count(image, length);
+                let image = self.image(counter, index, [after, round], pose);
+                counter.count(image, length);
                 self.row.push((image, length));
                 pose += length;
             }
@@ -98,7 +97,13 @@ impl<'a> Images<'a> {
     }
 
     /// The index of an imprint's image, which is first seen at pose `first` unless it is known.
-    fn image(&mut self, census: &mut Census, index: usize, after: [bool; 2], first: u64) -> usize {
+    fn image(
+        &mut self,
+        counter: &mut ImprintCounter,
+        index: usize,
+        after: [bool; 2],
+        first: u64,
+    ) -> usize {
         if self.known.len() <= index {
             self.known.resize(index + 1, [None; 4]);
         }
@@ -110,8 +115,8 @@ impl<'a> Images<'a> {
             ];
             let hash = self
                 .layout
-                .half_turned(census.key(index), cells, &mut self.key);
-            let image = census.add(&self.key, hash, 0, first);
+                .half_turned(counter.key(index), cells, &mut self.key);
+            let image = counter.add(&self.key, hash, 0, first);
             u32::try_from(image).unwrap_or(u32::MAX)
         });
         usize::try_from(*image).unwrap_or(0)

@@ -4,11 +4,10 @@
 //! same: one *run*. Rows that are images of rows gone through before ([`crate::sweep::point_symmetry`]) are not gone through
 //! themselves.
 
-use crate::atlas::counter::Census;
-use crate::atlas::packing::Layout;
-use crate::geometry::{Extent, Real};
-use crate::pose::boundary::Boundary;
-use crate::pose::grid::Grid;
+use crate::atlas::{ImprintCounter, Layout};
+use crate::geometry::Extent;
+use crate::geometry::Real;
+use crate::pose::{Boundary, PoseGrid};
 use crate::sweep::ellipse::Elliptic;
 use crate::sweep::events::Events;
 use crate::sweep::exact::Exact;
@@ -24,7 +23,7 @@ use crate::touch::DOUBTFUL;
 #[derive(Debug)]
 pub(crate) struct Found {
     /// Its imprints, counted once per pose of one of its turns.
-    pub(crate) census: Census,
+    pub(crate) counter: ImprintCounter,
     /// Poses of one turn that reach beyond the sensor.
     pub(crate) partly_off: u64,
     /// The runs of each row; only where asked for.
@@ -38,7 +37,7 @@ const EDGES: usize = 64;
 
 /// Goes through the rows of a task. `progress` is told of poses of one turn; where it answers `false` there is no result.
 pub(crate) fn go(
-    grid: &Grid,
+    grid: &PoseGrid,
     layout: &Layout,
     task: &Task,
     keep_runs: bool,
@@ -49,7 +48,7 @@ pub(crate) fn go(
     let half_turn = HalfTurn::of(grid).filter(|_| sweeper.lies_inside());
     let mut images = half_turn.map(|half_turn| Images::new(layout, half_turn));
     let mut found = Found {
-        census: Census::new(layout.words()),
+        counter: ImprintCounter::new(layout.words()),
         partly_off: 0,
         runs: Runs::default(),
     };
@@ -65,12 +64,12 @@ pub(crate) fn go(
         });
         found.runs.begin();
         if let Some((images, source)) = known {
-            images.add(&mut found.census, &mut found.runs, source, first);
+            images.add(&mut found.counter, &mut found.runs, source, first);
         } else {
             sweeper.row(y);
             found.partly_off += sweeper.beyond(y);
             sweeper.events.play(|key, hash, from, to| {
-                let index = found.census.add(key, hash, to - from, first + from);
+                let index = found.counter.add(key, hash, to - from, first + from);
                 if keep_runs || half_turn.is_some() {
                     found.runs.push(index, to - from);
                 }
@@ -112,7 +111,7 @@ impl Shape {
 }
 
 struct Sweeper<'a> {
-    grid: &'a Grid,
+    grid: &'a PoseGrid,
     turn: u64,
     shape: Shape,
     /// How many poses may go by untold.
@@ -128,7 +127,7 @@ struct Sweeper<'a> {
 }
 
 impl<'a> Sweeper<'a> {
-    fn new(grid: &'a Grid, layout: &'a Layout, turn: u64) -> Self {
+    fn new(grid: &'a PoseGrid, layout: &'a Layout, turn: u64) -> Self {
         let boundary = grid.boundary::<f64>(turn);
         let count = grid.ranges().x0.count();
         let place = |x: u64| grid.offset::<f64>(turn, x, 0).x;

@@ -2,8 +2,7 @@
 
 use std::collections::HashSet;
 
-use crate::pose::grid::Grid;
-use crate::pose::symmetry::period;
+use crate::pose::{PoseGrid, period};
 
 /// About so many poses are enough to measure by.
 const POSES: u64 = 20_000;
@@ -11,18 +10,18 @@ const POSES: u64 = 20_000;
 /// A part of a grid, and how many times its work the whole is.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct Sample {
+pub struct TimingSample {
     /// The part: neighbouring poses at one angle and one pair of zooms, from the middle of their ranges.
-    pub grid: Grid,
+    pub grid: PoseGrid,
     /// How many times as long the whole grid takes, or somewhat less: imprints that are known already need not be
     /// described again, and in the whole these are more.
     pub times: f64,
 }
 
-impl Sample {
+impl TimingSample {
     /// The sample of a grid.
     #[expect(clippy::cast_precision_loss, reason = "an estimate")]
-    pub fn of(grid: &Grid) -> Self {
+    pub fn of(grid: &PoseGrid) -> Self {
         let [width, height, angles, zooms_x, zooms_y] = grid.counts();
         let width = width.min(POSES);
         let height = height.min(POSES / width).max(1);
@@ -38,7 +37,7 @@ impl Sample {
 }
 
 /// How many angles are gone through: of those that look the same, one.
-fn distinct_angles(grid: &Grid) -> u64 {
+fn distinct_angles(grid: &PoseGrid) -> u64 {
     let angle = grid.ranges().angle;
     let Some(period) = period(grid.source()) else {
         return 1;
@@ -53,14 +52,14 @@ fn distinct_angles(grid: &Grid) -> u64 {
 mod tests {
     use super::*;
     use crate::figure::{Figure, FigureKind};
-    use crate::pose::grid::{Anchor, Ranges};
+    use crate::pose::{Anchor, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
 
     fn sample(kind: FigureKind, ranges: Ranges) -> (u64, f64) {
         let source = Source::Figure(Figure::default_of(kind, 16));
-        let grid = Grid::new(source, Sensor::default(), Anchor::Corner, ranges);
-        let sample = Sample::of(&grid.expect("in range"));
+        let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
+        let sample = TimingSample::of(&grid.expect("in range"));
         (sample.grid.poses(), sample.times)
     }
 

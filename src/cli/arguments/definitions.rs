@@ -21,11 +21,10 @@ use crate::figure::FigureKind;
 use crate::formats::{Name, NameError};
 use crate::parameter::Parameter;
 use crate::picture::PICTURE_PARAMETERS;
-use crate::pose::grid::Ranges;
-use crate::pose::range::{DecimalRange, RangeError};
+use crate::pose::{DecimalRange, RangeError, Ranges};
 use crate::sensor::SENSOR_PARAMETERS;
 use crate::storage::{AtlasFile, is_poses};
-use crate::sweep::plan::{Shard, ShardError};
+use crate::sweep::{Shard, ShardError};
 
 /// All commands.
 pub(crate) fn all() -> Command {

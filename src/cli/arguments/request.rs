@@ -21,12 +21,11 @@ use crate::cli::settings::resolved::{Effective, Loaded};
 use crate::figure::FigureKind;
 use crate::formats::Name;
 use crate::parameter::Parameter;
-use crate::pose::grid::{Anchor, Ranges};
-use crate::pose::range::DecimalRange;
+use crate::pose::{Anchor, DecimalRange, Ranges};
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::storage::AtlasFile;
-use crate::sweep::plan::Shard;
+use crate::sweep::Shard;
 
 /// What is asked for, and with which settings.
 #[derive(Clone, Debug)]

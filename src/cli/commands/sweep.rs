@@ -17,10 +17,9 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::progress::Progress;
 use crate::cli::output::sweep_summary::Summary;
 use crate::formats::{ArchiveError, archive};
-use crate::pose::grid::Grid;
+use crate::pose::PoseGrid;
 use crate::storage::{AtlasFile, Existing, FinishedSweepFile, PoseFile};
-use crate::sweep::plan::Shard;
-use crate::sweep::survey::{Survey, Watch};
+use crate::sweep::{Shard, Sweep, SweepResult};
 
 /// What a sweep or a merge is to leave.
 #[derive(Clone, Debug)]
@@ -41,7 +40,7 @@ fn refused(path: &Path, error: impl Into<ArchiveError>) -> CliError {
 
 /// Sweeps a shard of a grid on so many threads, and gives what is to be printed.
 pub(crate) fn sweep(
-    grid: &Grid,
+    grid: &PoseGrid,
     shard: Shard,
     jobs: usize,
     wanted: &Wanted,
@@ -71,20 +70,17 @@ pub(crate) fn sweep(
             file.take(row, ids, stopped);
         }
     };
-    let watch = Watch {
-        progress: &tell,
-        rows: match wanted.poses {
-            Some(_) => Some(&mut take),
-            None => None,
-        },
-    };
-    let survey = pool.install(|| Survey::of(grid, shard, watch));
+    let mut sweep = Sweep::new(grid).shard(shard).progress(&tell);
+    if wanted.poses.is_some() {
+        sweep = sweep.rows(&mut take);
+    }
+    let result = pool.install(|| sweep.run());
     progress.finish();
     let poses = poses.map(PoseFile::finish).transpose()?;
-    if !survey.complete() {
+    if !result.complete() {
         return Err(signals.failure());
     }
-    leave(&survey, start, wanted, poses, charset, &signals)
+    leave(&result, start, wanted, poses, charset, &signals)
 }
 
 /// Puts shards together, and gives what is to be printed.
@@ -97,20 +93,20 @@ pub(crate) fn merge(
     if let Some(file) = &wanted.atlas {
         file.check(wanted.existing)?;
     }
-    let mut surveys = Vec::with_capacity(files.len());
+    let mut results = Vec::with_capacity(files.len());
     for path in files {
         let file = File::open(path).map_err(|error| refused(path, error))?;
-        let survey = archive::read(io::BufReader::new(file));
-        surveys.push(survey.map_err(|error| refused(path, error))?);
+        let result = archive::read(io::BufReader::new(file));
+        results.push(result.map_err(|error| refused(path, error))?);
     }
-    let survey = Survey::merge(surveys)?;
+    let result = SweepResult::merge(results)?;
     // Until here an interrupt ends the program, which has left nothing.
     let signals = Signals::heard().map_err(CliError::System)?;
-    leave(&survey, start, wanted, None, charset, &signals)
+    leave(&result, start, wanted, None, charset, &signals)
 }
 
 fn leave(
-    survey: &Survey,
+    result: &SweepResult,
     start: Instant,
     wanted: &Wanted,
     poses: Option<FinishedSweepFile>,
@@ -119,7 +115,7 @@ fn leave(
 ) -> Result<String, CliError> {
     let atlas = match &wanted.atlas {
         Some(file) => {
-            let whole = file.prepare(survey, wanted.existing, &signals.stopped);
+            let whole = file.prepare(result, wanted.existing, &signals.stopped);
             if signals.stopped.load(Ordering::Relaxed) {
                 return Err(signals.failure());
             }
@@ -131,7 +127,7 @@ fn leave(
     for file in atlas.into_iter().chain(poses) {
         file.persist()?;
     }
-    let summary = Summary::new(survey, start.elapsed());
+    let summary = Summary::new(result, start.elapsed());
     Ok(if wanted.json {
         summary.json()
     } else {

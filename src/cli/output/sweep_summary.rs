@@ -5,22 +5,22 @@ use std::time::Duration;
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use crate::atlas::statistics::{COLUMNS, Column, Statistic};
+use crate::atlas::{STATISTIC_COLUMNS, Statistic, StatisticColumn};
 use crate::cli::output::charset::Charset;
-use crate::sweep::survey::Survey;
+use crate::sweep::SweepResult;
 
-/// A survey, and how long it took.
+/// A result, and how long it took.
 pub(crate) struct Summary<'a> {
-    survey: &'a Survey,
+    result: &'a SweepResult,
     classes: (usize, usize),
     took: Duration,
 }
 
 impl<'a> Summary<'a> {
-    pub(crate) fn new(survey: &'a Survey, took: Duration) -> Self {
+    pub(crate) fn new(result: &'a SweepResult, took: Duration) -> Self {
         Self {
-            survey,
-            classes: survey.atlas.distinct_classes(),
+            result,
+            classes: result.atlas.distinct_classes(),
             took,
         }
     }
@@ -35,7 +35,7 @@ impl<'a> Summary<'a> {
 
     /// Counts, and a table of the statistics.
     pub(crate) fn text(&self, charset: Charset) -> String {
-        let Survey {
+        let SweepResult {
             grid,
             poses,
             partly_off,
@@ -43,7 +43,7 @@ impl<'a> Summary<'a> {
             statistics,
             shard,
             ..
-        } = self.survey;
+        } = self.result;
         let mut text = String::new();
         let mut line = |line: &str| {
             text.push_str(charset.line(line).trim_end());
@@ -76,14 +76,14 @@ impl<'a> Summary<'a> {
         ));
         line("");
         let mut row = format!("{:<16}", "");
-        for column in COLUMNS {
+        for column in STATISTIC_COLUMNS {
             // Cannot fail: a String takes everything.
             let _ = write!(row, "{:>11}", column.title);
         }
         line(&row);
         for statistic in statistics {
-            let mut row = format!("{:<16}", statistic.quantity.key);
-            for column in COLUMNS {
+            let mut row = format!("{:<16}", statistic.feature.key);
+            for column in STATISTIC_COLUMNS {
                 let value = (column.value)(statistic)
                     .map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
                 let value = charset.line(&value).into_owned();
@@ -97,16 +97,16 @@ impl<'a> Summary<'a> {
 
 impl Serialize for Summary<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let survey = self.survey;
+        let result = self.result;
         let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("poses", &survey.poses)?;
-        map.serialize_entry("distinct", &survey.atlas.len())?;
+        map.serialize_entry("poses", &result.poses)?;
+        map.serialize_entry("distinct", &result.atlas.len())?;
         map.serialize_entry("distinct_shifts", &self.classes.0)?;
         map.serialize_entry("distinct_symmetry", &self.classes.1)?;
-        map.serialize_entry("partly_off", &survey.partly_off)?;
-        map.serialize_entry("empty", &survey.atlas.empty_poses())?;
+        map.serialize_entry("partly_off", &result.partly_off)?;
+        map.serialize_entry("empty", &result.atlas.empty_poses())?;
         map.serialize_entry("seconds", &self.took.as_secs_f64())?;
-        map.serialize_entry("descriptors", &Descriptors(&survey.statistics))?;
+        map.serialize_entry("descriptors", &Descriptors(&result.statistics))?;
         map.end()
     }
 }
@@ -116,7 +116,7 @@ struct Descriptors<'a>(&'a [Statistic]);
 impl Serialize for Descriptors<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let rows = self.0.iter();
-        serializer.collect_map(rows.map(|row| (&row.quantity.key, Row(row))))
+        serializer.collect_map(rows.map(|row| (&row.feature.key, Row(row))))
     }
 }
 
@@ -124,7 +124,7 @@ struct Row<'a>(&'a Statistic);
 
 impl Serialize for Row<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let value = |column: &Column| (column.key, (column.value)(self.0));
-        serializer.collect_map(COLUMNS.iter().map(value))
+        let value = |column: &StatisticColumn| (column.key, (column.value)(self.0));
+        serializer.collect_map(STATISTIC_COLUMNS.iter().map(value))
     }
 }

@@ -1,7 +1,7 @@
 //! Lines, rows and widths that the pages have in common.
 
 use crate::parameter::Parameter;
-use crate::pose::grid::Grid;
+use crate::pose::PoseGrid;
 
 /// The first row that is visible: rows are shown page by page, so that what is clicked on stays where it is.
 pub(in crate::tui) fn first(visible: usize, selected: usize) -> usize {
@@ -9,7 +9,7 @@ pub(in crate::tui) fn first(visible: usize, selected: usize) -> usize {
 }
 
 /// Characters of the values of a range, and of its name.
-pub(in crate::tui) fn width_of(grid: &Grid, parameter: Parameter) -> usize {
+pub(in crate::tui) fn width_of(grid: &PoseGrid, parameter: Parameter) -> usize {
     let rows = grid.ranges().by_parameter();
     let range = rows.iter().find(|(own, _)| *own == parameter);
     let width = range.map_or(0, |(_, range)| {

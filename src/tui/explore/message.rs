@@ -3,18 +3,18 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::atlas::order::SortKey;
+use crate::atlas::SortKey;
 use crate::figure::FigureKind;
-use crate::pose::grid::Grid;
+use crate::pose::PoseGrid;
 use crate::source::Source;
 use crate::storage::Existing;
-use crate::sweep::survey::Survey;
+use crate::sweep::SweepResult;
 
 /// What a sweep found, whole or in part.
 #[derive(Debug)]
 pub struct Findings {
     /// The sweep.
-    pub survey: Survey,
+    pub sweep: SweepResult,
     /// How many of its imprints are distinct up to shifts, and up to quarter turns and mirror images too.
     pub classes: (usize, usize),
 }
@@ -76,7 +76,7 @@ pub enum ExploreMessage {
     /// The form of ranges.
     Ranges,
     /// To go through a grid.
-    Start(Box<Grid>),
+    Start(Box<PoseGrid>),
     /// To stop what is under way, and keep what is complete.
     Stop,
     /// A page.
@@ -84,7 +84,7 @@ pub enum ExploreMessage {
     /// Another page, so many further on.
     NextPage(i8),
     /// Another descriptor, so many further on.
-    Quantity(i8),
+    Feature(i8),
     /// Other columns of a table, so many further on.
     Columns(i8),
     /// To sort the imprints; by what they are sorted by already, the other way.
@@ -122,7 +122,7 @@ pub enum WorkerEvent {
     /// How far it is.
     Progress(u64, SweepProgress),
     /// How long a grid will take, about.
-    Estimate(Box<Grid>, Duration),
+    Estimate(Box<PoseGrid>, Duration),
     /// A sweep is over, at its end or because it was stopped.
     Swept(u64, Arc<Findings>),
     /// A file was written.

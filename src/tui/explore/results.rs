@@ -2,12 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::atlas::Entry;
-use crate::atlas::feature::{Quantity, quantities};
-use crate::atlas::order::{SortKey, sorted};
+use crate::atlas::{AtlasEntry, Feature, SortKey, features, sorted};
 use crate::imprint::Imprint;
-use crate::pose::grid::Place;
-use crate::sweep::survey::Survey;
+use crate::pose::PoseIndex;
+use crate::sweep::SweepResult;
 use crate::tui::app::message::Endpoint;
 use crate::tui::explore::message::{ExplorePage, Findings, Zoom};
 use crate::tui::keys::key::Arrow;
@@ -18,7 +16,7 @@ pub struct Results {
     findings: Arc<Findings>,
     page: ExplorePage,
     /// The number of the chosen descriptor, and its value of each imprint.
-    quantity: usize,
+    feature: usize,
     values: Vec<Option<f64>>,
     sort: (SortKey, bool),
     /// The imprints' numbers, sorted.
@@ -26,7 +24,7 @@ pub struct Results {
     selected: usize,
     /// The first column of statistics that is shown.
     column: usize,
-    place: Place,
+    place: PoseIndex,
 }
 
 impl Results {
@@ -34,8 +32,8 @@ impl Results {
     pub fn new(findings: Arc<Findings>) -> Self {
         let mut results = Self {
             page: ExplorePage::Imprints,
-            quantity: 0,
-            values: findings.survey.atlas.values(0),
+            feature: 0,
+            values: findings.sweep.atlas.values(0),
             findings,
             sort: (SortKey::Poses, true),
             rows: Vec::new(),
@@ -53,8 +51,8 @@ impl Results {
     }
 
     /// The sweep.
-    pub fn survey(&self) -> &Survey {
-        &self.findings.survey
+    pub fn sweep(&self) -> &SweepResult {
+        &self.findings.sweep
     }
 
     /// The page.
@@ -75,13 +73,13 @@ impl Results {
     }
 
     /// The number of the chosen descriptor.
-    pub fn quantity_number(&self) -> usize {
-        self.quantity
+    pub fn feature_number(&self) -> usize {
+        self.feature
     }
 
     /// The chosen descriptor.
-    pub fn quantity(&self) -> &'static Quantity {
-        &quantities()[self.quantity]
+    pub fn feature(&self) -> &'static Feature {
+        &features()[self.feature]
     }
 
     /// Its value of each imprint, by the imprints' numbers.
@@ -90,14 +88,14 @@ impl Results {
     }
 
     /// Chooses another descriptor, the first after the last.
-    pub fn next_quantity(&mut self, by: i8) {
-        self.choose_quantity(around(self.quantity, by, quantities().len()));
+    pub fn next_feature(&mut self, by: i8) {
+        self.choose_feature(around(self.feature, by, features().len()));
     }
 
     /// Chooses a descriptor, or the last one. The selected imprint stays selected.
-    pub fn choose_quantity(&mut self, number: usize) {
-        self.quantity = number.min(quantities().len() - 1);
-        self.values = self.survey().atlas.values(self.quantity);
+    pub fn choose_feature(&mut self, number: usize) {
+        self.feature = number.min(features().len() - 1);
+        self.values = self.sweep().atlas.values(self.feature);
         if self.sort.0 == SortKey::Value {
             self.arrange();
         }
@@ -123,7 +121,7 @@ impl Results {
     fn arrange(&mut self) {
         let selected = self.rows.get(self.selected).copied();
         let (by, descending) = self.sort;
-        self.rows = sorted(&self.survey().atlas, &self.values, by, descending);
+        self.rows = sorted(&self.sweep().atlas, &self.values, by, descending);
         if let Some(id) = selected {
             self.find(id);
         }
@@ -135,9 +133,9 @@ impl Results {
     }
 
     /// Some of the imprints, from a row on.
-    pub fn rows_from(&self, first: usize) -> impl Iterator<Item = (usize, Entry)> + '_ {
+    pub fn rows_from(&self, first: usize) -> impl Iterator<Item = (usize, AtlasEntry)> + '_ {
         let rows = self.rows.iter().enumerate().skip(first);
-        rows.filter_map(|(index, &id)| Some((index, self.survey().atlas.entry(id)?)))
+        rows.filter_map(|(index, &id)| Some((index, self.sweep().atlas.entry(id)?)))
     }
 
     /// Which row is selected.
@@ -174,7 +172,7 @@ impl Results {
         match self.page {
             ExplorePage::Imprints => self.select(by(self.selected)),
             ExplorePage::Statistics | ExplorePage::Histogram => {
-                self.choose_quantity(by(self.quantity));
+                self.choose_feature(by(self.feature));
             }
             ExplorePage::Map => self.move_along(1, i64::from(lines)),
         }
@@ -188,16 +186,16 @@ impl Results {
         };
         match self.page {
             ExplorePage::Imprints => self.select(far),
-            ExplorePage::Statistics | ExplorePage::Histogram => self.choose_quantity(far),
+            ExplorePage::Statistics | ExplorePage::Histogram => self.choose_feature(far),
             ExplorePage::Map => {
-                let last = self.survey().grid.counts()[0] - 1;
+                let last = self.sweep().grid.counts()[0] - 1;
                 self.place[0] = if end == Endpoint::First { 0 } else { last };
             }
         }
     }
 
     /// Where the map's cursor is.
-    pub fn place(&self) -> Place {
+    pub fn place(&self) -> PoseIndex {
         self.place
     }
 
@@ -210,14 +208,14 @@ impl Results {
 
     /// Puts it at an x0 and a y0, or the last ones.
     pub fn point(&mut self, x0: u64, y0: u64) {
-        let [width, height, ..] = self.survey().grid.counts();
+        let [width, height, ..] = self.sweep().grid.counts();
         self.place[0] = x0.min(width - 1);
         self.place[1] = y0.min(height - 1);
     }
 
     /// Shows another angle.
     pub fn turn(&mut self, by: i16) {
-        let count = self.survey().grid.counts()[2];
+        let count = self.sweep().grid.counts()[2];
         let by = i128::from(by) + i128::from(self.place[2]);
         // All around, where the angles may go all around too.
         self.place[2] = u64::try_from(by.rem_euclid(count.into())).unwrap_or(0);
@@ -233,19 +231,19 @@ impl Results {
     }
 
     fn move_along(&mut self, axis: usize, by: i64) {
-        let last = self.survey().grid.counts()[axis] - 1;
+        let last = self.sweep().grid.counts()[axis] - 1;
         self.place[axis] = self.place[axis].saturating_add_signed(by).min(last);
     }
 
     /// Puts the map's cursor where a pose is.
     pub fn go_to_pose(&mut self, number: u64) {
-        self.place = self.survey().grid.place(number);
+        self.place = self.sweep().grid.place(number);
     }
 
     /// The pose that is looked at: of the map, or the first one of the selected imprint; its number.
     pub fn pose(&self) -> Option<u64> {
         if self.page == ExplorePage::Map {
-            return Some(self.survey().grid.number(self.place));
+            return Some(self.sweep().grid.number(self.place));
         }
         let (_, entry) = self.rows_from(self.selected).next()?;
         Some(entry.first_pose)
@@ -253,7 +251,7 @@ impl Results {
 
     /// The number of an imprint in the atlas.
     pub fn id(&self, imprint: &Imprint) -> Option<u32> {
-        self.survey().atlas.find(imprint)
+        self.sweep().atlas.find(imprint)
     }
 }
 
@@ -268,11 +266,10 @@ pub fn around(now: usize, by: i8, count: usize) -> usize {
 mod tests {
     use super::*;
     use crate::figure::{Figure, FigureKind};
-    use crate::pose::grid::{Anchor, Grid, Ranges};
+    use crate::pose::{Anchor, PoseGrid, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
-    use crate::sweep::plan::Shard;
-    use crate::sweep::survey::Watch;
+    use crate::sweep::Sweep;
 
     fn results() -> Results {
         let ranges = Ranges {
@@ -282,10 +279,13 @@ mod tests {
             ..Ranges::default()
         };
         let source = Source::Figure(Figure::default_of(FigureKind::Heptagon, 16));
-        let grid = Grid::new(source, Sensor::default(), Anchor::Corner, ranges);
-        let survey = Survey::of(&grid.expect("in range"), Shard::WHOLE, Watch::nothing());
-        let classes = survey.atlas.distinct_classes();
-        Results::new(Arc::new(Findings { survey, classes }))
+        let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
+        let result = Sweep::new(&grid.expect("in range")).run();
+        let classes = result.atlas.distinct_classes();
+        Results::new(Arc::new(Findings {
+            sweep: result,
+            classes,
+        }))
     }
 
     #[test]
@@ -295,7 +295,7 @@ mod tests {
         results.select(7);
         let selected = |results: &Results| results.rows_from(results.selected()).next();
         let before = selected(&results).map(|(_, entry)| entry.id);
-        results.next_quantity(3);
+        results.next_feature(3);
         assert_eq!(selected(&results).map(|(_, entry)| entry.id), before);
         results.sort(SortKey::Poses);
         assert_eq!(results.selected(), 0);

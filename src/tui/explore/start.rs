@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::pose::grid::Grid;
+use crate::pose::PoseGrid;
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
@@ -22,7 +22,7 @@ pub(crate) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
         ExploreMessage::Start(grid) => Some(start(app, *grid)),
         ExploreMessage::Write(name, existing) => {
             let found = Arc::clone(app.results_below()?.findings());
-            let poses = is_poses(&name).then(|| found.survey.grid.poses());
+            let poses = is_poses(&name).then(|| found.sweep.grid.poses());
             let number = begin(app, WorkKind::Write(name.clone(), poses));
             Some(Effect::Work(Work::Write(number, found, name, existing)))
         }
@@ -47,7 +47,7 @@ fn open(app: &mut App) -> Option<Effect> {
 
 /// Whether results are those of the shape on the matrix, wherever it is now.
 fn is_of(app: &App, results: &Results) -> bool {
-    let grid = &results.survey().grid;
+    let grid = &results.sweep().grid;
     let present = app.history.present();
     explored(present).is_some_and(|source| grid.is_of(&source, &present.sensor))
 }
@@ -55,7 +55,7 @@ fn is_of(app: &App, results: &Results) -> bool {
 /// The form, with the ranges of the results below it or those that were last.
 fn open_ranges(app: &mut App) -> Option<Effect> {
     let below = app.dialogs.last().and_then(|dialog| match dialog {
-        Dialog::Results(results) => Some(results.survey().grid.clone()),
+        Dialog::Results(results) => Some(results.sweep().grid.clone()),
         _ => None,
     });
     let present = app.history.present();
@@ -75,7 +75,7 @@ fn measure(form: &mut RangesForm) -> Option<Effect> {
     Some(Effect::Work(Work::Measure(Box::new(grid))))
 }
 
-fn start(app: &mut App, grid: Grid) -> Effect {
+fn start(app: &mut App, grid: PoseGrid) -> Effect {
     let number = begin(app, WorkKind::Sweep(Box::new(grid.clone())));
     Effect::Work(Work::Sweep(number, Box::new(grid)))
 }

@@ -1,6 +1,6 @@
 //! What keys do with what was found: pages, rows, the map, a shape back onto the matrix, a file.
 
-use crate::atlas::statistics::COLUMNS;
+use crate::atlas::STATISTIC_COLUMNS;
 use crate::formats::value::grouped;
 use crate::storage::Existing;
 use crate::touch::Plane;
@@ -31,7 +31,7 @@ pub(crate) fn in_results(
         Message::Cursor(arrow) => results.move_cursor(arrow),
         Message::Paste(_) => inform(app, "pasted text goes into fields only"),
         Message::Explore(ExploreMessage::Export) => {
-            let name = format!("{}.csv", name_of(results.survey().grid.source()));
+            let name = format!("{}.csv", name_of(results.sweep().grid.source()));
             app.dialogs.push(Dialog::Results(results));
             let dialog = ExportDialog::proposing(&name);
             app.dialogs.push(Dialog::Export(dialog));
@@ -53,12 +53,12 @@ fn look(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
     match *asked {
         ExploreMessage::Page(page) => results.turn_to(page),
         ExploreMessage::NextPage(by) => results.next_page(by),
-        ExploreMessage::Quantity(by) => results.next_quantity(by),
+        ExploreMessage::Feature(by) => results.next_feature(by),
         ExploreMessage::Columns(by) => {
             if let Some(panes) = Panes::shown(app) {
                 let page = ResultPanes::of(&panes).page;
                 let (_, visible) = StatisticsTable::of(page, results).columns;
-                results.move_columns(by, COLUMNS.len() - visible);
+                results.move_columns(by, STATISTIC_COLUMNS.len() - visible);
             }
         }
         ExploreMessage::Sort(by) => results.sort(by),
@@ -72,7 +72,7 @@ fn look(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
         ExploreMessage::Select(row) if results.page() == ExplorePage::Imprints => {
             results.select(row)
         }
-        ExploreMessage::Select(row) => results.choose_quantity(row),
+        ExploreMessage::Select(row) => results.choose_feature(row),
         ExploreMessage::Point(x0, y0) => results.point(x0, y0),
         ExploreMessage::Angle(by) => results.turn(by),
         ExploreMessage::Zoomed(zoom, by) => results.zoom(zoom, by),
@@ -87,7 +87,7 @@ fn follow(app: &mut App, results: &mut Results) {
         results.go_to_pose(pose);
         return results.turn_to(ExplorePage::Map);
     }
-    let grid = &results.survey().grid;
+    let grid = &results.sweep().grid;
     let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(grid.pose(pose)));
     match results.id(&imprint) {
         Some(id) => {
@@ -100,7 +100,7 @@ fn follow(app: &mut App, results: &mut Results) {
 
 /// The shape in the pose that is looked at, with just the imprint that the sweep found.
 fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
-    let grid = &results.survey().grid;
+    let grid = &results.sweep().grid;
     let Some(pose) = results.pose().map(|number| grid.pose(number)) else {
         app.dialogs.push(Dialog::Results(results));
         return None;
@@ -153,12 +153,12 @@ pub(crate) fn in_export(
 
 /// Why the poses cannot be written.
 fn missing(app: &App, name: &str) -> Option<String> {
-    let survey = app.results_below()?.survey();
-    (is_poses(name) && !survey.complete()).then(|| {
+    let result = app.results_below()?.sweep();
+    (is_poses(name) && !result.complete()).then(|| {
         format!(
             ".npy needs all poses: only {} of {} were swept",
-            grouped(survey.poses),
-            grouped(survey.grid.poses())
+            grouped(result.poses),
+            grouped(result.grid.poses())
         )
     })
 }

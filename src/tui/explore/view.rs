@@ -43,17 +43,17 @@ pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, panes: &Panes) ->
 
 /// How much there is; first of all, whether it is all.
 fn summary(results: &Results) -> String {
-    let survey = results.survey();
-    let poses = if survey.complete() {
-        counted(survey.poses, "pose")
+    let result = results.sweep();
+    let poses = if result.complete() {
+        counted(result.poses, "pose")
     } else {
         format!(
             "a part: {} of {}",
-            grouped(survey.poses),
-            counted(survey.grid.poses(), "pose")
+            grouped(result.poses),
+            counted(result.grid.poses(), "pose")
         )
     };
-    let what = name_of(survey.grid.source());
-    let distinct = counted(survey.atlas.len() as u64, "distinct imprint");
+    let what = name_of(result.grid.source());
+    let distinct = counted(result.atlas.len() as u64, "distinct imprint");
     format!("{what}: {poses}, {distinct}")
 }

@@ -93,17 +93,17 @@ fn take_findings(app: &mut App, number: u64, findings: Arc<Findings>) {
     let Some(place) = finish(app, number) else {
         return;
     };
-    let survey = &findings.survey;
-    if survey.poses == 0 {
+    let result = &findings.sweep;
+    if result.poses == 0 {
         return refuse(app, "stopped before anything was complete");
     }
-    if !survey.complete() {
+    if !result.complete() {
         inform(
             app,
             format!(
                 "stopped after {} of {} poses",
-                grouped(survey.poses),
-                grouped(survey.grid.poses())
+                grouped(result.poses),
+                grouped(result.grid.poses())
             ),
         );
     }

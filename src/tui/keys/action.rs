@@ -2,7 +2,7 @@
 //!
 //! Where the command line at the foot knows the same action, it has the same name.
 
-use crate::atlas::order::SortKey;
+use crate::atlas::SortKey;
 use crate::tui::app::message::{Copied, Endpoint, Erase, Message};
 use crate::tui::explore::message::{ExploreMessage, ExplorePage, Zoom};
 use crate::tui::keys::key::Arrow;
@@ -99,11 +99,11 @@ pub const ACTIONS: &[(&str, Message)] = &[
     ),
     (
         "next-descriptor",
-        Message::Explore(ExploreMessage::Quantity(1)),
+        Message::Explore(ExploreMessage::Feature(1)),
     ),
     (
         "previous-descriptor",
-        Message::Explore(ExploreMessage::Quantity(-1)),
+        Message::Explore(ExploreMessage::Feature(-1)),
     ),
     (
         "later-columns",

@@ -3,7 +3,7 @@
 //!
 //! The arrows move the cursor, not `hjkl`: `l` is Load, as in the paper's menu.
 
-use crate::atlas::order::SortKey;
+use crate::atlas::SortKey;
 use crate::tui::app::message::{Copied, Endpoint, Erase, Message};
 use crate::tui::explore::message::{ExploreMessage, ExplorePage, Zoom};
 use crate::tui::keys::binding::{Binding, Context, bind};
@@ -158,7 +158,7 @@ pub const KEYMAP: &[Binding] = table! {
             Char('4') => Explore(ExploreMessage::Page(ExplorePage::Map))] "" "imprints, statistics, histogram, map";
         [Tab => Explore(ExploreMessage::NextPage(1)), BackTab => Explore(ExploreMessage::NextPage(-1))]
             "page" "next, previous page";
-        [Char('d') => Explore(ExploreMessage::Quantity(1)), Char('D') => Explore(ExploreMessage::Quantity(-1))]
+        [Char('d') => Explore(ExploreMessage::Feature(1)), Char('D') => Explore(ExploreMessage::Feature(-1))]
             "descriptor" "next, previous descriptor";
         [Char('x') => Explore(ExploreMessage::Export)]
             "export" "write a file: .csv .jsonl .npz imprints, .npy poses";

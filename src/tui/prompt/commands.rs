@@ -2,7 +2,7 @@
 
 use crate::figure::FigureKind;
 use crate::parameter::Parameter;
-use crate::pose::grid::Ranges;
+use crate::pose::Ranges;
 use crate::sensor::SENSOR_PARAMETERS;
 use crate::tui::app::message::{Copied, Endpoint, Message};
 use crate::tui::explore::message::ExploreMessage;

@@ -2,8 +2,7 @@
 //! matrix.
 
 use crate::parameter::Parameter;
-use crate::pose::grid::{Anchor, Grid, Ranges};
-use crate::pose::range::DecimalRange;
+use crate::pose::{Anchor, DecimalRange, PoseGrid, Ranges};
 use crate::quote::shortened;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
@@ -63,7 +62,7 @@ pub(in crate::tui) fn read(words: &[&str], app: &App) -> Result<Message, String>
         };
         *place = range;
     }
-    let grid = Grid::new(source, document.sensor, anchor, ranges);
+    let grid = PoseGrid::new(source, document.sensor, anchor, ranges);
     let grid = grid.map_err(|error| error.to_string())?;
     Ok(Message::Explore(ExploreMessage::Start(Box::new(grid))))
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::formats::StoredShape;
-use crate::pose::grid::Grid;
+use crate::pose::PoseGrid;
 use crate::storage::{Existing, Expected};
 use crate::tui::explore::message::Findings;
 use crate::tui::shapes::purpose::Purpose;
@@ -36,9 +36,9 @@ pub enum TerminalEffect {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Work {
     /// To find out how long a grid will take, about.
-    Measure(Box<Grid>),
+    Measure(Box<PoseGrid>),
     /// To go through a grid.
-    Sweep(u64, Box<Grid>),
+    Sweep(u64, Box<PoseGrid>),
     /// To write what was found into a file of that name.
     Write(u64, Arc<Findings>, String, Existing),
     /// To stop.

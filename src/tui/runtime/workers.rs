@@ -10,11 +10,9 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use crate::pose::grid::Grid;
+use crate::pose::PoseGrid;
 use crate::storage::{AtlasFile, Existing, PoseFile, SweepFileError};
-use crate::sweep::plan::Shard;
-use crate::sweep::sample::Sample;
-use crate::sweep::survey::{Survey, Watch};
+use crate::sweep::{Sweep, SweepResult, TimingSample};
 use crate::tui::explore::export::is_poses;
 use crate::tui::explore::message::{Findings, SweepProgress, WorkerEvent};
 use crate::tui::runtime::effect::Work;
@@ -170,13 +168,13 @@ fn guarded(number: u64, work: impl FnOnce() -> WorkerEvent) -> WorkerEvent {
 }
 
 /// How long a grid takes, about; nothing where that is no longer asked.
-fn measure(grid: &Grid, stop: &AtomicBool) -> Option<Duration> {
-    let sample = Sample::of(grid);
+fn measure(grid: &PoseGrid, stop: &AtomicBool) -> Option<Duration> {
+    let sample = TimingSample::of(grid);
     let begun = Instant::now();
     let mut best = f64::INFINITY;
     while !best.is_finite() || begun.elapsed() < MEASURED {
         let start = Instant::now();
-        Survey::of(&sample.grid, Shard::WHOLE, Watch::nothing());
+        Sweep::new(&sample.grid).run();
         best = best.min(start.elapsed().as_secs_f64());
         if stop.load(Ordering::Relaxed) {
             return None;
@@ -185,15 +183,22 @@ fn measure(grid: &Grid, stop: &AtomicBool) -> Option<Duration> {
     Duration::try_from_secs_f64(best * sample.times).ok()
 }
 
-fn sweep(number: u64, grid: &Grid, stop: &AtomicBool, clock: Option<&Clock<'_>>) -> WorkerEvent {
+fn sweep(
+    number: u64,
+    grid: &PoseGrid,
+    stop: &AtomicBool,
+    clock: Option<&Clock<'_>>,
+) -> WorkerEvent {
     let progress = |poses: u64| going(poses, stop, clock);
-    let watch = Watch {
-        progress: &progress,
-        rows: None,
-    };
-    let survey = Survey::of(grid, Shard::WHOLE, watch);
-    let classes = survey.atlas.distinct_classes();
-    WorkerEvent::Swept(number, Arc::new(Findings { survey, classes }))
+    let result = Sweep::new(grid).progress(&progress).run();
+    let classes = result.atlas.distinct_classes();
+    WorkerEvent::Swept(
+        number,
+        Arc::new(Findings {
+            sweep: result,
+            classes,
+        }),
+    )
 }
 
 /// Takes note of poses that are done; answers whether to go on.
@@ -212,12 +217,12 @@ fn write(
     stop: &AtomicBool,
     clock: Option<&Clock<'_>>,
 ) -> WorkerEvent {
-    let survey = &findings.survey;
+    let result = &findings.sweep;
     let written = if is_poses(name) {
-        write_poses(survey, name, existing, stop, clock)
+        write_poses(result, name, existing, stop, clock)
     } else {
         match AtlasFile::new(name) {
-            Ok(file) => file.write(survey, existing, stop).map(|()| true),
+            Ok(file) => file.write(result, existing, stop).map(|()| true),
             Err(expected) => return WorkerEvent::Failed(number, format!("{name}: {expected}")),
         }
     };
@@ -235,22 +240,19 @@ fn write(
 
 /// Goes through the grid once more: the numbers of its poses are kept nowhere. Answers whether it came to its end.
 fn write_poses(
-    survey: &Survey,
+    result: &SweepResult,
     name: &str,
     existing: Existing,
     stop: &AtomicBool,
     clock: Option<&Clock<'_>>,
 ) -> Result<bool, SweepFileError> {
-    let mut file = PoseFile::new(name, &survey.grid, existing)?;
+    let mut file = PoseFile::new(name, &result.grid, existing)?;
     // A disk that is full ends the work, but is no wish to stop.
     let full = AtomicBool::new(false);
     let progress = |poses: u64| going(poses, stop, clock) && !full.load(Ordering::Relaxed);
     let mut take = |row: u64, ids: &[u32]| file.take(row, ids, &full);
-    let watch = Watch {
-        progress: &progress,
-        rows: Some(&mut take),
-    };
-    let complete = Survey::of(&survey.grid, Shard::WHOLE, watch).complete();
+    let sweep = Sweep::new(&result.grid).progress(&progress).rows(&mut take);
+    let complete = sweep.run().complete();
     let whole = file.finish()?;
     if complete {
         whole.persist()?;

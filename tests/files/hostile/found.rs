@@ -1,7 +1,7 @@
 //! What was found, by the targets and while they were written.
 
-use taxel::atlas::feature::quantities;
-use taxel::pose::range::DecimalRange;
+use taxel::atlas::features;
+use taxel::pose::DecimalRange;
 
 use super::bodies::{body, session_of, with_spread};
 
@@ -30,8 +30,8 @@ fn ranges_come_back_as_they_were() {
 #[test]
 fn turns_that_stand_for_many_are_added_at_once() {
     let archive = with_spread(1, |words| {
-        let turn = words.split_off(3 * quantities().len());
-        assert_eq!(turn.len(), 3 + 5 * quantities().len(), "one is open");
+        let turn = words.split_off(3 * features().len());
+        assert_eq!(turn.len(), 3 + 5 * features().len(), "one is open");
         for number in 0..5000 {
             words.extend([number, turn[1], 1_000_000]);
             words.extend(&turn[3..]);
@@ -44,7 +44,7 @@ fn turns_that_stand_for_many_are_added_at_once() {
 #[test]
 fn directions_that_contradict_each_other_have_a_finite_deviation() {
     let archive = with_spread(2, |words| {
-        words.truncate(3 * quantities().len());
+        words.truncate(3 * features().len());
         words.fill(0);
     });
     body("archive")(&archive);

@@ -3,11 +3,10 @@
 use taxel::figure::{Figure, FigureKind};
 use taxel::parameter::Parameter;
 use taxel::picture::Picture;
-use taxel::pose::grid::{Anchor, Grid, Ranges};
+use taxel::pose::{Anchor, PoseGrid, Ranges};
 use taxel::sensor::Sensor;
 use taxel::source::Source;
-use taxel::sweep::plan::Shard;
-use taxel::sweep::survey::{Survey, Watch};
+use taxel::sweep::Sweep;
 use taxel::touch::{Plane, reaches_beyond};
 
 /// What is swept, where, and how.
@@ -238,7 +237,7 @@ pub(crate) fn cases() -> Vec<Case> {
 
 impl Case {
     /// Its grid at the given angles; every `stride`-th step of x0 and y0 only.
-    pub(crate) fn grid(&self, angles: &str, stride: u32) -> Grid {
+    pub(crate) fn grid(&self, angles: &str, stride: u32) -> PoseGrid {
         let place = if self.place.is_empty() {
             "5:5.99:0.01"
         } else {
@@ -263,12 +262,12 @@ impl Case {
             zoom_x: read(self.zoom),
             zoom_y: read(self.zoom),
         };
-        Grid::new(self.source.clone(), self.sensor, self.anchor, ranges).expect("a grid")
+        PoseGrid::new(self.source.clone(), self.sensor, self.anchor, ranges).expect("a grid")
     }
 }
 
 /// Sweeps the grid and touches pose by pose; how many poses differ, and what is wrong otherwise.
-pub(crate) fn differences(grid: &Grid) -> Result<u64, String> {
+pub(crate) fn differences(grid: &PoseGrid) -> Result<u64, String> {
     let poses = usize::try_from(grid.poses()).expect("a small grid");
     let width = usize::try_from(grid.ranges().x0.count()).expect("a small grid");
     let mut ids = vec![u32::MAX; poses];
@@ -277,12 +276,8 @@ pub(crate) fn differences(grid: &Grid) -> Result<u64, String> {
         assert!(ids[start..start + width].iter().all(|&id| id == u32::MAX));
         ids[start..start + width].copy_from_slice(numbers);
     };
-    let watch = Watch {
-        progress: &|_| true,
-        rows: Some(&mut take),
-    };
-    let survey = Survey::of(grid, Shard::WHOLE, watch);
-    let imprints: Vec<_> = survey.atlas.entries().collect();
+    let result = Sweep::new(grid).rows(&mut take).run();
+    let imprints: Vec<_> = result.atlas.entries().collect();
     let mut plane = Plane::new(*grid.sensor());
     let (mut differing, mut partly_off, mut empty) = (0, 0, 0);
     let mut known = 0;
@@ -309,7 +304,7 @@ pub(crate) fn differences(grid: &Grid) -> Result<u64, String> {
             return Err(format!("{id} occurs before {known}"));
         }
     }
-    let claimed = (survey.poses, survey.partly_off, survey.atlas.empty_poses());
+    let claimed = (result.poses, result.partly_off, result.atlas.empty_poses());
     if claimed != (grid.poses(), partly_off, empty) {
         return Err(format!(
             "{claimed:?} instead of {partly_off} partly off, {empty} empty"

@@ -13,17 +13,16 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use self::cases::{cases, differences, figure, picture};
 use taxel::figure::FigureKind;
 use taxel::parameter::Parameter;
-use taxel::pose::grid::{Anchor, Grid, Ranges};
+use taxel::pose::{Anchor, PoseGrid, Ranges};
 use taxel::sensor::Sensor;
 use taxel::source::Source;
-use taxel::sweep::plan::Shard;
-use taxel::sweep::survey::{MergeError, Survey, Watch};
+use taxel::sweep::{MergeError, Shard, Sweep, SweepResult};
 
-fn sweep(grid: &Grid) -> Survey {
-    Survey::of(grid, Shard::WHOLE, Watch::nothing())
+fn sweep(grid: &PoseGrid) -> SweepResult {
+    Sweep::new(grid).run()
 }
 
-fn small(source: Source, place: &str, angles: &str) -> Grid {
+fn small(source: Source, place: &str, angles: &str) -> PoseGrid {
     let read = |text: &str| text.parse().expect("a range");
     let ranges = Ranges {
         x0: read(place),
@@ -31,7 +30,7 @@ fn small(source: Source, place: &str, angles: &str) -> Grid {
         angle: read(angles),
         ..Ranges::default()
     };
-    Grid::new(source, Sensor::default(), Anchor::Corner, ranges).expect("a grid")
+    PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges).expect("a grid")
 }
 
 #[test]
@@ -90,18 +89,18 @@ fn steps_may_be_finer_than_the_crossings_are_sharp() {
     assert_eq!(differences(&grid), Ok(0));
 }
 
-/// All that can be said of a survey, in one text.
-fn told(survey: &Survey) -> String {
-    let entries: Vec<_> = survey.atlas.entries().collect();
-    let Survey {
+/// All that can be said of a result, in one text.
+fn told(result: &SweepResult) -> String {
+    let entries: Vec<_> = result.atlas.entries().collect();
+    let SweepResult {
         poses,
         partly_off,
         statistics,
         ..
-    } = survey;
+    } = result;
     format!(
         "{poses} {partly_off} {:?} {entries:?} {statistics:?}",
-        survey.atlas.distinct_classes()
+        result.atlas.distinct_classes()
     )
 }
 
@@ -137,9 +136,9 @@ fn threads_and_shards_do_not_matter() {
         for of in [1, 2, 3, 7, 40] {
             let shards = (1..=of).map(|number| {
                 let shard = Shard::new(number, of).expect("a shard");
-                Survey::of(&grid, shard, Watch::nothing())
+                Sweep::new(&grid).shard(shard).run()
             });
-            let merged = Survey::merge(shards.collect::<Vec<_>>().into_iter().rev());
+            let merged = SweepResult::merge(shards.collect::<Vec<_>>().into_iter().rev());
             assert_eq!(told(&merged.expect("all shards")), whole, "{of} shards");
         }
     }
@@ -156,7 +155,7 @@ fn rows_that_are_images_equal_those_gone_through() {
             angle: read(angles),
             ..Ranges::default()
         };
-        Grid::new(source, Sensor::default(), Anchor::Centre, ranges).expect("a grid")
+        PoseGrid::new(source, Sensor::default(), Anchor::Centre, ranges).expect("a grid")
     };
     let tie = figure(FigureKind::Rectangle, 4.5, 2.5, 0.5);
     for grid in [
@@ -194,9 +193,9 @@ fn rows_that_are_images_equal_those_gone_through() {
         let rows = u32::try_from(grid.rows()).expect("a small grid");
         let one_by_one = (1..=rows).map(|number| {
             let row = Shard::new(number, rows).expect("a shard");
-            Survey::of(&grid, row, Watch::nothing())
+            Sweep::new(&grid).shard(row).run()
         });
-        let merged = Survey::merge(one_by_one).expect("all shards");
+        let merged = SweepResult::merge(one_by_one).expect("all shards");
         assert_eq!(told(&whole), told(&merged), "{:?}", grid.source());
         assert_eq!(differences(&grid), Ok(0), "{:?}", grid.source());
         assert!(whole.atlas.len() > 50, "{:?}", grid.source());
@@ -210,14 +209,12 @@ fn shards_are_merged_only_if_all_are_there() {
         "5:5.9:0.1",
         "0:40:10",
     );
-    let shard = |grid: &Grid, number, of| {
-        Survey::of(
-            grid,
-            Shard::new(number, of).expect("a shard"),
-            Watch::nothing(),
-        )
+    let shard = |grid: &PoseGrid, number, of| {
+        Sweep::new(grid)
+            .shard(Shard::new(number, of).expect("a shard"))
+            .run()
     };
-    let merge = |surveys: Vec<Survey>| Survey::merge(surveys).map(|survey| survey.poses);
+    let merge = |results: Vec<SweepResult>| SweepResult::merge(results).map(|result| result.poses);
     assert_eq!(merge(vec![]), Err(MergeError::Nothing));
     assert_eq!(
         merge(vec![shard(&grid, 1, 3), shard(&grid, 2, 3)]),
@@ -262,38 +259,34 @@ fn a_stopped_sweep_keeps_what_is_complete() {
     let stopped_after = |most: u64| {
         done.store(0, Ordering::Relaxed);
         let enough = |poses| done.fetch_add(poses, Ordering::Relaxed) + poses < most;
-        let watch = Watch {
-            progress: &enough,
-            rows: None,
-        };
-        pool.install(|| Survey::of(&grid, Shard::WHOLE, watch))
+        pool.install(|| Sweep::new(&grid).progress(&enough).run())
     };
-    let survey = stopped_after(500_000);
-    assert!(!survey.complete());
+    let result = stopped_after(500_000);
+    assert!(!result.complete());
     assert_eq!(done.load(Ordering::Relaxed), 500_000);
     // Whole turns, and at most the last sixteen of them are lost.
-    assert!((340_000..500_000).contains(&survey.poses) && survey.poses % 10_000 == 0);
+    assert!((340_000..500_000).contains(&result.poses) && result.poses % 10_000 == 0);
     assert_eq!(
-        survey.atlas.entries().map(|entry| entry.count).sum::<u64>(),
-        survey.poses
+        result.atlas.entries().map(|entry| entry.count).sum::<u64>(),
+        result.poses
     );
-    assert!(survey.statistics[0].poses == survey.poses && survey.statistics[0].sd_angle.is_some());
+    assert!(result.statistics[0].poses == result.poses && result.statistics[0].sd_angle.is_some());
     let incomplete = MergeError::Incomplete {
         shard: Shard::WHOLE,
     };
-    assert_eq!(Survey::merge([survey]).err(), Some(incomplete));
+    assert_eq!(SweepResult::merge([result]).err(), Some(incomplete));
     // Not even a turn is waited for.
-    let survey = stopped_after(1);
-    assert_eq!((survey.poses, survey.atlas.len()), (0, 0));
+    let result = stopped_after(1);
+    assert_eq!((result.poses, result.atlas.len()), (0, 0));
     assert!(done.load(Ordering::Relaxed) <= 5_000);
 }
 
 #[test]
 fn the_paper_s_ring_has_393_imprints() {
-    let survey = sweep(&small(
+    let result = sweep(&small(
         figure(FigureKind::Ellipse, 4.0, 4.0, 2.0),
         "1:1.99:0.01",
         "0:359:1",
     ));
-    assert_eq!((survey.poses, survey.atlas.len()), (3_600_000, 393));
+    assert_eq!((result.poses, result.atlas.len()), (3_600_000, 393));
 }

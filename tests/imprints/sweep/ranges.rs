@@ -1,8 +1,7 @@
 //! Ranges and grids of poses: exact, or refused with the reason.
 
 use taxel::figure::FigureKind;
-use taxel::pose::grid::{Anchor, Grid, Ranges};
-use taxel::pose::range::{DecimalRange, MAX_VALUES};
+use taxel::pose::{Anchor, DecimalRange, MAX_VALUES, PoseGrid, Ranges};
 use taxel::sensor::Sensor;
 
 use super::cases::{figure, picture};
@@ -92,7 +91,7 @@ fn parts_beyond_the_end_are_none() {
 #[test]
 fn grids_are_in_range_or_refused() {
     let grid = |source, ranges| {
-        Grid::new(source, Sensor::default(), Anchor::Corner, ranges).map(|grid| grid.poses())
+        PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges).map(|grid| grid.poses())
     };
     let read = |text: &str| text.parse().expect("a range");
     let paper = Ranges::default();

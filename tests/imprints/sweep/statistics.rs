@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use taxel::atlas::feature::{quantities, values};
+use taxel::atlas::{feature_values, features};
 use taxel::description::{Description, main_region, regions};
 use taxel::figure::FigureKind;
 use taxel::imprint::Imprint;
@@ -47,13 +47,13 @@ fn statistics_equal_those_of_a_plain_loop() {
         picture("##.# .### ##.. #..#"),
     ] {
         let grid = small(source, "4:5.4:0.07", "3:351:29");
-        let survey = sweep(&grid);
+        let result = sweep(&grid);
         let mut plane = Plane::new(*grid.sensor());
         let mut turns: Vec<Vec<Vec<f64>>> = Vec::new();
         let turn = grid.ranges().x0.count() * grid.ranges().y0.count();
         for number in 0..grid.poses() {
             if number % turn == 0 {
-                turns.push(vec![Vec::new(); quantities().len()]);
+                turns.push(vec![Vec::new(); features().len()]);
             }
             let regions = regions(&plane.touch(&grid.placed(grid.pose(number))));
             let Some(main) = main_region(&regions) else {
@@ -61,10 +61,10 @@ fn statistics_equal_those_of_a_plain_loop() {
             };
             let description = Description::of(&regions[main]);
             let lists = turns.last_mut().expect("a turn");
-            values(&description, |index, value| lists[index].push(value));
+            feature_values(&description, |index, value| lists[index].push(value));
         }
-        for (index, statistic) in survey.statistics.iter().enumerate() {
-            let key = &statistic.quantity.key;
+        for (index, statistic) in result.statistics.iter().enumerate() {
+            let key = &statistic.feature.key;
             let by_turn: Vec<&[f64]> = turns.iter().map(|lists| &lists[index][..]).collect();
             let all = by_turn.concat();
             assert_eq!(statistic.poses, all.len() as u64, "{key}");
@@ -84,7 +84,7 @@ fn statistics_equal_those_of_a_plain_loop() {
                 let sum = by_turn.iter().filter(|turn| !turn.is_empty());
                 sum.map(|turn| of(turn) * turn.len() as f64).sum::<f64>() / all.len() as f64
             };
-            if statistic.quantity.circular {
+            if statistic.feature.circular {
                 let (length, direction) = resultant(&all);
                 let turns = weighted(&|turn| resultant(turn).0);
                 near(statistic.mean, direction, "mean");
@@ -126,12 +126,12 @@ fn statistics_equal_those_of_a_plain_loop() {
 #[test]
 fn ideal_values_are_those_of_the_continuous_figure() {
     let ideal = |source, key: &str| {
-        let survey = sweep(&small(source, "4", "0"));
-        let found = survey
+        let result = sweep(&small(source, "4", "0"));
+        let found = result
             .statistics
             .iter()
-            .find(|statistic| statistic.quantity.key == key);
-        found.expect("a quantity").ideal
+            .find(|statistic| statistic.feature.key == key);
+        found.expect("a feature").ideal
     };
     let near = |found: Option<f64>, expected: f64| {
         assert!(
@@ -201,19 +201,19 @@ fn classes_equal_those_of_all_images_written_out() {
         (figure(FigureKind::Rectangle, 3.0, 2.0, 0.0), "3:7.9:0.31"),
         (picture("##.# .###"), "-3:15:0.9"),
     ] {
-        let survey = sweep(&small(source, place, "0:359:7"));
+        let result = sweep(&small(source, place, "0:359:7"));
         let mut shifted = HashMap::new();
         let mut symmetric = HashMap::new();
-        for entry in survey.atlas.entries() {
+        for entry in result.atlas.entries() {
             let images = images(&entry.imprint);
             *shifted.entry(images[0].clone()).or_insert(0) += 1;
             *symmetric.entry(images.into_iter().min()).or_insert(0) += 1;
-            assert_eq!(survey.atlas.find(&entry.imprint), Some(entry.id));
+            assert_eq!(result.atlas.find(&entry.imprint), Some(entry.id));
         }
         assert_eq!(
-            survey.atlas.distinct_classes(),
+            result.atlas.distinct_classes(),
             (shifted.len(), symmetric.len())
         );
-        assert!(symmetric.len() < shifted.len() && shifted.len() < survey.atlas.len());
+        assert!(symmetric.len() < shifted.len() && shifted.len() < result.atlas.len());
     }
 }

@@ -3,7 +3,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use crate::atlas::histogram::Histogram;
+use crate::atlas::Histogram;
 use crate::description::Dimension;
 use crate::formats::value::{counted, fitting, grouped};
 use crate::tui::app::state::App;
@@ -17,23 +17,23 @@ const NUMBER: usize = 9;
 /// Draws the page.
 pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) {
     let theme = app.theme();
-    let (survey, quantity) = (results.survey(), results.quantity());
-    let statistic = &survey.statistics[results.quantity_number()];
+    let (result, feature) = (results.sweep(), results.feature());
+    let statistic = &result.statistics[results.feature_number()];
     let number = |value: Option<f64>| {
         value.map_or_else(|| theme.none().to_owned(), |value| fitting(value, NUMBER))
     };
-    let unit = match quantity.descriptor.dimension {
+    let unit = match feature.descriptor.dimension {
         Dimension::Count => "",
         Dimension::Length => ", cell sides",
         Dimension::Area => ", cells",
         Dimension::Direction => ", degrees",
         _ => ", ratio",
     };
-    let title = format!("{}: {}{unit}", quantity.key, quantity.descriptor.name);
+    let title = format!("{}: {}{unit}", feature.key, feature.descriptor.name);
     write::line(buffer, page, theme, [(title.as_str(), Role::Title)]);
     // The axis and what has no value have a line each.
     let room = usize::from(page.height.saturating_sub(3));
-    let histogram = Histogram::of(&survey.atlas, quantity, results.values(), room.max(1));
+    let histogram = Histogram::of(&result.atlas, feature, results.values(), room.max(1));
     let facts = format!(
         "mean {}  sd {}  min {}  max {}  no value: {}",
         number(statistic.mean),
@@ -53,7 +53,7 @@ pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) {
     bars(
         app,
         &histogram,
-        quantity.descriptor.dimension,
+        feature.descriptor.dimension,
         buffer,
         write::below(page, 2),
     );

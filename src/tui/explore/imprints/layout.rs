@@ -4,7 +4,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::formats::value::grouped;
 use crate::parameter::Parameter;
-use crate::pose::grid::Grid;
+use crate::pose::PoseGrid;
 use crate::tui::app::layout::below;
 use crate::tui::explore::lines::{first, width_of};
 use crate::tui::explore::results::Results;
@@ -41,10 +41,10 @@ pub struct ImprintList {
 impl ImprintList {
     /// The list on its page.
     pub fn of(page: Rect, results: &Results) -> Self {
-        let survey = results.survey();
-        let grid = &survey.grid;
-        let id = survey.atlas.len().to_string().len().max(2);
-        let poses = grouped(survey.poses).len().max(6);
+        let result = results.sweep();
+        let grid = &result.grid;
+        let id = result.atlas.len().to_string().len().max(2);
+        let poses = grouped(result.poses).len().max(6);
         let place: Vec<(Parameter, usize)> = varied(grid)
             .map(|parameter| (parameter, width_of(grid, parameter)))
             .collect();
@@ -100,7 +100,7 @@ impl ImprintList {
 }
 
 /// The parameters of a pose that a grid's shape has.
-pub fn varied(grid: &Grid) -> impl Iterator<Item = Parameter> {
+pub fn varied(grid: &PoseGrid) -> impl Iterator<Item = Parameter> {
     let own = grid.source().parameters();
     let rows = grid.ranges().by_parameter().map(|(parameter, _)| parameter);
     rows.into_iter()

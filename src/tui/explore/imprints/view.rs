@@ -3,11 +3,10 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::atlas::Entry;
-use crate::atlas::order::SortKey;
+use crate::atlas::{AtlasEntry, SortKey};
 use crate::formats::atlas::value;
 use crate::formats::value::{counted, fitting, grouped};
-use crate::pose::grid::Pose;
+use crate::pose::Pose;
 use crate::tui::app::state::App;
 use crate::tui::explore::imprints::layout::{ImprintList, SHARE, VALUE, varied};
 use crate::tui::explore::results::Results;
@@ -63,7 +62,7 @@ fn heading(app: &App, results: &Results, list: &ImprintList) -> String {
         let width = *width;
         text += &format!(" {:>width$}", parameter.row().short);
     }
-    let key: String = results.quantity().key.chars().take(VALUE - 1).collect();
+    let key: String = results.feature().key.chars().take(VALUE - 1).collect();
     text += &format!(
         " {:>2} {:>2} {:>VALUE$}",
         marked("p", SortKey::Pieces),
@@ -73,7 +72,7 @@ fn heading(app: &App, results: &Results, list: &ImprintList) -> String {
     text
 }
 
-fn row_text(app: &App, results: &Results, list: &ImprintList, entry: &Entry) -> String {
+fn row_text(app: &App, results: &Results, list: &ImprintList, entry: &AtlasEntry) -> String {
     let (id, poses) = (list.id, list.poses);
     let mut text = format!(
         "{:>id$} {:>poses$} {:>SHARE$}",
@@ -81,24 +80,24 @@ fn row_text(app: &App, results: &Results, list: &ImprintList, entry: &Entry) -> 
         grouped(entry.count),
         share(results, entry)
     );
-    let pose = results.survey().grid.pose(entry.first_pose);
+    let pose = results.sweep().grid.pose(entry.first_pose);
     for (parameter, width) in &list.place {
         let width = *width;
         text += &format!(" {:>width$}", parameter.format(value(&pose, *parameter)));
     }
-    text += &format!(" {:>2} {:>2}", entry.note.pieces, entry.note.holes);
+    text += &format!(" {:>2} {:>2}", entry.summary.pieces, entry.summary.holes);
     text += &format!(" {:>VALUE$}", number(app, results, entry));
     text
 }
 
 /// In percent.
-fn share(results: &Results, entry: &Entry) -> String {
-    let share = crate::formats::atlas::share(results.survey(), entry) * 100.0;
+fn share(results: &Results, entry: &AtlasEntry) -> String {
+    let share = crate::formats::atlas::share(results.sweep(), entry) * 100.0;
     format!("{share:.2}")
 }
 
 /// The chosen descriptor's value.
-fn number(app: &App, results: &Results, entry: &Entry) -> String {
+fn number(app: &App, results: &Results, entry: &AtlasEntry) -> String {
     let index = usize::try_from(entry.id).unwrap_or(usize::MAX);
     let value = results.values().get(index).copied().flatten();
     value.map_or_else(
@@ -108,23 +107,23 @@ fn number(app: &App, results: &Results, entry: &Entry) -> String {
 }
 
 /// All about an imprint in one line.
-fn detail(app: &App, results: &Results, entry: &Entry) -> String {
-    let pose = results.survey().grid.pose(entry.first_pose);
+fn detail(app: &App, results: &Results, entry: &AtlasEntry) -> String {
+    let pose = results.sweep().grid.pose(entry.first_pose);
     let count = |count: u16, noun: &str| counted(count.into(), noun);
     format!(
         "imprint {} at {}; {}, {}, {} {}",
         entry.id,
         place(results, &pose),
-        count(entry.note.pieces, "piece"),
-        count(entry.note.holes, "hole"),
-        results.quantity().key,
+        count(entry.summary.pieces, "piece"),
+        count(entry.summary.holes, "hole"),
+        results.feature().key,
         number(app, results, entry)
     )
 }
 
 /// A pose in words.
 pub(in crate::tui) fn place(results: &Results, pose: &Pose) -> String {
-    let grid = &results.survey().grid;
+    let grid = &results.sweep().grid;
     let values = varied(grid).map(|parameter| {
         let text = parameter.format(value(pose, parameter));
         format!("{} {text}", parameter.row().short)

@@ -32,7 +32,7 @@ pub struct MapPane {
 impl MapPane {
     /// The map on its page, the cursor as near to the middle as the ends allow.
     pub fn of(page: Rect, results: &Results) -> Self {
-        let grid = &results.survey().grid;
+        let grid = &results.sweep().grid;
         let [width, height, ..] = grid.counts();
         let label = narrow(width_of(grid, Parameter::Y0) + 1);
         let side = u16::from(grid.sensor().columns()).clamp(22, 32);

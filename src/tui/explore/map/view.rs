@@ -6,7 +6,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::formats::value::{counted, grouped};
 use crate::parameter::Parameter;
-use crate::pose::grid::Grid;
+use crate::pose::PoseGrid;
 use crate::touch::Plane;
 use crate::tui::app::state::App;
 use crate::tui::explore::imprints::view::place;
@@ -23,7 +23,7 @@ const LEGEND: &str = "  letter: an imprint";
 pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) -> Option<Position> {
     let theme = app.theme();
     let pane = MapPane::of(page, results);
-    let grid = &results.survey().grid;
+    let grid = &results.sweep().grid;
     let head = heading(results);
     let end = write::line(buffer, pane.head, theme, [(head.as_str(), Role::Title)]);
     // Only where there is room for all of it.
@@ -39,7 +39,7 @@ pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) -> Op
 
 /// The angle and the zooms, and how many others there are.
 fn heading(results: &Results) -> String {
-    let grid = &results.survey().grid;
+    let grid = &results.sweep().grid;
     let (place, counts) = (results.place(), grid.counts());
     let own = grid.source().parameters();
     let rows = grid.ranges().by_parameter().into_iter().enumerate().skip(2);
@@ -71,7 +71,7 @@ fn draw_cells(
     let theme = app.theme();
     let ((x, y), (width, height)) = (pane.first, pane.count);
     let ids = results
-        .survey()
+        .sweep()
         .ids(results.place(), x..x + width, y..y + height);
     let columns = usize::try_from(width).unwrap_or(1).max(1);
     let letters = letters(&ids, columns);
@@ -112,7 +112,7 @@ fn draw_cells(
 }
 
 /// y0 left of the cells; above them the first x0 and the last.
-fn draw_rulers(app: &App, grid: &Grid, pane: &MapPane, buffer: &mut Buffer, page: Rect) {
+fn draw_rulers(app: &App, grid: &PoseGrid, pane: &MapPane, buffer: &mut Buffer, page: Rect) {
     let theme = app.theme();
     let ranges = grid.ranges();
     let label = usize::from(pane.cells.x.saturating_sub(page.x)).saturating_sub(1);
@@ -148,11 +148,11 @@ fn draw_rulers(app: &App, grid: &Grid, pane: &MapPane, buffer: &mut Buffer, page
 /// The pose at the cursor: its imprint, which one it is, where it is.
 fn draw_pose(app: &App, results: &Results, pane: &MapPane, buffer: &mut Buffer) {
     let theme = app.theme();
-    let survey = results.survey();
-    let grid = &survey.grid;
+    let result = results.sweep();
+    let grid = &result.grid;
     let pose = grid.pose(grid.number(results.place()));
     let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(pose));
-    let entry = results.id(&imprint).and_then(|id| survey.atlas.entry(id));
+    let entry = results.id(&imprint).and_then(|id| result.atlas.entry(id));
     let (which, poses) = match entry {
         Some(entry) => (
             format!("imprint {}", entry.id),

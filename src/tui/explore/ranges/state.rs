@@ -8,8 +8,7 @@ use std::time::Duration;
 use crate::formats::value::{counted, grouped};
 use crate::parameter::{Parameter, Range};
 use crate::picture::Picture;
-use crate::pose::grid::{Anchor, Grid, GridError, MAX_POSES, Ranges};
-use crate::pose::range::DecimalRange;
+use crate::pose::{Anchor, DecimalRange, GridError, MAX_POSES, PoseGrid, Ranges};
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::tui::app::document::{Document, Reading};
@@ -75,12 +74,12 @@ pub struct RangesForm {
     focus: Option<usize>,
     by_hand: u32,
     /// The grid that was asked about last, and how long it takes.
-    measured: Option<(Grid, Option<Duration>)>,
+    measured: Option<(PoseGrid, Option<Duration>)>,
 }
 
 impl RangesForm {
     /// The form for what is explored of a document. The ranges are those of an earlier sweep, or the defaults.
-    pub fn new(document: &Document, source: Source, earlier: Option<&Grid>) -> Self {
+    pub fn new(document: &Document, source: Source, earlier: Option<&PoseGrid>) -> Self {
         let by_hand = match document.source {
             Some(_) => document.edits.count(),
             None => 0,
@@ -98,7 +97,7 @@ impl RangesForm {
             fields: fields.collect(),
             source,
             sensor: document.sensor,
-            anchor: earlier.map_or(Anchor::default(), Grid::anchor),
+            anchor: earlier.map_or(Anchor::default(), PoseGrid::anchor),
             focus: None,
             by_hand,
             measured: None,
@@ -144,7 +143,7 @@ impl RangesForm {
     }
 
     /// The grid of the fields, where nobody was asked yet how long it takes; from now on it counts as asked about.
-    pub fn unmeasured(&mut self) -> Option<Grid> {
+    pub fn unmeasured(&mut self) -> Option<PoseGrid> {
         let grid = self.grid().ok()?;
         let known = self.measured.as_ref().map(|(known, _)| known);
         if known == Some(&grid) {
@@ -155,7 +154,7 @@ impl RangesForm {
     }
 
     /// Takes note of how long a grid will take; of one that is no longer asked about, nothing.
-    pub fn take_estimate(&mut self, grid: &Grid, time: Duration) {
+    pub fn take_estimate(&mut self, grid: &PoseGrid, time: Duration) {
         if let Some((known, estimate)) = &mut self.measured
             && known == grid
         {
@@ -190,7 +189,7 @@ impl RangesForm {
     ///
     /// # Errors
     /// The first thing that is wrong.
-    pub fn grid(&self) -> Result<Grid, RangesError> {
+    pub fn grid(&self) -> Result<PoseGrid, RangesError> {
         if let Some(trouble) = (0..self.fields.len()).find_map(|index| self.trouble(index)) {
             return Err(trouble);
         }
@@ -207,7 +206,7 @@ impl RangesForm {
             zoom_x: range(Parameter::ZoomX).unwrap_or(default.zoom_x),
             zoom_y: range(Parameter::ZoomY).unwrap_or(default.zoom_y),
         };
-        let grid = Grid::new(self.source.clone(), self.sensor, self.anchor, ranges);
+        let grid = PoseGrid::new(self.source.clone(), self.sensor, self.anchor, ranges);
         grid.map_err(|error: GridError| RangesError {
             field: None,
             brief: match &error {

@@ -7,7 +7,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::formats::value::counted;
-use crate::pose::grid::Anchor;
+use crate::pose::Anchor;
 use crate::tui::app::state::App;
 use crate::tui::explore::ranges::layout::RangeRows;
 use crate::tui::explore::ranges::state::{RangeField, RangesForm};

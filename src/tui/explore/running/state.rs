@@ -1,13 +1,13 @@
 //! Work under way: what it is, and how far.
 
-use crate::pose::grid::Grid;
+use crate::pose::PoseGrid;
 use crate::tui::explore::message::SweepProgress;
 
 /// What is done.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WorkKind {
     /// A grid is gone through.
-    Sweep(Box<Grid>),
+    Sweep(Box<PoseGrid>),
     /// A file of this name is written; of so many poses, where it holds all of them.
     Write(String, Option<u64>),
 }

@@ -2,8 +2,7 @@
 
 use ratatui::layout::{Position, Rect};
 
-use crate::atlas::feature::quantities;
-use crate::atlas::statistics::COLUMNS;
+use crate::atlas::{STATISTIC_COLUMNS, features};
 use crate::tui::app::layout::{below, first_of};
 use crate::tui::explore::results::Results;
 
@@ -29,7 +28,7 @@ pub struct StatisticsTable {
 impl StatisticsTable {
     /// The table on its page.
     pub fn of(page: Rect, results: &Results) -> Self {
-        let (name, count) = (17, COLUMNS.len());
+        let (name, count) = (17, STATISTIC_COLUMNS.len());
         let room = usize::from(page.width).saturating_sub(name);
         // Eight columns fit into 80 characters.
         let column = (room / count).clamp(7, 10);
@@ -46,7 +45,7 @@ impl StatisticsTable {
                 height: table.height.min(1),
                 ..table
             },
-            first: first_of(rows.height, quantities().len(), results.quantity_number()),
+            first: first_of(rows.height, features().len(), results.feature_number()),
             rows,
             name,
             column,
@@ -57,6 +56,6 @@ impl StatisticsTable {
     /// The row at a place of the screen.
     pub fn row(&self, place: Position) -> Option<usize> {
         let row = self.first + usize::from(place.y.checked_sub(self.rows.y)?);
-        (self.rows.contains(place) && row < quantities().len()).then_some(row)
+        (self.rows.contains(place) && row < features().len()).then_some(row)
     }
 }

@@ -3,8 +3,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::atlas::feature::quantities;
-use crate::atlas::statistics::COLUMNS;
+use crate::atlas::{STATISTIC_COLUMNS, features};
 use crate::formats::value::{fitting, grouped};
 use crate::tui::app::state::App;
 use crate::tui::explore::results::Results;
@@ -22,7 +21,7 @@ pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) -> Op
     }
     let (first, visible) = table.columns;
     let (name, width) = (table.name, table.column);
-    let columns = || COLUMNS.iter().skip(first).take(visible);
+    let columns = || STATISTIC_COLUMNS.iter().skip(first).take(visible);
     let mut headings = format!("{:name$}", head(&table, results));
     for column in columns() {
         let title: String = column.title.chars().take(width - 1).collect();
@@ -35,13 +34,13 @@ pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) -> Op
         [(headings.as_str(), Role::Title)],
     );
     let mut cursor = None;
-    let statistics = results.survey().statistics.iter().enumerate();
+    let statistics = results.sweep().statistics.iter().enumerate();
     let rows = statistics.skip(table.first).take(table.rows.height.into());
     for (index, statistic) in rows {
         let row = write::row(table.rows, index - table.first);
-        let chosen = index == results.quantity_number();
+        let chosen = index == results.feature_number();
         let sign = if chosen { "> " } else { "  " };
-        let key = format!("{:width$}", statistic.quantity.key, width = name - 2);
+        let key = format!("{:width$}", statistic.feature.key, width = name - 2);
         let mut values = String::new();
         for column in columns() {
             let value = (column.value)(statistic);
@@ -68,13 +67,13 @@ pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) -> Op
 /// Which row is chosen where not all can be seen, and to which side there are columns that do not fit.
 fn head(table: &StatisticsTable, results: &Results) -> String {
     let (first, visible) = table.columns;
-    let all = quantities().len();
+    let all = features().len();
     let row = if usize::from(table.rows.height) < all {
-        format!("{} of {all} ", results.quantity_number() + 1)
+        format!("{} of {all} ", results.feature_number() + 1)
     } else {
         String::new()
     };
-    let columns = match (first > 0, first + visible < COLUMNS.len()) {
+    let columns = match (first > 0, first + visible < STATISTIC_COLUMNS.len()) {
         (false, false) => "",
         (false, true) => "more >",
         (true, false) => "< more",
@@ -86,7 +85,7 @@ fn head(table: &StatisticsTable, results: &Results) -> String {
 /// Poses and imprints.
 fn totals(results: &Results) -> [String; 2] {
     let findings = results.findings();
-    let (survey, (shifts, symmetry)) = (&findings.survey, findings.classes);
+    let (result, (shifts, symmetry)) = (&findings.sweep, findings.classes);
     let many = |count: usize| grouped(count as u64);
     [
         format!(
@@ -96,8 +95,8 @@ fn totals(results: &Results) -> [String; 2] {
         ),
         format!(
             "poses partly off the sensor: {}  without imprint: {}",
-            grouped(survey.partly_off),
-            grouped(survey.atlas.empty_poses())
+            grouped(result.partly_off),
+            grouped(result.atlas.empty_poses())
         ),
     ]
 }

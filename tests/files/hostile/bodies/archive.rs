@@ -9,11 +9,10 @@ use taxel::formats::atlas::{write_csv, write_jsonl};
 use taxel::formats::npy;
 use taxel::imprint::Imprint;
 use taxel::picture::Picture;
-use taxel::pose::grid::{Anchor, Grid, Ranges};
+use taxel::pose::{Anchor, PoseGrid, Ranges};
 use taxel::sensor::Sensor;
 use taxel::source::Source;
-use taxel::sweep::plan::Shard;
-use taxel::sweep::survey::{Survey, Watch};
+use taxel::sweep::{Shard, Sweep, SweepResult};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
@@ -22,19 +21,19 @@ use super::is_short;
 /// Any bytes.
 pub(crate) fn archive(bytes: &[u8]) {
     match read(Cursor::new(bytes)) {
-        Ok(survey) => is_sound(survey),
+        Ok(result) => is_sound(result),
         Err(error) => is_short(&error.to_string()),
     }
 }
 
-/// A survey that was read: it can be written, in every form, and is the same when it is read again.
-fn is_sound(survey: Survey) {
-    let written = bytes_of(&survey);
+/// A result that was read: it can be written, in every form, and is the same when it is read again.
+fn is_sound(result: SweepResult) {
+    let written = bytes_of(&result);
     let again = read(Cursor::new(&written)).expect("what was read can be read again");
-    assert_eq!(again.grid, survey.grid);
-    assert_eq!(again.shard, survey.shard);
+    assert_eq!(again.grid, result.grid);
+    assert_eq!(again.shard, result.shard);
     assert_eq!(bytes_of(&again), written);
-    for statistic in &survey.statistics {
+    for statistic in &result.statistics {
         let all = [
             statistic.min,
             statistic.mean,
@@ -47,30 +46,30 @@ fn is_sound(survey: Survey) {
         assert!(
             all.into_iter().flatten().all(f64::is_finite),
             "{}: {all:?}",
-            statistic.quantity.key
+            statistic.feature.key
         );
     }
-    let (shifted, turned) = survey.atlas.distinct_classes();
-    assert!(turned <= shifted && shifted <= survey.atlas.len());
+    let (shifted, turned) = result.atlas.distinct_classes();
+    assert!(turned <= shifted && shifted <= result.atlas.len());
     let mut lines = Vec::new();
-    write_jsonl(&survey, &mut lines).expect("it goes into memory");
+    write_jsonl(&result, &mut lines).expect("it goes into memory");
     for line in lines.split(|&byte| byte == b'\n') {
         let line: Result<serde_json::Value, _> = serde_json::from_slice(line);
         assert!(line.is_ok_and(|line| line.is_object()) || lines.ends_with(b"\n"));
     }
     let mut table = Vec::new();
-    write_csv(&survey, &mut table).expect("it goes into memory");
+    write_csv(&result, &mut table).expect("it goes into memory");
     let table = String::from_utf8(table).expect("it is a text");
-    assert_eq!(table.lines().count(), survey.atlas.len() + 1);
+    assert_eq!(table.lines().count(), result.atlas.len() + 1);
     assert!(!table.contains("NaN") && !table.contains("inf"));
-    if let Err(error) = Survey::merge([survey]) {
+    if let Err(error) = SweepResult::merge([result]) {
         is_short(&error.to_string());
     }
 }
 
-fn bytes_of(survey: &Survey) -> Vec<u8> {
+fn bytes_of(result: &SweepResult) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
-    write(survey, &mut bytes).expect("it goes into memory");
+    write(result, &mut bytes).expect("it goes into memory");
     bytes.into_inner()
 }
 
@@ -144,7 +143,7 @@ fn sound() -> Vec<Arrays> {
     let picture = Imprint::from_rows(["##", "#."]).expect("rows of # and .");
     let picture = Source::Picture(Picture::at_home(picture));
     let grid = |source: &Source, anchor| {
-        Grid::new(source.clone(), sensor, anchor, ranges).expect("a grid in range")
+        PoseGrid::new(source.clone(), sensor, anchor, ranges).expect("a grid in range")
     };
     let figures = grid(&rectangle, Anchor::Corner);
     let pictures = grid(&picture, Anchor::Centre);
@@ -154,7 +153,7 @@ fn sound() -> Vec<Arrays> {
         (&figures, part),
         (&pictures, part),
     ]
-    .map(|(grid, shard)| unpacked(&bytes_of(&Survey::of(grid, shard, Watch::nothing()))))
+    .map(|(grid, shard)| unpacked(&bytes_of(&Sweep::new(grid).shard(shard).run())))
     .to_vec()
 }
 

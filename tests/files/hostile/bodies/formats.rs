@@ -4,9 +4,9 @@ use taxel::cli::settings::file::Config;
 use taxel::formats::npy::{Dtype, content, header, words};
 use taxel::formats::{DescribedImprint, ImprintFormat, Job, StoredShape, imprint_file};
 use taxel::imprint::Imprint;
-use taxel::pose::range::{DecimalRange, MAX_VALUES};
+use taxel::pose::{DecimalRange, MAX_VALUES};
 use taxel::sensor::{SENSOR_PARAMETERS, Sensor};
-use taxel::sweep::plan::Shard;
+use taxel::sweep::Shard;
 use taxel::touch::Plane;
 
 use super::is_short;

@@ -1,0 +1,178 @@
+//! The atlas: every distinct imprint of a sweep once.
+
+use rayon::prelude::*;
+
+use crate::atlas::canonical::Classes;
+use crate::atlas::counter::ImprintCounter;
+use crate::atlas::feature::{ImprintSummary, feature_values};
+use crate::atlas::packing::Layout;
+use crate::imprint::Imprint;
+
+/// Distinct imprints, counted and described.
+#[derive(Clone, Debug)]
+pub struct Atlas {
+    layout: Layout,
+    counter: ImprintCounter,
+    summaries: Vec<ImprintSummary>,
+}
+
+/// A row of an atlas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct AtlasEntry {
+    /// From 0, in order of first occurrence.
+    pub id: u32,
+    /// Which taxels are active.
+    pub imprint: Imprint,
+    /// In how many poses.
+    pub count: u64,
+    /// The number of the first of these in the grid.
+    pub first_pose: u64,
+    /// Pieces, holes and the description of its main region.
+    pub summary: ImprintSummary,
+}
+
+impl Atlas {
+    pub(crate) fn new(columns: u8, rows: u8) -> Self {
+        let layout = Layout::new(columns, rows);
+        Self {
+            counter: ImprintCounter::new(layout.words()),
+            layout,
+            summaries: Vec::new(),
+        }
+    }
+
+    pub(crate) fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Counts all of another counter, each count so many times. The numbers here of its keys.
+    pub(crate) fn add(&mut self, other: &ImprintCounter, times: u64) -> Vec<u32> {
+        let tallies = other.tallies().iter().enumerate();
+        tallies
+            .map(|(index, tally)| {
+                let (key, hash) = (other.key(index), other.hash(index));
+                let id = self
+                    .counter
+                    .add(key, hash, tally.count * times, tally.first);
+                u32::try_from(id).unwrap_or(u32::MAX)
+            })
+            .collect()
+    }
+
+    /// Adds all of another atlas of the same sensor.
+    pub(crate) fn add_all(&mut self, other: &Self) {
+        let ids = self.add(&other.counter, 1);
+        for (id, summary) in ids.into_iter().zip(&other.summaries) {
+            if usize::try_from(id).is_ok_and(|id| id == self.summaries.len()) {
+                self.summaries.push(*summary);
+            }
+        }
+    }
+
+    /// Describes the imprints that are new since the last time.
+    pub(crate) fn describe(&mut self) {
+        let (layout, counter) = (&self.layout, &self.counter);
+        self.summaries.par_extend(
+            (self.summaries.len()..counter.len())
+                .into_par_iter()
+                .with_min_len(256)
+                .map(|index| ImprintSummary::of(&layout.imprint(counter.key(index)))),
+        );
+    }
+
+    /// What is known of the imprints, in their order.
+    pub(crate) fn summaries(&self) -> &[ImprintSummary] {
+        &self.summaries
+    }
+
+    /// How often the imprints occur, in their order.
+    pub fn counts(&self) -> impl Iterator<Item = u64> + '_ {
+        self.counter.tallies().iter().map(|tally| tally.count)
+    }
+
+    /// Number of distinct imprints.
+    pub fn len(&self) -> usize {
+        self.summaries.len()
+    }
+
+    /// Whether there is none, because no pose was gone through.
+    pub fn is_empty(&self) -> bool {
+        self.summaries.is_empty()
+    }
+
+    /// The imprint of that number.
+    pub fn entry(&self, id: u32) -> Option<AtlasEntry> {
+        let index = usize::try_from(id).ok()?;
+        let summary = *self.summaries.get(index)?;
+        let tally = self.counter.tallies()[index];
+        Some(AtlasEntry {
+            id,
+            imprint: self.layout.imprint(self.counter.key(index)),
+            count: tally.count,
+            first_pose: tally.first,
+            summary,
+        })
+    }
+
+    /// All rows in order.
+    pub fn entries(&self) -> impl Iterator<Item = AtlasEntry> + '_ {
+        (0..u32::try_from(self.len()).unwrap_or(u32::MAX)).filter_map(|id| self.entry(id))
+    }
+
+    /// The number of an imprint; none where it does not occur.
+    pub fn find(&self, imprint: &Imprint) -> Option<u32> {
+        if (imprint.columns(), imprint.rows()) != (self.layout.columns(), self.layout.rows()) {
+            return None;
+        }
+        let (key, hash) = self.layout.key(imprint);
+        self.number(&key, hash)
+    }
+
+    /// The number of the imprint that has a key.
+    pub(crate) fn number(&self, key: &[u64], hash: u64) -> Option<u32> {
+        let index = self.counter.find(key, hash)?;
+        u32::try_from(index).ok()
+    }
+
+    /// A number of [`features`](crate::atlas::feature::features) of every imprint, in their order; none where it does not
+    /// exist.
+    pub fn values(&self, feature: usize) -> Vec<Option<f64>> {
+        let value = |summary: &ImprintSummary| {
+            let mut found = None;
+            feature_values(summary.description.as_ref()?, |index, value| {
+                if index == feature {
+                    found = Some(value);
+                }
+            });
+            found
+        };
+        self.summaries
+            .par_iter()
+            .with_min_len(1024)
+            .map(value)
+            .collect()
+    }
+
+    /// How many poses leave no imprint.
+    pub fn empty_poses(&self) -> u64 {
+        let described = self
+            .summaries
+            .iter()
+            .map(|summary| summary.description.is_some());
+        let empty = described
+            .zip(self.counts())
+            .filter(|(described, _)| !described);
+        empty.map(|(_, count)| count).sum()
+    }
+
+    /// How many imprints are distinct up to whole-cell shifts, and how many up to shifts, quarter turns and mirror
+    /// images.
+    pub fn distinct_classes(&self) -> (usize, usize) {
+        let mut classes = Classes::new(self.layout.columns(), self.layout.rows());
+        for index in 0..self.len() {
+            classes.add(&self.layout.imprint(self.counter.key(index)));
+        }
+        classes.counts()
+    }
+}

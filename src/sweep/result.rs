@@ -1,0 +1,397 @@
+//! What a sweep found: the atlas of distinct imprints, the statistics of their features, and what shards are merged from.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::atlas::{Atlas, ImprintCounter, Spread, Statistic, Table, statistics};
+use crate::imprint::Imprint;
+use crate::pose::{PoseGrid, PoseIndex};
+use crate::sweep::ideal::Ideal;
+use crate::sweep::plan::{Shard, Task};
+use crate::sweep::runs;
+
+/// All that a sweep found.
+///
+/// ```
+/// use taxel::figure::{Figure, FigureKind};
+/// use taxel::parameter::Parameter;
+/// use taxel::sensor::Sensor;
+/// use taxel::source::Source;
+/// use taxel::pose::{Anchor, PoseGrid, Ranges};
+/// use taxel::sweep::Sweep;
+///
+/// // The paper's ring: over one cell of positions it leaves 393 different imprints.
+/// let ring = Figure::new(FigureKind::Ellipse, 16, |parameter| match parameter {
+///     Parameter::RadiusX | Parameter::RadiusY => Some(4.0),
+///     Parameter::Thickness => Some(2.0),
+///     _ => Some(0.0),
+/// }).unwrap();
+/// let ranges = Ranges { x0: "1:1.99:0.01".parse()?, y0: "1:1.99:0.01".parse()?, angle: "0".parse()?, ..Ranges::default() };
+/// let grid = PoseGrid::new(Source::Figure(ring), Sensor::default(), Anchor::Corner, ranges).unwrap();
+/// let result = Sweep::new(&grid).run();
+/// assert_eq!((result.poses, result.atlas.len()), (10_000, 393));
+/// # Ok::<(), taxel::pose::RangeError>(())
+/// ```
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct SweepResult {
+    /// The grid.
+    pub grid: PoseGrid,
+    /// Which part of it was to be gone through; [`Shard::WHOLE`] after a merge of all.
+    pub shard: Shard,
+    /// Poses gone through: fewer than there are where the sweep was stopped.
+    pub poses: u64,
+    /// Poses that reach beyond the sensor.
+    pub partly_off: u64,
+    /// The distinct imprints.
+    pub atlas: Atlas,
+    /// Of each feature of [`crate::atlas::features`].
+    pub statistics: Vec<Statistic>,
+    pub(crate) spread: Spread,
+}
+
+impl SweepResult {
+    /// Whether nothing of the shard is missing.
+    pub fn complete(&self) -> bool {
+        let rows = self.shard.rows(self.grid.rows());
+        self.poses == (rows.end - rows.start) * self.grid.ranges().x0.count()
+    }
+
+    pub(crate) fn new(
+        grid: PoseGrid,
+        shard: Shard,
+        (poses, partly_off): (u64, u64),
+        atlas: Atlas,
+        table: &Table,
+        spread: Spread,
+    ) -> Self {
+        let ideal = Ideal::of(grid.source());
+        let counts: Vec<u64> = atlas.counts().collect();
+        let statistics = statistics(table, &counts, &spread, |key| ideal?.get(key));
+        Self {
+            grid,
+            shard,
+            poses,
+            partly_off,
+            atlas,
+            statistics,
+            spread,
+        }
+    }
+
+    /// All shards of one grid as one result, the same as that of the whole grid.
+    ///
+    /// # Errors
+    /// Where a shard is missing, there twice, incomplete, or of another grid.
+    pub fn merge(results: impl IntoIterator<Item = Self>) -> Result<Self, MergeError> {
+        let mut results: Vec<Self> = results.into_iter().collect();
+        results.sort_by_key(|result| result.shard.number());
+        let first = results.first().ok_or(MergeError::Nothing)?;
+        let (grid, of) = (first.grid.clone(), first.shard.of());
+        let turn = grid.ranges().x0.count() * grid.ranges().y0.count();
+        let mut atlas = Atlas::new(grid.sensor().columns(), grid.sensor().rows());
+        let (mut spread, mut poses, mut partly_off) = (Spread::new(turn), 0, 0);
+        let mut expected = 1..=of;
+        for result in results {
+            let number = expected.next();
+            if result.grid != grid || result.shard.of() != of {
+                return Err(MergeError::Foreign {
+                    shard: result.shard,
+                });
+            }
+            if number != Some(result.shard.number()) {
+                return Err(MergeError::Count {
+                    shard: result.shard,
+                });
+            }
+            if !result.complete() {
+                return Err(MergeError::Incomplete {
+                    shard: result.shard,
+                });
+            }
+            // Shards follow on each other in the order of the grid, so first occurrences stay the first.
+            atlas.add_all(&result.atlas);
+            spread.merge(result.spread);
+            poses += result.poses;
+            partly_off += result.partly_off;
+        }
+        if let Some(number) = expected.next() {
+            return Err(MergeError::Missing { number, of });
+        }
+        let mut table = Table::default();
+        table.extend(atlas.summaries());
+        let poses = (poses, partly_off);
+        Ok(Self::new(grid, Shard::WHOLE, poses, atlas, &table, spread))
+    }
+
+    /// The atlas numbers of the poses that lie at those x0 and y0, row after row, at the angle and the zooms of `turn`
+    /// (its own x0 and y0 do not matter). None of a pose whose imprint the atlas does not have, because the sweep was
+    /// stopped before. Empty where a range leaves the grid. It takes as long as sweeping these poses does.
+    ///
+    /// ```
+    /// use taxel::figure::{Figure, FigureKind};
+    /// use taxel::sensor::Sensor;
+    /// use taxel::source::Source;
+    /// use taxel::pose::{Anchor, PoseGrid, Ranges};
+    /// use taxel::sweep::Sweep;
+    /// let square = Source::Figure(Figure::default_of(FigureKind::Rectangle, 16));
+    /// let ranges = Ranges { angle: "0".parse()?, ..Ranges::default() };
+    /// let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
+    /// let result = Sweep::new(&grid).run();
+    /// // At x0 5.5 the columns at both ends are covered by half, and active.
+    /// assert_eq!(result.ids([0; 5], 49..52, 0..1), [Some(0), Some(1), Some(2)]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn ids(&self, turn: PoseIndex, x0: Range<u64>, y0: Range<u64>) -> Vec<Option<u32>> {
+        let [_, _, angle, zoom_x, zoom_y] = turn;
+        let from = [x0.start, y0.start, angle, zoom_x, zoom_y];
+        let rows = y0.end.saturating_sub(y0.start);
+        let counts = [x0.end.saturating_sub(x0.start), rows, 1, 1, 1];
+        let Some(part) = self.grid.part(from, counts) else {
+            return Vec::new();
+        };
+        let task = Task {
+            turns: Arc::from([0]),
+            rows: 0..rows,
+        };
+        let Some(found) = runs::go(&part, self.atlas.layout(), &task, true, |_| true) else {
+            return Vec::new();
+        };
+        let counter = &found.counter;
+        let ids: Vec<Option<u32>> = (0..counter.len())
+            .map(|index| self.atlas.number(counter.key(index), counter.hash(index)))
+            .collect();
+        let rows = 0..usize::try_from(rows).unwrap_or(0);
+        let runs = rows.flat_map(|row| found.runs.row(row));
+        let runs = runs.flat_map(|&(index, length)| {
+            let index = usize::try_from(index).unwrap_or(usize::MAX);
+            let length = usize::try_from(length).unwrap_or(0);
+            std::iter::repeat_n(ids.get(index).copied().flatten(), length)
+        });
+        runs.collect()
+    }
+
+    /// The numbers that it is made of.
+    pub(crate) fn parts(&self) -> Parts {
+        let mut parts = Parts {
+            poses: self.poses,
+            partly_off: self.partly_off,
+            spread: self.spread.words(),
+            ..Parts::default()
+        };
+        for entry in self.atlas.entries() {
+            parts.rows.extend_from_slice(entry.imprint.words());
+            parts.counts.push(entry.count);
+            parts.first_poses.push(entry.first_pose);
+        }
+        parts
+    }
+
+    /// The result that such numbers make.
+    ///
+    /// # Errors
+    /// Where they contradict each other or the grid.
+    pub(crate) fn from_parts(
+        grid: PoseGrid,
+        shard: Shard,
+        parts: &Parts,
+    ) -> Result<Self, PartsError> {
+        let check = |holds: bool, what: &'static str| holds.then_some(()).ok_or(PartsError(what));
+        let (columns, rows) = (grid.sensor().columns(), grid.sensor().rows());
+        let height = usize::from(rows);
+        let same = parts.counts.len() == parts.first_poses.len()
+            && parts.counts.len().checked_mul(height) == Some(parts.rows.len());
+        check(same, "arrays of different lengths")?;
+        let sum = parts
+            .counts
+            .iter()
+            .map(|&count| u128::from(count))
+            .sum::<u128>();
+        check(sum == u128::from(parts.poses), "counts that do not add up")?;
+        let own = shard.rows(grid.rows());
+        let width = grid.ranges().x0.count();
+        check(
+            parts.poses <= (own.end - own.start) * width && parts.partly_off <= parts.poses,
+            "more poses than there are",
+        )?;
+        let ascending = parts.first_poses.windows(2).all(|pair| pair[0] < pair[1]);
+        let (first, last) = (parts.first_poses.first(), parts.first_poses.last());
+        let inside = first.is_none_or(|&first| first >= own.start * width)
+            && last.is_none_or(|&last| last < own.end * width);
+        check(ascending && inside, "first poses out of order")?;
+        let mut atlas = Atlas::new(columns, rows);
+        let mut counter = ImprintCounter::new(atlas.layout().words());
+        let entries = parts.counts.iter().zip(&parts.first_poses);
+        for (words, (&count, &first)) in parts.rows.chunks_exact(height).zip(entries) {
+            let mut imprint = Imprint::empty(columns, rows);
+            for (row, &word) in words.iter().enumerate() {
+                imprint.set_word(row, word);
+            }
+            check(imprint.words() == words, "taxels beyond the sensor")?;
+            let (key, hash) = atlas.layout().key(&imprint);
+            let known = counter.len();
+            counter.add(&key, hash, count, first);
+            check(
+                counter.len() > known && count > 0,
+                "an imprint that is there twice",
+            )?;
+        }
+        let spread = Spread::from_words(width * grid.ranges().y0.count(), &parts.spread)
+            .ok_or(PartsError("sums of another version"))?;
+        atlas.add(&counter, 1);
+        atlas.describe();
+        let mut table = Table::default();
+        table.extend(atlas.summaries());
+        let poses = (parts.poses, parts.partly_off);
+        Ok(Self::new(grid, shard, poses, atlas, &table, spread))
+    }
+}
+
+/// The numbers of a result.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Parts {
+    /// Poses gone through.
+    pub(crate) poses: u64,
+    /// Poses that reach beyond the sensor.
+    pub(crate) partly_off: u64,
+    /// The imprints one after another, a word per row of the sensor, bit `i` for column `i`.
+    pub(crate) rows: Vec<u64>,
+    /// How often each imprint occurs.
+    pub(crate) counts: Vec<u64>,
+    /// The number of the first pose of each.
+    pub(crate) first_poses: Vec<u64>,
+    /// Sums about the turns; their meaning is a matter of this version of the program.
+    pub(crate) spread: Vec<u64>,
+}
+
+/// Why numbers make no result.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct PartsError(&'static str);
+
+/// Why results cannot be put together.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MergeError {
+    /// There are none.
+    #[error("no shards to merge")]
+    Nothing,
+    /// Of another grid than the first one, or cut in another number of pieces.
+    #[error("shard {shard} is of another grid than the first one")]
+    Foreign {
+        /// Which one.
+        shard: Shard,
+    },
+    /// There twice, or after one that is missing.
+    #[error("shard {shard} comes out of turn: another one is missing or there twice")]
+    Count {
+        /// Which one.
+        shard: Shard,
+    },
+    /// Stopped early.
+    #[error("shard {shard} was stopped early, run it again")]
+    Incomplete {
+        /// Which one.
+        shard: Shard,
+    },
+    /// The last ones are not there.
+    #[error("shard {number}/{of} is missing")]
+    Missing {
+        /// The first of them.
+        number: u32,
+        /// Out of so many.
+        of: u32,
+    },
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicU64, Ordering};
+
+    use super::*;
+    use crate::figure::{Figure, FigureKind};
+    use crate::picture::Picture;
+    use crate::pose::{Anchor, DecimalRange, Ranges};
+    use crate::sensor::Sensor;
+    use crate::source::Source;
+    use crate::sweep::run::Sweep;
+    use crate::touch::Plane;
+
+    #[test]
+    fn first_poses_lie_in_the_shard() {
+        let ranges = Ranges {
+            angle: DecimalRange::whole(0),
+            ..Ranges::default()
+        };
+        let source = Source::Figure(Figure::default_of(FigureKind::Hexagon, 16));
+        let grid =
+            PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges).expect("a grid");
+        let shard = Shard::new(2, 2).expect("a shard");
+        let parts = Sweep::new(&grid).shard(shard).run().parts();
+        let read = |first: u64| {
+            let mut parts = parts.clone();
+            parts.first_poses[0] = first;
+            SweepResult::from_parts(grid.clone(), shard, &parts)
+                .map(|result| result.parts() == parts)
+        };
+        assert_eq!(parts.first_poses[0], 5000);
+        assert_eq!(read(5000), Ok(true));
+        assert_eq!(read(4999), Err(PartsError("first poses out of order")));
+    }
+
+    #[test]
+    fn a_window_shows_what_touching_finds() {
+        let range = |text: &str| text.parse().expect("a range");
+        let imprint = Imprint::from_rows(["##.", ".##"]).expect("rows");
+        let ellipse = Source::Figure(Figure::default_of(FigureKind::Ellipse, 16));
+        for (source, zoom) in [
+            (ellipse, "1"),
+            (Source::Picture(Picture::at_home(imprint)), "1:2:0.5"),
+        ] {
+            let ranges = Ranges {
+                x0: range("3:5:0.1"),
+                y0: range("4:6:0.1"),
+                angle: range("0:40:20"),
+                zoom_x: range(zoom),
+                zoom_y: range("1"),
+            };
+            let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
+            let grid = grid.expect("in range");
+            let result = Sweep::new(&grid).run();
+            let mut plane = Plane::new(*grid.sensor());
+            for turn in [0, 1, 2] {
+                let zoom = turn.min(grid.counts()[3] - 1);
+                let ids = result.ids([9, 9, turn, zoom, 0], 3..17, 2..9);
+                assert_eq!(ids.len(), 14 * 7);
+                for (index, id) in (0..).zip(ids) {
+                    let place = [3 + index % 14, 2 + index / 14, turn, zoom, 0];
+                    let pose = grid.pose(grid.number(place));
+                    let touched = plane.touch(&grid.placed(pose));
+                    assert_eq!(id, result.atlas.find(&touched), "{pose:?}");
+                    assert!(id.is_some());
+                }
+            }
+            assert_eq!(result.ids([0; 5], 0..22, 0..1), []);
+            assert_eq!(result.ids([0; 5], 4..4, 0..1), []);
+            assert_eq!(result.ids([0, 0, 3, 0, 0], 0..1, 0..1), []);
+        }
+    }
+
+    #[test]
+    fn what_was_not_gone_through_has_no_number() {
+        let source = Source::Figure(Figure::default_of(FigureKind::Rectangle, 16));
+        let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, Ranges::default());
+        let grid = grid.expect("in range");
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+        let stopped = pool.expect("threads").install(|| {
+            let told = AtomicU64::new(0);
+            // Some orientations are complete by then, but far from all.
+            let go_on = |poses| told.fetch_add(poses, Ordering::Relaxed) < 400_000;
+            Sweep::new(&grid).progress(&go_on).run()
+        });
+        assert!(!stopped.complete() && stopped.poses > 0);
+        assert_eq!(stopped.ids([0; 5], 0..1, 0..1), [Some(0)]);
+        let ids = stopped.ids([0, 0, 37, 0, 0], 0..100, 0..100);
+        assert!(ids.contains(&None));
+    }
+}
