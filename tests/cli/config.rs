@@ -4,7 +4,7 @@
 use taxel::cli::settings::file::Config;
 use taxel::tui::app::state::{App, Options};
 use taxel::tui::keys::binding::Context;
-use taxel::tui::keys::default_keys::KEYMAP;
+use taxel::tui::keys::default_keys::DEFAULT_KEYS;
 use taxel::tui::runtime::perform::World;
 use taxel::tui::script::Session;
 
@@ -99,7 +99,7 @@ fn changes_of_keys_that_would_surprise_are_refused_where_they_stand() {
     );
     refused(
         "keys.matrix.x = 'increase'\n",
-        "1:17: \"increase\" is no action of this place; 'taxel config' lists them",
+        "1:17: \"increase\" is not an action of this place; 'taxel config' lists them",
     );
     refused(
         "[keys.list]\nj = 'scroll-down'\n",
@@ -214,7 +214,7 @@ fn every_place_and_every_action_can_be_named() {
         for name in taxel::tui::keys::keymap::actions(context) {
             let text = format!("[keys.{}]\n'<C-k>' = '{name}'\n", context.name());
             let config = Config::read(&text).expect(&text);
-            assert_eq!(config.keymap().rows().len(), KEYMAP.len());
+            assert_eq!(config.keymap().rows().len(), DEFAULT_KEYS.len());
         }
     }
 }

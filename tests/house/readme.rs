@@ -12,7 +12,7 @@ use taxel::source::Source;
 use taxel::touch::Plane;
 use taxel::tui::app::state::Options;
 use taxel::tui::keys::binding::Context;
-use taxel::tui::keys::default_keys::KEYMAP;
+use taxel::tui::keys::default_keys::DEFAULT_KEYS;
 use taxel::tui::keys::keymap::Keymap;
 use taxel::tui::runtime::perform::World;
 use taxel::tui::script::runner::{Settings, Shown, run_shown};
@@ -113,7 +113,10 @@ fn keys() -> String {
     let mut text = String::new();
     for context in Context::ALL {
         text += &format!("| {} | |\n|---|---|\n", context.title());
-        for binding in KEYMAP.iter().filter(|binding| binding.context == context) {
+        for binding in DEFAULT_KEYS
+            .iter()
+            .filter(|binding| binding.context == context)
+        {
             text += &format!("| `{}` | {} |\n", binding.labels(), binding.help);
         }
         text.push('\n');

@@ -3,7 +3,7 @@
 use taxel::tui::app::message::Message;
 use taxel::tui::app::state::Options;
 use taxel::tui::keys::binding::Context;
-use taxel::tui::keys::default_keys::KEYMAP;
+use taxel::tui::keys::default_keys::DEFAULT_KEYS;
 use taxel::tui::keys::keymap::{Keymap, help};
 use taxel::tui::runtime::perform::World;
 use taxel::tui::script::Session;
@@ -312,7 +312,7 @@ fn every_key_is_in_help() {
     let help: String = (0..pages)
         .map(|page| session(&format!("?<{page}x:PageDown>")).screen())
         .collect();
-    for binding in KEYMAP {
+    for binding in DEFAULT_KEYS {
         assert!(
             help.contains(&format!("{:23} {}", binding.labels(), binding.help)),
             "{binding:?}"
@@ -331,7 +331,9 @@ fn every_key_is_in_help() {
 #[test]
 fn no_key_means_two_things_in_one_place() {
     for context in Context::ALL {
-        let rows = KEYMAP.iter().filter(|binding| binding.context == context);
+        let rows = DEFAULT_KEYS
+            .iter()
+            .filter(|binding| binding.context == context);
         let keys: Vec<_> = rows
             .flat_map(|binding| binding.keys.iter().map(|(key, _)| *key))
             .collect();

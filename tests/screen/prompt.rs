@@ -1,36 +1,37 @@
 //! The command line at the foot of the screen, and help in every place.
 
-use taxel::tui::app::message::Message;
+use taxel::tui::keys::action::Action;
 use taxel::tui::keys::binding::Context;
-use taxel::tui::keys::default_keys::KEYMAP;
-use taxel::tui::prompt::commands::COMMANDS;
+use taxel::tui::keys::default_keys::DEFAULT_KEYS;
+use taxel::tui::prompt::commands::{commands, find};
 
 use crate::session::{press, session, shows};
 
 /// Whoever has no such key, or cannot press it, has a word.
 #[test]
 fn every_action_has_a_command() {
-    let said: Vec<&Message> = COMMANDS
+    let listed = commands();
+    let said: Vec<&Action> = listed
         .iter()
-        .flat_map(|command| command.words.iter().map(|(_, message)| message))
+        .flat_map(|command| command.words.iter().map(|(_, action)| *action))
         .collect();
     let places = [Context::Matrix, Context::Grab, Context::Everywhere];
-    let actions = KEYMAP
+    let bound = DEFAULT_KEYS
         .iter()
         .filter(|binding| places.contains(&binding.context))
-        .flat_map(|binding| binding.keys.iter())
-        // The command line itself, and degrees, which are a number there.
-        .filter(|(_, message)| !matches!(message, Message::Command | Message::Turn(_)));
-    for (key, message) in actions {
-        assert!(said.contains(&message), "{key}: {message:?}");
+        .flat_map(|binding| binding.keys.iter());
+    for (key, action) in bound {
+        assert!(said.contains(action), "{key}: {action:?}");
+        let found = find(action.name).expect("its name is a command");
+        assert!(found.words.contains(&("", *action)), "{}", action.name);
     }
 }
 
 /// No name stands twice, and none is the short form of another.
 #[test]
 fn commands_are_found_by_their_names() {
-    for command in COMMANDS {
-        let found = taxel::tui::prompt::commands::find(command.name).expect("it is there");
+    for command in commands() {
+        let found = find(command.name).expect("it is there");
         assert_eq!(format!("{found:?}"), format!("{command:?}"));
     }
 }
@@ -124,7 +125,7 @@ fn candidates_fit_on_the_screen() {
             .expect("the line");
         let shown = line.trim_start_matches(':').split_whitespace();
         let shown = shown.take_while(|word| *word != "…").count();
-        let told = format!("… {} more", COMMANDS.len() - shown);
+        let told = format!("… {} more", commands().len() - shown);
         assert!(line.ends_with(&told), "{line:?} at {width}: {told}");
         assert!(line.chars().count() <= width.into(), "{line:?}");
     }

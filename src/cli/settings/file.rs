@@ -19,7 +19,7 @@ use crate::sensor::Sensor;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::{Key, parse};
-use crate::tui::keys::keymap::{Change, Keymap, RemapError};
+use crate::tui::keys::keymap::{Change, Keymap, KeymapError};
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
 /// What stands for a choice that the program makes.
@@ -114,7 +114,7 @@ pub enum Wrong {
     Key(String),
     /// A change of keys that cannot be made.
     #[error(transparent)]
-    Remap(#[from] RemapError),
+    Keymap(#[from] KeymapError),
 }
 
 /// An entry of a table: its key and its value.
@@ -207,13 +207,13 @@ impl Config {
                     });
                 }
             }
-            "keys" => self.remap(text, value)?,
+            "keys" => self.bind_keys(text, value)?,
             _ => return Err(unknown(key, byte, &TOP)),
         }
         Ok(())
     }
 
-    fn remap(&mut self, text: &str, value: &Spanned<DeValue<'_>>) -> Result<(), Refusal> {
+    fn bind_keys(&mut self, text: &str, value: &Spanned<DeValue<'_>>) -> Result<(), Refusal> {
         let mut spans = Vec::new();
         for (name, byte, value) in entries(table(value)?) {
             let known = Context::ALL.into_iter().find(|own| own.name() == name);
@@ -222,7 +222,7 @@ impl Config {
             for (key, byte, value) in entries(table(value)?) {
                 let action = match string(value)? {
                     "none" => None,
-                    name => Some(action::named(name).cloned().ok_or_else(|| {
+                    name => Some(action::named(name).ok_or_else(|| {
                         let expected = "an action of 'taxel config', or \"none\"".to_owned();
                         unfit(expected, name, value)
                     })?),
@@ -239,10 +239,10 @@ impl Config {
                 });
             }
         }
-        let changes: Vec<Change> = self.changes.iter().map(|own| own.value.clone()).collect();
+        let changes: Vec<Change> = self.changes.iter().map(|own| own.value).collect();
         self.keymap = Keymap::with(&changes).map_err(|(index, error)| {
             let (key, value) = spans.get(index).copied().unwrap_or_default();
-            let byte = if matches!(error, RemapError::Elsewhere(_)) {
+            let byte = if matches!(error, KeymapError::Elsewhere(_)) {
                 value
             } else {
                 key

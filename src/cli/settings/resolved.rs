@@ -13,7 +13,6 @@ use crate::cli::settings::flags::Chosen;
 use crate::parameter::Parameter;
 use crate::sensor::Sensor;
 use crate::storage::location;
-use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::theme::{ColorDepth, Palette};
@@ -309,7 +308,7 @@ impl Effective {
             text += &format!("\n[keys.{}]\n", context.name());
             let here = || changes.iter().filter(|own| own.value.context == context);
             let bound = self.keymap().of(context).flat_map(|row| row.keys.iter());
-            let bound = bound.map(|(key, action)| (*key, action::name(action).unwrap_or_default()));
+            let bound = bound.map(|(key, action)| (*key, action.name));
             let freed = here().filter(|own| own.value.action.is_none());
             let freed = freed.map(|own| (own.value.key, "none"));
             for (key, action) in bound.chain(freed) {

@@ -4,8 +4,8 @@ use crate::formats::value::counted;
 use crate::parameter::Parameter;
 use crate::source::Source;
 use crate::tui::app::document::{Document, DocumentOrigin, History, StoredName};
-use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Mode, Notice};
+use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
 
 /// Says something.
@@ -69,7 +69,7 @@ pub(in crate::tui) fn replace(app: &mut App, document: Document) {
     if dropped > 0 {
         let taxels = counted(dropped.into(), "taxel");
         let them = if dropped == 1 { "it" } else { "them" };
-        let undo = app.key_of(&Message::Undo);
+        let undo = app.key_of(&action::UNDO);
         inform(
             app,
             format!("{taxels} set by hand dropped; {undo} brings {them} back"),
@@ -78,7 +78,7 @@ pub(in crate::tui) fn replace(app: &mut App, document: Document) {
 }
 
 fn refuse_to_move(app: &mut App) {
-    let (figure, picture) = (app.key_of(&Message::Figure), app.key_of(&Message::Picture));
+    let (figure, picture) = (app.key_of(&action::FIGURE), app.key_of(&action::PICTURE));
     refuse(
         app,
         format!(
@@ -131,7 +131,7 @@ pub(in crate::tui) fn zoom(app: &mut App, direction: i8) {
     let Some(source) = movable(app) else { return };
     let by = f64::from(direction) * app.step.length();
     let (Some(x), Some(y)) = (source.get(Parameter::ZoomX), source.get(Parameter::ZoomY)) else {
-        let figure = app.key_of(&Message::Figure);
+        let figure = app.key_of(&action::FIGURE);
         let text = format!("a figure has no zoom; {figure} changes its size");
         return refuse(app, text);
     };

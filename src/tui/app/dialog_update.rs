@@ -9,10 +9,11 @@ use crate::tui::app::state::App;
 use crate::tui::explore;
 use crate::tui::explore::message::ExploreMessage;
 use crate::tui::form::state::FormDialog;
+use crate::tui::keys::action::Arguments;
 use crate::tui::keys::key::Arrow;
 use crate::tui::matrix;
 use crate::tui::prompt::command::read;
-use crate::tui::prompt::commands::{Takes, wants_names};
+use crate::tui::prompt::commands::wants_names;
 use crate::tui::prompt::name::NameDialog;
 use crate::tui::prompt::state::CommandDialog;
 use crate::tui::runtime::effect::{Effect, LibraryRequest, TerminalEffect};
@@ -135,7 +136,7 @@ fn in_command(app: &mut App, mut dialog: CommandDialog, message: Message) -> Opt
             // The names are completed when they are known.
             return wanted.map(|names| {
                 Effect::Library(match names {
-                    Takes::Deleted => LibraryRequest::Trash,
+                    Arguments::Deleted => LibraryRequest::Trash,
                     _ => LibraryRequest::List,
                 })
             });

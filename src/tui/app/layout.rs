@@ -7,7 +7,7 @@ use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
 use crate::tui::form::state::FormDialog;
 use crate::tui::keys::binding::{Binding, Context};
-use crate::tui::keys::default_keys::{KEYMAP, MENU};
+use crate::tui::keys::default_keys::{DEFAULT_KEYS, MENU};
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::columns::narrow;
 
@@ -158,12 +158,12 @@ pub struct MenuItem<'a> {
 /// The options of the menu; those that do not fit are left out.
 pub fn menu(area: Rect, keymap: &Keymap) -> Vec<MenuItem<'_>> {
     let with_key = area.width >= 70;
-    let rows = || KEYMAP.iter().zip(keymap.rows());
+    let rows = || DEFAULT_KEYS.iter().zip(keymap.rows());
     let help = rows().filter(|(row, _)| row.context == Context::Matrix && row.does(&Message::Help));
     let mut x = area.x;
     let mut items = Vec::new();
     for (row, binding) in rows().take(MENU).chain(help) {
-        let Some((_, message)) = row.keys.first() else {
+        let Some(message) = row.keys.first().and_then(|(_, action)| action.message()) else {
             continue;
         };
         let name = binding.help.split([':', ',']).next().unwrap_or_default();

@@ -9,8 +9,9 @@ use crate::tui::app::document::{Document, StoredName};
 use crate::tui::app::message::{Leftover, LibraryEvent, Message};
 use crate::tui::app::state::{App, Mode};
 use crate::tui::form::state::FormDialog;
+use crate::tui::keys::action::{self, Arguments};
 use crate::tui::keys::binding::Context;
-use crate::tui::prompt::commands::{Takes, wants_names};
+use crate::tui::prompt::commands::wants_names;
 use crate::tui::runtime::effect::{Effect, LibraryRequest};
 use crate::tui::shapes::purpose::Purpose;
 use crate::tui::shapes::state::ListDialog;
@@ -26,7 +27,7 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
             Some(Dialog::Command(command)) => {
                 let mut names = entries;
                 match wants_names(command.field.text()) {
-                    Some(Takes::Shape(Purpose::Load | Purpose::Picture)) => {}
+                    Some(Arguments::Shape(Purpose::Load | Purpose::Picture)) => {}
                     _ => names.retain(|entry| entry.origin == ShapeOrigin::Own),
                 }
                 let names: Vec<String> = names.into_iter().map(|entry| entry.name).collect();
@@ -71,7 +72,7 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
         LibraryEvent::Removed(name) => {
             // What is on the matrix may be all that is left of it.
             app.history.removed(&name);
-            let undo = app.key_of(&Message::Undo);
+            let undo = app.key_of(&action::UNDO);
             inform(app, format!("{name} deleted; {undo} brings it back"));
             app.removed = Some(name);
         }
@@ -83,7 +84,7 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
         LibraryEvent::Recovered(shape) => {
             begin(app, Document::empty(shape.sensor), None);
             change(app, Document::of_shape(&shape));
-            let save = app.key_of(&Message::Save);
+            let save = app.key_of(&action::SAVE);
             inform(app, format!("brought back; {save} saves it"));
         }
         LibraryEvent::List(Err(text)) => {
@@ -96,7 +97,7 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
             if let Some(left) = left {
                 offer(app, &format!("{name} is in the trash. "), &left);
             } else {
-                let undo = app.key_of(&Message::Undo);
+                let undo = app.key_of(&action::UNDO);
                 let text = "the unsaved work is in the trash as";
                 inform(app, format!("{text} {name}; {undo} brings it back"));
             }
@@ -117,8 +118,8 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
 /// Asks whether work shall be brought back that a program left when it died.
 fn offer(app: &mut App, before: &str, left: &Leftover) {
     let key = |answer| app.keymap().label(Context::Question, answer);
-    let (yes, no) = (key(&Message::Accept), key(&Message::Decline));
-    let later = key(&Message::Cancel);
+    let (yes, no) = (key(&action::ACCEPT), key(&action::DECLINE));
+    let later = key(&action::CANCEL);
     let of = match left.waiting {
         0 | 1 => String::new(),
         all => format!(" (1 of {all})"),
@@ -194,7 +195,7 @@ fn place(app: &mut App, loaded: &LoadedShape) -> Result<(), String> {
     } else {
         let imprint = shape.imprint.resized(here.0, here.1);
         if imprint.count() < shape.imprint.count() {
-            let change = app.key_of(&Message::Sensor);
+            let change = app.key_of(&action::SENSOR);
             return Err(format!(
                 "{} is {} x {} and does not fit on {} x {} taxels; {change} changes the sensor",
                 shape.name, own.0, own.1, here.0, here.1

@@ -5,8 +5,8 @@ use crate::sensor::Sensor;
 use crate::storage::UNNAMED;
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::{Document, History, Reading, StoredName};
-use crate::tui::app::message::Message;
 use crate::tui::explore::results::Results;
+use crate::tui::keys::action::{self, Action};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::theme::Theme;
@@ -185,18 +185,18 @@ impl App {
     }
 
     /// The key of something that can be done on the matrix, as notices name it.
-    pub(in crate::tui) fn key_of(&self, action: &Message) -> String {
+    pub(in crate::tui) fn key_of(&self, action: &Action) -> String {
         self.keymap.label(Context::Matrix, action)
     }
 
     /// Why nothing can be explored: what is missing, and how it is made.
     pub(in crate::tui) fn nothing_to_explore(&self) -> String {
-        let [figure, picture, draw] = [Message::Figure, Message::Picture, Message::Toggle];
+        let [figure, picture, draw] = [&action::FIGURE, &action::PICTURE, &action::TOGGLE];
         format!(
             "nothing to explore: {} places a figure, {} a stored shape, {} draws",
-            self.key_of(&figure),
-            self.key_of(&picture),
-            self.key_of(&draw)
+            self.key_of(figure),
+            self.key_of(picture),
+            self.key_of(draw)
         )
     }
 

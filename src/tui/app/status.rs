@@ -10,6 +10,7 @@ use crate::tui::app::layout::Panes;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Mode, Notice};
 use crate::tui::explore::export::ENDINGS;
+use crate::tui::keys::action;
 use crate::tui::keys::binding::{Binding, Context};
 use crate::tui::widget::theme::Role;
 use crate::tui::widget::write;
@@ -111,7 +112,7 @@ fn source(app: &App) -> String {
     let Some(source) = &document.source else {
         return name
             + &if by_hand == 0 {
-                let (draw, figure) = (app.key_of(&Message::Toggle), app.key_of(&Message::Figure));
+                let (draw, figure) = (app.key_of(&action::TOGGLE), app.key_of(&action::FIGURE));
                 format!("empty: {draw} draws, {figure} places a figure")
             } else {
                 "drawn by hand".to_owned()
@@ -175,7 +176,7 @@ fn said(app: &App, panes: &Panes) -> Option<(String, Role)> {
             let key = |answer| app.keymap().label(Context::Question, answer);
             let answers = match question.no {
                 Some(_) => String::new(),
-                None => format!(" ({}/{})", key(&Message::Accept), key(&Message::Decline)),
+                None => format!(" ({}/{})", key(&action::ACCEPT), key(&action::DECLINE)),
             };
             return Some((format!("{}{answers}", question.text), Role::Error));
         }
@@ -187,11 +188,15 @@ fn said(app: &App, panes: &Panes) -> Option<(String, Role)> {
         Some(Dialog::Help(help)) if app.notice.is_none() => {
             let (lines, top) = help.lines(app.keymap(), panes.body.as_size().into());
             let last = lines.len().min(top + usize::from(panes.body.height));
-            let key = |lines| app.keymap().label(Context::Help, &Message::Scroll(lines));
+            let key = |action| app.keymap().label(Context::Help, action);
             let more = match (top, last == lines.len()) {
                 (0, true) => return None,
                 (_, true) => "the end".to_owned(),
-                (_, false) => format!("more below: {}, {}", key(1), key(10)),
+                (_, false) => format!(
+                    "more below: {}, {}",
+                    key(&action::SCROLL_DOWN),
+                    key(&action::PAGE_DOWN)
+                ),
             };
             let text = format!("lines {}-{last} of {}; {more}", top + 1, lines.len());
             // A second line would lie over the last one of the list.

@@ -16,6 +16,7 @@ use crate::tui::explore::panes::ResultPanes;
 use crate::tui::explore::results::Results;
 use crate::tui::explore::start::act;
 use crate::tui::explore::statistics::layout::StatisticsTable;
+use crate::tui::keys::action;
 use crate::tui::runtime::effect::Effect;
 
 /// Does what a message says over the results.
@@ -120,8 +121,8 @@ fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
     change(app, document);
     app.chosen = None;
     let number = number.unwrap_or_default();
-    let undo = app.key_of(&Message::Undo);
-    let explore = app.key_of(&Message::Explore(ExploreMessage::Open));
+    let undo = app.key_of(&action::UNDO);
+    let explore = app.key_of(&action::EXPLORE);
     inform(
         app,
         format!("{number}on the matrix; {undo} takes it back, {explore} goes on exploring"),

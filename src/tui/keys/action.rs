@@ -1,179 +1,250 @@
-//! What keys can do, by name: for the file in which a user gives actions other keys.
+//! The table of actions: all that a user can ask for by a key or after `:`.
 //!
-//! Where the command line at the foot knows the same action, it has the same name.
+//! A row has the action's name, its other spellings after `:`, and its message; a row of a command with arguments says
+//! what these are. Everything else refers to the rows: [`crate::tui::keys::default_keys`] gives them keys, with a hint and a
+//! line of help for each place; a settings file gives them other keys, by name; and
+//! [`crate::tui::prompt::commands`] makes the `:` commands of them.
 
 use crate::atlas::SortKey;
 use crate::tui::app::message::{Copied, Endpoint, Erase, Message};
 use crate::tui::explore::message::{ExploreMessage, ExplorePage, Zoom};
 use crate::tui::keys::key::Arrow;
+use crate::tui::shapes::purpose::Purpose;
 
-/// All actions that keys have. Which of them belong to a place is what the table of keys has there.
-pub const ACTIONS: &[(&str, Message)] = &[
-    ("new", Message::New),
-    ("load", Message::Load),
-    ("figure", Message::Figure),
-    ("picture", Message::Picture),
-    ("save", Message::Save),
-    ("delete", Message::Delete),
-    ("quit", Message::Quit),
-    ("cursor-left", Message::Cursor(Arrow::Left)),
-    ("cursor-right", Message::Cursor(Arrow::Right)),
-    ("cursor-up", Message::Cursor(Arrow::Up)),
-    ("cursor-down", Message::Cursor(Arrow::Down)),
-    ("first-column", Message::ToColumn(Endpoint::First)),
-    ("last-column", Message::ToColumn(Endpoint::Last)),
-    ("first-row", Message::ToRow(Endpoint::First)),
-    ("last-row", Message::ToRow(Endpoint::Last)),
-    ("toggle", Message::Toggle),
-    ("undo", Message::Undo),
-    ("redo", Message::Redo),
-    ("region", Message::Region(1)),
-    ("previous-region", Message::Region(-1)),
-    ("coverage", Message::Display),
-    ("grab", Message::Grab),
-    ("nudge-left", Message::Nudge(Arrow::Left)),
-    ("nudge-right", Message::Nudge(Arrow::Right)),
-    ("nudge-up", Message::Nudge(Arrow::Up)),
-    ("nudge-down", Message::Nudge(Arrow::Down)),
-    ("turn-left", Message::Turn(-1)),
-    ("turn-right", Message::Turn(1)),
-    ("turn-left-10", Message::Turn(-10)),
-    ("turn-right-10", Message::Turn(10)),
-    ("zoom-in", Message::Zoom(1)),
-    ("zoom-out", Message::Zoom(-1)),
-    ("sensor", Message::Sensor),
-    ("panel", Message::SwitchPage),
-    ("copy-descriptors", Message::Copy(Copied::Descriptors)),
-    ("copy-imprint", Message::Copy(Copied::Imprint)),
-    ("mouse", Message::MouseOnOff),
-    ("command", Message::Command),
-    ("help", Message::Help),
-    ("larger-step", Message::NudgeStep(1)),
-    ("smaller-step", Message::NudgeStep(-1)),
-    ("next", Message::Field(1)),
-    ("previous", Message::Field(-1)),
-    ("left", Message::Choose(Arrow::Left)),
-    ("right", Message::Choose(Arrow::Right)),
-    ("up", Message::Choose(Arrow::Up)),
-    ("down", Message::Choose(Arrow::Down)),
-    ("increase", Message::Step(1)),
-    ("decrease", Message::Step(-1)),
-    ("erase-before", Message::Erase(Erase::Before)),
-    ("erase-under", Message::Erase(Erase::Under)),
-    ("erase-all", Message::Erase(Erase::All)),
-    ("to-start", Message::ToEdge(Endpoint::First)),
-    ("to-end", Message::ToEdge(Endpoint::Last)),
-    ("accept", Message::Accept),
-    ("cancel", Message::Cancel),
-    ("decline", Message::Decline),
-    ("scroll-up", Message::Scroll(-1)),
-    ("scroll-down", Message::Scroll(1)),
-    ("page-up", Message::Scroll(-10)),
-    ("page-down", Message::Scroll(10)),
-    ("first", Message::ScrollTo(Endpoint::First)),
-    ("last", Message::ScrollTo(Endpoint::Last)),
-    ("explore", Message::Explore(ExploreMessage::Open)),
-    ("ranges", Message::Explore(ExploreMessage::Ranges)),
-    ("stop", Message::Explore(ExploreMessage::Stop)),
-    ("quit-at-once", Message::Terminate),
-    (
-        "imprints",
-        Message::Explore(ExploreMessage::Page(ExplorePage::Imprints)),
-    ),
-    (
-        "statistics",
-        Message::Explore(ExploreMessage::Page(ExplorePage::Statistics)),
-    ),
-    (
-        "histogram",
-        Message::Explore(ExploreMessage::Page(ExplorePage::Histogram)),
-    ),
-    (
-        "map",
-        Message::Explore(ExploreMessage::Page(ExplorePage::Map)),
-    ),
-    ("next-page", Message::Explore(ExploreMessage::NextPage(1))),
-    (
-        "previous-page",
-        Message::Explore(ExploreMessage::NextPage(-1)),
-    ),
-    (
-        "next-descriptor",
-        Message::Explore(ExploreMessage::Feature(1)),
-    ),
-    (
-        "previous-descriptor",
-        Message::Explore(ExploreMessage::Feature(-1)),
-    ),
-    (
-        "later-columns",
-        Message::Explore(ExploreMessage::Columns(1)),
-    ),
-    (
-        "earlier-columns",
-        Message::Explore(ExploreMessage::Columns(-1)),
-    ),
-    (
-        "sort-by-poses",
-        Message::Explore(ExploreMessage::Sort(SortKey::Poses)),
-    ),
-    (
-        "sort-by-first-pose",
-        Message::Explore(ExploreMessage::Sort(SortKey::FirstPose)),
-    ),
-    (
-        "sort-by-value",
-        Message::Explore(ExploreMessage::Sort(SortKey::Value)),
-    ),
-    (
-        "sort-by-pieces",
-        Message::Explore(ExploreMessage::Sort(SortKey::Pieces)),
-    ),
-    (
-        "sort-by-holes",
-        Message::Explore(ExploreMessage::Sort(SortKey::Holes)),
-    ),
-    ("find", Message::Explore(ExploreMessage::Find)),
-    ("follow", Message::Explore(ExploreMessage::Follow)),
-    ("export", Message::Explore(ExploreMessage::Export)),
-    ("next-angle", Message::Explore(ExploreMessage::Angle(1))),
-    (
-        "previous-angle",
-        Message::Explore(ExploreMessage::Angle(-1)),
-    ),
-    ("ten-angles-on", Message::Explore(ExploreMessage::Angle(10))),
-    (
-        "ten-angles-back",
-        Message::Explore(ExploreMessage::Angle(-10)),
-    ),
-    (
-        "next-zoom-x",
-        Message::Explore(ExploreMessage::Zoomed(Zoom::X, 1)),
-    ),
-    (
-        "previous-zoom-x",
-        Message::Explore(ExploreMessage::Zoomed(Zoom::X, -1)),
-    ),
-    (
-        "next-zoom-y",
-        Message::Explore(ExploreMessage::Zoomed(Zoom::Y, 1)),
-    ),
-    (
-        "previous-zoom-y",
-        Message::Explore(ExploreMessage::Zoomed(Zoom::Y, -1)),
-    ),
-    ("redraw", Message::Redraw),
-    ("suspend", Message::Suspend),
-];
-
-/// The action of that name.
-pub fn named(name: &str) -> Option<&'static Message> {
-    let found = ACTIONS.iter().find(|(known, _)| *known == name);
-    found.map(|(_, action)| action)
+/// Something that a user can ask for.
+#[derive(Debug, PartialEq)]
+pub struct Action {
+    /// Its name, in a settings file and after `:`.
+    pub name: &'static str,
+    /// Other spellings after `:`, as "cursor left" for "cursor-left".
+    pub spellings: &'static [&'static str],
+    /// What it does, or the arguments that it needs to do something.
+    pub does: Does,
 }
 
-/// The name of an action; none for what no key can do.
-pub fn name(action: &Message) -> Option<&'static str> {
-    let found = ACTIONS.iter().find(|(_, known)| known == action);
-    found.map(|(name, _)| *name)
+/// What an action does.
+#[derive(Debug, PartialEq)]
+pub enum Does {
+    /// Sends a message.
+    Message(Message),
+    /// Sends a message that depends on what follows the name after `:`.
+    With(Arguments),
+}
+
+/// What follows the name of a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arguments {
+    /// The name of a shape, and what for.
+    Shape(Purpose),
+    /// The name of a deleted shape.
+    Deleted,
+    /// A name to save under.
+    Name,
+    /// A kind of figure and its parameters.
+    Figure,
+    /// Parameters of the sensor.
+    Sensor,
+    /// Ranges of a sweep.
+    Ranges,
+    /// Whole degrees.
+    Degrees,
+    /// Column and row of a taxel.
+    Taxel,
+    /// Cells along x and along y.
+    Distance,
+}
+
+impl Action {
+    /// Its message; None for a command with arguments.
+    pub fn message(&self) -> Option<&Message> {
+        match &self.does {
+            Does::Message(message) => Some(message),
+            Does::With(_) => None,
+        }
+    }
+
+    /// The arguments that it needs; None for an action that stands alone.
+    pub fn arguments(&self) -> Option<Arguments> {
+        match self.does {
+            Does::Message(_) => None,
+            Does::With(arguments) => Some(arguments),
+        }
+    }
+
+    /// Whether it sends this message.
+    pub fn sends(&self, message: &Message) -> bool {
+        self.message() == Some(message)
+    }
+}
+
+impl Arguments {
+    /// How messages show them.
+    pub fn form(self) -> &'static str {
+        match self {
+            Self::Shape(_) | Self::Deleted | Self::Name => "NAME",
+            Self::Figure => "KIND --side 3 ...",
+            Self::Sensor => "--columns 32 ...",
+            Self::Ranges => "--x0 5:5.99:0.01 ...",
+            Self::Degrees => "DEGREES",
+            Self::Taxel => "COLUMN ROW",
+            Self::Distance => "DX DY",
+        }
+    }
+
+    /// Whether the rest of the line is the name of a shape, which may have spaces.
+    pub fn is_name(self) -> bool {
+        matches!(self, Self::Shape(_) | Self::Deleted | Self::Name)
+    }
+}
+
+/// Rows of the table: `CONSTANT "name" ["spelling"…] message`, and `"name" takes arguments`. A macro, so that the default keys
+/// can name each row and the compiler knows the names.
+macro_rules! actions {
+    (
+        alone {$($constant:ident $name:literal [$($spelling:literal),*] $message:expr;)+}
+        with_arguments {$($command:literal $arguments:expr;)+}
+    ) => {
+        $(
+            #[doc = concat!("`", $name, "`.")]
+            pub static $constant: Action = Action {
+                name: $name,
+                spellings: &[$($spelling),*],
+                does: Does::Message($message),
+            };
+        )+
+
+        /// All actions.
+        pub static ACTIONS: &[&Action] = &[
+            $(&$constant,)+
+            $(&Action {
+                name: $command,
+                spellings: &[],
+                does: Does::With($arguments),
+            }),+
+        ];
+    };
+}
+
+use ExploreMessage::{Angle, Columns, Feature, NextPage, Sort, Zoomed};
+use Message::Explore;
+
+actions! {
+    alone {
+        NEW "new" [] Message::New;
+        LOAD "load" [] Message::Load;
+        FIGURE "figure" [] Message::Figure;
+        PICTURE "picture" [] Message::Picture;
+        SAVE "save" [] Message::Save;
+        DELETE "delete" [] Message::Delete;
+        QUIT "quit" [] Message::Quit;
+        QUIT_NOW "quit!" [] Message::QuitNow;
+        CURSOR_LEFT "cursor-left" ["cursor left"] Message::Cursor(Arrow::Left);
+        CURSOR_RIGHT "cursor-right" ["cursor right"] Message::Cursor(Arrow::Right);
+        CURSOR_UP "cursor-up" ["cursor up"] Message::Cursor(Arrow::Up);
+        CURSOR_DOWN "cursor-down" ["cursor down"] Message::Cursor(Arrow::Down);
+        FIRST_COLUMN "first-column" ["cursor start"] Message::ToColumn(Endpoint::First);
+        LAST_COLUMN "last-column" ["cursor end"] Message::ToColumn(Endpoint::Last);
+        FIRST_ROW "first-row" ["cursor top"] Message::ToRow(Endpoint::First);
+        LAST_ROW "last-row" ["cursor bottom"] Message::ToRow(Endpoint::Last);
+        TOGGLE "toggle" [] Message::Toggle;
+        UNDO "undo" [] Message::Undo;
+        REDO "redo" [] Message::Redo;
+        REGION "region" ["region next"] Message::Region(1);
+        PREVIOUS_REGION "previous-region" ["region previous"] Message::Region(-1);
+        COVERAGE "coverage" [] Message::Display;
+        GRAB "grab" [] Message::Grab;
+        NUDGE_LEFT "nudge-left" ["nudge left"] Message::Nudge(Arrow::Left);
+        NUDGE_RIGHT "nudge-right" ["nudge right"] Message::Nudge(Arrow::Right);
+        NUDGE_UP "nudge-up" ["nudge up"] Message::Nudge(Arrow::Up);
+        NUDGE_DOWN "nudge-down" ["nudge down"] Message::Nudge(Arrow::Down);
+        TURN_LEFT "turn-left" [] Message::Turn(-1);
+        TURN_RIGHT "turn-right" [] Message::Turn(1);
+        TURN_LEFT_10 "turn-left-10" [] Message::Turn(-10);
+        TURN_RIGHT_10 "turn-right-10" [] Message::Turn(10);
+        ZOOM_IN "zoom-in" ["zoom in"] Message::Zoom(1);
+        ZOOM_OUT "zoom-out" ["zoom out"] Message::Zoom(-1);
+        SENSOR "sensor" [] Message::Sensor;
+        PANEL "panel" [] Message::SwitchPage;
+        COPY_DESCRIPTORS "copy-descriptors" ["copy", "copy descriptors"] Message::Copy(Copied::Descriptors);
+        COPY_IMPRINT "copy-imprint" ["copy imprint"] Message::Copy(Copied::Imprint);
+        MOUSE "mouse" [] Message::MouseOnOff;
+        COMMAND "command" [] Message::Command;
+        HELP "help" [] Message::Help;
+        LARGER_STEP "larger-step" ["step larger"] Message::NudgeStep(1);
+        SMALLER_STEP "smaller-step" ["step smaller"] Message::NudgeStep(-1);
+        NEXT "next" [] Message::Field(1);
+        PREVIOUS "previous" [] Message::Field(-1);
+        LEFT "left" [] Message::Choose(Arrow::Left);
+        RIGHT "right" [] Message::Choose(Arrow::Right);
+        UP "up" [] Message::Choose(Arrow::Up);
+        DOWN "down" [] Message::Choose(Arrow::Down);
+        INCREASE "increase" [] Message::Step(1);
+        DECREASE "decrease" [] Message::Step(-1);
+        ERASE_BEFORE "erase-before" [] Message::Erase(Erase::Before);
+        ERASE_UNDER "erase-under" [] Message::Erase(Erase::Under);
+        ERASE_ALL "erase-all" [] Message::Erase(Erase::All);
+        TO_START "to-start" [] Message::ToEdge(Endpoint::First);
+        TO_END "to-end" [] Message::ToEdge(Endpoint::Last);
+        ACCEPT "accept" [] Message::Accept;
+        CANCEL "cancel" [] Message::Cancel;
+        DECLINE "decline" [] Message::Decline;
+        SCROLL_UP "scroll-up" [] Message::Scroll(-1);
+        SCROLL_DOWN "scroll-down" [] Message::Scroll(1);
+        PAGE_UP "page-up" [] Message::Scroll(-10);
+        PAGE_DOWN "page-down" [] Message::Scroll(10);
+        FIRST "first" [] Message::ScrollTo(Endpoint::First);
+        LAST "last" [] Message::ScrollTo(Endpoint::Last);
+        EXPLORE "explore" [] Explore(ExploreMessage::Open);
+        RANGES "ranges" [] Explore(ExploreMessage::Ranges);
+        STOP "stop" [] Explore(ExploreMessage::Stop);
+        QUIT_AT_ONCE "quit-at-once" [] Message::Terminate;
+        IMPRINTS "imprints" [] Explore(ExploreMessage::Page(ExplorePage::Imprints));
+        STATISTICS "statistics" [] Explore(ExploreMessage::Page(ExplorePage::Statistics));
+        HISTOGRAM "histogram" [] Explore(ExploreMessage::Page(ExplorePage::Histogram));
+        MAP "map" [] Explore(ExploreMessage::Page(ExplorePage::Map));
+        NEXT_PAGE "next-page" [] Explore(NextPage(1));
+        PREVIOUS_PAGE "previous-page" [] Explore(NextPage(-1));
+        NEXT_DESCRIPTOR "next-descriptor" [] Explore(Feature(1));
+        PREVIOUS_DESCRIPTOR "previous-descriptor" [] Explore(Feature(-1));
+        LATER_COLUMNS "later-columns" [] Explore(Columns(1));
+        EARLIER_COLUMNS "earlier-columns" [] Explore(Columns(-1));
+        SORT_BY_POSES "sort-by-poses" [] Explore(Sort(SortKey::Poses));
+        SORT_BY_FIRST_POSE "sort-by-first-pose" [] Explore(Sort(SortKey::FirstPose));
+        SORT_BY_VALUE "sort-by-value" [] Explore(Sort(SortKey::Value));
+        SORT_BY_PIECES "sort-by-pieces" [] Explore(Sort(SortKey::Pieces));
+        SORT_BY_HOLES "sort-by-holes" [] Explore(Sort(SortKey::Holes));
+        FIND "find" [] Explore(ExploreMessage::Find);
+        FOLLOW "follow" [] Explore(ExploreMessage::Follow);
+        EXPORT "export" [] Explore(ExploreMessage::Export);
+        NEXT_ANGLE "next-angle" [] Explore(Angle(1));
+        PREVIOUS_ANGLE "previous-angle" [] Explore(Angle(-1));
+        TEN_ANGLES_ON "ten-angles-on" [] Explore(Angle(10));
+        TEN_ANGLES_BACK "ten-angles-back" [] Explore(Angle(-10));
+        NEXT_ZOOM_X "next-zoom-x" [] Explore(Zoomed(Zoom::X, 1));
+        PREVIOUS_ZOOM_X "previous-zoom-x" [] Explore(Zoomed(Zoom::X, -1));
+        NEXT_ZOOM_Y "next-zoom-y" [] Explore(Zoomed(Zoom::Y, 1));
+        PREVIOUS_ZOOM_Y "previous-zoom-y" [] Explore(Zoomed(Zoom::Y, -1));
+        REDRAW "redraw" [] Message::Redraw;
+        SUSPEND "suspend" [] Message::Suspend;
+    }
+
+    with_arguments {
+        "cursor" Arguments::Taxel;
+        "delete" Arguments::Shape(Purpose::Delete);
+        "explore" Arguments::Ranges;
+        "figure" Arguments::Figure;
+        "load" Arguments::Shape(Purpose::Load);
+        "move" Arguments::Distance;
+        "picture" Arguments::Shape(Purpose::Picture);
+        "restore" Arguments::Deleted;
+        "save" Arguments::Name;
+        "sensor" Arguments::Sensor;
+        "turn" Arguments::Degrees;
+    }
+}
+
+/// The action of that name that a key can have.
+pub fn named(name: &str) -> Option<&'static Action> {
+    let mut all = ACTIONS.iter().copied();
+    all.find(|action| action.name == name && action.message().is_some())
 }

@@ -1,18 +1,19 @@
-//! Rows of the table of keys: where, which keys, what they mean, how they are shown.
+//! Places where keys are pressed, and rows of the table of keys.
 
 use std::borrow::Cow;
 
 use crate::tui::app::message::Message;
+use crate::tui::keys::action::Action;
 use crate::tui::keys::key::{Arrow, Key};
 
-/// Where a key is pressed.
+/// The place where a key is pressed; it decides what the key does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Context {
-    /// Anywhere, unless the key means something else there.
+    /// Everywhere, unless the key means something else there.
     Everywhere,
     /// On the matrix.
     Matrix,
-    /// On the matrix, the shape being held.
+    /// On the matrix, while a shape is held.
     Grab,
     /// In a form.
     Form,
@@ -20,32 +21,32 @@ pub enum Context {
     List,
     /// In the field for a name.
     Name,
-    /// In the command line at the foot.
+    /// In the `:` prompt.
     Command,
     /// In the list of keys.
     Help,
-    /// At a question.
+    /// At a yes-or-no question.
     Question,
     /// In the form of ranges.
     Ranges,
-    /// While something is under way.
+    /// While a worker runs.
     Running,
-    /// On any page of what a sweep found.
+    /// On every page of Explore.
     Explore,
-    /// In the list of imprints.
+    /// On the imprints page of Explore.
     Imprints,
-    /// In the statistics.
+    /// On its statistics page.
     Statistics,
-    /// At the histogram.
+    /// On its histogram page.
     Histogram,
-    /// On the map.
+    /// On its map page.
     Map,
-    /// In the field for the name of a file.
+    /// In the field for the name of an exported file.
     Export,
 }
 
 impl Context {
-    /// All of them, in the order of help.
+    /// All places, in the order of help.
     pub const ALL: [Self; 17] = [
         Self::Matrix,
         Self::Grab,
@@ -89,7 +90,7 @@ impl Context {
         }
     }
 
-    /// Its name where a user changes keys.
+    /// Its name in a settings file.
     pub fn name(self) -> &'static str {
         match self {
             Self::Everywhere => "everywhere",
@@ -112,7 +113,7 @@ impl Context {
         }
     }
 
-    /// Where a key is looked up next that means nothing here.
+    /// The place where a key that means nothing here is looked up next.
     pub(in crate::tui) fn outer(self) -> Option<Self> {
         match self {
             Self::Everywhere => None,
@@ -121,7 +122,7 @@ impl Context {
         }
     }
 
-    /// The screen that this is a page of, where it is one: the keys of both are hinted at.
+    /// The screen that this place is a page of; hints show the keys of both.
     pub fn screen(self) -> Option<Self> {
         match self {
             Self::Imprints | Self::Statistics | Self::Histogram | Self::Map => Some(Self::Explore),
@@ -129,7 +130,7 @@ impl Context {
         }
     }
 
-    /// Whether characters that are no command are typed into a field.
+    /// Whether a character that is not bound is typed into a field.
     pub(in crate::tui) fn takes_text(self) -> bool {
         matches!(
             self,
@@ -138,30 +139,45 @@ impl Context {
     }
 }
 
-/// A row of the table.
+/// A row of the table of keys: some keys of a place, shown together in hints and help.
 #[derive(Clone, Debug)]
 pub struct Binding {
-    /// Where.
+    /// The place.
     pub context: Context,
-    /// Any of these keys, each with the message it gives.
-    pub keys: Cow<'static, [(Key, Message)]>,
-    /// A word or two for the line of hints; empty where it does not stand there.
+    /// The keys, each with its action. Empty after a settings file has taken all of them away.
+    pub keys: Cow<'static, [(Key, &'static Action)]>,
+    /// A word or two for the line of hints; empty for no hint.
     pub hint: &'static str,
-    /// What it does, for help.
+    /// What the keys do, for help.
     pub help: &'static str,
 }
 
 impl Binding {
-    /// Whether one of its keys means this.
+    /// A row of the default keys.
+    pub(in crate::tui) const fn row(
+        context: Context,
+        keys: &'static [(Key, &'static Action)],
+        hint: &'static str,
+        help: &'static str,
+    ) -> Self {
+        Self {
+            context,
+            keys: Cow::Borrowed(keys),
+            hint,
+            help,
+        }
+    }
+
+    /// Whether one of its keys sends this message.
     pub fn does(&self, message: &Message) -> bool {
-        self.keys.iter().any(|(_, meaning)| meaning == message)
+        self.keys.iter().any(|(_, action)| action.sends(message))
     }
 
     /// The row without some keys.
     pub(in crate::tui) fn without(&self, others: &[Key]) -> Self {
         let keys = self.keys.iter().filter(|(key, _)| !others.contains(key));
         Self {
-            keys: keys.cloned().collect(),
+            keys: keys.copied().collect(),
             ..self.clone()
         }
     }
@@ -178,7 +194,7 @@ impl Binding {
         labels.join(" ")
     }
 
-    /// What the four arrows are called together, where the key is one of them and all are there.
+    /// "arrows" or "Shift-arrows" if the key is one of four that are all in this row.
     fn all_arrows(&self, key: Key) -> Option<&'static str> {
         let (shown, label): (fn(Arrow) -> Key, _) = match key {
             Key::Arrow(_) => (Key::Arrow, "arrows"),
@@ -190,36 +206,20 @@ impl Binding {
         all.iter().all(bound).then_some(label)
     }
 
-    /// The same in short, for hints: one key, or a pair of opposite ones where these are short.
+    /// Its keys in short, for hints: the first one, or the first two that do different things if both are short.
     pub fn short_labels(&self) -> String {
-        let arrows = self.keys.iter().find_map(|(key, _)| self.all_arrows(*key));
-        let (Some((first, message)), None) = (self.keys.first(), arrows) else {
-            return arrows.unwrap_or_default().to_owned();
+        if let Some(arrows) = self.keys.iter().find_map(|(key, _)| self.all_arrows(*key)) {
+            return arrows.to_owned();
+        }
+        let Some((first, action)) = self.keys.first() else {
+            return String::new();
         };
-        let opposite = self
-            .keys
-            .iter()
-            .find(|(_, other)| other != message)
-            .map(|(key, _)| key.label());
+        let opposite = self.keys.iter().find(|(_, other)| other != action);
+        let opposite = opposite.map(|(key, _)| key.label());
         let first = first.label();
         match opposite {
             Some(second) if first.len() + second.len() <= 9 => format!("{first} {second}"),
             _ => first,
         }
-    }
-}
-
-/// A row.
-pub(in crate::tui) const fn bind(
-    context: Context,
-    keys: &'static [(Key, Message)],
-    hint: &'static str,
-    help: &'static str,
-) -> Binding {
-    Binding {
-        context,
-        keys: Cow::Borrowed(keys),
-        hint,
-        help,
     }
 }

@@ -1,242 +1,242 @@
-//! The table of keys as it is unless a user changes it: [`crate::tui::keys::keymap`]. Help, hints and the menu are made from it; a
-//! key that is not in it does nothing.
+//! The default keys: for each place its keys with their actions, a hint for the foot of the screen and a line of help.
+//!
+//! Help, hints, the menu and the table of the README are made from it; a key that is not in it does nothing. A settings
+//! file can give the actions of a place other keys: [`crate::tui::keys::keymap`]. Hint and help stand here and not
+//! with the action because the same action means different things in different places: Enter takes a figure, starts a
+//! sweep, writes a file.
 //!
 //! The arrows move the cursor, not `hjkl`: `l` is Load, as in the paper's menu.
 
-use crate::atlas::SortKey;
-use crate::tui::app::message::{Copied, Endpoint, Erase, Message};
-use crate::tui::explore::message::{ExploreMessage, ExplorePage, Zoom};
-use crate::tui::keys::binding::{Binding, Context, bind};
+use crate::tui::keys::action;
+use crate::tui::keys::binding::{Binding, Context};
 use crate::tui::keys::key::{Arrow, Key};
 
 use Arrow::{Down, Left, Right, Up};
-use Endpoint::{First, Last};
 use Key::{
-    BackTab, Backspace, Char, Ctrl, Delete, Enter, Esc, F1, Home, PageDown, PageUp, ShiftArrow, Tab,
+    BackTab, Backspace, Char, Ctrl, Delete, End, Enter, Esc, F1, Home, PageDown, PageUp,
+    ShiftArrow, Tab,
 };
 
 const LEFT: Key = Key::Arrow(Left);
 const RIGHT: Key = Key::Arrow(Right);
 const UP: Key = Key::Arrow(Up);
 const DOWN: Key = Key::Arrow(Down);
-// Not imported: the name is that of the two ends, too.
-const END: Key = Key::End;
 
-/// A table by places: each row its keys with their messages, a hint for the footer, a line of help. A macro, so that a
-/// row stays a line: the formatter would make eight of it.
+/// Rows by place: `[key => ACTION, ...] hint help`. A macro, so that a row stays a line where the formatter would make
+/// eight of it.
 macro_rules! table {
     ($($place:ident {$(
-        [$($key:expr => $message:ident $(($($what:tt)+))?),+] $hint:literal $help:literal;
+        [$($key:expr => $action:ident),+] $hint:literal $help:literal;
     )+})+) => {
-        &[$($(bind(Context::$place, &[$(($key, Message::$message $(($($what)+))?)),+], $hint, $help)),+),+]
+        &[$($(Binding::row(Context::$place, &[$(($key, &action::$action)),+], $hint, $help)),+),+]
     };
 }
 
-/// The table, in the order of help and hints; the first seven are the paper's options and make the menu.
-pub const KEYMAP: &[Binding] = table! {
+/// The default keys, in the order of help and hints; the first seven rows are the paper's options and make the menu.
+pub static DEFAULT_KEYS: &[Binding] = table! {
     Matrix {
-        [Char('n') => New] "" "New: empty the matrix, to draw by hand";
-        [Char('l') => Load] "" "Load: bring a stored shape onto the matrix";
-        [Char('f') => Figure] "" "Figure: place one of the seven figures";
-        [Char('p') => Picture] "" "Picture: move, turn and zoom a stored shape";
-        [Char('s') => Save] "" "Save: store what is on the matrix";
-        [Char('d') => Delete] "" "Delete: remove a stored shape";
-        [Char('q') => Quit] "" "Quit: asks first where work would be lost";
-        [LEFT => Cursor(Left), RIGHT => Cursor(Right), UP => Cursor(Up), DOWN => Cursor(Down)]
+        [Char('n') => NEW] "" "New: empty the matrix, to draw by hand";
+        [Char('l') => LOAD] "" "Load: bring a stored shape onto the matrix";
+        [Char('f') => FIGURE] "" "Figure: place one of the seven figures";
+        [Char('p') => PICTURE] "" "Picture: move, turn and zoom a stored shape";
+        [Char('s') => SAVE] "" "Save: store what is on the matrix";
+        [Char('d') => DELETE] "" "Delete: remove a stored shape";
+        [Char('q') => QUIT] "" "Quit: asks first where work would be lost";
+        [LEFT => CURSOR_LEFT, RIGHT => CURSOR_RIGHT, UP => CURSOR_UP, DOWN => CURSOR_DOWN]
             "" "move the cursor";
-        [Home => ToColumn(First), END => ToColumn(Last)] "" "cursor to the first, the last column";
-        [PageUp => ToRow(First), PageDown => ToRow(Last)] "" "cursor to the first, the last row";
-        [Char(' ') => Toggle] "toggle" "turn the taxel under the cursor on or off";
-        [Char('u') => Undo] "undo" "undo the last change, then those before";
-        [Char('U') => Redo, Ctrl('r') => Redo] "redo" "redo what was undone";
-        [Tab => Region(1), BackTab => Region(-1)]
+        [Home => FIRST_COLUMN, End => LAST_COLUMN] "" "cursor to the first, the last column";
+        [PageUp => FIRST_ROW, PageDown => LAST_ROW] "" "cursor to the first, the last row";
+        [Char(' ') => TOGGLE] "toggle" "turn the taxel under the cursor on or off";
+        [Char('u') => UNDO] "undo" "undo the last change, then those before";
+        [Char('U') => REDO, Ctrl('r') => REDO] "redo" "redo what was undone";
+        [Tab => REGION, BackTab => PREVIOUS_REGION]
             "region" "describe the next, the previous piece or hole";
-        [Char('c') => Display] "coverage" "coverage in shades, in percent, the imprint again";
-        [Char('g') => Grab] "grab" "hold the shape, to move it with the arrows";
-        [Char('e') => Explore(ExploreMessage::Open)] "explore" "Explore: all imprints of the shape, over all poses";
-        [ShiftArrow(Left) => Nudge(Left), ShiftArrow(Right) => Nudge(Right),
-            ShiftArrow(Up) => Nudge(Up), ShiftArrow(Down) => Nudge(Down)]
+        [Char('c') => COVERAGE] "coverage" "coverage in shades, in percent, the imprint again";
+        [Char('g') => GRAB] "grab" "hold the shape, to move it with the arrows";
+        [Char('e') => EXPLORE] "explore" "Explore: all imprints of the shape, over all poses";
+        [ShiftArrow(Left) => NUDGE_LEFT, ShiftArrow(Right) => NUDGE_RIGHT,
+            ShiftArrow(Up) => NUDGE_UP, ShiftArrow(Down) => NUDGE_DOWN]
             "" "move the shape without holding it";
-        [Char('<') => Turn(-1), Char('>') => Turn(1)]
+        [Char('<') => TURN_LEFT, Char('>') => TURN_RIGHT]
             "turn" "turn the shape by 1 degree, left, right";
-        [Char('(') => Turn(-10), Char(')') => Turn(10)] "" "turn it by 10 degrees";
-        [Char('z') => Zoom(1), Char('Z') => Zoom(-1)]
+        [Char('(') => TURN_LEFT_10, Char(')') => TURN_RIGHT_10] "" "turn it by 10 degrees";
+        [Char('z') => ZOOM_IN, Char('Z') => ZOOM_OUT]
             "" "zoom a picture in, out, by the current step";
-        [Char('S') => Sensor] "" "Sensor: columns, rows, threshold, pitch";
-        [Char('i') => SwitchPage] "descriptors" "on a narrow screen: descriptors or matrix";
-        [Char('y') => Copy(Copied::Descriptors), Char('Y') => Copy(Copied::Imprint)]
+        [Char('S') => SENSOR] "" "Sensor: columns, rows, threshold, pitch";
+        [Char('i') => PANEL] "descriptors" "on a narrow screen: descriptors or matrix";
+        [Char('y') => COPY_DESCRIPTORS, Char('Y') => COPY_IMPRINT]
             "" "copy descriptors, imprint to your terminal's clipboard";
-        [Char('m') => MouseOnOff] "" "the mouse sets taxels, or selects text";
-        [Char(':') => Command] "" "type a command";
-        [Char('?') => Help] "help" "Help: this list";
+        [Char('m') => MOUSE] "" "the mouse sets taxels, or selects text";
+        [Char(':') => COMMAND] "" "type a command";
+        [Char('?') => HELP] "help" "Help: this list";
     }
 
     Grab {
-        [LEFT => Nudge(Left), RIGHT => Nudge(Right), UP => Nudge(Up), DOWN => Nudge(Down)]
+        [LEFT => NUDGE_LEFT, RIGHT => NUDGE_RIGHT, UP => NUDGE_UP, DOWN => NUDGE_DOWN]
             "move" "move the shape by a step";
-        [Char('+') => NudgeStep(1), Char('=') => NudgeStep(1), Char('-') => NudgeStep(-1)]
+        [Char('+') => LARGER_STEP, Char('=') => LARGER_STEP, Char('-') => SMALLER_STEP]
             "step" "a larger, a smaller step: 0.01, 0.1, 1";
-        [Char('g') => Grab, Enter => Grab, Esc => Grab] "let go" "let the shape go";
+        [Char('g') => GRAB, Enter => GRAB, Esc => GRAB] "let go" "let the shape go";
     }
 
     Form {
-        [Tab => Field(1), BackTab => Field(-1)] "field" "next, previous field";
-        [LEFT => Choose(Left), RIGHT => Choose(Right), UP => Choose(Up), DOWN => Choose(Down)]
+        [Tab => NEXT, BackTab => PREVIOUS] "field" "next, previous field";
+        [LEFT => LEFT, RIGHT => RIGHT, UP => UP, DOWN => DOWN]
             "" "choose the kind (or by its letter); move, change field";
-        [Char('+') => Step(1), Char('=') => Step(1), Char('-') => Step(-1)]
+        [Char('+') => INCREASE, Char('=') => INCREASE, Char('-') => DECREASE]
             "step" "change the number by its last decimal";
-        [Backspace => Erase(Erase::Before), Delete => Erase(Erase::Under)] "" "delete a character";
-        [Ctrl('u') => Erase(Erase::All)] "clear" "clear the field";
-        [Home => ToEdge(First), END => ToEdge(Last)] "" "to the start, the end of the field";
-        [Enter => Accept] "take it" "take it; refused while a field is wrong";
-        [Esc => Cancel, Ctrl('g') => Cancel] "cancel" "leave everything as it was";
-        [Char('?') => Help] "help" "these keys";
+        [Backspace => ERASE_BEFORE, Delete => ERASE_UNDER] "" "delete a character";
+        [Ctrl('u') => ERASE_ALL] "clear" "clear the field";
+        [Home => TO_START, End => TO_END] "" "to the start, the end of the field";
+        [Enter => ACCEPT] "take it" "take it; refused while a field is wrong";
+        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "leave everything as it was";
+        [Char('?') => HELP] "help" "these keys";
     }
 
     Question {
-        [Char('y') => Accept] "yes" "yes";
-        [Char('n') => Decline] "no" "no";
-        [Esc => Cancel, Ctrl('g') => Cancel, Char('q') => Cancel] "not now" "no answer now";
-        [Char('?') => Help] "help" "these keys";
+        [Char('y') => ACCEPT] "yes" "yes";
+        [Char('n') => DECLINE] "no" "no";
+        [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL] "not now" "no answer now";
+        [Char('?') => HELP] "help" "these keys";
     }
 
     List {
-        [UP => Scroll(-1), DOWN => Scroll(1)] "choose" "previous, next shape";
-        [PageUp => Scroll(-10), PageDown => Scroll(10)] "" "ten shapes back, on";
-        [Home => ScrollTo(First), END => ScrollTo(Last)] "" "first, last shape";
-        [Enter => Accept] "take it" "take the shape";
-        [Backspace => Erase(Erase::Before)] "" "delete a character of the filter";
-        [Ctrl('u') => Erase(Erase::All)] "clear" "clear the filter";
-        [Esc => Cancel, Ctrl('g') => Cancel] "cancel" "leave everything as it was";
-        [Char('?') => Help] "help" "these keys";
+        [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "choose" "previous, next shape";
+        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten shapes back, on";
+        [Home => FIRST, End => LAST] "" "first, last shape";
+        [Enter => ACCEPT] "take it" "take the shape";
+        [Backspace => ERASE_BEFORE] "" "delete a character of the filter";
+        [Ctrl('u') => ERASE_ALL] "clear" "clear the filter";
+        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "leave everything as it was";
+        [Char('?') => HELP] "help" "these keys";
     }
 
     Name {
-        [Enter => Accept] "save" "store under this name";
-        [LEFT => Choose(Left), RIGHT => Choose(Right)] "" "move in the name";
-        [Home => ToEdge(First), END => ToEdge(Last)] "" "to its start, its end";
-        [Backspace => Erase(Erase::Before), Delete => Erase(Erase::Under)] "" "delete a character";
-        [Ctrl('u') => Erase(Erase::All)] "clear" "clear the name";
-        [Esc => Cancel, Ctrl('g') => Cancel] "cancel" "do not store";
-        [F1 => Help] "help" "these keys";
+        [Enter => ACCEPT] "save" "store under this name";
+        [LEFT => LEFT, RIGHT => RIGHT] "" "move in the name";
+        [Home => TO_START, End => TO_END] "" "to its start, its end";
+        [Backspace => ERASE_BEFORE, Delete => ERASE_UNDER] "" "delete a character";
+        [Ctrl('u') => ERASE_ALL] "clear" "clear the name";
+        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "do not store";
+        [F1 => HELP] "help" "these keys";
     }
 
     Command {
-        [Enter => Accept] "do it" "do it";
-        [Tab => Field(1)] "complete" "complete the word";
-        [UP => Choose(Up), DOWN => Choose(Down)] "earlier" "earlier, later commands";
-        [LEFT => Choose(Left), RIGHT => Choose(Right)] "" "move in the line";
-        [Home => ToEdge(First), END => ToEdge(Last)] "" "to its start, its end";
-        [Backspace => Erase(Erase::Before), Delete => Erase(Erase::Under)] "" "delete a character";
-        [Ctrl('u') => Erase(Erase::All)] "" "clear the line";
-        [Esc => Cancel, Ctrl('g') => Cancel] "cancel" "do nothing";
-        [F1 => Help] "help" "these keys";
+        [Enter => ACCEPT] "do it" "do it";
+        [Tab => NEXT] "complete" "complete the word";
+        [UP => UP, DOWN => DOWN] "earlier" "earlier, later commands";
+        [LEFT => LEFT, RIGHT => RIGHT] "" "move in the line";
+        [Home => TO_START, End => TO_END] "" "to its start, its end";
+        [Backspace => ERASE_BEFORE, Delete => ERASE_UNDER] "" "delete a character";
+        [Ctrl('u') => ERASE_ALL] "" "clear the line";
+        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "do nothing";
+        [F1 => HELP] "help" "these keys";
     }
 
     Ranges {
-        [Tab => Field(1), BackTab => Field(-1)] "field" "next, previous field";
-        [LEFT => Choose(Left), RIGHT => Choose(Right), UP => Choose(Up), DOWN => Choose(Down)]
+        [Tab => NEXT, BackTab => PREVIOUS] "field" "next, previous field";
+        [LEFT => LEFT, RIGHT => RIGHT, UP => UP, DOWN => DOWN]
             "" "move in a field, to other fields; the other anchor";
-        [Backspace => Erase(Erase::Before), Delete => Erase(Erase::Under)] "" "delete a character";
-        [Ctrl('u') => Erase(Erase::All)] "clear" "clear the field";
-        [Home => ToEdge(First), END => ToEdge(Last)] "" "to the start, the end of the field";
-        [Enter => Accept] "start" "sweep all poses; refused while a range is wrong";
-        [Esc => Cancel, Ctrl('g') => Cancel] "cancel" "leave everything as it was";
-        [Char('?') => Help] "help" "these keys";
+        [Backspace => ERASE_BEFORE, Delete => ERASE_UNDER] "" "delete a character";
+        [Ctrl('u') => ERASE_ALL] "clear" "clear the field";
+        [Home => TO_START, End => TO_END] "" "to the start, the end of the field";
+        [Enter => ACCEPT] "start" "sweep all poses; refused while a range is wrong";
+        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "leave everything as it was";
+        [Char('?') => HELP] "help" "these keys";
     }
 
     Running {
-        [Esc => Explore(ExploreMessage::Stop), Char('s') => Explore(ExploreMessage::Stop), Ctrl('g') => Explore(ExploreMessage::Stop)]
+        [Esc => STOP, Char('s') => STOP, Ctrl('g') => STOP]
             "stop" "stop; a sweep keeps what is complete";
-        [Ctrl('c') => Terminate] "quit" "quit at once; unsaved work is offered next time";
+        [Ctrl('c') => QUIT_AT_ONCE] "quit" "quit at once; unsaved work is offered next time";
     }
 
     Explore {
-        [Char('1') => Explore(ExploreMessage::Page(ExplorePage::Imprints)),
-            Char('2') => Explore(ExploreMessage::Page(ExplorePage::Statistics)),
-            Char('3') => Explore(ExploreMessage::Page(ExplorePage::Histogram)),
-            Char('4') => Explore(ExploreMessage::Page(ExplorePage::Map))] "" "imprints, statistics, histogram, map";
-        [Tab => Explore(ExploreMessage::NextPage(1)), BackTab => Explore(ExploreMessage::NextPage(-1))]
+        [Char('1') => IMPRINTS,
+            Char('2') => STATISTICS,
+            Char('3') => HISTOGRAM,
+            Char('4') => MAP] "" "imprints, statistics, histogram, map";
+        [Tab => NEXT_PAGE, BackTab => PREVIOUS_PAGE]
             "page" "next, previous page";
-        [Char('d') => Explore(ExploreMessage::Feature(1)), Char('D') => Explore(ExploreMessage::Feature(-1))]
+        [Char('d') => NEXT_DESCRIPTOR, Char('D') => PREVIOUS_DESCRIPTOR]
             "descriptor" "next, previous descriptor";
-        [Char('x') => Explore(ExploreMessage::Export)]
+        [Char('x') => EXPORT]
             "export" "write a file: .csv .jsonl .npz imprints, .npy poses";
-        [Char('e') => Explore(ExploreMessage::Ranges)] "ranges" "explore other ranges";
-        [Char('?') => Help] "help" "all keys";
-        [Esc => Cancel, Ctrl('g') => Cancel, Char('q') => Cancel]
+        [Char('e') => RANGES] "ranges" "explore other ranges";
+        [Char('?') => HELP] "help" "all keys";
+        [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]
             "close" "back to the matrix; what was found is kept";
     }
 
     Imprints {
-        [UP => Scroll(-1), DOWN => Scroll(1)] "" "previous, next imprint";
-        [PageUp => Scroll(-10), PageDown => Scroll(10)] "" "ten imprints back, on";
-        [Home => ScrollTo(First), END => ScrollTo(Last)] "" "first, last imprint";
-        [Enter => Accept] "to matrix" "put it onto the matrix, in its first pose";
-        [Char('n') => Explore(ExploreMessage::Sort(SortKey::Poses)),
-            Char('f') => Explore(ExploreMessage::Sort(SortKey::FirstPose)),
-            Char('v') => Explore(ExploreMessage::Sort(SortKey::Value)),
-            Char('c') => Explore(ExploreMessage::Sort(SortKey::Pieces)), Char('h') => Explore(ExploreMessage::Sort(SortKey::Holes))]
+        [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "" "previous, next imprint";
+        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten imprints back, on";
+        [Home => FIRST, End => LAST] "" "first, last imprint";
+        [Enter => ACCEPT] "to matrix" "put it onto the matrix, in its first pose";
+        [Char('n') => SORT_BY_POSES,
+            Char('f') => SORT_BY_FIRST_POSE,
+            Char('v') => SORT_BY_VALUE,
+            Char('c') => SORT_BY_PIECES, Char('h') => SORT_BY_HOLES]
             "sort" "poses, 1st pose, value, pieces, holes; again: reversed";
-        [Char('j') => Explore(ExploreMessage::Find)] "find" "jump to the imprint that is on the matrix";
-        [Char('g') => Explore(ExploreMessage::Follow)] "map" "go to its first pose on the map";
+        [Char('j') => FIND] "find" "jump to the imprint that is on the matrix";
+        [Char('g') => FOLLOW] "map" "go to its first pose on the map";
     }
 
     Statistics {
-        [UP => Scroll(-1), DOWN => Scroll(1), PageUp => Scroll(-10), PageDown => Scroll(10)]
+        [UP => SCROLL_UP, DOWN => SCROLL_DOWN, PageUp => PAGE_UP, PageDown => PAGE_DOWN]
             "" "choose a descriptor";
-        [Home => ScrollTo(First), END => ScrollTo(Last)] "" "first, last descriptor";
-        [LEFT => Explore(ExploreMessage::Columns(-1)), RIGHT => Explore(ExploreMessage::Columns(1))]
+        [Home => FIRST, End => LAST] "" "first, last descriptor";
+        [LEFT => EARLIER_COLUMNS, RIGHT => LATER_COLUMNS]
             "columns" "earlier, later columns";
-        [Enter => Explore(ExploreMessage::Page(ExplorePage::Histogram))] "histogram" "its histogram";
+        [Enter => HISTOGRAM] "histogram" "its histogram";
     }
 
     Histogram {
-        [UP => Scroll(-1), DOWN => Scroll(1), PageUp => Scroll(-10), PageDown => Scroll(10)]
+        [UP => SCROLL_UP, DOWN => SCROLL_DOWN, PageUp => PAGE_UP, PageDown => PAGE_DOWN]
             "" "choose a descriptor";
-        [Home => ScrollTo(First), END => ScrollTo(Last)] "" "first, last descriptor";
+        [Home => FIRST, End => LAST] "" "first, last descriptor";
     }
 
     Map {
-        [LEFT => Cursor(Left), RIGHT => Cursor(Right), UP => Cursor(Up), DOWN => Cursor(Down)]
+        [LEFT => CURSOR_LEFT, RIGHT => CURSOR_RIGHT, UP => CURSOR_UP, DOWN => CURSOR_DOWN]
             "" "to the next pose; each letter is an imprint";
-        [PageUp => Scroll(-10), PageDown => Scroll(10)] "" "ten poses up, down";
-        [Home => ScrollTo(First), END => ScrollTo(Last)] "" "to the first, the last x0";
-        [Char('<') => Explore(ExploreMessage::Angle(-1)), Char('>') => Explore(ExploreMessage::Angle(1))]
+        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten poses up, down";
+        [Home => FIRST, End => LAST] "" "to the first, the last x0";
+        [Char('<') => PREVIOUS_ANGLE, Char('>') => NEXT_ANGLE]
             "angle" "previous, next angle";
-        [Char('(') => Explore(ExploreMessage::Angle(-10)), Char(')') => Explore(ExploreMessage::Angle(10))]
+        [Char('(') => TEN_ANGLES_BACK, Char(')') => TEN_ANGLES_ON]
             "" "ten angles back, on";
-        [Char('z') => Explore(ExploreMessage::Zoomed(Zoom::X, 1)), Char('Z') => Explore(ExploreMessage::Zoomed(Zoom::X, -1)),
-            Char('w') => Explore(ExploreMessage::Zoomed(Zoom::Y, 1)), Char('W') => Explore(ExploreMessage::Zoomed(Zoom::Y, -1))]
+        [Char('z') => NEXT_ZOOM_X, Char('Z') => PREVIOUS_ZOOM_X,
+            Char('w') => NEXT_ZOOM_Y, Char('W') => PREVIOUS_ZOOM_Y]
             "" "next, previous zoom x, zoom y of a picture";
-        [Enter => Accept] "to matrix" "put this pose onto the matrix";
-        [Char('g') => Explore(ExploreMessage::Follow)] "list" "go to its imprint in the list";
+        [Enter => ACCEPT] "to matrix" "put this pose onto the matrix";
+        [Char('g') => FOLLOW] "list" "go to its imprint in the list";
     }
 
     Export {
-        [Enter => Accept] "write" "write the file";
-        [LEFT => Choose(Left), RIGHT => Choose(Right)] "" "move in the name";
-        [Home => ToEdge(First), END => ToEdge(Last)] "" "to its start, its end";
-        [Backspace => Erase(Erase::Before), Delete => Erase(Erase::Under)] "" "delete a character";
-        [Ctrl('u') => Erase(Erase::All)] "clear" "clear the name";
-        [Esc => Cancel, Ctrl('g') => Cancel] "cancel" "write nothing";
-        [F1 => Help] "help" "these keys";
+        [Enter => ACCEPT] "write" "write the file";
+        [LEFT => LEFT, RIGHT => RIGHT] "" "move in the name";
+        [Home => TO_START, End => TO_END] "" "to its start, its end";
+        [Backspace => ERASE_BEFORE, Delete => ERASE_UNDER] "" "delete a character";
+        [Ctrl('u') => ERASE_ALL] "clear" "clear the name";
+        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "write nothing";
+        [F1 => HELP] "help" "these keys";
     }
 
     Help {
-        [UP => Scroll(-1), DOWN => Scroll(1), PageUp => Scroll(-10), PageDown => Scroll(10)]
+        [UP => SCROLL_UP, DOWN => SCROLL_DOWN, PageUp => PAGE_UP, PageDown => PAGE_DOWN]
             "scroll" "scroll";
-        [Char('q') => Cancel, Char('?') => Cancel, F1 => Cancel, Enter => Cancel, Esc => Cancel,
-            Ctrl('g') => Cancel] "close" "close";
+        [Char('q') => CANCEL, Char('?') => CANCEL, F1 => CANCEL, Enter => CANCEL, Esc => CANCEL,
+            Ctrl('g') => CANCEL] "close" "close";
     }
 
     Everywhere {
-        [Ctrl('l') => Redraw] "" "draw the screen anew";
-        [Ctrl('z') => Suspend] "" "back to the shell; fg returns here";
-        [Ctrl('c') => Quit] "" "close what is open; on the matrix: quit";
-        [F1 => Help] "" "the keys that mean something here";
+        [Ctrl('l') => REDRAW] "" "draw the screen anew";
+        [Ctrl('z') => SUSPEND] "" "back to the shell; fg returns here";
+        [Ctrl('c') => QUIT] "" "close what is open; on the matrix: quit";
+        [F1 => HELP] "" "the keys that mean something here";
     }
 };
 
-/// How many rows at the head of the table make the menu.
+/// Number of rows at the head of the table that make the menu.
 pub const MENU: usize = 7;

@@ -1,87 +1,90 @@
-//! The keys as they are: the table of keys with what a user has changed of it.
+//! The keys in use: the default keys with the changes of a settings file.
 //!
-//! A change gives a key of a place to one of the actions that the place has, or to none. Refused is what would surprise:
-//! a key twice, an action that loses its last key to another without having been given a new one, a letter where letters
-//! are typed, and any change of Ctrl-C, which always closes what is open.
+//! A change gives a key of a place to one of the actions of that place, or to none. Changes that would surprise are
+//! refused: the same key twice, taking away the last key of an action without giving it a new one, a letter where text
+//! is typed, and any change of Ctrl-C, which always closes what is open.
 
 use crate::tui::app::message::Message;
-use crate::tui::keys::action;
+use crate::tui::keys::action::Action;
 use crate::tui::keys::binding::{Binding, Context};
-use crate::tui::keys::default_keys::KEYMAP;
+use crate::tui::keys::default_keys::DEFAULT_KEYS;
 use crate::tui::keys::key::Key;
 
-/// Closes what is open, wherever one is; on the matrix it quits.
+/// Closes what is open everywhere; on the matrix it quits.
 const WAY_OUT: Key = Key::Ctrl('c');
 
-/// A key that shall mean something else in a place.
-#[derive(Clone, Debug, PartialEq)]
+/// A change of one key in one place.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Change {
-    /// Where.
+    /// The place.
     pub context: Context,
-    /// Which.
+    /// The key.
     pub key: Key,
-    /// What it does from now on; none for nothing.
-    pub action: Option<Message>,
+    /// Its new action; None to do nothing.
+    pub action: Option<&'static Action>,
 }
 
-/// Why a change cannot be made.
+/// Why a change is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-pub enum RemapError {
-    /// The key that always closes.
+pub enum KeymapError {
+    /// Ctrl-C.
     #[error("{WAY_OUT} always closes what is open and cannot be changed")]
     WayOut,
     /// A letter where text is typed.
     #[error("{0} is typed as text here; a key like <C-x> is not")]
     Text(Key),
-    /// The same key a second time.
+    /// The key is changed twice.
     #[error("{0} has been given a meaning here already")]
     Twice(Key),
-    /// The action belongs to another place.
-    #[error("{0:?} is no action of this place; 'taxel config' lists them")]
+    /// The place does not have the action.
+    #[error("{0:?} is not an action of this place; 'taxel config' lists them")]
     Elsewhere(&'static str),
-    /// No key would be left for what the key did.
+    /// The former action of the key would have no key left.
     #[error("{key} is the only key of {action:?} here, which needs another one")]
     LastKey {
         /// The key.
         key: Key,
-        /// What it does now.
+        /// Its action by default.
         action: &'static str,
     },
 }
 
-/// What each key means where.
+/// What each key does in each place.
 #[derive(Clone, Debug)]
 pub struct Keymap {
     rows: Vec<Binding>,
 }
 
 impl Default for Keymap {
-    /// The table of keys.
+    /// The default keys.
     fn default() -> Self {
         Self {
-            rows: KEYMAP.to_vec(),
+            rows: DEFAULT_KEYS.to_vec(),
         }
     }
 }
 
 impl Keymap {
-    /// The table of keys with changes.
+    /// The default keys with changes.
     ///
     /// # Errors
-    /// The first change that cannot be made, by its number from 0, and why.
-    pub fn with(changes: &[Change]) -> Result<Self, (usize, RemapError)> {
+    /// The index of the first change that is refused, and why.
+    pub fn with(changes: &[Change]) -> Result<Self, (usize, KeymapError)> {
         for (index, change) in changes.iter().enumerate() {
             allowed(change, &changes[..index]).map_err(|error| (index, error))?;
         }
-        let rows: Vec<Binding> = KEYMAP.iter().map(|row| changed(row, changes)).collect();
+        let rows: Vec<Binding> = DEFAULT_KEYS
+            .iter()
+            .map(|row| changed(row, changes))
+            .collect();
         for (index, change) in changes.iter().enumerate() {
             lasting(change, &rows).map_err(|error| (index, error))?;
         }
         Ok(Self { rows })
     }
 
-    /// Its rows, those of the table of keys in the same order.
+    /// Its rows: those of the default keys, in the same order.
     pub fn rows(&self) -> &[Binding] {
         &self.rows
     }
@@ -93,13 +96,14 @@ impl Keymap {
             .filter(move |binding| binding.context == context)
     }
 
-    /// What a key means where it is pressed.
+    /// The message of a key pressed in a place. A key that means nothing there is looked up in the places around it;
+    /// then a character is typed if the place has a field.
     pub fn lookup(&self, context: Context, key: Key) -> Option<Message> {
         let mut place = Some(context);
         while let Some(here) = place {
             let mut keys = self.of(here).flat_map(|binding| binding.keys.iter());
-            if let Some((_, message)) = keys.find(|(bound, _)| *bound == key) {
-                return Some(message.clone());
+            if let Some((_, action)) = keys.find(|(bound, _)| *bound == key) {
+                return action.message().cloned();
             }
             place = here.outer();
         }
@@ -109,13 +113,11 @@ impl Keymap {
         }
     }
 
-    /// The first key of an action as people write it; without one, how the command line at the foot calls it.
-    pub fn label(&self, context: Context, action: &Message) -> String {
+    /// The first key of an action as people write it; `:name` if it has no key.
+    pub fn label(&self, context: Context, action: &Action) -> String {
         let mut keys = self.of(context).flat_map(|binding| binding.keys.iter());
-        keys.find(|(_, own)| own == action).map_or_else(
-            || format!(":{}", action::name(action).unwrap_or_default()),
-            |(key, _)| key.label(),
-        )
+        keys.find(|(_, own)| *own == action)
+            .map_or_else(|| format!(":{}", action.name), |(key, _)| key.label())
     }
 }
 
@@ -124,14 +126,14 @@ impl Keymap {
 pub enum HelpLine {
     /// The heading of a place.
     Place(Context),
-    /// The keys of a row of the table, and what they do.
+    /// The keys of a row, and what they do.
     Keys(String, &'static str),
-    /// More of what they do, where one line has no room for all of it.
+    /// The rest of a text that does not fit on one line.
     More(&'static str),
 }
 
-/// The lines of help in a place: on the matrix, where one begins, all of the table; elsewhere what means something
-/// there, so without the keys of outer places that mean something else there.
+/// The lines of help in a place: on the matrix, where a user begins, all rows; elsewhere the rows of the place and of
+/// those around it, without keys that have another meaning in the inner one.
 pub fn help(context: Context, keymap: &Keymap) -> Vec<HelpLine> {
     let places = match context {
         Context::Matrix => Context::ALL.to_vec(),
@@ -158,41 +160,41 @@ pub fn help(context: Context, keymap: &Keymap) -> Vec<HelpLine> {
     lines
 }
 
-/// Whether a change says something sensible for itself, after those before it.
-fn allowed(change: &Change, before: &[Change]) -> Result<(), RemapError> {
+/// Checks a change by itself, given those before it.
+fn allowed(change: &Change, before: &[Change]) -> Result<(), KeymapError> {
     let Change {
         context,
         key,
-        ref action,
+        action,
     } = *change;
-    let mut bound = of_table(context).flat_map(|row| row.keys.iter());
-    // What means something everywhere would mean it in every field.
+    let mut bound = default_rows(context).flat_map(|row| row.keys.iter());
+    // A key that works everywhere works in every field, too.
     let takes_text = context.takes_text() || context == Context::Everywhere;
     let is_text = matches!(key, Key::Char(_)) && takes_text;
-    let as_ever = |(own, meaning): &(Key, Message)| *own == key && Some(meaning) == action.as_ref();
-    if key == WAY_OUT && !bound.clone().any(as_ever) {
-        return Err(RemapError::WayOut);
+    let as_before = |(own, meaning): &(Key, &Action)| *own == key && Some(*meaning) == action;
+    if key == WAY_OUT && !bound.clone().any(as_before) {
+        return Err(KeymapError::WayOut);
     }
     if is_text && !bound.clone().any(|(own, _)| *own == key) {
-        return Err(RemapError::Text(key));
+        return Err(KeymapError::Text(key));
     }
     if before
         .iter()
         .any(|other| other.context == context && other.key == key)
     {
-        return Err(RemapError::Twice(key));
+        return Err(KeymapError::Twice(key));
     }
     match action {
-        Some(action) if !bound.any(|(_, own)| own == action) => Err(RemapError::Elsewhere(
-            action::name(action).unwrap_or_default(),
-        )),
+        Some(action) if !bound.any(|(_, own)| *own == action) => {
+            Err(KeymapError::Elsewhere(action.name))
+        }
         _ => Ok(()),
     }
 }
 
-/// Whether what a key did before it was given to something else still has a key.
-fn lasting(change: &Change, rows: &[Binding]) -> Result<(), RemapError> {
-    let lost = of_table(change.context)
+/// Checks that the former action of a changed key still has a key.
+fn lasting(change: &Change, rows: &[Binding]) -> Result<(), KeymapError> {
+    let lost = default_rows(change.context)
         .flat_map(|row| row.keys.iter())
         .find(|(key, _)| *key == change.key && change.action.is_some());
     let Some((key, action)) = lost else {
@@ -205,38 +207,36 @@ fn lasting(change: &Change, rows: &[Binding]) -> Result<(), RemapError> {
     if now.any(|(_, other)| other == action) {
         return Ok(());
     }
-    Err(RemapError::LastKey {
+    Err(KeymapError::LastKey {
         key: *key,
-        action: action::name(action).unwrap_or_default(),
+        action: action.name,
     })
 }
 
-/// A row with the keys that it has after the changes. A new key comes before the others of its action, so that hints show it.
+/// A row after the changes. A new key comes before the others of its action, so that hints show it.
 fn changed(row: &Binding, changes: &[Change]) -> Binding {
     let here = || {
         changes
             .iter()
             .filter(|change| change.context == row.context)
     };
-    let mut actions: Vec<&Message> = Vec::new();
-    for (_, action) in row.keys.iter() {
+    let mut actions: Vec<&'static Action> = Vec::new();
+    for &(_, action) in row.keys.iter() {
         if !actions.contains(&action) {
             actions.push(action);
         }
     }
     let keys = actions.into_iter().flat_map(|action| {
         let new = here()
-            .filter(move |change| change.action.as_ref() == Some(action))
+            .filter(move |change| change.action == Some(action))
             .map(|change| change.key);
         let old = row
             .keys
             .iter()
-            .filter(move |(_, own)| own == action)
+            .filter(move |(_, own)| *own == action)
             .map(|(key, _)| *key)
             .filter(|key| here().all(|change| change.key != *key));
-        new.chain(old)
-            .map(|key| (key, action.clone()))
-            .collect::<Vec<_>>()
+        new.chain(old).map(|key| (key, action)).collect::<Vec<_>>()
     });
     Binding {
         keys: keys.collect(),
@@ -244,20 +244,19 @@ fn changed(row: &Binding, changes: &[Change]) -> Binding {
     }
 }
 
-/// The rows of a place as the table has them.
-fn of_table(context: Context) -> impl Iterator<Item = &'static Binding> + Clone {
-    KEYMAP
+/// The default rows of a place.
+fn default_rows(context: Context) -> impl Iterator<Item = &'static Binding> + Clone {
+    DEFAULT_KEYS
         .iter()
         .filter(move |binding| binding.context == context)
 }
 
-/// The actions of a place by their names, in the order of the table.
+/// The names of a place's actions, in the order of the default keys.
 pub fn actions(context: Context) -> Vec<&'static str> {
     let mut names = Vec::new();
-    for (_, action) in of_table(context).flat_map(|row| row.keys.iter()) {
-        let name = action::name(action).unwrap_or_default();
-        if !names.contains(&name) {
-            names.push(name);
+    for (_, action) in default_rows(context).flat_map(|row| row.keys.iter()) {
+        if !names.contains(&action.name) {
+            names.push(action.name);
         }
     }
     names
@@ -266,6 +265,7 @@ pub fn actions(context: Context) -> Vec<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tui::keys::action::{self, ACTIONS};
     use crate::tui::keys::key::parse;
 
     fn change(context: Context, key: &str, action: &str) -> Change {
@@ -273,7 +273,7 @@ mod tests {
         Change {
             context,
             key: keys[0],
-            action: (action != "none").then(|| action::named(action).expect("an action").clone()),
+            action: (action != "none").then(|| action::named(action).expect("an action")),
         }
     }
 
@@ -282,31 +282,33 @@ mod tests {
         (index, error.to_string())
     }
 
-    /// Whoever adds a row to the table finds here that its actions want names.
     #[test]
-    fn every_action_of_the_table_has_one_name_and_every_name_an_action() {
-        for binding in KEYMAP {
-            for (key, action) in binding.keys.iter() {
-                let name = action::name(action);
-                assert!(name.is_some(), "{key}: {action:?} has no name in ACTIONS");
-                assert_eq!(name.and_then(action::named), Some(action));
+    fn every_action_has_one_name_and_a_key() {
+        for (index, action) in ACTIONS.iter().enumerate() {
+            if action.message().is_none() {
+                continue;
             }
-        }
-        for (index, (name, action)) in action::ACTIONS.iter().enumerate() {
-            let before = &action::ACTIONS[..index];
-            assert!(before.iter().all(|(other, _)| other != name), "{name}");
-            let mut bound = KEYMAP.iter().flat_map(|binding| binding.keys.iter());
-            assert!(bound.any(|(_, own)| own == action), "{name} has no key");
+            assert_eq!(action::named(action.name), Some(*action));
+            let before = ACTIONS[..index].iter();
+            let mut before = before.filter(|other| other.message().is_some());
+            assert!(
+                before.all(|other| other.name != action.name),
+                "{}",
+                action.name
+            );
+            let mut bound = DEFAULT_KEYS.iter().flat_map(|binding| binding.keys.iter());
+            let has_key = bound.any(|(_, own)| own == action);
+            assert_eq!(has_key, **action != action::QUIT_NOW, "{}", action.name);
         }
     }
 
     #[test]
     fn without_changes_every_key_means_what_the_table_says() {
         let keymap = Keymap::default();
-        for binding in KEYMAP {
-            for (key, message) in binding.keys.iter() {
+        for binding in DEFAULT_KEYS {
+            for (key, action) in binding.keys.iter() {
                 let meaning = keymap.lookup(binding.context, *key);
-                assert_eq!(meaning.as_ref(), Some(message), "{key}");
+                assert_eq!(meaning.as_ref(), action.message(), "{key}");
             }
         }
         assert_eq!(
@@ -338,9 +340,9 @@ mod tests {
         // What is held looks on the matrix for what it does not know.
         assert_eq!(keymap.lookup(Grab, Key::Char('x')), Some(Message::Toggle));
         assert_eq!(keymap.lookup(Form, Key::Ctrl('n')), Some(Message::Field(1)));
-        assert_eq!(keymap.label(Matrix, &Message::Toggle), "x");
-        assert_eq!(keymap.label(Matrix, &Message::Delete), ":delete");
-        let lengths = (keymap.rows().len(), KEYMAP.len());
+        assert_eq!(keymap.label(Matrix, &action::TOGGLE), "x");
+        assert_eq!(keymap.label(Matrix, &action::DELETE), ":delete");
+        let lengths = (keymap.rows().len(), DEFAULT_KEYS.len());
         assert_eq!(lengths.0, lengths.1, "no row comes or goes");
     }
 
@@ -367,7 +369,7 @@ mod tests {
             ),
             (
                 change(Matrix, "a", "increase"),
-                "\"increase\" is no action of this place; 'taxel config' lists them",
+                "\"increase\" is not an action of this place; 'taxel config' lists them",
             ),
             (
                 change(Matrix, "d", "undo"),

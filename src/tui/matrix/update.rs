@@ -14,6 +14,7 @@ use crate::tui::app::state::{App, Display, Mode, NarrowPage, RunState};
 use crate::tui::explore;
 use crate::tui::explore::results::around;
 use crate::tui::form::state::FormDialog;
+use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
 use crate::tui::prompt::name::NameDialog;
 use crate::tui::prompt::state::CommandDialog;
@@ -71,7 +72,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::Copy(what) => return copy(app, what),
         Message::MouseOnOff => {
             app.mouse = !app.mouse;
-            let key = app.key_of(&Message::MouseOnOff);
+            let key = app.key_of(&action::MOUSE);
             inform(
                 app,
                 if app.mouse {

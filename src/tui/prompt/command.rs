@@ -1,7 +1,7 @@
-//! The command line at the foot of the screen: every action by its name, figures and sensors with their numbers.
+//! Reads a line of the `:` prompt: an action by its name, or a command with its arguments.
 //!
 //! Names and flags are those of the program's own command line: `figure hexagon --side 3 --angle 17`,
-//! `load washer`, `sensor --columns 32 --rows 32`. What is not given is as it is now, or the default.
+//! `load washer`, `sensor --columns 32 --rows 32`. A parameter that is not given keeps its value, or has its default.
 
 use crate::figure::{Figure, FigureKind};
 use crate::formats::Name;
@@ -12,20 +12,21 @@ use crate::storage::{Expected, ShapeOrigin};
 use crate::tui::app::document::Document;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
+use crate::tui::keys::action::{self, Arguments};
 use crate::tui::keys::binding::Context;
-use crate::tui::prompt::commands::{PromptCommand, Takes, find};
+use crate::tui::prompt::commands::{PromptCommand, find};
 use crate::tui::shapes::purpose::Purpose;
 
-/// What a line asks for.
+/// The message of a line.
 ///
 /// # Errors
-/// What is wrong with it, in a sentence.
+/// What is wrong with the line, in a sentence.
 pub fn read(line: &str, app: &App) -> Result<Message, String> {
     let line = line.trim();
     let (name, rest) = line
         .split_once(' ')
         .map_or((line, ""), |(name, rest)| (name, rest.trim()));
-    let complete = || app.keymap().label(Context::Command, &Message::Field(1));
+    let complete = || app.keymap().label(Context::Command, &action::NEXT);
     let command = find(name).ok_or_else(|| {
         let complete = complete();
         format!(
@@ -34,20 +35,24 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
         )
     })?;
     let words: Vec<&str> = rest.split_whitespace().collect();
-    if let Some((_, message)) = command.words.iter().find(|(word, _)| *word == rest) {
+    let mut said = command.words.iter().filter(|(word, _)| *word == rest);
+    if let Some(message) = said.find_map(|(_, action)| action.message()) {
         return Ok(message.clone());
     }
-    let unexpected = || unexpected(command, rest);
-    match (command.takes, &words[..]) {
-        (Takes::Deleted, []) => match &app.removed {
+    let unexpected = || unexpected(&command, rest);
+    let Some(arguments) = command.arguments else {
+        return Err(unexpected());
+    };
+    match (arguments, &words[..]) {
+        (Arguments::Deleted, []) => match &app.removed {
             Some(name) => Ok(Message::Restore(name.clone())),
             None => Err(format!(
                 "restore needs the name of a deleted shape; {} shows them",
                 complete()
             )),
         },
-        (_, []) | (Takes::Nothing, _) => Err(unexpected()),
-        (Takes::Shape(purpose), _) => {
+        (_, []) => Err(unexpected()),
+        (Arguments::Shape(purpose), _) => {
             let name = name_of(rest)?.to_string();
             Ok(match purpose {
                 Purpose::Load => Message::LoadNamed(name),
@@ -55,22 +60,22 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
                 Purpose::Delete => Message::AskRemove(name),
             })
         }
-        (Takes::Deleted, _) => Ok(Message::Restore(name_of(rest)?.to_string())),
-        (Takes::Name, _) if app.reading().imprint.is_empty() => {
+        (Arguments::Deleted, _) => Ok(Message::Restore(name_of(rest)?.to_string())),
+        (Arguments::Name, _) if app.reading().imprint.is_empty() => {
             Err("nothing to save: the matrix is empty".to_owned())
         }
-        (Takes::Name, _) => Ok(app.storing(name_of(rest)?)),
-        (Takes::Figure, [kind, pairs @ ..]) => figure(kind, pairs, app),
-        (Takes::Sensor, pairs) => sensor(pairs, app),
-        (Takes::Ranges, pairs) => crate::tui::prompt::explore::read(pairs, app),
-        (Takes::Degrees, _) => match rest.parse() {
+        (Arguments::Name, _) => Ok(app.storing(name_of(rest)?)),
+        (Arguments::Figure, [kind, pairs @ ..]) => figure(kind, pairs, app),
+        (Arguments::Sensor, pairs) => sensor(pairs, app),
+        (Arguments::Ranges, pairs) => crate::tui::prompt::explore::read(pairs, app),
+        (Arguments::Degrees, _) => match rest.parse() {
             Ok(degrees) if (-360..=360).contains(&degrees) => Ok(Message::Turn(degrees)),
             _ => Err(format!(
                 "turn takes whole degrees from -360 to 360, found {:?}",
                 shortened(rest)
             )),
         },
-        (Takes::Taxel, [column, row]) => {
+        (Arguments::Taxel, [column, row]) => {
             let sensor = app.shown().sensor;
             let within = |text: &str, count: u8| text.parse().ok().filter(|&at: &u8| at < count);
             match (within(column, sensor.columns()), within(row, sensor.rows())) {
@@ -82,22 +87,22 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
                 )),
             }
         }
-        (Takes::Way, [dx, dy]) => {
+        (Arguments::Distance, [dx, dy]) => {
             let cells = |text: &str| text.parse().ok().filter(|cells: &f64| cells.is_finite());
             match (cells(dx), cells(dy)) {
                 (Some(dx), Some(dy)) => Ok(Message::Move(dx, dy)),
                 _ => Err(unexpected()),
             }
         }
-        (Takes::Taxel | Takes::Way, _) => Err(unexpected()),
+        (Arguments::Taxel | Arguments::Distance, _) => Err(unexpected()),
     }
 }
 
-/// What a command takes, and that something else was found.
+/// Says what a command takes and what was found.
 fn unexpected(command: &PromptCommand, rest: &str) -> String {
     let words = command.words.iter().map(|(word, _)| *word);
     let mut taken: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
-    taken.extend(Some(command.takes.form()).filter(|form| !form.is_empty()));
+    taken.extend(command.arguments.map(Arguments::form));
     let taken = match taken.split_last() {
         None => "nothing".to_owned(),
         Some((last, [])) => (*last).to_owned(),

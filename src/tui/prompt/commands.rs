@@ -1,214 +1,138 @@
-//! The table of commands: what a line at the foot of the screen may say, what it means, and how it is completed.
+//! The `:` commands, made from the table of actions: their names, the words and arguments that may follow, and their
+//! completion.
+//!
+//! A command is the first word of a spelling of some action ("cursor" of "cursor left"), or the name of an action that
+//! has no other spelling. The full name of an action works as well.
 
 use crate::figure::FigureKind;
 use crate::parameter::Parameter;
 use crate::pose::Ranges;
 use crate::sensor::SENSOR_PARAMETERS;
-use crate::tui::app::message::{Copied, Endpoint, Message};
-use crate::tui::explore::message::ExploreMessage;
-use crate::tui::keys::key::Arrow;
-use crate::tui::shapes::purpose::Purpose;
+use crate::tui::keys::action::{ACTIONS, Action, Arguments};
+use crate::tui::keys::binding::Context;
+use crate::tui::keys::default_keys::DEFAULT_KEYS;
 
-/// What may follow the name of a command, beside its words.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Takes {
-    /// Nothing.
-    Nothing,
-    /// The name of a shape, and what for.
-    Shape(Purpose),
-    /// The name of a shape that was deleted.
-    Deleted,
-    /// A name to store under.
-    Name,
-    /// A kind of figure, and its numbers.
-    Figure,
-    /// Numbers of the sensor.
-    Sensor,
-    /// Ranges of a sweep.
-    Ranges,
-    /// Whole degrees.
-    Degrees,
-    /// Column and row of a taxel.
-    Taxel,
-    /// How far, along x and along y.
-    Way,
-}
-
-impl Takes {
-    /// How it is written; empty where there is nothing to write.
-    pub fn form(self) -> &'static str {
-        match self {
-            Self::Nothing => "",
-            Self::Shape(_) | Self::Deleted | Self::Name => "NAME",
-            Self::Figure => "KIND --side 3 ...",
-            Self::Sensor => "--columns 32 ...",
-            Self::Ranges => "--x0 5:5.99:0.01 ...",
-            Self::Degrees => "DEGREES",
-            Self::Taxel => "COLUMN ROW",
-            Self::Way => "DX DY",
-        }
-    }
-
-    /// Whether the whole rest of the line is a name of the library.
-    fn is_name(self) -> bool {
-        matches!(self, Self::Shape(_) | Self::Deleted | Self::Name)
-    }
-}
-
-/// A command.
+/// A command: all lines that begin with one word.
 #[derive(Clone, Debug)]
 pub struct PromptCommand {
     /// The first word.
     pub name: &'static str,
-    /// Words that may follow, each with what the line then means; an empty one is the name alone.
-    pub words: &'static [(&'static str, Message)],
-    /// What else may follow.
-    pub takes: Takes,
+    /// The words that may follow, each with its action; an empty one is the name alone.
+    pub words: Vec<(&'static str, &'static Action)>,
+    /// The arguments that may follow instead.
+    pub arguments: Option<Arguments>,
 }
 
-const fn command(
-    name: &'static str,
-    words: &'static [(&'static str, Message)],
-    takes: Takes,
-) -> PromptCommand {
-    PromptCommand { name, words, takes }
-}
+/// Short forms of commands.
+const SHORT: [(&str, &str); 2] = [("q", "quit"), ("q!", "quit!")];
 
-/// All commands, by name. Every action of a key is the meaning of a line.
-pub const COMMANDS: &[PromptCommand] = &[
-    command(
-        "copy",
-        &[
-            ("", Message::Copy(Copied::Descriptors)),
-            ("descriptors", Message::Copy(Copied::Descriptors)),
-            ("imprint", Message::Copy(Copied::Imprint)),
-        ],
-        Takes::Nothing,
-    ),
-    command("coverage", &[("", Message::Display)], Takes::Nothing),
-    command(
-        "cursor",
-        &[
-            ("left", Message::Cursor(Arrow::Left)),
-            ("right", Message::Cursor(Arrow::Right)),
-            ("up", Message::Cursor(Arrow::Up)),
-            ("down", Message::Cursor(Arrow::Down)),
-            ("start", Message::ToColumn(Endpoint::First)),
-            ("end", Message::ToColumn(Endpoint::Last)),
-            ("top", Message::ToRow(Endpoint::First)),
-            ("bottom", Message::ToRow(Endpoint::Last)),
-        ],
-        Takes::Taxel,
-    ),
-    command(
-        "delete",
-        &[("", Message::Delete)],
-        Takes::Shape(Purpose::Delete),
-    ),
-    command(
-        "explore",
-        &[("", Message::Explore(ExploreMessage::Open))],
-        Takes::Ranges,
-    ),
-    command("figure", &[("", Message::Figure)], Takes::Figure),
-    command("grab", &[("", Message::Grab)], Takes::Nothing),
-    command("help", &[("", Message::Help)], Takes::Nothing),
-    command("load", &[("", Message::Load)], Takes::Shape(Purpose::Load)),
-    command("mouse", &[("", Message::MouseOnOff)], Takes::Nothing),
-    command("move", &[], Takes::Way),
-    command("new", &[("", Message::New)], Takes::Nothing),
-    command(
-        "nudge",
-        &[
-            ("left", Message::Nudge(Arrow::Left)),
-            ("right", Message::Nudge(Arrow::Right)),
-            ("up", Message::Nudge(Arrow::Up)),
-            ("down", Message::Nudge(Arrow::Down)),
-        ],
-        Takes::Nothing,
-    ),
-    command("panel", &[("", Message::SwitchPage)], Takes::Nothing),
-    command(
-        "picture",
-        &[("", Message::Picture)],
-        Takes::Shape(Purpose::Picture),
-    ),
-    command("quit", &[("", Message::Quit)], Takes::Nothing),
-    command("quit!", &[("", Message::QuitNow)], Takes::Nothing),
-    command("redo", &[("", Message::Redo)], Takes::Nothing),
-    command("redraw", &[("", Message::Redraw)], Takes::Nothing),
-    command(
-        "region",
-        &[
-            ("", Message::Region(1)),
-            ("next", Message::Region(1)),
-            ("previous", Message::Region(-1)),
-        ],
-        Takes::Nothing,
-    ),
-    command("restore", &[], Takes::Deleted),
-    command("save", &[("", Message::Save)], Takes::Name),
-    command("sensor", &[("", Message::Sensor)], Takes::Sensor),
-    command(
-        "step",
-        &[
-            ("larger", Message::NudgeStep(1)),
-            ("smaller", Message::NudgeStep(-1)),
-        ],
-        Takes::Nothing,
-    ),
-    command("suspend", &[("", Message::Suspend)], Takes::Nothing),
-    command("toggle", &[("", Message::Toggle)], Takes::Nothing),
-    command("turn", &[], Takes::Degrees),
-    command("undo", &[("", Message::Undo)], Takes::Nothing),
-    command(
-        "zoom",
-        &[("in", Message::Zoom(1)), ("out", Message::Zoom(-1))],
-        Takes::Nothing,
-    ),
-];
-
-/// The command of that name, or of its short form.
-pub fn find(name: &str) -> Option<&'static PromptCommand> {
-    let name = match name {
-        "q" => "quit",
-        "q!" => "quit!",
-        other => other,
+/// Actions that work on the matrix, where the prompt opens: those that have a key there or have no key at all.
+pub fn actions() -> impl Iterator<Item = &'static Action> {
+    let places = [Context::Matrix, Context::Grab, Context::Everywhere];
+    let bound = |action: &Action, places: &[Context]| {
+        let mut rows = DEFAULT_KEYS
+            .iter()
+            .filter(|row| places.contains(&row.context));
+        rows.any(|row| row.keys.iter().any(|(_, own)| *own == action))
     };
-    COMMANDS.iter().find(|command| command.name == name)
+    ACTIONS
+        .iter()
+        .copied()
+        .filter(move |action| bound(action, &places) || !bound(action, &Context::ALL))
 }
 
-/// The command that a line begins with, and what follows; none while its name is not followed by a space.
-fn begun(line: &str) -> Option<(&'static PromptCommand, &str)> {
+/// All commands by name.
+pub fn commands() -> Vec<PromptCommand> {
+    let mut names: Vec<&str> = actions()
+        .flat_map(spellings)
+        .map(|line| split(line).0)
+        .collect();
+    names.sort_unstable();
+    names.dedup();
+    names.into_iter().map(command).collect()
+}
+
+/// The spellings of an action that are completed; its name where it has no others.
+fn spellings(action: &'static Action) -> impl Iterator<Item = &'static str> {
+    let name = action.spellings.is_empty().then_some(action.name);
+    name.into_iter().chain(action.spellings.iter().copied())
+}
+
+/// The first word of a line, and the rest.
+fn split(line: &str) -> (&str, &str) {
+    line.split_once(' ')
+        .map_or((line, ""), |(name, rest)| (name, rest.trim_start()))
+}
+
+/// The command of that name.
+fn command(name: &'static str) -> PromptCommand {
+    let own = |action: &'static Action| {
+        spellings(action)
+            .chain([action.name])
+            .map(split)
+            .filter(move |(first, _)| *first == name)
+            .map(move |(_, word)| (word, action))
+    };
+    let mut words: Vec<(&str, &Action)> = Vec::new();
+    for (word, action) in actions()
+        .filter(|own| own.arguments().is_none())
+        .flat_map(own)
+    {
+        if !words.contains(&(word, action)) {
+            words.push((word, action));
+        }
+    }
+    let mut with = actions().filter(|action| action.name == name);
+    PromptCommand {
+        name,
+        words,
+        arguments: with.find_map(Action::arguments),
+    }
+}
+
+/// The command of that name or short form.
+pub fn find(name: &str) -> Option<PromptCommand> {
+    let short = SHORT.iter().find(|(short, _)| *short == name);
+    let name = short.map_or(name, |(_, name)| *name);
+    let listed = commands().into_iter().find(|command| command.name == name);
+    listed.or_else(|| {
+        actions()
+            .find(|action| action.name == name)
+            .map(|action| command(action.name))
+    })
+}
+
+/// The command that a line begins with, and what follows; None until a space follows its name.
+fn begun(line: &str) -> Option<(PromptCommand, &str)> {
     let (name, rest) = line.trim_start().split_once(' ')?;
     Some((find(name)?, rest.trim_start()))
 }
 
-/// Names of which shapes the completion of a line wants to know; none where it wants no names.
-pub fn wants_names(line: &str) -> Option<Takes> {
+/// The arguments of a line if they are the name of a shape, which completion has to know the names of.
+pub fn wants_names(line: &str) -> Option<Arguments> {
     let (command, _) = begun(line)?;
-    command.takes.is_name().then_some(command.takes)
+    command.arguments.filter(|arguments| arguments.is_name())
 }
 
-/// The line with its last word, or the name at its end, completed as far as it is certain, and what it could become.
-/// `names` are those that [`wants_names`] asks for.
+/// The line with its last word, or the name at its end, completed as far as all candidates agree, and the candidates.
+/// `names` are those of the shapes that [`wants_names`] asks for.
 pub fn complete(line: &str, names: &[String]) -> (String, Vec<String>) {
+    let is_name = wants_names(line).is_some();
     let (typed, candidates) = match begun(line) {
         None if line.trim_start().contains(' ') => return (line.to_owned(), Vec::new()),
         None => (
             line.trim_start(),
-            COMMANDS
+            commands()
                 .iter()
                 .map(|command| command.name.to_owned())
                 .collect(),
         ),
-        Some((command, rest)) if command.takes.is_name() => (rest, names.to_vec()),
+        Some((_, rest)) if is_name => (rest, names.to_vec()),
         Some((command, rest)) => {
             let (before, last) = rest.rsplit_once(' ').unwrap_or(("", rest));
-            (last, next_words(command, before))
+            (last, next_words(&command, before))
         }
     };
-    let is_name = wants_names(line).is_some();
     let fits = |candidate: &String| {
         if is_name {
             candidate.to_lowercase().starts_with(&typed.to_lowercase())
@@ -230,7 +154,7 @@ pub fn complete(line: &str, names: &[String]) -> (String, Vec<String>) {
     (format!("{before}{completed}"), fitting)
 }
 
-/// The words that may come next in a line whose words so far are known.
+/// The words that may follow the words `before`.
 fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
     let said: Vec<&str> = before.split_whitespace().collect();
     let words = |flags: Vec<String>, said: &[&str]| {
@@ -248,13 +172,16 @@ fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
         let flags = flags.map(|parameter| format!("--{}", parameter.flag()));
         words(flags.collect(), said)
     };
-    match (command.takes, &said[..]) {
-        (Takes::Figure, []) => FigureKind::ALL.map(|kind| kind.name().to_owned()).to_vec(),
-        (Takes::Figure, [kind, said @ ..]) => FigureKind::from_name(kind)
-            .map(|kind| flags(kind.parameters().collect(), said))
-            .unwrap_or_default(),
-        (Takes::Sensor, said) => flags(SENSOR_PARAMETERS.to_vec(), said),
-        (Takes::Ranges, said) => {
+    match (command.arguments, &said[..]) {
+        (Some(Arguments::Figure), []) => {
+            FigureKind::ALL.map(|kind| kind.name().to_owned()).to_vec()
+        }
+        (Some(Arguments::Figure), [kind, said @ ..]) => {
+            let kind = FigureKind::from_name(kind).into_iter();
+            flags(kind.flat_map(FigureKind::parameters).collect(), said)
+        }
+        (Some(Arguments::Sensor), said) => flags(SENSOR_PARAMETERS.to_vec(), said),
+        (Some(Arguments::Ranges), said) => {
             let rows = Ranges::default().by_parameter();
             let ranges = rows.map(|(parameter, _)| format!("--{}", parameter.flag()));
             words([&ranges[..], &["--anchor".to_owned()]].concat(), said)
@@ -267,7 +194,7 @@ fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
     }
 }
 
-/// What several words have in common at their start; none of no words.
+/// The longest common start of several words; None if there are none.
 fn common_start(words: &[String]) -> Option<String> {
     let (first, others) = words.split_first()?;
     let common = others.iter().fold(first.chars().count(), |common, other| {
@@ -280,6 +207,7 @@ fn common_start(words: &[String]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tui::shapes::purpose::Purpose;
 
     fn completed(line: &str) -> (String, Vec<String>) {
         let names = ["washer", "Wasp", "my shape"].map(str::to_owned);
@@ -292,7 +220,7 @@ mod tests {
             ("fi", "figure ", 1),
             ("re", "re", 4),
             ("res", "restore ", 1),
-            ("co", "co", 2),
+            ("co", "co", 3),
             ("cop", "copy ", 1),
             ("copy ", "copy ", 2),
             ("copy i", "copy imprint ", 1),
@@ -329,8 +257,9 @@ mod tests {
                 "{line}"
             );
         }
-        assert_eq!(completed("").1.len(), COMMANDS.len());
-        assert_eq!(wants_names("load "), Some(Takes::Shape(Purpose::Load)));
+        assert_eq!(completed("").1.len(), commands().len());
+        let load = Arguments::Shape(Purpose::Load);
+        assert_eq!(wants_names("load "), Some(load));
         assert_eq!(wants_names("load"), None);
         assert_eq!(wants_names("zoom "), None);
     }

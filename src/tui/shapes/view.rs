@@ -6,8 +6,8 @@ use ratatui::layout::{Position, Rect};
 use crate::description::{RegionKind, regions};
 use crate::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
 use crate::tui::app::layout::{LIST_HEAD, list, list_first};
-use crate::tui::app::message::{Erase, Message};
 use crate::tui::app::state::App;
+use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::shapes::purpose::Purpose;
 use crate::tui::shapes::state::ListDialog;
@@ -49,8 +49,7 @@ pub fn draw(app: &App, dialog: &ListDialog, buffer: &mut Buffer, body: Rect) -> 
             (0, Purpose::Delete) => "there are no shapes of your own".to_owned(),
             (0, _) => "the library is empty".to_owned(),
             _ => {
-                let shorter = Message::Erase(Erase::Before);
-                let key = app.keymap().label(Context::List, &shorter);
+                let key = app.keymap().label(Context::List, &action::ERASE_BEFORE);
                 format!("no name contains this; {key} shortens it")
             }
         };

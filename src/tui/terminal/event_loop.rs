@@ -13,6 +13,7 @@ use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
 use crate::tui::app::view::view;
 use crate::tui::explore::message::WorkerEvent;
+use crate::tui::keys::action;
 use crate::tui::runtime::effect::TerminalEffect;
 use crate::tui::runtime::mailbox::Mailbox;
 use crate::tui::runtime::perform::World;
@@ -252,7 +253,7 @@ impl<'a> Talk<'a> {
                 self.send(session::copied(&text).as_bytes())?;
             }
             Some(TerminalEffect::Copy(_)) => {
-                let save = self.app.key_of(&Message::Save);
+                let save = self.app.key_of(&action::SAVE);
                 self.refuse(&format!(
                     "this terminal has no clipboard; {save} saves, 'taxel export' writes a file"
                 ));
