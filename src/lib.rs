@@ -46,6 +46,7 @@
 //! The rooms in reading order; each names only rooms above it, and inside a room there is no cycle. A test reads the
 //! `use` lines and holds that law.
 //! ```text
+//!  quote        untrusted text, cut short for messages
 //!  geometry     the area of polygons and ellipses in each cell of a grid           plane, f64
 //!  parameter    what can be set: one table of keys, units, ranges, defaults
 //!  sensor       columns, rows, threshold, pitch

@@ -1,6 +1,8 @@
 //! The project itself: its source keeps the laws of its rooms, and its papers say what the program does.
 
-mod layers;
+mod laws;
+
+mod source;
 
 #[cfg(feature = "sweep")]
 mod examples;
