@@ -8,10 +8,11 @@ mod source;
 mod examples;
 
 #[cfg(feature = "cli")]
-mod dependencies;
+#[path = "../common/mod.rs"]
+mod common;
 
 #[cfg(feature = "cli")]
-mod readme;
+mod docs;
 
 #[cfg(feature = "cli")]
 mod version;

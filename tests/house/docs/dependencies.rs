@@ -1,10 +1,10 @@
-//! The README's section about dependencies: from the comments of `Cargo.toml`, what cargo says, and `deny.toml`.
+//! The page about dependencies: from the comments of `Cargo.toml`, what cargo says, and `deny.toml`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;
 
-const MANIFEST: &str = include_str!("../../Cargo.toml");
-const DENY: &str = include_str!("../../deny.toml");
+const MANIFEST: &str = include_str!("../../../Cargo.toml");
+const DENY: &str = include_str!("../../../deny.toml");
 
 /// The whole block.
 pub(crate) fn block() -> String {
@@ -15,11 +15,11 @@ pub(crate) fn block() -> String {
         .map(|(name, reason)| format!("- `{name}`: {reason}.\n"))
         .collect();
     format!(
-        "The program is made of {} crates, itself and what runs at build time only among them \
+        "\nThe program is made of {} crates, counting itself and crates that run only at build time \
          (`cargo tree -e normal --prefix none --no-dedupe | sort -u | wc -l`).\n\
-         It names {} of them:\n\n{}\n\
-         Twice, in an older version too, because others have not moved yet:\n\n{skipped}\n\
-         Tests and benchmarks use beside these:\n\n{}",
+         It depends on {} of them directly:\n\n{}\n\
+         These are also there in an older version, because other crates still need it:\n\n{skipped}\n\
+         Tests and benchmarks also use:\n\n{}\n",
         tree.len(),
         own.len(),
         table(&own),

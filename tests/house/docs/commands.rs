@@ -1,0 +1,129 @@
+//! What the program prints on the command line, and the commands that the documents show.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::Command;
+
+use crate::docs::documents;
+
+const TAXEL: &str = env!("CARGO_BIN_EXE_taxel");
+
+/// The commands with a help of their own, in the order of `taxel help`; those of `library` are shown by its own help.
+const COMMANDS: [&str; 13] = [
+    "",
+    "figure",
+    "picture",
+    "describe",
+    "export",
+    "batch",
+    "sweep",
+    "merge",
+    "library",
+    "script",
+    "config",
+    "completions",
+    "man",
+];
+
+/// What a shell line prints, with this build's `taxel` first on the path and the program's own settings.
+fn shell(line: &str) -> String {
+    let folder = Path::new(TAXEL)
+        .parent()
+        .expect("the program is in a folder");
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let path = std::iter::once(folder.to_owned()).chain(std::env::split_paths(&path));
+    let output = Command::new("sh")
+        .args(["-c", line])
+        .env("PATH", std::env::join_paths(path).expect("a path"))
+        .env("TAXEL_CONFIG", "/dev/null")
+        .output()
+        .expect("there is a shell");
+    assert!(
+        output.status.success(),
+        "{line}: {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    String::from_utf8(output.stdout).expect("the output is text")
+}
+
+/// The result that the README shows: a command and its output.
+pub(crate) fn result() -> String {
+    let line = "taxel sweep rectangle --length 6 --width 3 --quiet | grep -E 'imprints|mean|^na |^p |^side_ratio'";
+    format!("\n```text\n$ {line}\n{}```\n\n", shell(line))
+}
+
+/// The worked study of the page about sweeps.
+pub(crate) fn study() -> String {
+    let line = "for width in 3 3.2 4; do taxel sweep rectangle --length 6 --width $width --quiet | grep '^na '; done";
+    format!("\n```text\n$ {line}\n{}```\n\n", shell(line))
+}
+
+/// Every help text.
+pub(crate) fn help() -> String {
+    COMMANDS
+        .iter()
+        .map(|name| {
+            let line = format!("taxel {name}").trim_end().to_owned();
+            format!(
+                "\n### {line}\n\n```text\n{}```\n",
+                shell(&format!("{line} --help"))
+            )
+        })
+        .collect::<String>()
+        + "\n"
+}
+
+/// The shell lines of a document that call `taxel`, continuation lines joined.
+fn calls(text: &str) -> Vec<String> {
+    let mut calls = Vec::new();
+    for (index, fence) in text.split("```").enumerate() {
+        let Some(code) = fence.strip_prefix("sh\n").filter(|_| index % 2 == 1) else {
+            continue;
+        };
+        let code = code.replace("\\\n", " ");
+        calls.extend(
+            code.lines()
+                .filter(|line| line.starts_with("taxel "))
+                .map(str::to_owned),
+        );
+    }
+    calls
+}
+
+/// Readers copy these lines: each names a command of the program, and flags that this command has.
+#[test]
+fn every_command_shown_exists_with_its_flags() {
+    let mut helps = BTreeMap::new();
+    let mut checked = 0;
+    for (path, text) in documents() {
+        for call in calls(&text) {
+            let call = call.split(" #").next().expect("a line");
+            let call = call.split(['|', '<', '>', ';']).next().expect("a command");
+            let mut words = call.split_whitespace().skip(1).peekable();
+            let name = words
+                .next_if(|word| !word.starts_with('-'))
+                .unwrap_or_default();
+            if name == "help" {
+                continue;
+            }
+            assert!(
+                COMMANDS.contains(&name),
+                "{}: no command {name:?}: {call}",
+                path.display()
+            );
+            let help: &String = helps
+                .entry(name.to_owned())
+                .or_insert_with(|| shell(&format!("taxel {name} --help")));
+            for flag in words.filter(|word| word.starts_with("--")) {
+                let flag = flag.split('=').next().expect("a flag");
+                assert!(
+                    help.contains(flag),
+                    "{}: taxel {name} has no {flag}",
+                    path.display()
+                );
+                checked += 1;
+            }
+        }
+    }
+    assert!(checked >= 20, "{checked} flags were found in the documents");
+}

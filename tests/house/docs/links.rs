@@ -1,0 +1,153 @@
+//! Every link from one document to another, or within one, leads somewhere.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+use crate::docs::{documents, root};
+
+/// The text without fenced code.
+fn prose(text: &str) -> String {
+    let parts = text.split("```").enumerate();
+    parts
+        .filter(|(index, _)| index % 2 == 0)
+        .map(|(_, part)| part)
+        .collect()
+}
+
+/// Targets of `[…](target)` and of `src="target"`.
+fn targets(text: &str) -> Vec<String> {
+    let prose = prose(text);
+    let ends = [("](", ')'), ("src=\"", '"')];
+    let mut found = Vec::new();
+    for (start, end) in ends {
+        for rest in prose.split(start).skip(1) {
+            if let Some((target, _)) = rest.split_once(end) {
+                found.push(target.to_owned());
+            }
+        }
+    }
+    found
+}
+
+/// The anchors of a page's headings, as code hosts make them: lower case, letters and digits, a dash for a space; and
+/// those that the page names itself.
+fn anchors(text: &str) -> BTreeSet<String> {
+    let prose = prose(text);
+    let headings = prose.lines().filter(|line| line.starts_with('#'));
+    let anchor = |heading: &str| {
+        let heading = heading.trim_start_matches('#').trim().to_lowercase();
+        let kept = heading
+            .chars()
+            .filter(|letter| letter.is_alphanumeric() || " -_".contains(*letter));
+        kept.map(|letter| if letter == ' ' { '-' } else { letter })
+            .collect::<String>()
+    };
+    let named = prose.split("<a id=\"").skip(1);
+    let named = named.filter_map(|rest| Some(rest.split_once('"')?.0.to_owned()));
+    headings.map(anchor).chain(named).collect()
+}
+
+/// A path without `.` and `..`.
+fn plain(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::ParentDir => {
+                plain.pop();
+            }
+            Component::CurDir => {}
+            part => plain.push(part),
+        }
+    }
+    plain
+}
+
+#[test]
+fn every_link_leads_to_a_file_and_a_heading() {
+    let mut checked = 0;
+    for (page, text) in documents() {
+        let at = page.display();
+        for target in targets(&text) {
+            if target.starts_with("https://") {
+                continue;
+            }
+            let (file, anchor) = target.split_once('#').unwrap_or((&target, ""));
+            let path = if file.is_empty() {
+                page.clone()
+            } else {
+                plain(&page.parent().expect("a folder").join(file))
+            };
+            // The package has neither the checks of the repository nor its fuzz targets.
+            let packaged = !path.starts_with(".ci") && !path.starts_with("fuzz");
+            if !packaged && !root().join(".ci").exists() {
+                continue;
+            }
+            assert!(root().join(&path).exists(), "{at}: {target} leads nowhere");
+            if !anchor.is_empty() {
+                let text = fs::read_to_string(root().join(&path)).expect("a page");
+                assert!(
+                    anchors(&text).contains(anchor),
+                    "{at}: {target}: no such heading"
+                );
+            }
+            checked += 1;
+        }
+    }
+    assert!(checked >= 20, "{checked} links were found");
+}
+
+/// Nobody finds a page that no other page links to.
+#[test]
+fn every_page_is_linked_from_the_readme() {
+    let pages = documents();
+    let (_, readme) = pages
+        .iter()
+        .find(|(page, _)| page == Path::new("README.md"))
+        .expect("a README");
+    let linked: Vec<_> = targets(readme).into_iter().map(PathBuf::from).collect();
+    for (page, _) in &pages {
+        if page.starts_with("docs") || page == Path::new("CONTRIBUTING.md") {
+            assert!(
+                linked.contains(page),
+                "the README does not link to {}",
+                page.display()
+            );
+        }
+    }
+}
+
+/// Paths in the documents' prose, such as `src/lib.rs`, are those of files; a pattern is looked up by its folder.
+#[test]
+fn every_path_named_exists() {
+    let rooms = [
+        "src/",
+        "tests/",
+        "examples/",
+        "benches/",
+        "library/",
+        "docs/",
+        ".ci/",
+        "fuzz/",
+    ];
+    let mut missing = Vec::new();
+    for (page, text) in documents() {
+        if page.starts_with("CHANGELOG.md") {
+            continue;
+        }
+        for code in prose(&text).split('`').skip(1).step_by(2) {
+            let packaged = !code.starts_with(".ci") && !code.starts_with("fuzz")
+                || root().join(".ci").exists();
+            let plain = !code.contains([' ', '*', '\n']) && !code.contains("NAME");
+            let path = code.split("::").next().unwrap_or_default();
+            if plain
+                && packaged
+                && rooms.iter().any(|room| path.starts_with(room))
+                && !root().join(path).exists()
+            {
+                missing.push(format!("{}: {code}", page.display()));
+            }
+        }
+    }
+    assert!(missing.is_empty(), "no such files: {missing:#?}");
+}

@@ -1,0 +1,75 @@
+//! Tables of the documents, from the program's own.
+
+use taxel::description::{DESCRIPTORS, Dimension};
+use taxel::parameter::PARAMETERS;
+use taxel::tui::keys::binding::Context;
+use taxel::tui::keys::default_keys::KEYMAP;
+use taxel::tui::prompt::commands::COMMANDS;
+
+pub(crate) fn descriptors() -> String {
+    let row = |descriptor: &taxel::description::Descriptor| {
+        let unit = match descriptor.dimension {
+            Dimension::Count => "taxels",
+            Dimension::Length => "cell sides",
+            Dimension::Area => "cells",
+            Dimension::Direction => "degrees",
+            _ => "",
+        };
+        let (key, symbol, name) = (descriptor.key, descriptor.symbol, descriptor.name);
+        format!("| `{key}` | [{symbol}](#{key}) | {name} | {unit} |\n")
+    };
+    let rows: String = DESCRIPTORS.iter().map(row).collect();
+    format!("\n| key | symbol | meaning | unit |\n|---|---|---|---|\n{rows}\n")
+}
+
+/// One table a place.
+pub(crate) fn keys() -> String {
+    let mut text = String::new();
+    for context in Context::ALL {
+        text += &format!(
+            "\n## {}\n\n| key | what it does |\n|---|---|\n",
+            context.title()
+        );
+        for binding in KEYMAP.iter().filter(|binding| binding.context == context) {
+            text += &format!("| `{}` | {} |\n", binding.labels(), binding.help);
+        }
+    }
+    text + "\n"
+}
+
+/// The commands of the line at the foot of the screen.
+pub(crate) fn prompt() -> String {
+    let mut text = String::from("\n| command | takes |\n|---|---|\n");
+    for command in COMMANDS {
+        let words = command.words.iter().map(|(word, _)| *word);
+        let mut takes: Vec<_> = words.filter(|word| !word.is_empty()).collect();
+        let form = command.takes.form();
+        if !form.is_empty() {
+            takes.push(form);
+        }
+        let takes: Vec<_> = takes
+            .into_iter()
+            .map(|takes| format!("`{takes}`"))
+            .collect();
+        text += &format!("| `:{}` | {} |\n", command.name, takes.join(", "));
+    }
+    text + "\n"
+}
+
+/// What can be set, with its range on the paper's sensor.
+pub(crate) fn parameters() -> String {
+    let row = |row: &taxel::parameter::ParameterRow| {
+        let (flag, range) = (row.parameter.flag(), row.parameter.range(16));
+        format!(
+            "| `{}` | `--{flag}` | {} | {range} | {} | {} |\n",
+            row.key,
+            row.meaning,
+            row.unit.symbol(),
+            row.default
+        )
+    };
+    let rows: String = PARAMETERS.iter().map(row).collect();
+    format!(
+        "\n| key | flag | meaning | range on 16 × 16 | unit | default |\n|---|---|---|---|---|---|\n{rows}\n"
+    )
+}
