@@ -2,9 +2,10 @@
 
 use taxel::description::{DESCRIPTORS, Dimension};
 use taxel::parameter::PARAMETERS;
+use taxel::tui::keys::action::Arguments;
 use taxel::tui::keys::binding::Context;
-use taxel::tui::keys::default_keys::KEYMAP;
-use taxel::tui::prompt::commands::COMMANDS;
+use taxel::tui::keys::default_keys::DEFAULT_KEYS;
+use taxel::tui::prompt::commands::commands;
 
 pub(crate) fn descriptors() -> String {
     let row = |descriptor: &taxel::description::Descriptor| {
@@ -30,28 +31,37 @@ pub(crate) fn keys() -> String {
             "\n## {}\n\n| key | what it does |\n|---|---|\n",
             context.title()
         );
-        for binding in KEYMAP.iter().filter(|binding| binding.context == context) {
+        for binding in DEFAULT_KEYS
+            .iter()
+            .filter(|binding| binding.context == context)
+        {
             text += &format!("| `{}` | {} |\n", binding.labels(), binding.help);
         }
     }
     text + "\n"
 }
 
-/// The commands of the line at the foot of the screen.
+/// The commands after `:`, each with what the help says of its keys.
 pub(crate) fn prompt() -> String {
-    let mut text = String::from("\n| command | takes |\n|---|---|\n");
-    for command in COMMANDS {
+    let mut text = String::from("\n| command | what may follow | what it does |\n|---|---|---|\n");
+    for command in commands() {
         let words = command.words.iter().map(|(word, _)| *word);
-        let mut takes: Vec<_> = words.filter(|word| !word.is_empty()).collect();
-        let form = command.takes.form();
-        if !form.is_empty() {
-            takes.push(form);
-        }
-        let takes: Vec<_> = takes
+        let mut follows: Vec<_> = words.filter(|word| !word.is_empty()).collect();
+        follows.extend(command.arguments.map(Arguments::form));
+        let follows: Vec<_> = follows
             .into_iter()
-            .map(|takes| format!("`{takes}`"))
+            .map(|word| format!("`{word}`"))
             .collect();
-        text += &format!("| `:{}` | {} |\n", command.name, takes.join(", "));
+        let mut rows = DEFAULT_KEYS.iter().filter(|row| {
+            let mut actions = row.keys.iter().map(|(_, action)| *action);
+            actions.any(|action| command.words.iter().any(|(_, own)| *own == action))
+        });
+        let help = rows.next().map_or("", |row| row.help);
+        text += &format!(
+            "| `:{}` | {} | {help} |\n",
+            command.name,
+            follows.join(", ")
+        );
     }
     text + "\n"
 }
