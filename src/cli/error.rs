@@ -102,7 +102,7 @@ pub(crate) enum CliError {
         /// Its name; none of keys that are no script.
         name: Option<String>,
         /// What did not.
-        failure: runner::Failure,
+        failure: runner::ScriptFailure,
     },
     /// There is a file already where a record was to be.
     #[error("{name} is there already, and a record does not replace it; {free} would be a new one")]
@@ -172,11 +172,11 @@ impl CliError {
             | Self::Settings { .. }
             | Self::NoScript { .. }
             | Self::Script {
-                failure: runner::Failure::Script(_),
+                failure: runner::ScriptFailure::Script(_),
                 ..
             } => 2,
             Self::Script {
-                failure: runner::Failure::Ended { .. },
+                failure: runner::ScriptFailure::Ended { .. },
                 ..
             } => 3,
             // As a shell tells of a command that a signal has ended.

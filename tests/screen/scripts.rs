@@ -9,10 +9,10 @@ use std::path::Path;
 use taxel::tui::app::state::Options;
 use taxel::tui::keys::keymap::Keymap;
 use taxel::tui::runtime::perform::World;
-use taxel::tui::script::runner::{Failure, Settings, run};
+use taxel::tui::script::runner::{ScriptFailure, ScriptOptions, run};
 
-fn settings(styles: bool, json: bool) -> Settings {
-    Settings {
+fn settings(styles: bool, json: bool) -> ScriptOptions {
+    ScriptOptions {
         options: Options::plain(false),
         size: (80, 24),
         styles,
@@ -21,7 +21,7 @@ fn settings(styles: bool, json: bool) -> Settings {
     }
 }
 
-fn output(script: &str, json: bool) -> Result<String, Failure> {
+fn output(script: &str, json: bool) -> Result<String, ScriptFailure> {
     let settings = settings(true, json);
     let world = World::scratch().expect("there is a folder for temporary files");
     let mut printed = String::new();
@@ -242,7 +242,7 @@ fn a_script_prints_as_it_goes() {
             }
         },
     );
-    assert_eq!(stopped, Err(Failure::Stopped));
+    assert_eq!(stopped, Err(ScriptFailure::Stopped));
     assert_eq!(printed, 2);
 }
 

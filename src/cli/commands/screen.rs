@@ -12,9 +12,9 @@ use crate::storage::{Library, Orphan, ShapeOrigin};
 use crate::tui::app::state::{App, Options};
 use crate::tui::runtime::perform::World;
 use crate::tui::script::record::Recorder;
-use crate::tui::script::setting::{Setting, of_options};
+use crate::tui::script::setting::{ScriptSetting, of_options};
 use crate::tui::terminal;
-use crate::tui::terminal::settings::{Flags, Settings};
+use crate::tui::terminal::settings::{Flags, TerminalSettings};
 
 /// Runs the program on the terminal; the exit status tells how it ended.
 pub(crate) fn screen(
@@ -33,7 +33,7 @@ pub(crate) fn screen(
         no_mouse: !settings.mouse(),
         size,
     };
-    let terminal = Settings::from_environment(std::env::var_os, &flags);
+    let terminal = TerminalSettings::from_environment(std::env::var_os, &flags);
     let options = Options {
         sensor: settings.sensor(),
         theme: terminal.theme(),
@@ -118,13 +118,13 @@ impl Record {
 }
 
 /// What the program finds at its start: the user's shapes, but for those that cannot be read, and unsaved work.
-fn found(library: &Library) -> Result<Vec<Setting>, CliError> {
+fn found(library: &Library) -> Result<Vec<ScriptSetting>, CliError> {
     let own = library.list()?;
     let own = own.iter().filter(|entry| entry.origin == ShapeOrigin::Own);
     let shapes = own.filter_map(|entry| library.load(&entry.name).ok());
-    let shapes = shapes.map(|loaded| Setting::Shape(Box::new(loaded.shape)));
+    let shapes = shapes.map(|loaded| ScriptSetting::Shape(Box::new(loaded.shape)));
     let left = Orphan::all(library).into_iter();
-    let left = left.map(|orphan| Setting::Leftover(Box::new(orphan.shape)));
+    let left = left.map(|orphan| ScriptSetting::Leftover(Box::new(orphan.shape)));
     Ok(shapes.chain(left).collect())
 }
 

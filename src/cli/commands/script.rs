@@ -18,7 +18,7 @@ use crate::tui::keys::key::parse;
 use crate::tui::runtime::perform::World;
 use crate::tui::script::command::ScriptError;
 use crate::tui::script::runner;
-use crate::tui::script::runner::{Settings as Running, Shown};
+use crate::tui::script::runner::{ScriptOptions, ScriptOutput};
 use crate::tui::widget::theme::{ColorDepth, Palette, Theme};
 
 /// No script is longer.
@@ -41,7 +41,7 @@ pub(crate) fn run(
     };
     let keys = parse(asked.keys.as_deref().unwrap_or("")).map_err(|error| CliError::Script {
         name: None,
-        failure: runner::Failure::Script(ScriptError {
+        failure: runner::ScriptFailure::Script(ScriptError {
             line: 0,
             message: error.to_string(),
         }),
@@ -64,7 +64,7 @@ pub(crate) fn run(
         },
         mouse: true,
     };
-    let running = Running {
+    let running = ScriptOptions {
         options,
         size: asked.size,
         styles: asked.styles,
@@ -79,15 +79,15 @@ pub(crate) fn run(
         })?;
     }
     let mut names = Names::default();
-    let mut show = |shown: Shown<'_>| {
+    let mut show = |shown: ScriptOutput<'_>| {
         let done = match (shown, &asked.drawings) {
-            (Shown::Text(text), _) => {
+            (ScriptOutput::Text(text), _) => {
                 let written = output.write_all(text.as_bytes());
                 written
                     .and_then(|()| output.flush())
                     .map_err(CliError::Write)
             }
-            (Shown::Screen(name, session), Some(folder)) => {
+            (ScriptOutput::Screen(name, session), Some(folder)) => {
                 let name = names.next(name);
                 let path = folder.join(format!("{name}.svg"));
                 export::put(&path, session.svg(&name).as_bytes(), asked.existing)

@@ -9,32 +9,32 @@ use crate::formats::StoredShape;
 use crate::storage::Journal;
 use crate::tui::app::state::App;
 use crate::tui::explore::message::WorkerEvent;
-use crate::tui::runtime::workers::Post;
+use crate::tui::runtime::workers::EventSink;
 
 /// How long changes are gathered before they are written: a second at most is lost.
 const GATHER: Duration = Duration::from_millis(400);
 
 /// The program's end.
 #[derive(Debug)]
-pub(in crate::tui) struct Keeper {
-    notes: Option<Sender<Note>>,
+pub(in crate::tui) struct JournalWriter {
+    notes: Option<Sender<JournalRequest>>,
     thread: Option<JoinHandle<()>>,
     last: Option<StoredShape>,
 }
 
-enum Note {
+enum JournalRequest {
     Keep(Box<StoredShape>),
     Clear,
     /// Answers whether everything is written.
     Flush(Sender<bool>),
     /// Who is to be told where something cannot be written.
-    Tell(Post),
+    Tell(EventSink),
 }
 
-impl Keeper {
+impl JournalWriter {
     pub(in crate::tui) fn new(journal: Journal) -> Self {
         let (notes, inbox) = channel();
-        let writer = Writer {
+        let writer = JournalThread {
             journal,
             pending: Pending::Nothing,
             post: None,
@@ -58,8 +58,8 @@ impl Keeper {
     }
 
     /// Says from now on where work cannot be kept.
-    pub(in crate::tui) fn tell(&self, post: Post) {
-        self.send(Note::Tell(post));
+    pub(in crate::tui) fn tell(&self, post: EventSink) {
+        self.send(JournalRequest::Tell(post));
     }
 
     /// Notes the work that would be lost, if it is other work than before.
@@ -72,16 +72,16 @@ impl Keeper {
             self.keep(shape);
         } else {
             self.last = None;
-            self.send(Note::Clear);
+            self.send(JournalRequest::Clear);
         }
     }
 
     pub(in crate::tui) fn keep(&mut self, shape: StoredShape) {
         self.last = Some(shape.clone());
-        self.send(Note::Keep(Box::new(shape)));
+        self.send(JournalRequest::Keep(Box::new(shape)));
     }
 
-    fn send(&self, note: Note) {
+    fn send(&self, note: JournalRequest) {
         if let Some(notes) = &self.notes {
             // The thread ends only after this end of the channel.
             let _ = notes.send(note);
@@ -91,14 +91,14 @@ impl Keeper {
     /// Waits until everything is written; false where it could not be.
     pub(in crate::tui) fn flush(&self) -> bool {
         let (done, written) = channel();
-        self.send(Note::Flush(done));
+        self.send(JournalRequest::Flush(done));
         written
             .recv_timeout(Duration::from_secs(5))
             .unwrap_or(false)
     }
 }
 
-impl Drop for Keeper {
+impl Drop for JournalWriter {
     fn drop(&mut self) {
         self.notes = None;
         if let Some(thread) = self.thread.take() {
@@ -119,16 +119,16 @@ enum Pending {
 }
 
 /// The thread's end: gathers changes for a moment, then writes the last one.
-struct Writer {
+struct JournalThread {
     journal: Journal,
     pending: Pending,
-    post: Option<Post>,
+    post: Option<EventSink>,
     /// Whether it was said that nothing can be kept, which is said once.
     told: bool,
 }
 
-impl Writer {
-    fn run(mut self, inbox: &Receiver<Note>) {
+impl JournalThread {
+    fn run(mut self, inbox: &Receiver<JournalRequest>) {
         loop {
             let note = match &self.pending {
                 Pending::Since(_, since) => {
@@ -137,22 +137,22 @@ impl Writer {
                 _ => inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
             };
             match note {
-                Ok(Note::Keep(shape)) => {
+                Ok(JournalRequest::Keep(shape)) => {
                     let since = match self.pending {
                         Pending::Since(_, since) => since,
                         _ => Instant::now(),
                     };
                     self.pending = Pending::Since(shape, since);
                 }
-                Ok(Note::Clear) => {
+                Ok(JournalRequest::Clear) => {
                     self.pending = Pending::Nothing;
                     self.journal.clear();
                 }
-                Ok(Note::Flush(done)) => {
+                Ok(JournalRequest::Flush(done)) => {
                     // Whoever asked may have stopped waiting.
                     let _ = done.send(self.write());
                 }
-                Ok(Note::Tell(post)) => self.post = Some(post),
+                Ok(JournalRequest::Tell(post)) => self.post = Some(post),
                 Err(RecvTimeoutError::Timeout) => {
                     self.write();
                 }

@@ -55,7 +55,7 @@ impl Sender {
 
 impl Mailbox {
     /// Readable when there are messages.
-    pub(in crate::tui) fn bell(&self) -> BorrowedFd<'_> {
+    pub(in crate::tui) fn fd(&self) -> BorrowedFd<'_> {
         self.bell.as_fd()
     }
 

@@ -1,11 +1,11 @@
 //! The only place of the screen that touches the world: the library, the journal of unsaved work, and workers.
 
-pub use crate::tui::runtime::workers::Post;
+pub use crate::tui::runtime::workers::EventSink;
 
 use std::io;
 use std::sync::Arc;
 
-use crate::tui::runtime::journal_writer::Keeper;
+use crate::tui::runtime::journal_writer::JournalWriter;
 use crate::tui::runtime::workers::Workers;
 use tempfile::TempDir;
 
@@ -23,20 +23,20 @@ pub struct World {
     library: Library,
     /// The work that is offered, and how many there are with it that wait.
     orphan: Option<(Orphan, usize)>,
-    keeper: Keeper,
+    journal: JournalWriter,
     workers: Workers,
-    /// The library's folder where that is one for the time being. The last field: it goes after the keeper has written.
+    /// The library's folder where that is one for the time being. The last field: it goes after the journal has written.
     _scratch: Option<TempDir>,
 }
 
 impl World {
     /// The world around a library.
     pub fn new(library: Library) -> Self {
-        let keeper = Keeper::new(Journal::new(&library));
+        let journal = JournalWriter::new(Journal::new(&library));
         let mut world = Self {
             library,
             orphan: None,
-            keeper,
+            journal,
             workers: Workers::default(),
             _scratch: None,
         };
@@ -50,7 +50,7 @@ impl World {
         Self {
             library,
             orphan: None,
-            keeper: Keeper::idle(),
+            journal: JournalWriter::idle(),
             workers: Workers::default(),
             _scratch: None,
         }
@@ -100,8 +100,8 @@ impl World {
     /// Has long work done beside the program, and what it tells sent by `post`. Without this, such work is done at once
     /// and nothing is told of how far it is or how long it takes: scripts show the same every time.
     #[must_use]
-    pub fn with_workers(mut self, post: Post) -> Self {
-        self.keeper.tell(Arc::clone(&post));
+    pub fn with_workers(mut self, post: EventSink) -> Self {
+        self.journal.tell(Arc::clone(&post));
         self.workers = Workers::beside(post);
         self
     }
@@ -136,13 +136,13 @@ impl World {
                 None => break None,
             }
         };
-        self.keeper.note(app);
+        self.journal.note(app);
         left
     }
 
     /// Puts unsaved work in safety at once: the program is about to end.
     pub fn secure(&mut self) {
-        self.keeper.flush();
+        self.journal.flush();
     }
 
     fn perform(&mut self, request: LibraryRequest) -> Message {
@@ -183,8 +183,8 @@ impl World {
                 Some((orphan, _)) => {
                     let shape = orphan.shape.clone();
                     // It is in this program's journal before it is taken out of that of the dead one.
-                    self.keeper.keep(shape.clone());
-                    if self.keeper.flush() {
+                    self.journal.keep(shape.clone());
+                    if self.journal.flush() {
                         orphan.discard();
                     }
                     LibraryEvent::Recovered(Box::new(shape))

@@ -18,7 +18,7 @@ use crate::tui::explore::message::{Findings, SweepProgress, WorkerEvent};
 use crate::tui::runtime::effect::Work;
 
 /// Takes what workers tell, from any thread.
-pub type Post = Arc<dyn Fn(WorkerEvent) + Send + Sync>;
+pub type EventSink = Arc<dyn Fn(WorkerEvent) + Send + Sync>;
 
 /// How far a sweep is is told no more often than this.
 const PAUSE: Duration = Duration::from_millis(100);
@@ -30,7 +30,7 @@ const MEASURED: Duration = Duration::from_millis(30);
 #[derive(Default)]
 pub(in crate::tui) struct Workers {
     /// None where work is done at once.
-    post: Option<Post>,
+    post: Option<EventSink>,
     stop: Arc<AtomicBool>,
     measuring: Arc<AtomicBool>,
     /// The thread that writes a file.
@@ -47,7 +47,7 @@ impl std::fmt::Debug for Workers {
 
 impl Workers {
     /// Workers beside the program.
-    pub(in crate::tui) fn beside(post: Post) -> Self {
+    pub(in crate::tui) fn beside(post: EventSink) -> Self {
         let mut workers = Self::default();
         workers.post = Some(post);
         workers
@@ -78,7 +78,7 @@ impl Workers {
                     return Some(sweep(number, &grid, &stop, None));
                 };
                 std::thread::spawn(move || {
-                    let clock = Clock::new(number, &post);
+                    let clock = ProgressReporter::new(number, &post);
                     let told = guarded(number, || sweep(number, &grid, &stop, Some(&clock)));
                     post(told);
                 });
@@ -90,7 +90,7 @@ impl Workers {
                     return Some(write(number, &findings, &name, existing, &stop, None));
                 };
                 let thread = std::thread::spawn(move || {
-                    let clock = Clock::new(number, &post);
+                    let clock = ProgressReporter::new(number, &post);
                     let told = guarded(number, || {
                         write(number, &findings, &name, existing, &stop, Some(&clock))
                     });
@@ -122,16 +122,16 @@ impl Drop for Workers {
 }
 
 /// Tells how far a sweep is, now and then.
-struct Clock<'a> {
+struct ProgressReporter<'a> {
     number: u64,
-    post: &'a Post,
+    post: &'a EventSink,
     start: Instant,
     poses: AtomicU64,
     last: Mutex<Instant>,
 }
 
-impl<'a> Clock<'a> {
-    fn new(number: u64, post: &'a Post) -> Self {
+impl<'a> ProgressReporter<'a> {
+    fn new(number: u64, post: &'a EventSink) -> Self {
         let start = Instant::now();
         Self {
             number,
@@ -187,7 +187,7 @@ fn sweep(
     number: u64,
     grid: &PoseGrid,
     stop: &AtomicBool,
-    clock: Option<&Clock<'_>>,
+    clock: Option<&ProgressReporter<'_>>,
 ) -> WorkerEvent {
     let progress = |poses: u64| going(poses, stop, clock);
     let result = Sweep::new(grid).progress(&progress).run();
@@ -202,7 +202,7 @@ fn sweep(
 }
 
 /// Takes note of poses that are done; answers whether to go on.
-fn going(poses: u64, stop: &AtomicBool, clock: Option<&Clock<'_>>) -> bool {
+fn going(poses: u64, stop: &AtomicBool, clock: Option<&ProgressReporter<'_>>) -> bool {
     if let Some(clock) = clock {
         clock.add(poses);
     }
@@ -215,7 +215,7 @@ fn write(
     name: &str,
     existing: Existing,
     stop: &AtomicBool,
-    clock: Option<&Clock<'_>>,
+    clock: Option<&ProgressReporter<'_>>,
 ) -> WorkerEvent {
     let result = &findings.sweep;
     let written = if is_poses(name) {
@@ -244,7 +244,7 @@ fn write_poses(
     name: &str,
     existing: Existing,
     stop: &AtomicBool,
-    clock: Option<&Clock<'_>>,
+    clock: Option<&ProgressReporter<'_>>,
 ) -> Result<bool, SweepFileError> {
     let mut file = PoseFile::new(name, &result.grid, existing)?;
     // A disk that is full ends the work, but is no wish to stop.

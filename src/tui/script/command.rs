@@ -17,16 +17,16 @@ use regex_lite::{Regex, RegexBuilder};
 use crate::quote::shortened;
 use crate::tui::keys::key::{Key, parse};
 use crate::tui::script::setting;
-use crate::tui::script::setting::Setting;
+use crate::tui::script::setting::ScriptSetting;
 
 /// A place of the screen: column, row.
-pub type Place = (u16, u16);
+pub type ScreenPosition = (u16, u16);
 
 /// What a line asks for.
 #[derive(Clone, Debug)]
-pub enum Command {
+pub enum ScriptCommand {
     /// How the program starts, and on what; before all that needs a screen.
-    Set(Setting),
+    Set(ScriptSetting),
     /// Another size while the program runs.
     Resize(u16, u16),
     /// Keys.
@@ -36,13 +36,13 @@ pub enum Command {
     /// Pasted text.
     Paste(String),
     /// The left button at a place.
-    Click(Place),
+    Click(ScreenPosition),
     /// The left button at the first place where a text stands.
     ClickText(String),
     /// The left button, held from one place to others.
-    Drag(Vec<Place>),
+    Drag(Vec<ScreenPosition>),
     /// The wheel at a place: so many turns, up where negative.
-    Scroll(Place, i16),
+    Scroll(ScreenPosition, i16),
     /// Print the screen, under a name.
     Screen(String),
     /// Print the state, or the part of it that a JSON pointer names.
@@ -52,9 +52,9 @@ pub enum Command {
     /// It must not.
     ExpectNot(Regex),
     /// A text must stand at a place.
-    ExpectAt(Place, String),
+    ExpectAt(ScreenPosition, String),
     /// A character must have a style.
-    ExpectStyle(Place, char),
+    ExpectStyle(ScreenPosition, char),
     /// What a signal does.
     Signal(String),
     /// Everything that is under way is done; it always is.
@@ -96,7 +96,7 @@ fn line_name(line: usize) -> String {
 ///
 /// # Errors
 /// The first line that is none.
-pub fn read(script: &str) -> Result<Vec<(usize, Command)>, ScriptError> {
+pub fn read(script: &str) -> Result<Vec<(usize, ScriptCommand)>, ScriptError> {
     let lines = script
         .lines()
         .enumerate()
@@ -113,10 +113,10 @@ pub fn read(script: &str) -> Result<Vec<(usize, Command)>, ScriptError> {
         .collect()
 }
 
-fn command(line: &str) -> Result<Command, String> {
+fn command(line: &str) -> Result<ScriptCommand, String> {
     let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
     let rest = rest.trim();
-    let nothing = |command: Command| {
+    let nothing = |command: ScriptCommand| {
         if rest.is_empty() {
             Ok(command)
         } else {
@@ -124,22 +124,22 @@ fn command(line: &str) -> Result<Command, String> {
         }
     };
     match word {
-        "Size" => size(rest).map(|(columns, rows)| Command::Set(Setting::Size(columns, rows))),
-        "Resize" => size(rest).map(|(columns, rows)| Command::Resize(columns, rows)),
-        "Set" => setting::read(rest).map(Command::Set),
+        "Size" => size(rest).map(|(columns, rows)| ScriptCommand::Set(ScriptSetting::Size(columns, rows))),
+        "Resize" => size(rest).map(|(columns, rows)| ScriptCommand::Resize(columns, rows)),
+        "Set" => setting::read(rest).map(ScriptCommand::Set),
         "Keys" => parse(rest)
-            .map(Command::Keys)
+            .map(ScriptCommand::Keys)
             .map_err(|error| error.to_string()),
-        "Type" => quoted(rest).map(Command::Type),
-        "Paste" => quoted(rest).map(Command::Paste),
-        "Click" if rest.starts_with('"') => quoted(rest).map(Command::ClickText),
-        "Click" => place(rest).map(Command::Click),
+        "Type" => quoted(rest).map(ScriptCommand::Type),
+        "Paste" => quoted(rest).map(ScriptCommand::Paste),
+        "Click" if rest.starts_with('"') => quoted(rest).map(ScriptCommand::ClickText),
+        "Click" => place(rest).map(ScriptCommand::Click),
         "Drag" => match rest
             .split_whitespace()
             .map(place)
             .collect::<Result<Vec<_>, _>>()?
         {
-            places if places.len() > 1 => Ok(Command::Drag(places)),
+            places if places.len() > 1 => Ok(ScriptCommand::Drag(places)),
             _ => Err(format!(
                 "expected two places or more, found {:?}",
                 shortened(rest)
@@ -155,19 +155,19 @@ fn command(line: &str) -> Result<Command, String> {
                     let found = shortened(turns);
                     format!("expected a whole number of turns, found {found:?}")
                 })?;
-            Ok(Command::Scroll(place(at)?, turns))
+            Ok(ScriptCommand::Scroll(place(at)?, turns))
         }
         "Screen" if rest.contains(char::is_control) => Err(format!(
             "a name for a screen has no control characters, found {:?}",
             shortened(rest)
         )),
-        "Screen" => Ok(Command::Screen(rest.to_owned())),
-        "State" => Ok(Command::State(rest.to_owned())),
-        "Expect" => pattern(rest).map(Command::Expect),
-        "ExpectNot" => pattern(rest).map(Command::ExpectNot),
+        "Screen" => Ok(ScriptCommand::Screen(rest.to_owned())),
+        "State" => Ok(ScriptCommand::State(rest.to_owned())),
+        "Expect" => pattern(rest).map(ScriptCommand::Expect),
+        "ExpectNot" => pattern(rest).map(ScriptCommand::ExpectNot),
         "ExpectAt" => {
             let (at, text) = two(rest)?;
-            Ok(Command::ExpectAt(place(at)?, quoted(text)?))
+            Ok(ScriptCommand::ExpectAt(place(at)?, quoted(text)?))
         }
         "ExpectStyle" => {
             let (at, name) = two(rest)?;
@@ -176,7 +176,7 @@ fn command(line: &str) -> Result<Command, String> {
                 .find(|(style, _)| *style == name)
                 .map(|(_, letter)| *letter);
             let names = STYLES.map(|(style, _)| style).join(", ");
-            Ok(Command::ExpectStyle(
+            Ok(ScriptCommand::ExpectStyle(
                 place(at)?,
                 letter.ok_or_else(|| {
                     let name = shortened(name);
@@ -184,14 +184,14 @@ fn command(line: &str) -> Result<Command, String> {
                 })?,
             ))
         }
-        "Signal" if SIGNALS.contains(&rest) => Ok(Command::Signal(rest.to_owned())),
+        "Signal" if SIGNALS.contains(&rest) => Ok(ScriptCommand::Signal(rest.to_owned())),
         "Signal" => Err(format!(
             "signal {:?} is unknown, expected one of {}",
             shortened(rest),
             SIGNALS.join(", ")
         )),
-        "Wait" => nothing(Command::Wait),
-        "Quit" => nothing(Command::Quit),
+        "Wait" => nothing(ScriptCommand::Wait),
+        "Quit" => nothing(ScriptCommand::Quit),
         _ => Err(format!(
             "{:?} is unknown, expected one of Size, Set, Resize, Keys, Type, Paste, Click, Drag, Scroll, Screen, \
              State, Expect, ExpectNot, ExpectAt, ExpectStyle, Signal, Wait, Quit",
@@ -225,11 +225,11 @@ pub(crate) fn size(text: &str) -> Result<(u16, u16), String> {
         })
 }
 
-fn place(text: &str) -> Result<Place, String> {
+fn place(text: &str) -> Result<ScreenPosition, String> {
     let numbers = text
         .split_once(',')
         .and_then(|(column, row)| Some((column.parse().ok()?, row.parse().ok()?)));
-    let numbers = numbers.filter(|(column, row): &Place| *column < 1000 && *row < 1000);
+    let numbers = numbers.filter(|(column, row): &ScreenPosition| *column < 1000 && *row < 1000);
     numbers.ok_or_else(|| format!("expected column,row like 12,5, found {:?}", shortened(text)))
 }
 

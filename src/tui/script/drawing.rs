@@ -24,7 +24,7 @@ const MARGIN: u32 = 12;
 
 /// How a run of characters looks.
 #[derive(Clone, Copy, PartialEq, Eq)]
-struct Look {
+struct TextStyle {
     ink: [u8; 3],
     paper: [u8; 3],
     bold: bool,
@@ -54,7 +54,7 @@ pub(in crate::tui) fn svg(buffer: &Buffer, theme: Theme, title: &str) -> String 
          font-family=\"'DejaVu Sans Mono', 'Noto Sans Mono', Menlo, Consolas, monospace\">\n"
     );
     for row in 0..area.height {
-        let mut runs: Vec<(u16, Look, Vec<&str>)> = Vec::new();
+        let mut runs: Vec<(u16, TextStyle, Vec<&str>)> = Vec::new();
         let mut covered = 0;
         for column in 0..area.width {
             let cell = &buffer[(area.x + column, area.y + row)];
@@ -67,7 +67,7 @@ pub(in crate::tui) fn svg(buffer: &Buffer, theme: Theme, title: &str) -> String 
                 continue;
             }
             covered = write::width(cell.symbol()).saturating_sub(1);
-            let look = Look::of(cell, ink, paper);
+            let look = TextStyle::of(cell, ink, paper);
             match runs.last_mut() {
                 Some((_, last, symbols)) if *last == look => symbols.push(cell.symbol()),
                 _ => runs.push((column, look, vec![cell.symbol()])),
@@ -80,7 +80,7 @@ pub(in crate::tui) fn svg(buffer: &Buffer, theme: Theme, title: &str) -> String 
     svg + "</g>\n</svg>\n"
 }
 
-impl Look {
+impl TextStyle {
     fn of(cell: &ratatui::buffer::Cell, ink: [u8; 3], paper: [u8; 3]) -> Self {
         let color = |color: Color, other: [u8; 3]| match color {
             Color::Rgb(red, green, blue) => [red, green, blue],
@@ -103,7 +103,7 @@ impl Look {
 }
 
 /// The paper where it differs, the blocks, then the text.
-fn draw(svg: &mut String, (column, row): (u16, u16), look: Look, paper: [u8; 3], symbols: &[&str]) {
+fn draw(svg: &mut String, (column, row): (u16, u16), look: TextStyle, paper: [u8; 3], symbols: &[&str]) {
     let (x, y) = (u32::from(column) * WIDTH, u32::from(row) * HEIGHT);
     let count = u32::try_from(symbols.len()).unwrap_or(u32::MAX);
     if look.paper != paper {

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::tui::app::message::{Mouse, MouseKind};
-use crate::tui::script::setting::Setting;
+use crate::tui::script::setting::ScriptSetting;
 use crate::tui::terminal::Outcome;
 use crate::tui::terminal::input::Input;
 
@@ -20,7 +20,7 @@ pub struct Recorder {
 
 impl Recorder {
     /// A record that begins with how the program was started and what it found.
-    pub fn new(start: &[Setting]) -> Self {
+    pub fn new(start: &[ScriptSetting]) -> Self {
         let lines = start.iter().map(|setting| format!("{setting}\n"));
         Self {
             head: lines.collect(),
@@ -39,7 +39,7 @@ impl Recorder {
         match input {
             Input::Size(columns, rows) if !self.sized => {
                 self.sized = true;
-                lines += &format!("{}\n", Setting::Size(*columns, *rows));
+                lines += &format!("{}\n", ScriptSetting::Size(*columns, *rows));
             }
             Input::Size(columns, rows) => lines += &format!("Resize {columns}x{rows}\n"),
             Input::Key(key) => lines += &format!("Keys {key}\n"),
@@ -125,7 +125,7 @@ mod tests {
             mouse(MouseKind::Release, 6, 6),
             Input::Size(60, 20),
         ];
-        let mut recorder = Recorder::new(&[Setting::Ascii(true)]);
+        let mut recorder = Recorder::new(&[ScriptSetting::Ascii(true)]);
         let script: String = inputs.iter().map(|input| recorder.lines(input)).collect();
         let script = script + &recorder.end(Outcome::Signal(15));
         let expected = "Set ascii on\nSize 80x24\nKeys <Space>\nKeys <lt>\nKeys #\nKeys <U+3000>\nKeys <S-Left>\n\

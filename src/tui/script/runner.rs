@@ -12,14 +12,14 @@ use crate::tui::app::state::{App, Options};
 use crate::tui::keys::key::Key;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::runtime::perform::World;
-use crate::tui::script::command::{Command, Place, ScriptError, read};
+use crate::tui::script::command::{ScriptCommand, ScreenPosition, ScriptError, read};
 use crate::tui::script::session::Session;
-use crate::tui::script::setting::Setting;
+use crate::tui::script::setting::ScriptSetting;
 use crate::tui::widget::write;
 
 /// How a script is run.
 #[derive(Clone, Debug)]
-pub struct Settings {
+pub struct ScriptOptions {
     /// How the program starts.
     pub options: Options,
     /// Columns and rows of the screen, unless the script says otherwise.
@@ -35,7 +35,7 @@ pub struct Settings {
 /// How a script came to its end before the last line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-pub enum Failure {
+pub enum ScriptFailure {
     /// An expectation does not hold. The screen is in the message.
     #[error("line {line}: {message}\n{screen}")]
     Expectation {
@@ -72,20 +72,20 @@ pub enum Failure {
 pub fn run(
     script: &str,
     keys: &[Key],
-    settings: &Settings,
+    settings: &ScriptOptions,
     world: World,
     mut print: impl FnMut(&str) -> ControlFlow<()>,
-) -> Result<(), Failure> {
+) -> Result<(), ScriptFailure> {
     run_shown(script, keys, settings, world, &mut |shown| match shown {
-        Shown::Text(text) => print(text),
-        Shown::Screen(..) => ControlFlow::Continue(()),
+        ScriptOutput::Text(text) => print(text),
+        ScriptOutput::Screen(..) => ControlFlow::Continue(()),
     })
 }
 
 /// What a script shows.
 #[derive(Debug)]
 #[non_exhaustive]
-pub enum Shown<'a> {
+pub enum ScriptOutput<'a> {
     /// Text to print.
     Text(&'a str),
     /// The screen that is printed next, and its name, which may be empty.
@@ -99,46 +99,46 @@ pub enum Shown<'a> {
 pub fn run_shown(
     script: &str,
     keys: &[Key],
-    settings: &Settings,
+    settings: &ScriptOptions,
     world: World,
-    show: &mut impl FnMut(Shown<'_>) -> ControlFlow<()>,
-) -> Result<(), Failure> {
+    show: &mut impl FnMut(ScriptOutput<'_>) -> ControlFlow<()>,
+) -> Result<(), ScriptFailure> {
     let commands = read(script)?;
     let (mut settings, mut world) = (settings.clone(), world);
     // What describes the start comes before it.
     let start = commands.iter().map_while(|(line, command)| match command {
-        Command::Set(setting) => Some((*line, setting)),
+        ScriptCommand::Set(setting) => Some((*line, setting)),
         _ => None,
     });
     let (mut shapes, mut leftovers) = (Vec::new(), Vec::new());
     for (line, setting) in start.clone() {
         let options = &mut settings.options;
         match setting {
-            Setting::Size(columns, rows) => settings.size = (*columns, *rows),
-            Setting::Ascii(ascii) => options.theme.ascii = *ascii,
-            Setting::Color(depth) => options.theme.depth = *depth,
-            Setting::Theme(palette) => options.theme.palette = *palette,
-            Setting::Mouse(on) => options.mouse = *on,
-            Setting::Sensor(parameter, value) => {
+            ScriptSetting::Size(columns, rows) => settings.size = (*columns, *rows),
+            ScriptSetting::Ascii(ascii) => options.theme.ascii = *ascii,
+            ScriptSetting::Color(depth) => options.theme.depth = *depth,
+            ScriptSetting::Theme(palette) => options.theme.palette = *palette,
+            ScriptSetting::Mouse(on) => options.mouse = *on,
+            ScriptSetting::Sensor(parameter, value) => {
                 let sensor = options.sensor.with(*parameter, *value);
                 options.sensor = sensor.map_err(|error| wrong(line, error.to_string()))?;
             }
-            Setting::Library(folder) => world = World::quiet(Library::open(folder.clone())),
-            Setting::Shape(shape) => shapes.push(shape.as_ref().clone()),
-            Setting::Leftover(shape) => leftovers.push(shape.as_ref().clone()),
+            ScriptSetting::Library(folder) => world = World::quiet(Library::open(folder.clone())),
+            ScriptSetting::Shape(shape) => shapes.push(shape.as_ref().clone()),
+            ScriptSetting::Leftover(shape) => leftovers.push(shape.as_ref().clone()),
         }
     }
     if !shapes.is_empty() || !leftovers.is_empty() {
         let library = start
             .clone()
-            .find(|(_, setting)| matches!(setting, Setting::Library(_)));
+            .find(|(_, setting)| matches!(setting, ScriptSetting::Library(_)));
         if let Some((line, _)) = library {
             return Err(wrong(
                 line,
                 "Set library cannot stand beside Set shape or Set leftover".to_owned(),
             ));
         }
-        world = World::furnished(&shapes, &leftovers).map_err(Failure::World)?;
+        world = World::furnished(&shapes, &leftovers).map_err(ScriptFailure::World)?;
     }
     let rest = &commands[start.count()..];
     let app = App::new(&settings.options).with_keymap(settings.keymap.clone());
@@ -158,26 +158,26 @@ pub fn run_shown(
 }
 
 /// Does a command that changes the program.
-fn act(session: &mut Session, line: usize, command: &Command) -> Result<(), Failure> {
+fn act(session: &mut Session, line: usize, command: &ScriptCommand) -> Result<(), ScriptFailure> {
     if session.app().ended() {
-        return Err(Failure::Ended { line });
+        return Err(ScriptFailure::Ended { line });
     }
     match command {
-        Command::Resize(columns, rows) => session.resize(*columns, *rows),
-        Command::Keys(keys) => {
+        ScriptCommand::Resize(columns, rows) => session.resize(*columns, *rows),
+        ScriptCommand::Keys(keys) => {
             for &key in keys {
                 if session.app().ended() {
-                    return Err(Failure::Ended { line });
+                    return Err(ScriptFailure::Ended { line });
                 }
                 session.press(key);
             }
         }
-        Command::Type(text) => text
+        ScriptCommand::Type(text) => text
             .chars()
             .for_each(|character| session.press(Key::Char(character))),
-        Command::Paste(text) => session.send(Message::Paste(text.clone())),
-        Command::Click(place) => click(session, *place),
-        Command::ClickText(text) => {
+        ScriptCommand::Paste(text) => session.send(Message::Paste(text.clone())),
+        ScriptCommand::Click(place) => click(session, *place),
+        ScriptCommand::ClickText(text) => {
             let place = find(&session.screen(), text);
             click(
                 session,
@@ -187,7 +187,7 @@ fn act(session: &mut Session, line: usize, command: &Command) -> Result<(), Fail
                 })?,
             );
         }
-        Command::Drag(places) => {
+        ScriptCommand::Drag(places) => {
             for (index, &place) in places.iter().enumerate() {
                 let kind = if index == 0 {
                     MouseKind::Press
@@ -200,7 +200,7 @@ fn act(session: &mut Session, line: usize, command: &Command) -> Result<(), Fail
                 mouse(session, MouseKind::Release, last);
             }
         }
-        Command::Scroll(place, turns) => {
+        ScriptCommand::Scroll(place, turns) => {
             let kind = if *turns < 0 {
                 MouseKind::ScrollUp
             } else {
@@ -208,9 +208,9 @@ fn act(session: &mut Session, line: usize, command: &Command) -> Result<(), Fail
             };
             (0..turns.unsigned_abs()).for_each(|_| mouse(session, kind, *place));
         }
-        Command::Signal(name) if name == "TSTP" => session.send(Message::Redraw),
+        ScriptCommand::Signal(name) if name == "TSTP" => session.send(Message::Redraw),
         // What is not saved is in the journal already; the program ends without a question.
-        Command::Signal(_) => session.send(Message::Terminate),
+        ScriptCommand::Signal(_) => session.send(Message::Terminate),
         _ => {
             let message = "Size and Set come before all that needs a screen";
             return Err(wrong(line, message.to_owned()));
@@ -223,22 +223,22 @@ fn act(session: &mut Session, line: usize, command: &Command) -> Result<(), Fail
 fn look(
     session: &Session,
     line: usize,
-    command: &Command,
-    settings: &Settings,
-    show: &mut impl FnMut(Shown<'_>) -> ControlFlow<()>,
-) -> Result<bool, Failure> {
+    command: &ScriptCommand,
+    settings: &ScriptOptions,
+    show: &mut impl FnMut(ScriptOutput<'_>) -> ControlFlow<()>,
+) -> Result<bool, ScriptFailure> {
     let fails = |message: String| Err(fails(session, line, message));
-    let looks = !matches!(command, Command::Quit | Command::Wait);
+    let looks = !matches!(command, ScriptCommand::Quit | ScriptCommand::Wait);
     if looks && session.app().ended() {
-        return Err(Failure::Ended { line });
+        return Err(ScriptFailure::Ended { line });
     }
     match command {
-        Command::Screen(name) => show_screen(session, name, settings, show)?,
-        Command::State(pointer) => match state(session).pointer(pointer) {
-            Some(part) => printed(show(Shown::Text(&format!("{part}\n"))))?,
+        ScriptCommand::Screen(name) => show_screen(session, name, settings, show)?,
+        ScriptCommand::State(pointer) => match state(session).pointer(pointer) {
+            Some(part) => printed(show(ScriptOutput::Text(&format!("{part}\n"))))?,
             None => return fails(format!("the state has no {:?}", shortened(pointer))),
         },
-        Command::Expect(pattern) => {
+        ScriptCommand::Expect(pattern) => {
             if !pattern.is_match(&session.screen()) {
                 return fails(format!(
                     "no /{}/ on the screen",
@@ -246,7 +246,7 @@ fn look(
                 ));
             }
         }
-        Command::ExpectNot(pattern) => {
+        ScriptCommand::ExpectNot(pattern) => {
             if pattern.is_match(&session.screen()) {
                 return fails(format!(
                     "/{}/ is on the screen",
@@ -254,7 +254,7 @@ fn look(
                 ));
             }
         }
-        Command::ExpectAt((column, row), text) => {
+        ScriptCommand::ExpectAt((column, row), text) => {
             let shown = session.screen();
             let line = line_of(&shown, *row);
             let rest = line.chars().skip(character_at(line, *column));
@@ -267,7 +267,7 @@ fn look(
                 ));
             }
         }
-        Command::ExpectStyle((column, row), letter) => {
+        ScriptCommand::ExpectStyle((column, row), letter) => {
             let index = character_at(line_of(&session.screen(), *row), *column);
             let found = line_of(&session.styles(), *row).chars().nth(index);
             if found != Some(*letter) {
@@ -275,10 +275,10 @@ fn look(
                 return fails(format!("at {column},{row} is {found}, expected {letter}"));
             }
         }
-        Command::Quit if !session.app().ended() => {
+        ScriptCommand::Quit if !session.app().ended() => {
             return fails("the program has not ended".to_owned());
         }
-        Command::Quit | Command::Wait => {}
+        ScriptCommand::Quit | ScriptCommand::Wait => {}
         _ => return Ok(false),
     }
     Ok(true)
@@ -287,48 +287,48 @@ fn look(
 fn show_screen(
     session: &Session,
     name: &str,
-    settings: &Settings,
-    show: &mut impl FnMut(Shown<'_>) -> ControlFlow<()>,
-) -> Result<(), Failure> {
-    printed(show(Shown::Screen(name, session)))?;
-    printed(show(Shown::Text(&screen(session, name, settings))))
+    settings: &ScriptOptions,
+    show: &mut impl FnMut(ScriptOutput<'_>) -> ControlFlow<()>,
+) -> Result<(), ScriptFailure> {
+    printed(show(ScriptOutput::Screen(name, session)))?;
+    printed(show(ScriptOutput::Text(&screen(session, name, settings))))
 }
 
-fn printed(flow: ControlFlow<()>) -> Result<(), Failure> {
+fn printed(flow: ControlFlow<()>) -> Result<(), ScriptFailure> {
     match flow {
         ControlFlow::Continue(()) => Ok(()),
-        ControlFlow::Break(()) => Err(Failure::Stopped),
+        ControlFlow::Break(()) => Err(ScriptFailure::Stopped),
     }
 }
 
-fn wrong(line: usize, message: String) -> Failure {
+fn wrong(line: usize, message: String) -> ScriptFailure {
     ScriptError { line, message }.into()
 }
 
-fn fails(session: &Session, line: usize, message: String) -> Failure {
+fn fails(session: &Session, line: usize, message: String) -> ScriptFailure {
     let screen = session
         .screen()
         .lines()
         .map(|row| format!("  | {row}\n"))
         .collect();
-    Failure::Expectation {
+    ScriptFailure::Expectation {
         line,
         message,
         screen,
     }
 }
 
-fn mouse(session: &mut Session, kind: MouseKind, (column, row): Place) {
+fn mouse(session: &mut Session, kind: MouseKind, (column, row): ScreenPosition) {
     session.send(Message::Mouse(Mouse { kind, column, row }));
 }
 
-fn click(session: &mut Session, place: Place) {
+fn click(session: &mut Session, place: ScreenPosition) {
     mouse(session, MouseKind::Press, place);
     mouse(session, MouseKind::Release, place);
 }
 
 /// Where a text stands first.
-fn find(screen: &str, text: &str) -> Option<Place> {
+fn find(screen: &str, text: &str) -> Option<ScreenPosition> {
     screen.lines().enumerate().find_map(|(row, line)| {
         let column = write::width(&line[..line.find(text)?]);
         Some((u16::try_from(column).ok()?, u16::try_from(row).ok()?))
@@ -350,7 +350,7 @@ fn line_of(grid: &str, row: u16) -> &str {
 }
 
 /// The screen under its header, and its styles if they are asked for.
-fn screen(session: &Session, name: &str, settings: &Settings) -> String {
+fn screen(session: &Session, name: &str, settings: &ScriptOptions) -> String {
     let (columns, rows) = session.size();
     let cursor = session.cursor();
     if settings.json {

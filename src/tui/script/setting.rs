@@ -21,7 +21,7 @@ use crate::tui::widget::theme::{ColorDepth, Palette};
 
 /// One line of it.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Setting {
+pub enum ScriptSetting {
     /// A screen of so many columns and rows.
     Size(u16, u16),
     /// ASCII characters only, or not.
@@ -48,24 +48,24 @@ const SWITCH: [(&str, bool); 2] = [("on", true), ("off", false)];
 ///
 /// # Errors
 /// What is wrong with it, and what was expected.
-pub fn read(text: &str) -> Result<Setting, String> {
+pub fn read(text: &str) -> Result<ScriptSetting, String> {
     let (name, value) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
     let value = value.trim();
     match name {
-        "ascii" => chosen(name, value, &SWITCH).map(Setting::Ascii),
-        "color" => chosen(name, value, &ColorDepth::NAMES).map(Setting::Color),
-        "theme" => chosen(name, value, &Palette::NAMES).map(Setting::Theme),
-        "mouse" => chosen(name, value, &SWITCH).map(Setting::Mouse),
+        "ascii" => chosen(name, value, &SWITCH).map(ScriptSetting::Ascii),
+        "color" => chosen(name, value, &ColorDepth::NAMES).map(ScriptSetting::Color),
+        "theme" => chosen(name, value, &Palette::NAMES).map(ScriptSetting::Theme),
+        "mouse" => chosen(name, value, &SWITCH).map(ScriptSetting::Mouse),
         "library" => serde_json::from_str::<PathBuf>(value)
-            .map(Setting::Library)
+            .map(ScriptSetting::Library)
             .map_err(|_| {
                 format!(
                     "expected a folder in double quotes, found {}",
                     shortened(value)
                 )
             }),
-        "shape" => shape(name, value).map(Setting::Shape),
-        "leftover" => shape(name, value).map(Setting::Leftover),
+        "shape" => shape(name, value).map(ScriptSetting::Shape),
+        "leftover" => shape(name, value).map(ScriptSetting::Leftover),
         _ => match Parameter::from_flag(name).filter(|own| SENSOR_PARAMETERS.contains(own)) {
             Some(parameter) => number(parameter, value).map_err(|error| error.to_string()),
             None => Err(format!(
@@ -89,9 +89,9 @@ fn chosen<T: Copy>(name: &str, value: &str, choices: &[(&str, T)]) -> Result<T, 
     })
 }
 
-fn number(parameter: Parameter, value: &str) -> Result<Setting, ParameterError> {
+fn number(parameter: Parameter, value: &str) -> Result<ScriptSetting, ParameterError> {
     let value = parameter.read(value, MAX_SIDE)?;
-    Ok(Setting::Sensor(parameter, value))
+    Ok(ScriptSetting::Sensor(parameter, value))
 }
 
 fn shape(name: &str, value: &str) -> Result<Box<StoredShape>, String> {
@@ -100,7 +100,7 @@ fn shape(name: &str, value: &str) -> Result<Box<StoredShape>, String> {
         .map_err(|error| format!("Set {name}: {error}"))
 }
 
-impl fmt::Display for Setting {
+impl fmt::Display for ScriptSetting {
     /// The line of a script.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -131,15 +131,15 @@ fn in_a_line(shape: &StoredShape) -> String {
 }
 
 /// The lines that tell how the program was started: how it looks and its sensor.
-pub fn of_options(options: &Options) -> Vec<Setting> {
+pub fn of_options(options: &Options) -> Vec<ScriptSetting> {
     let (theme, sensor) = (options.theme, options.sensor);
     let look = [
-        Setting::Ascii(theme.ascii),
-        Setting::Color(theme.depth),
-        Setting::Theme(theme.palette),
-        Setting::Mouse(options.mouse),
+        ScriptSetting::Ascii(theme.ascii),
+        ScriptSetting::Color(theme.depth),
+        ScriptSetting::Theme(theme.palette),
+        ScriptSetting::Mouse(options.mouse),
     ];
-    let value = |parameter| Some(Setting::Sensor(parameter, sensor.get(parameter)?));
+    let value = |parameter| Some(ScriptSetting::Sensor(parameter, sensor.get(parameter)?));
     let values = SENSOR_PARAMETERS.into_iter().filter_map(value);
     look.into_iter().chain(values).collect()
 }
@@ -166,10 +166,10 @@ mod tests {
         };
         let mut settings = of_options(&options);
         settings.extend([
-            Setting::Library("a \"b\"/c".into()),
-            Setting::Sensor(Parameter::Threshold, 0.1),
-            Setting::Shape(shape.clone()),
-            Setting::Leftover(shape),
+            ScriptSetting::Library("a \"b\"/c".into()),
+            ScriptSetting::Sensor(Parameter::Threshold, 0.1),
+            ScriptSetting::Shape(shape.clone()),
+            ScriptSetting::Leftover(shape),
         ]);
         for setting in settings {
             let line = setting.to_string();

@@ -26,7 +26,7 @@ pub(in crate::tui) struct Device {
 
 /// What became of a write.
 #[derive(Debug, PartialEq, Eq)]
-pub(in crate::tui) enum Written {
+pub(in crate::tui) enum WriteOutcome {
     /// All is out.
     All,
     /// Something else wants attention, and an unknown part is out.
@@ -79,7 +79,7 @@ impl Device {
         &self,
         bytes: &[u8],
         attention: BorrowedFd<'_>,
-    ) -> io::Result<Written> {
+    ) -> io::Result<WriteOutcome> {
         let wait = || {
             let mut fds = [
                 PollFd::new(&self.output, PollFlags::OUT),
@@ -94,7 +94,7 @@ impl Device {
     }
 
     /// The same for last words, which a terminal that takes nothing does not get.
-    pub(in crate::tui) fn write_last(&self, bytes: &[u8]) -> io::Result<Written> {
+    pub(in crate::tui) fn write_last(&self, bytes: &[u8]) -> io::Result<WriteOutcome> {
         let wait = || {
             let mut fds = [PollFd::new(&self.output, PollFlags::OUT)];
             poll(&mut fds, Some(&LAST_WRITE)).map(|ready| ready > 0)
@@ -106,7 +106,7 @@ impl Device {
         &self,
         bytes: &[u8],
         wait: impl Fn() -> Result<bool, Errno>,
-    ) -> io::Result<Written> {
+    ) -> io::Result<WriteOutcome> {
         let mut rest = bytes;
         while !rest.is_empty() {
             match write(&self.output, rest) {
@@ -114,13 +114,13 @@ impl Device {
                 Err(Errno::INTR) => {}
                 Err(Errno::AGAIN) => {
                     if !wait()? {
-                        return Ok(Written::Interrupted);
+                        return Ok(WriteOutcome::Interrupted);
                     }
                 }
                 Err(error) => return Err(error.into()),
             }
         }
-        Ok(Written::All)
+        Ok(WriteOutcome::All)
     }
 
     /// Columns and rows; `fallback` for a side that the terminal does not know.

@@ -17,28 +17,28 @@ use crate::tui::keys::action;
 use crate::tui::runtime::effect::TerminalEffect;
 use crate::tui::runtime::mailbox::Mailbox;
 use crate::tui::runtime::perform::World;
-use crate::tui::terminal::device::{Device, Written};
-use crate::tui::terminal::input::{Input, Reader};
+use crate::tui::terminal::device::{Device, WriteOutcome};
+use crate::tui::terminal::input::{Input, InputReader};
 use crate::tui::terminal::outcome::Outcome;
 use crate::tui::terminal::screen::Screen;
-use crate::tui::terminal::settings::Settings;
-use crate::tui::terminal::signals::{Said, Signals};
+use crate::tui::terminal::settings::TerminalSettings;
+use crate::tui::terminal::signals::{SignalEvent, SignalReceiver};
 use crate::tui::terminal::{job, session};
 
 /// Runs the program until it ends, and leaves the terminal as it was.
 pub(in crate::tui) fn run(
     app: App,
     world: World,
-    settings: &Settings,
+    settings: &TerminalSettings,
     mailbox: Mailbox,
     watch: &mut dyn FnMut(&Input),
 ) -> io::Result<Outcome> {
     let device = Device::open()?;
-    let signals = Signals::new()?;
+    let signals = SignalReceiver::new()?;
     leave_on_panic();
-    let mut talk = Talk::new(watch, app, world, *settings, device, signals, mailbox);
+    let mut event_loop = EventLoop::new(watch, app, world, *settings, device, signals, mailbox);
     let ended = catch_unwind(AssertUnwindSafe(|| {
-        talk.run().or_else(|error| match error {
+        event_loop.run().or_else(|error| match error {
             // Whoever finds it out first: reading, writing, or taking the terminal anew.
             lost if is_lost(&lost) => Ok(Outcome::Hangup),
             error => Err(error),
@@ -46,8 +46,8 @@ pub(in crate::tui) fn run(
     }));
     if !matches!(ended, Ok(Ok(Outcome::Quit))) {
         // The end comes from outside: what is not saved stays in the journal.
-        let _ = talk.world.handle(&mut talk.app, Message::Terminate);
-        talk.world.secure();
+        let _ = event_loop.world.handle(&mut event_loop.app, Message::Terminate);
+        event_loop.world.secure();
     }
     let left = session::leave();
     match ended {
@@ -73,16 +73,16 @@ fn leave_on_panic() {
     }));
 }
 
-struct Talk<'a> {
+struct EventLoop<'a> {
     /// Is told of all that comes in.
     watch: &'a mut dyn FnMut(&Input),
     app: App,
     world: World,
-    settings: Settings,
+    settings: TerminalSettings,
     device: Device,
-    signals: Signals,
+    signals: SignalReceiver,
     mailbox: Mailbox,
-    reader: Reader,
+    reader: InputReader,
     screen: Terminal<Screen>,
     mouse: bool,
     outcome: Option<Outcome>,
@@ -103,14 +103,14 @@ struct Ready {
     gone: bool,
 }
 
-impl<'a> Talk<'a> {
+impl<'a> EventLoop<'a> {
     fn new(
         watch: &'a mut dyn FnMut(&Input),
         app: App,
         world: World,
-        settings: Settings,
+        settings: TerminalSettings,
         device: Device,
-        signals: Signals,
+        signals: SignalReceiver,
         mailbox: Mailbox,
     ) -> Self {
         let size = size(&device, &settings);
@@ -125,7 +125,7 @@ impl<'a> Talk<'a> {
             device,
             signals,
             mailbox,
-            reader: Reader::default(),
+            reader: InputReader::default(),
             screen,
             mouse: settings.mouse,
             outcome: None,
@@ -143,7 +143,7 @@ impl<'a> Talk<'a> {
             let ready = self.wait(self.reader.patience())?;
             // A signal before keys: who ends the program shall not have to wait for it to read what was typed.
             if ready.signals {
-                self.hear()?;
+                self.on_signals()?;
             }
             if ready.gone {
                 self.outcome.get_or_insert(Outcome::Hangup);
@@ -162,7 +162,7 @@ impl<'a> Talk<'a> {
     /// Sleeps until there is something to do, or for `patience`.
     fn wait(&self, patience: Option<Duration>) -> io::Result<Ready> {
         let timeout = patience.and_then(|patience| Timespec::try_from(patience).ok());
-        let watched = [self.device.input(), self.signals.ear(), self.mailbox.bell()];
+        let watched = [self.device.input(), self.signals.fd(), self.mailbox.fd()];
         let mut fds = watched.map(|fd| PollFd::from_borrowed_fd(fd, PollFlags::IN));
         match poll(&mut fds, timeout.as_ref()) {
             Ok(0) => {
@@ -187,16 +187,16 @@ impl<'a> Talk<'a> {
         })
     }
 
-    fn hear(&mut self) -> io::Result<()> {
-        for said in self.signals.heard() {
+    fn on_signals(&mut self) -> io::Result<()> {
+        for said in self.signals.received() {
             match said {
-                Said::End(signal) => {
+                SignalEvent::End(signal) => {
                     self.outcome.get_or_insert(Outcome::Signal(signal));
                     return Ok(());
                 }
-                Said::Stop => self.suspend()?,
-                Said::Continue => self.resume()?,
-                Said::Size => self.measure(),
+                SignalEvent::Stop => self.suspend()?,
+                SignalEvent::Continue => self.resume()?,
+                SignalEvent::Size => self.measure(),
             }
         }
         Ok(())
@@ -275,7 +275,7 @@ impl<'a> Talk<'a> {
     /// Writes something. Where it is cut off, by a signal while the terminal takes nothing, the next frame puts the screen
     /// right; its first character ends whatever was begun.
     fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        if self.device.write(bytes, self.signals.ear())? == Written::Interrupted {
+        if self.device.write(bytes, self.signals.fd())? == WriteOutcome::Interrupted {
             self.redraw();
         }
         Ok(())
@@ -321,26 +321,26 @@ impl<'a> Talk<'a> {
         self.world.secure();
         session::leave()?;
         // From here on a "continue" is the answer to this stop.
-        let before = self.signals.heard();
-        if let Some(&Said::End(signal)) = before.first() {
+        let before = self.signals.received();
+        if let Some(&SignalEvent::End(signal)) = before.first() {
             self.outcome.get_or_insert(Outcome::Signal(signal));
             return Ok(());
         }
         job::stop()?;
         while self.outcome.is_none() {
-            for said in self.signals.heard() {
+            for said in self.signals.received() {
                 match said {
-                    Said::End(signal) => {
+                    SignalEvent::End(signal) => {
                         self.outcome.get_or_insert(Outcome::Signal(signal));
                         return Ok(());
                     }
-                    Said::Continue => return self.resume(),
-                    Said::Stop | Said::Size => {}
+                    SignalEvent::Continue => return self.resume(),
+                    SignalEvent::Stop | SignalEvent::Size => {}
                 }
             }
             // Another thread may be the one that was stopped first.
             let mut fds = [
-                PollFd::from_borrowed_fd(self.signals.ear(), PollFlags::IN),
+                PollFd::from_borrowed_fd(self.signals.fd(), PollFlags::IN),
                 PollFd::from_borrowed_fd(self.device.input(), PollFlags::empty()),
             ];
             if poll(&mut fds, None).is_ok() && !fds[1].revents().is_empty() {
@@ -359,7 +359,7 @@ impl<'a> Talk<'a> {
     }
 }
 
-fn size(device: &Device, settings: &Settings) -> Size {
+fn size(device: &Device, settings: &TerminalSettings) -> Size {
     let (width, height) = settings
         .size
         .unwrap_or_else(|| device.size(settings.fallback));

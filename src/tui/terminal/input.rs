@@ -43,7 +43,7 @@ const PASTE_END: &[u8] = b"\x1b[201~";
 
 /// Where the reader is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum State {
+enum InputState {
     Ground,
     /// After ESC.
     Escape,
@@ -65,23 +65,23 @@ enum State {
 
 /// Reads bytes as they come.
 #[derive(Debug)]
-pub struct Reader {
-    state: State,
+pub struct InputReader {
+    state: InputState,
     held: Vec<u8>,
     found: Vec<Input>,
 }
 
-impl Default for Reader {
+impl Default for InputReader {
     fn default() -> Self {
         Self {
-            state: State::Ground,
+            state: InputState::Ground,
             held: Vec::new(),
             found: Vec::new(),
         }
     }
 }
 
-impl Reader {
+impl InputReader {
     /// What these bytes complete.
     pub fn read(&mut self, bytes: &[u8]) -> Vec<Input> {
         for &byte in bytes {
@@ -90,11 +90,11 @@ impl Reader {
         std::mem::take(&mut self.found)
     }
 
-    /// How long to wait for more before [`Reader::settle`]; none: for ever.
+    /// How long to wait for more before [`InputReader::settle`]; none: for ever.
     pub fn patience(&self) -> Option<Duration> {
         match self.state {
-            State::Escape | State::Answer => Some(MOMENT),
-            State::Paste => Some(PASTE_MOMENT),
+            InputState::Escape | InputState::Answer => Some(MOMENT),
+            InputState::Paste => Some(PASTE_MOMENT),
             _ => None,
         }
     }
@@ -102,8 +102,8 @@ impl Reader {
     /// Nothing more came in time.
     pub fn settle(&mut self) -> Vec<Input> {
         match self.state {
-            State::Escape => self.key(Key::Esc),
-            State::Paste => self.paste(self.held.len()),
+            InputState::Escape => self.key(Key::Esc),
+            InputState::Paste => self.paste(self.held.len()),
             _ => {}
         }
         self.ground();
@@ -115,16 +115,16 @@ impl Reader {
     }
 
     fn ground(&mut self) {
-        self.state = State::Ground;
+        self.state = InputState::Ground;
         self.held.clear();
     }
 
     fn step(&mut self, byte: u8) {
         match self.state {
-            State::Ground => self.plain(byte),
-            State::Escape => self.after_escape(byte),
-            State::Paste => self.in_paste(byte),
-            State::Answer => match (byte, self.held.pop()) {
+            InputState::Ground => self.plain(byte),
+            InputState::Escape => self.after_escape(byte),
+            InputState::Paste => self.in_paste(byte),
+            InputState::Answer => match (byte, self.held.pop()) {
                 (BEL, _) | (b'\\', Some(ESC)) => self.ground(),
                 (ESC, _) => self.held.push(ESC),
                 (_, Some(ESC)) => self.after_escape(byte),
@@ -134,9 +134,9 @@ impl Reader {
                 }
                 _ => {}
             },
-            State::OldMouse(left) => {
+            InputState::OldMouse(left) => {
                 self.held.push(byte);
-                self.state = State::OldMouse(left - 1);
+                self.state = InputState::OldMouse(left - 1);
                 if left == 1 {
                     let [button, x, y] = [0, 1, 2]
                         .map(|index| u16::from(self.held.get(index).copied().unwrap_or(0)));
@@ -150,14 +150,14 @@ impl Reader {
                     self.ground();
                 }
             }
-            State::Character(left) => {
+            InputState::Character(left) => {
                 if byte & 0xc0 != 0x80 {
                     // Broken off: what comes now is a new beginning.
                     self.ground();
                     return self.plain(byte);
                 }
                 self.held.push(byte);
-                self.state = State::Character(left - 1);
+                self.state = InputState::Character(left - 1);
                 if left == 1 {
                     let character = std::str::from_utf8(&self.held)
                         .ok()
@@ -174,13 +174,13 @@ impl Reader {
                 self.ground();
                 self.plain(byte);
             }
-            State::Function => {
+            InputState::Function => {
                 self.ground();
                 if byte == b'A' {
                     self.key(Key::F1);
                 }
             }
-            State::Single => {
+            InputState::Single => {
                 self.ground();
                 if byte == b'M' {
                     self.key(Key::Enter);
@@ -188,14 +188,14 @@ impl Reader {
                     self.letter(byte, false);
                 }
             }
-            State::Sequence => match byte {
-                b'[' if self.held.is_empty() => self.state = State::Function,
+            InputState::Sequence => match byte {
+                b'[' if self.held.is_empty() => self.state = InputState::Function,
                 // Shift-arrows of rxvt.
                 b'a'..=b'd' if self.held.is_empty() => {
                     self.ground();
                     self.letter(byte.to_ascii_uppercase(), true);
                 }
-                b'M' if self.held.is_empty() => self.state = State::OldMouse(3),
+                b'M' if self.held.is_empty() => self.state = InputState::OldMouse(3),
                 0x40..=0x7e => {
                     let held = std::mem::take(&mut self.held);
                     self.ground();
@@ -209,7 +209,7 @@ impl Reader {
 
     fn plain(&mut self, byte: u8) {
         match byte {
-            ESC => self.state = State::Escape,
+            ESC => self.state = InputState::Escape,
             b'\r' | b'\n' => self.key(Key::Enter),
             b'\t' => self.key(Key::Tab),
             // Serial terminals send Ctrl-H for the key that others send DEL for.
@@ -218,7 +218,7 @@ impl Reader {
             b' '..=b'~' => self.key(Key::Char(char::from(byte))),
             0xc2..=0xf4 => {
                 self.held.push(byte);
-                self.state = State::Character(match byte {
+                self.state = InputState::Character(match byte {
                     0xc2..=0xdf => 1,
                     0xe0..=0xef => 2,
                     _ => 3,
@@ -231,11 +231,11 @@ impl Reader {
     fn after_escape(&mut self, byte: u8) {
         self.ground();
         match byte {
-            b'[' => self.state = State::Sequence,
-            b'O' => self.state = State::Single,
-            b']' | b'P' | b'_' | b'^' => self.state = State::Answer,
+            b'[' => self.state = InputState::Sequence,
+            b'O' => self.state = InputState::Single,
+            b']' | b'P' | b'_' | b'^' => self.state = InputState::Answer,
             // Alt-Esc; or Alt with a key that is a sequence itself, where the second ESC begins it.
-            ESC => self.state = State::Escape,
+            ESC => self.state = InputState::Escape,
             _ => {
                 self.key(Key::Esc);
                 self.plain(byte);
@@ -269,7 +269,7 @@ impl Reader {
                 5 => self.key(Key::PageUp),
                 6 => self.key(Key::PageDown),
                 11 => self.key(Key::F1),
-                200 => self.state = State::Paste,
+                200 => self.state = InputState::Paste,
                 _ => {}
             },
             b'Z' => self.key(Key::BackTab),

@@ -45,7 +45,7 @@ use std::io;
 use std::sync::Arc;
 
 pub use outcome::Outcome;
-pub use settings::Settings;
+pub use settings::TerminalSettings;
 
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
@@ -60,7 +60,7 @@ use input::Input;
 pub fn run(
     app: App,
     world: World,
-    settings: &Settings,
+    settings: &TerminalSettings,
     watch: &mut dyn FnMut(&Input),
 ) -> io::Result<Outcome> {
     let (sender, mailbox) = mailbox::new()?;

@@ -5,13 +5,13 @@ use ratatui::style::{Color, Modifier};
 
 /// How characters are written: colours and attributes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::tui) struct Pen {
+pub(in crate::tui) struct CellStyle {
     pub(in crate::tui) fore: Color,
     pub(in crate::tui) back: Color,
     pub(in crate::tui) attributes: Modifier,
 }
 
-pub(in crate::tui) const PLAIN: Pen = Pen {
+pub(in crate::tui) const PLAIN: CellStyle = CellStyle {
     fore: Color::Reset,
     back: Color::Reset,
     attributes: Modifier::empty(),
@@ -29,7 +29,7 @@ const ATTRIBUTES: [(Modifier, u8, u8); 7] = [
     (Modifier::CROSSED_OUT, 9, 29),
 ];
 
-impl Pen {
+impl CellStyle {
     pub(in crate::tui) fn of(cell: &Cell) -> Self {
         Self {
             fore: cell.fg,
@@ -137,12 +137,12 @@ mod tests {
 
     #[test]
     fn styles_are_told_by_their_difference() {
-        let pen = |attributes, fore| Pen {
+        let pen = |attributes, fore| CellStyle {
             fore,
             back: Color::Reset,
             attributes,
         };
-        let change = |from: Pen, to: Pen| {
+        let change = |from: CellStyle, to: CellStyle| {
             let mut out = Vec::new();
             to.change(from, &mut out);
             String::from_utf8(out).expect("text")

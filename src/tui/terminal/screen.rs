@@ -9,7 +9,7 @@ use ratatui::backend::{Backend, ClearType, WindowSize};
 use ratatui::buffer::Cell;
 use ratatui::layout::{Position, Size};
 
-use crate::tui::terminal::pen::{PLAIN, Pen};
+use crate::tui::terminal::pen::{PLAIN, CellStyle};
 use crate::tui::terminal::settings::Abilities;
 use crate::tui::terminal::writer::{Run, Writer, columns, is_narrow};
 
@@ -36,7 +36,7 @@ pub struct Screen {
     /// Where the terminal's cursor is; none where that is not certain. A column beyond the last one stands for the
     /// last one after a character was written there.
     at: Option<Position>,
-    pen: Pen,
+    pen: CellStyle,
     /// Whether the terminal shows its cursor.
     visible: bool,
     /// Where the cursor shall be seen.

@@ -11,7 +11,7 @@ use rustix::io::Errno;
 use rustix::termios::{OptionalActions, QueueSelector, Termios, tcflush, tcgetattr, tcsetattr};
 
 use crate::tui::terminal::device::Device;
-use crate::tui::terminal::settings::Settings;
+use crate::tui::terminal::settings::TerminalSettings;
 
 /// Buttons only, places as numbers. Crossterm's own command also has every motion reported, a flood on a slow line.
 const MOUSE_ON: &str = "\x1b[?1000h\x1b[?1006h";
@@ -27,28 +27,28 @@ const BELOW: &str = "\x1b[999;1H\r\n";
 
 /// What has to be put back.
 #[derive(Debug)]
-struct Found {
+struct SavedTerminal {
     device: Device,
     attributes: Termios,
-    settings: Settings,
+    settings: TerminalSettings,
     mouse: bool,
     /// What is to be said on standard error when the terminal is the shell's again.
     later: String,
 }
 
-static FOUND: Mutex<Option<Found>> = Mutex::new(None);
+static SAVED: Mutex<Option<SavedTerminal>> = Mutex::new(None);
 
-fn found() -> MutexGuard<'static, Option<Found>> {
-    FOUND.lock().unwrap_or_else(PoisonError::into_inner)
+fn found() -> MutexGuard<'static, Option<SavedTerminal>> {
+    SAVED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Into raw mode, onto the second screen, the mouse as asked for. Inside already, all of it is said again: somebody
 /// may have changed it while the program was stopped.
-pub(in crate::tui) fn enter(device: &Device, settings: &Settings, mouse: bool) -> io::Result<()> {
+pub(in crate::tui) fn enter(device: &Device, settings: &TerminalSettings, mouse: bool) -> io::Result<()> {
     let mut held = found();
     if held.is_none() {
         // Before anything is changed, so that all is put right where the change fails half-way.
-        *held = Some(Found {
+        *held = Some(SavedTerminal {
             device: device.try_clone()?,
             attributes: tcgetattr(device.input())?,
             settings: *settings,

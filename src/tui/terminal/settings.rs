@@ -9,7 +9,7 @@ use crate::tui::widget::theme::{ColorDepth, Palette, Theme};
 
 /// Kinds of terminals, from the poorest on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum TerminalKind {
     /// Moves its cursor and clears its screen; no styles, no characters but ASCII.
     Dumb,
     /// A video terminal, or a program that is one at the end of a serial line.
@@ -20,7 +20,7 @@ pub enum Kind {
     Window,
 }
 
-impl Kind {
+impl TerminalKind {
     fn of(term: &str) -> Self {
         let begins = |starts: &[&str]| starts.iter().any(|start| term.starts_with(start));
         match term {
@@ -72,9 +72,9 @@ pub struct Abilities {
 
 /// What the terminal is sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Settings {
+pub struct TerminalSettings {
     /// What it is.
-    pub kind: Kind,
+    pub kind: TerminalKind,
     /// Columns and rows, whatever the terminal says.
     pub size: Option<(u16, u16)>,
     /// Columns and rows where the terminal does not know them, as serial lines do not.
@@ -91,7 +91,7 @@ pub struct Settings {
     pub abilities: Abilities,
 }
 
-impl Settings {
+impl TerminalSettings {
     /// Decides from the variables of the environment and from the command line, which wins.
     pub fn from_environment(
         variable: impl Fn(&'static str) -> Option<OsString>,
@@ -103,13 +103,13 @@ impl Settings {
                 .unwrap_or_default()
         };
         let term = text("TERM");
-        let kind = Kind::of(&term);
+        let kind = TerminalKind::of(&term);
         let no_color = variable("NO_COLOR").is_some_and(|value| !value.is_empty());
         let color = flags.color.unwrap_or_else(|| match kind {
             _ if no_color => ColorDepth::Never,
-            Kind::Dumb | Kind::Serial => ColorDepth::Never,
-            Kind::Console => ColorDepth::Sixteen,
-            Kind::Window => depth(&term, &text("COLORTERM")),
+            TerminalKind::Dumb | TerminalKind::Serial => ColorDepth::Never,
+            TerminalKind::Console => ColorDepth::Sixteen,
+            TerminalKind::Window => depth(&term, &text("COLORTERM")),
         });
         let number = |name, otherwise| {
             let number = text(name).trim().parse().ok();
@@ -119,16 +119,16 @@ impl Settings {
             kind,
             size: flags.size,
             fallback: (number("COLUMNS", 80), number("LINES", 24)),
-            mouse: kind == Kind::Window && !flags.no_mouse,
+            mouse: kind == TerminalKind::Window && !flags.no_mouse,
             color,
             palette: flags
                 .palette
                 .unwrap_or_else(|| background(&text("COLORFGBG"))),
-            ascii: flags.ascii.unwrap_or(kind <= Kind::Serial),
+            ascii: flags.ascii.unwrap_or(kind <= TerminalKind::Serial),
             abilities: Abilities {
-                styles: kind > Kind::Dumb || color != ColorDepth::Never,
-                synchronized: kind == Kind::Window,
-                erases: kind >= Kind::Console,
+                styles: kind > TerminalKind::Dumb || color != ColorDepth::Never,
+                synchronized: kind == TerminalKind::Window,
+                erases: kind >= TerminalKind::Console,
             },
         }
     }
@@ -169,40 +169,40 @@ fn background(colors: &str) -> Palette {
 mod tests {
     use super::*;
 
-    fn settings(variables: &[(&str, &str)], flags: Flags) -> Settings {
+    fn settings(variables: &[(&str, &str)], flags: Flags) -> TerminalSettings {
         let variable = |name| {
             let found = variables.iter().find(|(own, _)| *own == name);
             found.map(|(_, value)| OsString::from(value))
         };
-        Settings::from_environment(variable, &flags)
+        TerminalSettings::from_environment(variable, &flags)
     }
 
-    fn term(term: &str) -> Settings {
+    fn term(term: &str) -> TerminalSettings {
         settings(&[("TERM", term)], Flags::default())
     }
 
     #[test]
     fn the_kind_decides_what_is_sent() {
         for (name, kind) in [
-            ("", Kind::Dumb),
-            ("dumb", Kind::Dumb),
-            ("vt100", Kind::Serial),
-            ("vt220", Kind::Serial),
-            ("vte", Kind::Window),
-            ("vte-256color", Kind::Window),
-            ("linux", Kind::Console),
-            ("xterm-256color", Kind::Window),
-            ("tmux", Kind::Window),
+            ("", TerminalKind::Dumb),
+            ("dumb", TerminalKind::Dumb),
+            ("vt100", TerminalKind::Serial),
+            ("vt220", TerminalKind::Serial),
+            ("vte", TerminalKind::Window),
+            ("vte-256color", TerminalKind::Window),
+            ("linux", TerminalKind::Console),
+            ("xterm-256color", TerminalKind::Window),
+            ("tmux", TerminalKind::Window),
         ] {
             let settings = term(name);
             assert_eq!(settings.kind, kind, "{name}");
-            assert_eq!(settings.mouse, kind == Kind::Window, "{name}");
+            assert_eq!(settings.mouse, kind == TerminalKind::Window, "{name}");
             let abilities = settings.abilities;
-            assert_eq!(abilities.synchronized, kind == Kind::Window, "{name}");
-            assert_eq!(abilities.erases, kind >= Kind::Console, "{name}");
-            assert_eq!(kind.has_clipboard(), kind == Kind::Window, "{name}");
-            assert_eq!(settings.ascii, kind <= Kind::Serial, "{name}");
-            assert_eq!(abilities.styles, kind != Kind::Dumb, "{name}");
+            assert_eq!(abilities.synchronized, kind == TerminalKind::Window, "{name}");
+            assert_eq!(abilities.erases, kind >= TerminalKind::Console, "{name}");
+            assert_eq!(kind.has_clipboard(), kind == TerminalKind::Window, "{name}");
+            assert_eq!(settings.ascii, kind <= TerminalKind::Serial, "{name}");
+            assert_eq!(abilities.styles, kind != TerminalKind::Dumb, "{name}");
         }
         assert_eq!(settings(&[], Flags::default()), term("dumb"));
     }

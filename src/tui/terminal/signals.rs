@@ -11,7 +11,7 @@ use signal_hook::iterator::exfiltrator::SignalOnly;
 
 /// A signal, as far as it matters here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::tui) enum Said {
+pub(in crate::tui) enum SignalEvent {
     /// End, by this number.
     End(i32),
     /// Stop.
@@ -24,11 +24,11 @@ pub(in crate::tui) enum Said {
 
 /// Listens from its making on.
 #[derive(Debug)]
-pub(in crate::tui) struct Signals {
+pub(in crate::tui) struct SignalReceiver {
     delivery: SignalDelivery<UnixStream, SignalOnly>,
 }
 
-impl Signals {
+impl SignalReceiver {
     /// Begins to listen.
     pub(in crate::tui) fn new() -> io::Result<Self> {
         let (read, write) = UnixStream::pair()?;
@@ -40,23 +40,23 @@ impl Signals {
     }
 
     /// Readable when there is something to hear.
-    pub(in crate::tui) fn ear(&self) -> BorrowedFd<'_> {
+    pub(in crate::tui) fn fd(&self) -> BorrowedFd<'_> {
         self.delivery.get_read().as_fd()
     }
 
     /// What was said since the last time; what ends the program comes first.
-    pub(in crate::tui) fn heard(&mut self) -> Vec<Said> {
-        let mut heard: Vec<Said> = self
+    pub(in crate::tui) fn received(&mut self) -> Vec<SignalEvent> {
+        let mut heard: Vec<SignalEvent> = self
             .delivery
             .pending()
             .map(|signal| match signal {
-                SIGTSTP => Said::Stop,
-                SIGCONT => Said::Continue,
-                SIGWINCH => Said::Size,
-                other => Said::End(other),
+                SIGTSTP => SignalEvent::Stop,
+                SIGCONT => SignalEvent::Continue,
+                SIGWINCH => SignalEvent::Size,
+                other => SignalEvent::End(other),
             })
             .collect();
-        heard.sort_by_key(|said| !matches!(said, Said::End(_)));
+        heard.sort_by_key(|said| !matches!(said, SignalEvent::End(_)));
         heard
     }
 }

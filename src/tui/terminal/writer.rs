@@ -13,7 +13,7 @@ use ratatui::buffer::Cell;
 use ratatui::layout::{Position, Size};
 use ratatui::text::Span;
 
-use crate::tui::terminal::pen::{PLAIN, Pen};
+use crate::tui::terminal::pen::{PLAIN, CellStyle};
 use crate::tui::terminal::settings::Abilities;
 
 /// Writes cells where they are not on the screen yet.
@@ -28,7 +28,7 @@ pub(in crate::tui) struct Writer<'a> {
     /// Where the terminal's cursor is; none where that is not certain. A column beyond the last one stands for the
     /// last one after a character was written there.
     pub(in crate::tui) at: Option<Position>,
-    pub(in crate::tui) pen: Pen,
+    pub(in crate::tui) pen: CellStyle,
     pub(in crate::tui) out: Vec<u8>,
 }
 
@@ -94,7 +94,7 @@ impl Writer<'_> {
         self.out.extend(how);
     }
 
-    fn take(&mut self, pen: Pen) {
+    fn take(&mut self, pen: CellStyle) {
         if self.abilities.styles {
             pen.change(self.pen, &mut self.out);
         }
@@ -104,7 +104,7 @@ impl Writer<'_> {
     /// Writes a cell where the cursor is.
     fn write(&mut self, index: usize) {
         let cell = &self.cells[index];
-        let pen = Pen::of(cell);
+        let pen = CellStyle::of(cell);
         let (narrow, symbol) = (is_narrow(cell.symbol()), cell.symbol());
         let any_pen = symbol == " " && self.pen.leaves_blanks_plain() && pen.leaves_blanks_plain();
         if !any_pen {
@@ -157,7 +157,7 @@ impl Writer<'_> {
         let mut over = Vec::new();
         for index in between {
             let cell = &self.cells[index];
-            let pen = Pen::of(cell);
+            let pen = CellStyle::of(cell);
             let blank = is_blank(cell) && self.pen.leaves_blanks_plain();
             let same = !self.abilities.styles || pen == self.pen;
             if self.stale[index] || !is_narrow(cell.symbol()) || !(same || blank) {
@@ -237,7 +237,7 @@ fn absolute(target: Position) -> Vec<u8> {
 
 /// Whether a cell looks as if nothing had been written there.
 fn is_blank(cell: &Cell) -> bool {
-    cell.symbol() == " " && Pen::of(cell).leaves_blanks_plain()
+    cell.symbol() == " " && CellStyle::of(cell).leaves_blanks_plain()
 }
 
 /// How many columns a cell takes.

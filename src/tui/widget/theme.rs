@@ -103,7 +103,7 @@ pub struct Theme {
 }
 
 /// The two characters of a taxel that is one column or two columns wide.
-pub type Cell = [char; 2];
+pub type Glyphs = [char; 2];
 
 /// One colour in each depth: of the sixteen, of the 256, and as red, green, blue.
 type Tone = (Color, u8, [u8; 3]);
@@ -189,7 +189,7 @@ impl Theme {
     }
 
     /// The characters of a taxel, by its role.
-    pub fn taxel(&self, role: Role) -> Cell {
+    pub fn taxel(&self, role: Role) -> Glyphs {
         match (role, self.ascii) {
             (Role::Chosen, true) => ['#', '#'],
             (Role::Active, true) => ['%', '%'],
@@ -203,7 +203,7 @@ impl Theme {
     }
 
     /// The characters of a coverage from 0 to 1, five shades.
-    pub fn shade(&self, coverage: f64) -> Cell {
+    pub fn shade(&self, coverage: f64) -> Glyphs {
         let shades = if self.ascii {
             ['.', ':', '+', '%', '#']
         } else {

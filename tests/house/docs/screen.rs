@@ -10,7 +10,7 @@ use taxel::tui::app::state::Options;
 use taxel::tui::keys::key::{Key, parse};
 use taxel::tui::keys::keymap::Keymap;
 use taxel::tui::runtime::perform::World;
-use taxel::tui::script::runner::{Settings, Shown, run_shown};
+use taxel::tui::script::runner::{ScriptOptions, ScriptOutput, run_shown};
 use taxel::tui::widget::theme::{ColorDepth, Palette, Theme};
 
 use crate::common;
@@ -21,7 +21,7 @@ const TOUR: &str = include_str!("../../scripts/tour.taxel");
 
 /// The last screen that a script shows: as text, and drawn under a title.
 fn last_screen(script: &str, title: &str) -> (String, String) {
-    let settings = Settings {
+    let settings = ScriptOptions {
         options: Options {
             theme: Theme {
                 depth: ColorDepth::True,
@@ -38,7 +38,7 @@ fn last_screen(script: &str, title: &str) -> (String, String) {
     let world = World::scratch().expect("there is a folder for temporary files");
     let (mut text, mut drawn) = (String::new(), String::new());
     run_shown(script, &[], &settings, world, &mut |shown| {
-        if let Shown::Screen(_, session) = shown {
+        if let ScriptOutput::Screen(_, session) = shown {
             text = session.screen();
             drawn = session.svg(title);
         }

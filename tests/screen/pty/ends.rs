@@ -8,7 +8,7 @@ use taxel::tui::app::state::{App, Options};
 use taxel::tui::runtime::perform::World;
 use taxel::tui::terminal;
 use taxel::tui::terminal::input::Input;
-use taxel::tui::terminal::settings::{Flags, Settings};
+use taxel::tui::terminal::settings::{Flags, TerminalSettings};
 
 use super::program::{Program, Start, TAXEL};
 
@@ -164,7 +164,7 @@ fn a_stuck_line_does_not_hold_it() {
 fn panics() {
     let _ = rustix::process::setsid();
     let _ = rustix::process::ioctl_tiocsctty(std::io::stdin());
-    let settings = Settings::from_environment(std::env::var_os, &Flags::default());
+    let settings = TerminalSettings::from_environment(std::env::var_os, &Flags::default());
     let app = App::new(&Options::plain(true));
     let world = World::scratch().expect("a folder");
     let outcome = terminal::run(app, world, &settings, &mut |input| {

@@ -6,8 +6,8 @@ use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::app::state::Options;
 use taxel::tui::keys::key::{Arrow, Key};
 use taxel::tui::script::Session;
-use taxel::tui::script::command::{Command, read};
-use taxel::tui::script::setting::Setting;
+use taxel::tui::script::command::{ScriptCommand, read};
+use taxel::tui::script::setting::ScriptSetting;
 
 use super::program::{Program, Start, TAXEL};
 use super::screens::started;
@@ -66,24 +66,24 @@ impl Pair {
             .send(Message::Mouse(Mouse { kind, column, row }));
     }
 
-    fn act(&mut self, command: &Command) {
+    fn act(&mut self, command: &ScriptCommand) {
         match command {
-            Command::Keys(keys) => keys.iter().for_each(|&key| self.press(key)),
-            Command::Type(text) => text
+            ScriptCommand::Keys(keys) => keys.iter().for_each(|&key| self.press(key)),
+            ScriptCommand::Type(text) => text
                 .chars()
                 .for_each(|character| self.press(Key::Char(character))),
-            Command::Paste(text) => {
+            ScriptCommand::Paste(text) => {
                 self.program
                     .types(format!("\x1b[200~{text}\x1b[201~").as_bytes());
                 self.session.send(Message::Paste(text.clone()));
             }
-            Command::Resize(columns, rows) => {
+            ScriptCommand::Resize(columns, rows) => {
                 self.program.resize((*columns, *rows));
                 self.session.resize(*columns, *rows);
                 self.program.agrees(&self.session);
             }
-            Command::Click(place) => self.click(*place),
-            Command::ClickText(text) => {
+            ScriptCommand::Click(place) => self.click(*place),
+            ScriptCommand::ClickText(text) => {
                 let screen = self.session.screen();
                 let found = screen
                     .lines()
@@ -96,14 +96,14 @@ impl Pair {
                 ));
             }
             // A terminal tells some places on the way; the program draws the lines between them.
-            Command::Drag(places) => {
+            ScriptCommand::Drag(places) => {
                 self.mouse(MouseKind::Press, places[0]);
                 for &place in &places[1..] {
                     self.mouse(MouseKind::Drag, place);
                 }
                 self.mouse(MouseKind::Release, places[places.len() - 1]);
             }
-            Command::Scroll(place, turns) => {
+            ScriptCommand::Scroll(place, turns) => {
                 let kind = if *turns < 0 {
                     MouseKind::ScrollUp
                 } else {
@@ -112,9 +112,9 @@ impl Pair {
                 (0..turns.unsigned_abs()).for_each(|_| self.mouse(kind, *place));
             }
             // How long a sweep will take is shown on a terminal only.
-            Command::Screen(name) if name.starts_with("timed") => {}
+            ScriptCommand::Screen(name) if name.starts_with("timed") => {}
             // A script's work is done before the next key; the program has to be waited for.
-            Command::Screen(_) | Command::Wait if !self.session.app().ended() => {
+            ScriptCommand::Screen(_) | ScriptCommand::Wait if !self.session.app().ended() => {
                 self.program.agrees(&self.session);
             }
             _ => {}
@@ -141,10 +141,10 @@ fn every_script_shows_its_screens_on_a_terminal() {
         let (mut size, mut options) = ((80, 24), Options::plain(false));
         for (_, command) in &commands {
             match command {
-                Command::Set(Setting::Size(columns, rows)) => size = (*columns, *rows),
-                Command::Set(Setting::Ascii(on)) => options.theme.ascii = *on,
-                Command::Set(Setting::Mouse(on)) => options.mouse = *on,
-                Command::Set(other) => panic!("{}: {other}", path.display()),
+                ScriptCommand::Set(ScriptSetting::Size(columns, rows)) => size = (*columns, *rows),
+                ScriptCommand::Set(ScriptSetting::Ascii(on)) => options.theme.ascii = *on,
+                ScriptCommand::Set(ScriptSetting::Mouse(on)) => options.mouse = *on,
+                ScriptCommand::Set(other) => panic!("{}: {other}", path.display()),
                 _ => {}
             }
         }

@@ -6,7 +6,7 @@ use MouseKind::{Drag, Press, Release, ScrollDown, ScrollUp};
 use proptest::prelude::*;
 
 fn read(bytes: &[u8]) -> Vec<Input> {
-    let mut reader = Reader::default();
+    let mut reader = InputReader::default();
     let mut found = reader.read(bytes);
     found.extend(reader.settle());
     found
@@ -60,7 +60,7 @@ fn keys_of_many_terminals() {
 
 #[test]
 fn an_escape_waits_for_a_moment_and_a_sequence_for_ever() {
-    let mut reader = Reader::default();
+    let mut reader = InputReader::default();
     assert_eq!(reader.read(b"\x1b"), []);
     assert_eq!(reader.patience(), Some(MOMENT));
     assert_eq!(reader.settle(), keys("<Esc>"));
@@ -123,7 +123,7 @@ proptest! {
             ], 0..12)
     ) {
         let bytes = pieces.concat();
-        let mut reader = Reader::default();
+        let mut reader = InputReader::default();
         let mut found: Vec<_> = bytes.iter().flat_map(|&byte| reader.read(&[byte])).collect();
         found.extend(reader.settle());
         prop_assert_eq!(found, read(&bytes));

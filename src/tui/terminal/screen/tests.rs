@@ -19,10 +19,10 @@ fn emulator(size: Size) -> vt100::Parser {
 }
 
 /// Where the cursor is shown, if it is.
-type Cursor = Option<(u16, u16)>;
+type ScreenCursor = Option<(u16, u16)>;
 
 /// Draws frames, each made of writings and a cursor; after each the emulator must show what ratatui drew.
-fn check(frames: &[(Vec<Writing>, Cursor)], synchronized: bool, erases: bool) {
+fn check(frames: &[(Vec<Writing>, ScreenCursor)], synchronized: bool, erases: bool) {
     let abilities = Abilities {
         styles: true,
         synchronized,

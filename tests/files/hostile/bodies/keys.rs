@@ -1,7 +1,7 @@
 //! Keys in notation, and the bytes that a terminal sends.
 
 use taxel::tui::keys::key::parse;
-use taxel::tui::terminal::input::{Input, Reader};
+use taxel::tui::terminal::input::{Input, InputReader};
 
 use super::is_short;
 
@@ -23,13 +23,13 @@ pub(crate) fn keys(bytes: &[u8]) {
 
 /// What a terminal sends: the same keys in one piece and byte by byte.
 pub(crate) fn terminal(bytes: &[u8]) {
-    let mut reader = Reader::default();
+    let mut reader = InputReader::default();
     let mut whole = reader.read(bytes);
     let patience = reader.patience();
     whole.extend(reader.settle());
     assert_eq!(reader.patience(), None, "nothing is waited for any more");
 
-    let mut reader = Reader::default();
+    let mut reader = InputReader::default();
     let mut pieces = Vec::new();
     for byte in bytes.chunks(1) {
         pieces.extend(reader.read(byte));

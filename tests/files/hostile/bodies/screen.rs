@@ -16,9 +16,9 @@ use taxel::tui::prompt::command::read as read_command;
 use taxel::tui::prompt::commands::complete;
 use taxel::tui::runtime::perform::World;
 use taxel::tui::script::Session;
-use taxel::tui::script::command::{Command, read};
-use taxel::tui::script::runner::{Failure, Settings, run};
-use taxel::tui::script::setting::Setting;
+use taxel::tui::script::command::{ScriptCommand, read};
+use taxel::tui::script::runner::{ScriptFailure, ScriptOptions, run};
+use taxel::tui::script::setting::ScriptSetting;
 use tempfile::TempDir;
 
 use super::is_short;
@@ -127,11 +127,11 @@ pub(crate) fn play(bytes: &[u8]) {
     };
     // A library that is named is one of the world outside.
     let outside =
-        |(_, command): &(usize, Command)| matches!(command, Command::Set(Setting::Library(_)));
+        |(_, command): &(usize, ScriptCommand)| matches!(command, ScriptCommand::Set(ScriptSetting::Library(_)));
     if drawn(&commands) > MOST_DRAWN || commands.iter().any(outside) {
         return;
     }
-    let settings = Settings {
+    let settings = ScriptOptions {
         keymap: Keymap::default(),
         options: options(),
         size: (80, 24),
@@ -145,7 +145,7 @@ pub(crate) fn play(bytes: &[u8]) {
     });
     match result {
         Ok(()) => {}
-        Err(Failure::Expectation { message, .. }) => is_short(&message),
+        Err(ScriptFailure::Expectation { message, .. }) => is_short(&message),
         Err(failure) => is_short(&failure.to_string()),
     }
     let control = printed.chars().find(|c| c.is_control() && *c != '\n');
@@ -153,25 +153,25 @@ pub(crate) fn play(bytes: &[u8]) {
 }
 
 /// How many cells a script draws.
-fn drawn(commands: &[(usize, Command)]) -> u64 {
+fn drawn(commands: &[(usize, ScriptCommand)]) -> u64 {
     let mut cells = 80 * 24;
     let mut all = 0;
     for (_, command) in commands {
         let times = match command {
-            Command::Set(Setting::Size(columns, rows)) | Command::Resize(columns, rows) => {
+            ScriptCommand::Set(ScriptSetting::Size(columns, rows)) | ScriptCommand::Resize(columns, rows) => {
                 cells = u64::from(*columns) * u64::from(*rows);
                 1
             }
-            Command::Keys(keys) => keys.len() as u64,
-            Command::Type(text) => text.chars().count() as u64,
-            Command::Drag(places) => {
+            ScriptCommand::Keys(keys) => keys.len() as u64,
+            ScriptCommand::Type(text) => text.chars().count() as u64,
+            ScriptCommand::Drag(places) => {
                 let way = |pair: &[(u16, u16)]| {
                     let [from, to] = [pair[0], pair[1]];
                     u64::from(from.0.abs_diff(to.0).max(from.1.abs_diff(to.1)))
                 };
                 2 + places.windows(2).map(way).sum::<u64>()
             }
-            Command::Scroll(_, turns) => turns.unsigned_abs().into(),
+            ScriptCommand::Scroll(_, turns) => turns.unsigned_abs().into(),
             _ => 2,
         };
         all += times * cells;
