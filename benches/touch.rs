@@ -12,7 +12,7 @@ use taxel::parameter::Parameter;
 use taxel::sensor::Sensor;
 use taxel::touch::Plane;
 use taxel::tui::app::state::Options;
-use taxel::tui::runtime::perform::World;
+use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
 use peer::{Outline, Peer};

@@ -3,12 +3,12 @@
 //! The way of one keystroke:
 //! ```text
 //! terminal   bytes -> Key
-//! remap      lookup(context, key) -> Message       one table: context, keys, message, help
-//! update     update(&mut App, Message) -> Effect   the only writer
-//! effect     perform(Effect) -> Message            the only one that touches the world; then update again
-//! view       view(&App, &mut Frame)                reads only; one pane per file
+//! keys       lookup(context, key) -> Message       one table of actions, one of default keys
+//! app        update(&mut App, Message) -> Effect   the only writer of the state
+//! runtime    perform(Effect) -> Message            touches the world; then update again
+//! app        view(&App, &mut Frame)                reads the state and draws it
 //! ```
-//! A [`script::Session`] replaces the first line by text and the terminal by a buffer; the middle is the same code.
+//! A [`script::Session`] replaces the terminal by text and a buffer; everything between is the same code.
 
 pub mod keys;
 

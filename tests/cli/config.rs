@@ -5,7 +5,7 @@ use taxel::cli::settings::file::Config;
 use taxel::tui::app::state::{App, Options};
 use taxel::tui::keys::binding::Context;
 use taxel::tui::keys::default_keys::DEFAULT_KEYS;
-use taxel::tui::runtime::perform::World;
+use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
 fn refused(text: &str, expected: &str) {

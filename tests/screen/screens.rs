@@ -3,7 +3,7 @@
 use taxel::sensor::Sensor;
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::app::state::Options;
-use taxel::tui::runtime::perform::World;
+use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 use taxel::tui::widget::theme::{ColorDepth, Palette, Theme};
 

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use taxel::tui::app::state::Options;
 use taxel::tui::keys::keymap::Keymap;
-use taxel::tui::runtime::perform::World;
+use taxel::tui::runtime::World;
 use taxel::tui::script::runner::{ScriptFailure, ScriptOptions, run};
 
 fn settings(styles: bool, json: bool) -> ScriptOptions {

@@ -1,7 +1,7 @@
 //! The program on a screen in memory, with a library of its own.
 
 use taxel::tui::app::state::Options;
-use taxel::tui::runtime::perform::World;
+use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
 /// 16 × 16 taxels at 80 × 24, an empty library that goes with the session.

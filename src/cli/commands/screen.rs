@@ -10,7 +10,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::settings::resolved::Effective;
 use crate::storage::{Library, Orphan, ShapeOrigin};
 use crate::tui::app::state::{App, Options};
-use crate::tui::runtime::perform::World;
+use crate::tui::runtime::World;
 use crate::tui::script::record::Recorder;
 use crate::tui::script::setting::{ScriptSetting, of_options};
 use crate::tui::terminal;

@@ -15,7 +15,7 @@ use crate::formats::Name;
 use crate::formats::name::folded;
 use crate::tui::app::state::Options;
 use crate::tui::keys::key::parse;
-use crate::tui::runtime::perform::World;
+use crate::tui::runtime::World;
 use crate::tui::script::command::ScriptError;
 use crate::tui::script::runner;
 use crate::tui::script::runner::{ScriptOptions, ScriptOutput};

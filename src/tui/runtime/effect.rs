@@ -1,4 +1,4 @@
-//! What the state wishes of the world outside.
+//! Effects that `update` returns: what the runtime or the terminal has to do.
 
 use std::sync::Arc;
 
@@ -8,62 +8,62 @@ use crate::storage::{Existing, Expected};
 use crate::tui::explore::message::Findings;
 use crate::tui::shapes::purpose::Purpose;
 
-/// What the world outside shall do.
+/// An effect.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Effect {
-    /// Ask the library; what it answers is the next message.
+    /// A request to the library; its answer is the next message.
     Library(LibraryRequest),
-    /// Have a worker do something.
+    /// Work for a worker.
     Work(Work),
-    /// Have the terminal do something.
+    /// Something that only the terminal can do.
     Terminal(TerminalEffect),
 }
 
-/// What the terminal shall do.
+/// Effects on the terminal.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TerminalEffect {
-    /// Forget what is on the screen and draw all of it.
+    /// Draw the whole screen anew.
     Redraw,
-    /// Give the terminal back to the shell until it calls again.
+    /// Stop, as Ctrl-Z does, until the shell continues the program.
     Suspend,
-    /// Have the mouse reported, or leave it to the terminal, which then can select text.
+    /// Whether the mouse is reported. If not, the terminal can select text with it.
     Mouse(bool),
-    /// Put a text into the clipboard of the user's terminal.
+    /// Copy a text to the clipboard of the user's terminal.
     Copy(String),
 }
 
-/// What a worker does. Each piece of work has a number.
+/// Work for a worker. A number tells its events from those of earlier work.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Work {
-    /// To find out how long a grid will take, about.
+    /// Estimate the time that a sweep takes.
     Measure(Box<PoseGrid>),
-    /// To go through a grid.
+    /// Sweep a grid.
     Sweep(u64, Box<PoseGrid>),
-    /// To write what was found into a file of that name.
+    /// Write the result of a sweep to a file.
     Write(u64, Arc<Findings>, String, Existing),
-    /// To stop.
+    /// Stop the work in progress.
     Stop,
 }
 
-/// What is asked of the library.
+/// Requests to the library.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LibraryRequest {
-    /// Its list.
+    /// List its shapes.
     List,
-    /// The names of its shapes that were deleted.
+    /// List the names of deleted shapes.
     Trash,
-    /// Some of its shapes, by their place in the list and their name.
+    /// Read shapes, given by index in the list and name.
     Read(Vec<(usize, String)>),
-    /// A shape by its name, and what for.
+    /// Read one shape by name, and what for.
     Named(Purpose, String),
-    /// To store a shape in place of what is expected there.
+    /// Save a shape, given what its file is expected to hold.
     Store(Box<StoredShape>, Expected),
-    /// To remove a shape.
+    /// Delete a shape.
     Remove(String),
-    /// To bring back the shape of that name that was removed last.
+    /// Restore the shape of that name that was deleted last.
     Restore(String),
-    /// To bring back work that a program left when it died.
+    /// Recover the offered unsaved work.
     Recover,
-    /// To throw such work away.
+    /// Move it to the trash.
     GiveUp,
 }

@@ -1,5 +1,5 @@
-//! Keeps unsaved work in the journal, beside the program: no key waits for a disk. It sleeps while there is nothing to
-//! write.
+//! Writes unsaved work to the journal on a thread of its own, so that no key waits for a disk. The thread sleeps while
+//! there is nothing to write.
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
@@ -11,10 +11,10 @@ use crate::tui::app::state::App;
 use crate::tui::explore::message::WorkerEvent;
 use crate::tui::runtime::workers::EventSink;
 
-/// How long changes are gathered before they are written: a second at most is lost.
+/// Changes are gathered for this time before they are written, so a crash loses less than a second of work.
 const GATHER: Duration = Duration::from_millis(400);
 
-/// The program's end.
+/// The program's end of the channel to the thread.
 #[derive(Debug)]
 pub(in crate::tui) struct JournalWriter {
     notes: Option<Sender<JournalRequest>>,
@@ -25,10 +25,10 @@ pub(in crate::tui) struct JournalWriter {
 enum JournalRequest {
     Keep(Box<StoredShape>),
     Clear,
-    /// Answers whether everything is written.
+    /// Write now; the answer is whether everything is written.
     Flush(Sender<bool>),
-    /// Who is to be told where something cannot be written.
-    Tell(EventSink),
+    /// Where errors are reported.
+    ReportTo(EventSink),
 }
 
 impl JournalWriter {
@@ -38,7 +38,7 @@ impl JournalWriter {
             journal,
             pending: Pending::Nothing,
             post: None,
-            told: false,
+            reported: false,
         };
         let thread = std::thread::spawn(move || writer.run(&inbox));
         Self {
@@ -48,7 +48,7 @@ impl JournalWriter {
         }
     }
 
-    /// One that keeps nothing.
+    /// One that writes nothing, for scripts.
     pub(in crate::tui) fn idle() -> Self {
         Self {
             notes: None,
@@ -57,12 +57,12 @@ impl JournalWriter {
         }
     }
 
-    /// Says from now on where work cannot be kept.
-    pub(in crate::tui) fn tell(&self, post: EventSink) {
-        self.send(JournalRequest::Tell(post));
+    /// Reports errors to `post` from now on.
+    pub(in crate::tui) fn report_to(&self, post: EventSink) {
+        self.send(JournalRequest::ReportTo(post));
     }
 
-    /// Notes the work that would be lost, if it is other work than before.
+    /// Notes the unsaved work if it has changed. Called after every message; the comparison is one shape with another.
     pub(in crate::tui) fn note(&mut self, app: &App) {
         let work = app.unsaved_work();
         if work == self.last {
@@ -88,7 +88,7 @@ impl JournalWriter {
         }
     }
 
-    /// Waits until everything is written; false where it could not be.
+    /// Waits until everything is written; false if that failed.
     pub(in crate::tui) fn flush(&self) -> bool {
         let (done, written) = channel();
         self.send(JournalRequest::Flush(done));
@@ -102,29 +102,29 @@ impl Drop for JournalWriter {
     fn drop(&mut self) {
         self.notes = None;
         if let Some(thread) = self.thread.take() {
-            // A thread that panicked has said so.
+            // A panic of the thread has been reported.
             let _ = thread.join();
         }
     }
 }
 
-/// What is not in the journal yet.
+/// Work that is not in the journal yet.
 enum Pending {
     Nothing,
-    /// A shape that waits for others, since then.
+    /// Waiting for further changes since then.
     Since(Box<StoredShape>, Instant),
-    /// One that could not be written: it waits for the next note, not for the clock. A disk that is full now may have
-    /// room at the next change, or when all of it has to be written.
+    /// Could not be written. It is tried again with the next change or the next flush, not by the clock: a full disk may
+    /// have room by then.
     Failed(Box<StoredShape>),
 }
 
-/// The thread's end: gathers changes for a moment, then writes the last one.
+/// The thread's end: gathers changes for a moment, then writes the latest.
 struct JournalThread {
     journal: Journal,
     pending: Pending,
     post: Option<EventSink>,
-    /// Whether it was said that nothing can be kept, which is said once.
-    told: bool,
+    /// Whether the present error has been reported: once is enough.
+    reported: bool,
 }
 
 impl JournalThread {
@@ -149,10 +149,10 @@ impl JournalThread {
                     self.journal.clear();
                 }
                 Ok(JournalRequest::Flush(done)) => {
-                    // Whoever asked may have stopped waiting.
+                    // The program may have stopped waiting.
                     let _ = done.send(self.write());
                 }
-                Ok(JournalRequest::Tell(post)) => self.post = Some(post),
+                Ok(JournalRequest::ReportTo(post)) => self.post = Some(post),
                 Err(RecvTimeoutError::Timeout) => {
                     self.write();
                 }
@@ -164,21 +164,21 @@ impl JournalThread {
         }
     }
 
-    /// Writes what is pending; what could not be written stays so. Answers whether everything is written.
+    /// Writes what is pending, and returns whether everything is written. A shape that cannot be written stays pending.
     fn write(&mut self) -> bool {
         let pending = std::mem::replace(&mut self.pending, Pending::Nothing);
         let (Pending::Since(shape, _) | Pending::Failed(shape)) = pending else {
             return true;
         };
         match self.journal.keep(&shape) {
-            Ok(()) => self.told = false,
+            Ok(()) => self.reported = false,
             Err(error) => {
                 self.pending = Pending::Failed(shape);
-                if let Some(post) = self.post.as_ref().filter(|_| !self.told) {
+                if let Some(post) = self.post.as_ref().filter(|_| !self.reported) {
                     post(WorkerEvent::Refused(format!(
                         "unsaved work cannot be kept: {error}"
                     )));
-                    self.told = true;
+                    self.reported = true;
                 }
             }
         }

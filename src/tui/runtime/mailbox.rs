@@ -1,4 +1,10 @@
-//! Messages from workers, which wake the loop.
+//! Messages from other threads, which wake the event loop.
+//!
+//! A queue, and a socket pair that the loop waits for together with the terminal and the signals. The queue is not
+//! bounded: workers send at most ten events a second and must never wait for a slow terminal. A source of frames, which
+//! sends a hundred or more a second, must not use the queue: its place is a slot of its own beside `messages`, one
+//! `Mutex<Option<Frame>>` that a newer frame overwrites, behind the same socket. [`Mailbox::collect`] then returns the
+//! queue and after it the latest frame. So the latest frame wins, and nothing else is ever dropped.
 
 use std::io::{self, Read, Write};
 use std::os::fd::{AsFd, BorrowedFd};
@@ -8,24 +14,24 @@ use std::sync::mpsc;
 
 use crate::tui::app::message::Message;
 
-/// The end that a worker has; as many as there are workers.
+/// The sending end; each worker has a clone.
 #[derive(Clone, Debug)]
 pub struct Sender {
     messages: mpsc::Sender<Message>,
-    bell: Arc<UnixStream>,
+    wakeup: Arc<UnixStream>,
 }
 
-/// The end that the loop has.
+/// The receiving end of the event loop.
 #[derive(Debug)]
 pub struct Mailbox {
     messages: mpsc::Receiver<Message>,
-    bell: UnixStream,
+    wakeup: UnixStream,
 }
 
 /// A new pair.
 ///
 /// # Errors
-/// Where the process may not open more files.
+/// If the process may not open more files.
 pub fn new() -> io::Result<(Sender, Mailbox)> {
     let (read, write) = UnixStream::pair()?;
     read.set_nonblocking(true)?;
@@ -34,36 +40,36 @@ pub fn new() -> io::Result<(Sender, Mailbox)> {
     Ok((
         Sender {
             messages: sender,
-            bell: Arc::new(write),
+            wakeup: Arc::new(write),
         },
         Mailbox {
             messages: receiver,
-            bell: read,
+            wakeup: read,
         },
     ))
 }
 
 impl Sender {
-    /// Sends a message; lost where the program has ended.
+    /// Sends a message. It is lost if the program has ended.
     pub fn send(&self, message: Message) {
         if self.messages.send(message).is_ok() {
-            // A full pipe rings already.
-            let _ = (&*self.bell).write(&[0]);
+            // A full socket has woken the loop already.
+            let _ = (&*self.wakeup).write(&[0]);
         }
     }
 }
 
 impl Mailbox {
-    /// Readable when there are messages.
+    /// Readable while there are messages.
     pub(in crate::tui) fn fd(&self) -> BorrowedFd<'_> {
-        self.bell.as_fd()
+        self.wakeup.as_fd()
     }
 
-    /// All messages that are there.
+    /// Takes all messages.
     pub(in crate::tui) fn collect(&mut self) -> Vec<Message> {
-        // First the bell: what is sent after this rings anew. The world keeps a sender as long as the loop runs.
-        let mut rung = [0; 64];
-        while self.bell.read(&mut rung).is_ok_and(|count| count > 0) {}
+        // Empty the socket first: a message that is sent after this wakes the loop again.
+        let mut bytes = [0; 64];
+        while self.wakeup.read(&mut bytes).is_ok_and(|count| count > 0) {}
         self.messages.try_iter().collect()
     }
 }

@@ -1,4 +1,12 @@
-//! What touches the world outside for the screen: the library, the journal, and workers.
+//! The runtime: performs the effects that `update` returns, and feeds the answers back as messages.
+//!
+//! Nothing else on the screen touches files or threads, but for the terminal itself.
+//! ```text
+//! effect           what update may ask for: the library, a worker, the terminal
+//! workers          sweeps and exports, each on a thread of its own
+//! journal_writer   unsaved work, written beside the program
+//! mailbox          messages from the workers, which wake the event loop
+//! ```
 
 pub mod effect;
 
@@ -6,6 +14,225 @@ pub mod workers;
 
 pub mod journal_writer;
 
-pub mod perform;
-
 pub mod mailbox;
+
+pub use crate::tui::runtime::workers::EventSink;
+
+use std::io;
+use std::sync::Arc;
+
+use crate::tui::runtime::journal_writer::JournalWriter;
+use crate::tui::runtime::workers::Workers;
+use tempfile::TempDir;
+
+use crate::formats::value::counted;
+use crate::formats::{Name, StoredShape};
+use crate::storage::{Expected, Journal, Library, LibraryError, Orphan, UNNAMED};
+use crate::tui::app::message::{Leftover, LibraryEvent, Message};
+use crate::tui::app::state::App;
+use crate::tui::app::update::update;
+use crate::tui::runtime::effect::{Effect, LibraryRequest, TerminalEffect};
+
+/// The outside world: a library, unsaved work that crashed programs left in it, this program's journal, and workers.
+#[derive(Debug)]
+pub struct World {
+    library: Library,
+    /// The unsaved work that is offered, and how many there are in all.
+    orphan: Option<(Orphan, usize)>,
+    journal: JournalWriter,
+    workers: Workers,
+    /// The folder of a temporary library. The last field: it is dropped after the journal has been written.
+    _scratch: Option<TempDir>,
+}
+
+impl World {
+    /// The world around a library; the newest unsaved work in it will be offered.
+    pub fn new(library: Library) -> Self {
+        let journal = JournalWriter::new(Journal::new(&library));
+        let mut world = Self {
+            library,
+            orphan: None,
+            journal,
+            workers: Workers::default(),
+            _scratch: None,
+        };
+        world.orphan = world.newest_orphan();
+        world
+    }
+
+    /// The same for a script: unsaved work is neither offered nor kept, so that a script does the same every time.
+    pub fn quiet(library: Library) -> Self {
+        Self {
+            library,
+            orphan: None,
+            journal: JournalWriter::idle(),
+            workers: Workers::default(),
+            _scratch: None,
+        }
+    }
+
+    /// The newest unsaved work, and how many there are. The others are offered after it, or by other programs.
+    fn newest_orphan(&self) -> Option<(Orphan, usize)> {
+        let mut all = Orphan::all(&self.library);
+        let count = all.len();
+        all.pop().map(|newest| (newest, count))
+    }
+
+    /// A world with an empty library in a temporary folder, which is removed with it.
+    ///
+    /// # Errors
+    /// If the system gives no temporary folder.
+    pub fn scratch() -> io::Result<Self> {
+        let folder = tempfile::tempdir()?;
+        let world = Self::new(Library::open(folder.path().join("library")));
+        Ok(Self {
+            _scratch: Some(folder),
+            ..world
+        })
+    }
+
+    /// The same with shapes in the library, and with unsaved work of crashed programs, the newest last.
+    ///
+    /// # Errors
+    /// What the system or the library refuses, in a sentence.
+    pub fn furnished(shapes: &[StoredShape], leftovers: &[StoredShape]) -> Result<Self, String> {
+        let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+        let library = Library::open(folder.path().join("library"));
+        let sentence = |error: LibraryError| error.to_string();
+        for shape in shapes {
+            library.save(shape, Expected::Nothing).map_err(sentence)?;
+        }
+        for leftover in leftovers {
+            // A dropped journal leaves its work behind, as a crash does.
+            Journal::new(&library).keep(leftover).map_err(sentence)?;
+        }
+        Ok(Self {
+            _scratch: Some(folder),
+            ..Self::new(library)
+        })
+    }
+
+    /// Runs long work on threads of its own and sends their events to `post`. Without this, work is done before the next
+    /// message, without progress or estimates, so that a script shows the same every time.
+    #[must_use]
+    pub fn with_workers(mut self, post: EventSink) -> Self {
+        self.journal.report_to(Arc::clone(&post));
+        self.workers = Workers::beside(post);
+        self
+    }
+
+    /// The first message: that a crashed program left unsaved work; None if there is none.
+    pub fn greeting(&self) -> Option<Message> {
+        Some(Message::Library(LibraryEvent::Found(self.left()?)))
+    }
+
+    fn left(&self) -> Option<Leftover> {
+        let (orphan, waiting) = self.orphan.as_ref()?;
+        let taxels = counted(orphan.shape.imprint.count().into(), "taxel");
+        let what = match orphan.shape.name.as_str() {
+            UNNAMED => taxels,
+            name => format!("{taxels} of {name}"),
+        };
+        let waiting = *waiting;
+        Some(Leftover { what, waiting })
+    }
+
+    /// Updates the state by a message, performs the effect, and goes on with the answer until there is no effect left or
+    /// one for the terminal, which is returned.
+    pub fn handle(&mut self, app: &mut App, message: Message) -> Option<TerminalEffect> {
+        let mut next = message;
+        let terminal = loop {
+            match update(app, next) {
+                Some(Effect::Library(request)) => next = self.perform(request),
+                Some(Effect::Work(work)) => match self.workers.perform(work) {
+                    Some(event) => next = Message::Worker(event),
+                    None => break None,
+                },
+                Some(Effect::Terminal(effect)) => break Some(effect),
+                None => break None,
+            }
+        };
+        self.journal.note(app);
+        terminal
+    }
+
+    /// Writes unsaved work at once, because the program is about to end.
+    pub fn secure(&mut self) {
+        self.journal.flush();
+    }
+
+    fn perform(&mut self, request: LibraryRequest) -> Message {
+        let answer = match request {
+            LibraryRequest::List => {
+                LibraryEvent::List(self.library.list().map_err(|error| error.to_string()))
+            }
+            LibraryRequest::Trash => {
+                LibraryEvent::Trash(self.library.in_trash().map_err(|error| error.to_string()))
+            }
+            LibraryRequest::Read(names) => {
+                let read = |name: &str| self.library.load(name).map_err(|error| error.to_string());
+                LibraryEvent::Read(
+                    names
+                        .iter()
+                        .map(|(index, name)| (*index, read(name)))
+                        .collect(),
+                )
+            }
+            LibraryRequest::Named(purpose, name) => {
+                let loaded = self.library.load(&name).map(Box::new);
+                LibraryEvent::Named(purpose, loaded.map_err(|error| error.to_string()))
+            }
+            LibraryRequest::Store(shape, expected) => match self.library.save(&shape, expected) {
+                Ok(stamp) => LibraryEvent::Stored(shape.name.to_string(), stamp),
+                Err(error) => match error {
+                    LibraryError::Exists { stamp, .. } | LibraryError::Changed { stamp, .. } => {
+                        LibraryEvent::Differs(shape, stamp, error.to_string())
+                    }
+                    _ => LibraryEvent::Failed(error.to_string()),
+                },
+            },
+            LibraryRequest::Remove(name) => done(self.library.delete(&name), LibraryEvent::Removed),
+            LibraryRequest::Restore(name) => {
+                done(self.library.restore(&name), LibraryEvent::Restored)
+            }
+            LibraryRequest::Recover => match self.orphan.take() {
+                Some((orphan, _)) => {
+                    let shape = orphan.shape.clone();
+                    // Into this program's journal before it is taken out of the other one.
+                    self.journal.keep(shape.clone());
+                    if self.journal.flush() {
+                        orphan.discard();
+                    }
+                    LibraryEvent::Recovered(Box::new(shape))
+                }
+                None => LibraryEvent::Failed("no unsaved work is left".to_owned()),
+            },
+            LibraryRequest::GiveUp => self.give_up(),
+        };
+        Message::Library(answer)
+    }
+
+    /// Moves unwanted work to the trash, like a deleted shape. Other work is offered only after this succeeds; otherwise
+    /// the same work would be offered again without end.
+    fn give_up(&mut self) -> LibraryEvent {
+        let Some((orphan, _)) = self.orphan.take() else {
+            return LibraryEvent::Failed("no unsaved work is left".to_owned());
+        };
+        let mut shape = orphan.shape.clone();
+        if let Ok(name) = Name::new(UNNAMED) {
+            shape = shape.renamed(name);
+        }
+        match self.library.throw_away(&shape) {
+            Ok(name) => {
+                orphan.discard();
+                self.orphan = self.newest_orphan();
+                LibraryEvent::GivenUp(name, self.left())
+            }
+            Err(error) => LibraryEvent::NotGivenUp(error.to_string()),
+        }
+    }
+}
+
+fn done(result: Result<String, LibraryError>, answer: fn(String) -> LibraryEvent) -> LibraryEvent {
+    result.map_or_else(|error| LibraryEvent::Failed(error.to_string()), answer)
+}

@@ -1,8 +1,8 @@
-//! Long work: sweeps and the files that are made of them. Beside the program where somebody hears what they tell;
-//! otherwise at once, before the next key.
+//! Long work: sweeps and the files made of them. On threads of their own if there is someone to send events to;
+//! otherwise at once, before the next message.
 //!
-//! A worker ends when it is done or told to stop, and nothing is left waking up afterwards. At the end of the program a
-//! sweep is left to die with it; a file that is being written is given up first, so that no part of it stays.
+//! A worker ends when it is done or stopped. When the program ends, a running sweep ends with it; an export is stopped
+//! first, so that no partial file stays.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -17,19 +17,19 @@ use crate::tui::explore::export::is_poses;
 use crate::tui::explore::message::{Findings, SweepProgress, WorkerEvent};
 use crate::tui::runtime::effect::Work;
 
-/// Takes what workers tell, from any thread.
+/// Takes events of workers, from any thread.
 pub type EventSink = Arc<dyn Fn(WorkerEvent) + Send + Sync>;
 
-/// How far a sweep is is told no more often than this.
-const PAUSE: Duration = Duration::from_millis(100);
+/// Minimum interval between progress events.
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
 
-/// A measurement takes the best of as many runs as there are within this time.
+/// An estimate is the best of all runs within this time.
 const MEASURED: Duration = Duration::from_millis(30);
 
-/// What was begun, and how to stop it.
+/// The work in progress, and how to stop it.
 #[derive(Default)]
 pub(in crate::tui) struct Workers {
-    /// None where work is done at once.
+    /// None: work is done at once.
     post: Option<EventSink>,
     stop: Arc<AtomicBool>,
     measuring: Arc<AtomicBool>,
@@ -46,14 +46,14 @@ impl std::fmt::Debug for Workers {
 }
 
 impl Workers {
-    /// Workers beside the program.
+    /// Workers on threads of their own.
     pub(in crate::tui) fn beside(post: EventSink) -> Self {
         let mut workers = Self::default();
         workers.post = Some(post);
         workers
     }
 
-    /// Begins a piece of work, or does it: then the answer is what it tells at its end.
+    /// Begins a piece of work. Without threads, does it and returns its last event.
     pub(in crate::tui) fn perform(&mut self, work: Work) -> Option<WorkerEvent> {
         match work {
             Work::Stop => {
@@ -79,8 +79,8 @@ impl Workers {
                 };
                 std::thread::spawn(move || {
                     let clock = ProgressReporter::new(number, &post);
-                    let told = guarded(number, || sweep(number, &grid, &stop, Some(&clock)));
-                    post(told);
+                    let event = guarded(number, || sweep(number, &grid, &stop, Some(&clock)));
+                    post(event);
                 });
                 None
             }
@@ -91,10 +91,10 @@ impl Workers {
                 };
                 let thread = std::thread::spawn(move || {
                     let clock = ProgressReporter::new(number, &post);
-                    let told = guarded(number, || {
+                    let event = guarded(number, || {
                         write(number, &findings, &name, existing, &stop, Some(&clock))
                     });
-                    post(told);
+                    post(event);
                 });
                 self.writing = Some(thread);
                 None
@@ -102,7 +102,7 @@ impl Workers {
         }
     }
 
-    /// A new piece of work: stops what was under way.
+    /// Stops the work in progress and returns the stop flag of the next.
     fn begin(&mut self) -> Arc<AtomicBool> {
         self.stop.store(true, Ordering::Relaxed);
         self.measuring.store(true, Ordering::Relaxed);
@@ -121,7 +121,7 @@ impl Drop for Workers {
     }
 }
 
-/// Tells how far a sweep is, now and then.
+/// Counts poses of several threads and sends progress events.
 struct ProgressReporter<'a> {
     number: u64,
     post: &'a EventSink,
@@ -142,12 +142,12 @@ impl<'a> ProgressReporter<'a> {
         }
     }
 
-    /// So many poses more are done.
+    /// Counts poses that are done.
     fn add(&self, poses: u64) {
         let poses = self.poses.fetch_add(poses, Ordering::Relaxed) + poses;
-        // Another thread that is at it tells as much.
+        // A thread that finds the lock taken leaves the report to the other one.
         if let Ok(mut last) = self.last.try_lock()
-            && last.elapsed() >= PAUSE
+            && last.elapsed() >= PROGRESS_INTERVAL
         {
             *last = Instant::now();
             let elapsed = self.start.elapsed();
@@ -159,15 +159,14 @@ impl<'a> ProgressReporter<'a> {
     }
 }
 
-/// What a worker tells that panicked: otherwise the program would wait for it for ever.
+/// Turns a panic into an event; without it the program would wait for ever.
 fn guarded(number: u64, work: impl FnOnce() -> WorkerEvent) -> WorkerEvent {
-    let told = catch_unwind(AssertUnwindSafe(work));
-    told.unwrap_or_else(|_| {
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
         WorkerEvent::Failed(number, "the work failed; this is a bug".to_owned())
     })
 }
 
-/// How long a grid takes, about; nothing where that is no longer asked.
+/// Estimates the time of a sweep; None if it was stopped.
 fn measure(grid: &PoseGrid, stop: &AtomicBool) -> Option<Duration> {
     let sample = TimingSample::of(grid);
     let begun = Instant::now();
@@ -189,7 +188,7 @@ fn sweep(
     stop: &AtomicBool,
     clock: Option<&ProgressReporter<'_>>,
 ) -> WorkerEvent {
-    let progress = |poses: u64| going(poses, stop, clock);
+    let progress = |poses: u64| proceed(poses, stop, clock);
     let result = Sweep::new(grid).progress(&progress).run();
     let classes = result.atlas.distinct_classes();
     WorkerEvent::Swept(
@@ -201,8 +200,8 @@ fn sweep(
     )
 }
 
-/// Takes note of poses that are done; answers whether to go on.
-fn going(poses: u64, stop: &AtomicBool, clock: Option<&ProgressReporter<'_>>) -> bool {
+/// Counts poses that are done, and returns whether to go on.
+fn proceed(poses: u64, stop: &AtomicBool, clock: Option<&ProgressReporter<'_>>) -> bool {
     if let Some(clock) = clock {
         clock.add(poses);
     }
@@ -238,7 +237,7 @@ fn write(
     }
 }
 
-/// Goes through the grid once more: the numbers of its poses are kept nowhere. Answers whether it came to its end.
+/// Sweeps the grid again, because the numbers of its poses are not kept. Returns whether it was completed.
 fn write_poses(
     result: &SweepResult,
     name: &str,
@@ -247,9 +246,9 @@ fn write_poses(
     clock: Option<&ProgressReporter<'_>>,
 ) -> Result<bool, SweepFileError> {
     let mut file = PoseFile::new(name, &result.grid, existing)?;
-    // A disk that is full ends the work, but is no wish to stop.
+    // A full disk ends the work, too, but is reported as an error.
     let full = AtomicBool::new(false);
-    let progress = |poses: u64| going(poses, stop, clock) && !full.load(Ordering::Relaxed);
+    let progress = |poses: u64| proceed(poses, stop, clock) && !full.load(Ordering::Relaxed);
     let mut take = |row: u64, ids: &[u32]| file.take(row, ids, &full);
     let sweep = Sweep::new(&result.grid).progress(&progress).rows(&mut take);
     let complete = sweep.run().complete();

@@ -124,7 +124,9 @@ fn command(line: &str) -> Result<ScriptCommand, String> {
         }
     };
     match word {
-        "Size" => size(rest).map(|(columns, rows)| ScriptCommand::Set(ScriptSetting::Size(columns, rows))),
+        "Size" => {
+            size(rest).map(|(columns, rows)| ScriptCommand::Set(ScriptSetting::Size(columns, rows)))
+        }
         "Resize" => size(rest).map(|(columns, rows)| ScriptCommand::Resize(columns, rows)),
         "Set" => setting::read(rest).map(ScriptCommand::Set),
         "Keys" => parse(rest)

@@ -103,7 +103,13 @@ impl TextStyle {
 }
 
 /// The paper where it differs, the blocks, then the text.
-fn draw(svg: &mut String, (column, row): (u16, u16), look: TextStyle, paper: [u8; 3], symbols: &[&str]) {
+fn draw(
+    svg: &mut String,
+    (column, row): (u16, u16),
+    look: TextStyle,
+    paper: [u8; 3],
+    symbols: &[&str],
+) {
     let (x, y) = (u32::from(column) * WIDTH, u32::from(row) * HEIGHT);
     let count = u32::try_from(symbols.len()).unwrap_or(u32::MAX);
     if look.paper != paper {

@@ -4,7 +4,7 @@
 //!
 //! ```
 //! use taxel::tui::app::state::Options;
-//! use taxel::tui::runtime::perform::World;
+//! use taxel::tui::runtime::World;
 //! use taxel::tui::script::Session;
 //! let mut session = Session::new(&Options::plain(true), World::scratch()?, 80, 24);
 //! session.keys("f<Enter>")?;
@@ -20,7 +20,7 @@ use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Options};
 use crate::tui::app::view::view;
 use crate::tui::keys::key::{Key, KeyError, parse};
-use crate::tui::runtime::perform::World;
+use crate::tui::runtime::World;
 use crate::tui::script::drawing;
 use crate::tui::widget::theme::letter;
 use crate::tui::widget::write;

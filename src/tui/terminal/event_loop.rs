@@ -14,9 +14,9 @@ use crate::tui::app::state::App;
 use crate::tui::app::view::view;
 use crate::tui::explore::message::WorkerEvent;
 use crate::tui::keys::action;
+use crate::tui::runtime::World;
 use crate::tui::runtime::effect::TerminalEffect;
 use crate::tui::runtime::mailbox::Mailbox;
-use crate::tui::runtime::perform::World;
 use crate::tui::terminal::device::{Device, WriteOutcome};
 use crate::tui::terminal::input::{Input, InputReader};
 use crate::tui::terminal::outcome::Outcome;
@@ -46,7 +46,9 @@ pub(in crate::tui) fn run(
     }));
     if !matches!(ended, Ok(Ok(Outcome::Quit))) {
         // The end comes from outside: what is not saved stays in the journal.
-        let _ = event_loop.world.handle(&mut event_loop.app, Message::Terminate);
+        let _ = event_loop
+            .world
+            .handle(&mut event_loop.app, Message::Terminate);
         event_loop.world.secure();
     }
     let left = session::leave();

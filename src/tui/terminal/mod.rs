@@ -49,7 +49,7 @@ pub use settings::TerminalSettings;
 
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
-use crate::tui::runtime::perform::World;
+use crate::tui::runtime::World;
 use input::Input;
 
 /// Runs the program until it ends. The terminal is left as it was, after an error, a signal and a panic too, and

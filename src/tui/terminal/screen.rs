@@ -9,7 +9,7 @@ use ratatui::backend::{Backend, ClearType, WindowSize};
 use ratatui::buffer::Cell;
 use ratatui::layout::{Position, Size};
 
-use crate::tui::terminal::pen::{PLAIN, CellStyle};
+use crate::tui::terminal::pen::{CellStyle, PLAIN};
 use crate::tui::terminal::settings::Abilities;
 use crate::tui::terminal::writer::{Run, Writer, columns, is_narrow};
 

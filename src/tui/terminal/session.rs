@@ -44,7 +44,11 @@ fn found() -> MutexGuard<'static, Option<SavedTerminal>> {
 
 /// Into raw mode, onto the second screen, the mouse as asked for. Inside already, all of it is said again: somebody
 /// may have changed it while the program was stopped.
-pub(in crate::tui) fn enter(device: &Device, settings: &TerminalSettings, mouse: bool) -> io::Result<()> {
+pub(in crate::tui) fn enter(
+    device: &Device,
+    settings: &TerminalSettings,
+    mouse: bool,
+) -> io::Result<()> {
     let mut held = found();
     if held.is_none() {
         // Before anything is changed, so that all is put right where the change fails half-way.

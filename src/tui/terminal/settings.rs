@@ -198,7 +198,11 @@ mod tests {
             assert_eq!(settings.kind, kind, "{name}");
             assert_eq!(settings.mouse, kind == TerminalKind::Window, "{name}");
             let abilities = settings.abilities;
-            assert_eq!(abilities.synchronized, kind == TerminalKind::Window, "{name}");
+            assert_eq!(
+                abilities.synchronized,
+                kind == TerminalKind::Window,
+                "{name}"
+            );
             assert_eq!(abilities.erases, kind >= TerminalKind::Console, "{name}");
             assert_eq!(kind.has_clipboard(), kind == TerminalKind::Window, "{name}");
             assert_eq!(settings.ascii, kind <= TerminalKind::Serial, "{name}");

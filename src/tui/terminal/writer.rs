@@ -13,7 +13,7 @@ use ratatui::buffer::Cell;
 use ratatui::layout::{Position, Size};
 use ratatui::text::Span;
 
-use crate::tui::terminal::pen::{PLAIN, CellStyle};
+use crate::tui::terminal::pen::{CellStyle, PLAIN};
 use crate::tui::terminal::settings::Abilities;
 
 /// Writes cells where they are not on the screen yet.

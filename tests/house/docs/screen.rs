@@ -9,7 +9,7 @@ use taxel::touch::Plane;
 use taxel::tui::app::state::Options;
 use taxel::tui::keys::key::{Key, parse};
 use taxel::tui::keys::keymap::Keymap;
-use taxel::tui::runtime::perform::World;
+use taxel::tui::runtime::World;
 use taxel::tui::script::runner::{ScriptOptions, ScriptOutput, run_shown};
 use taxel::tui::widget::theme::{ColorDepth, Palette, Theme};
 

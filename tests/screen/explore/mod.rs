@@ -11,7 +11,7 @@ use taxel::storage::Library;
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::app::state::Options;
 use taxel::tui::explore::message::WorkerEvent;
-use taxel::tui::runtime::perform::World;
+use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
 use crate::session::{press, session, shows};

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use taxel::storage::Library;
 use taxel::tui::app::document::Document;
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
-use taxel::tui::runtime::perform::World;
+use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
 use crate::session::{press, session, shows, started};

@@ -6,7 +6,7 @@ use std::sync::mpsc::channel;
 use taxel::storage::{Library, LibraryEntry, ShapeOrigin};
 use taxel::tui::app::message::Message;
 use taxel::tui::explore::message::WorkerEvent;
-use taxel::tui::runtime::perform::World;
+use taxel::tui::runtime::World;
 
 use super::session_on;
 use crate::session::press;

@@ -5,7 +5,7 @@ use std::time::Duration;
 use rustix::process::Signal;
 use taxel::storage::{Library, Orphan};
 use taxel::tui::app::state::{App, Options};
-use taxel::tui::runtime::perform::World;
+use taxel::tui::runtime::World;
 use taxel::tui::terminal;
 use taxel::tui::terminal::input::Input;
 use taxel::tui::terminal::settings::{Flags, TerminalSettings};

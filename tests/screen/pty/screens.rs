@@ -12,7 +12,7 @@ pub(crate) fn session(ascii: bool, size: (u16, u16)) -> Session {
 
 /// The same, started in another way.
 pub(crate) fn started(options: Options, size: (u16, u16)) -> Session {
-    let world = taxel::tui::runtime::perform::World::scratch().expect("a folder");
+    let world = taxel::tui::runtime::World::scratch().expect("a folder");
     Session::new(&options, world, size.0, size.1)
 }
 

@@ -14,7 +14,7 @@ use taxel::tui::keys::key::{Arrow, Key};
 use taxel::tui::keys::keymap::Keymap;
 use taxel::tui::prompt::command::read as read_command;
 use taxel::tui::prompt::commands::complete;
-use taxel::tui::runtime::perform::World;
+use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 use taxel::tui::script::command::{ScriptCommand, read};
 use taxel::tui::script::runner::{ScriptFailure, ScriptOptions, run};
@@ -126,8 +126,9 @@ pub(crate) fn play(bytes: &[u8]) {
         Err(error) => return is_short(&error.to_string()),
     };
     // A library that is named is one of the world outside.
-    let outside =
-        |(_, command): &(usize, ScriptCommand)| matches!(command, ScriptCommand::Set(ScriptSetting::Library(_)));
+    let outside = |(_, command): &(usize, ScriptCommand)| {
+        matches!(command, ScriptCommand::Set(ScriptSetting::Library(_)))
+    };
     if drawn(&commands) > MOST_DRAWN || commands.iter().any(outside) {
         return;
     }
@@ -158,7 +159,8 @@ fn drawn(commands: &[(usize, ScriptCommand)]) -> u64 {
     let mut all = 0;
     for (_, command) in commands {
         let times = match command {
-            ScriptCommand::Set(ScriptSetting::Size(columns, rows)) | ScriptCommand::Resize(columns, rows) => {
+            ScriptCommand::Set(ScriptSetting::Size(columns, rows))
+            | ScriptCommand::Resize(columns, rows) => {
                 cells = u64::from(*columns) * u64::from(*rows);
                 1
             }
