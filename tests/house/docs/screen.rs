@@ -60,9 +60,9 @@ pub(crate) fn svg() -> String {
     last_screen(FIGURE, "taxel: the imprint of a ring and its descriptors").1
 }
 
-/// The map of all imprints of a rectangle at one angle.
+/// The map of the imprints of a rectangle at 30 degrees.
 pub(crate) fn explore_svg() -> String {
-    let script = "Keys fr<Enter>e<Enter>4\nExpect /3,600,000 poses/\nScreen\n";
+    let script = "Keys fr<Enter>e<Enter>4)))\nExpect /3,600,000 poses/\nScreen\n";
     last_screen(script, "taxel: the map of the imprints of a rectangle").1
 }
 
