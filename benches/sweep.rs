@@ -103,10 +103,9 @@ fn sample(grid: &PoseGrid) -> impl Iterator<Item = Pose> + '_ {
 
 /// A source in each pose, made before the time is taken.
 fn placed(grid: &PoseGrid) -> Vec<Source> {
-    let side = grid.sensor().side();
     let set = |source: Source, parameter, value| {
         source
-            .with(parameter, value, side)
+            .with(parameter, value, grid.sensor())
             .expect("a value of the grid")
     };
     sample(grid)

@@ -30,7 +30,7 @@ fn figure(kind: FigureKind, values: &[(Parameter, f64)]) -> Figure {
         let given = values.iter().find(|(of, _)| *of == parameter);
         given.map(|&(_, value)| value)
     };
-    Figure::new(kind, 16, value).expect("a figure of the paper's range")
+    Figure::new(kind, &Sensor::default(), value).expect("a figure of the paper's range")
 }
 
 fn rectangle() -> Figure {

@@ -8,11 +8,7 @@
 
 use std::fmt::Write;
 
-use taxel::figure::{Figure, FigureKind};
-use taxel::pose::{Anchor, PoseGrid, Ranges};
-use taxel::sensor::Sensor;
-use taxel::source::Source;
-use taxel::sweep::{Sweep, SweepResult};
+use taxel::prelude::*;
 
 /// Those that describe the shape.
 const DESCRIBING: [&str; 8] = [
@@ -90,7 +86,7 @@ fn row(
 
 fn sweep(kind: FigureKind, ranges: Ranges) -> SweepResult {
     let sensor = Sensor::default();
-    let figure = Source::Figure(Figure::default_of(kind, sensor.side()));
+    let figure = Figure::default_of(kind, &sensor).into();
     let grid =
         PoseGrid::new(figure, sensor, Anchor::Corner, ranges).expect("the paper's positions");
     Sweep::new(&grid).run()

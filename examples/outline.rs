@@ -7,10 +7,8 @@
 
 use std::fmt::Write;
 
-use taxel::description::{Description, main_region, regions};
 use taxel::geometry::{Ellipse, Pen, Point, Polygon, Real, Side, Solid};
-use taxel::sensor::Sensor;
-use taxel::touch::Plane;
+use taxel::prelude::*;
 
 /// A plate bounded by a polygon, with a round hole; cell sides.
 struct Plate {

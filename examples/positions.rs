@@ -8,12 +8,7 @@
 
 use std::fmt::Write;
 
-use taxel::figure::{Figure, FigureKind};
-use taxel::parameter::Parameter;
-use taxel::pose::{Anchor, DecimalRange, PoseGrid, Ranges};
-use taxel::sensor::Sensor;
-use taxel::source::Source;
-use taxel::sweep::{Sweep, SweepResult};
+use taxel::prelude::*;
 
 /// What is gone through, the ranges of x0 and y0, and what the paper says of it.
 const EXPERIMENTS: [(&str, &str, &str, &str); 3] = [
@@ -51,16 +46,10 @@ pub(crate) fn report() -> String {
 
 fn sweep(x0: &str, y0: &str) -> SweepResult {
     let sensor = Sensor::default();
-    let ring = Figure::new(
-        FigureKind::Ellipse,
-        sensor.side(),
-        |parameter| match parameter {
-            Parameter::RadiusX | Parameter::RadiusY => Some(4.0),
-            Parameter::Thickness => Some(2.0),
-            _ => Some(0.0),
-        },
-    )
-    .expect("every value is in its range");
+    let ring = Figure::ellipse(4.0, 4.0)
+        .thickness(2.0)
+        .on(&sensor)
+        .expect("in range");
     let range = |text: &str| -> DecimalRange { text.parse().expect("a range") };
     let ranges = Ranges {
         x0: range(x0),
@@ -68,7 +57,7 @@ fn sweep(x0: &str, y0: &str) -> SweepResult {
         angle: range("0"),
         ..Ranges::default()
     };
-    let grid = PoseGrid::new(Source::Figure(ring), sensor, Anchor::Corner, ranges)
+    let grid = PoseGrid::new(ring.into(), sensor, Anchor::Corner, ranges)
         .expect("ranges of figures on the sensor");
     Sweep::new(&grid).run()
 }

@@ -4,12 +4,8 @@
 
 use std::fmt::Write;
 
-use taxel::description::{DESCRIPTORS, Description, regions};
-use taxel::figure::{Figure, FigureKind};
 use taxel::formats::value;
-use taxel::parameter::Parameter;
-use taxel::sensor::Sensor;
-use taxel::touch::Plane;
+use taxel::prelude::*;
 
 fn main() {
     print!("{}", report());
@@ -18,19 +14,11 @@ fn main() {
 /// The imprint, then each region with its descriptors.
 pub(crate) fn report() -> String {
     let sensor = Sensor::default();
-    let ring = Figure::new(
-        FigureKind::Ellipse,
-        sensor.side(),
-        |parameter| match parameter {
-            Parameter::RadiusX | Parameter::RadiusY => Some(4.0),
-            Parameter::X0 => Some(1.99),
-            Parameter::Y0 => Some(1.47),
-            Parameter::Angle => Some(0.0),
-            Parameter::Thickness => Some(2.0),
-            _ => None,
-        },
-    )
-    .expect("every value is in its range");
+    let ring = Figure::ellipse(4.0, 4.0)
+        .at(1.99, 1.47)
+        .thickness(2.0)
+        .on(&sensor)
+        .expect("in range");
     let imprint = Plane::new(sensor).touch(&ring);
 
     let mut text = format!("{imprint}\n");

@@ -1,14 +1,15 @@
 //! The seven figures of the paper, each solid or with one concentric hole of the same kind.
 //!
-//! A figure is given by its sizes, by the top left corner (`x0`, `y0`) of the bounding rectangle that it has before
-//! it is turned, by a clockwise angle about its centre, and by the thickness of its wall. Polygons stand on a
-//! horizontal side before they are turned; their centre is that of the circumscribed circle.
+//! A figure is given by its sizes, by the top left corner (`x0`, `y0`) of its bounding rectangle before rotation, by a
+//! clockwise angle about its centre, and by the thickness of its wall. Polygons stand on a horizontal side before
+//! rotation; their centre is that of the circumscribed circle.
 //! Source: Purcaru and Niculescu; the sense of rotation and the form of the hole are conventions of this project.
 
 use crate::geometry::{Ellipse, Extent, Pen, Point, Real, Side, Solid, Turn};
 use crate::parameter::{Parameter, ParameterError};
+use crate::sensor::Sensor;
 
-/// What is said of a thickness that leaves no room for a hole.
+/// The remark on a thickness that leaves no room for a hole.
 pub const NO_ROOM: &str = "no room for a hole: solid";
 
 /// The kinds of figure.
@@ -42,7 +43,7 @@ impl FigureKind {
         Self::Octagon,
     ];
 
-    /// Its name, in files, flags and on the screen.
+    /// Returns its name, in files, flags and on the screen.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ellipse => "ellipse",
@@ -55,33 +56,30 @@ impl FigureKind {
         }
     }
 
-    /// The kind of that name.
+    /// Returns the kind of this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
-    /// The parameters that give its size.
-    pub fn sizes(self) -> &'static [Parameter] {
+    /// Returns its parameters in the order of forms: its sizes, then position, angle and thickness. The thickness may
+    /// be absent.
+    pub fn parameters(self) -> &'static [Parameter] {
+        use Parameter::{Angle, Length, RadiusX, RadiusY, Side, Thickness, Width, X0, Y0};
         match self {
-            Self::Ellipse => &[Parameter::RadiusX, Parameter::RadiusY],
-            Self::Rectangle => &[Parameter::Length, Parameter::Width],
-            _ => &[Parameter::Side],
+            Self::Ellipse => &[RadiusX, RadiusY, X0, Y0, Angle, Thickness],
+            Self::Rectangle => &[Length, Width, X0, Y0, Angle, Thickness],
+            _ => &[Side, X0, Y0, Angle, Thickness],
         }
     }
 
-    /// All of its parameters, in the order of forms; the last one, the thickness, may be absent.
-    pub fn parameters(self) -> impl Iterator<Item = Parameter> {
-        let placement = [
-            Parameter::X0,
-            Parameter::Y0,
-            Parameter::Angle,
-            Parameter::Thickness,
-        ];
-        self.sizes().iter().copied().chain(placement)
+    /// Returns the parameters that give its size.
+    pub fn sizes(self) -> &'static [Parameter] {
+        let own = self.parameters();
+        &own[..own.len() - 4]
     }
 
-    /// Number of corners of a regular polygon; none of an ellipse or a rectangle.
-    fn corners(self) -> Option<i32> {
+    /// Number of corners of a regular polygon; None for an ellipse or a rectangle.
+    fn corners(self) -> Option<u8> {
         match self {
             Self::Ellipse | Self::Rectangle => None,
             Self::Triangle => Some(3),
@@ -95,23 +93,22 @@ impl FigureKind {
 
 /// A figure on the sensory plane. Its values are always finite, its sizes and its thickness above 0.
 ///
+/// A constructor for each kind starts a [`FigureBuilder`]; the sensor that the figure is placed on checks its values.
+///
 /// ```
-/// use taxel::figure::{Figure, FigureKind};
-/// use taxel::parameter::Parameter;
-/// let ring = Figure::new(FigureKind::Ellipse, 16, |parameter| match parameter {
-///     Parameter::RadiusX | Parameter::RadiusY => Some(4.0),
-///     Parameter::X0 => Some(1.99),
-///     Parameter::Y0 => Some(1.47),
-///     Parameter::Thickness => Some(2.0),
-///     _ => Some(0.0),
-/// })?;
+/// use taxel::prelude::*;
+/// let sensor = Sensor::default();
+/// let ring = Figure::ellipse(4.0, 4.0).at(1.99, 1.47).thickness(2.0).on(&sensor)?;
 /// assert_eq!(ring.to_string(), "ellipse rx 4.00 ry 4.00 at 1.99, 1.47, 0°, wall 2.00");
-/// # Ok::<(), taxel::parameter::ParameterError>(())
+///
+/// let error = Figure::hexagon(16.5).on(&sensor).unwrap_err();
+/// assert_eq!(error.to_string(), "side: 16.5 is out of range, expected above 0, up to 16");
+/// # Ok::<(), ParameterError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figure {
     kind: FigureKind,
-    /// The values of `kind.sizes()`; the second is unused where there is one only.
+    /// The values of `kind.sizes()`; the second is unused where there is only one.
     sizes: [f64; 2],
     x0: f64,
     y0: f64,
@@ -119,32 +116,119 @@ pub struct Figure {
     thickness: Option<f64>,
 }
 
-impl Figure {
-    /// A figure for a sensor whose larger side is `side`, its values asked for one by one.
-    ///
-    /// # Errors
-    /// The first value that is out of range, or missing (the thickness may be).
-    pub fn new(
-        kind: FigureKind,
-        side: u8,
-        mut value: impl FnMut(Parameter) -> Option<f64>,
-    ) -> Result<Self, ParameterError> {
-        let mut figure = Self {
+/// A figure whose values are not checked yet; [`Self::on`] checks them all.
+///
+/// Without [`Self::at`] its bounding rectangle starts at the sensor's top left corner; without [`Self::angle`] it is
+/// upright; without [`Self::thickness`] it is solid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use = "only `on` makes a figure of it"]
+pub struct FigureBuilder(Figure);
+
+impl FigureBuilder {
+    fn new(kind: FigureKind, sizes: [f64; 2]) -> Self {
+        Self(Figure {
             kind,
-            sizes: [1.0; 2],
+            sizes,
             x0: 0.0,
             y0: 0.0,
             angle: 0.0,
             thickness: None,
-        };
-        for parameter in kind.parameters() {
+        })
+    }
+
+    /// Places the top left corner of the bounding rectangle before rotation; cell sides.
+    pub fn at(self, x0: f64, y0: f64) -> Self {
+        Self(Figure { x0, y0, ..self.0 })
+    }
+
+    /// Turns the figure clockwise as seen about its centre; degrees, 0 to below 360.
+    pub fn angle(self, degrees: f64) -> Self {
+        Self(Figure {
+            angle: degrees,
+            ..self.0
+        })
+    }
+
+    /// Gives the figure a wall of this thickness around one concentric hole; cell sides. It stays solid where there is no
+    /// room for a hole.
+    pub fn thickness(self, wall: f64) -> Self {
+        Self(Figure {
+            thickness: Some(wall),
+            ..self.0
+        })
+    }
+
+    /// Returns the figure if its values are in range on a sensor.
+    ///
+    /// # Errors
+    /// The first value that is out of range; they are checked in the order of [`FigureKind::parameters`].
+    pub fn on(self, sensor: &Sensor) -> Result<Figure, ParameterError> {
+        for &parameter in self.0.kind.parameters() {
+            if let Some(value) = self.0.get(parameter) {
+                sensor.check(parameter, value)?;
+            }
+        }
+        Ok(self.0)
+    }
+}
+
+/// The seven kinds; sizes in cell sides.
+impl Figure {
+    /// Starts an ellipse with these radii along x and y, before rotation.
+    pub fn ellipse(radius_x: f64, radius_y: f64) -> FigureBuilder {
+        FigureBuilder::new(FigureKind::Ellipse, [radius_x, radius_y])
+    }
+
+    /// Starts a rectangle with these sides along x and y, before rotation.
+    pub fn rectangle(length: f64, width: f64) -> FigureBuilder {
+        FigureBuilder::new(FigureKind::Rectangle, [length, width])
+    }
+
+    /// Starts an equilateral triangle with this side.
+    pub fn triangle(side: f64) -> FigureBuilder {
+        FigureBuilder::new(FigureKind::Triangle, [side, 1.0])
+    }
+
+    /// Starts a regular pentagon with this side.
+    pub fn pentagon(side: f64) -> FigureBuilder {
+        FigureBuilder::new(FigureKind::Pentagon, [side, 1.0])
+    }
+
+    /// Starts a regular hexagon with this side.
+    pub fn hexagon(side: f64) -> FigureBuilder {
+        FigureBuilder::new(FigureKind::Hexagon, [side, 1.0])
+    }
+
+    /// Starts a regular heptagon with this side.
+    pub fn heptagon(side: f64) -> FigureBuilder {
+        FigureBuilder::new(FigureKind::Heptagon, [side, 1.0])
+    }
+
+    /// Starts a regular octagon with this side.
+    pub fn octagon(side: f64) -> FigureBuilder {
+        FigureBuilder::new(FigureKind::Octagon, [side, 1.0])
+    }
+}
+
+impl Figure {
+    /// Creates a figure from the values that `value` returns for the parameters of its kind, in range on a sensor.
+    ///
+    /// # Errors
+    /// The first value that is out of range, or missing; only the thickness may be.
+    pub fn new(
+        kind: FigureKind,
+        sensor: &Sensor,
+        mut value: impl FnMut(Parameter) -> Option<f64>,
+    ) -> Result<Self, ParameterError> {
+        let mut figure = FigureBuilder::new(kind, [1.0; 2]).0;
+        for &parameter in kind.parameters() {
             match value(parameter) {
-                Some(value) => figure = figure.with(parameter, value, side)?,
+                Some(value) => figure = figure.with(parameter, value, sensor)?,
                 None if parameter == Parameter::Thickness => {}
                 None => {
                     return Err(ParameterError::Missing {
                         parameter,
-                        range: parameter.range(side),
+                        range: sensor.range(parameter),
                     });
                 }
             }
@@ -152,90 +236,97 @@ impl Figure {
         Ok(figure)
     }
 
-    /// The figure that a new form shows: every parameter at its default, solid; on a sensor whose larger side is `side`,
-    /// 1 to 64. On a small one it begins further up and to the left, in whole cells, so that as much as fits is there.
-    pub fn default_of(kind: FigureKind, side: u8) -> Self {
-        let default = |parameter: Parameter| parameter.default(side);
-        let size = |index: usize| {
-            kind.sizes()
-                .get(index)
-                .map_or(1.0, |&parameter| default(parameter))
-        };
-        let at_origin = Self {
-            kind,
-            sizes: [size(0), size(1)],
-            x0: 0.0,
-            y0: 0.0,
-            angle: default(Parameter::Angle),
-            thickness: None,
-        };
-        let room = |end: f64| (f64::from(side) - end).floor().max(0.0);
+    /// Returns the figure that a new form shows: solid, every other parameter at its default. On a small sensor it lies
+    /// further up and to the left, by whole cells, so that as much of it as possible is on the sensor.
+    pub fn default_of(kind: FigureKind, sensor: &Sensor) -> Self {
+        let mut sizes = [1.0; 2];
+        for (size, &parameter) in sizes.iter_mut().zip(kind.sizes()) {
+            *size = sensor.default_value(parameter);
+        }
+        let at_origin = FigureBuilder::new(kind, sizes).0;
+        let room = |end: f64| (f64::from(sensor.side()) - end).floor().max(0.0);
         let (right, bottom) =
             Extent::of(&at_origin).map_or((0.0, 0.0), |extent| (extent.right, extent.bottom));
         Self {
-            x0: default(Parameter::X0).min(room(right)),
-            y0: default(Parameter::Y0).min(room(bottom)),
+            x0: sensor.default_value(Parameter::X0).min(room(right)),
+            y0: sensor.default_value(Parameter::Y0).min(room(bottom)),
             ..at_origin
         }
     }
 
-    /// The same figure with one value changed; `value` in the parameter's unit. Unchanged by a parameter that it does not have,
-    /// whose value is checked all the same.
+    /// Returns the same figure with one value changed; `value` in the parameter's unit.
+    ///
+    /// ```
+    /// use taxel::prelude::*;
+    /// let sensor = Sensor::default();
+    /// let hexagon = Figure::default_of(FigureKind::Hexagon, &sensor);
+    /// assert_eq!(hexagon.with(Parameter::Side, 2.5, &sensor)?, Figure::hexagon(2.5).at(4.0, 4.0).on(&sensor)?);
+    ///
+    /// let error = hexagon.with(Parameter::RadiusX, 2.5, &sensor).unwrap_err();
+    /// assert_eq!(
+    ///     error.to_string(),
+    ///     "radius_x: a parameter that the hexagon does not have, expected side, x0, y0, angle or thickness"
+    /// );
+    /// # Ok::<(), ParameterError>(())
+    /// ```
     ///
     /// # Errors
-    /// Where the value is out of range on a sensor whose larger side is `side`.
+    /// If the value is out of range on the sensor, or the figure does not have the parameter.
     pub fn with(
         mut self,
         parameter: Parameter,
         value: f64,
-        side: u8,
+        sensor: &Sensor,
     ) -> Result<Self, ParameterError> {
-        let value = parameter.check(value, side)?;
-        match parameter {
-            Parameter::X0 => self.x0 = value,
-            Parameter::Y0 => self.y0 = value,
-            Parameter::Angle => self.angle = value,
-            Parameter::Thickness => self.thickness = Some(value),
-            size => {
-                if let Some(index) = self.kind.sizes().iter().position(|&own| own == size) {
-                    self.sizes[index] = value;
-                }
+        let slot = match parameter {
+            Parameter::X0 => Some(&mut self.x0),
+            Parameter::Y0 => Some(&mut self.y0),
+            Parameter::Angle => Some(&mut self.angle),
+            Parameter::Thickness => Some(self.thickness.get_or_insert(value)),
+            _ => {
+                let mut sizes = self.kind.sizes().iter().zip(&mut self.sizes);
+                sizes.find_map(|(&own, size)| (own == parameter).then_some(size))
             }
-        }
+        };
+        let Some(slot) = slot else {
+            return Err(ParameterError::Foreign {
+                parameter,
+                owner: self.kind.name(),
+                expected: self.kind.parameters(),
+            });
+        };
+        *slot = sensor.check(parameter, value)?;
         Ok(self)
     }
 
-    /// Which kind of figure it is.
+    /// Returns its kind.
     pub fn kind(&self) -> FigureKind {
         self.kind
     }
 
-    /// One of its values; none of a parameter that it does not have, and of the thickness of a solid figure.
+    /// Returns one of its values; None for a parameter that it does not have, and for the thickness of a solid figure.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
         match parameter {
             Parameter::X0 => Some(self.x0),
             Parameter::Y0 => Some(self.y0),
             Parameter::Angle => Some(self.angle),
             Parameter::Thickness => self.thickness,
-            size => self
-                .kind
-                .sizes()
-                .iter()
-                .position(|&own| own == size)
-                .map(|index| self.sizes[index]),
+            _ => {
+                let mut sizes = self.kind.sizes().iter().zip(self.sizes);
+                sizes.find_map(|(&own, size)| (own == parameter).then_some(size))
+            }
         }
     }
 
-    /// Whether it has a hole: it has a thickness, and that leaves room for one.
+    /// Whether it has a hole: a thickness that leaves room for one.
     ///
     /// ```
-    /// use taxel::figure::{Figure, FigureKind};
-    /// use taxel::parameter::Parameter;
-    /// let square = Figure::default_of(FigureKind::Rectangle, 16).with(Parameter::Width, 6.0, 16)?;
-    /// assert!(!square.has_hole());
-    /// assert!(square.with(Parameter::Thickness, 2.99, 16)?.has_hole());
-    /// assert!(!square.with(Parameter::Thickness, 3.0, 16)?.has_hole());
-    /// # Ok::<(), taxel::parameter::ParameterError>(())
+    /// use taxel::prelude::*;
+    /// let (square, sensor) = (Figure::rectangle(6.0, 6.0), Sensor::default());
+    /// assert!(!square.on(&sensor)?.has_hole());
+    /// assert!(square.thickness(2.99).on(&sensor)?.has_hole());
+    /// assert!(!square.thickness(3.0).on(&sensor)?.has_hole());
+    /// # Ok::<(), ParameterError>(())
     /// ```
     pub fn has_hole(&self) -> bool {
         let mut pen = HolePen(false);
@@ -243,7 +334,7 @@ impl Figure {
         pen.0
     }
 
-    /// Draws an ellipse or a rectangle, given half of its extent, about the centre; a hole is smaller by the wall.
+    /// Draws an ellipse or a rectangle from half of its extent; the extent of a hole is smaller by the wall.
     fn draw_round_or_square<T: Real>(&self, half: Point<T>, pen: &mut impl Pen<T>) {
         let centre = Point::new(T::decimal(self.x0), T::decimal(self.y0)).moved(half);
         let turn = Turn::clockwise(T::decimal(self.angle));
@@ -284,13 +375,13 @@ impl Figure {
     }
 
     /// Draws a regular polygon; a hole is the same polygon about the same centre, its inradius smaller by the wall.
-    fn draw_regular<T: Real>(&self, corners: i32, pen: &mut impl Pen<T>) {
-        let (sin, cos) = (T::whole(180) / T::whole(corners)).sin_cos_degrees();
+    fn draw_regular<T: Real>(&self, corners: u8, pen: &mut impl Pen<T>) {
+        let (sin, cos) = (T::whole(180) / T::whole(corners.into())).sin_cos_degrees();
         let half_side = T::decimal(self.sizes[0]) * T::HALF;
         let inradius = half_side * cos / sin;
-        // From the middle of the bottom side: half a side to the left, then a corner after another, clockwise.
+        // The corners about the centre, clockwise from the left end of the bottom side.
         let mut ring = [Point::new(T::ZERO, T::ZERO); 8];
-        let ring = &mut ring[..usize::try_from(corners).unwrap_or(0)];
+        let ring = &mut ring[..usize::from(corners)];
         let (step_sin, step_cos) = (T::whole(2) * sin * cos, T::ONE - T::whole(2) * sin * sin);
         let mut corner = Point::new(-half_side, inradius);
         let (mut left, mut top) = (corner.x, corner.y);
@@ -337,7 +428,7 @@ impl Solid for Figure {
     }
 }
 
-/// Draws nothing and remembers whether there was a hole: so the rule for one is that of drawing.
+/// Records whether a hole is drawn, so that [`Figure::has_hole`] follows the rule of drawing.
 struct HolePen(bool);
 
 impl Pen<f64> for HolePen {
@@ -353,7 +444,7 @@ impl Pen<f64> for HolePen {
 }
 
 impl std::fmt::Display for Figure {
-    /// What made the imprint, in one line.
+    /// A summary in one line.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{}", self.kind.name())?;
         for (&parameter, size) in self.kind.sizes().iter().zip(self.sizes) {
@@ -382,12 +473,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_new_figure_lies_on_the_sensor_whatever_its_size() {
-        for side in 0..=64 {
+    fn a_new_figure_lies_on_a_sensor_of_any_size() {
+        for side in 1..=64 {
             for kind in FigureKind::ALL {
-                let figure = Figure::default_of(kind, side);
+                let sensor = Sensor::new(side, side).expect("in range");
+                let figure = Figure::default_of(kind, &sensor);
                 let extent = Extent::of(&figure).expect("it has a boundary");
-                let side = f64::from(side.max(1));
+                let side = f64::from(side);
                 assert!(extent.left >= 0.0 && extent.left + 0.5 < side, "{figure}");
                 assert!(extent.top >= 0.0 && extent.top + 0.5 < side, "{figure}");
                 // Wholly, wherever there is room for it.

@@ -6,18 +6,12 @@
 //! in a library of files. The program of the same name is a screen and a command line over it.
 //!
 //! ```
-//! use taxel::description::{Description, main_region, regions};
-//! use taxel::figure::{Figure, FigureKind};
-//! use taxel::parameter::Parameter;
-//! use taxel::sensor::Sensor;
-//! use taxel::touch::Plane;
+//! use taxel::prelude::*;
 //!
-//! // The paper's Fig. 1: an ellipse with radii of 4, a wall of 2.
-//! let figure = Figure::default_of(FigureKind::Ellipse, 16)
-//!     .with(Parameter::X0, 1.99, 16)?
-//!     .with(Parameter::Y0, 1.47, 16)?
-//!     .with(Parameter::Thickness, 2.0, 16)?;
-//! let imprint = Plane::new(Sensor::default()).touch(&figure);
+//! // The paper's Fig. 1: an ellipse with radii of 4 and a wall of 2.
+//! let sensor = Sensor::default();
+//! let figure = Figure::ellipse(4.0, 4.0).at(1.99, 1.47).thickness(2.0).on(&sensor)?;
+//! let imprint = Plane::new(sensor).touch(&figure);
 //! assert_eq!(imprint.count(), 36);
 //!
 //! let regions = regions(&imprint);
@@ -25,7 +19,7 @@
 //! let ring = Description::of(&regions[main]);
 //! assert_eq!((ring.na, ring.nae, ring.ce), (36, 48, 22));
 //! assert_eq!(ring.cg(), ring.cd());
-//! # Ok::<(), taxel::parameter::ParameterError>(())
+//! # Ok::<(), ParameterError>(())
 //! ```
 //!
 //! # Frame and units
@@ -135,6 +129,8 @@ pub mod atlas;
 
 #[cfg(feature = "sweep")]
 pub mod sweep;
+
+pub mod prelude;
 
 pub mod formats;
 

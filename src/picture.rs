@@ -3,7 +3,7 @@
 //! Its active taxels are unit squares, and their union is the shape. The top left corner of its bounding rectangle
 //! goes to (`x0`, `y0`); then everything, that position included, is scaled about the origin of the plane; then it is
 //! turned **counter-clockwise** as seen about the centre of its scaled bounding rectangle. Angle 0 and zoom 1 at its
-//! own corner give the same imprint again. Source: the paper's option Picture; its order is a convention of this
+//! own corner give the same imprint again. Source: the paper's option Picture; the order is a convention of this
 //! project.
 
 use std::sync::Arc;
@@ -11,6 +11,7 @@ use std::sync::Arc;
 use crate::geometry::{Pen, Point, Real, Solid, Turn};
 use crate::imprint::Imprint;
 use crate::parameter::{Parameter, ParameterError};
+use crate::sensor::Sensor;
 
 /// The parameters of a picture, in the order of forms.
 pub const PICTURE_PARAMETERS: [Parameter; 5] = [
@@ -23,11 +24,22 @@ pub const PICTURE_PARAMETERS: [Parameter; 5] = [
 
 /// A stored imprint and where it goes. Its values are always finite, its zooms above 0.
 ///
-/// It may know the name that its imprint is stored under. That is a remark: it is shown, but neither compared nor
-/// written to files.
+/// It may carry the name that its imprint is stored under, which is displayed, but neither compared nor written to
+/// files.
+///
+/// ```
+/// use taxel::prelude::*;
+/// let sensor = Sensor::default();
+/// let bar: Imprint = "###".parse().expect("a row of taxels");
+/// let turned = Picture::of(bar).at(5.0, 5.0).angle(90.0).on(&sensor)?;
+/// let bounds = Plane::new(sensor).touch(&turned).bounds().expect("some are active");
+/// assert_eq!((bounds.columns(), bounds.rows()), (6..7, 4..7));
+/// # Ok::<(), ParameterError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Picture {
     imprint: Imprint,
+    /// The values of [`PICTURE_PARAMETERS`].
     values: [f64; PICTURE_PARAMETERS.len()],
     /// Shared, so that a picture is moved about without allocating.
     name: Option<Arc<str>>,
@@ -39,8 +51,51 @@ impl PartialEq for Picture {
     }
 }
 
+/// A picture whose values are not checked yet; [`Self::on`] checks them all.
+///
+/// At first its imprint lies where it is: its own corner, angle 0, zoom 1.
+#[derive(Clone, Debug)]
+#[must_use = "only `on` makes a picture of it"]
+pub struct PictureBuilder(Picture);
+
+impl PictureBuilder {
+    /// Places the top left corner of the imprint's bounding rectangle, before zoom and rotation; cell sides.
+    pub fn at(mut self, x0: f64, y0: f64) -> Self {
+        [self.0.values[0], self.0.values[1]] = [x0, y0];
+        self
+    }
+
+    /// Turns the picture counter-clockwise as seen about its centre; degrees, 0 to below 360.
+    pub fn angle(mut self, degrees: f64) -> Self {
+        self.0.values[2] = degrees;
+        self
+    }
+
+    /// Scales the picture and its position along x and y.
+    pub fn zoom(mut self, x: f64, y: f64) -> Self {
+        [self.0.values[3], self.0.values[4]] = [x, y];
+        self
+    }
+
+    /// Returns the picture if its values are in range on a sensor.
+    ///
+    /// # Errors
+    /// The first value that is out of range; they are checked in the order of [`PICTURE_PARAMETERS`].
+    pub fn on(self, sensor: &Sensor) -> Result<Picture, ParameterError> {
+        for (parameter, value) in PICTURE_PARAMETERS.into_iter().zip(self.0.values) {
+            sensor.check(parameter, value)?;
+        }
+        Ok(self.0)
+    }
+}
+
 impl Picture {
-    /// The imprint where it is: its own corner, angle 0, zoom 1.
+    /// Starts a picture of this imprint.
+    pub fn of(imprint: Imprint) -> PictureBuilder {
+        PictureBuilder(Self::at_home(imprint))
+    }
+
+    /// Returns the imprint where it is: its own corner, angle 0, zoom 1.
     pub fn at_home(imprint: Imprint) -> Self {
         let (left, top) = imprint
             .bounds()
@@ -52,7 +107,7 @@ impl Picture {
         }
     }
 
-    /// The same picture with the name that its imprint is stored under.
+    /// Returns the same picture with the name that its imprint is stored under.
     #[must_use]
     pub fn named(self, name: &str) -> Self {
         Self {
@@ -61,45 +116,48 @@ impl Picture {
         }
     }
 
-    /// A picture for a sensor whose larger side is `side`, its values asked for one by one.
+    /// Creates a picture from the values that `value` returns for [`PICTURE_PARAMETERS`], in range on a sensor.
     ///
     /// # Errors
     /// The first value that is missing or out of range.
     pub fn new(
         imprint: Imprint,
-        side: u8,
+        sensor: &Sensor,
         mut value: impl FnMut(Parameter) -> Option<f64>,
     ) -> Result<Self, ParameterError> {
         let mut picture = Self::at_home(imprint);
-        for parameter in PICTURE_PARAMETERS {
+        for (parameter, slot) in PICTURE_PARAMETERS.into_iter().zip(&mut picture.values) {
             let missing = ParameterError::Missing {
                 parameter,
-                range: parameter.range(side),
+                range: sensor.range(parameter),
             };
-            picture = picture.with(parameter, value(parameter).ok_or(missing)?, side)?;
+            *slot = sensor.check(parameter, value(parameter).ok_or(missing)?)?;
         }
         Ok(picture)
     }
 
-    /// The same picture with one value changed; `value` in the parameter's unit. Unchanged by a parameter that it does not have,
-    /// whose value is checked all the same.
+    /// Returns the same picture with one value changed; `value` in the parameter's unit.
     ///
     /// # Errors
-    /// Where the value is out of range on a sensor whose larger side is `side`.
+    /// If the value is out of range on the sensor, or the parameter is not one of [`PICTURE_PARAMETERS`].
     pub fn with(
         mut self,
         parameter: Parameter,
         value: f64,
-        side: u8,
+        sensor: &Sensor,
     ) -> Result<Self, ParameterError> {
-        let value = parameter.check(value, side)?;
-        if let Some(index) = PICTURE_PARAMETERS.iter().position(|&own| own == parameter) {
-            self.values[index] = value;
-        }
+        let Some(index) = PICTURE_PARAMETERS.iter().position(|&own| own == parameter) else {
+            return Err(ParameterError::Foreign {
+                parameter,
+                owner: "picture",
+                expected: &PICTURE_PARAMETERS,
+            });
+        };
+        self.values[index] = sensor.check(parameter, value)?;
         Ok(self)
     }
 
-    /// One of its values; none of a parameter that it does not have.
+    /// Returns one of its values; None for a parameter that it does not have.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
         PICTURE_PARAMETERS
             .iter()
@@ -107,7 +165,7 @@ impl Picture {
             .map(|index| self.values[index])
     }
 
-    /// The imprint that is moved.
+    /// Returns the imprint that is moved.
     pub fn imprint(&self) -> &Imprint {
         &self.imprint
     }
@@ -126,7 +184,7 @@ impl Solid for Picture {
             size(bounds.top, bounds.bottom) * T::HALF * zoom_y,
         );
         let centre = Point::new(x0 * zoom_x, y0 * zoom_y).moved(half);
-        let place = |column: u8, row: u8| {
+        let corner = |column: u8, row: u8| {
             let x = size(bounds.left, column) * zoom_x - half.x;
             let y = size(bounds.top, row) * zoom_y - half.y;
             centre.moved(turn.of(Point::new(x, y)))
@@ -142,10 +200,10 @@ impl Solid for Picture {
         for row in bounds.top..=bounds.bottom {
             let (above, below) = (*word(i32::from(row) - 1), *word(i32::from(row)));
             for (left, right) in runs(below & !above) {
-                pen.edge(place(left, row), place(right, row));
+                pen.edge(corner(left, row), corner(right, row));
             }
             for (left, right) in runs(above & !below) {
-                pen.edge(place(right, row), place(left, row));
+                pen.edge(corner(right, row), corner(left, row));
             }
         }
         for column in bounds.left..=bounds.right {
@@ -154,16 +212,16 @@ impl Solid for Picture {
             // Column −1 wraps to 255, where no taxel is.
             let (before, after) = (line(column.wrapping_sub(1)), line(column));
             for (top, bottom) in runs(after & !before) {
-                pen.edge(place(column, bottom), place(column, top));
+                pen.edge(corner(column, bottom), corner(column, top));
             }
             for (top, bottom) in runs(before & !after) {
-                pen.edge(place(column, top), place(column, bottom));
+                pen.edge(corner(column, top), corner(column, bottom));
             }
         }
     }
 }
 
-/// The runs of ones in a word, each by its first bit and the one past its last.
+/// Iterates over the runs of ones in a word: the first bit of each and the one past its last.
 fn runs(mut word: u64) -> impl Iterator<Item = (u8, u8)> {
     std::iter::from_fn(move || {
         if word == 0 {
@@ -171,13 +229,13 @@ fn runs(mut word: u64) -> impl Iterator<Item = (u8, u8)> {
         }
         let first = word.trailing_zeros();
         let end = first + (word >> first).trailing_ones();
-        word &= u64::MAX.checked_shl(end).unwrap_or(0);
+        word &= u64::MAX.unbounded_shl(end);
         Some((u8::try_from(first).ok()?, u8::try_from(end).ok()?))
     })
 }
 
 impl std::fmt::Display for Picture {
-    /// Where the picture was put, in one line.
+    /// A summary in one line.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let text = |index: usize| PICTURE_PARAMETERS[index].format(self.values[index]);
         f.write_str("picture")?;

@@ -1,6 +1,11 @@
-//! The tactile matrix sensor: so many columns and rows of square cells, a threshold, a pitch.
+//! The tactile matrix sensor: its columns and rows of square cells, its threshold, its pitch, and the values that it
+//! allows.
+//!
+//! The ranges of a figure's lengths and positions scale with the larger side of the sensor, so it is the sensor that
+//! checks, reads and steps values: `sensor.check(Parameter::X0, 1.99)`.
 
-use crate::parameter::{Parameter, ParameterError};
+use crate::parameter::{Parameter, ParameterError, Range, Unit, number};
+use crate::quote::shortened;
 
 /// The largest number of columns, and of rows.
 pub const MAX_SIDE: u8 = 64;
@@ -15,6 +20,15 @@ pub const SENSOR_PARAMETERS: [Parameter; 4] = [
 
 /// A sensor. Its values are always in range: columns and rows 1 to 64, threshold in (0, 1],
 /// pitch above 0, up to 1000 mm.
+///
+/// ```
+/// use taxel::prelude::*;
+/// let sensor = Sensor::new(12, 8)?.with(Parameter::Threshold, 0.7)?;
+/// assert_eq!((sensor.columns(), sensor.rows(), sensor.threshold()), (12, 8, 0.7));
+/// let error = sensor.check(Parameter::X0, 12.5).unwrap_err();
+/// assert_eq!(error.to_string(), "x0: 12.5 is out of range, expected -12 to 12");
+/// # Ok::<(), ParameterError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
     columns: u8,
@@ -24,7 +38,7 @@ pub struct Sensor {
 }
 
 impl Default for Sensor {
-    /// The paper's: 16 × 16 taxels, active from one half on; cells of 1 mm.
+    /// The paper's sensor: 16 × 16 taxels, threshold one half, cells of 1 mm.
     fn default() -> Self {
         Self {
             columns: 16,
@@ -36,39 +50,52 @@ impl Default for Sensor {
 }
 
 impl Sensor {
-    /// A sensor of `columns × rows` taxels, otherwise as the default one.
+    /// The largest sensor, 64 × 64: it allows every value that some sensor allows.
+    pub const LARGEST: Self = Self {
+        columns: MAX_SIDE,
+        rows: MAX_SIDE,
+        threshold: 0.5,
+        pitch_mm: 1.0,
+    };
+
+    /// Creates a sensor of `columns × rows` taxels, with the threshold and pitch of the default one.
     ///
     /// # Errors
-    /// Where a number is not from 1 to [`MAX_SIDE`].
+    /// If a number is not from 1 to [`MAX_SIDE`].
     pub fn new(columns: u8, rows: u8) -> Result<Self, ParameterError> {
         Self::default()
             .with(Parameter::Columns, columns.into())?
             .with(Parameter::Rows, rows.into())
     }
 
-    /// The same sensor with one of [`SENSOR_PARAMETERS`] set; `value` in the parameter's unit. Unchanged by any other,
-    /// whose value is checked all the same.
+    /// Returns the same sensor with one of [`SENSOR_PARAMETERS`] changed; `value` in the parameter's unit.
     ///
     /// # Errors
-    /// Where the value is out of the parameter's range.
+    /// If the value is out of range, or the parameter is not one of a sensor.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "checked: a whole number, 1 to 64"
     )]
     pub fn with(mut self, parameter: Parameter, value: f64) -> Result<Self, ParameterError> {
-        let value = parameter.check(value, MAX_SIDE)?;
+        let value = self.check(parameter, value)?;
         match parameter {
             Parameter::Columns => self.columns = value as u8,
             Parameter::Rows => self.rows = value as u8,
             Parameter::Threshold => self.threshold = value,
             Parameter::Pitch => self.pitch_mm = value,
-            _ => {}
+            _ => {
+                return Err(ParameterError::Foreign {
+                    parameter,
+                    owner: "sensor",
+                    expected: &SENSOR_PARAMETERS,
+                });
+            }
         }
         Ok(self)
     }
 
-    /// One of its values; none of a parameter that it does not have.
+    /// Returns one of its values; None for a parameter that a sensor does not have.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
         match parameter {
             Parameter::Columns => Some(f64::from(self.columns)),
@@ -89,7 +116,7 @@ impl Sensor {
         self.rows
     }
 
-    /// The larger of the two, which bounds the parameters of figures.
+    /// The larger of the two, which bounds the lengths and positions of figures.
     pub fn side(&self) -> u8 {
         self.columns.max(self.rows)
     }
@@ -102,5 +129,163 @@ impl Sensor {
     /// The side of a cell, in mm.
     pub fn pitch_mm(&self) -> f64 {
         self.pitch_mm
+    }
+}
+
+/// The values that a sensor allows.
+impl Sensor {
+    /// Returns what files and flags may set a parameter to.
+    pub fn range(&self, parameter: Parameter) -> Range {
+        parameter.row().range(self.side())
+    }
+
+    /// Returns what forms may set a parameter to; never more than [`Self::range`].
+    pub fn form_range(&self, parameter: Parameter) -> Range {
+        parameter.row().form_range(self.side())
+    }
+
+    /// Returns the value in a new form: the parameter's default, or the larger side of a sensor that is too small for it.
+    pub fn default_value(&self, parameter: Parameter) -> f64 {
+        let default = parameter.row().default;
+        if self.range(parameter).contains(default) {
+            default
+        } else {
+            f64::from(self.side())
+        }
+    }
+
+    /// Returns `value` if files and flags may set the parameter to it.
+    ///
+    /// # Errors
+    /// [`ParameterError::Range`], also for NaN and the infinities.
+    pub fn check(&self, parameter: Parameter, value: f64) -> Result<f64, ParameterError> {
+        let range = self.range(parameter);
+        let whole = parameter.row().unit != Unit::Taxels || value.fract() == 0.0;
+        if range.contains(value) && whole {
+            Ok(value)
+        } else {
+            Err(ParameterError::Range {
+                parameter,
+                value,
+                range,
+            })
+        }
+    }
+
+    /// Reads a value from the text of a flag.
+    ///
+    /// # Errors
+    /// [`ParameterError::Number`] or [`ParameterError::Range`].
+    pub fn read(&self, parameter: Parameter, text: &str) -> Result<f64, ParameterError> {
+        let value = number::read(text).ok_or_else(|| not_a_number(parameter, text))?;
+        self.check(parameter, value)
+    }
+
+    /// Reads a value from the text of a form's field, with the paper's decimals.
+    ///
+    /// # Errors
+    /// [`ParameterError::Number`], [`ParameterError::Range`] or [`ParameterError::Decimals`].
+    pub fn read_form(&self, parameter: Parameter, text: &str) -> Result<f64, ParameterError> {
+        let text = text.trim();
+        // No exponents, no plus: a field shows its number as it was typed.
+        let plain = text
+            .bytes()
+            .all(|byte| byte.is_ascii_digit() || matches!(byte, b'.' | b'-'));
+        let value = number::read(text)
+            .filter(|_| plain)
+            .ok_or_else(|| not_a_number(parameter, text))?;
+        let range = self.form_range(parameter);
+        if !range.contains(value) {
+            return Err(ParameterError::Range {
+                parameter,
+                value,
+                range,
+            });
+        }
+        let given = text
+            .split_once('.')
+            .map_or(0, |(_, fraction)| fraction.trim_end_matches('0').len());
+        let allowed = parameter.decimals_at(value);
+        if given > usize::from(allowed) {
+            return Err(ParameterError::Decimals {
+                parameter,
+                value,
+                allowed,
+            });
+        }
+        Ok(value)
+    }
+
+    /// Returns the next value that a form accepts, `direction` last decimals away. Angles wrap around, other parameters
+    /// stop at the ends of their range.
+    pub fn step(&self, parameter: Parameter, value: f64, direction: i32) -> f64 {
+        // From ten up the steps are tenths, from ten down hundredths.
+        let towards = if direction < 0 { value - 0.01 } else { value };
+        let scale = 10_f64.powi(parameter.decimals_at(towards).into());
+        // A number with more decimals lies between two that a form accepts; one that it accepts may be off by a rounding
+        // when it is counted in its last decimals.
+        let places = value * scale;
+        let stepped = match direction {
+            1.. => (places + 1e-6).floor() + 1.0,
+            0 => places.round(),
+            _ => (places - 1e-6).ceil() - 1.0,
+        } / scale;
+        if parameter == Parameter::Angle {
+            return stepped.rem_euclid(360.0);
+        }
+        self.form_range(parameter).nearest(stepped, 1.0 / scale)
+    }
+}
+
+fn not_a_number(parameter: Parameter, text: &str) -> ParameterError {
+    ParameterError::Number {
+        parameter,
+        text: shortened(text),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_lead_to_the_next_number_that_a_form_accepts() {
+        let sensor = Sensor::default();
+        for (parameter, value, up, down) in [
+            (Parameter::X0, 1.236, 1.24, 1.23),
+            (Parameter::X0, 1.234, 1.24, 1.23),
+            (Parameter::X0, 1.24, 1.25, 1.23),
+            (Parameter::X0, 0.29, 0.3, 0.28),
+            (Parameter::X0, 9.995, 10.0, 9.99),
+            (Parameter::X0, 10.0, 10.1, 9.99),
+            (Parameter::X0, 10.05, 10.1, 10.0),
+            (Parameter::X0, 16.0, 16.0, 15.9),
+            (Parameter::Side, 0.004, 0.01, 0.01),
+            (Parameter::Angle, 17.5, 18.0, 17.0),
+            (Parameter::Angle, 359.5, 0.0, 359.0),
+            (Parameter::Angle, 0.0, 1.0, 359.0),
+        ] {
+            assert_eq!(
+                sensor.step(parameter, value, 1),
+                up,
+                "{parameter:?} {value}"
+            );
+            assert_eq!(
+                sensor.step(parameter, value, -1),
+                down,
+                "{parameter:?} {value}"
+            );
+        }
+        assert_eq!(sensor.step(Parameter::X0, 1.236, 0), 1.24);
+    }
+
+    #[test]
+    fn a_parameter_of_something_else_is_an_error() {
+        let error = Sensor::default().with(Parameter::X0, 1.0).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "x0: a parameter that the sensor does not have, \
+             expected columns, rows, threshold or pitch_mm"
+        );
     }
 }

@@ -1,4 +1,4 @@
-//! What made an imprint: a figure or a picture. An imprint drawn by hand has no source.
+//! The source of an imprint: a figure or a picture. An imprint drawn by hand has none.
 
 use std::fmt;
 
@@ -6,13 +6,14 @@ use crate::figure::{Figure, FigureKind};
 use crate::geometry::{Pen, Real, Solid};
 use crate::parameter::{Parameter, ParameterError};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
+use crate::sensor::Sensor;
 
-/// A figure or a picture, where it is.
+/// A figure or a picture, in its pose.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 #[expect(
     clippy::large_enum_variant,
-    reason = "there is one of these at a time, and a picture is plain data"
+    reason = "there is one at a time, and a picture is plain data"
 )]
 pub enum Source {
     /// One of the seven figures.
@@ -22,7 +23,7 @@ pub enum Source {
 }
 
 impl Source {
-    /// "figure" or the like: what it is called in a sentence.
+    /// Returns "figure" or "picture".
     pub fn noun(&self) -> &'static str {
         match self {
             Self::Figure(_) => "figure",
@@ -30,15 +31,15 @@ impl Source {
         }
     }
 
-    /// Its parameters, in the order of forms.
-    pub fn parameters(&self) -> Vec<Parameter> {
+    /// Returns its parameters, in the order of forms.
+    pub fn parameters(&self) -> &'static [Parameter] {
         match self {
-            Self::Figure(figure) => figure.kind().parameters().collect(),
-            Self::Picture(_) => PICTURE_PARAMETERS.to_vec(),
+            Self::Figure(figure) => figure.kind().parameters(),
+            Self::Picture(_) => &PICTURE_PARAMETERS,
         }
     }
 
-    /// One of its values; none of a parameter that it does not have or that is absent.
+    /// Returns one of its values; None for a parameter that it does not have or that is absent.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
         match self {
             Self::Figure(figure) => figure.get(parameter),
@@ -46,19 +47,23 @@ impl Source {
         }
     }
 
-    /// The same with one value changed; `value` in the parameter's unit. Unchanged by a parameter that it does not have,
-    /// whose value is checked all the same.
+    /// Returns the same shape with one value changed; `value` in the parameter's unit.
     ///
     /// # Errors
-    /// Where the value is out of range on a sensor whose larger side is `side`.
-    pub fn with(self, parameter: Parameter, value: f64, side: u8) -> Result<Self, ParameterError> {
+    /// If the value is out of range on the sensor, or the shape does not have the parameter.
+    pub fn with(
+        self,
+        parameter: Parameter,
+        value: f64,
+        sensor: &Sensor,
+    ) -> Result<Self, ParameterError> {
         match self {
-            Self::Figure(figure) => figure.with(parameter, value, side).map(Self::Figure),
-            Self::Picture(picture) => picture.with(parameter, value, side).map(Self::Picture),
+            Self::Figure(figure) => figure.with(parameter, value, sensor).map(Self::Figure),
+            Self::Picture(picture) => picture.with(parameter, value, sensor).map(Self::Picture),
         }
     }
 
-    /// The kind of figure; none of a picture.
+    /// Returns the kind of figure; None for a picture.
     pub fn kind(&self) -> Option<FigureKind> {
         match self {
             Self::Figure(figure) => Some(figure.kind()),
@@ -66,12 +71,24 @@ impl Source {
         }
     }
 
-    /// Which way it turns as its angle grows, as seen: +1 clockwise, −1 counter-clockwise.
+    /// Returns the sense in which it turns as its angle grows, as seen: +1 clockwise, −1 counter-clockwise.
     pub fn sense(&self) -> f64 {
         match self {
             Self::Figure(_) => 1.0,
             Self::Picture(_) => -1.0,
         }
+    }
+}
+
+impl From<Figure> for Source {
+    fn from(figure: Figure) -> Self {
+        Self::Figure(figure)
+    }
+}
+
+impl From<Picture> for Source {
+    fn from(picture: Picture) -> Self {
+        Self::Picture(picture)
     }
 }
 

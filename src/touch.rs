@@ -25,13 +25,13 @@ const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 /// The sensory plane: a sensor that can be touched again and again without allocating, unless a coverage is in doubt.
 ///
 /// ```
-/// use taxel::figure::{Figure, FigureKind};
-/// use taxel::sensor::Sensor;
-/// use taxel::touch::Plane;
+/// use taxel::prelude::*;
 /// let mut plane = Plane::new(Sensor::default());
-/// let imprint = plane.touch(&Figure::default_of(FigureKind::Rectangle, 16));
+/// let rectangle = Figure::rectangle(6.0, 3.0).at(4.0, 4.0).on(plane.sensor())?;
+/// let imprint = plane.touch(&rectangle);
 /// assert_eq!(imprint.count(), 6 * 3);
 /// assert_eq!(plane.coverage(4, 4), 1.0);
+/// # Ok::<(), ParameterError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Plane {

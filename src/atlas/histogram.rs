@@ -29,14 +29,10 @@ impl Histogram {
     /// feature, one per imprint ([`Atlas::values`]).
     ///
     /// ```
-    /// # use taxel::figure::{Figure, FigureKind};
-    /// # use taxel::sensor::Sensor;
-    /// # use taxel::source::Source;
-    /// # use taxel::pose::{Anchor, PoseGrid, Ranges};
-    /// # use taxel::sweep::Sweep;
+    /// # use taxel::prelude::*;
     /// use taxel::atlas::Histogram;
     /// use taxel::atlas::features;
-    /// let square = Source::Figure(Figure::default_of(FigureKind::Rectangle, 16));
+    /// let square = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
     /// let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, Ranges::default())?;
     /// let result = Sweep::new(&grid).run();
     /// let na = Histogram::of(&result.atlas, &features()[0], &result.atlas.values(0), 10);
@@ -153,7 +149,7 @@ mod tests {
     use crate::sweep::{Sweep, SweepResult};
 
     fn result(x0: &str) -> SweepResult {
-        let source = Source::Figure(Figure::default_of(FigureKind::Triangle, 16));
+        let source = Source::Figure(Figure::default_of(FigureKind::Triangle, &Sensor::default()));
         let ranges = Ranges {
             x0: x0.parse().expect("a range"),
             y0: "5:5.9:0.1".parse().expect("a range"),
@@ -234,7 +230,7 @@ mod tests {
 
     #[test]
     fn nothing_is_counted_where_nothing_is() {
-        let source = Source::Figure(Figure::default_of(FigureKind::Triangle, 16));
+        let source = Source::Figure(Figure::default_of(FigureKind::Triangle, &Sensor::default()));
         let ranges = Ranges {
             x0: "-16".parse().expect("a range"),
             y0: "-16".parse().expect("a range"),

@@ -78,7 +78,10 @@ mod tests {
 
     /// A rectangle that leaves the sensor: some poses are empty, and have no values.
     fn atlas() -> Atlas {
-        let source = Source::Figure(Figure::default_of(FigureKind::Rectangle, 16));
+        let source = Source::Figure(Figure::default_of(
+            FigureKind::Rectangle,
+            &Sensor::default(),
+        ));
         let range = |text: &str| text.parse().expect("a range");
         let ranges = Ranges {
             x0: range("-8:15:0.5"),

@@ -88,8 +88,7 @@ impl<'a> Region<'a> {
 /// All regions of an imprint, exteriors first. Empty for an empty imprint.
 ///
 /// ```
-/// use taxel::description::{regions, RegionKind};
-/// use taxel::imprint::Imprint;
+/// use taxel::prelude::*;
 /// let ring: Imprint = "\
 /// .##.
 /// #..#
@@ -107,8 +106,7 @@ pub fn regions(imprint: &Imprint) -> Vec<Region<'static>> {
 /// Shows all regions of an imprint one after another, in the order of [`regions`], and allocates nothing.
 ///
 /// ```
-/// use taxel::description::{Description, each_region};
-/// use taxel::imprint::Imprint;
+/// use taxel::prelude::*;
 /// let two: Imprint = "##.#".parse().unwrap();
 /// let mut counts = Vec::new();
 /// each_region(&two, |region| counts.push(Description::of(region).na));

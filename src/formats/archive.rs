@@ -190,7 +190,7 @@ pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
     }
     let sensor = header.sensor.sensor(Sensor::default())?;
     let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
-    let source = header.source.source(sensor.side(), &no_name)?;
+    let source = header.source.source(&sensor, &no_name)?;
     let anchor = match header.anchor.as_str() {
         "corner" => Anchor::Corner,
         "centre" => Anchor::Centre,

@@ -138,7 +138,7 @@ impl Type {
 ///
 /// ```
 /// use taxel::formats::array::{read, write};
-/// use taxel::imprint::Imprint;
+/// use taxel::prelude::*;
 /// let cup: Imprint = "#.#\n###".parse().unwrap();
 /// let file = write(&cup);
 /// assert!(file[10..].starts_with(b"{'descr': '|b1', 'fortran_order': False, 'shape': (2, 3), }"));

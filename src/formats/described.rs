@@ -9,7 +9,7 @@ use crate::imprint::Imprint;
 ///
 /// ```
 /// use taxel::formats::DescribedImprint;
-/// use taxel::imprint::Imprint;
+/// use taxel::prelude::*;
 /// let one: Imprint = "..\n.#".parse().unwrap();
 /// let json = serde_json::to_string(&DescribedImprint(&one)).unwrap();
 /// assert!(json.starts_with(r#"{"imprint":["..",".#"],"na":1,"regions":[{"kind":"exterior","na":1,"nae":1,"ce":1,"#));

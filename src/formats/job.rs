@@ -69,7 +69,7 @@ impl Job {
                 let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
                 Ok(Self::Describe(content.imprint("imprint", &no_name)?))
             }
-            _ => Ok(Self::Touch(sensor, record.source(sensor.side(), lookup)?)),
+            _ => Ok(Self::Touch(sensor, record.source(&sensor, lookup)?)),
         }
     }
 

@@ -112,18 +112,18 @@ impl Values {
     ///
     /// # Errors
     /// The first value that is missing, out of range, or not of this kind.
-    pub(crate) fn figure(&self, kind: FigureKind, side: u8) -> Result<Figure, RecordError> {
-        self.only(kind.name(), &kind.parameters().collect::<Vec<_>>())?;
-        Ok(Figure::new(kind, side, |parameter| self.get(parameter))?)
+    pub(crate) fn figure(&self, kind: FigureKind, sensor: &Sensor) -> Result<Figure, RecordError> {
+        self.only(kind.name(), kind.parameters())?;
+        Ok(Figure::new(kind, sensor, |parameter| self.get(parameter))?)
     }
 
     /// The picture that these values give.
     ///
     /// # Errors
     /// The first value that is missing, out of range, or not of a picture.
-    fn picture(&self, imprint: &Imprint, side: u8) -> Result<Picture, RecordError> {
+    fn picture(&self, imprint: &Imprint, sensor: &Sensor) -> Result<Picture, RecordError> {
         self.only("picture", &PICTURE_PARAMETERS)?;
-        Ok(Picture::new(*imprint, side, |parameter| {
+        Ok(Picture::new(*imprint, sensor, |parameter| {
             self.get(parameter)
         })?)
     }
@@ -192,7 +192,7 @@ impl Record<'_> {
     /// Any [`RecordError`].
     pub(crate) fn source(
         &self,
-        side: u8,
+        sensor: &Sensor,
         lookup: &dyn Fn(&str) -> Result<Imprint, String>,
     ) -> Result<Source, RecordError> {
         match (&self.figure, &self.picture, &self.imprint) {
@@ -200,11 +200,11 @@ impl Record<'_> {
                 let kind = FigureKind::from_name(name).ok_or_else(|| RecordError::FigureKind {
                     found: shortened(name),
                 })?;
-                Ok(Source::Figure(self.values.figure(kind, side)?))
+                Ok(Source::Figure(self.values.figure(kind, sensor)?))
             }
             (None, Some(content), None) => {
                 let imprint = content.imprint("picture", lookup)?;
-                Ok(Source::Picture(self.values.picture(&imprint, side)?))
+                Ok(Source::Picture(self.values.picture(&imprint, sensor)?))
             }
             _ => Err(RecordError::Which("figure, picture, imprint")),
         }
@@ -370,7 +370,7 @@ impl Serialize for Source {
             Self::Figure(figure) => map.serialize_entry("figure", figure.kind().name())?,
             Self::Picture(picture) => map.serialize_entry("picture", &Rows(picture.imprint()))?,
         }
-        for parameter in self.parameters() {
+        for &parameter in self.parameters() {
             if let Some(value) = self.get(parameter) {
                 map.serialize_entry(parameter.row().key, &value)?;
             }

@@ -138,7 +138,7 @@ impl StoredShape {
             .source
             .map(|source| {
                 source.no_sensor("source")?;
-                source.source(sensor.side(), &no_name)
+                source.source(&sensor, &no_name)
             })
             .transpose();
         Self::new(name, sensor, imprint, source.map_err(ShapeError::Source)?)

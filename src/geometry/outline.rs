@@ -140,9 +140,8 @@ impl<T: Real, P: Pen<T>> Pen<T> for Moving<'_, T, P> {
 /// A type of one's own says how it is drawn, once, for every kind of number:
 ///
 /// ```
-/// use taxel::geometry::{Ellipse, Pen, Point, Real, Side, Solid};
-/// use taxel::sensor::Sensor;
-/// use taxel::touch::Plane;
+/// use taxel::prelude::*;
+/// use taxel::geometry::{Ellipse, Pen, Point, Real, Side};
 ///
 /// /// A square plate with a round hole in its middle.
 /// struct Flange { left: f64, top: f64, side: f64, bore: f64 }
@@ -179,9 +178,8 @@ pub trait Solid {
 /// wound around twice counts twice: such polygons have no meaning here.
 ///
 /// ```
-/// use taxel::geometry::{Extent, Polygon};
-/// use taxel::sensor::Sensor;
-/// use taxel::touch::Plane;
+/// use taxel::prelude::*;
+/// use taxel::geometry::Extent;
 ///
 /// let kite = Polygon::new([(3.0, 1.0), (1.0, 4.0), (3.0, 9.0), (5.0, 4.0)]);
 /// assert_eq!(Extent::of(&kite), Some(Extent { left: 1.0, top: 1.0, right: 5.0, bottom: 9.0 }));

@@ -1,4 +1,4 @@
-//! Why a number was refused: one text for forms, flags and files.
+//! Why a value is not allowed: one message for forms, flags and files.
 
 use std::fmt;
 
@@ -6,69 +6,79 @@ use crate::parameter::number::{complaint, short};
 use crate::parameter::range::Range;
 use crate::parameter::table::{Parameter, Unit};
 
-/// Why a number was refused. The message names the parameter, what was given and what was expected.
+/// Why a value is not allowed. The message names the parameter, the value, and what is expected.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ParameterError {
-    /// Not a number at all.
+    /// The text is not a number.
     Number {
-        /// What was to be set.
+        /// Which parameter.
         parameter: Parameter,
-        /// What was given, or its beginning.
+        /// The text, or its beginning.
         text: String,
     },
-    /// A number outside of the allowed range.
+    /// The number is out of range.
     Range {
-        /// What was to be set.
+        /// Which parameter.
         parameter: Parameter,
-        /// What was given.
+        /// The number.
         value: f64,
         /// What is allowed.
         range: Range,
     },
-    /// More decimals than a form takes.
+    /// The number has more decimals than a form accepts.
     Decimals {
-        /// What was to be set.
+        /// Which parameter.
         parameter: Parameter,
-        /// What was given.
+        /// The number.
         value: f64,
-        /// How many are allowed at this value.
-        allowed: usize,
+        /// How many decimals are allowed at this value.
+        allowed: u8,
     },
-    /// Nothing was given where something must be.
+    /// A required value is missing.
     Missing {
-        /// What was to be set.
+        /// Which parameter.
         parameter: Parameter,
         /// What is allowed.
         range: Range,
+    },
+    /// The shape, or the sensor, has no such parameter.
+    Foreign {
+        /// Which parameter.
+        parameter: Parameter,
+        /// "hexagon", "picture" or the like.
+        owner: &'static str,
+        /// The parameters that it has.
+        expected: &'static [Parameter],
     },
 }
 
 impl std::error::Error for ParameterError {}
 
 impl fmt::Display for ParameterError {
-    /// By the parameter's key, as in files and flags.
+    /// Names the parameter by its key, as in files and flags.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.about(self.parameter().row().key))
     }
 }
 
 impl ParameterError {
-    /// What was to be set.
+    /// Returns the parameter that was to be set.
     pub fn parameter(&self) -> Parameter {
         match self {
             Self::Number { parameter, .. }
             | Self::Range { parameter, .. }
             | Self::Decimals { parameter, .. }
-            | Self::Missing { parameter, .. } => *parameter,
+            | Self::Missing { parameter, .. }
+            | Self::Foreign { parameter, .. } => *parameter,
         }
     }
 
-    /// The message by the parameter's label, for a screen that shows no key.
+    /// Returns the message with the parameter's label, for a screen that shows no key.
     ///
     /// ```
-    /// use taxel::parameter::Parameter;
-    /// let error = Parameter::ZoomX.read("65", 16).unwrap_err();
+    /// use taxel::prelude::*;
+    /// let error = Sensor::default().read(Parameter::ZoomX, "65").unwrap_err();
     /// assert_eq!(error.to_string(), "zoom_x: 65 is out of range, expected above 0, up to 64");
     /// assert_eq!(error.labelled(), "Zoom x: 65 is out of range, expected above 0, up to 64");
     /// ```
@@ -92,10 +102,16 @@ impl ParameterError {
                 format!("{name}: {value} has too many decimals, expected {decimals}")
             }
             Self::Missing { range, .. } => format!("{name}: missing, expected a number {range}"),
+            Self::Foreign {
+                owner, expected, ..
+            } => format!(
+                "{name}: a parameter that the {owner} does not have, expected {}",
+                keys(expected)
+            ),
         }
     }
 
-    /// What was expected, for a place that shows the field beside it.
+    /// Returns what is expected, for a place that shows the field beside it.
     pub fn expected(&self) -> String {
         match self {
             Self::Number { text, .. } => complaint(text),
@@ -104,6 +120,7 @@ impl ParameterError {
             } => format!("expected {range}{}", whole(*parameter)),
             Self::Missing { range, .. } => format!("missing, expected {range}"),
             Self::Decimals { allowed, .. } => format!("expected {}", decimals(*allowed)),
+            Self::Foreign { expected, .. } => format!("expected {}", keys(expected)),
         }
     }
 }
@@ -116,10 +133,18 @@ fn whole(parameter: Parameter) -> &'static str {
     }
 }
 
-fn decimals(allowed: usize) -> String {
+fn decimals(allowed: u8) -> String {
     match allowed {
         0 => "a whole number".to_owned(),
         1 => "one decimal from 10 on".to_owned(),
         count => format!("at most {count} decimals"),
+    }
+}
+
+fn keys(parameters: &[Parameter]) -> String {
+    let keys: Vec<&str> = parameters.iter().map(|own| own.row().key).collect();
+    match keys.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
+        _ => keys.concat(),
     }
 }

@@ -1,9 +1,10 @@
 //! Every quantity that a user can set, one row of a table each: key, label, unit, range, decimals, default.
 //!
-//! Forms, flags, JSON checks and error texts are made from [`PARAMETERS`]; nothing else in the program knows a range.
-//! Lengths are relative to the side of a sensory cell. The ranges of figures are the paper's (0.00–9.99 with two
-//! decimals, 10.0–16.0 with one, whole degrees 0–359) for a sensor whose larger side is 16, and grow and shrink with
-//! that side (convention of this project). The decimals bind forms only: files and flags take any.
+//! Forms, flags, JSON checks and error messages are made from [`PARAMETERS`]; no other place knows a range. Lengths are
+//! relative to the side of a sensory cell. The ranges of figures are the paper's (0.00–9.99 with two decimals, 10.0–16.0
+//! with one, whole degrees 0–359) for a sensor whose larger side is 16, and scale with that side (convention of this
+//! project); so a [`Sensor`](crate::sensor::Sensor) says which values are allowed on it. The decimals bind forms only:
+//! files and flags accept any.
 
 pub mod number;
 
@@ -11,11 +12,7 @@ mod range;
 
 mod table;
 
-mod flag;
-
 mod error;
-
-mod check;
 
 pub use error::ParameterError;
 pub use range::Range;

@@ -1,6 +1,7 @@
 //! The table of parameters.
 
-use crate::parameter::range::Bound;
+use crate::parameter::number;
+use crate::parameter::range::{Bound, Range};
 
 /// A quantity that a user can set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -38,7 +39,55 @@ pub enum Parameter {
     Pitch,
 }
 
-/// What a number counts.
+impl Parameter {
+    /// Returns its row of [`PARAMETERS`].
+    pub fn row(self) -> &'static ParameterRow {
+        &PARAMETERS[self as usize]
+    }
+
+    /// Returns the name of its flag, without the dashes: its key with `-` for `_` and without a unit.
+    pub fn flag(self) -> String {
+        let key = self.row().key;
+        key.strip_suffix("_mm").unwrap_or(key).replace('_', "-")
+    }
+
+    /// Returns the parameter with this flag, given without the dashes.
+    ///
+    /// ```
+    /// use taxel::parameter::Parameter;
+    /// assert_eq!(Parameter::from_flag("radius-x"), Some(Parameter::RadiusX));
+    /// assert_eq!(Parameter::from_flag("radius_x"), None);
+    /// ```
+    pub fn from_flag(flag: &str) -> Option<Self> {
+        let mut parameters = PARAMETERS.iter().map(|row| row.parameter);
+        parameters.find(|own| own.flag() == flag)
+    }
+
+    /// Formats a value as a form shows it: with the form's decimals, or with all of its own where it has more.
+    ///
+    /// ```
+    /// use taxel::parameter::Parameter;
+    /// assert_eq!(Parameter::X0.format(1.5), "1.50");
+    /// assert_eq!(Parameter::X0.format(10.0), "10.0");
+    /// assert_eq!(Parameter::X0.format(1.2345), "1.2345");
+    /// ```
+    pub fn format(self, value: f64) -> String {
+        let usual = format!("{value:.*}", usize::from(self.decimals_at(value)));
+        let exact = usual.parse::<f64>().is_ok_and(|read| read == value);
+        if exact { usual } else { number::short(value) }
+    }
+
+    /// Returns how many decimals a form shows and accepts at this value.
+    pub(crate) fn decimals_at(self, value: f64) -> u8 {
+        match self.row().decimals {
+            Decimals::Paper if value.abs() < 10.0 => 2,
+            Decimals::Paper => 1,
+            Decimals::Fixed(count) => count,
+        }
+    }
+}
+
+/// The unit of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Unit {
@@ -67,7 +116,7 @@ impl Unit {
     }
 }
 
-/// How many decimals a form takes.
+/// How many decimals a form accepts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Decimals {
     /// Two below ten, one from ten on.
@@ -81,27 +130,40 @@ pub(super) enum Decimals {
 pub struct ParameterRow {
     /// Which quantity.
     pub parameter: Parameter,
-    /// Its name in files; that of its flag is [`Parameter::flag`].
+    /// Its name in files; see [`Parameter::flag`] for its flag.
     pub key: &'static str,
     /// Its name on the screen.
     pub label: &'static str,
-    /// Its name in the line that says what made an imprint.
+    /// Its name in the one-line summary of a shape.
     pub short: &'static str,
-    /// What it counts.
+    /// Its unit.
     pub unit: Unit,
-    /// Where a new form starts, on a sensor that is large enough.
+    /// The value in a new form, where the sensor is large enough.
     pub default: f64,
     /// One line for help texts.
     pub meaning: &'static str,
     pub(super) low: Bound,
     pub(super) high: Bound,
-    /// The ends in forms, where these are others.
+    /// The bounds in forms, where they differ.
     pub(super) form: Option<(Bound, Bound)>,
     pub(super) decimals: Decimals,
 }
 
+impl ParameterRow {
+    /// Returns what files and flags allow on a sensor with this larger side.
+    pub(crate) fn range(&self, side: u8) -> Range {
+        Range::new(self.low, self.high, side)
+    }
+
+    /// Returns what forms allow on a sensor with this larger side; never more than [`Self::range`].
+    pub(crate) fn form_range(&self, side: u8) -> Range {
+        let (low, high) = self.form.unwrap_or((self.low, self.high));
+        Range::new(low, high, side)
+    }
+}
+
 /// A length of a figure: above 0, up to the sensor's larger side.
-pub(super) const LENGTH: ParameterRow = ParameterRow {
+const LENGTH: ParameterRow = ParameterRow {
     parameter: Parameter::Side,
     key: "side",
     label: "Side",
@@ -115,7 +177,7 @@ pub(super) const LENGTH: ParameterRow = ParameterRow {
     decimals: Decimals::Paper,
 };
 
-/// A position: in files also left of or above the sensor.
+/// A position; files also allow positions left of and above the sensor.
 const POSITION: ParameterRow = ParameterRow {
     default: 4.0,
     low: Bound::Side(-1.0),
@@ -123,7 +185,7 @@ const POSITION: ParameterRow = ParameterRow {
     ..LENGTH
 };
 
-/// A scale: one taxel can be made as large as the largest sensor.
+/// A scale; at the upper bound one taxel is as large as the largest sensor.
 const ZOOM: ParameterRow = ParameterRow {
     unit: Unit::Ratio,
     default: 1.0,
@@ -141,7 +203,7 @@ const COUNT: ParameterRow = ParameterRow {
     ..LENGTH
 };
 
-/// The table, in the order of forms.
+/// The table, in the order of forms and of [`Parameter`].
 pub const PARAMETERS: &[ParameterRow] = &[
     ParameterRow {
         parameter: Parameter::RadiusX,
@@ -273,3 +335,27 @@ pub const PARAMETERS: &[ParameterRow] = &[
         ..LENGTH
     },
 ];
+
+/// [`Parameter::row`] takes a parameter's number for its index.
+const _: () = {
+    let mut index = 0;
+    while index < PARAMETERS.len() {
+        assert!(PARAMETERS[index].parameter as usize == index);
+        index += 1;
+    }
+    assert!(PARAMETERS.len() == Parameter::Pitch as usize + 1);
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_parameter_is_found_by_its_own_flag() {
+        for row in PARAMETERS {
+            let flag = row.parameter.flag();
+            assert_eq!(Parameter::from_flag(&flag), Some(row.parameter), "{flag}");
+        }
+        assert_eq!(Parameter::Pitch.flag(), "pitch");
+    }
+}

@@ -74,11 +74,8 @@ impl Ranges {
 /// A shape, a sensor and the poses to go through; all of them in range.
 ///
 /// ```
-/// use taxel::figure::{Figure, FigureKind};
-/// use taxel::sensor::Sensor;
-/// use taxel::source::Source;
-/// use taxel::pose::{Anchor, PoseGrid, Ranges};
-/// let rectangle = Source::Figure(Figure::default_of(FigureKind::Rectangle, 16));
+/// use taxel::prelude::*;
+/// let rectangle = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
 /// let grid = PoseGrid::new(rectangle, Sensor::default(), Anchor::Corner, Ranges::default())?;
 /// assert_eq!(grid.poses(), 3_600_000);
 /// let pose = grid.pose(10_203);
@@ -115,8 +112,8 @@ impl PoseGrid {
                 }
                 continue;
             }
-            parameter.check(range.last(), sensor.side())?;
-            source = source.with(parameter, range.value(0), sensor.side())?;
+            sensor.check(parameter, range.last())?;
+            source = source.with(parameter, range.value(0), &sensor)?;
             poses *= u128::from(range.count());
         }
         if poses > u128::from(MAX_POSES) {
@@ -210,7 +207,7 @@ impl PoseGrid {
                 .into_iter()
                 .fold(self.source.clone(), |source, (parameter, value)| {
                     // The ranges were checked; a value that is none of them changes nothing.
-                    let set = source.clone().with(parameter, value, self.sensor.side());
+                    let set = source.clone().with(parameter, value, &self.sensor);
                     set.unwrap_or(source)
                 })
         };

@@ -38,25 +38,23 @@ impl PoseGrid {
     /// Where the corner lies outside of what a shape's corner may be.
     ///
     /// ```
-    /// use taxel::figure::{Figure, FigureKind};
-    /// use taxel::parameter::Parameter;
-    /// use taxel::sensor::Sensor;
-    /// use taxel::source::Source;
-    /// use taxel::pose::{Anchor, PoseGrid, Ranges};
+    /// use taxel::prelude::*;
     /// // 6 × 3, its centre at 5, 5.
-    /// let rectangle = Source::Figure(Figure::default_of(FigureKind::Rectangle, 16));
+    /// let rectangle = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
     /// let grid = PoseGrid::new(rectangle, Sensor::default(), Anchor::Centre, Ranges::default())?;
     /// let first = grid.source_at(grid.pose(0))?;
     /// assert_eq!((first.get(Parameter::X0), first.get(Parameter::Y0)), (Some(2.0), Some(3.5)));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn source_at(&self, pose: Pose) -> Result<Source, ParameterError> {
-        let side = self.sensor().side();
+        // Only pictures have zooms.
+        let own = self.source().parameters();
         let with = |source: Source, values: &[(Parameter, f64)]| {
             values
                 .iter()
+                .filter(|(parameter, _)| own.contains(parameter))
                 .try_fold(source, |source, &(parameter, value)| {
-                    source.with(parameter, value, side)
+                    source.with(parameter, value, self.sensor())
                 })
         };
         let zooms = [
@@ -93,10 +91,12 @@ impl PoseGrid {
         // Both in the same pose: what is left to differ is the shape.
         let posed = |source: &Source| {
             let rows = self.ranges().by_parameter();
-            let mut values = rows.iter().map(|(parameter, _)| *parameter);
+            let mut values = rows
+                .iter()
+                .map(|(parameter, _)| *parameter)
+                .filter(|parameter| source.parameters().contains(parameter));
             values.try_fold(source.clone(), |source, parameter| {
-                let value = parameter.default(own.side());
-                source.with(parameter, value, own.side())
+                source.with(parameter, own.default_value(parameter), own)
             })
         };
         same_sensor
@@ -172,7 +172,7 @@ mod tests {
     /// Wherever the anchor is, the shape by itself leaves the imprint of its pose.
     #[test]
     fn a_pose_can_be_touched_by_itself() {
-        let triangle = Source::Figure(Figure::default_of(FigureKind::Triangle, 16));
+        let triangle = Source::Figure(Figure::default_of(FigureKind::Triangle, &Sensor::default()));
         for (source, anchor) in [
             (triangle.clone(), Anchor::Corner),
             (triangle, Anchor::Centre),
@@ -194,17 +194,17 @@ mod tests {
     #[test]
     fn another_shape_is_none_of_the_grid() {
         let sensor = Sensor::default();
-        let hexagon = Figure::default_of(FigureKind::Hexagon, 16);
+        let hexagon = Figure::default_of(FigureKind::Hexagon, &Sensor::default());
         let grid = grid(Source::Figure(hexagon), Anchor::Corner);
         let with = |parameter, value| {
-            Source::Figure(hexagon.with(parameter, value, 16).expect("in range"))
+            Source::Figure(hexagon.with(parameter, value, &sensor).expect("in range"))
         };
         assert!(grid.is_of(&with(Parameter::X0, 1.5), &sensor));
         assert!(grid.is_of(&with(Parameter::Angle, 77.0), &sensor));
         assert!(!grid.is_of(&with(Parameter::Side, 1.5), &sensor));
         assert!(!grid.is_of(&with(Parameter::Thickness, 1.0), &sensor));
         assert!(!grid.is_of(&picture(), &sensor));
-        let octagon = Source::Figure(Figure::default_of(FigureKind::Octagon, 16));
+        let octagon = Source::Figure(Figure::default_of(FigureKind::Octagon, &Sensor::default()));
         assert!(!grid.is_of(&octagon, &sensor));
         let coarse = sensor.with(Parameter::Threshold, 0.7).expect("in range");
         assert!(!grid.is_of(grid.source(), &coarse));

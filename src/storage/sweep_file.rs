@@ -247,7 +247,7 @@ mod tests {
             angle: "0".parse().expect("a range"),
             ..Ranges::default()
         };
-        let source = Source::Figure(Figure::default_of(FigureKind::Hexagon, 16));
+        let source = Source::Figure(Figure::default_of(FigureKind::Hexagon, &Sensor::default()));
         let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
         Sweep::new(&grid.expect("in range")).run()
     }

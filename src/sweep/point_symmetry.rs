@@ -175,7 +175,11 @@ mod tests {
     #[test]
     fn only_what_a_half_turn_maps_onto_itself_has_images() {
         let halved = |kind: FigureKind, anchor| {
-            has_images(Source::Figure(Figure::default_of(kind, 16)), anchor, "1")
+            has_images(
+                Source::Figure(Figure::default_of(kind, &Sensor::default())),
+                anchor,
+                "1",
+            )
         };
         let (corner, centre) = (Anchor::Corner, Anchor::Centre);
         assert!(halved(FigureKind::Rectangle, corner) && halved(FigureKind::Ellipse, corner));

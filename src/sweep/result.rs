@@ -13,21 +13,13 @@ use crate::sweep::runs;
 /// All that a sweep found.
 ///
 /// ```
-/// use taxel::figure::{Figure, FigureKind};
-/// use taxel::parameter::Parameter;
-/// use taxel::sensor::Sensor;
-/// use taxel::source::Source;
-/// use taxel::pose::{Anchor, PoseGrid, Ranges};
-/// use taxel::sweep::Sweep;
+/// use taxel::prelude::*;
 ///
 /// // The paper's ring: over one cell of positions it leaves 393 different imprints.
-/// let ring = Figure::new(FigureKind::Ellipse, 16, |parameter| match parameter {
-///     Parameter::RadiusX | Parameter::RadiusY => Some(4.0),
-///     Parameter::Thickness => Some(2.0),
-///     _ => Some(0.0),
-/// }).unwrap();
+/// let sensor = Sensor::default();
+/// let ring = Figure::ellipse(4.0, 4.0).thickness(2.0).on(&sensor).expect("in range");
 /// let ranges = Ranges { x0: "1:1.99:0.01".parse()?, y0: "1:1.99:0.01".parse()?, angle: "0".parse()?, ..Ranges::default() };
-/// let grid = PoseGrid::new(Source::Figure(ring), Sensor::default(), Anchor::Corner, ranges).unwrap();
+/// let grid = PoseGrid::new(ring.into(), sensor, Anchor::Corner, ranges).unwrap();
 /// let result = Sweep::new(&grid).run();
 /// assert_eq!((result.poses, result.atlas.len()), (10_000, 393));
 /// # Ok::<(), taxel::pose::RangeError>(())
@@ -129,12 +121,8 @@ impl SweepResult {
     /// stopped before. Empty where a range leaves the grid. It takes as long as sweeping these poses does.
     ///
     /// ```
-    /// use taxel::figure::{Figure, FigureKind};
-    /// use taxel::sensor::Sensor;
-    /// use taxel::source::Source;
-    /// use taxel::pose::{Anchor, PoseGrid, Ranges};
-    /// use taxel::sweep::Sweep;
-    /// let square = Source::Figure(Figure::default_of(FigureKind::Rectangle, 16));
+    /// use taxel::prelude::*;
+    /// let square = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
     /// let ranges = Ranges { angle: "0".parse()?, ..Ranges::default() };
     /// let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
     /// let result = Sweep::new(&grid).run();
@@ -323,7 +311,7 @@ mod tests {
             angle: DecimalRange::whole(0),
             ..Ranges::default()
         };
-        let source = Source::Figure(Figure::default_of(FigureKind::Hexagon, 16));
+        let source = Source::Figure(Figure::default_of(FigureKind::Hexagon, &Sensor::default()));
         let grid =
             PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges).expect("a grid");
         let shard = Shard::new(2, 2).expect("a shard");
@@ -343,7 +331,7 @@ mod tests {
     fn a_window_shows_what_touching_finds() {
         let range = |text: &str| text.parse().expect("a range");
         let imprint = Imprint::from_rows(["##.", ".##"]).expect("rows");
-        let ellipse = Source::Figure(Figure::default_of(FigureKind::Ellipse, 16));
+        let ellipse = Source::Figure(Figure::default_of(FigureKind::Ellipse, &Sensor::default()));
         for (source, zoom) in [
             (ellipse, "1"),
             (Source::Picture(Picture::at_home(imprint)), "1:2:0.5"),
@@ -379,7 +367,10 @@ mod tests {
 
     #[test]
     fn what_was_not_gone_through_has_no_number() {
-        let source = Source::Figure(Figure::default_of(FigureKind::Rectangle, 16));
+        let source = Source::Figure(Figure::default_of(
+            FigureKind::Rectangle,
+            &Sensor::default(),
+        ));
         let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, Ranges::default());
         let grid = grid.expect("in range");
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();

@@ -25,13 +25,9 @@ pub type TakeRow<'a> = dyn FnMut(u64, &[u32]) + Send + 'a;
 /// result is the same for any number of them.
 ///
 /// ```
-/// use taxel::figure::{Figure, FigureKind};
-/// use taxel::pose::{Anchor, PoseGrid, Ranges};
-/// use taxel::sensor::Sensor;
-/// use taxel::source::Source;
-/// use taxel::sweep::Sweep;
+/// use taxel::prelude::*;
 ///
-/// let hexagon = Source::Figure(Figure::default_of(FigureKind::Hexagon, 16));
+/// let hexagon = Source::Figure(Figure::default_of(FigureKind::Hexagon, &Sensor::default()));
 /// let grid = PoseGrid::new(hexagon, Sensor::default(), Anchor::Centre, Ranges::default())?;
 /// // Stops after a million poses: what is complete by then is kept.
 /// let done = std::sync::atomic::AtomicU64::new(0);

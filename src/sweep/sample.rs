@@ -57,7 +57,7 @@ mod tests {
     use crate::source::Source;
 
     fn sample(kind: FigureKind, ranges: Ranges) -> (u64, f64) {
-        let source = Source::Figure(Figure::default_of(kind, 16));
+        let source = Source::Figure(Figure::default_of(kind, &Sensor::default()));
         let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
         let sample = TimingSample::of(&grid.expect("in range"));
         (sample.grid.poses(), sample.times)

@@ -75,13 +75,18 @@ fn value(text: &str, parameter: Parameter) -> Option<f64> {
     Some(number.parse().expect("a number after the ="))
 }
 
+/// The sensor of `side` × `side` taxels.
+pub(crate) fn square(side: u8) -> Sensor {
+    Sensor::new(side, side).expect("1 to 64")
+}
+
 /// The figure `hexagon side=3 x0=2.1 y0=1.35 angle=17 thickness=1`; an angle that is not given is 0.
 pub(crate) fn figure(text: &str, side: u8) -> Figure {
     let name = text.split_whitespace().next().expect("a name first");
     let kind = FigureKind::from_name(name).expect("one of the seven names");
     let given =
         |parameter| value(text, parameter).or((parameter == Parameter::Angle).then_some(0.0));
-    Figure::new(kind, side, given).expect("values in range")
+    Figure::new(kind, &square(side), given).expect("values in range")
 }
 
 /// The picture of the rows in `##/#. x0=1 y0=1 angle=10 zoom_x=2 zoom_y=2`; angle 0 and zoom 1 where not given.
@@ -94,7 +99,7 @@ pub(crate) fn picture(text: &str, side: u8) -> Picture {
             _ => None,
         })
     };
-    Picture::new(grid(rows), side, given).expect("values in range")
+    Picture::new(grid(rows), &square(side), given).expect("values in range")
 }
 
 /// An imprint from rows with `/` or line ends between them; blanks around the rows do not count.

@@ -5,22 +5,22 @@
 use std::path::Path;
 
 use taxel::description::regions;
-use taxel::figure::{Figure, FigureKind};
+use taxel::figure::Figure;
 use taxel::formats::Drawing;
 use taxel::imprint::Imprint;
-use taxel::parameter::Parameter;
 use taxel::picture::Picture;
 use taxel::sensor::Sensor;
 use taxel::touch::Plane;
 
 /// The paper's Fig. 1.
 fn ring() -> (Figure, Imprint) {
-    let figure = Figure::default_of(FigureKind::Ellipse, 16)
-        .with(Parameter::X0, 1.99, 16)
-        .and_then(|figure| figure.with(Parameter::Y0, 1.47, 16))
-        .and_then(|figure| figure.with(Parameter::Thickness, 2.0, 16))
+    let sensor = Sensor::default();
+    let figure = Figure::ellipse(4.0, 4.0)
+        .at(1.99, 1.47)
+        .thickness(2.0)
+        .on(&sensor)
         .expect("in range");
-    let imprint = Plane::new(Sensor::default()).touch(&figure);
+    let imprint = Plane::new(sensor).touch(&figure);
     (figure, imprint)
 }
 
@@ -187,8 +187,9 @@ mod pixels {
 
     #[test]
     fn what_reaches_beyond_the_sensor_is_cut_off() {
-        let far = Figure::default_of(FigureKind::Ellipse, 16)
-            .with(Parameter::X0, 12.0, 16)
+        let far = Figure::ellipse(4.0, 4.0)
+            .at(12.0, 4.0)
+            .on(&Sensor::default())
             .expect("in range");
         let imprint = Plane::new(Sensor::default()).touch(&far);
         let drawing = Drawing::new(&imprint);

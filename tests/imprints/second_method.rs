@@ -258,11 +258,12 @@ fn drawn_plane(random: &mut Random) -> Plane {
     Plane::new(sensor(columns, rows, threshold))
 }
 
-fn drawn_figure(random: &mut Random, kind: FigureKind, side: u8) -> Figure {
+fn drawn_figure(random: &mut Random, kind: FigureKind, sensor: &taxel::sensor::Sensor) -> Figure {
+    let side = sensor.side();
     let wall = random.chance(400);
     // Small sensors get large figures, which reach beyond them; large sensors mostly small ones.
     let most = i32::from(side.min(if random.chance(100) { 64 } else { 9 }));
-    Figure::new(kind, side, |parameter| match parameter {
+    Figure::new(kind, sensor, |parameter| match parameter {
         Parameter::X0 | Parameter::Y0 => {
             let low = if random.chance(150) {
                 -i32::from(side)
@@ -307,7 +308,7 @@ fn compare_figures(kind: FigureKind, seed: u64) {
     let mut ties = 0;
     for _ in 0..POSES {
         let mut plane = drawn_plane(&mut random);
-        let figure = drawn_figure(&mut random, kind, plane.sensor().side());
+        let figure = drawn_figure(&mut random, kind, plane.sensor());
         let size = (plane.sensor().columns(), plane.sensor().rows());
         let mut slow = vec![0.0; usize::from(size.0) * usize::from(size.1)];
         let (outline, hole) = outlines(&figure);
@@ -368,7 +369,7 @@ fn pictures() {
         }
         let size = (plane.sensor().columns(), plane.sensor().rows());
         let side = plane.sensor().side();
-        let picture = Picture::new(imprint, side, |parameter| match parameter {
+        let picture = Picture::new(imprint, plane.sensor(), |parameter| match parameter {
             Parameter::X0 | Parameter::Y0 => Some(random.decimal(-1, i32::from(side))),
             Parameter::Angle => Some(random.angle()),
             _ if random.chance(50) => Some(random.size(64)),

@@ -6,7 +6,7 @@ use crate::cli::error::CliError;
 use crate::figure::{Figure, FigureKind};
 use crate::parameter::{PARAMETERS, Parameter, ParameterError, Unit, number};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
-use crate::sensor::{MAX_SIDE, SENSOR_PARAMETERS, Sensor};
+use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::storage::Existing;
 
 /// Help texts are broken so that they fit 80 columns beside the flags.
@@ -30,14 +30,14 @@ pub(crate) fn figure_parameters() -> impl Iterator<Item = Parameter> {
 fn kinds_with(parameter: Parameter) -> impl Iterator<Item = FigureKind> {
     FigureKind::ALL
         .into_iter()
-        .filter(move |kind| kind.parameters().any(|own| own == parameter))
+        .filter(move |kind| kind.parameters().contains(&parameter))
 }
 
 /// The flag of a parameter; its range and default are those of the default sensor.
 pub(crate) fn arg(parameter: Parameter) -> Arg {
     let default = match parameter {
         Parameter::Thickness | Parameter::Pitch => String::new(),
-        _ => format!("; default {}", parameter.default(Sensor::default().side())),
+        _ => format!("; default {}", Sensor::default().default_value(parameter)),
     };
     arg_with(parameter, &default)
 }
@@ -52,7 +52,6 @@ pub(crate) fn arg_with_own(parameter: Parameter) -> Arg {
 
 fn arg_with(parameter: Parameter, default: &str) -> Arg {
     let row = parameter.row();
-    let side = Sensor::default().side();
     let unit = match row.unit {
         Unit::Ratio => String::new(),
         unit => format!("{}, ", unit.symbol()),
@@ -61,7 +60,7 @@ fn arg_with(parameter: Parameter, default: &str) -> Arg {
         Parameter::Pitch => "; gives lengths and areas in mm too",
         _ => "",
     };
-    let range = parameter.range(side);
+    let range = Sensor::default().range(parameter);
     let meaning = capitalised(row.meaning);
     let help = format!("{meaning}{also} ({unit}{range}{default})");
     Arg::new(row.key)
@@ -160,30 +159,29 @@ impl Given {
     /// The pitch in mm, where one was given.
     pub(crate) fn pitch(&self) -> Result<Option<f64>, CliError> {
         self.fold(&[Parameter::Pitch], None, |_, parameter, value| {
-            parameter.check(value, MAX_SIDE).map(Some)
+            Sensor::LARGEST.check(parameter, value).map(Some)
         })
     }
 
     /// The first flag that was given though this kind of figure has no such parameter.
     pub(crate) fn foreign(&self, kind: FigureKind) -> Option<Parameter> {
         figure_parameters()
-            .filter(|&parameter| kind.parameters().all(|own| own != parameter))
+            .filter(|&parameter| !kind.parameters().contains(&parameter))
             .find(|&parameter| self.0.iter().any(|(given, _)| *given == parameter))
     }
 
     /// The default figure of a kind with what was given.
-    pub(crate) fn figure(&self, kind: FigureKind, side: u8) -> Result<Figure, CliError> {
-        let own: Vec<Parameter> = kind.parameters().collect();
-        let figure = Figure::default_of(kind, side);
-        self.fold(&own, figure, |figure, parameter, value| {
-            figure.with(parameter, value, side)
+    pub(crate) fn figure(&self, kind: FigureKind, sensor: &Sensor) -> Result<Figure, CliError> {
+        let figure = Figure::default_of(kind, sensor);
+        self.fold(kind.parameters(), figure, |figure, parameter, value| {
+            figure.with(parameter, value, sensor)
         })
     }
 
     /// A picture with what was given.
-    pub(crate) fn picture(&self, picture: Picture, side: u8) -> Result<Picture, CliError> {
+    pub(crate) fn picture(&self, picture: Picture, sensor: &Sensor) -> Result<Picture, CliError> {
         self.fold(&PICTURE_PARAMETERS, picture, |picture, parameter, value| {
-            picture.with(parameter, value, side)
+            picture.with(parameter, value, sensor)
         })
     }
 }

@@ -312,7 +312,10 @@ fn source(
     let kind = kind.unwrap_or(FigureKind::Ellipse);
     let given = Given::of(matches);
     if let Some(parameter) = given.foreign(kind) {
-        let own = kind.parameters().map(|own| format!("--{}", own.flag()));
+        let own = kind
+            .parameters()
+            .iter()
+            .map(|own| format!("--{}", own.flag()));
         let message = format!(
             "'--{}' does not belong to '{}', which takes {}",
             parameter.flag(),
@@ -322,7 +325,7 @@ fn source(
         return Err(misused(command, name, &message));
     }
     let sensor = settings.sensor();
-    let figure = Source::Figure(given.figure(kind, sensor.side())?);
+    let figure = Source::Figure(given.figure(kind, &sensor)?);
     Ok((figure, sensor))
 }
 

@@ -102,6 +102,6 @@ pub(crate) fn picture(
         }
     };
     let sensor = given.sensor(sensor)?;
-    let picture = given.picture(picture, sensor.side())?;
+    let picture = given.picture(picture, &sensor)?;
     Ok((Source::Picture(picture), sensor))
 }

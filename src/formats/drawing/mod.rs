@@ -6,11 +6,9 @@
 //! inch.
 //!
 //! ```
-//! use taxel::figure::{Figure, FigureKind};
 //! use taxel::formats::Drawing;
-//! use taxel::sensor::Sensor;
-//! use taxel::touch::Plane;
-//! let figure = Figure::default_of(FigureKind::Ellipse, 16);
+//! use taxel::prelude::*;
+//! let figure = Figure::default_of(FigureKind::Ellipse, &Sensor::default());
 //! let imprint = Plane::new(Sensor::default()).touch(&figure);
 //! let drawing = Drawing::new(&imprint).with_outline(&figure).with_pitch(2.5);
 //! assert!(drawing.svg().contains(">x / mm</text>"));
@@ -39,7 +37,7 @@ use crate::description::{Description, Region, main_region, regions};
 use crate::geometry::Solid;
 use crate::imprint::Imprint;
 use crate::parameter::Parameter;
-use crate::sensor::MAX_SIDE;
+use crate::sensor::Sensor;
 use page::{DrawingPage, Subject};
 use scene::Segment;
 
@@ -87,7 +85,7 @@ impl Drawing {
     /// picometre (1e-9 mm), whose axis could not be labelled.
     #[must_use]
     pub fn with_pitch(mut self, mm: f64) -> Self {
-        if let Ok(mm) = Parameter::Pitch.check(mm, MAX_SIDE)
+        if let Ok(mm) = Sensor::LARGEST.check(Parameter::Pitch, mm)
             && mm >= LEAST_PITCH
         {
             self.pitch_mm = Some(mm);

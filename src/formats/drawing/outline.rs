@@ -64,13 +64,14 @@ impl Pen<f64> for Tracer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Figure, FigureKind};
-    use crate::parameter::Parameter;
+    use crate::figure::Figure;
+    use crate::sensor::Sensor;
 
     #[test]
     fn rings_are_closed_pieces_in_either_sense() {
-        let frame = Figure::default_of(FigureKind::Rectangle, 16)
-            .with(Parameter::Thickness, 1.0, 16)
+        let frame = Figure::rectangle(6.0, 3.0)
+            .thickness(1.0)
+            .on(&Sensor::default())
             .expect("in range");
         let steps = steps(&frame);
         let count = |wanted: fn(&Segment) -> bool| steps.iter().filter(|step| wanted(step)).count();

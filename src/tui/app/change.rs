@@ -155,7 +155,7 @@ fn set(app: &mut App, source: Source, values: &[(Parameter, f64)]) {
     let moved = values
         .iter()
         .try_fold(source, |source, &(parameter, value)| {
-            source.with(parameter, value, sensor.side())
+            source.with(parameter, value, &sensor)
         });
     match moved {
         // What was set by hand stays where nothing moves.

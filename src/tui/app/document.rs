@@ -68,9 +68,9 @@ impl Document {
         let allowed = |source: &Source| {
             let mut values = source
                 .parameters()
-                .into_iter()
-                .filter_map(|p| Some((p, source.get(p)?)));
-            values.all(|(parameter, value)| parameter.check(value, sensor.side()).is_ok())
+                .iter()
+                .filter_map(|&p| Some((p, source.get(p)?)));
+            values.all(|(parameter, value)| sensor.check(parameter, value).is_ok())
         };
         let (columns, rows) = (sensor.columns(), sensor.rows());
         match &self.source {

@@ -278,7 +278,7 @@ mod tests {
             angle: "0:80:20".parse().expect("a range"),
             ..Ranges::default()
         };
-        let source = Source::Figure(Figure::default_of(FigureKind::Heptagon, 16));
+        let source = Source::Figure(Figure::default_of(FigureKind::Heptagon, &Sensor::default()));
         let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
         let result = Sweep::new(&grid.expect("in range")).run();
         let classes = result.atlas.distinct_classes();

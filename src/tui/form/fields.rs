@@ -1,6 +1,7 @@
 //! A form: a text field a parameter. It knows the table of parameters and no shapes.
 
 use crate::parameter::{Parameter, ParameterError};
+use crate::sensor::Sensor;
 use crate::tui::app::message::Message;
 use crate::tui::widget::text_field::TextField;
 
@@ -65,29 +66,29 @@ impl ParameterField {
     ///
     /// # Errors
     /// What is wrong with the text.
-    pub fn value(&self, side: u8) -> Result<Option<f64>, ParameterError> {
+    pub fn value(&self, sensor: &Sensor) -> Result<Option<f64>, ParameterError> {
         if self.text() == self.initial_text && (self.initial.is_some() || self.optional) {
             return Ok(self.initial);
         }
         match (self.text().trim(), self.optional) {
             ("", true) => Ok(None),
             ("", false) => {
-                let range = self.parameter.form_range(side);
+                let range = sensor.form_range(self.parameter);
                 Err(ParameterError::Missing {
                     parameter: self.parameter,
                     range,
                 })
             }
-            (text, _) => self.parameter.read_form(text, side).map(Some),
+            (text, _) => sensor.read_form(self.parameter, text).map(Some),
         }
     }
 
-    fn step(&mut self, direction: i8, side: u8) {
-        let value = match self.value(side) {
-            Ok(Some(value)) => self.parameter.step(value, i32::from(direction), side),
-            Ok(None) => self.parameter.default(side),
+    fn step(&mut self, direction: i8, sensor: &Sensor) {
+        let value = match self.value(sensor) {
+            Ok(Some(value)) => sensor.step(self.parameter, value, i32::from(direction)),
+            Ok(None) => sensor.default_value(self.parameter),
             Err(ParameterError::Range { value, .. } | ParameterError::Decimals { value, .. }) => {
-                self.parameter.step(value, i32::from(direction), side)
+                sensor.step(self.parameter, value, i32::from(direction))
             }
             Err(_) => return,
         };
@@ -101,16 +102,16 @@ impl ParameterField {
 pub struct ParameterForm {
     fields: Vec<ParameterField>,
     focus: Option<usize>,
-    side: u8,
+    sensor: Sensor,
 }
 
 impl ParameterForm {
-    /// A form for a sensor whose larger side is `side`; no field has the focus.
-    pub fn new(fields: Vec<ParameterField>, side: u8) -> Self {
+    /// A form for a sensor; no field has the focus.
+    pub fn new(fields: Vec<ParameterField>, sensor: Sensor) -> Self {
         Self {
             fields,
             focus: None,
-            side,
+            sensor,
         }
     }
 
@@ -124,9 +125,9 @@ impl ParameterForm {
         self.fields
     }
 
-    /// The larger side of the sensor, which bounds the values.
-    pub fn side(&self) -> u8 {
-        self.side
+    /// The sensor, which bounds the values.
+    pub fn sensor(&self) -> &Sensor {
+        &self.sensor
     }
 
     /// Which field has the focus.
@@ -148,13 +149,13 @@ impl ParameterForm {
             .fields
             .iter()
             .find(|field| field.parameter == parameter)?;
-        field.value(self.side).ok().flatten()
+        field.value(&self.sensor).ok().flatten()
     }
 
     /// The first field that is wrong, and why.
     pub fn error(&self) -> Option<(usize, ParameterError)> {
         let mut fields = self.fields.iter().enumerate();
-        fields.find_map(|(index, field)| Some((index, field.value(self.side).err()?)))
+        fields.find_map(|(index, field)| Some((index, field.value(&self.sensor).err()?)))
     }
 
     fn focused(&mut self) -> Option<&mut ParameterField> {
@@ -170,9 +171,9 @@ impl ParameterForm {
 
     /// Changes the number in the field by its last decimal.
     pub fn step(&mut self, direction: i8) {
-        let side = self.side;
+        let sensor = self.sensor;
         if let Some(field) = self.focused() {
-            field.step(direction, side);
+            field.step(direction, &sensor);
         }
     }
 }

@@ -44,7 +44,7 @@ impl FormDialog {
     pub fn figure(before: &Document) -> Self {
         let figure = match before.source {
             Some(Source::Figure(figure)) => figure,
-            _ => Figure::default_of(FigureKind::Ellipse, before.sensor.side()),
+            _ => Figure::default_of(FigureKind::Ellipse, &before.sensor),
         };
         Self::new(
             FormSubject::Figure(figure.kind()),
@@ -70,7 +70,7 @@ impl FormDialog {
     }
 
     fn new(subject: FormSubject, before: &Document, shown: Document) -> Self {
-        let form = ParameterForm::new(Vec::new(), before.sensor.side());
+        let form = ParameterForm::new(Vec::new(), before.sensor);
         let mut dialog = Self {
             subject,
             form,
@@ -126,7 +126,7 @@ impl FormDialog {
 
     fn parameters(&self) -> Vec<Parameter> {
         match self.subject {
-            FormSubject::Figure(kind) => kind.parameters().collect(),
+            FormSubject::Figure(kind) => kind.parameters().to_vec(),
             FormSubject::Picture(..) => PICTURE_PARAMETERS.to_vec(),
             FormSubject::Sensor => SENSOR_PARAMETERS.to_vec(),
         }
@@ -134,10 +134,10 @@ impl FormDialog {
 
     /// The fields of the subject, those that were there before as they were.
     fn fill(&mut self) {
-        let (side, focus) = (self.form.side(), self.form.focus());
+        let (sensor, focus) = (*self.form.sensor(), self.form.focus());
         let mut known = std::mem::take(&mut self.hidden);
         known.extend(
-            std::mem::replace(&mut self.form, ParameterForm::new(Vec::new(), side)).into_fields(),
+            std::mem::replace(&mut self.form, ParameterForm::new(Vec::new(), sensor)).into_fields(),
         );
         let parameters = self.parameters();
         let fields = parameters.into_iter().map(|parameter| {
@@ -145,17 +145,17 @@ impl FormDialog {
                 .iter()
                 .position(|field| field.parameter() == parameter);
             at.map_or_else(
-                || self.new_field(parameter, side),
+                || self.new_field(parameter, &sensor),
                 |at| known.swap_remove(at),
             )
         });
         let fields = fields.collect();
         self.hidden = known;
-        self.form = ParameterForm::new(fields, side);
+        self.form = ParameterForm::new(fields, sensor);
         self.form.set_focus(focus);
     }
 
-    fn new_field(&self, parameter: Parameter, side: u8) -> ParameterField {
+    fn new_field(&self, parameter: Parameter, sensor: &Sensor) -> ParameterField {
         let of_source = |source: &Source| source.get(parameter);
         let own = self.shown.source.as_ref().and_then(of_source);
         let own = own.or_else(|| self.shown.sensor.get(parameter));
@@ -163,7 +163,7 @@ impl FormDialog {
         let value = if optional {
             own
         } else {
-            own.or_else(|| Some(parameter.default(side)))
+            own.or_else(|| Some(sensor.default_value(parameter)))
         };
         ParameterField::new(parameter, value, optional)
     }
@@ -187,15 +187,15 @@ impl FormDialog {
         if let Some((_, error)) = self.form.error() {
             return Err(error);
         }
-        let (sensor, side) = (self.before.sensor, self.form.side());
+        let sensor = self.before.sensor;
         let value = |parameter: Parameter| self.form.value(parameter);
         match &self.subject {
             FormSubject::Figure(kind) => {
-                let figure = Figure::new(*kind, side, value)?;
+                let figure = Figure::new(*kind, &sensor, value)?;
                 Ok(Document::touched(sensor, Source::Figure(figure)))
             }
             FormSubject::Picture(name, imprint) => {
-                let picture = Picture::new(**imprint, side, value)?.named(name);
+                let picture = Picture::new(**imprint, &sensor, value)?.named(name);
                 Ok(Document::touched(sensor, Source::Picture(picture)))
             }
             FormSubject::Sensor => {

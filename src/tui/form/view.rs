@@ -4,6 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::figure::{FigureKind, NO_ROOM};
+use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::tui::app::layout::FormRows;
 use crate::tui::app::state::App;
@@ -42,7 +43,7 @@ pub fn draw(app: &App, dialog: &FormDialog, buffer: &mut Buffer, area: Rect) -> 
         let (field, row) = (&fields[index], usize::from(row));
         end = row + usize::from(rows.spacing);
         let error = field
-            .value(dialog.form().side())
+            .value(dialog.form().sensor())
             .err()
             .map(|error| error.expected());
         let marked = focus == Some(index);
@@ -57,7 +58,7 @@ pub fn draw(app: &App, dialog: &FormDialog, buffer: &mut Buffer, area: Rect) -> 
         };
         if let Some(range_at) = range_at {
             let under = (rows.spacing == 2 && range_at == beside).then_some(under);
-            let taken = (field, dialog.form().side());
+            let taken = (field, dialog.form().sensor());
             draw_range(app, taken, remark, buffer, range_at, under);
         }
         if let Some(error) = error {
@@ -150,13 +151,13 @@ fn remark(field: &ParameterField, dialog: &FormDialog) -> Option<(&'static str, 
 /// way first, then the remark, or the range where the remark is about the present value.
 fn draw_range(
     app: &App,
-    (field, side): (&ParameterField, u8),
+    (field, sensor): (&ParameterField, &Sensor),
     remark: Option<(&str, bool)>,
     buffer: &mut Buffer,
     area: Rect,
     under: Option<Rect>,
 ) {
-    let bare = field.parameter().form_range(side).to_string();
+    let bare = sensor.form_range(field.parameter()).to_string();
     let unit = field.parameter().row().unit.symbol();
     let range = format!("{bare} {unit}").trim_end().to_owned();
     let mut write = |area: Rect, texts: &[&str]| {

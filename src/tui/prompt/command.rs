@@ -7,6 +7,7 @@ use crate::figure::{Figure, FigureKind};
 use crate::formats::Name;
 use crate::parameter::Parameter;
 use crate::quote::shortened;
+use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::storage::{Expected, ShapeOrigin};
 use crate::tui::app::document::Document;
@@ -121,7 +122,7 @@ fn name_of(text: &str) -> Result<Name, String> {
 }
 
 /// The numbers of `--key value` pairs, each key once.
-fn numbers(pairs: &[&str], side: u8) -> Result<Vec<(Parameter, f64)>, String> {
+fn numbers(pairs: &[&str], sensor: &Sensor) -> Result<Vec<(Parameter, f64)>, String> {
     let mut numbers: Vec<(Parameter, f64)> = Vec::new();
     for pair in pairs.chunks(2) {
         let flag = pair.first().copied().unwrap_or_default();
@@ -136,7 +137,7 @@ fn numbers(pairs: &[&str], side: u8) -> Result<Vec<(Parameter, f64)>, String> {
         let text = pair
             .get(1)
             .ok_or_else(|| format!("{flag} needs a number"))?;
-        let value = parameter.read(text, side);
+        let value = sensor.read(parameter, text);
         numbers.push((parameter, value.map_err(|error| error.labelled())?));
     }
     Ok(numbers)
@@ -151,11 +152,10 @@ fn figure(kind: &str, pairs: &[&str], app: &App) -> Result<Message, String> {
             FigureKind::ALL.map(FigureKind::name).join(", ")
         )
     })?;
-    let values = numbers(pairs, sensor.side())?;
-    let own: Vec<Parameter> = kind.parameters().collect();
+    let values = numbers(pairs, &sensor)?;
     if let Some((foreign, _)) = values
         .iter()
-        .find(|(parameter, _)| !own.contains(parameter))
+        .find(|(parameter, _)| !kind.parameters().contains(parameter))
     {
         return Err(format!(
             "--{}: the {} has none",
@@ -164,8 +164,8 @@ fn figure(kind: &str, pairs: &[&str], app: &App) -> Result<Message, String> {
         ));
     }
     let figure = values.into_iter().try_fold(
-        Figure::default_of(kind, sensor.side()),
-        |figure, (parameter, value)| figure.with(parameter, value, sensor.side()),
+        Figure::default_of(kind, &sensor),
+        |figure, (parameter, value)| figure.with(parameter, value, &sensor),
     );
     let figure = figure.map_err(|error| error.to_string())?;
     Ok(Message::Become(Box::new(Document::touched(
@@ -176,7 +176,7 @@ fn figure(kind: &str, pairs: &[&str], app: &App) -> Result<Message, String> {
 
 fn sensor(pairs: &[&str], app: &App) -> Result<Message, String> {
     let document = app.shown();
-    let values = numbers(pairs, crate::sensor::MAX_SIDE)?;
+    let values = numbers(pairs, &Sensor::LARGEST)?;
     let sensor = values
         .into_iter()
         .try_fold(document.sensor, |sensor, (parameter, value)| {

@@ -178,7 +178,10 @@ fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
         }
         (Some(Arguments::Figure), [kind, said @ ..]) => {
             let kind = FigureKind::from_name(kind).into_iter();
-            flags(kind.flat_map(FigureKind::parameters).collect(), said)
+            flags(
+                kind.flat_map(FigureKind::parameters).copied().collect(),
+                said,
+            )
         }
         (Some(Arguments::Sensor), said) => flags(SENSOR_PARAMETERS.to_vec(), said),
         (Some(Arguments::Ranges), said) => {

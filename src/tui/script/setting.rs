@@ -15,7 +15,7 @@ use std::path::PathBuf;
 use crate::formats::StoredShape;
 use crate::parameter::{Parameter, ParameterError};
 use crate::quote::shortened;
-use crate::sensor::{MAX_SIDE, SENSOR_PARAMETERS};
+use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::tui::app::state::Options;
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
@@ -90,7 +90,7 @@ fn chosen<T: Copy>(name: &str, value: &str, choices: &[(&str, T)]) -> Result<T, 
 }
 
 fn number(parameter: Parameter, value: &str) -> Result<ScriptSetting, ParameterError> {
-    let value = parameter.read(value, MAX_SIDE)?;
+    let value = Sensor::LARGEST.read(parameter, value)?;
     Ok(ScriptSetting::Sensor(parameter, value))
 }
 

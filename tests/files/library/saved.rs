@@ -23,8 +23,8 @@ fn imprints() -> impl Strategy<Value = Imprint> {
     })
 }
 
-fn sources(side: u8) -> impl Strategy<Value = Option<Source>> {
-    let reach = f64::from(side);
+fn sources(sensor: Sensor) -> impl Strategy<Value = Option<Source>> {
+    let reach = f64::from(sensor.side());
     let figure = (
         0..FigureKind::ALL.len(),
         -reach..=reach,
@@ -32,13 +32,13 @@ fn sources(side: u8) -> impl Strategy<Value = Option<Source>> {
         any::<bool>(),
     );
     let figure = figure.prop_map(move |(kind, x0, angle, hollow)| {
-        let figure = Figure::default_of(FigureKind::ALL[kind], side)
-            .with(Parameter::X0, x0, side)
-            .and_then(|figure| figure.with(Parameter::Angle, angle, side))
+        let figure = Figure::default_of(FigureKind::ALL[kind], &sensor)
+            .with(Parameter::X0, x0, &sensor)
+            .and_then(|figure| figure.with(Parameter::Angle, angle, &sensor))
             .expect("in range");
         Source::Figure(if hollow {
             figure
-                .with(Parameter::Thickness, reach / 7.0, side)
+                .with(Parameter::Thickness, reach / 7.0, &sensor)
                 .expect("in range")
         } else {
             figure
@@ -49,9 +49,9 @@ fn sources(side: u8) -> impl Strategy<Value = Option<Source>> {
         Source::Picture(
             // At home only where the picture is no larger than the sensor.
             Picture::at_home(imprint)
-                .with(Parameter::X0, 0.0, side)
-                .and_then(|picture| picture.with(Parameter::Y0, y0, side))
-                .and_then(|picture| picture.with(Parameter::ZoomX, zoom, side))
+                .with(Parameter::X0, 0.0, &sensor)
+                .and_then(|picture| picture.with(Parameter::Y0, y0, &sensor))
+                .and_then(|picture| picture.with(Parameter::ZoomX, zoom, &sensor))
                 .expect("in range"),
         )
     });
@@ -66,7 +66,7 @@ fn shapes() -> impl Strategy<Value = StoredShape> {
                 .and_then(|sensor| sensor.with(Parameter::Pitch, pitch))
                 .expect("in range");
             let name = "[A-Za-z0-9_é字-][A-Za-z0-9_. é字-]{0,30}[A-Za-z0-9_.é字-]";
-            (name, Just(imprint), Just(sensor), sources(sensor.side()))
+            (name, Just(imprint), Just(sensor), sources(sensor))
         })
         .prop_map(|(name, imprint, sensor, source)| {
             let name = Name::new(&name).expect("by the rules");

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use taxel::description::{RegionKind, regions};
 use taxel::imprint::Imprint;
-use taxel::parameter::Parameter;
 use taxel::picture::Picture;
 use taxel::storage::{Library, LoadedShape, ShapeOrigin, shipped};
 use taxel::touch::Plane;
@@ -102,15 +101,20 @@ fn a_picture_without_angle_and_zoom_is_a_plain_shift_everywhere() {
     for LoadedShape { shape, .. } in all() {
         let (imprint, sensor) = (shape.imprint, shape.sensor);
         let bounds = imprint.bounds().expect("not empty");
-        let home = Picture::at_home(imprint);
+        let home = Picture::of(imprint);
         let mut plane = Plane::new(sensor);
-        assert_eq!(plane.touch(&home), imprint, "{}", shape.name);
+        assert_eq!(
+            plane.touch(&Picture::at_home(imprint)),
+            imprint,
+            "{}",
+            shape.name
+        );
         for top in 0..=sensor.rows() - (bounds.bottom - bounds.top) {
             for left in 0..=sensor.columns() - (bounds.right - bounds.left) {
                 let moved = home
                     .clone()
-                    .with(Parameter::X0, f64::from(left), sensor.side())
-                    .and_then(|moved| moved.with(Parameter::Y0, f64::from(top), sensor.side()))
+                    .at(f64::from(left), f64::from(top))
+                    .on(&sensor)
                     .expect("inside");
                 let by = |to: u8, from: u8| i16::from(to) - i16::from(from);
                 let expected = shifted(&imprint, by(left, bounds.left), by(top, bounds.top));

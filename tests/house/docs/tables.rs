@@ -2,6 +2,7 @@
 
 use taxel::description::{DESCRIPTORS, Dimension};
 use taxel::parameter::PARAMETERS;
+use taxel::sensor::Sensor;
 use taxel::tui::keys::action::Arguments;
 use taxel::tui::keys::binding::Context;
 use taxel::tui::keys::default_keys::DEFAULT_KEYS;
@@ -69,7 +70,7 @@ pub(crate) fn prompt() -> String {
 /// What can be set, with its range on the paper's sensor.
 pub(crate) fn parameters() -> String {
     let row = |row: &taxel::parameter::ParameterRow| {
-        let (flag, range) = (row.parameter.flag(), row.parameter.range(16));
+        let (flag, range) = (row.parameter.flag(), Sensor::default().range(row.parameter));
         format!(
             "| `{}` | `--{flag}` | {} | {range} | {} | {} |\n",
             row.key,

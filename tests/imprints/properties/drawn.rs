@@ -5,7 +5,7 @@ use taxel::figure::{Figure, FigureKind};
 use taxel::geometry::Polygon;
 use taxel::imprint::Imprint;
 use taxel::parameter::Parameter;
-use taxel::sensor::MAX_SIDE;
+use taxel::sensor::{MAX_SIDE, Sensor};
 
 pub(crate) fn hundredths(value: i32) -> f64 {
     f64::from(value) / 100.0
@@ -30,7 +30,8 @@ pub(crate) fn drawn(place: std::ops::Range<i32>) -> impl Strategy<Value = Drawn>
 }
 
 pub(crate) fn figure(&(kind, sizes, place, angle, wall): &Drawn, side: u8) -> Figure {
-    Figure::new(kind, side, |parameter| match parameter {
+    let sensor = Sensor::new(side, side).expect("1 to 64");
+    Figure::new(kind, &sensor, |parameter| match parameter {
         Parameter::X0 => Some(hundredths(place.0)),
         Parameter::Y0 => Some(hundredths(place.1)),
         Parameter::Angle => Some(f64::from(angle)),

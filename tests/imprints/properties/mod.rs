@@ -160,7 +160,7 @@ proptest! {
         for (parameter, by) in [(Parameter::X0, by.0), (Parameter::Y0, by.1)] {
             let at = picture.get(parameter).expect("a parameter of pictures") + f64::from(by);
             prop_assume!((-20.0..=20.0).contains(&at));
-            picture = picture.with(parameter, at, 20).expect("in range");
+            picture = picture.with(parameter, at, &sensor(20, 20, 0.5)).expect("in range");
         }
         let found = Plane::new(sensor(20, 20, 0.5)).touch(&picture);
         prop_assert_eq!(found, moved(&imprint, |i, j| (i + by.0, j + by.1)));
@@ -176,13 +176,13 @@ proptest! {
         let mut plane = Plane::new(sensor(side, side, 0.5));
         let mut turned = first;
         for _ in 0..4 {
-            let picture = Picture::at_home(turned).with(Parameter::Angle, 90.0, side).expect("in range");
+            let picture = Picture::of(turned).angle(90.0).on(plane.sensor()).expect("in range");
             let expected = moved(&turned, |i, j| (j, last - i));
             turned = plane.touch(&picture);
             prop_assert_eq!(turned, expected);
         }
         prop_assert_eq!(turned, first);
-        let half = Picture::at_home(first).with(Parameter::Angle, 180.0, side).expect("in range");
+        let half = Picture::of(first).angle(180.0).on(plane.sensor()).expect("in range");
         prop_assert_eq!(plane.touch(&half), moved(&first, |i, j| (last - i, last - j)));
     }
 
@@ -201,19 +201,18 @@ proptest! {
     ) {
         let sensor = sensor(imprint.columns(), imprint.rows(), f64::from(threshold) / 1000.0)
             .with(Parameter::Pitch, f64::from(pitch) / 1000.0).expect("in range");
-        let side = sensor.side();
         // Numbers with all of their digits must come back as well.
-        let long = |number: u32| f64::from(number) / f64::from(u32::MAX) * f64::from(side);
+        let long = |number: u32| f64::from(number) / f64::from(u32::MAX) * f64::from(sensor.side());
         let source = match source {
             0 => None,
             1 => Some(Source::Picture(Picture::at_home(imprint)
-                .with(Parameter::X0, long(numbers[0]), side).expect("in range")
-                .with(Parameter::ZoomY, f64::from(numbers[1]) / 1e9 + 1e-9, side).expect("in range"))),
+                .with(Parameter::X0, long(numbers[0]), &sensor).expect("in range")
+                .with(Parameter::ZoomY, f64::from(numbers[1]) / 1e9 + 1e-9, &sensor).expect("in range"))),
             _ => {
                 let (kind, sizes, place, angle, wall) = drawn;
                 let sizes = (sizes.0.min(100), sizes.1.min(100));
                 let drawn = (kind, sizes, place, angle, wall.map(|wall| wall.min(100)));
-                Some(Source::Figure(figure(&drawn, side).with(Parameter::Y0, long(numbers[1]), side).expect("in range")))
+                Some(Source::Figure(figure(&drawn, sensor.side()).with(Parameter::Y0, long(numbers[1]), &sensor).expect("in range")))
             }
         };
         let name = taxel::formats::Name::new(&name).expect("the names of the test are right");
@@ -225,33 +224,33 @@ proptest! {
     fn forms_read_what_they_show_and_stay_in_range(
         index in 0..PARAMETERS.len(), side in 1..=64_u8, share in 0.0..=1.0_f64, steps in proptest::collection::vec(-1..=1, 0..40)
     ) {
-        let parameter = PARAMETERS[index].parameter;
-        let mut value = parameter.default(side);
-        prop_assert!(parameter.range(side).contains(value));
+        let (parameter, sensor) = (PARAMETERS[index].parameter, sensor(side, side, 0.5));
+        let mut value = sensor.default_value(parameter);
+        prop_assert!(sensor.range(parameter).contains(value));
         let given = share * f64::from(side);
-        if parameter.range(side).contains(given) {
+        if sensor.range(parameter).contains(given) {
             // Shown in full where a form would not take so many decimals.
             prop_assert_eq!(parameter.format(given).parse::<f64>(), Ok(given));
             if parameter.row().unit != taxel::parameter::Unit::Taxels {
-                prop_assert_eq!(parameter.read(&parameter.format(given), side), Ok(given));
+                prop_assert_eq!(sensor.read(parameter, &parameter.format(given)), Ok(given));
                 value = given;
             }
         }
         for direction in steps {
-            let next = parameter.step(value, direction, side);
-            prop_assert!(parameter.form_range(side).contains(next), "{parameter:?} {value} {direction} {next}");
+            let next = sensor.step(parameter, value, direction);
+            prop_assert!(sensor.form_range(parameter).contains(next), "{parameter:?} {value} {direction} {next}");
             if direction != 0 {
                 // After one step the value is one that forms take.
-                prop_assert_eq!(parameter.read_form(&parameter.format(next), side), Ok(next));
+                prop_assert_eq!(sensor.read_form(parameter, &parameter.format(next)), Ok(next));
             }
             // From a number with more decimals the way may lead to the other side of it, at the end of the range.
-            let taken = parameter.read_form(&parameter.format(value), side) == Ok(value);
+            let taken = sensor.read_form(parameter, &parameter.format(value)) == Ok(value);
             if taken && parameter != Parameter::Angle {
                 prop_assert!((next - value) * f64::from(direction) >= 0.0, "{parameter:?} {value} {direction} {next}");
             }
             if taken && next != value {
                 // There and back again, over the change of decimals at 10 and over 360 degrees, too.
-                prop_assert_eq!(parameter.step(next, -direction, side), value);
+                prop_assert_eq!(sensor.step(parameter, next, -direction), value);
             }
             value = next;
         }
@@ -262,7 +261,7 @@ proptest! {
         kind in kind(), exponents in (-300..2, -300..2), place in (-64.0..64.0_f64, -64.0..64.0_f64), angle in 0.0..360.0_f64, wall in -300..2
     ) {
         let size = |exponent: i32| 6.0 * 10_f64.powi(exponent);
-        let figure = Figure::new(kind, 64, |parameter| Some(match parameter {
+        let figure = Figure::new(kind, &Sensor::LARGEST, |parameter| Some(match parameter {
             Parameter::X0 => place.0,
             Parameter::Y0 => place.1,
             Parameter::Angle => angle,

@@ -23,7 +23,7 @@ pub(crate) struct Case {
 
 /// A figure by its first and second size (the second of a regular polygon is not used) and its wall, 0 for none.
 pub(crate) fn figure(kind: FigureKind, first: f64, second: f64, wall: f64) -> Source {
-    let figure = Figure::new(kind, 64, |parameter| match parameter {
+    let figure = Figure::new(kind, &Sensor::LARGEST, |parameter| match parameter {
         Parameter::RadiusX | Parameter::Length | Parameter::Side => Some(first),
         Parameter::RadiusY | Parameter::Width => Some(second),
         Parameter::Thickness => (wall > 0.0).then_some(wall),

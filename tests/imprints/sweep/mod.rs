@@ -227,8 +227,8 @@ fn shards_are_merged_only_if_all_are_there() {
     );
     // Where the shape itself lay does not matter.
     let moved = figure(FigureKind::Triangle, 6.0, 0.0, 0.0)
-        .with(Parameter::Y0, 2.5, 16)
-        .and_then(|source| source.with(Parameter::Angle, 77.0, 16));
+        .with(Parameter::Y0, 2.5, &Sensor::default())
+        .and_then(|source| source.with(Parameter::Angle, 77.0, &Sensor::default()));
     let moved = small(moved.expect("in range"), "5:5.9:0.1", "0:40:10");
     assert_eq!(
         merge(vec![shard(&grid, 1, 2), shard(&moved, 2, 2)]),

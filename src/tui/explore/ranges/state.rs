@@ -128,7 +128,7 @@ impl RangesForm {
 
     /// What the values of a field may be.
     pub fn allowed(&self, field: &RangeField) -> Range {
-        field.parameter.range(self.sensor.side())
+        self.sensor.range(field.parameter)
     }
 
     /// How many taxels were turned over by hand, which the sweep leaves out.
@@ -179,7 +179,7 @@ impl RangesForm {
         };
         let ends = [range.value(0), range.last()];
         let error = ends.into_iter().find_map(|value| {
-            let checked = field.parameter.check(value, self.sensor.side());
+            let checked = self.sensor.check(field.parameter, value);
             checked.err()
         });
         error.map(|error| wrong(error.expected(), error.to_string()))

@@ -131,7 +131,7 @@ fn sound() -> Vec<Arrays> {
         angle: range("0:90:45"),
         ..Ranges::default()
     };
-    let rectangle = Figure::new(FigureKind::Rectangle, sensor.side(), |parameter| {
+    let rectangle = Figure::new(FigureKind::Rectangle, &sensor, |parameter| {
         Some(match parameter.row().key {
             "length" => 3.0,
             "width" => 2.0,

@@ -1,0 +1,20 @@
+//! The names that the first five minutes need: `use taxel::prelude::*;`.
+
+pub use crate::description::{
+    DESCRIPTORS, Description, Region, RegionKind, each_region, main_region, regions,
+};
+pub use crate::figure::{Figure, FigureKind};
+pub use crate::geometry::{Polygon, Solid};
+pub use crate::imprint::Imprint;
+pub use crate::parameter::{Parameter, ParameterError};
+pub use crate::picture::Picture;
+pub use crate::sensor::Sensor;
+pub use crate::source::Source;
+pub use crate::touch::Plane;
+
+#[cfg(feature = "sweep")]
+pub use crate::atlas::Atlas;
+#[cfg(feature = "sweep")]
+pub use crate::pose::{Anchor, DecimalRange, Pose, PoseGrid, Ranges};
+#[cfg(feature = "sweep")]
+pub use crate::sweep::{Shard, Sweep, SweepResult};
