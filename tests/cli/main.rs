@@ -1,5 +1,8 @@
 //! The program as users run it: arguments and standard input in, text and exit status out.
 
+#[path = "../common/paper.rs"]
+mod paper;
+
 mod config;
 
 mod figure;

@@ -6,6 +6,8 @@ use std::process::Command;
 
 use serde_json::Value;
 
+use crate::paper::RING_IMPRINTS;
+
 use super::refused;
 use super::taxel;
 
@@ -52,7 +54,7 @@ fn the_summary_has_the_numbers_of_the_paper_s_ring() {
     assert_eq!(keys.len(), expected.len());
     let count = |key: &str| summary[key].as_u64().expect("a count");
     let counts = ["poses", "distinct", "distinct_shifts", "distinct_symmetry"].map(count);
-    assert_eq!(counts, [10_000, 393, 376, 58]);
+    assert_eq!(counts, [10_000, RING_IMPRINTS as u64, 376, 58]);
     let na = &summary["descriptors"]["na"];
     assert_eq!(
         (na["min"].as_f64(), na["max"].as_f64()),
@@ -110,7 +112,7 @@ fn tables_hold_every_imprint() {
         .lines()
         .map(|line| serde_json::from_str(line).expect("JSON"))
         .collect();
-    assert_eq!(lines.len(), 393);
+    assert_eq!(lines.len(), RING_IMPRINTS);
     for (id, line) in lines.iter().enumerate() {
         assert_eq!(line["id"], id);
         // The first pose does leave that imprint, and its main region is described as elsewhere.
@@ -218,7 +220,6 @@ fn damaged_archives_are_refused() {
     }
 }
 
-/// How long it takes is printed, not judged: `cargo test --release --test cli interrupt -- --nocapture`.
 #[test]
 fn what_is_no_sweep_is_refused() {
     refused(

@@ -10,6 +10,7 @@ use super::sweep::folder;
 use super::sweep::names;
 use super::taxel;
 
+/// How long it takes is printed, not judged: `cargo test --release --test cli interrupt -- --nocapture`.
 #[test]
 fn an_interrupt_stops_at_once_and_leaves_nothing() {
     let scratch = folder();

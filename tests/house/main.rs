@@ -1,5 +1,9 @@
 //! The project itself: its source keeps the laws of its rooms, and its papers say what the program does.
 
+#[cfg(feature = "sweep")]
+#[path = "../common/paper.rs"]
+mod paper;
+
 mod laws;
 
 mod source;

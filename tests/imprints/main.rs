@@ -3,6 +3,9 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+#[path = "../common/paper.rs"]
+mod paper;
+
 mod arithmetic;
 
 mod border_following;

@@ -7,6 +7,7 @@ use std::collections::HashSet;
 use std::f64::consts::SQRT_2;
 
 use crate::common::{figure, grid, sensor};
+use crate::paper::RING_IMPRINTS;
 use taxel::description::{DESCRIPTORS, Description, RegionKind, Value, main_region, regions};
 use taxel::imprint::Imprint;
 use taxel::touch::Plane;
@@ -190,7 +191,7 @@ fn the_worked_example_of_the_paper() {
 }
 
 #[test]
-fn the_ring_of_the_paper_has_393_imprints() {
+fn touching_the_papers_ring_everywhere_in_a_cell_leaves_its_imprints() {
     // Its range of positions, in its steps of 0.01.
     let mut plane = Plane::new(sensor(16, 16, 0.5));
     let mut seen = HashSet::new();
@@ -201,5 +202,5 @@ fn the_ring_of_the_paper_has_393_imprints() {
             seen.insert(plane.touch(&figure(&ring, 16)));
         }
     }
-    assert_eq!(seen.len(), 393);
+    assert_eq!(seen.len(), RING_IMPRINTS);
 }

@@ -5,7 +5,7 @@ use taxel::tui::keys::binding::Context;
 use taxel::tui::keys::default_keys::DEFAULT_KEYS;
 use taxel::tui::prompt::commands::{commands, find};
 
-use crate::session::{press, session, shows};
+use crate::session::{press, session, shows, then};
 
 /// Whoever has no such key, or cannot press it, has a word.
 #[test]
@@ -88,27 +88,32 @@ fn restore_says_what_it_misses() {
         &mut session,
         "<Esc>sone<Enter>:save two<Enter>:delete one<Enter>y:delete two<Enter>y",
     );
-    press(&mut session, ":restore <Tab>");
-    shows(&session, &[":restore    two one"]);
-    press(&mut session, "o<Tab><Enter>");
-    shows(&session, &["one is back"]);
-    press(&mut session, ":delete one<Enter>y:restore<Enter>");
-    shows(&session, &["one is back"]);
+    then(&mut session, ":restore <Tab>", &[":restore    two one"]);
+    then(&mut session, "o<Tab><Enter>", &["one is back"]);
+    then(
+        &mut session,
+        ":delete one<Enter>y:restore<Enter>",
+        &["one is back"],
+    );
 }
 
 #[test]
 fn names_and_flags_are_completed() {
     let mut session = session("<Space>:save mine<Enter>:load mi<Tab>");
     shows(&session, &[":load mine"]);
-    press(&mut session, "<Enter>");
-    shows(&session, &["mine loaded"]);
+    then(&mut session, "<Enter>", &["mine loaded"]);
     // Only one's own can be deleted.
-    press(&mut session, ":delete <Tab>");
-    shows(&session, &[":delete mine"]);
-    press(&mut session, "<C-u>load wash<Tab><Enter>");
-    shows(&session, &["washer loaded"]);
-    press(&mut session, ":figure rect<Tab>--l<Tab>2 --w<Tab>3<Enter>");
-    shows(&session, &["rectangle length 2.00 width 3.00"]);
+    then(&mut session, ":delete <Tab>", &[":delete mine"]);
+    then(
+        &mut session,
+        "<C-u>load wash<Tab><Enter>",
+        &["washer loaded"],
+    );
+    then(
+        &mut session,
+        ":figure rect<Tab>--l<Tab>2 --w<Tab>3<Enter>",
+        &["rectangle length 2.00 width 3.00"],
+    );
 }
 
 /// As many candidates as fit, and how many more there are.
@@ -228,14 +233,10 @@ fn help_is_everywhere() {
 fn a_long_help_says_that_there_is_more() {
     let mut session = session("?");
     shows(&session, &["lines 1-19 of", "more below"]);
-    press(&mut session, "<Down>");
-    shows(&session, &["lines 2-20 of", "more below"]);
-    press(&mut session, "<30x:PageDown>");
-    shows(&session, &["the end"]);
-    press(&mut session, "<Up>");
-    shows(&session, &["more below"]);
-    press(&mut session, "<30x:PageUp>");
-    shows(&session, &["lines 1-19 of"]);
+    then(&mut session, "<Down>", &["lines 2-20 of", "more below"]);
+    then(&mut session, "<30x:PageDown>", &["the end"]);
+    then(&mut session, "<Up>", &["more below"]);
+    then(&mut session, "<30x:PageUp>", &["lines 1-19 of"]);
     press(&mut session, "<Esc>f?");
     assert!(
         !session.screen().contains("lines 1-"),
@@ -250,33 +251,31 @@ fn a_long_help_says_that_there_is_more() {
 fn commands_do_what_keys_do() {
     let mut session = session(":");
     shows(&session, &["Enter do it"]);
-    press(
+    then(
         &mut session,
         "figure hexagon --side 3 --x0 2.1 --angle 17 --thickness 1<Enter>",
-    );
-    shows(
-        &session,
         &["hexagon side 3.00 at 2.10, 4.00, 17°, wall 1.00"],
     );
-    press(
+    then(
         &mut session,
         ":turn -20<Enter>:undo<Enter>:save mine<Enter>:new<Enter>:load mine<Enter>",
+        &["mine loaded", "hexagon side 3.00"],
     );
-    shows(&session, &["mine loaded", "hexagon side 3.00"]);
-    press(&mut session, ":picture mine<Enter>");
-    shows(&session, &["Picture: mine"]);
-    press(&mut session, "<Esc>:delete mine<Enter>");
-    shows(&session, &["Delete mine? (y/n)"]);
-    press(&mut session, "y:restore mine<Enter>");
-    shows(&session, &["mine is back"]);
-    press(
+    then(&mut session, ":picture mine<Enter>", &["Picture: mine"]);
+    then(
+        &mut session,
+        "<Esc>:delete mine<Enter>",
+        &["Delete mine? (y/n)"],
+    );
+    then(&mut session, "y:restore mine<Enter>", &["mine is back"]);
+    then(
         &mut session,
         ":sensor --columns 8 --pitch 2.5<Enter>:undo<Enter>:redo<Enter>",
+        &["column 7,"],
     );
-    shows(&session, &["column 7,"]);
-    press(&mut session, ":copy descriptors<Enter>");
-    shows(
-        &session,
+    then(
+        &mut session,
+        ":copy descriptors<Enter>",
         &["descriptors sent to your terminal's clipboard ("],
     );
     for (line, message) in [
@@ -301,8 +300,7 @@ fn commands_do_what_keys_do() {
         ("save a/b", "! '/' cannot be in a name"),
         ("load nowhere", "! no shape is called \"nowhere\""),
     ] {
-        press(&mut session, &format!(":{line}<Enter>"));
-        shows(&session, &[message]);
+        then(&mut session, &format!(":{line}<Enter>"), &[message]);
         press(&mut session, "<Esc>");
     }
     press(&mut session, ":quit!<Enter>");
@@ -313,23 +311,27 @@ fn commands_do_what_keys_do() {
 fn the_shape_is_turned_and_zoomed_by_commands() {
     let mut session = session("f<Enter>:turn -20<Enter>");
     shows(&session, &["340°"]);
-    press(
+    then(
         &mut session,
         ":picture washer<Enter><Enter>:zoom in<Enter>:zoom in<Enter>:zoom out<Enter>",
+        &["zoom 1.01 x 1.01"],
     );
-    shows(&session, &["zoom 1.01 x 1.01"]);
 }
 
 #[test]
 fn commands_are_completed_and_recalled() {
     let mut session = session(":re<Tab>");
     shows(&session, &[":re   redo redraw region restore"]);
-    press(&mut session, "g<Tab>");
-    shows(&session, &[":region"]);
-    press(&mut session, "<C-u>figure hex<Tab>--side 3<Enter>");
-    shows(&session, &["hexagon side 3.00"]);
-    press(&mut session, ":new<Enter>:<Up><Up>");
-    shows(&session, &[":figure hexagon --side 3"]);
-    press(&mut session, "<Down>");
-    shows(&session, &[":new"]);
+    then(&mut session, "g<Tab>", &[":region"]);
+    then(
+        &mut session,
+        "<C-u>figure hex<Tab>--side 3<Enter>",
+        &["hexagon side 3.00"],
+    );
+    then(
+        &mut session,
+        ":new<Enter>:<Up><Up>",
+        &[":figure hexagon --side 3"],
+    );
+    then(&mut session, "<Down>", &[":new"]);
 }

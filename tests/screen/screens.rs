@@ -3,20 +3,9 @@
 use taxel::sensor::Sensor;
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::app::state::Options;
-use taxel::tui::runtime::World;
-use taxel::tui::script::Session;
 use taxel::tui::widget::theme::{ColorDepth, Palette, Theme};
 
-fn world() -> World {
-    World::scratch().expect("there is a folder for temporary files")
-}
-
-fn session(size: (u16, u16), ascii: bool, keys: &str) -> Session {
-    let options = Options::plain(ascii);
-    let mut session = Session::new(&options, world(), size.0, size.1);
-    session.keys(keys).expect("the keys of a test are right");
-    session
-}
+use crate::session::{hides, on, press, shows, sized, world};
 
 /// No size is too small for any screen, and none panics.
 #[test]
@@ -52,8 +41,7 @@ fn every_size_of_every_screen_is_drawn() {
                 },
                 mouse: true,
             };
-            let mut session = Session::new(&options, world(), 80, 24);
-            session.keys(keys).expect("the keys of a test are right");
+            let mut session = on(world(), &options, (80, 24), keys);
             for width in (0..=120).step_by(7).chain(17..=24).chain(58..70) {
                 for height in (0..=50).step_by(3) {
                     session.resize(width, height);
@@ -89,7 +77,7 @@ fn ascii_screens_are_ascii() {
         "fr<Enter>e<Enter>4>",
         "fr<Enter>e<Enter>x",
     ] {
-        let screen = session((80, 24), true, keys).screen();
+        let screen = sized((80, 24), true, keys).screen();
         assert!(screen.is_ascii(), "{keys}\n{screen}");
     }
 }
@@ -114,7 +102,7 @@ fn questions_and_notices_are_read_to_their_end_on_narrow_screens() {
         ),
     ] {
         for size in [(80, 24), (60, 24), (40, 24), (40, 12), (24, 20)] {
-            let screen = session(size, false, keys).screen();
+            let screen = sized(size, false, keys).screen();
             assert!(joined(&screen).contains(text), "{keys} {size:?}\n{screen}");
         }
     }
@@ -124,10 +112,9 @@ fn questions_and_notices_are_read_to_their_end_on_narrow_screens() {
 fn what_does_not_fit_ends_in_an_ellipsis() {
     let touched = "f<6x:Tab>2<Enter><Space>";
     let whole = "wall 2.00 + 1 by hand";
-    let screen = session((80, 24), false, touched).screen();
-    assert!(screen.contains(whole), "{screen}");
+    shows(&sized((80, 24), false, touched), &[whole]);
     for (ascii, end) in [(false, "…"), (true, "...")] {
-        let screen = session((60, 24), ascii, touched).screen();
+        let screen = sized((60, 24), ascii, touched).screen();
         let line = screen.lines().find(|line| line.starts_with("ellipse rx"));
         let line = line.expect("what made it is said");
         assert!(line.ends_with(end), "{line}");
@@ -135,19 +122,17 @@ fn what_does_not_fit_ends_in_an_ellipsis() {
     }
     // That something is cut off is said whatever is before it.
     for ascii in [false, true] {
-        let screen = session((60, 24), ascii, "f<6x:Tab>2<Enter>g++<5x:Left>").screen();
+        let screen = sized((60, 24), ascii, "f<6x:Tab>2<Enter>g++<5x:Left>").screen();
         assert!(screen.contains("; reaches beyond the sensor\n"), "{screen}");
     }
     // Of the taxel under the cursor what matters most comes first, and no word is cut.
-    let screen = session((40, 24), false, "f<Enter>").screen();
-    assert!(
-        screen.contains("\n 8,  8  1.000000    active  step 0.01\n"),
-        "{screen}"
+    shows(
+        &sized((40, 24), false, "f<Enter>"),
+        &["\n 8,  8  1.000000    active  step 0.01\n"],
     );
-    let screen = session((36, 24), false, "f<Enter>g").screen();
-    assert!(
-        screen.contains("\n 8,  8    active  held, step 0.01\n"),
-        "{screen}"
+    shows(
+        &sized((36, 24), false, "f<Enter>g"),
+        &["\n 8,  8    active  held, step 0.01\n"],
     );
 }
 
@@ -155,7 +140,7 @@ fn what_does_not_fit_ends_in_an_ellipsis() {
 fn a_long_name_is_typed_and_told_in_whole() {
     let name = format!("{}end", "abcdefgh".repeat(8));
     for (size, seen) in [((80, 24), 71), ((40, 24), 31), ((30, 8), 21)] {
-        let screen = session(size, false, &format!("<Space>s{name}")).screen();
+        let screen = sized(size, false, &format!("<Space>s{name}")).screen();
         let end = &name[(name.len() + 1).saturating_sub(seen)..];
         assert!(screen.contains(&format!("Save as: {end}\n")), "{screen}");
         let error = "! a name has at most 64 characters, this has 67";
@@ -166,7 +151,7 @@ fn a_long_name_is_typed_and_told_in_whole() {
 #[test]
 fn a_list_tells_what_is_out_of_sight() {
     let name = "a name of more than twenty-four characters";
-    let mut session = session((80, 24), false, &format!("<Space>s{name}<Enter>l"));
+    let mut session = sized((80, 24), false, &format!("<Space>s{name}<Enter>l"));
     let screen = session.screen();
     assert!(screen.contains("\n  0 above, 12 below"), "{screen}");
     assert!(
@@ -174,10 +159,9 @@ fn a_list_tells_what_is_out_of_sight() {
         "{screen}"
     );
     assert!(joined(&screen).contains(" a name of more than twenty-four"));
-    session.keys("<End>").expect("keys");
-    let screen = session.screen();
-    assert!(screen.contains("\n  12 above, 0 below"), "{screen}");
-    session.keys("<C-u>washer").expect("keys");
+    press(&mut session, "<End>");
+    shows(&session, &["\n  12 above, 0 below"]);
+    press(&mut session, "<C-u>washer");
     let screen = session.screen();
     assert!(
         !screen.contains(" above, "),
@@ -188,7 +172,7 @@ fn a_list_tells_what_is_out_of_sight() {
     assert!(screen.contains(whole), "{screen}");
     assert!(screen.contains("1.47, 0°, wall 2.00"), "{screen}");
     session.resize(40, 24);
-    session.keys("<C-u>").expect("keys");
+    press(&mut session, "<C-u>");
     let screen = session.screen();
     assert!(
         screen.lines().all(|line| !line.contains("shippe…")),
@@ -199,12 +183,12 @@ fn a_list_tells_what_is_out_of_sight() {
 
 #[test]
 fn matrix_and_descriptors_change_places_only_where_one_of_them_is_seen() {
-    let mut wide = session((80, 24), false, "i");
+    let mut wide = sized((80, 24), false, "i");
     assert!(wide.screen().contains("both in sight"), "{}", wide.screen());
     wide.resize(40, 24);
     assert!(!wide.screen().contains("NA     –"), "{}", wide.screen());
     // A click on the descriptors draws nothing on the matrix that they hide.
-    wide.keys("f<Enter>i").expect("keys");
+    press(&mut wide, "f<Enter>i");
     let before = wide.app().shown();
     for kind in [MouseKind::Press, MouseKind::Release] {
         wide.send(Message::Mouse(Mouse {
@@ -220,17 +204,15 @@ fn matrix_and_descriptors_change_places_only_where_one_of_them_is_seen() {
 #[test]
 fn help_is_whole_and_holds_where_it_is() {
     for size in [(80, 24), (60, 20), (46, 20), (40, 24), (24, 20)] {
-        let help = joined(&session(size, false, "?").screen());
+        let help = joined(&sized(size, false, "?").screen());
         let text = "New: empty the matrix, to draw by hand";
         assert!(help.contains(text), "{size:?}\n{help}");
-        let end = joined(&session(size, false, "?<99x:PageDown>").screen());
+        let end = joined(&sized(size, false, "?<99x:PageDown>").screen());
         assert!(end.contains("the keys that mean something here"), "{end}");
     }
-    let held = session((80, 60), false, "f<Enter>g?").screen();
-    assert!(held.contains("move the shape by a step"), "{held}");
-    assert!(!held.contains("move the cursor"), "{held}");
-    // What an outer place has under other keys too stays with those.
-    assert!(held.contains("  Ctrl-C   "), "{held}");
-    let ranges = session((80, 24), false, "f<Enter>e?").screen();
-    assert!(ranges.contains("Ranges of a sweep"), "{ranges}");
+    let held = sized((80, 60), false, "f<Enter>g?");
+    // What an outer context has under other keys too stays with those.
+    shows(&held, &["move the shape by a step", "  Ctrl-C   "]);
+    hides(&held, &["move the cursor"]);
+    shows("f<Enter>e?", &["Ranges of a sweep"]);
 }

@@ -1,7 +1,7 @@
 //! The program's own screens: each `tests/scripts/NAME.taxel` prints what stands in `NAME.snap` beside it.
 //!
-//! `INSTA_UPDATE=always cargo test --test screen scripts` writes them anew; then read the difference. The same scripts run on the
-//! real program in a pseudo-terminal (`tests/screen/pty`).
+//! `INSTA_UPDATE=always cargo test --test screen scripts` rewrites them; then read the difference. The same scripts run
+//! on the real program in a pseudo-terminal (`tests/screen/pty`).
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -10,6 +10,8 @@ use taxel::tui::app::state::Options;
 use taxel::tui::keys::keymap::Keymap;
 use taxel::tui::runtime::World;
 use taxel::tui::script::runner::{ScriptFailure, ScriptOptions, run};
+
+use crate::session::world;
 
 fn settings(styles: bool, json: bool) -> ScriptOptions {
     ScriptOptions {
@@ -23,9 +25,8 @@ fn settings(styles: bool, json: bool) -> ScriptOptions {
 
 fn output(script: &str, json: bool) -> Result<String, ScriptFailure> {
     let settings = settings(true, json);
-    let world = World::scratch().expect("there is a folder for temporary files");
     let mut printed = String::new();
-    run(script, &[], &settings, world, |text| {
+    run(script, &[], &settings, world(), |text| {
         printed.push_str(text);
         ControlFlow::Continue(())
     })
@@ -226,13 +227,12 @@ fn a_script_sets_the_scene() {
 /// What is printed is there before the script is at its end.
 #[test]
 fn a_script_prints_as_it_goes() {
-    let world = World::scratch().expect("there is a folder for temporary files");
     let mut printed = 0;
     let stopped = run(
         "Screen\nScreen\nScreen",
         &[],
         &settings(false, false),
-        world,
+        world(),
         |_| {
             printed += 1;
             if printed == 2 {

@@ -4,16 +4,29 @@ use taxel::tui::app::state::Options;
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
-/// 16 × 16 taxels at 80 × 24, an empty library that goes with the session.
-pub(crate) fn session(keys: &str) -> Session {
-    let world = World::scratch().expect("there is a folder for temporary files");
-    started(world, keys)
+/// An empty library in a temporary folder, which is deleted with the session.
+pub(crate) fn world() -> World {
+    World::scratch().expect("a temporary folder can be made")
 }
 
-/// The same in a world of its own.
+/// 16 × 16 taxels on 80 × 24, after these keys.
+pub(crate) fn session(keys: &str) -> Session {
+    started(world(), keys)
+}
+
+/// The same with another library or with workers.
 pub(crate) fn started(world: World, keys: &str) -> Session {
-    let options = Options::plain(false);
-    let mut session = Session::new(&options, world, 80, 24);
+    on(world, &Options::plain(false), (80, 24), keys)
+}
+
+/// The same on a screen of another size, perhaps in ASCII only.
+pub(crate) fn sized(size: (u16, u16), ascii: bool, keys: &str) -> Session {
+    on(world(), &Options::plain(ascii), size, keys)
+}
+
+/// The same with all of it given.
+pub(crate) fn on(world: World, options: &Options, size: (u16, u16), keys: &str) -> Session {
+    let mut session = Session::new(options, world, size.0, size.1);
     press(&mut session, keys);
     session
 }
@@ -23,10 +36,48 @@ pub(crate) fn press(session: &mut Session, keys: &str) {
     session.keys(keys).expect("the keys of a test are right");
 }
 
-/// All of the texts must be on the screen.
-pub(crate) fn shows(session: &Session, texts: &[&str]) {
-    let screen = session.screen();
-    for text in texts {
-        assert!(screen.contains(text), "no {text:?} on\n{screen}");
+/// What a test looks at: a session, or the keys that lead to one.
+pub(crate) trait Screen {
+    /// The screen, and the keys if they are known.
+    fn screen(&self) -> (String, &str);
+}
+
+impl Screen for Session {
+    fn screen(&self) -> (String, &str) {
+        (Session::screen(self), "")
     }
+}
+
+impl Screen for str {
+    fn screen(&self) -> (String, &str) {
+        (Session::screen(&session(self)), self)
+    }
+}
+
+impl Screen for String {
+    fn screen(&self) -> (String, &str) {
+        Screen::screen(self.as_str())
+    }
+}
+
+/// Every text is on the screen.
+pub(crate) fn shows(of: &(impl Screen + ?Sized), texts: &[&str]) {
+    let (screen, keys) = of.screen();
+    for text in texts {
+        assert!(screen.contains(text), "{keys}: no {text:?} on\n{screen}");
+    }
+}
+
+/// None of the texts is on the screen.
+pub(crate) fn hides(of: &(impl Screen + ?Sized), texts: &[&str]) {
+    let (screen, keys) = of.screen();
+    for text in texts {
+        assert!(!screen.contains(text), "{keys}: {text:?} on\n{screen}");
+    }
+}
+
+/// Presses keys; then every text is on the screen.
+pub(crate) fn then(session: &mut Session, keys: &str, texts: &[&str]) {
+    press(session, keys);
+    shows(session, texts);
 }

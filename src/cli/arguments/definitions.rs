@@ -148,7 +148,7 @@ fn sweep() -> Command {
             FigureKind::ALL.map(FigureKind::name),
         ))
         .hide_possible_values(true)
-        .help("FigureKind of figure, as of 'taxel figure'");
+        .help("Kind of figure, as of 'taxel figure'");
     let picture = Arg::new("picture")
         .long("picture")
         .value_name("NAME|FILE")

@@ -85,7 +85,7 @@ pub fn draw(app: &App, dialog: &FormDialog, buffer: &mut Buffer, area: Rect) -> 
 
 /// The kind between angle brackets, and the letters that choose one.
 fn draw_kind(app: &App, kind: FigureKind, focused: bool, buffer: &mut Buffer, row: Rect) {
-    let label = format!("{:LABEL$}", "FigureKind");
+    let label = format!("{:LABEL$}", "Kind");
     let name = format!("{:<9}", kind.name());
     let role = if focused { Role::Focus } else { Role::Text };
     let mut letters: Vec<&str> = FigureKind::ALL

@@ -10,6 +10,8 @@ mod ranges;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use crate::paper::RING_IMPRINTS;
+
 use self::cases::{cases, differences, figure, picture};
 use taxel::figure::FigureKind;
 use taxel::parameter::Parameter;
@@ -282,11 +284,12 @@ fn a_stopped_sweep_keeps_what_is_complete() {
 }
 
 #[test]
-fn the_paper_s_ring_has_393_imprints() {
+fn sweeping_the_papers_ring_at_all_angles_leaves_the_imprints_of_one() {
     let result = sweep(&small(
         figure(FigureKind::Ellipse, 4.0, 4.0, 2.0),
         "1:1.99:0.01",
         "0:359:1",
     ));
-    assert_eq!((result.poses, result.atlas.len()), (3_600_000, 393));
+    let counts = (result.poses, result.atlas.len());
+    assert_eq!(counts, (3_600_000, RING_IMPRINTS));
 }

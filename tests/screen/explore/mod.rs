@@ -9,12 +9,11 @@ use std::time::Duration;
 use proptest::prelude::*;
 use taxel::storage::Library;
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
-use taxel::tui::app::state::Options;
 use taxel::tui::explore::message::WorkerEvent;
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
-use crate::session::{press, session, shows};
+use crate::session::{press, session, shows, started, then, world};
 
 /// Hundreds of seconds of work, on any machine.
 const LONG: &str = ":explore --x0 0:9.999:0.001 --y0 0:9.999:0.001<Enter>";
@@ -32,8 +31,7 @@ struct Beside {
 
 impl Beside {
     fn new(keys: &str) -> Self {
-        let world = World::scratch().expect("there is a folder for temporary files");
-        Self::within(world, keys)
+        Self::within(world(), keys)
     }
 
     fn within(world: World, keys: &str) -> Self {
@@ -42,9 +40,7 @@ impl Beside {
             // The test may be over.
             let _ = post.send(told);
         }));
-        let options = Options::plain(false);
-        let mut session = Session::new(&options, world, 80, 24);
-        press(&mut session, keys);
+        let session = started(world, keys);
         Self { session, told }
     }
 
@@ -60,14 +56,18 @@ impl Beside {
     fn press(&mut self, keys: &str) {
         press(&mut self.session, keys);
     }
+
+    /// Presses keys; then every text is on the screen.
+    fn then(&mut self, keys: &str, texts: &[&str]) {
+        then(&mut self.session, keys, texts);
+    }
 }
 
 #[test]
 fn work_is_shown_and_stopped_and_what_is_complete_is_kept() {
     let mut program = Beside::new("fr<Enter>");
-    program.press(LONG);
-    shows(
-        &program.session,
+    program.then(
+        LONG,
         &[
             "0 of 36,000,000,000 poses, 0 %",
             "stop keeps what is complete",
@@ -76,26 +76,21 @@ fn work_is_shown_and_stopped_and_what_is_complete_is_kept() {
     );
     program.until("poses a second, about");
     // Nothing on the matrix changes meanwhile, and nothing else is begun.
-    program.press("n<Space>e<Enter>");
-    shows(
-        &program.session,
+    program.then(
+        "n<Space>e<Enter>",
         &["of 36,000,000,000 poses", "rectangle length 6.00"],
     );
     program.session.resize(30, 8);
     program.session.resize(80, 24);
-    program.press("s");
-    shows(&program.session, &["stopping"]);
+    program.then("s", &["stopping"]);
     program.until("distinct imprints");
     shows(
         &program.session,
         &["a part: ", " of 36,000,000,000 poses", "stopped after "],
     );
-    program.press("xposes.npy<Enter>");
-    shows(&program.session, &[".npy needs all poses: only "]);
-    program.press("<Esc>4))");
-    shows(&program.session, &["not swept"]);
-    program.press("g");
-    shows(&program.session, &["this pose was not swept"]);
+    program.then("xposes.npy<Enter>", &[".npy needs all poses: only "]);
+    program.then("<Esc>4))", &["not swept"]);
+    program.then("g", &["this pose was not swept"]);
 }
 
 #[test]
@@ -133,15 +128,16 @@ fn the_time_is_told_while_ranges_are_typed() {
     let mut program = Beside::new("fh<Enter>e");
     shows(&program.session, &["3,600,000 poses"]);
     program.until("3,600,000 poses, ");
-    program.press("0:9.99:0.001<Tab>0:9.99:0.001<Tab>0:359.9:0.1");
-    shows(&program.session, &["359,352,291,600 poses"]);
+    program.then(
+        "0:9.99:0.001<Tab>0:9.99:0.001<Tab>0:359.9:0.1",
+        &["359,352,291,600 poses"],
+    );
     program.until("359,352,291,600 poses, about ");
     // Help lies over the form while it is told, and a click asks as a key does.
     program.press("<BS><BS>9<F1>");
     let told = program.told.recv_timeout(DEADLINE).expect("it is told");
     program.session.send(Message::Worker(told));
-    program.press("<Esc>");
-    shows(&program.session, &["poses, about "]);
+    program.then("<Esc>", &["poses, about "]);
     let anchor = |program: &mut Beside| {
         let screen = program.session.screen();
         let row = screen.lines().position(|line| line.contains("Anchor"));
@@ -169,21 +165,13 @@ fn results_wait_where_they_were() {
     let mut program = Beside::new("fp<Enter>");
     program.press(SHORT);
     program.until("pentagon: 600 poses");
-    program.press("3ddq");
-    shows(&program.session, &["pentagon side 4.00"]);
+    program.then("3ddq", &["pentagon side 4.00"]);
     // Moved it is the same shape, larger it is not.
-    program.press("<S-Right>e");
-    shows(
-        &program.session,
-        &["pentagon: 600 poses", "ce: outline taxels"],
-    );
-    program.press("qf<Tab>5<Enter>e");
-    shows(&program.session, &["Explore: pentagon"]);
-    program.press("<Esc>ue");
-    shows(&program.session, &["pentagon: 600 poses"]);
+    program.then("<S-Right>e", &["pentagon: 600 poses", "ce: outline taxels"]);
+    program.then("qf<Tab>5<Enter>e", &["Explore: pentagon"]);
+    program.then("<Esc>ue", &["pentagon: 600 poses"]);
     // Another sensor is another matter.
-    program.press("qS20<Enter>e");
-    shows(&program.session, &["Explore: pentagon"]);
+    program.then("qS20<Enter>e", &["Explore: pentagon"]);
 }
 
 #[test]

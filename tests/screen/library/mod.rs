@@ -11,7 +11,7 @@ use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
-use crate::session::{press, session, shows, started};
+use crate::session::{press, session, shows, started, then};
 
 /// On a library that stays.
 fn session_on(folder: &Path, keys: &str) -> Session {
@@ -26,13 +26,15 @@ fn mouse(session: &mut Session, kind: MouseKind, column: u16, row: u16) {
 fn a_shape_is_saved_and_comes_back() {
     let mut session = session("f<Enter>smine");
     shows(&session, &["Save as: mine"]);
-    press(&mut session, "<Enter>");
-    shows(&session, &["saved as mine", "mine: ellipse rx 4.00"]);
-    press(&mut session, "n");
-    shows(&session, &["empty"]);
-    press(&mut session, "lmine<Enter>");
-    shows(
-        &session,
+    then(
+        &mut session,
+        "<Enter>",
+        &["saved as mine", "mine: ellipse rx 4.00"],
+    );
+    then(&mut session, "n", &["empty"]);
+    then(
+        &mut session,
+        "lmine<Enter>",
         &[
             "mine loaded",
             "mine: ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0°",
@@ -53,28 +55,29 @@ fn names_are_checked_while_they_are_typed() {
         ("<C-u><Enter>", "! a name is missing"),
         ("<C-u>ok<Left>x<Home>y<End>z<BS><Del>", "Save as: yoxk"),
     ] {
-        press(&mut session, keys);
-        shows(&session, &[text]);
+        then(&mut session, keys, &[text]);
     }
-    press(&mut session, "<Esc>");
-    shows(&session, &["Space toggle"]);
+    then(&mut session, "<Esc>", &["Space toggle"]);
 }
 
 #[test]
 fn saving_over_another_shape_asks() {
     let mut session = session("<Space>sone<Enter>n<Space><Right><Space>sone<Enter>");
     shows(&session, &["\"one\" is there already. Replace it? (y/n)"]);
-    press(&mut session, "nlone<Enter>");
-    shows(&session, &["NA 1 in all"]);
+    then(&mut session, "nlone<Enter>", &["NA 1 in all"]);
     // One's own shape too, and a name in other letters is the same name.
-    press(&mut session, "<Right><Right><Space>s<Enter>");
-    shows(&session, &["one*:", "Replace one? (y/n)"]);
-    press(&mut session, "y");
-    shows(&session, &["saved as one"]);
-    press(&mut session, "n<Space>sOne<Enter>");
-    shows(&session, &["\"one\" is there already"]);
-    press(&mut session, "ynlone<Enter>");
-    shows(&session, &["NA 1 in all"]);
+    then(
+        &mut session,
+        "<Right><Right><Space>s<Enter>",
+        &["one*:", "Replace one? (y/n)"],
+    );
+    then(&mut session, "y", &["saved as one"]);
+    then(
+        &mut session,
+        "n<Space>sOne<Enter>",
+        &["\"one\" is there already"],
+    );
+    then(&mut session, "ynlone<Enter>", &["NA 1 in all"]);
 }
 
 #[test]
@@ -83,27 +86,26 @@ fn two_programs_do_not_overwrite_each_other_unseen() {
     let mut first = session_on(folder.path(), "<Space>sshared<Enter>");
     let mut second = session_on(folder.path(), "lshared<Enter><Right><Space>s<Enter>y");
     shows(&second, &["saved as shared"]);
-    press(&mut first, "<Down><Space>s<Enter>y");
-    shows(
-        &first,
+    then(
+        &mut first,
+        "<Down><Space>s<Enter>y",
         &["\"shared\" was changed by another program since it was loaded. Replace it?"],
     );
     press(&mut first, "n");
-    press(&mut second, "nlshared<Enter>");
-    shows(&second, &["NA 2 in all"]);
+    then(&mut second, "nlshared<Enter>", &["NA 2 in all"]);
 }
 
 #[test]
 fn undo_brings_back_the_name_too() {
     let mut session = session("<Space>saaa<Enter>n<Space><Right><Space>sbbb<Enter>");
-    press(&mut session, "laaa<Enter>lbbb<Enter>");
-    shows(&session, &["bbb: drawn by hand", "NA 2 in all"]);
-    press(&mut session, "u");
-    shows(&session, &["aaa: drawn by hand", "NA 1 in all"]);
-    press(&mut session, "s");
-    shows(&session, &["Save as: aaa"]);
-    press(&mut session, "<Esc>U");
-    shows(&session, &["bbb: drawn by hand"]);
+    then(
+        &mut session,
+        "laaa<Enter>lbbb<Enter>",
+        &["bbb: drawn by hand", "NA 2 in all"],
+    );
+    then(&mut session, "u", &["aaa: drawn by hand", "NA 1 in all"]);
+    then(&mut session, "s", &["Save as: aaa"]);
+    then(&mut session, "<Esc>U", &["bbb: drawn by hand"]);
     // Nothing is left to save of an empty matrix.
     press(&mut session, "lwasher<Enter>nq");
     assert!(session.app().ended());
@@ -113,19 +115,17 @@ fn undo_brings_back_the_name_too() {
 fn deleting_asks_and_is_undone() {
     let mut session = session("<Space>sone<Enter>dn");
     shows(&session, &["Delete  filter: n", "> one"]);
-    press(&mut session, "<Enter>");
-    shows(&session, &["Delete one? (y/n)"]);
-    press(&mut session, "nd<Enter>y");
-    shows(&session, &["one deleted; u brings it back"]);
-    press(&mut session, "d");
-    shows(&session, &["there are no shapes of your own"]);
-    press(&mut session, "<Esc>u");
-    shows(&session, &["one is back"]);
-    press(&mut session, "lone<Enter>");
-    shows(&session, &["one loaded"]);
+    then(&mut session, "<Enter>", &["Delete one? (y/n)"]);
+    then(
+        &mut session,
+        "nd<Enter>y",
+        &["one deleted; u brings it back"],
+    );
+    then(&mut session, "d", &["there are no shapes of your own"]);
+    then(&mut session, "<Esc>u", &["one is back"]);
+    then(&mut session, "lone<Enter>", &["one loaded"]);
     // After something else was done, u takes that back instead.
-    press(&mut session, "d<Enter>y<Right><Space>u");
-    shows(&session, &["NA 1 in all"]);
+    then(&mut session, "d<Enter>y<Right><Space>u", &["NA 1 in all"]);
 }
 
 #[test]
@@ -141,28 +141,37 @@ fn a_picture_starts_where_it_is_and_follows() {
             "NA 2 in all",
         ],
     );
-    press(&mut session, "2<Enter>");
-    shows(
-        &session,
+    then(
+        &mut session,
+        "2<Enter>",
         &[
             "picture of pair at 2.00, 8.00, 0°, zoom 1.00 x 1.00",
             "NA 2 in all",
         ],
     );
-    press(&mut session, "g++<Down>");
-    shows(&session, &["picture of pair at 2.00, 9.00"]);
-    press(&mut session, "z");
-    shows(
-        &session,
+    then(
+        &mut session,
+        "g++<Down>",
+        &["picture of pair at 2.00, 9.00"],
+    );
+    then(
+        &mut session,
+        "z",
         &[
             "pair*: picture of pair at 2.00, 9.00, 0°, zoom 2.00…; reaches beyond the sensor",
             "NA 0 in all",
         ],
     );
-    press(&mut session, "uu>");
-    shows(&session, &["picture of pair at 2.00, 8.00, 359°"]);
-    press(&mut session, "f<Enter>z");
-    shows(&session, &["a figure has no zoom; f changes its size"]);
+    then(
+        &mut session,
+        "uu>",
+        &["picture of pair at 2.00, 8.00, 359°"],
+    );
+    then(
+        &mut session,
+        "f<Enter>z",
+        &["a figure has no zoom; f changes its size"],
+    );
 }
 
 #[test]
@@ -172,19 +181,25 @@ fn the_sensor_is_changed_and_what_is_cut_is_said() {
         &session,
         &["Sensor", "Columns   16", "Threshold 0.5", "Pitch     1"],
     );
-    press(&mut session, "8<Tab>4");
-    shows(&session, &["! 1 active taxel will be cut", "NA 0 in all"]);
-    press(&mut session, "<Enter>");
-    shows(&session, &["column 7, row 3"]);
-    press(&mut session, "u");
-    shows(&session, &["NA 1 in all"]);
-    press(&mut session, "S65");
-    shows(&session, &["! expected 1 to 64, a whole number"]);
-    press(&mut session, "<Esc>f<Enter>S<Tab><Tab><Tab>2.5<Enter>");
-    shows(&session, &["58.2843 mm", "400 mm²"]);
+    then(
+        &mut session,
+        "8<Tab>4",
+        &["! 1 active taxel will be cut", "NA 0 in all"],
+    );
+    then(&mut session, "<Enter>", &["column 7, row 3"]);
+    then(&mut session, "u", &["NA 1 in all"]);
+    then(&mut session, "S65", &["! expected 1 to 64, a whole number"]);
+    then(
+        &mut session,
+        "<Esc>f<Enter>S<Tab><Tab><Tab>2.5<Enter>",
+        &["58.2843 mm", "400 mm²"],
+    );
     // A figure that a small sensor does not allow is kept as a drawing.
-    press(&mut session, "fr<3x:Tab>0<Tab>0<Enter>S5<Tab>5<Enter>");
-    shows(&session, &["drawn by hand", "NA 15 in all"]);
+    then(
+        &mut session,
+        "fr<3x:Tab>0<Tab>0<Enter>S5<Tab>5<Enter>",
+        &["drawn by hand", "NA 15 in all"],
+    );
 }
 
 #[test]
@@ -193,9 +208,9 @@ fn a_shape_of_another_sensor_is_placed_where_it_fits() {
     drop(session_on(folder.path(), "<Space>smiddle<Enter>"));
     let mut session = session_on(folder.path(), "S32<Tab>32<Enter>lmiddle<Enter>");
     shows(&session, &["middle loaded", "NA 1 in all"]);
-    press(&mut session, "S4<Tab>4<Enter>lmiddle<Enter>");
-    shows(
-        &session,
+    then(
+        &mut session,
+        "S4<Tab>4<Enter>lmiddle<Enter>",
         &["! middle is 16 x 16 and does not fit on 4 x 4 taxels"],
     );
 }
@@ -214,14 +229,12 @@ fn the_mouse_draws_and_points() {
     shows(&session, &["NA 4 in all"]);
     mouse(&mut session, MouseKind::Drag, 20, 10);
     shows(&session, &["NA 4 in all"]);
-    press(&mut session, "u");
-    shows(&session, &["NA 0 in all"]);
+    then(&mut session, "u", &["NA 0 in all"]);
     // "f Figure", then the field Radius y, then a place without anything.
     mouse(&mut session, MouseKind::Press, 20, 0);
     shows(&session, &["Kind", "Radius x"]);
     mouse(&mut session, MouseKind::Press, 50, 5);
-    press(&mut session, "2");
-    shows(&session, &["ellipse rx 4.00 ry 2.00"]);
+    then(&mut session, "2", &["ellipse rx 4.00 ry 2.00"]);
     mouse(&mut session, MouseKind::Press, 79, 18);
     mouse(&mut session, MouseKind::Press, 65535, 65535);
     press(&mut session, "<Enter>?");

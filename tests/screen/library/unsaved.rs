@@ -13,6 +13,7 @@ use crate::session::press;
 use crate::session::session;
 use crate::session::shows;
 use crate::session::started;
+use crate::session::then;
 
 #[test]
 fn unsaved_work_is_offered_back_once() {
@@ -27,19 +28,22 @@ fn unsaved_work_is_offered_back_once() {
         &later,
         &["Unsaved work was left (1 of 2): 1 taxel. Bring it back?"],
     );
-    press(&mut later, "n");
-    shows(
-        &later,
+    then(
+        &mut later,
+        "n",
         &["unsaved 1 is in the trash. Unsaved work was left: 51 taxels."],
     );
-    press(&mut later, "y");
-    shows(
-        &later,
+    then(
+        &mut later,
+        "y",
         &["ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0° + 1 by hand"],
     );
     // What was not wanted is in the trash.
-    press(&mut later, ":restore unsaved 1<Enter>lunsaved 1<Enter>");
-    shows(&later, &["unsaved 1 loaded", "NA 1 in all"]);
+    then(
+        &mut later,
+        ":restore unsaved 1<Enter>lunsaved 1<Enter>",
+        &["unsaved 1 loaded", "NA 1 in all"],
+    );
     press(&mut later, "uu<Space>smine<Enter>q");
     assert!(later.app().ended());
     drop(later);
@@ -78,23 +82,24 @@ fn all_unsaved_work_that_is_thrown_away_can_be_brought_back() {
     let second = session_on(folder.path(), "<Space><Right><Space>");
     drop((first, second));
     let mut later = session_on(folder.path(), "n");
-    press(&mut later, "n");
-    shows(
-        &later,
+    then(
+        &mut later,
+        "n",
         &["the unsaved work is in the trash as unsaved 2; u brings it back"],
     );
-    press(&mut later, "u:restore unsaved 1<Enter>lunsaved<Enter>");
-    shows(&later, &["unsaved 1 loaded"]);
+    then(
+        &mut later,
+        "u:restore unsaved 1<Enter>lunsaved<Enter>",
+        &["unsaved 1 loaded"],
+    );
 }
 
 #[test]
 fn a_drawing_whose_file_was_deleted_is_unsaved() {
     let mut session = session("<Space>sa<Enter>da<Enter>yq");
     shows(&session, &["The imprint is not saved. Quit anyway?"]);
-    press(&mut session, "<Esc>s");
-    shows(&session, &["Save as:"]);
-    press(&mut session, "a<Enter>");
-    shows(&session, &["saved as a"]);
+    then(&mut session, "<Esc>s", &["Save as:"]);
+    then(&mut session, "a<Enter>", &["saved as a"]);
 }
 
 /// A journal that cannot be written is told of once, and what was not written is tried again at the end.
