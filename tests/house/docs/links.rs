@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-use crate::docs::{documents, root};
+use crate::docs::{document, documents, root};
 
 /// The text without fenced code.
 fn prose(text: &str) -> String {
@@ -150,4 +150,49 @@ fn every_path_named_exists() {
         }
     }
     assert!(missing.is_empty(), "no such files: {missing:#?}");
+}
+
+/// The text of every source file and test.
+fn sources(folder: &Path, text: &mut String) {
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            sources(&path, text);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            text.push_str(&fs::read_to_string(&path).expect("a source file"));
+        }
+    }
+}
+
+/// The ways described for contributors name types, tables and functions that are there.
+#[test]
+fn every_name_in_the_guide_for_contributors_exists() {
+    let mut all = String::new();
+    sources(&root().join("src"), &mut all);
+    sources(&root().join("tests"), &mut all);
+    let words: BTreeSet<_> = all
+        .split(|letter: char| !letter.is_alphanumeric() && letter != '_')
+        .collect();
+    let guide = prose(&document("CONTRIBUTING.md"));
+    let mut checked = 0;
+    for code in guide.split('`').skip(1).step_by(2) {
+        let is_name = |name: &str| {
+            name.chars()
+                .all(|letter| letter.is_alphanumeric() || letter == '_')
+        };
+        // `Type::name`, and `field: value` by its field.
+        let code = code.split(": ").next().unwrap_or_default();
+        let names: Vec<_> = code.split("::").collect();
+        if code.is_empty() || !names.iter().all(|name| is_name(name)) {
+            continue;
+        }
+        for name in names {
+            assert!(
+                words.contains(name),
+                "CONTRIBUTING.md: {name} is nowhere in the code"
+            );
+            checked += 1;
+        }
+    }
+    assert!(checked >= 20, "{checked} names were found");
 }
