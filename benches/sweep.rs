@@ -14,7 +14,7 @@ use rustix::time::{ClockId, clock_gettime};
 use taxel::atlas::{ImprintSummary, feature_values};
 use taxel::figure::FigureKind;
 use taxel::parameter::Parameter;
-use taxel::pose::{Pose, PoseGrid};
+use taxel::pose::{Axis, Pose, PoseGrid};
 use taxel::source::Source;
 use taxel::sweep::Sweep;
 use taxel::touch::Plane;
@@ -110,9 +110,9 @@ fn placed(grid: &PoseGrid) -> Vec<Source> {
     };
     sample(grid)
         .map(|pose| {
-            let source = set(grid.source().clone(), Parameter::X0, pose.x0);
-            let source = set(source, Parameter::Y0, pose.y0);
-            set(source, Parameter::Angle, pose.angle)
+            let source = set(grid.source().clone(), Parameter::X0, pose[Axis::X0]);
+            let source = set(source, Parameter::Y0, pose[Axis::Y0]);
+            set(source, Parameter::Angle, pose[Axis::Angle])
         })
         .collect()
 }
@@ -137,7 +137,10 @@ fn touch_peer(
 ) {
     for pose in poses {
         #[expect(clippy::cast_possible_truncation, reason = "the peer computes in f32")]
-        let (corner, degrees) = ((pose.x0 as f32, pose.y0 as f32), pose.angle as f32);
+        let (corner, degrees) = (
+            (pose[Axis::X0] as f32, pose[Axis::Y0] as f32),
+            pose[Axis::Angle] as f32,
+        );
         let sizes = black_box((sizes[0], sizes[1]));
         let regular = |peer: &mut Peer, exterior: &[(f32, f32)], hole: Option<&[(f32, f32)]>| {
             let hole = hole.map(Outline::Polygon);

@@ -36,10 +36,7 @@ pub(crate) fn report(angles: &str) -> Result<String, String> {
     let angle = angles
         .parse()
         .map_err(|error| format!("{angles}: {error}"))?;
-    let ranges = Ranges {
-        angle,
-        ..Ranges::default()
-    };
+    let ranges = Ranges::default().with(Axis::Angle, angle);
     let results: Vec<SweepResult> = FigureKind::ALL
         .into_iter()
         .map(|kind| sweep(kind, ranges))

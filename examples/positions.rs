@@ -51,13 +51,11 @@ fn sweep(x0: &str, y0: &str) -> SweepResult {
         .on(&sensor)
         .expect("in range");
     let range = |text: &str| -> DecimalRange { text.parse().expect("a range") };
-    let ranges = Ranges {
-        x0: range(x0),
-        y0: range(y0),
-        angle: range("0"),
-        ..Ranges::default()
-    };
-    let grid = PoseGrid::new(ring.into(), sensor, Anchor::Corner, ranges)
+    let ranges = Ranges::default()
+        .with(Axis::X0, range(x0))
+        .with(Axis::Y0, range(y0))
+        .with(Axis::Angle, range("0"));
+    let grid = PoseGrid::new(Source::Figure(ring), sensor, Anchor::Corner, ranges)
         .expect("ranges of figures on the sensor");
     Sweep::new(&grid).run()
 }

@@ -15,6 +15,6 @@ pub use crate::touch::Plane;
 #[cfg(feature = "sweep")]
 pub use crate::atlas::Atlas;
 #[cfg(feature = "sweep")]
-pub use crate::pose::{Anchor, DecimalRange, Pose, PoseGrid, Ranges};
+pub use crate::pose::{Anchor, Axis, DecimalRange, Pose, PoseGrid, PoseIndex, Ranges};
 #[cfg(feature = "sweep")]
 pub use crate::sweep::{Shard, Sweep, SweepResult};

@@ -143,19 +143,17 @@ mod tests {
     use super::*;
     use crate::atlas::feature::features;
     use crate::figure::{Figure, FigureKind};
-    use crate::pose::{Anchor, PoseGrid, Ranges};
+    use crate::pose::{Anchor, Axis, PoseGrid, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
     use crate::sweep::{Sweep, SweepResult};
 
     fn result(x0: &str) -> SweepResult {
         let source = Source::Figure(Figure::default_of(FigureKind::Triangle, &Sensor::default()));
-        let ranges = Ranges {
-            x0: x0.parse().expect("a range"),
-            y0: "5:5.9:0.1".parse().expect("a range"),
-            angle: "0:350:10".parse().expect("a range"),
-            ..Ranges::default()
-        };
+        let ranges = Ranges::default()
+            .with(Axis::X0, x0.parse().expect("a range"))
+            .with(Axis::Y0, "5:5.9:0.1".parse().expect("a range"))
+            .with(Axis::Angle, "0:350:10".parse().expect("a range"));
         let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
         Sweep::new(&grid.expect("in range")).run()
     }
@@ -231,11 +229,9 @@ mod tests {
     #[test]
     fn nothing_is_counted_where_nothing_is() {
         let source = Source::Figure(Figure::default_of(FigureKind::Triangle, &Sensor::default()));
-        let ranges = Ranges {
-            x0: "-16".parse().expect("a range"),
-            y0: "-16".parse().expect("a range"),
-            ..Ranges::default()
-        };
+        let ranges = Ranges::default()
+            .with(Axis::X0, "-16".parse().expect("a range"))
+            .with(Axis::Y0, "-16".parse().expect("a range"));
         let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
         let result = Sweep::new(&grid.expect("in range")).run();
         for (index, feature) in features().iter().enumerate() {

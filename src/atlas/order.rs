@@ -71,7 +71,7 @@ mod tests {
     use super::*;
     use crate::atlas::feature::features;
     use crate::figure::{Figure, FigureKind};
-    use crate::pose::{Anchor, PoseGrid, Ranges};
+    use crate::pose::{Anchor, Axis, PoseGrid, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
     use crate::sweep::Sweep;
@@ -83,12 +83,10 @@ mod tests {
             &Sensor::default(),
         ));
         let range = |text: &str| text.parse().expect("a range");
-        let ranges = Ranges {
-            x0: range("-8:15:0.5"),
-            y0: range("7:8:0.25"),
-            angle: range("0:30:30"),
-            ..Ranges::default()
-        };
+        let ranges = Ranges::default()
+            .with(Axis::X0, range("-8:15:0.5"))
+            .with(Axis::Y0, range("7:8:0.25"))
+            .with(Axis::Angle, range("0:30:30"));
         let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
         Sweep::new(&grid.expect("in range")).run().atlas
     }

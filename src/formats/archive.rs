@@ -15,11 +15,10 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
 use crate::atlas::{feature_values, features};
-use crate::formats::atlas::{place, value};
 use crate::formats::npy;
 use crate::formats::npy::Dtype;
 use crate::formats::record::{Record, RecordError, Values};
-use crate::pose::{Anchor, GridError, PoseGrid, RangeError, Ranges};
+use crate::pose::{Anchor, Axis, GridError, PoseGrid, RangeError, Ranges};
 use crate::quote::shortened;
 use crate::sensor::Sensor;
 use crate::sweep::{Parts, PartsError, Shard, ShardError, SweepResult};
@@ -63,16 +62,12 @@ pub fn write(result: &SweepResult, output: impl Write + Seek) -> Result<(), Arch
         format: FORMAT.to_owned(),
         source: grid.source(),
         sensor: grid.sensor(),
-        anchor: match grid.anchor() {
-            Anchor::Corner => "corner",
-            Anchor::Centre => "centre",
-        }
-        .to_owned(),
-        x0: ranges.x0.to_string(),
-        y0: ranges.y0.to_string(),
-        angle: ranges.angle.to_string(),
-        zoom_x: ranges.zoom_x.to_string(),
-        zoom_y: ranges.zoom_y.to_string(),
+        anchor: grid.anchor().name().to_owned(),
+        x0: ranges[Axis::X0].to_string(),
+        y0: ranges[Axis::Y0].to_string(),
+        angle: ranges[Axis::Angle].to_string(),
+        zoom_x: ranges[Axis::ZoomX].to_string(),
+        zoom_y: ranges[Axis::ZoomY].to_string(),
         shard: result.shard.to_string(),
         poses: parts.poses,
         partly_off: parts.partly_off,
@@ -91,11 +86,11 @@ pub fn write(result: &SweepResult, output: impl Write + Seek) -> Result<(), Arch
         &[count],
         &words(&parts.first_poses),
     )?;
-    let own: Vec<_> = place(grid).collect();
+    let own: Vec<_> = grid.axes().collect();
     let mut first = Vec::new();
     for &number in &parts.first_poses {
         let pose = grid.pose(number);
-        let own = own.iter().map(|&parameter| value(&pose, parameter));
+        let own = own.iter().map(|&axis| pose[axis]);
         first.extend(own.flat_map(f64::to_le_bytes));
     }
     archive.add("first", Dtype::F64, &[count, own.len() as u64], &first)?;
@@ -191,23 +186,19 @@ pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
     let sensor = header.sensor.sensor(Sensor::default())?;
     let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
     let source = header.source.source(&sensor, &no_name)?;
-    let anchor = match header.anchor.as_str() {
-        "corner" => Anchor::Corner,
-        "centre" => Anchor::Centre,
-        other => {
-            return Err(ArchiveError::Header(format!(
-                "anchor {:?} is unknown, expected corner or centre",
-                shortened(other)
-            )));
-        }
-    };
-    let ranges = Ranges {
-        x0: header.x0.parse()?,
-        y0: header.y0.parse()?,
-        angle: header.angle.parse()?,
-        zoom_x: header.zoom_x.parse()?,
-        zoom_y: header.zoom_y.parse()?,
-    };
+    let anchor = Anchor::from_name(&header.anchor).ok_or_else(|| {
+        ArchiveError::Header(format!(
+            "anchor {:?} is unknown, expected {}",
+            shortened(&header.anchor),
+            Anchor::NAMES.join(" or ")
+        ))
+    })?;
+    let ranges = Ranges::default()
+        .with(Axis::X0, header.x0.parse()?)
+        .with(Axis::Y0, header.y0.parse()?)
+        .with(Axis::Angle, header.angle.parse()?)
+        .with(Axis::ZoomX, header.zoom_x.parse()?)
+        .with(Axis::ZoomY, header.zoom_y.parse()?);
     let shard: Shard = header.shard.parse()?;
     let grid = PoseGrid::new(source, sensor, anchor, ranges)?;
     let mut words = |name: &'static str| {

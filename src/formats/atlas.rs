@@ -10,28 +10,8 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::atlas::{AtlasEntry, feature_values, features};
 use crate::formats::described::{RegionRecord, Rows};
-use crate::parameter::Parameter;
-use crate::pose::{Pose, PoseGrid};
+use crate::pose::PoseGrid;
 use crate::sweep::SweepResult;
-
-/// The parameters of a pose of this grid.
-pub(crate) fn place(grid: &PoseGrid) -> impl Iterator<Item = Parameter> {
-    let own = grid.source().parameters();
-    let rows = grid.ranges().by_parameter().map(|(parameter, _)| parameter);
-    rows.into_iter()
-        .filter(move |parameter| own.contains(parameter))
-}
-
-/// One value of a pose.
-pub fn value(pose: &Pose, parameter: Parameter) -> f64 {
-    match parameter {
-        Parameter::X0 => pose.x0,
-        Parameter::Y0 => pose.y0,
-        Parameter::ZoomX => pose.zoom_x,
-        Parameter::ZoomY => pose.zoom_y,
-        _ => pose.angle,
-    }
-}
 
 /// The share of all poses that leave this imprint, above 0, up to 1.
 #[expect(clippy::cast_precision_loss, reason = "the nearest f64 is wanted")]
@@ -46,7 +26,12 @@ pub fn share(result: &SweepResult, entry: &AtlasEntry) -> f64 {
 pub fn write_csv(result: &SweepResult, output: impl Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(output);
     let mut line = vec!["id".to_owned(), "count".to_owned(), "share".to_owned()];
-    line.extend(place(&result.grid).map(|parameter| format!("first_{}", parameter.row().key)));
+    line.extend(
+        result
+            .grid
+            .axes()
+            .map(|axis| format!("first_{}", axis.name())),
+    );
     line.extend(["pieces", "holes"].map(str::to_owned));
     line.extend(features().iter().map(|feature| feature.key.clone()));
     line.push("imprint".to_owned());
@@ -56,7 +41,7 @@ pub fn write_csv(result: &SweepResult, output: impl Write) -> io::Result<()> {
         line.clear();
         line.extend([entry.id.to_string(), entry.count.to_string()]);
         line.push(share(result, &entry).to_string());
-        line.extend(place(&result.grid).map(|parameter| value(&pose, parameter).to_string()));
+        line.extend(result.grid.axes().map(|axis| pose[axis].to_string()));
         line.extend([entry.summary.pieces, entry.summary.holes].map(|count| count.to_string()));
         let first = line.len();
         line.resize(first + features().len(), String::new());
@@ -109,8 +94,8 @@ impl Serialize for First<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let pose = self.0.pose(self.1);
         let mut map = serializer.serialize_map(None)?;
-        for parameter in place(self.0) {
-            map.serialize_entry(parameter.row().key, &value(&pose, parameter))?;
+        for axis in self.0.axes() {
+            map.serialize_entry(axis.name(), &pose[axis])?;
         }
         map.end()
     }

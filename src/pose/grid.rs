@@ -1,77 +1,26 @@
-//! What is swept: a figure or a picture, a sensor, and a range for each parameter of the pose.
+//! A grid of poses: a figure or a picture, a sensor, and a range for each axis.
 //!
-//! **Order of poses.** x0 runs fastest, then y0, then the angle, then zoom x, then zoom y (only pictures have zooms). A
-//! *row* is all x0 at one y0, a *turn* all rows at one angle and one pair of zooms. Poses, rows and turns are
+//! **Order of poses.** x0 runs fastest, then y0, the angle, zoom x and zoom y (only pictures have zooms). A *row* is all
+//! x0 at one y0; an *orientation* is all rows at one angle and one pair of zooms. Poses, rows and orientations are
 //! numbered from 0 in this order.
 //!
-//! **Anchor.** The ranges of x0 and y0 place the shape's corner, as everywhere in the program, or its centre: of a
-//! figure the centre that it turns about, of a picture that of its scaled bounding rectangle, which then lies
-//! *at* the given point, whatever the zoom. Cells, degrees. Convention of this project.
+//! **Anchor.** The ranges of x0 and y0 locate the corner of the shape, as everywhere in the program, or its centre: for
+//! a figure its centre of rotation, for a picture the centre of its scaled bounding rectangle, which then lies *at* the
+//! given point for every zoom. Cells, degrees. Convention of this project.
 
-use crate::geometry::Real;
-use crate::geometry::{Moving, Pen, Point, Solid};
+use crate::geometry::{Point, Real};
 use crate::parameter::{Parameter, ParameterError};
+use crate::pose::axis::{Anchor, Axis, Pose, PoseIndex, Ranges};
 use crate::pose::boundary::Boundary;
+use crate::pose::placed::{Placed, centre};
 use crate::pose::range::DecimalRange;
 use crate::sensor::Sensor;
 use crate::source::Source;
 
-/// The most poses that a grid may have.
+/// The largest number of poses of a grid.
 pub const MAX_POSES: u64 = 1_000_000_000_000;
 
-/// Which point of the shape the ranges of x0 and y0 place.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Anchor {
-    /// The top left corner of the bounding rectangle before rotation.
-    #[default]
-    Corner,
-    /// The centre of rotation.
-    Centre,
-}
-
-/// A range for each parameter of a pose.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Ranges {
-    /// Runs fastest; cells.
-    pub x0: DecimalRange,
-    /// Cells.
-    pub y0: DecimalRange,
-    /// Degrees.
-    pub angle: DecimalRange,
-    /// Of pictures only.
-    pub zoom_x: DecimalRange,
-    /// Of pictures only; runs slowest.
-    pub zoom_y: DecimalRange,
-}
-
-impl Default for Ranges {
-    /// The paper's grid: x0 and y0 over one cell from 5 in hundredths, every whole degree, no zoom.
-    fn default() -> Self {
-        Self {
-            x0: DecimalRange::from_units(500, 2, 100),
-            y0: DecimalRange::from_units(500, 2, 100),
-            angle: DecimalRange::from_units(0, 0, 360),
-            zoom_x: DecimalRange::whole(1),
-            zoom_y: DecimalRange::whole(1),
-        }
-    }
-}
-
-impl Ranges {
-    /// Each range with its parameter, from the fastest to the slowest.
-    pub fn by_parameter(&self) -> [(Parameter, DecimalRange); 5] {
-        [
-            (Parameter::X0, self.x0),
-            (Parameter::Y0, self.y0),
-            (Parameter::Angle, self.angle),
-            (Parameter::ZoomX, self.zoom_x),
-            (Parameter::ZoomY, self.zoom_y),
-        ]
-    }
-}
-
-/// A shape, a sensor and the poses to go through; all of them in range.
+/// A shape, a sensor and the poses to sweep, all of them in range.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -79,7 +28,7 @@ impl Ranges {
 /// let grid = PoseGrid::new(rectangle, Sensor::default(), Anchor::Corner, Ranges::default())?;
 /// assert_eq!(grid.poses(), 3_600_000);
 /// let pose = grid.pose(10_203);
-/// assert_eq!((pose.x0, pose.y0, pose.angle), (5.03, 5.02, 1.0));
+/// assert_eq!((pose[Axis::X0], pose[Axis::Y0], pose[Axis::Angle]), (5.03, 5.02, 1.0));
 /// # Ok::<(), taxel::pose::GridError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -91,10 +40,10 @@ pub struct PoseGrid {
 }
 
 impl PoseGrid {
-    /// The grid; the position, angle and zoom that `source` itself has do not matter: it is put into the first pose.
+    /// A grid of poses of `source`, whose own position, angle and zoom do not matter.
     ///
     /// # Errors
-    /// A range that leaves its parameter's, zooms for a figure, or more than [`MAX_POSES`] poses.
+    /// If a range leaves that of its parameter, if a figure is to be zoomed, or for more than [`MAX_POSES`] poses.
     pub fn new(
         source: Source,
         sensor: Sensor,
@@ -102,9 +51,8 @@ impl PoseGrid {
         ranges: Ranges,
     ) -> Result<Self, GridError> {
         let (mut source, mut poses) = (source, 1_u128);
-        for (parameter, range) in ranges.by_parameter() {
-            let zoom = matches!(parameter, Parameter::ZoomX | Parameter::ZoomY);
-            if zoom && source.kind().is_some() {
+        for (axis, &range) in ranges.iter() {
+            if axis.is_zoom() && source.kind().is_some() {
                 if range != DecimalRange::whole(1) {
                     return Err(GridError::Zoom {
                         noun: source.noun(),
@@ -112,8 +60,8 @@ impl PoseGrid {
                 }
                 continue;
             }
-            sensor.check(parameter, range.last())?;
-            source = source.with(parameter, range.value(0), &sensor)?;
+            sensor.check(axis.parameter(), range.last())?;
+            source = source.with(axis.parameter(), range.value(0), &sensor)?;
             poses *= u128::from(range.count());
         }
         if poses > u128::from(MAX_POSES) {
@@ -127,7 +75,7 @@ impl PoseGrid {
         })
     }
 
-    /// The shape.
+    /// The shape, in the first pose.
     pub fn source(&self) -> &Source {
         &self.source
     }
@@ -137,179 +85,328 @@ impl PoseGrid {
         &self.sensor
     }
 
-    /// What the ranges of x0 and y0 place.
+    /// The point of the shape that x0 and y0 locate.
     pub fn anchor(&self) -> Anchor {
         self.anchor
     }
 
-    /// The ranges.
+    /// The range of each axis.
     pub fn ranges(&self) -> &Ranges {
         &self.ranges
     }
 
+    /// The axes that the shape has: all of them for a picture, none of the zooms for a figure.
+    pub fn axes(&self) -> impl Iterator<Item = Axis> + use<> {
+        Axis::of(&self.source)
+    }
+
     /// Number of poses.
     pub fn poses(&self) -> u64 {
-        self.rows() * self.ranges.x0.count()
+        self.rows() * self.row_length()
     }
 
-    /// Number of rows: of all y0 at all turns.
+    /// Number of poses of a row.
+    pub fn row_length(&self) -> u64 {
+        self.ranges[Axis::X0].count()
+    }
+
+    /// Number of rows of all orientations.
     pub fn rows(&self) -> u64 {
-        self.turns() * self.ranges.y0.count()
+        self.orientations() * self.rows_per_orientation()
     }
 
-    /// Number of turns: of angles times zooms.
-    fn turns(&self) -> u64 {
-        self.ranges.angle.count() * self.ranges.zoom_x.count() * self.ranges.zoom_y.count()
+    /// Number of rows of one orientation.
+    pub fn rows_per_orientation(&self) -> u64 {
+        self.ranges[Axis::Y0].count()
     }
 
-    /// How many values each range has.
+    /// Number of orientations: angles times zooms.
+    fn orientations(&self) -> u64 {
+        let [_, _, angles, zooms_x, zooms_y] = self.counts().into_array();
+        angles * zooms_x * zooms_y
+    }
+
+    /// Number of values of each axis.
     pub fn counts(&self) -> PoseIndex {
-        self.ranges.by_parameter().map(|(_, range)| range.count())
+        PoseIndex::from_fn(|axis| self.ranges[axis].count())
     }
 
-    /// Where the pose of that number is; beyond the last one, the places begin again.
-    pub fn place(&self, number: u64) -> PoseIndex {
+    /// The index of pose `number` on each axis. Numbers beyond the last pose start again at the first.
+    pub fn index(&self, number: u64) -> PoseIndex {
         let mut rest = number;
-        self.counts().map(|count| {
+        PoseIndex::from_fn(|axis| {
+            let count = self.ranges[axis].count();
             let index = rest % count;
             rest /= count;
             index
         })
     }
 
-    /// The pose of that number; beyond the last one, the poses begin again.
+    /// The number of the pose at an index. An index beyond the grid is moved to its edge.
+    pub fn number(&self, index: PoseIndex) -> u64 {
+        index.iter().rev().fold(0, |number, (axis, &index)| {
+            let count = self.ranges[axis].count();
+            number * count + index.min(count - 1)
+        })
+    }
+
+    /// Pose `number`. Numbers beyond the last pose start again at the first.
     pub fn pose(&self, number: u64) -> Pose {
-        let [x0, y0, angle, zoom_x, zoom_y] = self.place(number);
-        Pose {
-            x0: self.ranges.x0.value(x0),
-            y0: self.ranges.y0.value(y0),
-            angle: self.ranges.angle.value(angle),
-            zoom_x: self.ranges.zoom_x.value(zoom_x),
-            zoom_y: self.ranges.zoom_y.value(zoom_y),
-        }
+        let index = self.index(number);
+        Pose::from_fn(|axis| self.ranges[axis].value(index[axis]))
     }
 
-    /// The shape in a pose. A value out of its parameter's range is ignored.
+    /// The grid of the `counts` values from `from` on, on each axis. None if it is empty or leaves this grid.
+    pub fn part(&self, from: PoseIndex, counts: PoseIndex) -> Option<Self> {
+        let mut ranges = self.ranges;
+        for axis in Axis::ALL {
+            let end = from[axis].checked_add(counts[axis])?;
+            ranges[axis] = ranges[axis].part(from[axis]..end)?;
+        }
+        Self::new(self.source.clone(), self.sensor, self.anchor, ranges).ok()
+    }
+
+    /// The shape in a pose. A value beyond the range of its parameter is ignored.
     pub fn placed(&self, pose: Pose) -> Placed {
-        let (x0, y0) = match self.anchor {
-            Anchor::Corner => (pose.x0, pose.y0),
-            Anchor::Centre => (0.0, 0.0),
+        let corner = match self.anchor {
+            Anchor::Corner => pose,
+            Anchor::Centre => pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0),
         };
-        let set = |angle: f64| {
-            let values = [
-                (Parameter::X0, x0),
-                (Parameter::Y0, y0),
-                (Parameter::Angle, angle),
-                (Parameter::ZoomX, pose.zoom_x),
-                (Parameter::ZoomY, pose.zoom_y),
-            ];
-            values
-                .into_iter()
-                .fold(self.source.clone(), |source, (parameter, value)| {
-                    // The ranges were checked; a value that is none of them changes nothing.
-                    let set = source.clone().with(parameter, value, &self.sensor);
-                    set.unwrap_or(source)
-                })
+        let set = |pose: Pose| {
+            self.axes().fold(self.source.clone(), |source, axis| {
+                let set = source
+                    .clone()
+                    .with(axis.parameter(), pose[axis], &self.sensor);
+                set.unwrap_or(source)
+            })
         };
-        Placed {
-            turned: set(pose.angle),
-            centred: (self.anchor == Anchor::Centre).then(|| (set(0.0), pose.x0, pose.y0)),
+        match self.anchor {
+            Anchor::Corner => Placed::at_corner(set(corner)),
+            Anchor::Centre => Placed::at_centre(
+                set(corner),
+                set(corner.with(Axis::Angle, 0.0)),
+                (pose[Axis::X0], pose[Axis::Y0]),
+            ),
         }
     }
 
-    /// The pose that starts a turn.
-    fn turned(&self, turn: u64) -> Pose {
-        self.pose(turn * self.ranges.y0.count() * self.ranges.x0.count())
+    /// The shape of a pose with the corner as its anchor, as forms and files describe it.
+    ///
+    /// If the grid's anchor is the centre, the corner is rounded to nine decimals, so a taxel that is covered just at the
+    /// threshold may differ.
+    ///
+    /// # Errors
+    /// If the corner lies outside of the range of x0 and y0.
+    ///
+    /// ```
+    /// use taxel::prelude::*;
+    ///
+    /// // 6 × 3, with its centre at 5, 5.
+    /// let rectangle = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
+    /// let grid = PoseGrid::new(rectangle, Sensor::default(), Anchor::Centre, Ranges::default())?;
+    /// let first = grid.source_at(grid.pose(0))?;
+    /// assert_eq!((first.get(Parameter::X0), first.get(Parameter::Y0)), (Some(2.0), Some(3.5)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn source_at(&self, pose: Pose) -> Result<Source, ParameterError> {
+        let with = |source: Source, axes: &[Axis], pose: Pose| {
+            let mut own = self.axes().filter(|axis| axes.contains(axis));
+            own.try_fold(source, |source, axis| {
+                source.with(axis.parameter(), pose[axis], &self.sensor)
+            })
+        };
+        let zoomed = with(self.source.clone(), &[Axis::ZoomX, Axis::ZoomY], pose)?;
+        let placement = [Axis::X0, Axis::Y0, Axis::Angle];
+        let corner = match self.anchor {
+            Anchor::Corner => pose,
+            Anchor::Centre => {
+                let upright = with(zoomed.clone(), &placement, Pose::new([0.0; 5]))?;
+                let centre = centre::<f64>(&upright);
+                // Figures have no zoom.
+                let zoom = |parameter| zoomed.get(parameter).unwrap_or(1.0);
+                let x0 = (pose[Axis::X0] - centre.x) / zoom(Parameter::ZoomX);
+                let y0 = (pose[Axis::Y0] - centre.y) / zoom(Parameter::ZoomY);
+                pose.with(Axis::X0, tidy(x0)).with(Axis::Y0, tidy(y0))
+            }
+        };
+        with(zoomed, &placement, corner)
     }
 
-    /// The shape of a turn with its anchor at the origin.
-    pub(crate) fn boundary<T: Real>(&self, turn: u64) -> Boundary<T> {
-        let (x0, y0) = (0.0, 0.0);
-        Boundary::of(&self.placed(Pose {
-            x0,
-            y0,
-            ..self.turned(turn)
-        }))
+    /// Whether this grid is of that shape, in any pose, on that sensor.
+    pub fn is_of(&self, source: &Source, sensor: &Sensor) -> bool {
+        let own = &self.sensor;
+        let same_sensor = (own.columns(), own.rows(), own.threshold())
+            == (sensor.columns(), sensor.rows(), sensor.threshold());
+        // In the same pose only the shapes can differ.
+        let posed = |source: &Source| {
+            Axis::of(source).try_fold(source.clone(), |source, axis| {
+                let parameter = axis.parameter();
+                source.with(parameter, own.default_value(parameter), own)
+            })
+        };
+        same_sensor
+            && matches!((posed(&self.source), posed(source)), (Ok(one), Ok(other)) if one == other)
     }
 
-    /// Where the anchor lies in the plane at values `x` and `y` of x0 and y0.
-    pub(crate) fn offset<T: Real>(&self, turn: u64, x: u64, y: u64) -> Point<T> {
-        let place = Point::new(
-            T::decimal(self.ranges.x0.value(x)),
-            T::decimal(self.ranges.y0.value(y)),
+    /// The first pose of an orientation.
+    fn first_pose(&self, orientation: u64) -> Pose {
+        self.pose(orientation * self.rows_per_orientation() * self.row_length())
+    }
+
+    /// The boundary of the shape in an orientation, with its anchor at the origin.
+    pub(crate) fn boundary<T: Real>(&self, orientation: u64) -> Boundary<T> {
+        let pose = self.first_pose(orientation);
+        Boundary::of(&self.placed(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0)))
+    }
+
+    /// The position of the anchor in the plane at value `x` of x0 and value `y` of y0.
+    pub(crate) fn offset<T: Real>(&self, orientation: u64, x: u64, y: u64) -> Point<T> {
+        let anchor = Point::new(
+            T::decimal(self.ranges[Axis::X0].value(x)),
+            T::decimal(self.ranges[Axis::Y0].value(y)),
         );
         if self.anchor == Anchor::Centre || self.source.kind().is_some() {
-            return place;
+            return anchor;
         }
-        let Pose { zoom_x, zoom_y, .. } = self.turned(turn);
-        Point::new(place.x * T::decimal(zoom_x), place.y * T::decimal(zoom_y))
+        // The corner of a picture is zoomed with it.
+        let pose = self.first_pose(orientation);
+        Point::new(
+            anchor.x * T::decimal(pose[Axis::ZoomX]),
+            anchor.y * T::decimal(pose[Axis::ZoomY]),
+        )
     }
 }
 
-/// Which value of each range, counted from 0, from the fastest: x0, y0, angle, zoom x, zoom y.
-pub type PoseIndex = [u64; 5];
-
-/// Values of one pose: cells, degrees, ratios.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
-    /// Where the anchor lies from the left; of a picture's corner, before it is zoomed.
-    pub x0: f64,
-    /// Where the anchor lies from the top.
-    pub y0: f64,
-    /// As the figure or the picture turns.
-    pub angle: f64,
-    /// 1 for figures.
-    pub zoom_x: f64,
-    /// 1 for figures.
-    pub zoom_y: f64,
+/// Rounds to nine decimals; never a negative zero.
+fn tidy(value: f64) -> f64 {
+    (value * 1e9).round() / 1e9 + 0.0
 }
 
-/// A shape in a pose of a grid.
-#[derive(Clone, Debug)]
-pub struct Placed {
-    turned: Source,
-    /// With the anchor at the centre: the shape before it is turned, and where its centre goes. Both shapes then lie
-    /// with their corner at the origin.
-    centred: Option<(Source, f64, f64)>,
-}
-
-impl Solid for Placed {
-    fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
-        let Some((upright, x, y)) = &self.centred else {
-            return self.turned.draw(pen);
-        };
-        let centre = centre::<T>(upright);
-        let by = Point::new(T::decimal(*x) - centre.x, T::decimal(*y) - centre.y);
-        self.turned.draw(&mut Moving { by, pen });
-    }
-}
-
-/// Where the centre of a shape lies that is not turned.
-pub(crate) fn centre<T: Real>(upright: &Source) -> Point<T> {
-    let boundary = Boundary::of(upright);
-    match upright {
-        Source::Figure(_) => boundary.mean(),
-        Source::Picture(_) => boundary.middle(),
-    }
-}
-
-/// Why there is no such grid.
+/// Why a grid was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GridError {
-    /// A range beyond that of its parameter.
+    /// A range that leaves that of its parameter.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// Zooms for something that has none.
+    /// Zooms of a figure.
     #[error("zoom_x, zoom_y: a {noun} has none, only pictures have")]
     Zoom {
-        /// What was to be swept.
+        /// The name of the figure.
         noun: &'static str,
     },
     /// Too many poses.
     #[error("{poses} poses, expected at most {MAX_POSES}")]
     Poses {
-        /// How many it would be.
+        /// Their number.
         poses: u128,
     },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Figure, FigureKind};
+    use crate::imprint::Imprint;
+    use crate::picture::Picture;
+    use crate::touch::Plane;
+
+    fn grid(source: Source, anchor: Anchor) -> PoseGrid {
+        let range = |text: &str| text.parse().expect("a range");
+        let zoomed = source.kind().is_none();
+        let zoom = if zoomed { "0.5:1.5:0.25" } else { "1" };
+        let ranges = Ranges::new([
+            // No place where a cell is covered just by half.
+            range("5.013:5.913:0.3"),
+            range("6.007:6.507:0.1"),
+            range("0:350:50"),
+            range(zoom),
+            range(zoom),
+        ]);
+        PoseGrid::new(source, Sensor::default(), anchor, ranges).expect("in range")
+    }
+
+    fn picture() -> Source {
+        let imprint = Imprint::from_rows([".##.", ".#..", "####"]).expect("rows");
+        Source::Picture(Picture::at_home(imprint))
+    }
+
+    #[test]
+    fn numbers_and_indices_name_the_same_poses() {
+        let grid = grid(picture(), Anchor::Corner);
+        assert_eq!(grid.counts().into_array(), [4, 6, 8, 5, 5]);
+        for number in [0, 1, 4, 23, 24, 191, 192, 4000, grid.poses() - 1] {
+            let index = grid.index(number);
+            assert_eq!(grid.number(index), number);
+            let pose = grid.pose(number);
+            for axis in [Axis::X0, Axis::Angle] {
+                assert_eq!(pose[axis], grid.ranges()[axis].value(index[axis]));
+            }
+        }
+        let beyond = PoseIndex::new([u64::MAX; 5]);
+        assert_eq!(grid.number(beyond), grid.poses() - 1);
+    }
+
+    #[test]
+    fn a_part_has_the_poses_of_the_whole() {
+        let whole = grid(picture(), Anchor::Corner);
+        let cut = |from, counts| whole.part(PoseIndex::new(from), PoseIndex::new(counts));
+        let from = PoseIndex::new([1, 2, 3, 4, 0]);
+        let part = cut(from.into_array(), [2, 3, 1, 1, 2]).expect("it lies inside");
+        assert_eq!(part.poses(), 12);
+        for number in 0..part.poses() {
+            let index = part.index(number);
+            let inside = PoseIndex::from_fn(|axis| from[axis] + index[axis]);
+            assert_eq!(part.pose(number), whole.pose(whole.number(inside)));
+        }
+        assert_eq!(cut([3, 0, 0, 0, 0], [2, 1, 1, 1, 1]), None);
+        assert_eq!(cut([0; 5], [0, 1, 1, 1, 1]), None);
+        assert_eq!(cut([u64::MAX; 5], [1; 5]), None);
+    }
+
+    /// Wherever the anchor is, the shape by itself leaves the imprint of its pose.
+    #[test]
+    fn a_pose_can_be_touched_by_itself() {
+        let triangle = Source::Figure(Figure::default_of(FigureKind::Triangle, &Sensor::default()));
+        for (source, anchor) in [
+            (triangle.clone(), Anchor::Corner),
+            (triangle, Anchor::Centre),
+            (picture(), Anchor::Corner),
+            (picture(), Anchor::Centre),
+        ] {
+            let grid = grid(source, anchor);
+            let mut plane = Plane::new(*grid.sensor());
+            for number in (0..grid.poses()).step_by(7) {
+                let pose = grid.pose(number);
+                let source = grid.source_at(pose).expect("inside of the sensor");
+                let expected = plane.touch(&grid.placed(pose));
+                assert_eq!(plane.touch(&source), expected, "{anchor:?} {pose:?}");
+                assert!(grid.is_of(&source, grid.sensor()));
+            }
+        }
+    }
+
+    #[test]
+    fn another_shape_is_none_of_the_grid() {
+        let sensor = Sensor::default();
+        let hexagon = Figure::default_of(FigureKind::Hexagon, &Sensor::default());
+        let grid = grid(Source::Figure(hexagon), Anchor::Corner);
+        let with = |parameter, value| {
+            Source::Figure(hexagon.with(parameter, value, &sensor).expect("in range"))
+        };
+        assert!(grid.is_of(&with(Parameter::X0, 1.5), &sensor));
+        assert!(grid.is_of(&with(Parameter::Angle, 77.0), &sensor));
+        assert!(!grid.is_of(&with(Parameter::Side, 1.5), &sensor));
+        assert!(!grid.is_of(&with(Parameter::Thickness, 1.0), &sensor));
+        assert!(!grid.is_of(&picture(), &sensor));
+        let octagon = Source::Figure(Figure::default_of(FigureKind::Octagon, &Sensor::default()));
+        assert!(!grid.is_of(&octagon, &sensor));
+        let coarse = sensor.with(Parameter::Threshold, 0.7).expect("in range");
+        assert!(!grid.is_of(grid.source(), &coarse));
+        let pitch = sensor.with(Parameter::Pitch, 2.5).expect("in range");
+        assert!(
+            grid.is_of(grid.source(), &pitch),
+            "the imprints are the same"
+        );
+    }
 }

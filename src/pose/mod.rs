@@ -1,16 +1,23 @@
-//! Poses: where a shape lies. Exact decimal ranges an axis, the grid they span, and the index of each pose in it.
+//! Poses: where a shape lies and how it is rotated.
+//!
+//! Each of the five axes (x0, y0, angle, and two zooms for pictures) has an exact range of decimals; together they span
+//! a grid whose poses are numbered.
 
 mod range;
 
+mod axis;
+
 mod boundary;
+
+mod placed;
 
 mod grid;
 
 mod symmetry;
 
-mod index;
-
+pub use axis::{Anchor, Axis, PerAxis, Pose, PoseIndex, Ranges};
 pub(crate) use boundary::Boundary;
-pub use grid::{Anchor, GridError, MAX_POSES, Placed, Pose, PoseGrid, PoseIndex, Ranges};
+pub use grid::{GridError, MAX_POSES, PoseGrid};
+pub use placed::Placed;
 pub use range::{DecimalRange, MAX_VALUES, RangeError};
 pub(crate) use symmetry::period;

@@ -148,16 +148,8 @@ impl PoseFile {
         existing: Existing,
     ) -> Result<Self, SweepFileError> {
         let mut file = begun(&path.into(), existing)?;
-        let ranges = grid.ranges();
-        let mut shape = [
-            ranges.zoom_y,
-            ranges.zoom_x,
-            ranges.angle,
-            ranges.y0,
-            ranges.x0,
-        ]
-        .map(|range| range.count())
-        .to_vec();
+        let mut shape = grid.counts().into_array().to_vec();
+        shape.reverse();
         if shape[..2] == [1, 1] {
             shape.drain(..2);
         }
@@ -237,16 +229,13 @@ fn begun(path: &Path, existing: Existing) -> Result<UnfinishedFile, SweepFileErr
 mod tests {
     use super::*;
     use crate::figure::{Figure, FigureKind};
-    use crate::pose::{Anchor, Ranges};
+    use crate::pose::{Anchor, Axis, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
     use crate::sweep::Sweep;
 
     fn result() -> SweepResult {
-        let ranges = Ranges {
-            angle: "0".parse().expect("a range"),
-            ..Ranges::default()
-        };
+        let ranges = Ranges::default().with(Axis::Angle, "0".parse().expect("a range"));
         let source = Source::Figure(Figure::default_of(FigureKind::Hexagon, &Sensor::default()));
         let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
         Sweep::new(&grid.expect("in range")).run()

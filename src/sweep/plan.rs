@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::str::FromStr;
 use std::sync::Arc;
 
-use crate::pose::{PoseGrid, period};
+use crate::pose::{Axis, PoseGrid, period};
 use crate::quote::shortened;
 use crate::sweep::point_symmetry::HalfTurn;
 
@@ -116,7 +116,10 @@ pub(crate) fn tasks(
     shard: &Range<u64>,
     block: u64,
 ) -> impl Iterator<Item = Task> + use<> {
-    let (angles, height) = (grid.ranges().angle.count(), grid.ranges().y0.count());
+    let (angles, height) = (
+        grid.ranges()[Axis::Angle].count(),
+        grid.rows_per_orientation(),
+    );
     let first_row = block * angles * height;
     let clipped = |row: u64| row.clamp(first_row, first_row + angles * height) - first_row;
     let rows = clipped(shard.start)..clipped(shard.end);
@@ -137,7 +140,9 @@ pub(crate) fn tasks(
     let mut classes: HashMap<i128, usize> = HashMap::new();
     let period = period(grid.source());
     for angle in full.clone() {
-        let class = period.map_or(0, |period| grid.ranges().angle.residue(angle, period));
+        let class = period.map_or(0, |period| {
+            grid.ranges()[Axis::Angle].residue(angle, period)
+        });
         let piece = *classes.entry(class).or_insert(pieces.len());
         if piece == pieces.len() {
             pieces.push((Vec::new(), 0..height));
@@ -147,7 +152,7 @@ pub(crate) fn tasks(
     if full.start <= full.end && full.end * height < rows.end {
         pieces.push(partial(full.end));
     }
-    let width = grid.ranges().x0.count();
+    let width = grid.row_length();
     let count = pieces.len() as u64;
     // Only inside of one task can rows be images of each other.
     let halved = width * height <= HALVED_TASK_POSES && HalfTurn::of(grid).is_some();

@@ -11,8 +11,7 @@
 //! none. What the sensor cuts off has no image, so the shape must lie inside of it in all poses of the turn.
 
 use crate::figure::FigureKind;
-use crate::parameter::Parameter;
-use crate::pose::{Anchor, DecimalRange, PoseGrid, period};
+use crate::pose::{Anchor, Axis, DecimalRange, PoseGrid, period};
 use crate::source::Source;
 
 /// How the poses of a turn are mapped onto each other.
@@ -31,8 +30,8 @@ impl HalfTurn {
         }
         let [width, height] = twice_to_centre(grid)?;
         Some(Self {
-            x: Fold::of(&grid.ranges().x0, width)?,
-            y: Fold::of(&grid.ranges().y0, height)?,
+            x: Fold::of(&grid.ranges()[Axis::X0], width)?,
+            y: Fold::of(&grid.ranges()[Axis::Y0], height)?,
         })
     }
 }
@@ -53,11 +52,11 @@ fn twice_to_centre(grid: &PoseGrid) -> Option<[f64; 2]> {
             }
         }
         Source::Picture(picture) => {
-            let zoomed = |(parameter, range): &(Parameter, DecimalRange)| {
-                let zoom = matches!(parameter, Parameter::ZoomX | Parameter::ZoomY);
-                zoom && *range != DecimalRange::whole(1)
-            };
-            if grid.ranges().by_parameter().iter().any(zoomed) {
+            let ranges = grid.ranges();
+            if [Axis::ZoomX, Axis::ZoomY]
+                .iter()
+                .any(|&axis| ranges[axis] != DecimalRange::whole(1))
+            {
                 return None;
             }
             let bounds = picture.imprint().bounds()?;
@@ -134,10 +133,7 @@ mod tests {
     use crate::sensor::Sensor;
 
     fn has_images(source: Source, anchor: Anchor, zoom: &str) -> bool {
-        let ranges = Ranges {
-            zoom_x: zoom.parse().expect("a range"),
-            ..Ranges::default()
-        };
+        let ranges = Ranges::default().with(Axis::ZoomX, zoom.parse().expect("a range"));
         let grid = PoseGrid::new(source, Sensor::default(), anchor, ranges).expect("a grid");
         HalfTurn::of(&grid).is_some()
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::atlas::{Atlas, ImprintCounter, Spread, Statistic, Table, statistics};
 use crate::imprint::Imprint;
-use crate::pose::{PoseGrid, PoseIndex};
+use crate::pose::{Axis, PoseGrid, PoseIndex};
 use crate::sweep::ideal::Ideal;
 use crate::sweep::plan::{Shard, Task};
 use crate::sweep::runs;
@@ -46,7 +46,7 @@ impl SweepResult {
     /// Whether nothing of the shard is missing.
     pub fn complete(&self) -> bool {
         let rows = self.shard.rows(self.grid.rows());
-        self.poses == (rows.end - rows.start) * self.grid.ranges().x0.count()
+        self.poses == (rows.end - rows.start) * self.grid.row_length()
     }
 
     pub(crate) fn new(
@@ -80,7 +80,7 @@ impl SweepResult {
         results.sort_by_key(|result| result.shard.number());
         let first = results.first().ok_or(MergeError::Nothing)?;
         let (grid, of) = (first.grid.clone(), first.shard.of());
-        let turn = grid.ranges().x0.count() * grid.ranges().y0.count();
+        let turn = grid.row_length() * grid.rows_per_orientation();
         let mut atlas = Atlas::new(grid.sensor().columns(), grid.sensor().rows());
         let (mut spread, mut poses, mut partly_off) = (Spread::new(turn), 0, 0);
         let mut expected = 1..=of;
@@ -127,15 +127,19 @@ impl SweepResult {
     /// let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
     /// let result = Sweep::new(&grid).run();
     /// // At x0 5.5 the columns at both ends are covered by half, and active.
-    /// assert_eq!(result.ids([0; 5], 49..52, 0..1), [Some(0), Some(1), Some(2)]);
+    /// assert_eq!(result.ids(PoseIndex::new([0; 5]), 49..52, 0..1), [Some(0), Some(1), Some(2)]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn ids(&self, turn: PoseIndex, x0: Range<u64>, y0: Range<u64>) -> Vec<Option<u32>> {
-        let [_, _, angle, zoom_x, zoom_y] = turn;
-        let from = [x0.start, y0.start, angle, zoom_x, zoom_y];
+    pub fn ids(&self, orientation: PoseIndex, x0: Range<u64>, y0: Range<u64>) -> Vec<Option<u32>> {
         let rows = y0.end.saturating_sub(y0.start);
-        let counts = [x0.end.saturating_sub(x0.start), rows, 1, 1, 1];
-        let Some(part) = self.grid.part(from, counts) else {
+        let from = orientation
+            .with(Axis::X0, x0.start)
+            .with(Axis::Y0, y0.start);
+        let columns = x0.end.saturating_sub(x0.start);
+        let Some(part) = self
+            .grid
+            .part(from, PoseIndex::new([columns, rows, 1, 1, 1]))
+        else {
             return Vec::new();
         };
         let task = Task {
@@ -197,7 +201,7 @@ impl SweepResult {
             .sum::<u128>();
         check(sum == u128::from(parts.poses), "counts that do not add up")?;
         let own = shard.rows(grid.rows());
-        let width = grid.ranges().x0.count();
+        let width = grid.row_length();
         check(
             parts.poses <= (own.end - own.start) * width && parts.partly_off <= parts.poses,
             "more poses than there are",
@@ -224,7 +228,7 @@ impl SweepResult {
                 "an imprint that is there twice",
             )?;
         }
-        let spread = Spread::from_words(width * grid.ranges().y0.count(), &parts.spread)
+        let spread = Spread::from_words(width * grid.rows_per_orientation(), &parts.spread)
             .ok_or(PartsError("sums of another version"))?;
         atlas.add(&counter, 1);
         atlas.describe();
@@ -299,7 +303,7 @@ mod tests {
     use super::*;
     use crate::figure::{Figure, FigureKind};
     use crate::picture::Picture;
-    use crate::pose::{Anchor, DecimalRange, Ranges};
+    use crate::pose::{Anchor, Axis, DecimalRange, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
     use crate::sweep::run::Sweep;
@@ -307,10 +311,7 @@ mod tests {
 
     #[test]
     fn first_poses_lie_in_the_shard() {
-        let ranges = Ranges {
-            angle: DecimalRange::whole(0),
-            ..Ranges::default()
-        };
+        let ranges = Ranges::default().with(Axis::Angle, DecimalRange::whole(0));
         let source = Source::Figure(Figure::default_of(FigureKind::Hexagon, &Sensor::default()));
         let grid =
             PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges).expect("a grid");
@@ -336,32 +337,31 @@ mod tests {
             (ellipse, "1"),
             (Source::Picture(Picture::at_home(imprint)), "1:2:0.5"),
         ] {
-            let ranges = Ranges {
-                x0: range("3:5:0.1"),
-                y0: range("4:6:0.1"),
-                angle: range("0:40:20"),
-                zoom_x: range(zoom),
-                zoom_y: range("1"),
-            };
+            let ranges = Ranges::default()
+                .with(Axis::X0, range("3:5:0.1"))
+                .with(Axis::Y0, range("4:6:0.1"))
+                .with(Axis::Angle, range("0:40:20"))
+                .with(Axis::ZoomX, range(zoom))
+                .with(Axis::ZoomY, range("1"));
             let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
             let grid = grid.expect("in range");
             let result = Sweep::new(&grid).run();
             let mut plane = Plane::new(*grid.sensor());
             for turn in [0, 1, 2] {
-                let zoom = turn.min(grid.counts()[3] - 1);
-                let ids = result.ids([9, 9, turn, zoom, 0], 3..17, 2..9);
+                let zoom = turn.min(grid.counts()[Axis::ZoomX] - 1);
+                let ids = result.ids(PoseIndex::new([9, 9, turn, zoom, 0]), 3..17, 2..9);
                 assert_eq!(ids.len(), 14 * 7);
                 for (index, id) in (0..).zip(ids) {
-                    let place = [3 + index % 14, 2 + index / 14, turn, zoom, 0];
-                    let pose = grid.pose(grid.number(place));
+                    let index = [3 + index % 14, 2 + index / 14, turn, zoom, 0];
+                    let pose = grid.pose(grid.number(PoseIndex::new(index)));
                     let touched = plane.touch(&grid.placed(pose));
                     assert_eq!(id, result.atlas.find(&touched), "{pose:?}");
                     assert!(id.is_some());
                 }
             }
-            assert_eq!(result.ids([0; 5], 0..22, 0..1), []);
-            assert_eq!(result.ids([0; 5], 4..4, 0..1), []);
-            assert_eq!(result.ids([0, 0, 3, 0, 0], 0..1, 0..1), []);
+            assert_eq!(result.ids(PoseIndex::new([0; 5]), 0..22, 0..1), []);
+            assert_eq!(result.ids(PoseIndex::new([0; 5]), 4..4, 0..1), []);
+            assert_eq!(result.ids(PoseIndex::new([0, 0, 3, 0, 0]), 0..1, 0..1), []);
         }
     }
 
@@ -381,8 +381,8 @@ mod tests {
             Sweep::new(&grid).progress(&go_on).run()
         });
         assert!(!stopped.complete() && stopped.poses > 0);
-        assert_eq!(stopped.ids([0; 5], 0..1, 0..1), [Some(0)]);
-        let ids = stopped.ids([0, 0, 37, 0, 0], 0..100, 0..100);
+        assert_eq!(stopped.ids(PoseIndex::new([0; 5]), 0..1, 0..1), [Some(0)]);
+        let ids = stopped.ids(PoseIndex::new([0, 0, 37, 0, 0]), 0..100, 0..100);
         assert!(ids.contains(&None));
     }
 }

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rayon::prelude::*;
 
 use crate::atlas::{Atlas, Spread, Table, TurnSums};
-use crate::pose::PoseGrid;
+use crate::pose::{Axis, PoseGrid};
 use crate::sweep::plan::{Shard, Task, tasks};
 use crate::sweep::result::SweepResult;
 use crate::sweep::runs;
@@ -97,7 +97,7 @@ impl<'a> Sweep<'a> {
             rows,
         } = self;
         let shard_rows = shard.rows(grid.rows());
-        let (width, height) = (grid.ranges().x0.count(), grid.ranges().y0.count());
+        let (width, height) = (grid.row_length(), grid.rows_per_orientation());
         let sensor = grid.sensor();
         let mut under_way = UnderWay {
             grid,
@@ -110,7 +110,7 @@ impl<'a> Sweep<'a> {
             progress,
             rows,
         };
-        let block_rows = grid.ranges().angle.count() * height;
+        let block_rows = grid.ranges()[Axis::Angle].count() * height;
         'all: for block in shard_rows.start / block_rows..shard_rows.end.div_ceil(block_rows) {
             let mut tasks = tasks(grid, &shard_rows, block).peekable();
             while tasks.peek().is_some() {
@@ -166,7 +166,7 @@ impl UnderWay<'_, '_> {
     }
 
     fn portion(&mut self, tasks: &[Task]) {
-        let width = self.grid.ranges().x0.count();
+        let width = self.grid.row_length();
         let (grid, layout, stopped) = (self.grid, self.atlas.layout(), &self.stopped);
         let (keep_runs, progress) = (self.rows.is_some(), self.progress);
         let found: Vec<Option<Found>> = tasks
@@ -223,7 +223,7 @@ impl UnderWay<'_, '_> {
 
 /// Spells out the runs of a task, for each of its turns.
 fn show_rows(grid: &PoseGrid, task: &Task, found: &Found, ids: &[u32], show: &mut TakeRow<'_>) {
-    let (width, height) = (grid.ranges().x0.count(), grid.ranges().y0.count());
+    let (width, height) = (grid.row_length(), grid.rows_per_orientation());
     let width = usize::try_from(width).unwrap_or(usize::MAX);
     let mut row = Vec::with_capacity(width);
     for (index, y) in task.rows.clone().enumerate() {

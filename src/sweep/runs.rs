@@ -7,7 +7,7 @@
 use crate::atlas::{ImprintCounter, Layout};
 use crate::geometry::Extent;
 use crate::geometry::Real;
-use crate::pose::{Boundary, PoseGrid};
+use crate::pose::{Axis, Boundary, PoseGrid};
 use crate::sweep::ellipse::Elliptic;
 use crate::sweep::events::Events;
 use crate::sweep::exact::Exact;
@@ -52,7 +52,7 @@ pub(crate) fn go(
         partly_off: 0,
         runs: Runs::default(),
     };
-    let (width, height) = (grid.ranges().x0.count(), grid.ranges().y0.count());
+    let (width, height) = (grid.row_length(), grid.rows_per_orientation());
     let mut untold = 0;
     for y in task.rows.clone() {
         let first = (turn * height + y) * width;
@@ -129,7 +129,7 @@ struct Sweeper<'a> {
 impl<'a> Sweeper<'a> {
     fn new(grid: &'a PoseGrid, layout: &'a Layout, turn: u64) -> Self {
         let boundary = grid.boundary::<f64>(turn);
-        let count = grid.ranges().x0.count();
+        let count = grid.row_length();
         let place = |x: u64| grid.offset::<f64>(turn, x, 0).x;
         let (first, last) = (place(0), place(count - 1));
         let count = i32::try_from(count).unwrap_or(i32::MAX);
@@ -139,7 +139,7 @@ impl<'a> Sweeper<'a> {
                 extent.left + x < -DOUBTFUL
                     || extent.right + x > f64::from(layout.columns()) + DOUBTFUL
             };
-            let places = (0..grid.ranges().x0.count()).map(place);
+            let places = (0..grid.row_length()).map(place);
             places.filter(off).count() as u64
         };
         Self {
@@ -160,7 +160,7 @@ impl<'a> Sweeper<'a> {
                 count,
             },
             spans: Spans::default(),
-            events: Events::new(layout, grid.ranges().x0.count()),
+            events: Events::new(layout, grid.row_length()),
             exact: Exact::new(grid, turn),
         }
     }
@@ -174,7 +174,7 @@ impl<'a> Sweeper<'a> {
         let place = |x, y| self.grid.offset::<f64>(self.turn, x, y);
         let (first, last) = (
             place(0, 0),
-            place(ranges.x0.count() - 1, ranges.y0.count() - 1),
+            place(ranges[Axis::X0].count() - 1, ranges[Axis::Y0].count() - 1),
         );
         let beyond = |end: f64, side: u8| end > f64::from(side) - DOUBTFUL;
         let off = extent.left + first.x < DOUBTFUL
@@ -190,7 +190,7 @@ impl<'a> Sweeper<'a> {
         let bottom = f64::from(self.grid.sensor().rows()) + DOUBTFUL;
         match &self.extent {
             Some(extent) if extent.top + y < -DOUBTFUL || extent.bottom + y > bottom => {
-                self.grid.ranges().x0.count()
+                self.grid.row_length()
             }
             Some(_) => self.beyond,
             None => 0,

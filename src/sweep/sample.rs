@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use crate::pose::{PoseGrid, period};
+use crate::pose::{Axis, PoseGrid, PoseIndex, period};
 
 /// About so many poses are enough to measure by.
 const POSES: u64 = 20_000;
@@ -22,11 +22,11 @@ impl TimingSample {
     /// The sample of a grid.
     #[expect(clippy::cast_precision_loss, reason = "an estimate")]
     pub fn of(grid: &PoseGrid) -> Self {
-        let [width, height, angles, zooms_x, zooms_y] = grid.counts();
+        let [width, height, angles, zooms_x, zooms_y] = grid.counts().into_array();
         let width = width.min(POSES);
         let height = height.min(POSES / width).max(1);
-        let middle = [0, 0, angles / 2, zooms_x / 2, zooms_y / 2];
-        let part = grid.part(middle, [width, height, 1, 1, 1]);
+        let middle = PoseIndex::new([0, 0, angles / 2, zooms_x / 2, zooms_y / 2]);
+        let part = grid.part(middle, PoseIndex::new([width, height, 1, 1, 1]));
         let part = part.unwrap_or_else(|| grid.clone());
         let turns = distinct_angles(grid) as f64 / angles as f64;
         Self {
@@ -38,7 +38,7 @@ impl TimingSample {
 
 /// How many angles are gone through: of those that look the same, one.
 fn distinct_angles(grid: &PoseGrid) -> u64 {
-    let angle = grid.ranges().angle;
+    let angle = grid.ranges()[Axis::Angle];
     let Some(period) = period(grid.source()) else {
         return 1;
     };
@@ -52,7 +52,7 @@ fn distinct_angles(grid: &PoseGrid) -> u64 {
 mod tests {
     use super::*;
     use crate::figure::{Figure, FigureKind};
-    use crate::pose::{Anchor, Ranges};
+    use crate::pose::{Anchor, Axis, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
 
@@ -71,19 +71,15 @@ mod tests {
         // The default ellipse is a circle.
         assert_eq!(sample(FigureKind::Ellipse, default), (10_000, 1.0));
         let range = |text: &str| text.parse().expect("a range");
-        let long = Ranges {
-            x0: range("0:10:0.001"),
-            y0: range("0:10:0.001"),
-            ..default
-        };
+        let long = default
+            .with(Axis::X0, range("0:10:0.001"))
+            .with(Axis::Y0, range("0:10:0.001"));
         let (poses, times) = sample(FigureKind::Heptagon, long);
         assert_eq!((poses, times), (10_001, 360.0 * 10_001.0));
-        let single = Ranges {
-            x0: range("5"),
-            y0: range("5"),
-            angle: range("0"),
-            ..default
-        };
+        let single = default
+            .with(Axis::X0, range("5"))
+            .with(Axis::Y0, range("5"))
+            .with(Axis::Angle, range("0"));
         assert_eq!(sample(FigureKind::Triangle, single), (1, 1.0));
     }
 }

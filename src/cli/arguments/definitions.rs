@@ -21,7 +21,7 @@ use crate::figure::FigureKind;
 use crate::formats::{Name, NameError};
 use crate::parameter::Parameter;
 use crate::picture::PICTURE_PARAMETERS;
-use crate::pose::{DecimalRange, RangeError, Ranges};
+use crate::pose::{Anchor, Axis, DecimalRange, RangeError, Ranges};
 use crate::sensor::SENSOR_PARAMETERS;
 use crate::storage::{AtlasFile, is_poses};
 use crate::sweep::{Shard, ShardError};
@@ -154,32 +154,28 @@ fn sweep() -> Command {
         .value_name("NAME|FILE")
         .value_parser(value_parser!(OsString))
         .help("Sweep a stored shape instead");
-    let sizes = parameters::figure_parameters().filter(|parameter| {
-        Ranges::default()
-            .by_parameter()
-            .iter()
-            .all(|(own, _)| own != parameter)
+    let sizes = parameters::figure_parameters()
+        .filter(|&parameter| Axis::ALL.iter().all(|axis| axis.parameter() != parameter));
+    let defaults = Ranges::default();
+    let ranges = Axis::ALL.map(|axis| {
+        let (row, flag) = (axis.parameter().row(), axis.parameter().flag());
+        let default = defaults[axis];
+        let help = format!(
+            "{}; default {default}",
+            parameters::capitalised(row.meaning)
+        );
+        Arg::new(format!("range_{}", row.key))
+            .long(flag)
+            .value_name("START:END:STEP")
+            .allow_hyphen_values(true)
+            .value_parser(parse_range)
+            .help_heading("Grid")
+            .help(parameters::wrapped(&help, 46))
     });
-    let ranges = Ranges::default()
-        .by_parameter()
-        .map(|(parameter, default)| {
-            let (row, flag) = (parameter.row(), parameter.flag());
-            let help = format!(
-                "{}; default {default}",
-                parameters::capitalised(row.meaning)
-            );
-            Arg::new(format!("range_{}", row.key))
-                .long(flag)
-                .value_name("START:END:STEP")
-                .allow_hyphen_values(true)
-                .value_parser(parse_range)
-                .help_heading("Grid")
-                .help(parameters::wrapped(&help, 46))
-        });
     let anchor = Arg::new("anchor")
         .long("anchor")
         .value_name("POINT")
-        .value_parser(PossibleValuesParser::new(["corner", "centre"]))
+        .value_parser(PossibleValuesParser::new(Anchor::NAMES))
         .hide_possible_values(true)
         .help_heading("Grid")
         .help("What x0 and y0 place: corner or centre");

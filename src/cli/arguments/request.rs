@@ -20,8 +20,7 @@ use crate::cli::settings::pitch::Pitch;
 use crate::cli::settings::resolved::{Effective, Loaded};
 use crate::figure::FigureKind;
 use crate::formats::Name;
-use crate::parameter::Parameter;
-use crate::pose::{Anchor, DecimalRange, Ranges};
+use crate::pose::{Anchor, Axis, Ranges};
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::storage::AtlasFile;
@@ -56,7 +55,7 @@ pub(crate) enum Request {
     /// To answer lines.
     Batch(Sensor),
     /// To go through a grid.
-    Sweep(Box<Sweep>),
+    Sweep(Box<SweepArguments>),
     /// To put the shards in these files together.
     Merge(Vec<PathBuf>, Wanted),
     /// Something about the library.
@@ -71,7 +70,7 @@ pub(crate) enum Request {
 
 /// A grid and how it is gone through.
 #[derive(Clone, Debug)]
-pub(crate) struct Sweep {
+pub(crate) struct SweepArguments {
     pub(crate) what: Swept,
     pub(crate) anchor: Anchor,
     pub(crate) ranges: Ranges,
@@ -240,18 +239,14 @@ fn sweep(
     matches: &ArgMatches,
     command: &mut clap::Command,
     settings: &Effective,
-) -> Result<Sweep, CliError> {
+) -> Result<SweepArguments, CliError> {
     let given = Given::of(matches);
     let mut ranges = Ranges::default();
-    let read = |parameter: Parameter, range: &mut DecimalRange| {
-        let given = matches.get_one::<DecimalRange>(&format!("range_{}", parameter.row().key));
-        *range = given.copied().unwrap_or(*range);
-    };
-    read(Parameter::X0, &mut ranges.x0);
-    read(Parameter::Y0, &mut ranges.y0);
-    read(Parameter::Angle, &mut ranges.angle);
-    read(Parameter::ZoomX, &mut ranges.zoom_x);
-    read(Parameter::ZoomY, &mut ranges.zoom_y);
+    for axis in Axis::ALL {
+        if let Some(&given) = matches.get_one(&format!("range_{}", axis.name())) {
+            ranges[axis] = given;
+        }
+    }
     let what = if let Some(picture) = matches.get_one::<OsString>("picture") {
         let size = parameters::figure_parameters().find(|&parameter| given.has(parameter));
         if let Some(size) = size {
@@ -263,13 +258,11 @@ fn sweep(
         let (figure, sensor) = source(matches, command, "sweep", settings)?;
         Swept::Figure(figure, sensor)
     };
-    let anchor = match matches.get_one::<String>("anchor").map(String::as_str) {
-        Some("centre") => Anchor::Centre,
-        _ => Anchor::Corner,
-    };
-    Ok(Sweep {
+    let anchor = matches.get_one::<String>("anchor");
+    let anchor = anchor.and_then(|name| Anchor::from_name(name));
+    Ok(SweepArguments {
         what,
-        anchor,
+        anchor: anchor.unwrap_or_default(),
         ranges,
         shard: matches.get_one("shard").copied().unwrap_or(Shard::WHOLE),
         jobs: matches

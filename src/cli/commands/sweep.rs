@@ -59,7 +59,7 @@ pub(crate) fn sweep(
         None => None,
     };
     let rows = shard.rows(grid.rows());
-    let all = (rows.end - rows.start) * grid.ranges().x0.count();
+    let all = (rows.end - rows.start) * grid.row_length();
     let progress = Progress::new(all, wanted.quiet, charset);
     let tell = |poses: u64| {
         progress.add(poses);

@@ -53,13 +53,8 @@ impl<'a> Summary<'a> {
             1 => String::new(),
             _ => format!(", shard {shard}"),
         };
-        let ranges = grid.ranges().by_parameter();
-        let ranges = ranges
-            .iter()
-            .filter(|(parameter, range)| {
-                grid.source().get(*parameter).is_some() && range.count() > 1
-            })
-            .map(|(parameter, range)| format!("{} {range}", parameter.row().key));
+        let several = grid.axes().filter(|&axis| grid.counts()[axis] > 1);
+        let ranges = several.map(|axis| format!("{} {}", axis.name(), grid.ranges()[axis]));
         line(&format!(
             "{poses} poses{part}: {}",
             ranges.collect::<Vec<_>>().join(", ")

@@ -1,7 +1,6 @@
 //! Lines, rows and widths that the pages have in common.
 
-use crate::parameter::Parameter;
-use crate::pose::PoseGrid;
+use crate::pose::{Axis, PoseGrid};
 
 /// The first row that is visible: rows are shown page by page, so that what is clicked on stays where it is.
 pub(in crate::tui) fn first(visible: usize, selected: usize) -> usize {
@@ -9,13 +8,11 @@ pub(in crate::tui) fn first(visible: usize, selected: usize) -> usize {
 }
 
 /// Characters of the values of a range, and of its name.
-pub(in crate::tui) fn width_of(grid: &PoseGrid, parameter: Parameter) -> usize {
-    let rows = grid.ranges().by_parameter();
-    let range = rows.iter().find(|(own, _)| *own == parameter);
-    let width = range.map_or(0, |(_, range)| {
-        let ends = [range.value(0), range.value(1), range.last()];
-        let widths = ends.map(|value| parameter.format(value).len());
-        widths.into_iter().max().unwrap_or(0)
-    });
-    width.max(parameter.row().short.len())
+pub(in crate::tui) fn width_of(grid: &PoseGrid, axis: Axis) -> usize {
+    let (range, parameter) = (grid.ranges()[axis], axis.parameter());
+    let ends = [range.value(0), range.value(1), range.last()];
+    let widths = ends.map(|value| parameter.format(value).len());
+    widths
+        .into_iter()
+        .fold(parameter.row().short.len(), usize::max)
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::atlas::{AtlasEntry, Feature, SortKey, features, sorted};
 use crate::imprint::Imprint;
-use crate::pose::PoseIndex;
+use crate::pose::{Axis, PoseIndex};
 use crate::sweep::SweepResult;
 use crate::tui::app::message::Endpoint;
 use crate::tui::explore::message::{ExplorePage, Findings, Zoom};
@@ -39,7 +39,7 @@ impl Results {
             rows: Vec::new(),
             selected: 0,
             column: 0,
-            place: [0; 5],
+            place: PoseIndex::new([0; 5]),
         };
         results.arrange();
         results
@@ -174,7 +174,7 @@ impl Results {
             ExplorePage::Statistics | ExplorePage::Histogram => {
                 self.choose_feature(by(self.feature));
             }
-            ExplorePage::Map => self.move_along(1, i64::from(lines)),
+            ExplorePage::Map => self.move_along(Axis::Y0, i64::from(lines)),
         }
     }
 
@@ -188,8 +188,8 @@ impl Results {
             ExplorePage::Imprints => self.select(far),
             ExplorePage::Statistics | ExplorePage::Histogram => self.choose_feature(far),
             ExplorePage::Map => {
-                let last = self.sweep().grid.counts()[0] - 1;
-                self.place[0] = if end == Endpoint::First { 0 } else { last };
+                let last = self.sweep().grid.counts()[Axis::X0] - 1;
+                self.place[Axis::X0] = if end == Endpoint::First { 0 } else { last };
             }
         }
     }
@@ -202,42 +202,42 @@ impl Results {
     /// Moves it by a pose.
     pub fn move_cursor(&mut self, arrow: Arrow) {
         let (dx, dy) = arrow.step();
-        self.move_along(0, dx.into());
-        self.move_along(1, dy.into());
+        self.move_along(Axis::X0, dx.into());
+        self.move_along(Axis::Y0, dy.into());
     }
 
     /// Puts it at an x0 and a y0, or the last ones.
     pub fn point(&mut self, x0: u64, y0: u64) {
-        let [width, height, ..] = self.sweep().grid.counts();
-        self.place[0] = x0.min(width - 1);
-        self.place[1] = y0.min(height - 1);
+        let counts = self.sweep().grid.counts();
+        self.place[Axis::X0] = x0.min(counts[Axis::X0] - 1);
+        self.place[Axis::Y0] = y0.min(counts[Axis::Y0] - 1);
     }
 
     /// Shows another angle.
     pub fn turn(&mut self, by: i16) {
-        let count = self.sweep().grid.counts()[2];
-        let by = i128::from(by) + i128::from(self.place[2]);
+        let count = self.sweep().grid.counts()[Axis::Angle];
+        let by = i128::from(by) + i128::from(self.place[Axis::Angle]);
         // All around, where the angles may go all around too.
-        self.place[2] = u64::try_from(by.rem_euclid(count.into())).unwrap_or(0);
+        self.place[Axis::Angle] = u64::try_from(by.rem_euclid(count.into())).unwrap_or(0);
     }
 
     /// Shows another zoom, up to the last one.
     pub fn zoom(&mut self, zoom: Zoom, by: i8) {
         let axis = match zoom {
-            Zoom::X => 3,
-            Zoom::Y => 4,
+            Zoom::X => Axis::ZoomX,
+            Zoom::Y => Axis::ZoomY,
         };
         self.move_along(axis, by.into());
     }
 
-    fn move_along(&mut self, axis: usize, by: i64) {
+    fn move_along(&mut self, axis: Axis, by: i64) {
         let last = self.sweep().grid.counts()[axis] - 1;
         self.place[axis] = self.place[axis].saturating_add_signed(by).min(last);
     }
 
     /// Puts the map's cursor where a pose is.
     pub fn go_to_pose(&mut self, number: u64) {
-        self.place = self.sweep().grid.place(number);
+        self.place = self.sweep().grid.index(number);
     }
 
     /// The pose that is looked at: of the map, or the first one of the selected imprint; its number.
@@ -266,18 +266,16 @@ pub fn around(now: usize, by: i8, count: usize) -> usize {
 mod tests {
     use super::*;
     use crate::figure::{Figure, FigureKind};
-    use crate::pose::{Anchor, PoseGrid, Ranges};
+    use crate::pose::{Anchor, Axis, PoseGrid, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
     use crate::sweep::Sweep;
 
     fn results() -> Results {
-        let ranges = Ranges {
-            x0: "5:5.9:0.1".parse().expect("a range"),
-            y0: "5:5.5:0.1".parse().expect("a range"),
-            angle: "0:80:20".parse().expect("a range"),
-            ..Ranges::default()
-        };
+        let ranges = Ranges::default()
+            .with(Axis::X0, "5:5.9:0.1".parse().expect("a range"))
+            .with(Axis::Y0, "5:5.5:0.1".parse().expect("a range"))
+            .with(Axis::Angle, "0:80:20".parse().expect("a range"));
         let source = Source::Figure(Figure::default_of(FigureKind::Heptagon, &Sensor::default()));
         let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
         let result = Sweep::new(&grid.expect("in range")).run();
@@ -319,16 +317,16 @@ mod tests {
             (Arrow::Down, [1, 1, 0, 0, 0]),
         ] {
             results.move_cursor(arrow);
-            assert_eq!(results.place(), place);
+            assert_eq!(results.place().into_array(), place);
         }
         results.point(u64::MAX, u64::MAX);
         results.turn(-1);
         results.zoom(Zoom::X, 1);
-        assert_eq!(results.place(), [9, 5, 4, 0, 0]);
+        assert_eq!(results.place().into_array(), [9, 5, 4, 0, 0]);
         results.scroll(-3);
         results.scroll_to(Endpoint::First);
         results.turn(1);
-        assert_eq!(results.place(), [0, 2, 0, 0, 0]);
+        assert_eq!(results.place().into_array(), [0, 2, 0, 0, 0]);
         assert_eq!(results.pose(), Some(20));
         results.next_page(1);
         assert_eq!(results.page(), ExplorePage::Imprints);

@@ -6,7 +6,7 @@
 
 use crate::figure::FigureKind;
 use crate::parameter::Parameter;
-use crate::pose::Ranges;
+use crate::pose::Axis;
 use crate::sensor::SENSOR_PARAMETERS;
 use crate::tui::keys::action::{ACTIONS, Action, Arguments};
 use crate::tui::keys::binding::Context;
@@ -185,8 +185,7 @@ fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
         }
         (Some(Arguments::Sensor), said) => flags(SENSOR_PARAMETERS.to_vec(), said),
         (Some(Arguments::Ranges), said) => {
-            let rows = Ranges::default().by_parameter();
-            let ranges = rows.map(|(parameter, _)| format!("--{}", parameter.flag()));
+            let ranges = Axis::ALL.map(|axis| format!("--{}", axis.parameter().flag()));
             words([&ranges[..], &["--anchor".to_owned()]].concat(), said)
         }
         (_, []) => {

@@ -1,8 +1,7 @@
 //! `explore --x0 5:5.99:0.01 --angle 0:359:1 --anchor centre`: the command line's names for a sweep of what is on the
 //! matrix.
 
-use crate::parameter::Parameter;
-use crate::pose::{Anchor, DecimalRange, PoseGrid, Ranges};
+use crate::pose::{Anchor, Axis, PoseGrid, RangeError, Ranges};
 use crate::quote::shortened;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
@@ -31,36 +30,23 @@ pub(in crate::tui) fn read(words: &[&str], app: &App) -> Result<Message, String>
         }
         given.push(flag);
         if name == "anchor" {
-            anchor = match *text {
-                "corner" => Anchor::Corner,
-                "centre" => Anchor::Centre,
-                _ => {
-                    return Err(format!(
-                        "--anchor takes corner or centre, found {}",
-                        shortened(text)
-                    ));
-                }
-            };
+            anchor = Anchor::from_name(text).ok_or_else(|| {
+                let names = Anchor::NAMES.join(" or ");
+                format!("--anchor takes {names}, found {}", shortened(text))
+            })?;
             continue;
         }
-        let rows = ranges.by_parameter();
-        let known = rows.iter().map(|(parameter, _)| *parameter);
-        let mut own = known.filter(|parameter| parameter.flag() == name);
-        let parameter = own.next().ok_or_else(|| {
+        let mut axes = Axis::ALL.into_iter();
+        let axis = axes.find(|axis| axis.parameter().flag() == name);
+        let axis = axis.ok_or_else(|| {
             format!(
                 "{} is unknown, expected --x0, --y0, --angle, --zoom-x, --zoom-y or --anchor",
                 shortened(flag)
             )
         })?;
-        let range: DecimalRange = text.parse().map_err(|error| format!("{flag}: {error}"))?;
-        let place = match parameter {
-            Parameter::X0 => &mut ranges.x0,
-            Parameter::Y0 => &mut ranges.y0,
-            Parameter::ZoomX => &mut ranges.zoom_x,
-            Parameter::ZoomY => &mut ranges.zoom_y,
-            _ => &mut ranges.angle,
-        };
-        *place = range;
+        ranges[axis] = text
+            .parse()
+            .map_err(|error: RangeError| format!("{flag}: {error}"))?;
     }
     let grid = PoseGrid::new(source, document.sensor, anchor, ranges);
     let grid = grid.map_err(|error| error.to_string())?;

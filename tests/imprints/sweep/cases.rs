@@ -3,7 +3,7 @@
 use taxel::figure::{Figure, FigureKind};
 use taxel::parameter::Parameter;
 use taxel::picture::Picture;
-use taxel::pose::{Anchor, PoseGrid, Ranges};
+use taxel::pose::{Anchor, Axis, PoseGrid, Ranges};
 use taxel::sensor::Sensor;
 use taxel::source::Source;
 use taxel::sweep::Sweep;
@@ -255,13 +255,12 @@ impl Case {
             (step * f64::from(stride) * 1e6).round() / 1e6
         );
         let read = |text: &str| text.parse().expect("a range");
-        let ranges = Ranges {
-            x0: read(&place),
-            y0: read(&place),
-            angle: read(angles),
-            zoom_x: read(self.zoom),
-            zoom_y: read(self.zoom),
-        };
+        let ranges = Ranges::default()
+            .with(Axis::X0, read(&place))
+            .with(Axis::Y0, read(&place))
+            .with(Axis::Angle, read(angles))
+            .with(Axis::ZoomX, read(self.zoom))
+            .with(Axis::ZoomY, read(self.zoom));
         PoseGrid::new(self.source.clone(), self.sensor, self.anchor, ranges).expect("a grid")
     }
 }
@@ -269,7 +268,7 @@ impl Case {
 /// Sweeps the grid and touches pose by pose; how many poses differ, and what is wrong otherwise.
 pub(crate) fn differences(grid: &PoseGrid) -> Result<u64, String> {
     let poses = usize::try_from(grid.poses()).expect("a small grid");
-    let width = usize::try_from(grid.ranges().x0.count()).expect("a small grid");
+    let width = usize::try_from(grid.row_length()).expect("a small grid");
     let mut ids = vec![u32::MAX; poses];
     let mut take = |row: u64, numbers: &[u32]| {
         let start = usize::try_from(row).expect("a small grid") * width;

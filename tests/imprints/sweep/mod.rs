@@ -15,7 +15,7 @@ use crate::paper::RING_IMPRINTS;
 use self::cases::{cases, differences, figure, picture};
 use taxel::figure::FigureKind;
 use taxel::parameter::Parameter;
-use taxel::pose::{Anchor, PoseGrid, Ranges};
+use taxel::pose::{Anchor, Axis, PoseGrid, Ranges};
 use taxel::sensor::Sensor;
 use taxel::source::Source;
 use taxel::sweep::{MergeError, Shard, Sweep, SweepResult};
@@ -26,12 +26,10 @@ fn sweep(grid: &PoseGrid) -> SweepResult {
 
 fn small(source: Source, place: &str, angles: &str) -> PoseGrid {
     let read = |text: &str| text.parse().expect("a range");
-    let ranges = Ranges {
-        x0: read(place),
-        y0: read(place),
-        angle: read(angles),
-        ..Ranges::default()
-    };
+    let ranges = Ranges::default()
+        .with(Axis::X0, read(place))
+        .with(Axis::Y0, read(place))
+        .with(Axis::Angle, read(angles));
     PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges).expect("a grid")
 }
 
@@ -151,12 +149,10 @@ fn threads_and_shards_do_not_matter() {
 fn rows_that_are_images_equal_those_gone_through() {
     let centred = |source, place: &str, angles: &str| {
         let read = |text: &str| text.parse().expect("a range");
-        let ranges = Ranges {
-            x0: read(place),
-            y0: read("7.04:8.03:0.03"),
-            angle: read(angles),
-            ..Ranges::default()
-        };
+        let ranges = Ranges::default()
+            .with(Axis::X0, read(place))
+            .with(Axis::Y0, read("7.04:8.03:0.03"))
+            .with(Axis::Angle, read(angles));
         PoseGrid::new(source, Sensor::default(), Anchor::Centre, ranges).expect("a grid")
     };
     let tie = figure(FigureKind::Rectangle, 4.5, 2.5, 0.5);

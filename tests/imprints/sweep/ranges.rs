@@ -1,7 +1,7 @@
 //! Ranges and grids of poses: exact, or refused with the reason.
 
 use taxel::figure::FigureKind;
-use taxel::pose::{Anchor, DecimalRange, MAX_VALUES, PoseGrid, Ranges};
+use taxel::pose::{Anchor, Axis, DecimalRange, MAX_VALUES, PoseGrid, Ranges};
 use taxel::sensor::Sensor;
 
 use super::cases::{figure, picture};
@@ -97,39 +97,26 @@ fn grids_are_in_range_or_refused() {
     let paper = Ranges::default();
     let ring = || figure(FigureKind::Ellipse, 4.0, 4.0, 2.0);
     assert_eq!(grid(ring(), paper), Ok(3_600_000));
-    let far = Ranges {
-        x0: read("10:17:1"),
-        ..paper
-    };
+    let far = paper.with(Axis::X0, read("10:17:1"));
     assert_eq!(
         grid(ring(), far).expect_err("no grid").to_string(),
         "x0: 17 is out of range, expected -16 to 16"
     );
-    let round = Ranges {
-        angle: read("0:360:1"),
-        ..paper
-    };
+    let round = paper.with(Axis::Angle, read("0:360:1"));
     assert!(
         grid(ring(), round)
             .expect_err("no grid")
             .to_string()
             .starts_with("angle: 360 is out of range")
     );
-    let zoomed = Ranges {
-        zoom_x: read("1:2:0.5"),
-        ..paper
-    };
+    let zoomed = paper.with(Axis::ZoomX, read("1:2:0.5"));
     assert_eq!(
         grid(ring(), zoomed).expect_err("no grid").to_string(),
         "zoom_x, zoom_y: a figure has none, only pictures have"
     );
     assert_eq!(grid(picture("##"), zoomed), Ok(3 * 3_600_000));
     let fine = read("0:0.999999:0.000001");
-    let many = Ranges {
-        x0: fine,
-        y0: fine,
-        ..paper
-    };
+    let many = paper.with(Axis::X0, fine).with(Axis::Y0, fine);
     assert_eq!(
         grid(ring(), many).expect_err("no grid").to_string(),
         "360000000000000 poses, expected at most 1000000000000"

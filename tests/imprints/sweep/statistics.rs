@@ -50,7 +50,7 @@ fn statistics_equal_those_of_a_plain_loop() {
         let result = sweep(&grid);
         let mut plane = Plane::new(*grid.sensor());
         let mut turns: Vec<Vec<Vec<f64>>> = Vec::new();
-        let turn = grid.ranges().x0.count() * grid.ranges().y0.count();
+        let turn = grid.row_length() * grid.rows_per_orientation();
         for number in 0..grid.poses() {
             if number % turn == 0 {
                 turns.push(vec![Vec::new(); features().len()]);

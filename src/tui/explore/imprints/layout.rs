@@ -3,8 +3,7 @@
 use ratatui::layout::{Position, Rect};
 
 use crate::formats::value::grouped;
-use crate::parameter::Parameter;
-use crate::pose::PoseGrid;
+use crate::pose::Axis;
 use crate::tui::app::layout::below;
 use crate::tui::explore::lines::{first, width_of};
 use crate::tui::explore::results::Results;
@@ -35,7 +34,7 @@ pub struct ImprintList {
     /// Characters of a number of poses.
     pub poses: usize,
     /// Characters of the values of the first pose, where there is room for it.
-    pub place: Vec<(Parameter, usize)>,
+    pub place: Vec<(Axis, usize)>,
 }
 
 impl ImprintList {
@@ -45,8 +44,9 @@ impl ImprintList {
         let grid = &result.grid;
         let id = result.atlas.len().to_string().len().max(2);
         let poses = grouped(result.poses).len().max(6);
-        let place: Vec<(Parameter, usize)> = varied(grid)
-            .map(|parameter| (parameter, width_of(grid, parameter)))
+        let place: Vec<(Axis, usize)> = grid
+            .axes()
+            .map(|axis| (axis, width_of(grid, axis)))
             .collect();
         let short = SIGN + id + 1 + poses + 1 + SHARE + 1 + 2 + 1 + 2 + 1 + VALUE;
         let full = short + place.iter().map(|(_, width)| width + 1).sum::<usize>();
@@ -97,12 +97,4 @@ impl ImprintList {
         let row = self.first + usize::from(place.y.checked_sub(self.rows.y)?);
         (self.rows.contains(place) && row < results.row_count()).then_some(row)
     }
-}
-
-/// The parameters of a pose that a grid's shape has.
-pub fn varied(grid: &PoseGrid) -> impl Iterator<Item = Parameter> {
-    let own = grid.source().parameters();
-    let rows = grid.ranges().by_parameter().map(|(parameter, _)| parameter);
-    rows.into_iter()
-        .filter(move |parameter| own.contains(parameter))
 }

@@ -4,11 +4,10 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::atlas::{AtlasEntry, SortKey};
-use crate::formats::atlas::value;
 use crate::formats::value::{counted, fitting, grouped};
 use crate::pose::Pose;
 use crate::tui::app::state::App;
-use crate::tui::explore::imprints::layout::{ImprintList, SHARE, VALUE, varied};
+use crate::tui::explore::imprints::layout::{ImprintList, SHARE, VALUE};
 use crate::tui::explore::results::Results;
 use crate::tui::widget::theme::Role;
 use crate::tui::widget::{thumbnail, write};
@@ -58,9 +57,8 @@ fn heading(app: &App, results: &Results, list: &ImprintList) -> String {
         marked("poses", SortKey::Poses),
         "%"
     );
-    for (parameter, width) in &list.place {
-        let width = *width;
-        text += &format!(" {:>width$}", parameter.row().short);
+    for &(axis, width) in &list.place {
+        text += &format!(" {:>width$}", axis.parameter().row().short);
     }
     let key: String = results.feature().key.chars().take(VALUE - 1).collect();
     text += &format!(
@@ -81,9 +79,8 @@ fn row_text(app: &App, results: &Results, list: &ImprintList, entry: &AtlasEntry
         share(results, entry)
     );
     let pose = results.sweep().grid.pose(entry.first_pose);
-    for (parameter, width) in &list.place {
-        let width = *width;
-        text += &format!(" {:>width$}", parameter.format(value(&pose, *parameter)));
+    for &(axis, width) in &list.place {
+        text += &format!(" {:>width$}", axis.parameter().format(pose[axis]));
     }
     text += &format!(" {:>2} {:>2}", entry.summary.pieces, entry.summary.holes);
     text += &format!(" {:>VALUE$}", number(app, results, entry));
@@ -124,8 +121,9 @@ fn detail(app: &App, results: &Results, entry: &AtlasEntry) -> String {
 /// A pose in words.
 pub(in crate::tui) fn place(results: &Results, pose: &Pose) -> String {
     let grid = &results.sweep().grid;
-    let values = varied(grid).map(|parameter| {
-        let text = parameter.format(value(pose, parameter));
+    let values = grid.axes().map(|axis| {
+        let parameter = axis.parameter();
+        let text = parameter.format(pose[axis]);
         format!("{} {text}", parameter.row().short)
     });
     values.collect::<Vec<_>>().join(", ")

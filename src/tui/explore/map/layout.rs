@@ -2,7 +2,7 @@
 
 use ratatui::layout::{Position, Rect};
 
-use crate::parameter::Parameter;
+use crate::pose::Axis;
 use crate::tui::app::layout::below;
 use crate::tui::explore::lines::width_of;
 use crate::tui::explore::results::Results;
@@ -33,8 +33,8 @@ impl MapPane {
     /// The map on its page, the cursor as near to the middle as the ends allow.
     pub fn of(page: Rect, results: &Results) -> Self {
         let grid = &results.sweep().grid;
-        let [width, height, ..] = grid.counts();
-        let label = narrow(width_of(grid, Parameter::Y0) + 1);
+        let [width, height, ..] = grid.counts().into_array();
+        let label = narrow(width_of(grid, Axis::Y0) + 1);
         let side = u16::from(grid.sensor().columns()).clamp(22, 32);
         let with_side = page.width >= label + side + 22;
         let room = page.width - if with_side { side + 2 } else { 0 };
@@ -47,7 +47,7 @@ impl MapPane {
         let cell = if 2 * width <= u64::from(across) { 2 } else { 1 };
         let seen_x = width.min(u64::from(across / cell));
         let seen_y = height.min(u64::from(body.height));
-        let [x0, y0, ..] = results.place();
+        let [x0, y0, ..] = results.place().into_array();
         let from = |at: u64, seen: u64, all: u64| at.saturating_sub(seen / 2).min(all - seen);
         let cells = Rect {
             x: page.x + label.min(page.width),

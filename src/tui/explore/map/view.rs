@@ -6,7 +6,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::formats::value::{counted, grouped};
 use crate::parameter::Parameter;
-use crate::pose::PoseGrid;
+use crate::pose::{Axis, PoseGrid};
 use crate::touch::Plane;
 use crate::tui::app::state::App;
 use crate::tui::explore::imprints::view::place;
@@ -41,17 +41,13 @@ pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) -> Op
 fn heading(results: &Results) -> String {
     let grid = &results.sweep().grid;
     let (place, counts) = (results.place(), grid.counts());
-    let own = grid.source().parameters();
-    let rows = grid.ranges().by_parameter().into_iter().enumerate().skip(2);
-    let parts = rows
-        .filter(|(_, (parameter, _))| own.contains(parameter))
-        .map(|(axis, (parameter, range))| {
-            let value = parameter.format(range.value(place[axis]));
-            let unit = if parameter == Parameter::Angle {
-                "°"
-            } else {
-                ""
-            };
+    let parts = grid
+        .axes()
+        .filter(|axis| !matches!(axis, Axis::X0 | Axis::Y0))
+        .map(|axis| {
+            let parameter = axis.parameter();
+            let value = parameter.format(grid.ranges()[axis].value(place[axis]));
+            let unit = if axis == Axis::Angle { "°" } else { "" };
             let which = if counts[axis] > 1 {
                 format!(" {}/{}", grouped(place[axis] + 1), grouped(counts[axis]))
             } else {
@@ -75,7 +71,7 @@ fn draw_cells(
         .ids(results.place(), x..x + width, y..y + height);
     let columns = usize::try_from(width).unwrap_or(1).max(1);
     let letters = letters(&ids, columns);
-    let [at_x, at_y, ..] = results.place();
+    let [at_x, at_y, ..] = results.place().into_array();
     let here =
         pane.count != (0, 0) && (x..x + width).contains(&at_x) && (y..y + height).contains(&at_y);
     let step = |from: u64, to: u64| u16::try_from(to - from).unwrap_or(0);
@@ -123,11 +119,11 @@ fn draw_rulers(app: &App, grid: &PoseGrid, pane: &MapPane, buffer: &mut Buffer, 
             width: pane.cells.x.saturating_sub(page.x),
             height: 1,
         };
-        let value = Parameter::Y0.format(ranges.y0.value(index));
+        let value = Parameter::Y0.format(ranges[Axis::Y0].value(index));
         let text = format!("{value:>label$}");
         write::line(buffer, row, theme, [(text.as_str(), Role::Quiet)]);
     }
-    let value = |index: u64| Parameter::X0.format(ranges.x0.value(index));
+    let value = |index: u64| Parameter::X0.format(ranges[Axis::X0].value(index));
     let (first, last) = (
         value(pane.first.0),
         value(pane.first.0 + pane.count.0.max(1) - 1),

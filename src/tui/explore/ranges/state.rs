@@ -8,7 +8,7 @@ use std::time::Duration;
 use crate::formats::value::{counted, grouped};
 use crate::parameter::{Parameter, Range};
 use crate::picture::Picture;
-use crate::pose::{Anchor, DecimalRange, GridError, MAX_POSES, PoseGrid, Ranges};
+use crate::pose::{Anchor, Axis, DecimalRange, GridError, MAX_POSES, PoseGrid, Ranges};
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::tui::app::document::{Document, Reading};
@@ -23,14 +23,14 @@ const LONGEST: usize = 40;
 /// The text field of one range.
 #[derive(Clone, Debug)]
 pub struct RangeField {
-    parameter: Parameter,
+    axis: Axis,
     input: TextField,
 }
 
 impl RangeField {
     /// Which parameter it ranges over.
     pub fn parameter(&self) -> Parameter {
-        self.parameter
+        self.axis.parameter()
     }
 
     /// Its text.
@@ -85,14 +85,10 @@ impl RangesForm {
             None => 0,
         };
         let ranges = earlier.map_or_else(Ranges::default, |grid| *grid.ranges());
-        let own = source.parameters();
-        let rows = ranges.by_parameter().into_iter();
-        let fields =
-            rows.filter(|(parameter, _)| own.contains(parameter))
-                .map(|(parameter, range)| RangeField {
-                    parameter,
-                    input: TextField::new(range.to_string(), LONGEST),
-                });
+        let fields = Axis::of(&source).map(|axis| RangeField {
+            axis,
+            input: TextField::new(ranges[axis].to_string(), LONGEST),
+        });
         let mut form = Self {
             fields: fields.collect(),
             source,
@@ -128,7 +124,7 @@ impl RangesForm {
 
     /// What the values of a field may be.
     pub fn allowed(&self, field: &RangeField) -> Range {
-        self.sensor.range(field.parameter)
+        self.sensor.range(field.parameter())
     }
 
     /// How many taxels were turned over by hand, which the sweep leaves out.
@@ -173,13 +169,13 @@ impl RangesForm {
         let range: DecimalRange = match field.text().parse() {
             Ok(range) => range,
             Err(error) => {
-                let full = format!("{}: {error}", field.parameter.row().key);
+                let full = format!("{}: {error}", field.parameter().row().key);
                 return Some(wrong(error.expected(), full));
             }
         };
         let ends = [range.value(0), range.last()];
         let error = ends.into_iter().find_map(|value| {
-            let checked = self.sensor.check(field.parameter, value);
+            let checked = self.sensor.check(field.parameter(), value);
             checked.err()
         });
         error.map(|error| wrong(error.expected(), error.to_string()))
@@ -193,19 +189,12 @@ impl RangesForm {
         if let Some(trouble) = (0..self.fields.len()).find_map(|index| self.trouble(index)) {
             return Err(trouble);
         }
-        let range = |wanted: Parameter| {
-            let mut fields = self.fields.iter();
-            let field = fields.find(|field| field.parameter == wanted);
-            field.and_then(|field| field.text().parse().ok())
-        };
-        let default = Ranges::default();
-        let ranges = Ranges {
-            x0: range(Parameter::X0).unwrap_or(default.x0),
-            y0: range(Parameter::Y0).unwrap_or(default.y0),
-            angle: range(Parameter::Angle).unwrap_or(default.angle),
-            zoom_x: range(Parameter::ZoomX).unwrap_or(default.zoom_x),
-            zoom_y: range(Parameter::ZoomY).unwrap_or(default.zoom_y),
-        };
+        let mut ranges = Ranges::default();
+        for field in &self.fields {
+            if let Ok(range) = field.text().parse() {
+                ranges[field.axis] = range;
+            }
+        }
         let grid = PoseGrid::new(self.source.clone(), self.sensor, self.anchor, ranges);
         grid.map_err(|error: GridError| RangesError {
             field: None,

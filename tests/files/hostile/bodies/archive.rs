@@ -9,7 +9,7 @@ use taxel::formats::atlas::{write_csv, write_jsonl};
 use taxel::formats::npy;
 use taxel::imprint::Imprint;
 use taxel::picture::Picture;
-use taxel::pose::{Anchor, PoseGrid, Ranges};
+use taxel::pose::{Anchor, Axis, PoseGrid, Ranges};
 use taxel::sensor::Sensor;
 use taxel::source::Source;
 use taxel::sweep::{Shard, Sweep, SweepResult};
@@ -125,12 +125,10 @@ const READ: [&str; 5] = [
 fn sound() -> Vec<Arrays> {
     let sensor = Sensor::new(5, 4).expect("a sensor in range");
     let range = |text: &str| text.parse().expect("a range");
-    let ranges = Ranges {
-        x0: range("0:1:0.25"),
-        y0: range("0.5:1:0.5"),
-        angle: range("0:90:45"),
-        ..Ranges::default()
-    };
+    let ranges = Ranges::default()
+        .with(Axis::X0, range("0:1:0.25"))
+        .with(Axis::Y0, range("0.5:1:0.5"))
+        .with(Axis::Angle, range("0:90:45"));
     let rectangle = Figure::new(FigureKind::Rectangle, &sensor, |parameter| {
         Some(match parameter.row().key {
             "length" => 3.0,

@@ -1,0 +1,171 @@
+//! The axes of a pose, and one value for each of them: ranges, indices, poses.
+
+use std::ops::{Index, IndexMut};
+
+use crate::parameter::Parameter;
+use crate::pose::range::DecimalRange;
+use crate::source::Source;
+
+/// What a pose consists of, from the axis that runs fastest in a grid to the slowest.
+///
+/// Figures have the first three; their zooms are 1. Pictures have all five.
+///
+/// ```
+/// use taxel::pose::{Axis, Ranges};
+///
+/// let ranges = Ranges::default().with(Axis::X0, "5:6:0.5".parse()?);
+/// assert_eq!(ranges[Axis::X0].count(), 3);
+/// assert_eq!(Axis::ALL.map(Axis::name), ["x0", "y0", "angle", "zoom_x", "zoom_y"]);
+/// # Ok::<(), taxel::pose::RangeError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Axis {
+    /// Position to the right, in cells.
+    X0,
+    /// Position downwards, in cells.
+    Y0,
+    /// Rotation in degrees: clockwise for figures, counter-clockwise for pictures.
+    Angle,
+    /// Horizontal zoom of a picture.
+    ZoomX,
+    /// Vertical zoom of a picture.
+    ZoomY,
+}
+
+impl Axis {
+    /// All axes, the fastest first.
+    pub const ALL: [Self; 5] = [Self::X0, Self::Y0, Self::Angle, Self::ZoomX, Self::ZoomY];
+
+    /// The axes that a shape has: all of them for a picture, without the zooms for a figure.
+    pub fn of(source: &Source) -> impl Iterator<Item = Self> + use<> {
+        let figure = source.kind().is_some();
+        let all = Self::ALL.into_iter();
+        all.filter(move |axis| !(figure && axis.is_zoom()))
+    }
+
+    /// The parameter of a shape that this axis sets, with its unit and range.
+    pub const fn parameter(self) -> Parameter {
+        match self {
+            Self::X0 => Parameter::X0,
+            Self::Y0 => Parameter::Y0,
+            Self::Angle => Parameter::Angle,
+            Self::ZoomX => Parameter::ZoomX,
+            Self::ZoomY => Parameter::ZoomY,
+        }
+    }
+
+    /// The name in files, the key of the parameter: `"zoom_x"`.
+    pub fn name(self) -> &'static str {
+        self.parameter().row().key
+    }
+
+    /// Whether only pictures have it.
+    pub const fn is_zoom(self) -> bool {
+        matches!(self, Self::ZoomX | Self::ZoomY)
+    }
+}
+
+/// A value for each axis, indexed by [`Axis`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct PerAxis<T>([T; 5]);
+
+/// The range of each axis; together they span a [`PoseGrid`](crate::pose::PoseGrid).
+pub type Ranges = PerAxis<DecimalRange>;
+
+/// The values of one pose: cells, degrees, and zooms, which are 1 for figures.
+///
+/// x0 and y0 locate the anchor, the corner of a picture before it is zoomed.
+pub type Pose = PerAxis<f64>;
+
+/// The position of a pose in a grid: for each axis which value of its range, counted from 0.
+pub type PoseIndex = PerAxis<u64>;
+
+impl<T> PerAxis<T> {
+    /// The values in the order of [`Axis::ALL`].
+    pub const fn new(values: [T; 5]) -> Self {
+        Self(values)
+    }
+
+    /// The value that `value` gives for each axis.
+    pub fn from_fn(value: impl FnMut(Axis) -> T) -> Self {
+        Self(Axis::ALL.map(value))
+    }
+
+    /// The same with another value on one axis.
+    #[must_use]
+    pub fn with(mut self, axis: Axis, value: T) -> Self {
+        self[axis] = value;
+        self
+    }
+
+    /// The values in the order of [`Axis::ALL`].
+    pub fn into_array(self) -> [T; 5] {
+        self.0
+    }
+
+    /// Each axis with its value, the fastest first.
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = (Axis, &T)> + ExactSizeIterator {
+        Axis::ALL.into_iter().zip(&self.0)
+    }
+}
+
+impl<T> Index<Axis> for PerAxis<T> {
+    type Output = T;
+    fn index(&self, axis: Axis) -> &T {
+        &self.0[axis as usize]
+    }
+}
+
+impl<T> IndexMut<Axis> for PerAxis<T> {
+    fn index_mut(&mut self, axis: Axis) -> &mut T {
+        &mut self.0[axis as usize]
+    }
+}
+
+impl Default for Ranges {
+    /// The paper's grid: x0 and y0 over one cell from 5 on in hundredths, every whole degree, no zoom.
+    fn default() -> Self {
+        Self([
+            DecimalRange::from_units(500, 2, 100),
+            DecimalRange::from_units(500, 2, 100),
+            DecimalRange::from_units(0, 0, 360),
+            DecimalRange::whole(1),
+            DecimalRange::whole(1),
+        ])
+    }
+}
+
+/// The point of a shape that x0 and y0 locate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Anchor {
+    /// The top left corner of the bounding rectangle before rotation.
+    #[default]
+    Corner,
+    /// The centre of rotation. The centre of a picture lies at (x0, y0) for every zoom.
+    Centre,
+}
+
+impl Anchor {
+    /// Both anchors.
+    pub const ALL: [Self; 2] = [Self::Corner, Self::Centre];
+
+    /// Their names, in the order of [`Self::ALL`].
+    pub const NAMES: [&'static str; 2] = ["corner", "centre"];
+
+    /// The name in files and on the command line.
+    pub const fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+
+    /// The anchor of that name.
+    ///
+    /// ```
+    /// use taxel::pose::Anchor;
+    /// assert_eq!(Anchor::from_name("centre"), Some(Anchor::Centre));
+    /// assert_eq!(Anchor::from_name("middle"), None);
+    /// ```
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|anchor| anchor.name() == name)
+    }
+}
