@@ -18,7 +18,9 @@ use crate::sweep::runs;
 /// // The paper's ring: over one cell of positions it leaves 393 different imprints.
 /// let sensor = Sensor::default();
 /// let ring = Figure::ellipse(4.0, 4.0).thickness(2.0).on(&sensor).expect("in range");
-/// let ranges = Ranges { x0: "1:1.99:0.01".parse()?, y0: "1:1.99:0.01".parse()?, angle: "0".parse()?, ..Ranges::default() };
+/// let cell: DecimalRange = "1:1.99:0.01".parse()?;
+/// let upright = Ranges::default().with(Axis::Angle, "0".parse()?);
+/// let ranges = upright.with(Axis::X0, cell).with(Axis::Y0, cell);
 /// let grid = PoseGrid::new(ring.into(), sensor, Anchor::Corner, ranges).unwrap();
 /// let result = Sweep::new(&grid).run();
 /// assert_eq!((result.poses, result.atlas.len()), (10_000, 393));
@@ -123,7 +125,7 @@ impl SweepResult {
     /// ```
     /// use taxel::prelude::*;
     /// let square = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
-    /// let ranges = Ranges { angle: "0".parse()?, ..Ranges::default() };
+    /// let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
     /// let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
     /// let result = Sweep::new(&grid).run();
     /// // At x0 5.5 the columns at both ends are covered by half, and active.
