@@ -7,7 +7,7 @@ use crate::cli::output::charset::Charset;
 use crate::formats::ArchiveError;
 use crate::pose::GridError;
 use crate::quote::legible;
-use crate::storage::{LibraryError, SweepFileError};
+use crate::storage::{FileError, LibraryError, SweepFileError};
 use crate::sweep::MergeError;
 use crate::tui::script::runner;
 
@@ -146,6 +146,18 @@ pub(crate) enum CliError {
     /// There is no screen.
     #[error("{0}")]
     Screen(io::Error),
+}
+
+impl From<FileError> for CliError {
+    fn from(error: FileError) -> Self {
+        let name = error.path.to_string_lossy().into_owned();
+        if error.exists() {
+            Self::Taken { name }
+        } else {
+            let error = error.into_io();
+            Self::File { name, error }
+        }
+    }
 }
 
 impl From<SweepFileError> for CliError {

@@ -1,30 +1,80 @@
-//! What can go wrong with a library: which file, what it is, what was expected.
+//! What can go wrong with files and with a library: which file, what was to be done, what was expected.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use crate::formats::{NameError, ShapeError};
+#[cfg(feature = "library")]
+use crate::formats::name::NameError;
+#[cfg(feature = "library")]
+use crate::formats::shape::ShapeError;
 
-/// Why something was not done. Whatever it was, nothing was lost.
+/// The system refused to do something with a file.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+#[error("{}: cannot {doing}: {error}", path.display())]
+pub struct FileError {
+    /// What was to be done, after "cannot".
+    pub doing: &'static str,
+    /// The file or folder.
+    pub path: PathBuf,
+    /// What the system reports.
+    pub error: io::Error,
+}
+
+impl FileError {
+    /// The last step of writing a file; when it fails, the file is already in its place.
+    pub(crate) const SYNC_FOLDER: &str =
+        "sync the folder; it was changed, but a power cut may undo that";
+
+    pub(crate) fn new(doing: &'static str, path: &Path, error: io::Error) -> Self {
+        let path = path.to_owned();
+        Self { doing, path, error }
+    }
+
+    /// Whether there is a file already, which was to be kept.
+    pub fn exists(&self) -> bool {
+        self.error.kind() == io::ErrorKind::AlreadyExists
+    }
+
+    /// Whether the new file is in its place, though a power cut may undo that.
+    pub fn is_in_place(&self) -> bool {
+        self.doing == Self::SYNC_FOLDER
+    }
+
+    /// The error for a message that names the file itself.
+    #[must_use]
+    pub fn into_io(self) -> io::Error {
+        if self.is_in_place() {
+            let message =
+                "the folder was changed but cannot be synced, so a power cut may undo that";
+            io::Error::new(self.error.kind(), format!("{message}: {}", self.error))
+        } else {
+            self.error
+        }
+    }
+}
+
+/// Why something was not done to a library. No shape was lost.
+#[cfg(feature = "library")]
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LibraryError {
-    /// No name.
+    /// The text is not a valid name.
     #[error(transparent)]
     Name(#[from] NameError),
-    /// No such shape.
+    /// No shape has that name.
     #[error("no shape is called {name:?}")]
     Unknown {
-        /// What was asked for.
+        /// The name asked for.
         name: String,
     },
-    /// Nothing of that name in the trash.
+    /// No shape in the trash has that name.
     #[error("nothing called {name:?} is in the trash")]
     NotInTrash {
-        /// What was asked for.
+        /// The name asked for.
         name: String,
     },
-    /// A shape that cannot be changed.
+    /// The shape comes with the program and cannot be changed.
     #[error("{name:?} comes with the program; it can be copied under another name")]
     Shipped {
         /// Its name.
@@ -33,48 +83,41 @@ pub enum LibraryError {
     /// The name is taken.
     #[error("{name:?} is there already")]
     Exists {
-        /// The name that is taken, as the file has it.
+        /// The name as the file has it.
         name: String,
-        /// What the file holds now.
+        /// The stamp of what the file holds now.
         stamp: u64,
     },
-    /// Somebody else has written meanwhile.
+    /// Another program has written the file since it was loaded.
     #[error("{name:?} was changed by another program since it was loaded")]
     Changed {
         /// The name.
         name: String,
-        /// What the file holds now.
+        /// The stamp of what the file holds now.
         stamp: u64,
     },
-    /// Something else is in the way.
+    /// The path is taken by something else than a file or folder.
     #[error("{}: is {what}, expected {expected}", path.display())]
     InTheWay {
-        /// Where.
+        /// The path.
         path: PathBuf,
-        /// What it is.
+        /// What is there.
         what: &'static str,
         /// What should be there.
         expected: &'static str,
     },
-    /// A file without a shape.
+    /// The file does not hold a shape.
     #[error("{}: {error}", path.display())]
     Broken {
-        /// Where.
+        /// The file.
         path: PathBuf,
         /// What is wrong with it.
         error: ShapeError,
     },
     /// The system refused.
-    #[error("{}: cannot {doing}: {error}", path.display())]
-    System {
-        /// What was to be done.
-        doing: &'static str,
-        /// Where.
-        path: PathBuf,
-        /// What the system says.
-        error: io::Error,
-    },
-    /// The system does not tell where a user's data belong.
+    #[error(transparent)]
+    System(#[from] FileError),
+    /// The system does not say where a user's data belong.
     #[error("no home folder: name a folder for the library with --library DIR or TAXEL_LIBRARY")]
     NoPlace,
 }

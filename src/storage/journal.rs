@@ -7,10 +7,10 @@ use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use crate::formats::StoredShape;
-use crate::storage::LibraryError;
-use crate::storage::file;
-use crate::storage::file::system;
+use crate::formats::shape::StoredShape;
+use crate::storage::atomic_file;
+use crate::storage::error::{FileError, LibraryError};
+use crate::storage::folder;
 use crate::storage::library::Library;
 use crate::storage::lock::{Lock, LockAttempt};
 
@@ -30,7 +30,7 @@ impl Journal {
     /// A journal in a library.
     pub fn new(library: &Library) -> Self {
         Self {
-            folder: folder(library),
+            folder: folder_in(library),
             open: None,
         }
     }
@@ -41,8 +41,8 @@ impl Journal {
     /// What the system refuses. The shape kept before is still there.
     pub fn keep(&mut self, shape: &StoredShape) -> Result<(), LibraryError> {
         match self.write(shape) {
-            // Somebody has removed the folder: another one is made.
-            Err(LibraryError::System { error, .. }) if error.kind() == ErrorKind::NotFound => {
+            // The folder was removed meanwhile: it is made again.
+            Err(LibraryError::System(refused)) if refused.error.kind() == ErrorKind::NotFound => {
                 self.open = None;
                 self.write(shape)
             }
@@ -52,7 +52,12 @@ impl Journal {
 
     fn write(&mut self, shape: &StoredShape) -> Result<(), LibraryError> {
         let path = self.file()?;
-        file::write(&path, &temporary_of(&path), shape.write().as_bytes())
+        let content = shape.write();
+        Ok(atomic_file::write(
+            &path,
+            &temporary_of(&path),
+            content.as_bytes(),
+        )?)
     }
 
     /// The journal's own file, found a name for at the first use.
@@ -60,7 +65,7 @@ impl Journal {
         if let Some((path, _)) = &self.open {
             return Ok(path.clone());
         }
-        file::make_inner_folder(&self.folder)?;
+        folder::make_inner(&self.folder)?;
         let process = std::process::id();
         for number in 0..1000 {
             let path = self.folder.join(format!("{process}-{number}.json"));
@@ -68,18 +73,18 @@ impl Journal {
             if path.exists() {
                 continue;
             }
-            let lock = match Lock::at(&lock_of(&path))? {
+            let lock = match Lock::attempt(&lock_of(&path))? {
                 LockAttempt::Free(lock) => Some(lock),
                 LockAttempt::Held => continue,
                 // What is kept can be found in the folder; nobody can tell whether its program still runs, so it is
                 // not offered.
-                LockAttempt::Unknown => None,
+                LockAttempt::Unsupported => None,
             };
             self.open = Some((path.clone(), lock));
             return Ok(path);
         }
         let none = io::Error::other("no journal could be locked");
-        Err(system("begin a journal", &self.folder)(none))
+        Err(FileError::new("begin a journal", &self.folder, none).into())
     }
 
     /// Forgets what was kept: it is saved, or given up.
@@ -103,14 +108,16 @@ impl Orphan {
     /// All that wait in a library. Work that is saved under its name just so is cleared away. A journal that cannot be
     /// read is left alone: it may be one of a later version.
     pub fn all(library: &Library) -> Vec<Self> {
-        let folder = folder(library);
+        let journals = folder_in(library);
         // A folder that cannot be read must not keep the program from starting.
-        let mut names = file::names(&folder).unwrap_or_default();
+        let Ok(mut names) = folder::names(&journals) else {
+            return Vec::new();
+        };
         names.sort();
         names
             .into_iter()
             .filter_map(|name| {
-                let path = folder.join(name);
+                let path = journals.join(name);
                 let journal = path.with_extension("json");
                 match path.extension()?.to_str()? {
                     "json" => Self::of(library, path),
@@ -134,9 +141,9 @@ impl Orphan {
         let lock = Lock::if_free(&lock_of(&path))?;
         // Half-written; the one before is whole.
         let _ = fs::remove_file(temporary_of(&path));
-        let content = match file::read(&path) {
+        let content = match folder::read(&path) {
             // Its program has cleared it just now.
-            Err(LibraryError::System { error, .. }) if error.kind() == ErrorKind::NotFound => {
+            Err(LibraryError::System(refused)) if refused.error.kind() == ErrorKind::NotFound => {
                 remove(&path, Some(lock));
                 return None;
             }
@@ -167,7 +174,7 @@ fn is_saved(library: &Library, shape: &StoredShape) -> bool {
             .is_ok_and(|saved| same(&saved.shape))
 }
 
-fn folder(library: &Library) -> PathBuf {
+fn folder_in(library: &Library) -> PathBuf {
     library.folder().join(".journal")
 }
 

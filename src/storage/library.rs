@@ -1,16 +1,22 @@
-//! The shapes of a folder, and those that come with the program: list, load, save.
+//! The library: the shapes of a folder and those that come with the program. Listing, loading, saving, deleting and
+//! restoring.
 
 use std::ffi::OsString;
 use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use crate::formats::name::folded;
-use crate::formats::{Name, StoredShape};
-use crate::storage::LibraryError;
-use crate::storage::file::{stamp, system};
+use crate::formats::name::{Name, folded};
+use crate::formats::shape::StoredShape;
+use crate::storage::atomic_file;
+use crate::storage::atomic_file::sync_folder;
+use crate::storage::error::{FileError, LibraryError};
+use crate::storage::folder;
+use crate::storage::folder::stamp;
+use crate::storage::lock;
 use crate::storage::lock::Lock;
-use crate::storage::{file, lock, shipped};
+use crate::storage::shipped;
+use crate::storage::trash::Trash;
 
 /// Where a shape comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -22,7 +28,7 @@ pub enum ShapeOrigin {
     Shipped,
 }
 
-/// A line of the list: what is known without opening the file.
+/// A row of the list: what is known without opening the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct LibraryEntry {
@@ -32,45 +38,45 @@ pub struct LibraryEntry {
     pub origin: ShapeOrigin,
 }
 
-/// A shape with what its file held, to tell later whether somebody else has written it.
+/// A shape and the stamp of its file, by which a later change is noticed.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LoadedShape {
     /// The shape, under the name of its file.
     pub shape: StoredShape,
-    /// What the file held.
+    /// A hash of the file's content.
     pub stamp: u64,
     /// Where it comes from.
     pub origin: ShapeOrigin,
 }
 
-/// What the writer believes to be in the place it writes to.
+/// What the writer expects to replace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Expected {
-    /// Nothing.
+    /// Nothing: the name is free.
     Nothing,
-    /// This content, which is to be replaced.
+    /// A file with this stamp.
     Stamp(u64),
 }
 
-/// The name of a file that is being written: its writer holds the lock, so one name is enough.
-pub(crate) const TEMPORARY: &str = ".taxel-tmp";
+/// The name of a file that is being written. Its writer holds the lock, so one name is enough.
+const TEMPORARY: &str = ".taxel-tmp";
 
-/// A library: a folder, which is made when something is written first.
+/// A library in a folder. The folder is made when the first shape is saved.
 #[derive(Clone, Debug)]
 pub struct Library {
     folder: PathBuf,
 }
 
 impl Library {
-    /// The library in a folder. What a program that died left half-written there is swept away.
+    /// Opens the library in a folder, and removes what a program that died left half-written there.
     pub fn open(folder: PathBuf) -> Self {
         let temporary = folder.join(TEMPORARY);
         if fs::symlink_metadata(&temporary).is_ok()
-            && let Some(_lock) = Lock::if_free(&lock::of_folder(&folder))
+            && let Some(_lock) = Lock::if_free(&lock::path_in(&folder))
         {
-            // What cannot be removed harms nothing; the next start tries again.
+            // If this fails it does no harm, and the next start tries again.
             let _ = fs::remove_file(temporary);
         }
         Self { folder }
@@ -81,11 +87,15 @@ impl Library {
         &self.folder
     }
 
-    /// All shapes by name, the user's first; none is opened. Files that are no `NAME.json` are passed over, and so is a
-    /// shape that comes with the program where the user has one of that name.
+    fn trash(&self) -> PathBuf {
+        self.folder.join(".trash")
+    }
+
+    /// All shapes by name, the user's first, without opening any file. Files not called `NAME.json` are skipped, and a
+    /// shape that comes with the program is, if the user has one of the same name.
     ///
     /// # Errors
-    /// Where the folder is there but cannot be read.
+    /// If the folder exists but cannot be read.
     pub fn list(&self) -> Result<Vec<LibraryEntry>, LibraryError> {
         let own = |name| LibraryEntry {
             name,
@@ -107,32 +117,32 @@ impl Library {
 
     fn own_names(&self) -> Result<Vec<String>, LibraryError> {
         let own = |file: OsString| file.to_str().and_then(name_of).map(str::to_owned);
-        let files = file::names(&self.folder)?.into_iter();
+        let files = folder::names(&self.folder)?.into_iter();
         Ok(files.filter_map(own).collect())
     }
 
     /// The user's shape of that name, in the case its file has.
-    pub(crate) fn own_name(&self, name: &Name) -> Result<Option<String>, LibraryError> {
+    fn own_name(&self, name: &Name) -> Result<Option<String>, LibraryError> {
         // The usual case needs no search.
         let path = self.path(name.as_str());
         match fs::symlink_metadata(&path) {
             Ok(_) => return Ok(Some(name.as_str().to_owned())),
             Err(error)
                 if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {}
-            Err(error) => return Err(system("look at it", &path)(error)),
+            Err(error) => return Err(FileError::new("look at it", &path, error).into()),
         }
         Ok(self.own_names()?.into_iter().find(|own| name.same(own)))
     }
 
-    /// Where the user's shape of that name is or would be. Names cannot lead out of the folder.
-    pub(crate) fn path(&self, name: &str) -> PathBuf {
+    /// The path of the user's shape of that name. A name cannot lead out of the folder.
+    fn path(&self, name: &str) -> PathBuf {
         self.folder.join(format!("{name}.json"))
     }
 
-    /// The shape of that name, upper and lower case alike; the user's before one that comes with the program.
+    /// Loads the shape of that name, regardless of case; the user's before one that comes with the program.
     ///
     /// # Errors
-    /// Where there is none, or its file is broken or cannot be read.
+    /// If there is none, or its file is broken or cannot be read.
     pub fn load(&self, name: &str) -> Result<LoadedShape, LibraryError> {
         let name = Name::new(name)?;
         let Some(own) = self.own_name(&name)? else {
@@ -147,7 +157,7 @@ impl Library {
             });
         };
         let path = self.path(&own);
-        let content = file::read(&path)?;
+        let content = folder::read(&path)?;
         let shape =
             StoredShape::read(&content).map_err(|error| LibraryError::Broken { path, error })?;
         // A file that was renamed by hand goes by its new name.
@@ -158,52 +168,34 @@ impl Library {
         })
     }
 
-    /// The name under which a shape of that name is stored: that of its file, which may differ in upper and lower case.
+    /// The name under which a shape of that name is or would be stored: its file's, which may differ in case.
     ///
     /// # Errors
-    /// Where the folder cannot be read.
+    /// If the folder cannot be read.
     pub fn stored_name(&self, name: &Name) -> Result<String, LibraryError> {
         Ok(self.own_name(name)?.unwrap_or_else(|| name.to_string()))
     }
 
-    /// Stores a shape under its name; answers what its file holds now.
+    /// Saves a shape under its name, and returns the stamp of its file.
     ///
     /// # Errors
-    /// [`LibraryError::Exists`] where the name is taken, [`LibraryError::Changed`] where the file holds something else
-    /// than expected, [`LibraryError::Shipped`] for the name of a shipped shape; or what the system refuses.
+    /// [`LibraryError::Exists`] if the name is taken, [`LibraryError::Changed`] if the file's stamp is not the expected
+    /// one, [`LibraryError::Shipped`] for the name of a shipped shape, or what the system refuses.
     pub fn save(&self, shape: &StoredShape, expected: Expected) -> Result<u64, LibraryError> {
         let name = &shape.name;
-        file::make_folder(&self.folder)?;
-        let lock = Lock::of(&self.folder)?;
+        folder::make(&self.folder)?;
+        let lock = Lock::wait(&self.folder)?;
         let own = self.own_name(name)?;
-        if let Some(own) = &own {
-            let path = self.path(own);
-            let now = stamp(&file::read(&path)?);
-            if file::regular(&path)?.permissions().readonly() {
-                let protected = io::Error::from(ErrorKind::PermissionDenied);
-                return Err(system("replace it, it is read-only", &path)(protected));
+        match &own {
+            Some(own) => self.check_replaceable(own, expected)?,
+            None if shipped::has(name) => {
+                return Err(LibraryError::Shipped {
+                    name: name.to_string(),
+                });
             }
-            match expected {
-                Expected::Stamp(known) if known == now => {}
-                Expected::Stamp(_) => {
-                    return Err(LibraryError::Changed {
-                        name: own.clone(),
-                        stamp: now,
-                    });
-                }
-                Expected::Nothing => {
-                    return Err(LibraryError::Exists {
-                        name: own.clone(),
-                        stamp: now,
-                    });
-                }
-            }
-        } else if shipped::has(name) {
-            return Err(LibraryError::Shipped {
-                name: name.to_string(),
-            });
+            None => {}
         }
-        // A file that differs in case only is the same name: it is replaced, not doubled.
+        // A file that differs in case only has the same name: it is replaced.
         let name = own.map_or_else(|| Ok(name.clone()), |own| Name::new(&own))?;
         let path = self.path(name.as_str());
         let content = shape.clone().renamed(name).write();
@@ -212,13 +204,168 @@ impl Library {
             // Without locks, another program may be writing too.
             None => format!("{TEMPORARY}-{}", std::process::id()),
         };
-        file::write(&path, &self.folder.join(temporary), content.as_bytes())?;
+        atomic_file::write(&path, &self.folder.join(temporary), content.as_bytes())?;
         Ok(stamp(content.as_bytes()))
+    }
+
+    /// Refuses to replace a file that is read-only or holds something else than expected.
+    fn check_replaceable(&self, own: &str, expected: Expected) -> Result<(), LibraryError> {
+        let path = self.path(own);
+        let now = stamp(&folder::read(&path)?);
+        if folder::regular(&path)?.permissions().readonly() {
+            let protected = io::Error::from(ErrorKind::PermissionDenied);
+            return Err(FileError::new("replace it, it is read-only", &path, protected).into());
+        }
+        let name = own.to_owned();
+        match expected {
+            Expected::Stamp(known) if known == now => Ok(()),
+            Expected::Stamp(_) => Err(LibraryError::Changed { name, stamp: now }),
+            Expected::Nothing => Err(LibraryError::Exists { name, stamp: now }),
+        }
+    }
+
+    /// Moves a shape into the trash without reading its file, and returns its name as the file had it.
+    ///
+    /// # Errors
+    /// If there is none of that name, it comes with the program, or the system refuses.
+    pub fn delete(&self, name: &str) -> Result<String, LibraryError> {
+        let name = Name::new(name)?;
+        let unknown = || {
+            let shipped = shipped::has(&name);
+            let name = name.to_string();
+            if shipped {
+                LibraryError::Shipped { name }
+            } else {
+                LibraryError::Unknown { name }
+            }
+        };
+        if !self.folder.is_dir() {
+            return Err(unknown());
+        }
+        let _lock = Lock::wait(&self.folder)?;
+        let own = self.own_name(&name)?.ok_or_else(unknown)?;
+        let path = self.path(&own);
+        folder::regular(&path)?;
+        folder::make_inner(&self.trash())?;
+        let trash = Trash::read(self.trash())?;
+        fs::rename(&path, trash.next_path(&own))
+            .map_err(|error| FileError::new("move it into the trash", &path, error))?;
+        sync_folder(&self.trash())?;
+        sync_folder(&self.folder)?;
+        trash.forget_oldest();
+        Ok(own)
+    }
+
+    /// Puts a shape that was never saved into the trash, under its name with a number that is free, and returns that
+    /// name.
+    ///
+    /// # Errors
+    /// What the system refuses; then the shape is stored nowhere.
+    pub fn throw_away(&self, shape: &StoredShape) -> Result<String, LibraryError> {
+        folder::make(&self.folder)?;
+        let _lock = Lock::wait(&self.folder)?;
+        folder::make_inner(&self.trash())?;
+        let trash = Trash::read(self.trash())?;
+        let free = |name: &Name| {
+            let thrown = trash.newest_first().any(|thrown| name.same(&thrown.name));
+            !thrown && matches!(self.own_name(name), Ok(None))
+        };
+        let mut numbered = (1..1000).filter_map(|number| {
+            let name = format!("{} {number}", shape.name);
+            Name::new(&name).ok()
+        });
+        // If all are taken: in the trash a name may stand twice.
+        let name = numbered.find(free);
+        let name = name.unwrap_or_else(|| shape.name.clone());
+        let thrown = shape.clone().renamed(name.clone());
+        let path = trash.next_path(name.as_str());
+        let temporary = self.trash().join(TEMPORARY);
+        atomic_file::write(&path, &temporary, thrown.write().as_bytes())?;
+        trash.forget_oldest();
+        Ok(name.to_string())
+    }
+
+    /// The names of the shapes in the trash, the one deleted last first, each once.
+    ///
+    /// # Errors
+    /// If the folder exists but cannot be read.
+    pub fn in_trash(&self) -> Result<Vec<String>, LibraryError> {
+        let mut names: Vec<String> = Vec::new();
+        for deleted in Trash::read(self.trash())?.newest_first() {
+            if !names
+                .iter()
+                .any(|name| folded(name) == folded(&deleted.name))
+            {
+                names.push(deleted.name.clone());
+            }
+        }
+        Ok(names)
+    }
+
+    /// Restores the shape of that name that was deleted last, and returns its name.
+    ///
+    /// # Errors
+    /// If none of that name is in the trash, the name is taken again, or the system refuses.
+    pub fn restore(&self, name: &str) -> Result<String, LibraryError> {
+        let name = Name::new(name)?;
+        let missing = || LibraryError::NotInTrash {
+            name: name.to_string(),
+        };
+        if !self.folder.is_dir() {
+            return Err(missing());
+        }
+        let _lock = Lock::wait(&self.folder)?;
+        let trash = Trash::read(self.trash())?;
+        let mut newest = trash.newest_first();
+        let deleted = newest.find(|deleted| name.same(&deleted.name));
+        let deleted = deleted.ok_or_else(missing)?;
+        folder::regular(&deleted.path)?;
+        if let Some(name) = self.own_name(&name)? {
+            let stamp = stamp(&folder::read(&self.path(&name))?);
+            return Err(LibraryError::Exists { name, stamp });
+        }
+        fs::rename(&deleted.path, self.path(&deleted.name))
+            .map_err(|error| FileError::new("bring it back", &deleted.path, error))?;
+        sync_folder(&self.folder)?;
+        sync_folder(&self.trash())?;
+        Ok(deleted.name.clone())
+    }
+
+    /// Everything in the folder and its journal that is not a shape nor the library's own, by path, with what it is:
+    /// files of others, half-written ones, unsaved work. None of it does harm.
+    ///
+    /// # Errors
+    /// If the folder exists but cannot be read.
+    pub fn leftovers(&self) -> Result<Vec<(PathBuf, &'static str)>, LibraryError> {
+        let mut found = Vec::new();
+        for name in folder::names(&self.folder)? {
+            let what = match name.to_str() {
+                Some(".lock" | ".trash" | ".journal") => continue,
+                Some(name) if name.starts_with(TEMPORARY) => {
+                    "half-written by a program that died, or being written"
+                }
+                Some(name) if name_of(name).is_some() => continue,
+                _ => "no shape: its name is not NAME.json",
+            };
+            found.push((self.folder.join(name), what));
+        }
+        let journal = self.folder.join(".journal");
+        for name in folder::names(&journal)? {
+            let path = journal.join(name);
+            let what = match path.extension().and_then(|end| end.to_str()) {
+                Some("json") => "unsaved work, of a running program or of one that died",
+                Some("lock" | "tmp") => continue,
+                _ => "no journal",
+            };
+            found.push((path, what));
+        }
+        found.sort();
+        Ok(found)
     }
 }
 
-/// The name of the shape in a file of this name; none where it is no `NAME.json`.
-pub(crate) fn name_of(file: &str) -> Option<&str> {
+/// The name of the shape in a file of this name; None if it is not `NAME.json`.
+fn name_of(file: &str) -> Option<&str> {
     let name = file.strip_suffix(".json")?;
     Name::new(name).is_ok().then_some(name)
 }

@@ -1,19 +1,19 @@
-//! Who may write: a lock that is held for the moment of writing, and by journals as long as their program runs.
+//! Who may write: a lock that is held while a shape is written, and by a journal as long as its program runs.
 //!
-//! The system releases a lock when its program dies, so no lock is ever left behind.
+//! The system releases a lock when its program dies, so none is ever left behind.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use crate::storage::LibraryError;
-use crate::storage::file::{regular, system};
+use crate::storage::error::{FileError, LibraryError};
+use crate::storage::folder::regular;
 
-/// How long writing waits for another program. Holding takes milliseconds, unless that program is stopped.
+/// How long a writer waits for another program. Writing takes milliseconds, unless that program is stopped.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// How often it tries meanwhile.
+/// The pause between two attempts.
 const PAUSE: Duration = Duration::from_millis(5);
 
 /// A lock that is held until this is dropped.
@@ -23,100 +23,107 @@ pub(crate) struct Lock {
     _file: File,
 }
 
+/// The outcome of one attempt to lock.
+#[derive(Debug)]
+pub(crate) enum LockAttempt {
+    /// The lock was free and is held now.
+    Free(Lock),
+    /// Another program holds it.
+    Held,
+    /// The file system has no locks.
+    Unsupported,
+}
+
 impl Lock {
-    /// The lock of a folder, waited for; none on a file system without locks, which is taken as it is.
-    pub(crate) fn of(folder: &Path) -> Result<Option<Self>, LibraryError> {
-        let path = of_folder(folder);
+    /// Waits for the lock of a folder; None on a file system without locks.
+    ///
+    /// # Errors
+    /// If another program holds it for [`PATIENCE`], or the system refuses.
+    pub(crate) fn wait(folder: &Path) -> Result<Option<Self>, LibraryError> {
+        let path = path_in(folder);
         let file = open(&path)?;
         let start = Instant::now();
         loop {
-            match file.try_lock() {
-                Ok(()) => return Ok(Some(Self { _file: file })),
-                Err(TryLockError::WouldBlock) if start.elapsed() < PATIENCE => {
-                    std::thread::sleep(PAUSE);
-                }
-                Err(TryLockError::WouldBlock) => {
+            match try_lock(&file, &path)? {
+                Some(true) => return Ok(Some(Self { _file: file })),
+                Some(false) if start.elapsed() < PATIENCE => std::thread::sleep(PAUSE),
+                Some(false) => {
                     let busy = io::Error::other("another program has held it for five seconds");
-                    return Err(system("lock it", &path)(busy));
+                    return Err(FileError::new("lock it", &path, busy).into());
                 }
-                Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Interrupted => {}
-                Err(TryLockError::Error(error)) if knows_none(&error) => return Ok(None),
-                Err(TryLockError::Error(error)) => return Err(system("lock it", &path)(error)),
+                None => return Ok(None),
             }
         }
     }
 
-    /// The lock at a path, if it is to be had.
-    pub(crate) fn at(path: &Path) -> Result<LockAttempt, LibraryError> {
+    /// Tries once to take the lock at a path.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub(crate) fn attempt(path: &Path) -> Result<LockAttempt, LibraryError> {
         let file = open(path)?;
-        loop {
-            match file.try_lock() {
-                // Whoever had it may have removed the file: then this is the lock of nothing.
-                Ok(()) if is_at(&file, path) => return Ok(LockAttempt::Free(Self { _file: file })),
-                Ok(()) | Err(TryLockError::WouldBlock) => return Ok(LockAttempt::Held),
-                Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Interrupted => {}
-                Err(TryLockError::Error(error)) if knows_none(&error) => {
-                    return Ok(LockAttempt::Unknown);
-                }
-                Err(TryLockError::Error(error)) => return Err(system("lock it", path)(error)),
-            }
-        }
+        Ok(match try_lock(&file, path)? {
+            // The program that held it may have removed the file: then this locks nothing.
+            Some(true) if is_at(&file, path) => LockAttempt::Free(Self { _file: file }),
+            Some(_) => LockAttempt::Held,
+            None => LockAttempt::Unsupported,
+        })
     }
 
-    /// The lock at a path; none where it cannot be had, for whatever reason.
+    /// The lock at a path; None if it cannot be had for any reason.
     pub(crate) fn if_free(path: &Path) -> Option<Self> {
-        match Self::at(path) {
+        match Self::attempt(path) {
             Ok(LockAttempt::Free(lock)) => Some(lock),
             _ => None,
         }
     }
 }
 
-/// What became of a try to lock.
-#[derive(Debug)]
-pub(crate) enum LockAttempt {
-    /// It was free, and is ours.
-    Free(Lock),
-    /// Somebody else has it.
-    Held,
-    /// The file system knows no locks.
-    Unknown,
+/// Whether the lock was free, and is held now; None on a file system without locks.
+fn try_lock(file: &File, path: &Path) -> Result<Option<bool>, FileError> {
+    loop {
+        match file.try_lock() {
+            Ok(()) => return Ok(Some(true)),
+            Err(TryLockError::WouldBlock) => return Ok(Some(false)),
+            Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Interrupted => {}
+            Err(TryLockError::Error(error)) if is_unsupported(&error) => return Ok(None),
+            Err(TryLockError::Error(error)) => return Err(FileError::new("lock it", path, error)),
+        }
+    }
 }
 
-/// Whether the file system knows no locks. NFS without its lock daemon says that none are left.
-fn knows_none(error: &io::Error) -> bool {
+/// Whether the file system has no locks. NFS without its lock daemon reports that none are left.
+fn is_unsupported(error: &io::Error) -> bool {
     // ENOLCK, for which the standard library has no kind.
     let none_left = if cfg!(target_os = "macos") { 77 } else { 37 };
     error.kind() == ErrorKind::Unsupported || error.raw_os_error() == Some(none_left)
 }
 
-/// Where a folder's lock is.
-pub(crate) fn of_folder(folder: &Path) -> PathBuf {
+/// The path of a folder's lock.
+pub(crate) fn path_in(folder: &Path) -> PathBuf {
     folder.join(".lock")
 }
 
-/// The lock's file, made where there is none. One that another user has made is locked without writing.
+/// Opens the lock's file and makes it if it does not exist. One that another user has made is opened for reading.
 fn open(path: &Path) -> Result<File, LibraryError> {
     if fs::symlink_metadata(path).is_ok() {
-        // Before it is opened: opening a pipe waits.
+        // Checked before opening: opening a pipe waits.
         regular(path)?;
     }
-    let file = File::options()
-        .create(true)
-        .truncate(false)
-        .write(true)
-        .open(path);
-    match file {
+    let mut options = File::options();
+    let file = options.create(true).truncate(false).write(true).open(path);
+    let file = match file {
         Err(error)
             if matches!(
                 error.kind(),
                 ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem
             ) =>
         {
-            File::open(path).map_err(|_| system("open the lock", path)(error))
+            File::open(path).map_err(|_| error)
         }
-        file => file.map_err(system("open the lock", path)),
-    }
+        file => file,
+    };
+    Ok(file.map_err(|error| FileError::new("open the lock", path, error))?)
 }
 
 #[cfg(unix)]

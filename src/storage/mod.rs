@@ -16,14 +16,15 @@
 //! FOLDER/.journal/4711-0.tmp            being written
 //! ```
 
-#[cfg(feature = "library")]
 mod error;
+
+mod atomic_file;
 
 #[cfg(feature = "library")]
 pub mod location;
 
 #[cfg(feature = "library")]
-mod file;
+mod folder;
 
 #[cfg(feature = "library")]
 mod lock;
@@ -32,25 +33,22 @@ mod lock;
 pub mod shipped;
 
 #[cfg(feature = "library")]
-mod library;
-
-#[cfg(feature = "library")]
 mod trash;
 
 #[cfg(feature = "library")]
-mod journal;
+mod library;
 
 #[cfg(feature = "library")]
-mod leftover;
+mod journal;
 
 #[cfg(feature = "sweep")]
 mod first_error;
 
 #[cfg(feature = "sweep")]
-mod unfinished;
-
-#[cfg(feature = "sweep")]
 mod sweep_file;
+
+pub use atomic_file::{Existing, FinishedFile, UnfinishedFile};
+pub use error::FileError;
 
 #[cfg(feature = "library")]
 pub use error::LibraryError;
@@ -65,7 +63,4 @@ pub use library::{Expected, Library, LibraryEntry, LoadedShape, ShapeOrigin};
 pub use trash::TRASH_KEPT;
 
 #[cfg(feature = "sweep")]
-pub use sweep_file::{AtlasFile, FinishedSweepFile, PoseFile, SweepFileError, is_poses};
-
-#[cfg(feature = "sweep")]
-pub use unfinished::{Existing, FinishedFile, UnfinishedFile};
+pub use sweep_file::{AtlasFile, PoseFile, SweepFileError, is_poses};

@@ -2,7 +2,7 @@
 
 use crate::formats::{Name, StoredShape};
 use crate::storage::LibraryError;
-use crate::storage::file::stamp;
+use crate::storage::folder::stamp;
 
 macro_rules! shapes {
     ($($name:literal),* $(,)?) => {

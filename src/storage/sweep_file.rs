@@ -1,7 +1,7 @@
 //! What a sweep leaves as files: its atlas, in the form that the name's ending tells, and the atlas number of every
 //! pose.
 //!
-//! At every time there is all of a file or what was there before ([`crate::storage::unfinished`]).
+//! At every time there is all of a file or what was there before ([`crate::storage::atomic_file`]).
 
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -11,9 +11,9 @@ use crate::formats::atlas::{write_csv, write_jsonl};
 use crate::formats::npy::Dtype;
 use crate::formats::{ArchiveError, archive, npy};
 use crate::pose::PoseGrid;
+use crate::storage::atomic_file::{Existing, FinishedFile, UnfinishedFile};
+use crate::storage::error::FileError;
 use crate::storage::first_error::FirstErrorWriter;
-use crate::storage::unfinished;
-use crate::storage::unfinished::{Existing, UnfinishedFile};
 use crate::sweep::SweepResult;
 
 /// Why a file was not written.
@@ -25,6 +25,13 @@ pub struct SweepFileError {
     pub name: String,
     /// What went wrong.
     pub error: ArchiveError,
+}
+
+impl From<FileError> for SweepFileError {
+    fn from(error: FileError) -> Self {
+        let path = error.path.clone();
+        Self::new(&path, error.into_io())
+    }
 }
 
 impl SweepFileError {
@@ -78,7 +85,8 @@ impl AtlasFile {
     /// # Errors
     /// Those of the system, with the file's name; where one is there and is to be kept.
     pub fn check(&self, existing: Existing) -> Result<(), SweepFileError> {
-        begun(&self.path, existing).map(drop)
+        UnfinishedFile::new(&self.path, existing)?;
+        Ok(())
     }
 
     /// Writes the atlas of a result; nothing of it is left where `stopped` becomes true on the way.
@@ -91,7 +99,7 @@ impl AtlasFile {
         existing: Existing,
         stopped: &AtomicBool,
     ) -> Result<(), SweepFileError> {
-        self.prepare(result, existing, stopped)?.persist()
+        Ok(self.prepare(result, existing, stopped)?.persist()?)
     }
 
     /// The same without its name yet, so that several files can appear together.
@@ -103,8 +111,8 @@ impl AtlasFile {
         result: &SweepResult,
         existing: Existing,
         stopped: &AtomicBool,
-    ) -> Result<FinishedSweepFile, SweepFileError> {
-        let mut file = begun(&self.path, existing)?;
+    ) -> Result<FinishedFile, SweepFileError> {
+        let mut file = UnfinishedFile::new(&self.path, existing)?;
         let mut output = FirstErrorWriter::new(&mut file.output, stopped);
         let written = match self.format {
             AtlasFormat::Csv => write_csv(result, &mut output).map_err(ArchiveError::from),
@@ -116,7 +124,7 @@ impl AtlasFile {
             None => written,
         };
         written.map_err(|error| SweepFileError::new(&self.path, error))?;
-        FinishedSweepFile::of(file)
+        Ok(file.finish()?)
     }
 }
 
@@ -147,16 +155,14 @@ impl PoseFile {
         grid: &PoseGrid,
         existing: Existing,
     ) -> Result<Self, SweepFileError> {
-        let mut file = begun(&path.into(), existing)?;
+        let mut file = UnfinishedFile::new(&path.into(), existing)?;
         let mut shape = grid.counts().into_array().to_vec();
         shape.reverse();
         if shape[..2] == [1, 1] {
             shape.drain(..2);
         }
         let header = npy::header(Dtype::U32, &shape);
-        if let Err(error) = file.output.write_all(&header) {
-            return Err(SweepFileError::new(file.path(), error));
-        }
+        file.write(&header)?;
         Ok(Self {
             file,
             start: header.len() as u64,
@@ -189,40 +195,12 @@ impl PoseFile {
     ///
     /// # Errors
     /// What went wrong first, with the file's name.
-    pub fn finish(self) -> Result<FinishedSweepFile, SweepFileError> {
+    pub fn finish(self) -> Result<FinishedFile, SweepFileError> {
         match self.error {
             Some(error) => Err(SweepFileError::new(self.file.path(), error)),
-            None => FinishedSweepFile::of(self.file),
+            None => Ok(self.file.finish()?),
         }
     }
-}
-
-/// A file that lacks only its name. Dropped, nothing is left of it.
-#[derive(Debug)]
-pub struct FinishedSweepFile(unfinished::FinishedFile);
-
-impl FinishedSweepFile {
-    fn of(file: UnfinishedFile) -> Result<Self, SweepFileError> {
-        let path = file.path().to_owned();
-        let whole = file.finish();
-        whole
-            .map(Self)
-            .map_err(|error| SweepFileError::new(&path, error))
-    }
-
-    /// The file takes its name.
-    ///
-    /// # Errors
-    /// Those of the system, with the file's name.
-    pub fn persist(self) -> Result<(), SweepFileError> {
-        let path = self.0.path().to_owned();
-        let kept = self.0.persist();
-        kept.map_err(|error| SweepFileError::new(&path, error))
-    }
-}
-
-fn begun(path: &Path, existing: Existing) -> Result<UnfinishedFile, SweepFileError> {
-    UnfinishedFile::new(path, existing).map_err(|error| SweepFileError::new(path, error))
 }
 
 #[cfg(test)]

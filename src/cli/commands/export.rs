@@ -1,7 +1,6 @@
 //! `taxel export`, and `--export` of a touch: an imprint in the forms of other programs, or drawn.
 
 use std::ffi::OsStr;
-use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use crate::cli::error::CliError;
@@ -11,7 +10,7 @@ use crate::cli::settings::pitch::Pitch;
 use crate::formats::{Drawing, ImprintFormat};
 use crate::imprint::Imprint;
 use crate::source::Source;
-use crate::storage::{Existing, FinishedFile, UnfinishedFile};
+use crate::storage::{Existing, FileError, FinishedFile, UnfinishedFile};
 
 /// What a file is to hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,7 +117,7 @@ impl Export {
         };
         match &self.path {
             None => Ok(Begun::Content(content)),
-            Some(path) => whole(path, &content, self.existing).map(Begun::File),
+            Some(path) => Ok(Begun::File(finished(path, &content, self.existing)?)),
         }
     }
 }
@@ -137,9 +136,10 @@ impl Begun {
     pub(crate) fn end(self) -> Result<Exported, CliError> {
         match self {
             Self::Content(content) => Ok(Exported::Content(content)),
-            Self::File(whole) => {
-                let said = format!("written to {}", whole.path().display());
-                keep(whole).map(|()| Exported::Said(said))
+            Self::File(file) => {
+                let said = format!("written to {}", file.path().display());
+                file.persist()?;
+                Ok(Exported::Said(said))
             }
         }
     }
@@ -154,30 +154,15 @@ pub(crate) enum Exported {
     Said(String),
 }
 
-/// Writes a file whole.
+/// Writes a file, all of it or none.
 pub(crate) fn put(path: &Path, content: &[u8], existing: Existing) -> Result<(), CliError> {
-    keep(whole(path, content, existing)?)
+    Ok(finished(path, content, existing)?.persist()?)
 }
 
-fn whole(path: &Path, content: &[u8], existing: Existing) -> Result<FinishedFile, CliError> {
-    let written = UnfinishedFile::new(path, existing).and_then(|mut file| {
-        file.output.write_all(content)?;
-        file.finish()
-    });
-    written.map_err(|error| failure(path, error))
-}
-
-fn keep(whole: FinishedFile) -> Result<(), CliError> {
-    let path = whole.path().to_owned();
-    whole.persist().map_err(|error| failure(&path, error))
-}
-
-fn failure(path: &Path, error: io::Error) -> CliError {
-    let name = path.to_string_lossy().into_owned();
-    match error.kind() {
-        ErrorKind::AlreadyExists => CliError::Taken { name },
-        _ => CliError::File { name, error },
-    }
+fn finished(path: &Path, content: &[u8], existing: Existing) -> Result<FinishedFile, FileError> {
+    let mut file = UnfinishedFile::new(path, existing)?;
+    file.write(content)?;
+    file.finish()
 }
 
 /// Writes the shape of that name, else what is in that file. A stored shape is drawn with the outline that made it.

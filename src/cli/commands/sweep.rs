@@ -18,7 +18,7 @@ use crate::cli::output::progress::Progress;
 use crate::cli::output::sweep_summary::Summary;
 use crate::formats::{ArchiveError, archive};
 use crate::pose::PoseGrid;
-use crate::storage::{AtlasFile, Existing, FinishedSweepFile, PoseFile};
+use crate::storage::{AtlasFile, Existing, FinishedFile, PoseFile, SweepFileError};
 use crate::sweep::{Shard, Sweep, SweepResult};
 
 /// What a sweep or a merge is to leave.
@@ -109,7 +109,7 @@ fn leave(
     result: &SweepResult,
     start: Instant,
     wanted: &Wanted,
-    poses: Option<FinishedSweepFile>,
+    poses: Option<FinishedFile>,
     charset: Charset,
     signals: &Signals,
 ) -> Result<String, CliError> {
@@ -125,7 +125,7 @@ fn leave(
     };
     // All files or none, as far as a machine can be asked for that.
     for file in atlas.into_iter().chain(poses) {
-        file.persist()?;
+        file.persist().map_err(SweepFileError::from)?;
     }
     let summary = Summary::new(result, start.elapsed());
     Ok(if wanted.json {

@@ -1,0 +1,226 @@
+//! The one way in which a file is written: under a temporary name in the same folder, synced, renamed over its place,
+//! and the folder synced.
+//!
+//! Whenever the program dies or the power fails, the old file or the new one is there whole. The stages are types:
+//! content goes into an [`UnfinishedFile`]; a [`FinishedFile`] is on disk and lacks only its name. Either one removes
+//! its temporary file when it is dropped, so an error or an early return leaves nothing behind. A program that is
+//! killed does leave it, under one of two names:
+//! - `.taxel-XXXXXX`, a random name, from [`UnfinishedFile::new`];
+//! - the name given to [`UnfinishedFile::with_temporary`], by a caller that holds a lock; the next one removes it.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::{NamedTempFile, TempPath};
+
+use crate::storage::error::FileError;
+
+/// What happens to a file that is there already.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Existing {
+    /// It is replaced if it is a regular file. A folder, a device or a link never is.
+    Replaced,
+    /// It stays, and nothing is written.
+    Kept,
+}
+
+/// A file under a temporary name, still being written.
+#[derive(Debug)]
+pub struct UnfinishedFile {
+    path: PathBuf,
+    existing: Existing,
+    /// Takes the content.
+    pub output: BufWriter<NamedTempFile>,
+}
+
+impl UnfinishedFile {
+    /// Begins the file at `path` under a random temporary name.
+    ///
+    /// # Errors
+    /// [`ErrorKind::AlreadyExists`] if there is a file and it is to be kept; [`ErrorKind::Other`] if what is there is
+    /// no regular file; else what the system reports.
+    pub fn new(path: &Path, existing: Existing) -> Result<Self, FileError> {
+        Self::begin(path, existing, || {
+            let mut builder = tempfile::Builder::new();
+            builder.prefix(".taxel-");
+            // Readable as the user's other files are; the default for temporary files is tighter.
+            #[cfg(unix)]
+            builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+            builder
+                .tempfile_in(folder_of(path))
+                // Its own message would name the temporary file.
+                .map_err(|error| error.kind().into())
+        })
+    }
+
+    /// Begins a file that replaces `path`, under a temporary name that only the holder of a lock uses. A file of that
+    /// name was left by a program that died, and is removed.
+    ///
+    /// # Errors
+    /// As for [`UnfinishedFile::new`].
+    pub fn with_temporary(path: &Path, temporary: &Path) -> Result<Self, FileError> {
+        let create = || {
+            let mut options = File::options();
+            options.write(true).create_new(true).open(temporary)
+        };
+        Self::begin(path, Existing::Replaced, || {
+            let file = match create() {
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+                    fs::remove_file(temporary).and_then(|()| create())
+                }
+                file => file,
+            }?;
+            let temporary = TempPath::try_from_path(temporary)?;
+            Ok(NamedTempFile::from_parts(file, temporary))
+        })
+    }
+
+    fn begin(
+        path: &Path,
+        existing: Existing,
+        create: impl FnOnce() -> io::Result<NamedTempFile>,
+    ) -> Result<Self, FileError> {
+        let refuse = |doing| move |error| FileError::new(doing, path, error);
+        let old = path.symlink_metadata().ok();
+        // Reported before the work, not after it.
+        match (existing, &old) {
+            (_, Some(found)) if !found.file_type().is_file() => {
+                let error = "not a regular file, and only such a one is replaced";
+                return Err(refuse("replace it")(io::Error::other(error)));
+            }
+            (Existing::Kept, Some(_)) => {
+                return Err(refuse("create it")(ErrorKind::AlreadyExists.into()));
+            }
+            _ => {}
+        }
+        // The system reports a missing folder here, rather than a temporary file that could not be made.
+        folder_of(path)
+            .metadata()
+            .map_err(refuse("write into its folder"))?;
+        let file = create().map_err(refuse("write into its folder"))?;
+        // Whoever may not read the old file may not read the new one.
+        if let Some(old) = old {
+            file.as_file()
+                .set_permissions(old.permissions())
+                .map_err(refuse("give it its permissions"))?;
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            existing,
+            output: BufWriter::new(file),
+        })
+    }
+
+    /// The path that the file will have.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes a part of the content.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub fn write(&mut self, content: &[u8]) -> Result<(), FileError> {
+        let written = self.output.write_all(content);
+        written.map_err(|error| FileError::new("write it", &self.path, error))
+    }
+
+    /// Writes out and syncs the content.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub fn finish(self) -> Result<FinishedFile, FileError> {
+        let path = &self.path;
+        let refuse = |doing| move |error| FileError::new(doing, path, error);
+        let file = self
+            .output
+            .into_inner()
+            .map_err(io::IntoInnerError::into_error);
+        let file = file.map_err(refuse("write it"))?;
+        file.as_file().sync_all().map_err(refuse("sync it"))?;
+        Ok(FinishedFile {
+            path: self.path,
+            existing: self.existing,
+            file,
+        })
+    }
+}
+
+/// A file that is on disk and lacks only its name.
+#[derive(Debug)]
+pub struct FinishedFile {
+    path: PathBuf,
+    existing: Existing,
+    file: NamedTempFile,
+}
+
+impl FinishedFile {
+    /// The path that the file will have.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Gives the file its name and syncs the folder.
+    ///
+    /// # Errors
+    /// [`ErrorKind::AlreadyExists`] if a file that is to be kept has come meanwhile; else what the system reports. The
+    /// old file is there as before, unless syncing the folder failed ([`FileError::is_in_place`]).
+    pub fn persist(self) -> Result<(), FileError> {
+        let named = match self.existing {
+            Existing::Replaced => self.file.persist(&self.path),
+            Existing::Kept => self.file.persist_noclobber(&self.path),
+        };
+        let refuse = |error| FileError::new("put it in its place", &self.path, error);
+        named.map_err(|failed| refuse(failed.error))?;
+        sync_folder(folder_of(&self.path))
+    }
+}
+
+/// Writes a file that replaces `path`, under a temporary name that only the holder of a lock uses.
+///
+/// # Errors
+/// As for [`UnfinishedFile::with_temporary`] and [`FinishedFile::persist`].
+#[cfg(feature = "library")]
+pub(crate) fn write(path: &Path, temporary: &Path, content: &[u8]) -> Result<(), FileError> {
+    let mut file = UnfinishedFile::with_temporary(path, temporary)?;
+    file.write(content)?;
+    file.finish()?.persist()
+}
+
+/// The folder that a file is in.
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// Syncs a folder, so that what was renamed in it stays renamed.
+///
+/// # Errors
+/// What the system reports; [`FileError::is_in_place`] is true of it.
+pub(crate) fn sync_folder(folder: &Path) -> Result<(), FileError> {
+    // Elsewhere a folder cannot be opened, and renaming is all that can be done.
+    if !cfg!(unix) {
+        return Ok(());
+    }
+    let opened = match File::open(folder) {
+        // A folder that may be written to but not read cannot be synced.
+        Err(error) if error.kind() == ErrorKind::PermissionDenied => return Ok(()),
+        opened => opened,
+    };
+    match opened.and_then(|folder| folder.sync_all()) {
+        // Nor can those of some file systems.
+        Err(error)
+            if matches!(
+                error.kind(),
+                ErrorKind::InvalidInput | ErrorKind::Unsupported
+            ) =>
+        {
+            Ok(())
+        }
+        synced => synced.map_err(|error| FileError::new(FileError::SYNC_FOLDER, folder, error)),
+    }
+}
