@@ -1,9 +1,17 @@
 //! The page about dependencies: from the comments of `Cargo.toml`, what cargo says, and `deny.toml`.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
 use std::process::Command;
+use std::sync::LazyLock;
 
-const MANIFEST: &str = include_str!("../../../Cargo.toml");
+use crate::docs::{document, root};
+
+/// `Cargo.toml` as it was written: in a package, the original is beside one without comments.
+static MANIFEST: LazyLock<String> = LazyLock::new(|| {
+    let written = root().join("Cargo.toml.orig");
+    fs::read_to_string(written).unwrap_or_else(|_| document("Cargo.toml"))
+});
 const DENY: &str = include_str!("../../../deny.toml");
 
 /// The whole block.

@@ -328,10 +328,10 @@ fn p() -> String {
                 [true, false, true, false] => canvas.step(&mut steps.0, x - 0.5, y, '|'),
                 [false, true, false, true] => canvas.step(&mut steps.0, x + 0.5, y, '|'),
                 [false, true, true, true] | [true, true, true, false] => {
-                    canvas.step(&mut steps.1, x, y, '/')
+                    canvas.step(&mut steps.1, x, y, '/');
                 }
                 [true, false, true, true] | [true, true, false, true] => {
-                    canvas.step(&mut steps.1, x, y, '\\')
+                    canvas.step(&mut steps.1, x, y, '\\');
                 }
                 _ => {}
             }
