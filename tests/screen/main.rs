@@ -2,6 +2,7 @@
 
 mod session;
 
+mod frames;
 mod keys;
 
 mod library;

@@ -3,16 +3,15 @@
 //! ```text
 //! settings   environment and flags -> what this terminal is sent
 //! input      bytes -> key, paste, mouse
-//! pen        styles -> few bytes
-//! writer     changed cells -> few bytes
-//! screen     what has changed, frame by frame
+//! style      changes of style -> few bytes
+//! screen     changed cells -> few bytes, frame by frame
 //! device     the terminal's two files
 //! session    one way in, one way out
 //! signals    what the system says
 //! job        stopped and continued by a shell
 //! mailbox    messages from workers
 //! outcome    how it ended
-//! converse   the loop: waits for all of them at once
+//! event_loop waits for all of them at once
 //! ```
 //! The loop sleeps until there is something to do, without a tick; it writes only where the screen changes, in one
 //! write a frame; and it ends when the terminal is gone, whether or not a signal says so. Nothing is asked of the
@@ -22,9 +21,7 @@ pub mod settings;
 
 pub mod input;
 
-mod pen;
-
-mod writer;
+mod style;
 
 pub mod screen;
 

@@ -196,9 +196,9 @@ fn the_shortest_way_is_taken() {
     assert_eq!(frame(&["abcdefg h"], &["a       h"]), "a\x1b[6X\r");
     assert_eq!(frame(&["abcd h"], &["a    h"]), "a   \r");
     assert_eq!(frame(&["abcdefghijk x"], &["a        jk x"]), "a\x1b[8X\r");
-    // What is near the cursor first, though it is below.
+    // In reading order, though the cursor is in the last row.
     assert_eq!(
         frame_at(&["ab", "", "ab"], &["xb", "", "xb"], (0, 2)),
-        "x\x1b[Hx\r\n\n"
+        "\x1b[Hx\r\n\nx\r"
     );
 }

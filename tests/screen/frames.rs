@@ -1,0 +1,97 @@
+//! The bytes of a frame: this program's writer beside ratatui's own backend, on the screens that people see most.
+//! The figures are printed: `cargo test --test screen frames -- --nocapture`.
+
+use std::cell::Cell;
+use std::io::{self, Write};
+use std::rc::Rc;
+
+use ratatui::layout::Size;
+use ratatui::{Terminal, TerminalOptions, Viewport};
+use ratatui_crossterm::CrosstermBackend;
+use taxel::tui::app::view::view;
+use taxel::tui::script::Session;
+use taxel::tui::terminal::screen::Screen;
+use taxel::tui::terminal::settings::Abilities;
+
+use crate::session::session;
+
+/// A name, the keys before the frame, its own keys (none: the first frame), and the most bytes that it may have.
+const SCENES: [(&str, &str, &str, usize); 9] = [
+    ("first frame", "", "", 2200),
+    ("cursor move", "", "<Right>", 60),
+    ("cursor move on a figure", "f<CR>", "<Right>", 60),
+    ("first toggle", "", "<Space>", 210),
+    (
+        "toggle that makes a hole",
+        "f<CR><8x:Left><8x:Down><3x:Right><3x:Up>",
+        "<Space>",
+        75,
+    ),
+    ("a form opens", "f<CR>", "f", 650),
+    ("a field is edited", "f<CR>f<Tab>", "3", 140),
+    ("a page of Explore", "f<CR>e<CR>", "2", 1700),
+    ("a row of Explore", "f<CR>e<CR>", "<Down>", 360),
+];
+
+/// The bytes of the frame after `keys`, by the program's own writer.
+fn own(before: &Session, after: Option<&Session>) -> usize {
+    let abilities = Abilities {
+        styles: true,
+        synchronized: true,
+        erases: true,
+    };
+    let Ok(mut terminal) = Terminal::new(Screen::new(Size::new(80, 24), abilities));
+    let mut bytes = 0;
+    for session in [Some(before), after].into_iter().flatten() {
+        let Ok(_) = terminal.draw(|frame| view(session.app(), frame));
+        bytes = terminal.backend_mut().take_frame().len();
+    }
+    bytes
+}
+
+/// The same by ratatui's backend into a buffer.
+fn stock(before: &Session, after: Option<&Session>) -> usize {
+    let area = ratatui::layout::Rect::new(0, 0, 80, 24);
+    let options = TerminalOptions {
+        viewport: Viewport::Fixed(area),
+    };
+    let written = Rc::new(Cell::new(0));
+    let backend = CrosstermBackend::new(Counter(Rc::clone(&written)));
+    let mut terminal = Terminal::with_options(backend, options).expect("a counter takes it all");
+    for session in [Some(before), after].into_iter().flatten() {
+        written.set(0);
+        terminal
+            .draw(|frame| view(session.app(), frame))
+            .expect("a counter takes it all");
+    }
+    written.get()
+}
+
+/// Counts what is written.
+struct Counter(Rc<Cell<usize>>);
+
+impl Write for Counter {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.set(self.0.get() + bytes.len());
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn every_frame_fits_its_budget_and_takes_fewer_bytes_than_by_the_stock_backend() {
+    println!("{:26} {:>6} {:>6}", "", "own", "stock");
+    for (name, before, keys, most) in SCENES {
+        let (first, then) = (session(before), session(&format!("{before}{keys}")));
+        let then = (!keys.is_empty()).then_some(&then);
+        let (own, stock) = (own(&first, then), stock(&first, then));
+        println!("{name:26} {own:6} {stock:6}");
+        assert!(
+            own <= most && 5 * own <= 4 * stock,
+            "{name}: {own}, {stock}"
+        );
+    }
+}
