@@ -135,6 +135,13 @@ impl Default for Ranges {
     }
 }
 
+impl<T> Default for PerAxis<Option<T>> {
+    /// None for every axis.
+    fn default() -> Self {
+        Self([const { None }; 5])
+    }
+}
+
 /// The point of a shape that x0 and y0 locate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]

@@ -13,6 +13,8 @@ mod placed;
 
 mod grid;
 
+mod reach;
+
 mod symmetry;
 
 pub use axis::{Anchor, Axis, PerAxis, Pose, PoseIndex, Ranges};
@@ -20,4 +22,5 @@ pub(crate) use boundary::Boundary;
 pub use grid::{GridError, MAX_POSES, PoseGrid};
 pub use placed::Placed;
 pub use range::{DecimalRange, MAX_VALUES, RangeError};
+pub use reach::{GivenRanges, common_ranges, default_ranges, smallest_sensor};
 pub(crate) use symmetry::period;

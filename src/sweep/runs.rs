@@ -121,6 +121,8 @@ struct Sweeper<'a> {
     steps: Steps,
     /// How many x0 of a row put the shape partly beyond the left or the right side.
     beyond: u64,
+    /// The values of y0, by number, that put it beyond neither the upper nor the lower side.
+    rows_inside: std::ops::Range<u64>,
     spans: Spans,
     events: Events<'a>,
     exact: Exact<'a>,
@@ -135,12 +137,8 @@ impl<'a> Sweeper<'a> {
         let count = i32::try_from(count).unwrap_or(i32::MAX);
         let extent = boundary.extent();
         let outside = |extent: &Extent| {
-            let off = |x: &f64| {
-                extent.left + x < -DOUBTFUL
-                    || extent.right + x > f64::from(layout.columns()) + DOUBTFUL
-            };
-            let places = (0..grid.row_length()).map(place);
-            places.filter(off).count() as u64
+            let inside = grid.columns_inside(turn, extent);
+            grid.row_length() - (inside.end - inside.start)
         };
         Self {
             grid,
@@ -148,6 +146,9 @@ impl<'a> Sweeper<'a> {
             shape: Shape::new(&boundary),
             told: TOLD / (1 + boundary.edges.len() / EDGES) as u64,
             beyond: extent.as_ref().map_or(0, outside),
+            rows_inside: extent
+                .as_ref()
+                .map_or(0..0, |extent| grid.rows_inside(turn, extent)),
             extent,
             steps: Steps {
                 first,
@@ -186,12 +187,8 @@ impl<'a> Sweeper<'a> {
 
     /// How many poses of a row reach beyond the sensor.
     fn beyond(&self, y: u64) -> u64 {
-        let y = self.grid.offset::<f64>(self.turn, 0, y).y;
-        let bottom = f64::from(self.grid.sensor().rows()) + DOUBTFUL;
         match &self.extent {
-            Some(extent) if extent.top + y < -DOUBTFUL || extent.bottom + y > bottom => {
-                self.grid.row_length()
-            }
+            Some(_) if !self.rows_inside.contains(&y) => self.grid.row_length(),
             Some(_) => self.beyond,
             None => 0,
         }

@@ -8,6 +8,8 @@ mod statistics;
 
 mod ranges;
 
+mod reach;
+
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::paper::RING_IMPRINTS;

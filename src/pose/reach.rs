@@ -1,0 +1,448 @@
+//! How far a shape reaches over all orientations of a grid: which poses the sensor cuts off, which positions it does
+//! not, and which sensor is large enough.
+//!
+//! The *reach* is the smallest upright rectangle around the shape in every orientation, seen from its anchor. A pose is
+//! cut off when the shape reaches beyond the sensor there, by the rule of [`crate::touch::reaches_beyond`]. Units are
+//! cell sides, the frame is that of the plane. Convention of this project.
+//!
+//! Where x0 or y0 is not given, a sweep takes one cell of positions in hundredths. That is the cell that the shape lies
+//! in (1.99 lies in `1:1.99:0.01`) if the sensor cuts nothing off there; otherwise it is one around the middle. Around
+//! the middle means: of the cells in which nothing is cut off, the one nearest the middle, from a whole number on if
+//! there is such a cell; if there is none, the middle of the sensor.
+
+use std::ops::Range;
+
+use crate::geometry::Extent;
+use crate::parameter::Parameter;
+use crate::pose::axis::{Anchor, Axis, PerAxis, Ranges};
+use crate::pose::grid::{GridError, PoseGrid};
+use crate::pose::placed::centre;
+use crate::pose::range::DecimalRange;
+use crate::sensor::{MAX_SIDE, Sensor};
+use crate::source::Source;
+use crate::touch::DOUBTFUL;
+
+/// The ranges that were asked for. Absent, an axis has its default: x0 and y0 one cell that suits the shape
+/// ([`default_ranges`]), the others that of [`Ranges::default`].
+pub type GivenRanges = PerAxis<Option<DecimalRange>>;
+
+/// Positions of a default range: one cell in hundredths.
+const CELL: u32 = 100;
+
+impl PoseGrid {
+    /// Returns the smallest upright rectangle around the shape in every orientation of the grid, with its anchor at the
+    /// origin; cell sides. None if the shape has no boundary: a picture of an empty imprint.
+    ///
+    /// Of a picture placed by its corner, the position is zoomed too: it is `zoom_x · x0`, `zoom_y · y0` that the
+    /// rectangle is to be moved by.
+    ///
+    /// Takes time in proportion to the number of orientations.
+    ///
+    /// ```
+    /// use taxel::prelude::*;
+    ///
+    /// let sensor = Sensor::default();
+    /// let bar = Figure::rectangle(6.0, 2.0).on(&sensor)?;
+    /// let ranges = Ranges::default().with(Axis::Angle, "0:90:90".parse()?);
+    /// let grid = PoseGrid::new(bar.into(), sensor, Anchor::Corner, ranges)?;
+    /// let reach = grid.reach().expect("it has a boundary");
+    /// // Upright it reaches from (0, 0) to (6, 2); turned about (3, 1), from (2, −2) to (4, 4).
+    /// assert_eq!((reach.left, reach.top, reach.right, reach.bottom), (0.0, -2.0, 6.0, 4.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn reach(&self) -> Option<Extent> {
+        self.extents().flatten().reduce(union)
+    }
+
+    /// Returns the number of poses in which the shape reaches beyond the sensor and is cut off. It is the number that a
+    /// sweep of the grid reports.
+    ///
+    /// Takes time in proportion to the number of orientations.
+    ///
+    /// ```
+    /// use taxel::prelude::*;
+    ///
+    /// let sensor = Sensor::new(8, 8)?;
+    /// let square = Figure::rectangle(6.0, 6.0).on(&sensor)?;
+    /// let ranges = Ranges::default()
+    ///     .with(Axis::X0, "0:3:0.5".parse()?)
+    ///     .with(Axis::Y0, "1:2:1".parse()?)
+    ///     .with(Axis::Angle, "0".parse()?);
+    /// let grid = PoseGrid::new(square.into(), sensor, Anchor::Corner, ranges)?;
+    /// // x0 of 2.5 and 3, at both values of y0.
+    /// assert_eq!(grid.poses_beyond_sensor(), 4);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn poses_beyond_sensor(&self) -> u64 {
+        let extents = (0..).zip(self.extents());
+        let inside = extents.map(|(orientation, extent)| match extent {
+            Some(extent) => {
+                let columns = self.columns_inside(orientation, &extent);
+                let rows = self.rows_inside(orientation, &extent);
+                (columns.end - columns.start) * (rows.end - rows.start)
+            }
+            None => self.row_length() * self.rows_per_orientation(),
+        });
+        self.poses() - inside.sum::<u64>()
+    }
+
+    /// The extent of the shape in each orientation, with its anchor at the origin.
+    fn extents(&self) -> impl Iterator<Item = Option<Extent>> + '_ {
+        let orientations = 0..self.rows() / self.rows_per_orientation();
+        orientations.map(|orientation| self.boundary::<f64>(orientation).extent())
+    }
+
+    /// The values of x0, by number, at which the shape reaches beyond neither the left nor the right side.
+    pub(crate) fn columns_inside(&self, orientation: u64, extent: &Extent) -> Range<u64> {
+        let at = |index| self.offset::<f64>(orientation, index, 0).x;
+        inside(
+            self.row_length(),
+            at,
+            (extent.left, extent.right),
+            self.sensor().columns(),
+        )
+    }
+
+    /// The values of y0, by number, at which the shape reaches beyond neither the upper nor the lower side.
+    pub(crate) fn rows_inside(&self, orientation: u64, extent: &Extent) -> Range<u64> {
+        let at = |index| self.offset::<f64>(orientation, 0, index).y;
+        inside(
+            self.rows_per_orientation(),
+            at,
+            (extent.top, extent.bottom),
+            self.sensor().rows(),
+        )
+    }
+}
+
+/// The numbers of the positions at which what reaches from `low` to `high` lies within `side`. Positions grow with
+/// their number.
+fn inside(count: u64, at: impl Fn(u64) -> f64, (low, high): (f64, f64), side: u8) -> Range<u64> {
+    let from = first(0..count, |index| low + at(index) >= -DOUBTFUL);
+    let to = first(from..count, |index| {
+        high + at(index) > f64::from(side) + DOUBTFUL
+    });
+    from..to
+}
+
+/// The first number of a range for which something is true; from then on it is true for all. The end if for none.
+fn first(range: Range<u64>, is_true: impl Fn(u64) -> bool) -> u64 {
+    let Range { mut start, mut end } = range;
+    while start < end {
+        let middle = start + (end - start) / 2;
+        if is_true(middle) {
+            end = middle;
+        } else {
+            start = middle + 1;
+        }
+    }
+    start
+}
+
+fn union(one: Extent, other: Extent) -> Extent {
+    Extent {
+        left: one.left.min(other.left),
+        top: one.top.min(other.top),
+        right: one.right.max(other.right),
+        bottom: one.bottom.max(other.bottom),
+    }
+}
+
+/// Returns the ranges of a sweep of `source` where not all of them are given: in x0 and y0 the cell that the shape lies
+/// in if no pose is cut off there, otherwise one around the middle (see [the module](self)).
+///
+/// The shape's own position counts; its angle and zooms only if they are in the ranges. Given ranges stay as they are.
+///
+/// # Errors
+/// If a given range leaves that of its parameter, or a figure is to be zoomed.
+///
+/// ```
+/// use taxel::prelude::*;
+/// use taxel::pose::{GivenRanges, default_ranges};
+///
+/// let sensor = Sensor::default();
+/// let given = GivenRanges::default();
+/// let washer = Figure::ellipse(4.0, 4.0).at(1.99, 1.47).on(&sensor)?;
+/// let ranges = default_ranges(&washer.into(), &sensor, Anchor::Corner, &given)?;
+/// assert_eq!(ranges[Axis::X0].to_string(), "1:1.99:0.01");
+///
+/// // A square of 10 that lies there is cut off when it turns.
+/// let square = Figure::rectangle(10.0, 10.0).at(1.99, 1.47).on(&sensor)?;
+/// let ranges = default_ranges(&square.into(), &sensor, Anchor::Corner, &given)?;
+/// assert_eq!(ranges[Axis::X0].to_string(), "2.5:3.49:0.01");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn default_ranges(
+    source: &Source,
+    sensor: &Sensor,
+    anchor: Anchor,
+    given: &GivenRanges,
+) -> Result<Ranges, GridError> {
+    let reach = Reach::of(source, anchor, given)?;
+    let (x, y) = own_position(source, anchor);
+    let axes = [
+        (Axis::X0, x, sensor.columns()),
+        (Axis::Y0, y, sensor.rows()),
+    ];
+    let mut asked = axes.into_iter().filter(|(axis, ..)| given[*axis].is_none());
+    let own = asked.all(|(axis, at, side)| {
+        let free = reach.free(axis, side);
+        let start = hundredths((at + DOUBTFUL).floor() * 100.0);
+        free.contains(&start)
+            && start >= -limit(sensor)
+            && start + i64::from(CELL) - 1 <= limit(sensor)
+    });
+    let mut ranges = filled(given);
+    for (axis, at, side) in axes {
+        if given[axis].is_none() {
+            let start = if own {
+                hundredths((at + DOUBTFUL).floor() * 100.0)
+            } else {
+                reach.middle(axis, side)
+            };
+            ranges[axis] = cell_from(start, sensor);
+        }
+    }
+    Ok(ranges)
+}
+
+/// Returns the ranges in which every one of some shapes is swept on one sensor: where x0 or y0 is not given, the one
+/// cell around the middle in which none of them is cut off, in any angle asked for.
+///
+/// If there is no such cell, it lies where the middle of their common reach is in the middle of the sensor, and
+/// [`PoseGrid::poses_beyond_sensor`] says how many poses of which shape are cut off.
+///
+/// # Errors
+/// If a given range leaves that of its parameter, or a figure is to be zoomed.
+pub fn common_ranges<'a>(
+    sources: impl IntoIterator<Item = &'a Source>,
+    sensor: &Sensor,
+    anchor: Anchor,
+    given: &GivenRanges,
+) -> Result<Ranges, GridError> {
+    Ok(Reach::of_all(sources, anchor, given)?.ranges(sensor, given))
+}
+
+/// Returns the smallest square sensor, of at least `least` × `least` taxels, on which none of some shapes is cut off in
+/// any pose, and the ranges of these poses: where x0 or y0 is not given, one cell around the middle that is the same for
+/// all shapes. It has the threshold and the pitch of the default sensor. None if even 64 × 64 taxels are too few.
+///
+/// Recognition takes 16 for `least`: a set of small shapes is swept on the sensor that everything else is.
+///
+/// # Errors
+/// If a given range leaves that of its parameter on the largest sensor, or a figure is to be zoomed.
+///
+/// ```
+/// use taxel::prelude::*;
+/// use taxel::pose::{GivenRanges, smallest_sensor};
+///
+/// let triangle = Source::from(Figure::triangle(11.77).on(&Sensor::default())?);
+/// let disc = Source::from(Figure::ellipse(3.09, 3.09).on(&Sensor::default())?);
+/// let all_angles = GivenRanges::default();
+/// let fit = smallest_sensor([&triangle, &disc], Anchor::Centre, &all_angles, 16)?;
+/// let (sensor, ranges) = fit.expect("it fits on 64 × 64");
+/// // Its corners run on a circle of radius 6.8, and the centre goes through one cell.
+/// assert_eq!((sensor.columns(), sensor.rows()), (16, 16));
+/// assert_eq!(ranges[Axis::X0].to_string(), "7:7.99:0.01");
+/// let grid = PoseGrid::new(triangle, sensor, Anchor::Centre, ranges)?;
+/// assert_eq!(grid.poses_beyond_sensor(), 0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn smallest_sensor<'a>(
+    sources: impl IntoIterator<Item = &'a Source>,
+    anchor: Anchor,
+    given: &GivenRanges,
+    least: u8,
+) -> Result<Option<(Sensor, Ranges)>, GridError> {
+    let sources: Vec<&Source> = sources.into_iter().collect();
+    let reach = Reach::of_all(sources.iter().copied(), anchor, given)?;
+    for side in least.clamp(1, MAX_SIDE)..=MAX_SIDE {
+        let Ok(sensor) = Sensor::new(side, side) else {
+            continue;
+        };
+        let ranges = reach.ranges(&sensor, given);
+        let holds = |axis: Axis| {
+            let range = ranges[axis];
+            reach.within(axis, side, range.value(0)) && reach.within(axis, side, range.last())
+        };
+        // The rule of parameters, too: a size or a position may be too large for a sensor where the shape lies on it.
+        let allowed = |source: &Source| {
+            let set = |parameter: &Parameter| {
+                let placed = Axis::ALL.iter().any(|axis| axis.parameter() == *parameter);
+                let value = source.get(*parameter).filter(|_| !placed);
+                value.is_none_or(|value| sensor.check(*parameter, value).is_ok())
+            };
+            source.parameters().iter().all(set)
+        };
+        let positions = [Axis::X0, Axis::Y0].map(|axis| (axis.parameter(), ranges[axis]));
+        let in_range = positions.iter().all(|(parameter, range)| {
+            let ends = [range.value(0), range.last()];
+            ends.iter()
+                .all(|&value| sensor.check(*parameter, value).is_ok())
+        });
+        if holds(Axis::X0)
+            && holds(Axis::Y0)
+            && in_range
+            && sources.iter().all(|source| allowed(source))
+        {
+            return Ok(Some((sensor, ranges)));
+        }
+    }
+    Ok(None)
+}
+
+/// How far shapes reach from their anchor, for each pair of zooms: positions of a picture are zoomed with it.
+struct Reach(Vec<(Extent, [f64; 2])>);
+
+impl Reach {
+    /// Of one shape, in the given angles and zooms.
+    fn of(source: &Source, anchor: Anchor, given: &GivenRanges) -> Result<Self, GridError> {
+        let mut ranges = filled(given);
+        // Where it lies on which sensor does not matter, but a given position must be in range.
+        for axis in [Axis::X0, Axis::Y0] {
+            if given[axis].is_none() {
+                ranges[axis] = DecimalRange::whole(0);
+            }
+        }
+        let grid = PoseGrid::new(source.clone(), Sensor::LARGEST, anchor, ranges)?;
+        let still = ranges
+            .with(Axis::X0, DecimalRange::whole(0))
+            .with(Axis::Y0, DecimalRange::whole(0));
+        let grid = PoseGrid::new(source.clone(), *grid.sensor(), anchor, still)?;
+        let mut reaches: Vec<(Extent, [f64; 2])> = Vec::new();
+        for (orientation, extent) in (0..).zip(grid.extents()) {
+            let Some(extent) = extent else { continue };
+            let pose = grid.pose(orientation);
+            let zooms = match (anchor, source) {
+                (Anchor::Corner, Source::Picture(_)) => [pose[Axis::ZoomX], pose[Axis::ZoomY]],
+                _ => [1.0; 2],
+            };
+            match reaches.last_mut() {
+                Some((known, same)) if *same == zooms => *known = union(*known, extent),
+                _ => reaches.push((extent, zooms)),
+            }
+        }
+        Ok(Self(reaches))
+    }
+
+    /// Of all of some shapes together.
+    fn of_all<'a>(
+        sources: impl IntoIterator<Item = &'a Source>,
+        anchor: Anchor,
+        given: &GivenRanges,
+    ) -> Result<Self, GridError> {
+        let mut all = Vec::new();
+        for source in sources {
+            all.append(&mut Self::of(source, anchor, given)?.0);
+        }
+        Ok(Self(all))
+    }
+
+    /// Given ranges, and one cell around the middle for a position that is not.
+    fn ranges(&self, sensor: &Sensor, given: &GivenRanges) -> Ranges {
+        let mut ranges = filled(given);
+        for (axis, side) in [(Axis::X0, sensor.columns()), (Axis::Y0, sensor.rows())] {
+            if given[axis].is_none() {
+                ranges[axis] = cell_from(self.middle(axis, side), sensor);
+            }
+        }
+        ranges
+    }
+
+    /// What it reaches from and to on an axis, and the zoom of the position.
+    fn along(&self, axis: Axis) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
+        self.0
+            .iter()
+            .map(move |(extent, [zoom_x, zoom_y])| match axis {
+                Axis::Y0 => (extent.top, extent.bottom, *zoom_y),
+                _ => (extent.left, extent.right, *zoom_x),
+            })
+    }
+
+    /// Whether nothing is cut off with the anchor at a position.
+    fn within(&self, axis: Axis, side: u8, at: f64) -> bool {
+        let end = f64::from(side) + DOUBTFUL;
+        self.along(axis)
+            .all(|(low, high, zoom)| low + zoom * at >= -DOUBTFUL && high + zoom * at <= end)
+    }
+
+    /// From and up to which position nothing is cut off; up to before from where something is, everywhere. Without a
+    /// shape, nothing limits it but the sensor.
+    fn limits(&self, axis: Axis, side: u8) -> (f64, f64) {
+        let end = f64::from(side);
+        let all = self.along(axis);
+        let limits = all.map(|(low, high, zoom)| (-low / zoom, (end - high) / zoom));
+        limits
+            .reduce(|one, other| (one.0.max(other.0), one.1.min(other.1)))
+            .unwrap_or((0.0, end))
+    }
+
+    /// The hundredths from which one cell of positions lies within the limits.
+    fn free(&self, axis: Axis, side: u8) -> std::ops::RangeInclusive<i64> {
+        let (low, high) = self.limits(axis, side);
+        // A limit that is a hundredth but for its rounding is that hundredth.
+        let from = hundredths((low * 100.0 - 1e-9).ceil());
+        let to = hundredths((high * 100.0 + 1e-9).floor());
+        from..=to - i64::from(CELL) + 1
+    }
+
+    /// The hundredths from which the cell around the middle starts.
+    fn middle(&self, axis: Axis, side: u8) -> i64 {
+        let (low, high) = self.limits(axis, side);
+        let free = self.free(axis, side);
+        // Of two that are equally near, the lower one.
+        let middle = hundredths(((low + high) * 50.0 - f64::from(CELL) / 2.0 - 1e-9).ceil());
+        if free.is_empty() {
+            return middle;
+        }
+        let near = middle.clamp(*free.start(), *free.end());
+        let down = near.div_euclid(100) * 100;
+        let whole = [down, down + 100]
+            .into_iter()
+            .filter(|start| free.contains(start));
+        whole
+            .min_by_key(|start| (start - middle).abs())
+            .unwrap_or(near)
+    }
+}
+
+/// Where the anchor of a shape is, in its own pose.
+fn own_position(source: &Source, anchor: Anchor) -> (f64, f64) {
+    match anchor {
+        Anchor::Corner => {
+            let own = |parameter| source.get(parameter).unwrap_or(0.0);
+            (own(Parameter::X0), own(Parameter::Y0))
+        }
+        Anchor::Centre => {
+            let upright = source.clone().with(Parameter::Angle, 0.0, &Sensor::LARGEST);
+            let centre = centre::<f64>(upright.as_ref().unwrap_or(source));
+            (centre.x, centre.y)
+        }
+    }
+}
+
+/// The given ranges, and the default ones where none is given.
+fn filled(given: &GivenRanges) -> Ranges {
+    let default = Ranges::default();
+    Ranges::from_fn(|axis| given[axis].unwrap_or(default[axis]))
+}
+
+/// One cell of positions from so many hundredths on; all of it positions that the sensor allows.
+fn cell_from(start: i64, sensor: &Sensor) -> DecimalRange {
+    let limit = limit(sensor);
+    let start = start.clamp(-limit, limit - i64::from(CELL) + 1);
+    DecimalRange::from_units(start, 2, u64::from(CELL))
+}
+
+/// The largest position that a sensor allows, in hundredths.
+fn limit(sensor: &Sensor) -> i64 {
+    i64::from(sensor.side()) * 100
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "saturates: positions are at most a few thousand hundredths"
+)]
+fn hundredths(value: f64) -> i64 {
+    value as i64
+}

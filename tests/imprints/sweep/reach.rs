@@ -1,0 +1,279 @@
+//! Which poses the sensor cuts off, the ranges that a sweep takes by itself, and the sensor that is large enough.
+
+use proptest::prelude::*;
+use taxel::figure::{Figure, FigureKind};
+use taxel::formats::StoredShape;
+use taxel::geometry::Extent;
+use taxel::parameter::Parameter;
+use taxel::picture::Picture;
+use taxel::pose::{
+    Anchor, Axis, DecimalRange, GivenRanges, PoseGrid, Ranges, common_ranges, default_ranges,
+    smallest_sensor,
+};
+use taxel::sensor::Sensor;
+use taxel::source::Source;
+use taxel::sweep::Sweep;
+use taxel::touch::reaches_beyond;
+
+use super::cases::{self, picture};
+
+/// Every pose of a grid looked at by itself.
+fn cut_off_one_by_one(grid: &PoseGrid) -> u64 {
+    let cut = |&number: &u64| reaches_beyond(&grid.placed(grid.pose(number)), grid.sensor());
+    (0..grid.poses()).filter(cut).count() as u64
+}
+
+fn range(text: &str) -> DecimalRange {
+    text.parse().expect("a range")
+}
+
+/// The shapes that come with the program, by name: what made them, or their imprint as a picture.
+fn shipped() -> Vec<(String, Source)> {
+    let folder = std::fs::read_dir("library").expect("the folder of the crate");
+    let paths = folder.map(|entry| entry.expect("an entry").path());
+    let files = paths.filter(|path| path.extension().is_some_and(|end| end == "json"));
+    let read = |path: std::path::PathBuf| {
+        let text = std::fs::read(&path).expect("a file");
+        let shape = StoredShape::read(&text).expect("a shape");
+        let picture = || Source::Picture(Picture::at_home(shape.imprint));
+        (shape.name.to_string(), shape.source.unwrap_or_else(picture))
+    };
+    files.map(read).collect()
+}
+
+fn hexagon() -> Source {
+    cases::figure(FigureKind::Hexagon, 3.0, 0.0, 0.0)
+}
+
+fn sensor(side: u8) -> Sensor {
+    Sensor::new(side, side).expect("in range")
+}
+
+/// A shape of each kind, the sensor small enough that it is often cut off.
+fn shapes() -> impl Strategy<Value = Source> {
+    let kinds = prop::sample::select(FigureKind::ALL.to_vec());
+    let figures = (kinds, 5_u32..60, 5_u32..60).prop_map(|(kind, one, other)| {
+        let mut sizes = [one, other].map(|size| f64::from(size) / 10.0).into_iter();
+        let value = |parameter: Parameter| match parameter {
+            Parameter::X0 | Parameter::Y0 | Parameter::Angle => Some(0.0),
+            Parameter::Thickness => None,
+            _ => sizes.next(),
+        };
+        Source::Figure(Figure::new(kind, &sensor(12), value).expect("in range"))
+    });
+    prop_oneof![figures, Just(picture("##.. #... ####")), Just(picture("#")),]
+}
+
+proptest! {
+    #[test]
+    fn poses_that_are_cut_off_are_counted_as_one_by_one(
+        source in shapes(),
+        columns in 1_u8..14,
+        rows in 1_u8..14,
+        first in prop::array::uniform2(-90_i32..90),
+        angle in 0_u32..90,
+        zoom in prop::sample::select(vec!["1", "0.5:1.5:0.5"]),
+        centred: bool,
+    ) {
+        let zoom = if source.kind().is_some() { "1" } else { zoom };
+        let from = |tenths: i32| {
+            let start = f64::from(tenths) / 10.0;
+            range(&format!("{start:.1}:{:.1}:0.5", start + 3.0))
+        };
+        let ranges = Ranges::new([
+            from(first[0]),
+            from(first[1]),
+            range(&format!("{angle}:{}:45", angle + 90)),
+            range(zoom),
+            range(zoom),
+        ]);
+        let sensor = Sensor::new(columns, rows).expect("in range");
+        let anchor = Anchor::ALL[usize::from(centred)];
+        // Positions beyond a small sensor's range are refused.
+        let Ok(grid) = PoseGrid::new(source, sensor, anchor, ranges) else { return Ok(()) };
+        let counted = grid.poses_beyond_sensor();
+        prop_assert_eq!(counted, cut_off_one_by_one(&grid));
+        prop_assert_eq!(counted, Sweep::new(&grid).run().partly_off);
+    }
+
+    /// A shape that is cut off in no pose of the ranges that are taken by themselves, or for which no cell would do.
+    #[test]
+    fn default_ranges_cut_nothing_off_where_that_can_be(
+        source in shapes(),
+        columns in 1_u8..20,
+        rows in 1_u8..20,
+        angles in prop::sample::select(vec!["0", "45", "0:90:10", "10:350:20"]),
+        centred: bool,
+    ) {
+        let sensor = Sensor::new(columns, rows).expect("in range");
+        let anchor = Anchor::ALL[usize::from(centred)];
+        let given = GivenRanges::default().with(Axis::Angle, Some(range(angles)));
+        let ranges = default_ranges(&source, &sensor, anchor, &given).expect("in range");
+        let grid = PoseGrid::new(source, sensor, anchor, ranges).expect("in range");
+        let reach = grid.reach().expect("it has a boundary");
+        let fits = |low: f64, high: f64, side: u8| high - low + 1.0 <= f64::from(side);
+        if fits(reach.left, reach.right, columns) && fits(reach.top, reach.bottom, rows) {
+            prop_assert_eq!(grid.poses_beyond_sensor(), 0, "{}", ranges[Axis::X0]);
+        }
+        for axis in [Axis::X0, Axis::Y0] {
+            prop_assert_eq!(ranges[axis].count(), 100);
+            prop_assert_eq!(ranges[axis].step(), 0.01);
+        }
+    }
+}
+
+#[test]
+fn every_shipped_shape_that_fits_is_whole_in_the_ranges_that_are_taken_by_themselves() {
+    let mut whole = 0;
+    for side in [16, 20, 24] {
+        for (name, source) in shipped() {
+            for anchor in Anchor::ALL {
+                let given = GivenRanges::default();
+                let ranges = default_ranges(&source, &sensor(side), anchor, &given);
+                let ranges = ranges.expect("in range");
+                let grid = PoseGrid::new(source.clone(), sensor(side), anchor, ranges);
+                let grid = grid.expect("in range");
+                let reach = grid.reach().expect("it has a boundary");
+                let room = f64::from(side) - 0.99;
+                let fits = reach.right - reach.left <= room && reach.bottom - reach.top <= room;
+                let cut = grid.poses_beyond_sensor();
+                assert_eq!(cut == 0, fits, "{name} on {side}: {cut} cut off");
+                whole += usize::from(fits);
+            }
+        }
+    }
+    assert!(whole > 100, "only {whole} fit");
+}
+
+#[test]
+fn a_shape_keeps_its_cell_where_nothing_is_cut_off_there() {
+    use Parameter::{Length, Width, X0, Y0};
+    let own = |source: &Source, anchor, angles: &str| {
+        let given = GivenRanges::default().with(Axis::Angle, Some(range(angles)));
+        let ranges = default_ranges(source, &sensor(16), anchor, &given).expect("in range");
+        [ranges[Axis::X0].to_string(), ranges[Axis::Y0].to_string()]
+    };
+    let figure = |kind, values: &[(Parameter, f64)]| {
+        let place = |source: Source, &(parameter, value): &(Parameter, f64)| {
+            source
+                .with(parameter, value, &sensor(16))
+                .expect("in range")
+        };
+        values
+            .iter()
+            .fold(cases::figure(kind, 3.0, 3.0, 0.0), place)
+    };
+    let bar = |x0, y0| {
+        figure(
+            FigureKind::Rectangle,
+            &[(Length, 6.0), (Width, 2.0), (X0, x0), (Y0, y0)],
+        )
+    };
+    let (first, all) = ("0", "0:359:1");
+    assert_eq!(
+        own(&bar(1.99, 3.0), Anchor::Corner, first),
+        ["1:1.99:0.01", "3:3.99:0.01"]
+    );
+    // Turned, it reaches above its corner: about the centre of the bar, 2.2 upwards.
+    assert_eq!(
+        own(&bar(1.99, 3.0), Anchor::Corner, all),
+        ["1:1.99:0.01", "3:3.99:0.01"]
+    );
+    assert_eq!(
+        own(&bar(1.99, 1.0), Anchor::Corner, all),
+        ["4:4.99:0.01", "6:6.99:0.01"]
+    );
+    assert_eq!(
+        own(&bar(2.0, 3.0), Anchor::Centre, all),
+        ["5:5.99:0.01", "4:4.99:0.01"]
+    );
+    // Beyond the sensor, its cell is not one where nothing is cut off.
+    assert_eq!(
+        own(&bar(-2.5, 3.0), Anchor::Corner, first),
+        ["4:4.99:0.01", "6:6.99:0.01"]
+    );
+}
+
+#[test]
+fn what_is_given_stays() {
+    let source = hexagon();
+    let given = GivenRanges::default()
+        .with(Axis::X0, Some(range("-3:3:0.5")))
+        .with(Axis::Angle, Some(range("0:59:1")));
+    let ranges = default_ranges(&source, &sensor(16), Anchor::Corner, &given).expect("in range");
+    assert_eq!(ranges[Axis::X0], range("-3:3:0.5"));
+    assert_eq!(ranges[Axis::Angle], range("0:59:1"));
+    assert_eq!(ranges[Axis::Y0].count(), 100);
+    let zoomed = given.with(Axis::ZoomX, Some(range("2")));
+    let refused = default_ranges(&source, &sensor(16), Anchor::Corner, &zoomed);
+    assert!(refused.is_err(), "a figure has no zoom");
+}
+
+#[test]
+fn the_smallest_sensor_holds_all_shapes_and_a_smaller_one_does_not() {
+    let large = sensor(64);
+    let triangle = Source::from(Figure::triangle(20.0).on(&large).expect("in range"));
+    let disc = Source::from(Figure::ellipse(9.5, 9.5).on(&large).expect("in range"));
+    let set = [&triangle, &disc];
+    for anchor in Anchor::ALL {
+        for angles in ["0", "30", "0:359:1"] {
+            let given = GivenRanges::default().with(Axis::Angle, Some(range(angles)));
+            let fit = smallest_sensor(set, anchor, &given, 16).expect("in range");
+            let (fit, ranges) = fit.expect("64 are enough");
+            let cut = |sensor: Sensor, ranges: &Ranges| -> u64 {
+                let grids = set.iter().map(|&source| {
+                    PoseGrid::new(source.clone(), sensor, anchor, *ranges).expect("in range")
+                });
+                grids.map(|grid| grid.poses_beyond_sensor()).sum()
+            };
+            assert_eq!(cut(fit, &ranges), 0);
+            assert_eq!(
+                common_ranges(set, &fit, anchor, &given).expect("in range"),
+                ranges
+            );
+            // Every cell of hundredths on the next smaller one, along one axis at a time.
+            let smaller = sensor(fit.columns() - 1);
+            let fits_along = |axis: Axis| {
+                (-1500..1500).any(|start: i32| {
+                    let (from, to) = (f64::from(start) / 100.0, f64::from(start + 99) / 100.0);
+                    set.iter().all(|&source| {
+                        let still = ranges
+                            .with(Axis::X0, DecimalRange::whole(0))
+                            .with(Axis::Y0, DecimalRange::whole(0));
+                        let grid = PoseGrid::new(source.clone(), large, anchor, still);
+                        let Extent {
+                            left,
+                            top,
+                            right,
+                            bottom,
+                        } = grid.expect("in range").reach().expect("it has a boundary");
+                        let (low, high) = if axis == Axis::X0 {
+                            (left, right)
+                        } else {
+                            (top, bottom)
+                        };
+                        low + from >= -1e-9 && high + to <= f64::from(smaller.columns()) + 1e-9
+                    })
+                })
+            };
+            let smaller_holds = fits_along(Axis::X0) && fits_along(Axis::Y0);
+            assert!(!smaller_holds, "{anchor:?} {angles}: {}", fit.columns());
+        }
+    }
+    let (small, _) = smallest_sensor([&hexagon()], Anchor::Corner, &GivenRanges::default(), 16)
+        .expect("in range")
+        .expect("it fits");
+    assert_eq!(small.columns(), 16);
+}
+
+#[test]
+fn what_no_sensor_holds_has_none() {
+    let large = Source::from(
+        Figure::ellipse(33.0, 1.0)
+            .on(&sensor(64))
+            .expect("in range"),
+    );
+    let given = GivenRanges::default();
+    let fit = smallest_sensor([&large], Anchor::Corner, &given, 16).expect("in range");
+    assert_eq!(fit, None);
+}
