@@ -31,8 +31,6 @@ use error::CliError;
 use input::shapes::Shelf;
 use output::charset::Charset;
 
-use crate::pose::PoseGrid;
-
 /// Does what the arguments ask for, the first of which is the program's own name, and gives the exit status.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
@@ -92,7 +90,10 @@ fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, Cli
                 Swept::Figure(figure, sensor) => (figure, sensor),
                 Swept::Picture(what, given) => touch::picture(&what, &given, &shelf)?,
             };
-            let grid = PoseGrid::new(source, sensor, asked.anchor, asked.ranges)?;
+            let (grid, taken) = sweep::grid(source, sensor, asked.anchor, &asked.ranges)?;
+            if !asked.wanted.quiet {
+                taken.iter().for_each(|note| self::note(note, charset));
+            }
             let (shard, jobs) = (asked.shard, asked.jobs);
             print(&sweep::sweep(&grid, shard, jobs, &asked.wanted, charset)?)?;
         }
@@ -130,11 +131,13 @@ fn chore(chore: Chore, shelf: &Shelf, charset: Charset) -> Result<(), CliError> 
 
 fn answer(touched: &Touched, charset: Charset) -> Result<(), CliError> {
     write(&touched.answer)?;
-    for note in &touched.notes {
-        // Where it cannot be written, the exit status still tells.
-        let _ = writeln!(io::stderr().lock(), "{}", charset.line(note));
-    }
+    touched.notes.iter().for_each(|text| note(text, charset));
     Ok(())
+}
+
+/// Writes a remark to standard error. Where it cannot be written, the exit status still tells.
+fn note(text: &str, charset: Charset) {
+    let _ = writeln!(io::stderr().lock(), "{}", charset.line(text));
 }
 
 fn print(text: &str) -> Result<(), CliError> {

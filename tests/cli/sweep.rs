@@ -42,6 +42,7 @@ fn the_summary_has_the_numbers_of_the_paper_s_ring() {
     let keys: Vec<&String> = summary.as_object().expect("an object").keys().collect();
     let expected = [
         "poses",
+        "ranges",
         "distinct",
         "distinct_shifts",
         "distinct_symmetry",
@@ -65,6 +66,63 @@ fn the_summary_has_the_numbers_of_the_paper_s_ring() {
     assert_eq!(na["sd"], na["sd_position"]);
     assert_eq!(na["sd_angle"].as_f64(), Some(0.0));
     assert!(summary["descriptors"]["ce"]["ideal"].is_null());
+}
+
+/// Without x0 and y0 a sweep takes a cell that suits the shape, and says which.
+#[test]
+fn the_ranges_that_are_taken_are_printed() {
+    let ran = |line: &str, ranges: [&str; 2], cut: u64, notes: &str| {
+        let run = taxel(line, "");
+        assert_eq!(
+            (run.status, run.stderr.as_str()),
+            (Some(0), notes),
+            "{line}"
+        );
+        let summary: Value = serde_json::from_str(&run.stdout).expect("a line of JSON");
+        let taken = ["x0", "y0"].map(|axis| summary["ranges"][axis].as_str().expect("a range"));
+        assert_eq!(taken, ranges, "{line}");
+        assert_eq!(summary["partly_off"], cut, "{line}");
+    };
+    let paper = ["5:5.99:0.01"; 2];
+    let noted = "range: x0 5:5.99:0.01, y0 5:5.99:0.01\n";
+    let bar = "sweep rectangle --length 6 --width 3 --angle 0:90:45 --json";
+    ran(bar, paper, 0, noted);
+    ran(&format!("{bar} --quiet"), paper, 0, "");
+    ran(
+        &format!("{bar} --x0 5:5.99:0.01"),
+        paper,
+        0,
+        "range: y0 5:5.99:0.01\n",
+    );
+    // At 5 it would be cut off when it turns.
+    ran(
+        "sweep rectangle --length 10 --width 8 --angle 0:90:45 --json",
+        ["2:2.99:0.01", "3:3.99:0.01"],
+        0,
+        "range: x0 2:2.99:0.01, y0 3:3.99:0.01\n",
+    );
+    // No cell is large enough for the triangle in every angle.
+    let noted = "range: x0 -0.5:0.49:0.01, y0 -7.73:-6.74:0.01\n\
+         the figure reaches beyond the sensor in 20000 of 20000 poses\n";
+    ran(
+        "sweep triangle --side 16 --rows 4 --angle 0:60:60 --json",
+        ["-0.5:0.49:0.01", "-7.73:-6.74:0.01"],
+        20_000,
+        noted,
+    );
+    // A picture stays in its own cell.
+    ran(
+        "sweep --picture washer --angle 0:90:45 --json",
+        ["2:2.99:0.01"; 2],
+        0,
+        "range: x0 2:2.99:0.01, y0 2:2.99:0.01\n",
+    );
+    ran(
+        "sweep --picture cross --angle 0:90:5 --json",
+        ["2:2.99:0.01"; 2],
+        0,
+        "range: x0 2:2.99:0.01, y0 2:2.99:0.01\n",
+    );
 }
 
 #[test]

@@ -159,7 +159,10 @@ fn sweep() -> Command {
     let defaults = Ranges::default();
     let ranges = Axis::ALL.map(|axis| {
         let (row, flag) = (axis.parameter().row(), axis.parameter().flag());
-        let default = defaults[axis];
+        let default = match axis {
+            Axis::X0 | Axis::Y0 => "one cell that suits the shape".to_owned(),
+            _ => defaults[axis].to_string(),
+        };
         let help = format!(
             "{}; default {default}",
             parameters::capitalised(row.meaning)

@@ -156,10 +156,12 @@ pub(crate) const FILES: &str = "
 
 pub(crate) const SWEEP_EXAMPLES: &str = "\
 A range is START:END:STEP with the end included, or one number; decimals are
-exact. What is not given has the paper's resolution: one cell
-by hundredths and every whole degree, 3.6 million poses. Figures are solid, the
-sensor is 16 x 16; that of a picture is its own. --force replaces files that are
-there already.
+exact. What is not given has the paper's resolution: one cell by hundredths and
+every whole degree, 3.6 million poses. The cell of a figure is that from 5 on,
+the cell of a picture the one that it lies in; if the sensor would cut off the
+shape there in any of the angles, a cell around the middle is taken. The ranges
+that were taken are printed. Figures are solid, the sensor is 16 x 16; that of a
+picture is its own. --force replaces files that are there already.
 
 Examples:
   taxel sweep rectangle --length 6 --width 3

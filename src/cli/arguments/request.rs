@@ -20,7 +20,7 @@ use crate::cli::settings::pitch::Pitch;
 use crate::cli::settings::resolved::{Effective, Loaded};
 use crate::figure::FigureKind;
 use crate::formats::Name;
-use crate::pose::{Anchor, Axis, Ranges};
+use crate::pose::{Anchor, GivenRanges};
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::storage::AtlasFile;
@@ -73,7 +73,7 @@ pub(crate) enum Request {
 pub(crate) struct SweepArguments {
     pub(crate) what: Swept,
     pub(crate) anchor: Anchor,
-    pub(crate) ranges: Ranges,
+    pub(crate) ranges: GivenRanges,
     pub(crate) shard: Shard,
     /// Threads; 0 for as many as there are cores.
     pub(crate) jobs: usize,
@@ -241,12 +241,10 @@ fn sweep(
     settings: &Effective,
 ) -> Result<SweepArguments, CliError> {
     let given = Given::of(matches);
-    let mut ranges = Ranges::default();
-    for axis in Axis::ALL {
-        if let Some(&given) = matches.get_one(&format!("range_{}", axis.name())) {
-            ranges[axis] = given;
-        }
-    }
+    let ranges = GivenRanges::from_fn(|axis| {
+        let range = matches.get_one(&format!("range_{}", axis.name()));
+        range.copied()
+    });
     let what = if let Some(picture) = matches.get_one::<OsString>("picture") {
         let size = parameters::figure_parameters().find(|&parameter| given.has(parameter));
         if let Some(size) = size {

@@ -17,7 +17,9 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::progress::Progress;
 use crate::cli::output::sweep_summary::Summary;
 use crate::formats::{ArchiveError, archive};
-use crate::pose::PoseGrid;
+use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, Ranges, common_ranges, default_ranges};
+use crate::sensor::Sensor;
+use crate::source::Source;
 use crate::storage::{AtlasFile, Existing, FinishedFile, PoseFile, SweepFileError};
 use crate::sweep::{Shard, Sweep, SweepResult};
 
@@ -36,6 +38,51 @@ fn refused(path: &Path, error: impl Into<ArchiveError>) -> CliError {
         name: path.to_string_lossy().into_owned(),
         error: error.into(),
     }
+}
+
+/// Returns the grid to sweep, and what to say about it beforehand: the ranges of x0 and y0 that were not given, and how
+/// many poses are cut off all the same.
+///
+/// A figure takes the paper's cell from 5 on where nothing is cut off there, a picture the cell that it lies in.
+pub(crate) fn grid(
+    source: Source,
+    sensor: Sensor,
+    anchor: Anchor,
+    given: &GivenRanges,
+) -> Result<(PoseGrid, Vec<String>), CliError> {
+    let mut missing = vec![Axis::X0, Axis::Y0];
+    missing.retain(|&axis| given[axis].is_none());
+    let paper = Ranges::default();
+    let usual = Ranges::from_fn(|axis| given[axis].unwrap_or(paper[axis]));
+    let usual = PoseGrid::new(source.clone(), sensor, anchor, usual);
+    if missing.is_empty() {
+        return Ok((usual?, Vec::new()));
+    }
+    let whole = |grid: &PoseGrid| grid.poses_beyond_sensor() == 0;
+    let grid = match usual {
+        Ok(grid) if source.kind().is_some() && whole(&grid) => grid,
+        _ if source.kind().is_some() => {
+            let ranges = common_ranges([&source], &sensor, anchor, given)?;
+            PoseGrid::new(source, sensor, anchor, ranges)?
+        }
+        _ => {
+            let ranges = default_ranges(&source, &sensor, anchor, given)?;
+            PoseGrid::new(source, sensor, anchor, ranges)?
+        }
+    };
+    let taken = missing
+        .iter()
+        .map(|&axis| format!("{} {}", axis.name(), grid.ranges()[axis]));
+    let mut notes = vec![format!("range: {}", taken.collect::<Vec<_>>().join(", "))];
+    let cut = grid.poses_beyond_sensor();
+    if cut > 0 {
+        let noun = grid.source().noun();
+        notes.push(format!(
+            "the {noun} reaches beyond the sensor in {cut} of {} poses",
+            grid.poses()
+        ));
+    }
+    Ok((grid, notes))
 }
 
 /// Sweeps a shard of a grid on so many threads, and gives what is to be printed.

@@ -7,6 +7,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::atlas::{STATISTIC_COLUMNS, Statistic, StatisticColumn};
 use crate::cli::output::charset::Charset;
+use crate::pose::{Axis, PoseGrid};
 use crate::sweep::SweepResult;
 
 /// A result, and how long it took.
@@ -95,6 +96,7 @@ impl Serialize for Summary<'_> {
         let result = self.result;
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("poses", &result.poses)?;
+        map.serialize_entry("ranges", &GridRanges(&result.grid))?;
         map.serialize_entry("distinct", &result.atlas.len())?;
         map.serialize_entry("distinct_shifts", &self.classes.0)?;
         map.serialize_entry("distinct_symmetry", &self.classes.1)?;
@@ -103,6 +105,16 @@ impl Serialize for Summary<'_> {
         map.serialize_entry("seconds", &self.took.as_secs_f64())?;
         map.serialize_entry("descriptors", &Descriptors(&result.statistics))?;
         map.end()
+    }
+}
+
+/// The range of each axis that the shape has.
+struct GridRanges<'a>(&'a PoseGrid);
+
+impl Serialize for GridRanges<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let range = |axis: Axis| (axis.name(), self.0.ranges()[axis].to_string());
+        serializer.collect_map(self.0.axes().map(range))
     }
 }
 
