@@ -10,11 +10,18 @@
 //! ```
 //! A [`script::Session`] replaces the terminal by text and a buffer; everything between is the same code.
 
+#![expect(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "a theme is borrowed like all that views draw with, however small it is"
+)]
+
 pub mod keys;
 
 pub mod widget;
 
 pub mod app;
+
+pub mod help;
 
 pub mod matrix;
 

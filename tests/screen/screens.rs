@@ -189,7 +189,7 @@ fn matrix_and_descriptors_change_places_only_where_one_of_them_is_seen() {
     assert!(!wide.screen().contains("NA     –"), "{}", wide.screen());
     // A click on the descriptors draws nothing on the matrix that they hide.
     press(&mut wide, "f<Enter>i");
-    let before = wide.app().shown();
+    let before = wide.app().shown().clone();
     for kind in [MouseKind::Press, MouseKind::Release] {
         wide.send(Message::Mouse(Mouse {
             kind,
@@ -197,7 +197,7 @@ fn matrix_and_descriptors_change_places_only_where_one_of_them_is_seen() {
             row: 5,
         }));
     }
-    assert_eq!(wide.app().shown(), before);
+    assert_eq!(wide.app().shown(), &before);
 }
 
 /// Help says all of what keys do, on narrow screens in more lines, and nothing that does not hold where it is asked for.

@@ -41,6 +41,7 @@ pub(in crate::tui) fn settle(app: &mut App) {
     if present.source.is_none() {
         app.mode = Mode::Draw;
     }
+    app.read();
     let regions = app.reading().regions.len();
     app.chosen = app.chosen.filter(|&index| index < regions);
 }

@@ -1,30 +1,36 @@
-//! What lies over the matrix: a form, the list of shapes, a name, a question, the list of keys, what a sweep found. They
-//! are a stack; the top one gets the keys.
+//! The table of pages that can lie over the matrix: forms, the list of shapes, prompts, questions, help, results of a
+//! sweep. They are a stack; the top one receives the keys.
+//!
+//! A page is a variant of [`Dialog`], a row in [`Dialog::page`], and a row in [`crate::tui::app::update`].
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::message::Message;
+use crate::tui::app::page::{Page, Slot};
 use crate::tui::explore::export::ExportDialog;
-use crate::tui::explore::message::ExplorePage;
 use crate::tui::explore::ranges::state::RangesForm;
 use crate::tui::explore::results::Results;
-use crate::tui::explore::running::state::Running;
+use crate::tui::explore::running::Running;
 use crate::tui::form::state::FormDialog;
+use crate::tui::help::Help;
+use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
-use crate::tui::keys::keymap::{HelpLine, Keymap, help};
-use crate::tui::prompt::name::NameDialog;
-use crate::tui::prompt::state::CommandDialog;
+use crate::tui::keys::keymap::Keymap;
+use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::shapes::state::ListDialog;
-use crate::tui::widget::columns::broken;
+use crate::tui::widget::theme::{Role, Theme};
 
-/// One of them.
+/// A page that lies over the matrix, with its state.
 #[derive(Clone, Debug)]
 pub enum Dialog {
     /// The form of a figure, a picture or the sensor.
     Form(Box<FormDialog>),
     /// The shapes of the library.
     List(ListDialog),
-    /// A name to store under.
+    /// The name to save under.
     Name(NameDialog),
-    /// A command.
+    /// The `:` prompt.
     Command(CommandDialog),
     /// A question.
     Question(Question),
@@ -32,22 +38,45 @@ pub enum Dialog {
     Help(Help),
     /// The ranges of a sweep.
     Ranges(Box<RangesForm>),
-    /// Work under way.
+    /// A sweep or an export in progress.
     Running(Running),
-    /// What a sweep found.
+    /// The results of a sweep.
     Results(Box<Results>),
-    /// The name of a file to write that to.
+    /// The name of the file to export to.
     Export(ExportDialog),
 }
 
-/// A question, and what happens at each answer; leaving it open is none.
+impl Dialog {
+    /// What the screen knows of it.
+    pub fn page(&self) -> &dyn Page {
+        match self {
+            Self::Form(page) => &**page,
+            Self::List(page) => page,
+            Self::Name(page) => page,
+            Self::Command(page) => page,
+            Self::Question(page) => page,
+            Self::Help(page) => page,
+            Self::Ranges(page) => &**page,
+            Self::Running(page) => page,
+            Self::Results(page) => &**page,
+            Self::Export(page) => page,
+        }
+    }
+
+    /// Whether it has a pane of its own. The others stand in the line of notices, over the page below.
+    pub fn has_pane(&self) -> bool {
+        !matches!(self.page().slot(), Slot::Prompt | Slot::Question)
+    }
+}
+
+/// A question, and what each answer does. Leaving it without an answer does nothing.
 #[derive(Clone, Debug)]
 pub struct Question {
-    /// What is asked.
+    /// The question.
     pub text: String,
     /// What yes does.
     pub yes: Message,
-    /// What no does, where that is more than nothing.
+    /// What no does, None for nothing.
     pub no: Option<Message>,
 }
 
@@ -62,87 +91,26 @@ impl Question {
     }
 }
 
-/// The list of the keys that mean something in a place.
-#[derive(Clone, Debug)]
-pub struct Help {
-    context: Context,
-    top: usize,
-}
-
-impl Help {
-    /// The list of a place, from its first line on.
-    pub fn new(context: Context) -> Self {
-        Self { context, top: 0 }
+impl Page for Question {
+    fn context(&self) -> Context {
+        Context::Question
     }
 
-    /// Its lines where there is room for so many columns and lines, and which of them stands first.
-    pub fn lines(&self, keymap: &Keymap, room: (u16, u16)) -> (Vec<HelpLine>, usize) {
-        let (columns, rows) = (usize::from(room.0), usize::from(room.1));
-        let lines: Vec<HelpLine> = help(self.context, keymap)
-            .into_iter()
-            .flat_map(|line| broken_line(line, columns))
-            .collect();
-        let last_top = lines.len().saturating_sub(rows);
-        let top = self.top.min(last_top);
-        (lines, top)
+    fn slot(&self) -> Slot {
+        Slot::Question
     }
 
-    /// Goes on by lines, where there is room for so many columns and lines.
-    pub fn scroll(&mut self, lines: i16, keymap: &Keymap, room: (u16, u16)) {
-        let (_, top) = self.lines(keymap, room);
-        self.top = top.saturating_add_signed(isize::from(lines));
-        (_, self.top) = self.lines(keymap, room);
-    }
-}
-
-/// Where what keys do begins in a line of so many columns: behind the keys, or under them where little room is left
-/// there.
-pub fn help_indent(columns: usize) -> usize {
-    const BEHIND: usize = 26;
-    if columns >= BEHIND + 20 { BEHIND } else { 4 }
-}
-
-/// A line of help in as many as it needs.
-fn broken_line(line: HelpLine, columns: usize) -> Vec<HelpLine> {
-    let HelpLine::Keys(keys, text) = line else {
-        return vec![line];
-    };
-    let indent = help_indent(columns);
-    let mut pieces = broken(text, columns.saturating_sub(indent)).into_iter();
-    let beside = (keys.len() + 2 < indent).then(|| pieces.next()).flatten();
-    let first = HelpLine::Keys(keys, beside.unwrap_or_default());
-    std::iter::once(first)
-        .chain(pieces.map(HelpLine::More))
-        .collect()
-}
-
-impl Dialog {
-    /// Where keys are looked up.
-    pub fn context(&self) -> Context {
-        match self {
-            Self::Form(_) => Context::Form,
-            Self::List(_) => Context::List,
-            Self::Name(_) => Context::Name,
-            Self::Command(_) => Context::Command,
-            Self::Question(_) => Context::Question,
-            Self::Help(_) => Context::Help,
-            Self::Ranges(_) => Context::Ranges,
-            Self::Running(_) => Context::Running,
-            Self::Results(results) => match results.page() {
-                ExplorePage::Imprints => Context::Imprints,
-                ExplorePage::Statistics => Context::Statistics,
-                ExplorePage::Histogram => Context::Histogram,
-                ExplorePage::Map => Context::Map,
-            },
-            Self::Export(_) => Context::Export,
-        }
+    /// Nothing: a question is a remark.
+    fn draw(&self, _: &Theme, _: &Keymap, _: &mut Buffer, _: Rect) -> Option<Position> {
+        None
     }
 
-    /// Whether it is drawn in a pane; the others have the line of notices, over whatever lies below.
-    pub fn has_pane(&self) -> bool {
-        !matches!(
-            self,
-            Self::Name(_) | Self::Command(_) | Self::Question(_) | Self::Export(_)
-        )
+    fn remark(&self, keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
+        let key = |answer| keymap.label(Context::Question, answer);
+        let answers = match self.no {
+            Some(_) => String::new(),
+            None => format!(" ({}/{})", key(&action::ACCEPT), key(&action::DECLINE)),
+        };
+        Some((format!("{}{answers}", self.text), Role::Error))
     }
 }

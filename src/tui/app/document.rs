@@ -51,9 +51,9 @@ impl Document {
         document
     }
 
-    /// The shape to be stored under a name.
-    pub fn to_shape(&self, name: Name) -> StoredShape {
-        let imprint = Reading::of(self).imprint;
+    /// The shape to store under a name; `reading` is that of this document.
+    pub fn to_shape(&self, name: Name, reading: &Reading) -> StoredShape {
+        let imprint = reading.imprint;
         StoredShape {
             name,
             sensor: self.sensor,
@@ -88,7 +88,7 @@ impl Document {
     }
 }
 
-/// Everything that follows from a document; computed here and nowhere else, and never stored beside it.
+/// What can be read off a document. Computed here and nowhere else, once per change: see [`ReadDocument`].
 #[derive(Clone, Debug)]
 pub struct Reading {
     /// The active taxels.
@@ -147,6 +147,33 @@ impl Reading {
     pub fn description(&self, chosen: Option<usize>) -> Option<Description> {
         self.region(chosen)
             .map(|(_, region)| Description::of(region))
+    }
+}
+
+/// A document with its reading: the only place where the screen keeps one.
+#[derive(Clone, Debug)]
+pub struct ReadDocument {
+    document: Document,
+    reading: Reading,
+}
+
+impl ReadDocument {
+    /// Reads a document.
+    pub fn new(document: Document) -> Self {
+        Self {
+            reading: Reading::of(&document),
+            document,
+        }
+    }
+
+    /// The document.
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// Its reading.
+    pub fn reading(&self) -> &Reading {
+        &self.reading
     }
 }
 

@@ -5,7 +5,6 @@ use crate::storage::{Expected, LibraryEntry, LoadedShape};
 use crate::tui::app::document::Document;
 use crate::tui::explore::message::{ExploreMessage, WorkerEvent};
 use crate::tui::keys::key::Arrow;
-use crate::tui::shapes::purpose::Purpose;
 
 /// A request, whoever makes it: a key, a script, a paste.
 #[derive(Clone, Debug, PartialEq)]
@@ -130,6 +129,17 @@ pub enum Message {
     Redraw,
     /// Give the terminal back to the shell until it calls again.
     Suspend,
+}
+
+/// What a shape is chosen for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// To put it onto the matrix.
+    Load,
+    /// To delete it.
+    Delete,
+    /// To place it as a picture.
+    Picture,
 }
 
 /// What can be copied.

@@ -1,24 +1,28 @@
 //! The state of the program, what changes it, and the screen as a whole.
+//!
+//! ```text
+//! document   what is on the matrix, its reading and its history
+//! message    what a key means
+//! page       what the screen knows of a page            dialog: the table of pages
+//! state      App                                        update: the only writer of it
+//! layout     the panes of the screen                    view: draws them
+//! ```
 
 pub mod document;
 
 pub mod message;
 
+pub mod page;
+
+pub mod layout;
+
 pub mod dialog;
 
 pub mod state;
 
-pub mod layout;
-
-pub mod hit;
-
 pub mod change;
 
-pub mod library_event;
-
 pub mod mouse;
-
-pub mod dialog_update;
 
 pub mod update;
 

@@ -1,10 +1,27 @@
 //! What the mouse does: it points at what keys do elsewhere, and paints taxels.
 
+use ratatui::layout::{Position, Rect};
+
 use crate::tui::app::change::{change, settle};
 use crate::tui::app::dialog::Dialog;
-use crate::tui::app::hit::{Target, at};
+use crate::tui::app::menu;
 use crate::tui::app::message::{Message, Mouse, MouseKind};
-use crate::tui::app::state::App;
+use crate::tui::app::page::Page;
+use crate::tui::app::state::{App, NarrowPage};
+use crate::tui::matrix::layout::TaxelGrid;
+
+/// What the mouse points at.
+#[derive(Clone, Debug, PartialEq)]
+enum Target {
+    /// An option of the menu.
+    Option(Message),
+    /// A taxel; and whether the whole matrix is visible, so that the cursor may go there without scrolling it.
+    Taxel(u8, u8, bool),
+    /// The heading of the descriptors, or a descriptor.
+    Panel,
+    /// Something on the top page, with what it means there.
+    Page(Message),
+}
 
 /// Lines that a turn of the wheel scrolls.
 const WHEEL: i16 = 3;
@@ -40,12 +57,7 @@ pub(in crate::tui) fn act(app: &mut App, mouse: Mouse) -> Option<Message> {
             }
         }
         (MouseKind::Press, Some(Target::Panel)) => return Some(Message::Region(1)),
-        (MouseKind::Press, Some(Target::Kind)) => return Some(Message::ToField(None)),
-        (MouseKind::Press, Some(Target::Field(index))) => {
-            return Some(Message::ToField(Some(index)));
-        }
-        (MouseKind::Press, Some(Target::Row(index))) => return point_at_row(app, index),
-        (MouseKind::Press, Some(Target::Means(message))) => return Some(message),
+        (MouseKind::Press, Some(Target::Page(message))) => return Some(message),
         _ => {}
     }
     None
@@ -77,24 +89,35 @@ fn paint(app: &mut App, active: bool, from: (u8, u8), to: (u8, u8)) {
 }
 
 fn scroll(app: &App, lines: i16) -> Option<Message> {
-    let scrolls = matches!(
-        app.dialogs.last(),
-        Some(Dialog::List(_) | Dialog::Help(_) | Dialog::Results(_))
-    );
+    let top = app.dialogs.last().map(Dialog::page);
+    let scrolls = top.is_some_and(Page::scrolls);
     scrolls.then_some(Message::Scroll(lines))
 }
 
-/// A click selects a row, a click on the selected row takes it.
-fn point_at_row(app: &App, index: usize) -> Option<Message> {
-    let Some(Dialog::List(list)) = app.dialogs.last() else {
-        return None;
-    };
-    if list.selected() == index {
-        return Some(Message::Accept);
+/// What is at a position of the screen, None if that is nothing or the screen is too small.
+fn at(app: &App, column: u16, row: u16) -> Option<Target> {
+    let panes = app.panes()?;
+    let place = Position::new(column, row);
+    let inside = |area: Rect| area.contains(place);
+    if inside(panes.menu) {
+        let mut items = menu::items(panes.menu, app.keymap()).into_iter();
+        let option = items.find(|item| inside(item.area));
+        return option.map(|item| Target::Option(item.message.clone()));
     }
-    let (to, from) = (
-        i16::try_from(index).ok()?,
-        i16::try_from(list.selected()).ok()?,
-    );
-    Some(Message::Scroll(to - from))
+    if let Some(dialog) = app.dialogs.last() {
+        let page = dialog.page();
+        let area = Some(panes.area(page.slot())).filter(|&area| inside(area))?;
+        return page.click(area, place).map(Target::Page);
+    }
+    if panes.panel.is_some_and(inside) {
+        return Some(Target::Panel);
+    }
+    // On a narrow screen the descriptors may have the place of the matrix.
+    if panes.panel.is_none() && app.page == NarrowPage::Panel {
+        return inside(panes.body).then_some(Target::Panel);
+    }
+    let matrix = Some(panes.matrix).filter(|&area| inside(area))?;
+    let grid = TaxelGrid::of(matrix, &app.reading().imprint, app.cursor());
+    let (column, row) = grid.taxel(column, row)?;
+    Some(Target::Taxel(column, row, grid.whole))
 }

@@ -1,10 +1,15 @@
 //! The state of the program. Everybody may read it; only [`crate::tui::app::update`] writes it.
 
+use ratatui::layout::Rect;
+
 use crate::formats::{Name, StoredShape};
 use crate::sensor::Sensor;
-use crate::storage::UNNAMED;
+use crate::storage::{Expected, ShapeOrigin, UNNAMED};
 use crate::tui::app::dialog::Dialog;
-use crate::tui::app::document::{Document, History, Reading, StoredName};
+use crate::tui::app::document::{Document, History, ReadDocument, Reading, StoredName};
+use crate::tui::app::layout::Panes;
+use crate::tui::app::message::Message;
+use crate::tui::app::page::Page;
 use crate::tui::explore::results::Results;
 use crate::tui::keys::action::{self, Action};
 use crate::tui::keys::binding::Context;
@@ -118,6 +123,8 @@ pub enum Notice {
 #[derive(Clone, Debug)]
 pub struct App {
     pub(in crate::tui) history: History,
+    /// The document that the matrix shows, as it was read last.
+    shown: ReadDocument,
     pub(in crate::tui) cursor: (u8, u8),
     /// The region chosen with Tab; none: the main one.
     pub(in crate::tui) chosen: Option<usize>,
@@ -152,6 +159,7 @@ impl App {
         let document = Document::empty(options.sensor);
         Self {
             cursor: (options.sensor.columns() / 2, options.sensor.rows() / 2),
+            shown: ReadDocument::new(document.clone()),
             history: History::new(document),
             chosen: None,
             mode: Mode::Draw,
@@ -203,15 +211,22 @@ impl App {
     /// Where keys are looked up.
     pub fn context(&self) -> Context {
         match (self.dialogs.last(), self.mode) {
-            (Some(dialog), _) => dialog.context(),
+            (Some(dialog), _) => dialog.page().context(),
             (None, Mode::Grab) => Context::Grab,
             (None, Mode::Draw) => Context::Matrix,
         }
     }
 
-    /// The dialog that has the pane; none where the matrix has it.
-    pub fn pane(&self) -> Option<&Dialog> {
-        self.dialogs.iter().rev().find(|dialog| dialog.has_pane())
+    /// The top page that has a pane of its own, None if that is the matrix.
+    pub fn pane(&self) -> Option<&dyn Page> {
+        let dialog = self.dialogs.iter().rev().find(|dialog| dialog.has_pane());
+        dialog.map(Dialog::page)
+    }
+
+    /// The panes of the screen, None if it is too small.
+    pub fn panes(&self) -> Option<Panes> {
+        let (columns, rows) = self.screen;
+        Panes::of(Rect::new(0, 0, columns, rows), &self.reading().imprint)
     }
 
     /// What a sweep found, where that is looked at: under whatever lies over it.
@@ -223,8 +238,22 @@ impl App {
     }
 
     /// The document that the matrix shows: what an open form would make of it, or the present one.
-    pub fn shown(&self) -> Document {
-        self.on_matrix().clone()
+    pub fn shown(&self) -> &Document {
+        self.shown.document()
+    }
+
+    /// What can be read off that document.
+    pub fn reading(&self) -> &Reading {
+        self.shown.reading()
+    }
+
+    /// Reads the document that the matrix shows now, if it is another one. Called after every change, so that drawing,
+    /// keys and the journal share one reading.
+    pub(in crate::tui) fn read(&mut self) {
+        let document = self.on_matrix();
+        if document != self.shown.document() {
+            self.shown = ReadDocument::new(document.clone());
+        }
     }
 
     fn on_matrix(&self) -> &Document {
@@ -233,11 +262,6 @@ impl App {
             _ => None,
         });
         form.unwrap_or_else(|| self.history.present())
-    }
-
-    /// What can be seen of it.
-    pub fn reading(&self) -> Reading {
-        Reading::of(&self.shown())
     }
 
     /// Whether there is work that would be lost.
@@ -250,15 +274,18 @@ impl App {
         if self.run_state == RunState::Quit {
             return None;
         }
+        let shown = self.shown();
+        if *shown == self.history.origin().saved {
+            return None;
+        }
         let stored = self.stored_name().unwrap_or(UNNAMED);
         let name = Name::new(stored).or_else(|_| Name::new(UNNAMED)).ok()?;
-        let shown = self.shown();
-        (shown != self.history.origin().saved).then(|| shown.to_shape(name))
+        Some(shown.to_shape(name, self.reading()))
     }
 
     /// The taxel that the cursor is on: column, row. While a form shows a smaller sensor, it stands at the rim of that.
     pub fn cursor(&self) -> (u8, u8) {
-        let (sensor, (column, row)) = (&self.on_matrix().sensor, self.cursor);
+        let (sensor, (column, row)) = (&self.shown().sensor, self.cursor);
         (column.min(sensor.columns() - 1), row.min(sensor.rows() - 1))
     }
 
@@ -285,5 +312,20 @@ impl App {
     /// How it looks.
     pub fn theme(&self) -> &Theme {
         &self.theme
+    }
+
+    /// The message that stores the document under a name. It asks before it replaces the file that the document came
+    /// from, as for any other.
+    pub(in crate::tui) fn storing(&self, name: Name) -> Message {
+        let own = self
+            .stored()
+            .filter(|stored| stored.owner == ShapeOrigin::Own && name.same(&stored.name));
+        let stamp = own.map(|stored| stored.stamp);
+        let present = self.history.present();
+        let shape = Box::new(present.to_shape(name, &Reading::of(present)));
+        match stamp {
+            Some(stamp) => Message::Replace(shape, stamp),
+            None => Message::Store(shape, Expected::Nothing),
+        }
     }
 }

@@ -3,32 +3,24 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::formats::NameError;
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Reading;
 use crate::tui::app::layout::Panes;
 use crate::tui::app::message::Message;
+use crate::tui::app::page::{Page, Slot};
 use crate::tui::app::state::{App, Mode, Notice};
-use crate::tui::explore::export::ENDINGS;
 use crate::tui::keys::action;
-use crate::tui::keys::binding::{Binding, Context};
+use crate::tui::keys::binding::Binding;
 use crate::tui::widget::theme::Role;
 use crate::tui::widget::write;
-
-/// What stands before the name to store under.
-const NAME_LABEL: &str = "Save as: ";
-
-/// What stands before the name of a file to write.
-const EXPORT_LABEL: &str = "Export to: ";
 
 /// What is said where the shape is not wholly on the sensor. It stays where what is before it has to be shortened.
 const BEYOND: &str = "; reaches beyond the sensor";
 
 /// Draws all of them; answers where the cursor is, where a name or a command is typed.
-pub fn draw(app: &App, seen: &Reading, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
-    let theme = app.theme();
-    // Results have the place of what is said of the matrix.
-    if !matches!(app.pane(), Some(Dialog::Results(_))) {
+pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
+    let (theme, seen) = (app.theme(), app.reading());
+    if app.pane().map(Page::slot) != Some(Slot::Screen) {
         let beyond = if seen.beyond { BEYOND } else { "" };
         let room = usize::from(panes.source.width).saturating_sub(beyond.len());
         let source = source(app);
@@ -44,26 +36,10 @@ pub fn draw(app: &App, seen: &Reading, buffer: &mut Buffer, panes: &Panes) -> Op
         );
     }
     hints(app, buffer, panes);
-    let cursor = match app.dialogs.last() {
-        Some(Dialog::Name(dialog)) => {
-            let typed = (NAME_LABEL, dialog.field.text(), dialog.field.cursor());
-            Some(field(app, typed, "", buffer, panes.notice))
-        }
-        Some(Dialog::Command(dialog)) => {
-            let typed = (":", dialog.field.text(), dialog.field.cursor());
-            let used = 1 + write::width(dialog.field.text());
-            let room = usize::from(panes.notice.width).saturating_sub(used);
-            let candidates = as_many_as_fit(&dialog.candidates, room);
-            Some(field(app, typed, &candidates, buffer, panes.notice))
-        }
-        Some(Dialog::Export(dialog)) => {
-            let typed = (EXPORT_LABEL, dialog.field.text(), dialog.field.cursor());
-            let endings = format!("   ({ENDINGS})");
-            Some(field(app, typed, &endings, buffer, panes.notice))
-        }
-        _ => None,
-    };
-    if let Some((text, role)) = said(app, panes) {
+    let prompt = app.dialogs.last().map(Dialog::page);
+    let prompt = prompt.filter(|page| page.slot() == Slot::Prompt);
+    let cursor = prompt.and_then(|page| page.draw(theme, app.keymap(), buffer, panes.notice));
+    if let Some((text, role)) = notice(app, panes) {
         // What is typed keeps its line, and what is said about it stands above.
         let last = Rect {
             y: panes.notice.y - u16::from(cursor.is_some()),
@@ -81,24 +57,6 @@ pub fn draw(app: &App, seen: &Reading, buffer: &mut Buffer, panes: &Panes) -> Op
         write::wrapped(buffer, block, theme, &text, role);
     }
     cursor
-}
-
-/// A label, what is typed and what follows; answers where the cursor is. Of a text that is too long the part before the
-/// cursor is shown.
-fn field(
-    app: &App,
-    (label, text, cursor): (&str, &str, usize),
-    after: &str,
-    buffer: &mut Buffer,
-    area: Rect,
-) -> Position {
-    write::clear(buffer, area);
-    let room = usize::from(area.width).saturating_sub(label.len());
-    let (shown, column) = write::window(text, cursor, room);
-    let pieces = [label, shown, after].map(|piece| (piece, Role::Text));
-    write::line(buffer, area, app.theme(), pieces);
-    let column = u16::try_from(label.len() + column).unwrap_or(u16::MAX);
-    Position::new(area.x.saturating_add(column), area.y)
 }
 
 /// What made the imprint.
@@ -140,7 +98,7 @@ fn taxel(app: &App, seen: &Reading, panes: &Panes) -> String {
     let coverage = seen.coverage(column, row);
     let all = format!("NA {} in all", seen.imprint.count());
     // The step of what moves and zooms the shape, where there is one.
-    let step = match (app.shown().source, app.mode) {
+    let step = match (&app.shown().source, app.mode) {
         (None, _) => String::new(),
         (Some(_), Mode::Draw) => format!("step {}", app.step.length()),
         (Some(_), Mode::Grab) => format!("held, step {}", app.step.length()),
@@ -169,68 +127,17 @@ fn taxel(app: &App, seen: &Reading, panes: &Panes) -> String {
     write::first_fitting(&lines.each_ref().map(String::as_str), width).to_owned()
 }
 
-/// The question that is asked, what is wrong with a name, or the notice.
-fn said(app: &App, panes: &Panes) -> Option<(String, Role)> {
-    match app.dialogs.last() {
-        Some(Dialog::Question(question)) => {
-            let key = |answer| app.keymap().label(Context::Question, answer);
-            let answers = match question.no {
-                Some(_) => String::new(),
-                None => format!(" ({}/{})", key(&action::ACCEPT), key(&action::DECLINE)),
-            };
-            return Some((format!("{}{answers}", question.text), Role::Error));
-        }
-        Some(Dialog::Name(dialog)) if app.notice.is_none() => {
-            let error = dialog.name().err();
-            let error = error.filter(|error| *error != NameError::Empty)?;
-            return Some((format!("! {error}"), Role::Error));
-        }
-        Some(Dialog::Help(help)) if app.notice.is_none() => {
-            let (lines, top) = help.lines(app.keymap(), panes.body.as_size().into());
-            let last = lines.len().min(top + usize::from(panes.body.height));
-            let key = |action| app.keymap().label(Context::Help, action);
-            let more = match (top, last == lines.len()) {
-                (0, true) => return None,
-                (_, true) => "the end".to_owned(),
-                (_, false) => format!(
-                    "more below: {}, {}",
-                    key(&action::SCROLL_DOWN),
-                    key(&action::PAGE_DOWN)
-                ),
-            };
-            let text = format!("lines {}-{last} of {}; {more}", top + 1, lines.len());
-            // A second line would lie over the last one of the list.
-            let short = format!("{last} of {}", lines.len());
-            let fitting = write::first_fitting(&[&text, &short], panes.notice.width.into());
-            return Some((fitting.to_owned(), Role::Key));
-        }
-        _ => {}
-    }
-    app.notice.as_ref().map(|notice| match notice {
-        Notice::Info(text) => (text.clone(), Role::Key),
-        Notice::Refusal(text) => (format!("! {text}"), Role::Error),
+/// The text of the top page, or the notice.
+fn notice(app: &App, panes: &Panes) -> Option<(String, Role)> {
+    let top = app.dialogs.last().map(Dialog::page);
+    let remarks = top.filter(|page| app.notice.is_none() || page.slot() == Slot::Question);
+    let remark = remarks.and_then(|page| page.remark(app.keymap(), panes.body));
+    remark.or_else(|| {
+        app.notice.as_ref().map(|notice| match notice {
+            Notice::Info(text) => (text.clone(), Role::Key),
+            Notice::Refusal(text) => (format!("! {text}"), Role::Error),
+        })
     })
-}
-
-/// Words after a gap, and how many more there are where not all of them fit.
-fn as_many_as_fit(words: &[String], room: usize) -> String {
-    let mut text = String::new();
-    for (index, word) in words.iter().enumerate() {
-        let gap = if index == 0 { "   " } else { " " };
-        let left = words.len() - index;
-        // The last one needs no room behind it for what is left then.
-        let behind = match left {
-            1 => String::new(),
-            _ => format!(" … {} more", left - 1),
-        };
-        let used = text.chars().count() + gap.len() + word.chars().count();
-        if used + behind.chars().count() > room {
-            return text + &format!("{gap}… {left} more");
-        }
-        text += gap;
-        text += word;
-    }
-    text
 }
 
 /// Keys that mean something now, as many as fit.

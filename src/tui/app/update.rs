@@ -1,13 +1,22 @@
 //! The only writer of the state: a message goes in, and perhaps a wish for the world outside comes out.
 
+use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::Message;
+use crate::tui::app::mouse;
 use crate::tui::app::state::{App, RunState};
-use crate::tui::app::{dialog_update, library_event, mouse};
+use crate::tui::help::Help;
+
 use crate::tui::runtime::effect::{Effect, TerminalEffect};
-use crate::tui::{explore, matrix};
+use crate::tui::{explore, form, matrix, prompt, shapes};
 
 /// Does what a message says. A notice stays until the next message that is not an answer to the last one.
 pub fn update(app: &mut App, message: Message) -> Option<Effect> {
+    let effect = handle(app, message);
+    app.read();
+    effect
+}
+
+fn handle(app: &mut App, message: Message) -> Option<Effect> {
     match message {
         Message::Redraw => return Some(Effect::Terminal(TerminalEffect::Redraw)),
         Message::Suspend => return Some(Effect::Terminal(TerminalEffect::Suspend)),
@@ -19,11 +28,11 @@ pub fn update(app: &mut App, message: Message) -> Option<Effect> {
             app.run_state = RunState::Terminated;
             return None;
         }
-        Message::Library(answer) => return library_event::on_library(app, answer),
-        Message::Worker(told) => return explore::worker_event::on_worker(app, told),
+        Message::Library(answer) => return shapes::update::on_library(app, answer),
+        Message::Worker(told) => return explore::work::on_worker(app, told),
         Message::Mouse(mouse) => {
             let meant = mouse::act(app, mouse)?;
-            return update(app, meant);
+            return handle(app, meant);
         }
         _ => {}
     }
@@ -31,7 +40,57 @@ pub fn update(app: &mut App, message: Message) -> Option<Effect> {
     // A key between press and release: what is dragged on would change another document than the press did.
     app.paint = None;
     match app.dialogs.pop() {
-        Some(dialog) => dialog_update::act(app, dialog, message),
+        Some(dialog) => in_dialog(app, dialog, message),
         None => matrix::update::act(app, message),
+    }
+}
+
+/// Handles a message over a page, which was taken off the stack and goes back unless it is done with.
+fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> {
+    let page = dialog.page();
+    match message {
+        Message::Cancel | Message::Quit if !page.cancels_itself() => return None,
+        Message::Help => {
+            let help = Help::new(page.context());
+            app.dialogs.extend([dialog, Dialog::Help(help)]);
+            return None;
+        }
+        _ => {}
+    }
+    match dialog {
+        Dialog::Form(form) => form::update::update(app, form, message),
+        Dialog::List(list) => shapes::update::update(app, list, message),
+        Dialog::Name(name) => prompt::update::in_name(app, name, message),
+        Dialog::Command(command) => prompt::update::in_command(app, command, message),
+        Dialog::Question(question) => at_question(app, question, &message),
+        Dialog::Help(help) => in_help(app, help, &message),
+        Dialog::Ranges(form) => explore::work::in_ranges(app, form, message),
+        Dialog::Running(running) => explore::work::in_running(app, running, &message),
+        Dialog::Results(results) => explore::update::in_results(app, results, message),
+        Dialog::Export(dialog) => explore::update::in_export(app, dialog, &message),
+    }
+}
+
+fn in_help(app: &mut App, mut help: Help, message: &Message) -> Option<Effect> {
+    if let Message::Scroll(lines) = message {
+        let room = app
+            .panes()
+            .map_or((0, 0), |panes| panes.body.as_size().into());
+        help.scroll(*lines, app.keymap(), room);
+    }
+    app.dialogs.push(Dialog::Help(help));
+    None
+}
+
+fn at_question(app: &mut App, question: Question, message: &Message) -> Option<Effect> {
+    match (message, question.no) {
+        (Message::Accept, _) => matrix::update::act(app, question.yes),
+        (Message::Decline, Some(no)) => matrix::update::act(app, no),
+        (Message::Decline, None) => None,
+        (_, no) => {
+            let question = Question { no, ..question };
+            app.dialogs.push(Dialog::Question(question));
+            None
+        }
     }
 }

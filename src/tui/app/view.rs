@@ -16,25 +16,25 @@
 //! On a narrow screen matrix and panel are two pages; on a low one the lines below the matrix give way first. What
 //! does not fit at all is said. Every pane takes any rectangle, an empty one too.
 
-use crate::tui::app::{menu, status};
-use crate::tui::keys::help;
-use crate::tui::matrix::panel;
-use crate::tui::widget::write;
-use crate::tui::{explore, form, matrix, shapes};
 use ratatui::Frame;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
 
-use crate::tui::app::dialog::Dialog;
 use crate::tui::app::layout::{Panes, SMALLEST};
+use crate::tui::app::page::Slot;
 use crate::tui::app::state::{App, NarrowPage};
+use crate::tui::app::{menu, status};
+use crate::tui::matrix::panel;
+use crate::tui::matrix::view::MatrixView;
 use crate::tui::widget::theme::Role;
+use crate::tui::widget::write;
 
 /// Draws the whole screen.
 pub fn view(app: &App, frame: &mut Frame<'_>) {
     let area = frame.area();
-    let seen = app.reading();
     let theme = app.theme();
     let buffer = frame.buffer_mut();
-    let Some(panes) = Panes::of(area, &seen.imprint) else {
+    let Some(panes) = Panes::of(area, &app.reading().imprint) else {
         let (width, height) = SMALLEST;
         let needed = format!("{width} x {height}");
         for (index, text) in ["too small,", "need", &needed].into_iter().enumerate() {
@@ -47,36 +47,27 @@ pub fn view(app: &App, frame: &mut Frame<'_>) {
         }
         return;
     };
-    menu::draw(app, buffer, panes.menu);
+    menu::draw(theme, app.keymap(), buffer, panes.menu);
+    let matrix = MatrixView::of(app);
+    let panel = |buffer: &mut Buffer, area: Rect| panel::draw(&matrix, theme, buffer, area);
     let mut cursor = None;
     match (app.pane(), panes.panel) {
-        (Some(Dialog::Help(help)), _) => help::draw(app, help, buffer, panes.body),
-        (Some(Dialog::List(dialog)), _) => {
-            cursor = shapes::view::draw(app, dialog, buffer, panes.body);
+        (Some(page), _) => {
+            if page.slot() == Slot::Form {
+                matrix.draw(theme, buffer, panes.matrix);
+            }
+            let area = panes.area(page.slot());
+            cursor = page.draw(theme, app.keymap(), buffer, area);
         }
-        (Some(Dialog::Form(dialog)), _) => {
-            matrix::view::draw(app, &seen, buffer, panes.matrix);
-            cursor = form::view::draw(app, dialog, buffer, panes.form);
+        (None, Some(beside)) => {
+            cursor = matrix.draw(theme, buffer, panes.matrix);
+            panel(buffer, beside);
         }
-        (Some(Dialog::Ranges(form)), _) => {
-            matrix::view::draw(app, &seen, buffer, panes.matrix);
-            cursor = explore::ranges::view::draw(app, form, buffer, panes.form);
-        }
-        (Some(Dialog::Running(running)), _) => {
-            explore::running::view::draw(app, running, buffer, panes.body);
-        }
-        (Some(Dialog::Results(results)), _) => {
-            cursor = explore::view::draw(app, results, buffer, &panes);
-        }
-        (_, Some(panel)) => {
-            cursor = matrix::view::draw(app, &seen, buffer, panes.matrix);
-            panel::draw(app, &seen, buffer, panel);
-        }
-        (_, None) if app.page == NarrowPage::Panel => panel::draw(app, &seen, buffer, panes.body),
-        (_, None) => cursor = matrix::view::draw(app, &seen, buffer, panes.matrix),
+        (None, None) if app.page == NarrowPage::Panel => panel(buffer, panes.body),
+        (None, None) => cursor = matrix.draw(theme, buffer, panes.matrix),
     }
     // A name and a command are typed in the line of notices.
-    cursor = status::draw(app, &seen, buffer, &panes).or(cursor);
+    cursor = status::draw(app, buffer, &panes).or(cursor);
     // The terminal's own cursor shows the place where there are neither colours nor reversed characters.
     if let Some(position) = cursor.filter(|&position| area.contains(position)) {
         frame.set_cursor_position(position);

@@ -1,14 +1,25 @@
 //! The field for the name of a file that what was found is written to.
 
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
 use crate::quote::shortened;
 use crate::storage::AtlasFile;
+use crate::tui::app::page::{Page, Slot};
+use crate::tui::keys::binding::Context;
+use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::text_field::TextField;
+use crate::tui::widget::theme::Theme;
+use crate::tui::widget::write;
 
 /// No name is longer: that of a Linux file with its folders.
 const LONGEST: usize = 4096;
 
+/// The label of the field.
+const LABEL: &str = "Export to: ";
+
 /// What a name can end in.
-pub const ENDINGS: &str = ".csv, .jsonl, .npz or .npy";
+const ENDINGS: &str = ".csv, .jsonl, .npz or .npy";
 
 /// The field.
 #[derive(Clone, Debug)]
@@ -47,6 +58,34 @@ impl ExportDialog {
             format!("{:?}: ", shortened(name))
         };
         Err(format!("{found}expected a name that ends in {ENDINGS}"))
+    }
+}
+
+impl Page for ExportDialog {
+    fn context(&self) -> Context {
+        Context::Export
+    }
+
+    fn slot(&self) -> Slot {
+        Slot::Prompt
+    }
+
+    fn draw(
+        &self,
+        theme: &Theme,
+        _keymap: &Keymap,
+        buffer: &mut Buffer,
+        area: Rect,
+    ) -> Option<Position> {
+        let endings = format!("   ({ENDINGS})");
+        Some(write::prompt(
+            buffer,
+            area,
+            theme,
+            LABEL,
+            &self.field,
+            &endings,
+        ))
     }
 }
 

@@ -47,16 +47,6 @@ pub enum ExplorePage {
 impl ExplorePage {
     /// All of them, in their order.
     pub const ALL: [Self; 4] = [Self::Imprints, Self::Statistics, Self::Histogram, Self::Map];
-
-    /// Its name.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Imprints => "imprints",
-            Self::Statistics => "statistics",
-            Self::Histogram => "histogram",
-            Self::Map => "map",
-        }
-    }
 }
 
 /// A zoom of pictures.

@@ -1,8 +1,15 @@
-//! Every imprint of a shape: a form of ranges, the sweep in progress, the pages of its results, and their export.
+//! Explore: every imprint of a shape. A form of ranges, the sweep in progress, the pages of its results, their export.
+//!
+//! ```text
+//! message    what is asked for, and what workers answer
+//! ranges     the form                                     running: work in progress
+//! results    what was found and what is looked at         export: the name of a file
+//! page       what the results know of a page of theirs    pages: the table of pages
+//! imprints  statistics  histogram  map                    the pages
+//! work       from the form to the results                 update: what keys do over the results
+//! ```
 
 pub mod message;
-
-pub mod lines;
 
 pub mod ranges;
 
@@ -12,6 +19,8 @@ pub mod results;
 
 pub mod export;
 
+pub mod page;
+
 pub mod imprints;
 
 pub mod statistics;
@@ -20,14 +29,10 @@ pub mod histogram;
 
 pub mod map;
 
-pub mod panes;
-
-pub mod point;
-
-pub mod start;
-
-pub mod update;
-
-pub mod worker_event;
+pub mod pages;
 
 pub mod view;
+
+pub mod work;
+
+pub mod update;

@@ -4,9 +4,8 @@ use std::sync::Arc;
 
 use crate::atlas::{AtlasEntry, Feature, SortKey, features, sorted};
 use crate::imprint::Imprint;
-use crate::pose::{Axis, PoseIndex};
+use crate::pose::{Axis, Pose, PoseIndex};
 use crate::sweep::SweepResult;
-use crate::tui::app::message::Endpoint;
 use crate::tui::explore::message::{ExplorePage, Findings, Zoom};
 use crate::tui::keys::key::Arrow;
 
@@ -166,34 +165,6 @@ impl Results {
         self.column = moved.min(last);
     }
 
-    /// Goes so many rows on: in the list, in the statistics and the histogram by descriptors, in the map along y0.
-    pub fn scroll(&mut self, lines: i16) {
-        let by = |now: usize| now.saturating_add_signed(isize::from(lines));
-        match self.page {
-            ExplorePage::Imprints => self.select(by(self.selected)),
-            ExplorePage::Statistics | ExplorePage::Histogram => {
-                self.choose_feature(by(self.feature));
-            }
-            ExplorePage::Map => self.move_along(Axis::Y0, i64::from(lines)),
-        }
-    }
-
-    /// To the first or the last row; in the map, along x0.
-    pub fn scroll_to(&mut self, end: Endpoint) {
-        let far = match end {
-            Endpoint::First => 0,
-            Endpoint::Last => usize::MAX,
-        };
-        match self.page {
-            ExplorePage::Imprints => self.select(far),
-            ExplorePage::Statistics | ExplorePage::Histogram => self.choose_feature(far),
-            ExplorePage::Map => {
-                let last = self.sweep().grid.counts()[Axis::X0] - 1;
-                self.place[Axis::X0] = if end == Endpoint::First { 0 } else { last };
-            }
-        }
-    }
-
     /// Where the map's cursor is.
     pub fn place(&self) -> PoseIndex {
         self.place
@@ -230,7 +201,8 @@ impl Results {
         self.move_along(axis, by.into());
     }
 
-    fn move_along(&mut self, axis: Axis, by: i64) {
+    /// Moves the map's cursor along an axis by a number of poses, at most to its ends.
+    pub fn move_along(&mut self, axis: Axis, by: i64) {
         let last = self.sweep().grid.counts()[axis] - 1;
         self.place[axis] = self.place[axis].saturating_add_signed(by).min(last);
     }
@@ -247,6 +219,26 @@ impl Results {
         }
         let (_, entry) = self.rows_from(self.selected).next()?;
         Some(entry.first_pose)
+    }
+
+    /// A pose in words: the values of the axes that a sweep of this shape has.
+    pub fn pose_text(&self, pose: &Pose) -> String {
+        let values = self.sweep().grid.axes().map(|axis| {
+            let parameter = axis.parameter();
+            let text = parameter.format(pose[axis]);
+            format!("{} {text}", parameter.row().short)
+        });
+        values.collect::<Vec<_>>().join(", ")
+    }
+
+    /// The characters that the values of an axis need, or its name.
+    pub fn width_of(&self, axis: Axis) -> usize {
+        let (range, parameter) = (self.sweep().grid.ranges()[axis], axis.parameter());
+        let ends = [range.value(0), range.value(1), range.last()];
+        let widths = ends.map(|value| parameter.format(value).len());
+        widths
+            .into_iter()
+            .fold(parameter.row().short.len(), usize::max)
     }
 
     /// The number of an imprint in the atlas.
@@ -323,8 +315,8 @@ mod tests {
         results.turn(-1);
         results.zoom(Zoom::X, 1);
         assert_eq!(results.place().into_array(), [9, 5, 4, 0, 0]);
-        results.scroll(-3);
-        results.scroll_to(Endpoint::First);
+        results.move_along(Axis::Y0, -3);
+        results.move_along(Axis::X0, i64::MIN);
         results.turn(1);
         assert_eq!(results.place().into_array(), [0, 2, 0, 0, 0]);
         assert_eq!(results.pose(), Some(20));

@@ -1,21 +1,22 @@
 //! What keys do with what was found: pages, rows, the map, a shape back onto the matrix, a file.
 
-use crate::atlas::STATISTIC_COLUMNS;
+use ratatui::layout::Rect;
+
 use crate::formats::value::grouped;
 use crate::storage::Existing;
 use crate::touch::Plane;
 use crate::tui::app::change::{change, inform, refuse};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::{Document, Reading};
-use crate::tui::app::layout::Panes;
 use crate::tui::app::message::Message;
+use crate::tui::app::page::Page;
 use crate::tui::app::state::App;
 use crate::tui::explore::export::{ExportDialog, is_poses};
 use crate::tui::explore::message::{ExploreMessage, ExplorePage, name_of};
-use crate::tui::explore::panes::ResultPanes;
+use crate::tui::explore::pages;
 use crate::tui::explore::results::Results;
-use crate::tui::explore::start::act;
-use crate::tui::explore::statistics::layout::StatisticsTable;
+use crate::tui::explore::view::ResultPanes;
+use crate::tui::explore::work::act;
 use crate::tui::keys::action;
 use crate::tui::runtime::effect::Effect;
 
@@ -27,8 +28,10 @@ pub(crate) fn in_results(
 ) -> Option<Effect> {
     match message {
         Message::Accept => return put_onto_matrix(app, results),
-        Message::Scroll(lines) => results.scroll(lines),
-        Message::ScrollTo(end) => results.scroll_to(end),
+        Message::Cancel | Message::Quit => {
+            app.results = Some(results);
+            return None;
+        }
         Message::Cursor(arrow) => results.move_cursor(arrow),
         Message::Paste(_) => inform(app, "pasted text goes into fields only"),
         Message::Explore(ExploreMessage::Export) => {
@@ -42,8 +45,14 @@ pub(crate) fn in_results(
             app.dialogs.push(Dialog::Results(results));
             return act(app, ExploreMessage::Ranges);
         }
-        Message::Explore(asked) => look(app, &mut results, &asked),
-        _ => {}
+        message => {
+            if let Message::Explore(asked) = &message {
+                look(app, &mut results, asked);
+            }
+            let area = app.panes().map(|panes| panes.area(results.slot()));
+            let page = area.map_or(Rect::default(), |area| ResultPanes::of(area).page);
+            (pages::row(results.page()).update)(&mut results, &message, page);
+        }
     }
     app.dialogs.push(Dialog::Results(results));
     None
@@ -55,13 +64,6 @@ fn look(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
         ExploreMessage::Page(page) => results.turn_to(page),
         ExploreMessage::NextPage(by) => results.next_page(by),
         ExploreMessage::Feature(by) => results.next_feature(by),
-        ExploreMessage::Columns(by) => {
-            if let Some(panes) = Panes::shown(app) {
-                let page = ResultPanes::of(&panes).page;
-                let (_, visible) = StatisticsTable::of(page, results).columns;
-                results.move_columns(by, STATISTIC_COLUMNS.len() - visible);
-            }
-        }
         ExploreMessage::Sort(by) => results.sort(by),
         ExploreMessage::Find => match results.id(&app.reading().imprint) {
             Some(id) => {
@@ -70,10 +72,6 @@ fn look(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
             None => refuse(app, "the imprint on the matrix is not among these"),
         },
         ExploreMessage::Follow => follow(app, results),
-        ExploreMessage::Select(row) if results.page() == ExplorePage::Imprints => {
-            results.select(row)
-        }
-        ExploreMessage::Select(row) => results.choose_feature(row),
         ExploreMessage::Point(x0, y0) => results.point(x0, y0),
         ExploreMessage::Angle(by) => results.turn(by),
         ExploreMessage::Zoomed(zoom, by) => results.zoom(zoom, by),

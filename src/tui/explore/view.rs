@@ -1,43 +1,135 @@
-//! Exploring all imprints of a shape: the form, the work, and the pages of what was found.
+//! The results of a sweep: the tabs of the pages, a summary, and the page.
 
-use crate::tui::explore::{histogram, imprints, map, statistics};
 use ratatui::buffer::Buffer;
-use ratatui::layout::Position;
+use ratatui::layout::{Position, Rect};
 
 use crate::formats::value::{counted, grouped};
-use crate::tui::app::layout::Panes;
-use crate::tui::app::state::App;
-use crate::tui::explore::message::{ExplorePage, name_of};
-use crate::tui::explore::panes::ResultPanes;
+use crate::tui::app::message::Message;
+use crate::tui::app::page::{Page, Slot};
+use crate::tui::explore::message::{ExploreMessage, ExplorePage, name_of};
+use crate::tui::explore::pages;
 use crate::tui::explore::results::Results;
-use crate::tui::widget::theme::Role;
+use crate::tui::keys::binding::Context;
+use crate::tui::keys::keymap::Keymap;
+use crate::tui::widget::columns::narrow;
+use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Draws the results; answers where the cursor is.
-pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
-    let parts = ResultPanes::of(panes);
-    for area in [parts.tabs, parts.summary, parts.page] {
-        write::clear(buffer, area);
+impl Page for Results {
+    fn context(&self) -> Context {
+        pages::row(self.page()).context
     }
-    for (page, title, area) in parts.tabs(results.page()) {
-        let role = if page == results.page() {
-            Role::Focus
-        } else {
-            Role::Key
-        };
-        write::line(buffer, area, app.theme(), [(title.as_str(), role)]);
+
+    fn slot(&self) -> Slot {
+        Slot::Screen
     }
-    let pieces = [(summary(results), Role::Text)];
-    let pieces = pieces.iter().map(|(text, role)| (text.as_str(), *role));
-    write::line(buffer, parts.summary, app.theme(), pieces);
-    match results.page() {
-        ExplorePage::Imprints => imprints::view::draw(app, results, buffer, parts.page),
-        ExplorePage::Statistics => statistics::view::draw(app, results, buffer, parts.page),
-        ExplorePage::Histogram => {
-            histogram::view::draw(app, results, buffer, parts.page);
-            None
+
+    fn draw(
+        &self,
+        theme: &Theme,
+        _keymap: &Keymap,
+        buffer: &mut Buffer,
+        area: Rect,
+    ) -> Option<Position> {
+        let parts = ResultPanes::of(area);
+        for area in [parts.tabs, parts.summary, parts.page] {
+            write::clear(buffer, area);
         }
-        ExplorePage::Map => map::view::draw(app, results, buffer, parts.page),
+        for (page, title, area) in parts.tabs(self.page()) {
+            let role = if page == self.page() {
+                Role::Focus
+            } else {
+                Role::Key
+            };
+            write::line(buffer, area, theme, [(title.as_str(), role)]);
+        }
+        let summary = summary(self);
+        write::line(
+            buffer,
+            parts.summary,
+            theme,
+            [(summary.as_str(), Role::Text)],
+        );
+        (pages::row(self.page()).draw)(self, theme, buffer, parts.page)
+    }
+
+    fn click(&self, area: Rect, at: Position) -> Option<Message> {
+        let parts = ResultPanes::of(area);
+        let mut tabs = parts.tabs(self.page());
+        let tab = tabs.find(|(_, _, area)| area.contains(at));
+        if let Some((page, ..)) = tab {
+            return Some(Message::Explore(ExploreMessage::Page(page)));
+        }
+        (pages::row(self.page()).click)(self, parts.page, at)
+    }
+
+    fn scrolls(&self) -> bool {
+        true
+    }
+
+    /// Its update keeps what was found.
+    fn cancels_itself(&self) -> bool {
+        true
+    }
+}
+
+/// The parts of the screen of results.
+#[derive(Clone, Copy, Debug)]
+pub struct ResultPanes {
+    /// The names of the pages.
+    pub tabs: Rect,
+    /// How much there is.
+    pub summary: Rect,
+    /// The page.
+    pub page: Rect,
+}
+
+impl ResultPanes {
+    /// The parts of an area.
+    pub fn of(area: Rect) -> Self {
+        let line = |index: u16| Rect {
+            y: area.y + index.min(area.height),
+            height: u16::from(index < area.height),
+            ..area
+        };
+        Self {
+            tabs: line(0),
+            summary: line(1),
+            page: write::below(area, 2),
+        }
+    }
+
+    /// The name of each page, and where it stands. Where there is no room for all names, only the present one has one.
+    pub fn tabs(&self, present: ExplorePage) -> impl Iterator<Item = (ExplorePage, String, Rect)> {
+        let area = self.tabs;
+        let name = move |page: ExplorePage, number: u16, named: bool| {
+            if named || page == present {
+                format!(" {number} {} ", pages::row(page).title)
+            } else {
+                format!(" {number} ")
+            }
+        };
+        let pages = || ExplorePage::ALL.into_iter().zip(1_u16..);
+        let all: usize = pages()
+            .map(|(page, number)| name(page, number, true).len() + 1)
+            .sum();
+        let named = all <= usize::from(area.width);
+        let mut x = area.x;
+        pages().map(move |(page, number)| {
+            let text = name(page, number, named);
+            let left = x.min(area.right());
+            let width = narrow(text.len()).min(area.right() - left);
+            x = left + width + 1;
+            (
+                page,
+                text,
+                Rect {
+                    x: left,
+                    width,
+                    ..area
+                },
+            )
+        })
     }
 }
 

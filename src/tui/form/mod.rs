@@ -4,4 +4,8 @@ pub mod fields;
 
 pub mod state;
 
+pub mod layout;
+
 pub mod view;
+
+pub mod update;

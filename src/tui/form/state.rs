@@ -32,6 +32,7 @@ pub struct FormDialog {
     hidden: Vec<ParameterField>,
     /// What is on the matrix without the form.
     before: Document,
+    before_imprint: Imprint,
     /// What the fields make of it, while all of them are right.
     shown: Document,
     /// What they made of it before the field that has the focus was typed in. A field that becomes wrong may have been
@@ -76,6 +77,7 @@ impl FormDialog {
             form,
             hidden: Vec::new(),
             before: before.clone(),
+            before_imprint: Reading::of(before).imprint,
             settled: shown.clone(),
             shown,
         };
@@ -118,7 +120,7 @@ impl FormDialog {
     /// What would be lost, in a sentence.
     pub fn warning(&self) -> Option<String> {
         let (columns, rows) = (self.shown.sensor.columns(), self.shown.sensor.rows());
-        let all = Reading::of(&self.before).imprint;
+        let all = self.before_imprint;
         let lost = all.count() - all.resized(columns, rows).count();
         let taxels = counted(lost.into(), "active taxel");
         (lost > 0).then(|| format!("{taxels} will be cut"))

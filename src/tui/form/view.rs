@@ -6,12 +6,15 @@ use ratatui::layout::{Position, Rect};
 use crate::figure::{FigureKind, NO_ROOM};
 use crate::sensor::Sensor;
 use crate::source::Source;
-use crate::tui::app::layout::FormRows;
-use crate::tui::app::state::App;
+use crate::tui::app::message::Message;
+use crate::tui::app::page::{Page, Slot};
 use crate::tui::form::fields::ParameterField;
+use crate::tui::form::layout::FormRows;
 use crate::tui::form::state::FormDialog;
+use crate::tui::keys::binding::Context;
+use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::columns::narrow;
-use crate::tui::widget::theme::Role;
+use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
 const LABEL: usize = 10;
@@ -20,9 +23,38 @@ const INPUT: usize = 9;
 /// A pane from this width on has room for the range beside the field.
 const WIDE: u16 = 40;
 
-/// Draws the form; answers where the text cursor is.
-pub fn draw(app: &App, dialog: &FormDialog, buffer: &mut Buffer, area: Rect) -> Option<Position> {
-    let theme = app.theme();
+impl Page for FormDialog {
+    fn context(&self) -> Context {
+        Context::Form
+    }
+
+    fn slot(&self) -> Slot {
+        Slot::Form
+    }
+
+    fn draw(
+        &self,
+        theme: &Theme,
+        _keymap: &Keymap,
+        buffer: &mut Buffer,
+        area: Rect,
+    ) -> Option<Position> {
+        draw(theme, self, buffer, area)
+    }
+
+    fn click(&self, area: Rect, at: Position) -> Option<Message> {
+        let (rows, line) = (FormRows::of(area, self), at.y - area.y);
+        if rows.kind == Some(line) {
+            return Some(Message::ToField(None));
+        }
+        let mut fields = rows.fields(self.form().fields().len());
+        let field = fields.find(|(_, first)| (*first..first + rows.spacing).contains(&line));
+        field.map(|(index, _)| Message::ToField(Some(index)))
+    }
+}
+
+/// Draws the form. Returns where the text cursor is.
+fn draw(theme: &Theme, dialog: &FormDialog, buffer: &mut Buffer, area: Rect) -> Option<Position> {
     write::clear(buffer, area);
     write::line(
         buffer,
@@ -34,7 +66,7 @@ pub fn draw(app: &App, dialog: &FormDialog, buffer: &mut Buffer, area: Rect) -> 
     let mut cursor = None;
     if let (Some(kind), Some(line)) = (dialog.kind(), rows.kind) {
         let row = write::row(area, usize::from(line));
-        draw_kind(app, kind, focus.is_none(), buffer, row);
+        draw_kind(theme, kind, focus.is_none(), buffer, row);
         cursor = focus.is_none().then(|| Position::new(row.x, row.y));
     }
     let fields = dialog.form().fields();
@@ -47,7 +79,7 @@ pub fn draw(app: &App, dialog: &FormDialog, buffer: &mut Buffer, area: Rect) -> 
             .err()
             .map(|error| error.expected());
         let marked = focus == Some(index);
-        let at = draw_field(app, field, marked, buffer, write::row(area, row));
+        let at = draw_field(theme, field, marked, buffer, write::row(area, row));
         let remark = remark(field, dialog).filter(|_| error.is_none());
         let beside = write::right_of(write::row(area, row), area.x + narrow(LABEL + INPUT + 1));
         let under = write::right_of(write::row(area, row + 1), area.x + 2);
@@ -59,7 +91,7 @@ pub fn draw(app: &App, dialog: &FormDialog, buffer: &mut Buffer, area: Rect) -> 
         if let Some(range_at) = range_at {
             let under = (rows.spacing == 2 && range_at == beside).then_some(under);
             let taken = (field, dialog.form().sensor());
-            draw_range(app, taken, remark, buffer, range_at, under);
+            draw_range(theme, taken, remark, buffer, range_at, under);
         }
         if let Some(error) = error {
             write::line(
@@ -84,7 +116,7 @@ pub fn draw(app: &App, dialog: &FormDialog, buffer: &mut Buffer, area: Rect) -> 
 }
 
 /// The kind between angle brackets, and the letters that choose one.
-fn draw_kind(app: &App, kind: FigureKind, focused: bool, buffer: &mut Buffer, row: Rect) {
+fn draw_kind(theme: &Theme, kind: FigureKind, focused: bool, buffer: &mut Buffer, row: Rect) {
     let label = format!("{:LABEL$}", "Kind");
     let name = format!("{:<9}", kind.name());
     let role = if focused { Role::Focus } else { Role::Text };
@@ -106,18 +138,17 @@ fn draw_kind(app: &App, kind: FigureKind, focused: bool, buffer: &mut Buffer, ro
         (" ", Role::Text),
         (letters.as_str(), Role::Key),
     ];
-    write::line(buffer, row, app.theme(), pieces);
+    write::line(buffer, row, theme, pieces);
 }
 
 /// Label and text; answers where the text cursor would be.
 fn draw_field(
-    app: &App,
+    theme: &Theme,
     field: &ParameterField,
     focused: bool,
     buffer: &mut Buffer,
     row: Rect,
 ) -> Position {
-    let theme = app.theme();
     let label = format!("{:LABEL$}", field.parameter().row().label);
     let (shown, cursor) = write::window(field.text(), field.cursor(), INPUT);
     let shown = write::fitted(shown, INPUT, theme);
@@ -150,7 +181,7 @@ fn remark(field: &ParameterField, dialog: &FormDialog) -> Option<(&'static str, 
 /// What the field takes, and the remark under it or else behind it. Where there is no room for all of it the unit gives
 /// way first, then the remark, or the range where the remark is about the present value.
 fn draw_range(
-    app: &App,
+    theme: &Theme,
     (field, sensor): (&ParameterField, &Sensor),
     remark: Option<(&str, bool)>,
     buffer: &mut Buffer,
@@ -162,7 +193,7 @@ fn draw_range(
     let range = format!("{bare} {unit}").trim_end().to_owned();
     let mut write = |area: Rect, texts: &[&str]| {
         let text = write::first_fitting(texts, usize::from(area.width));
-        write::line(buffer, area, app.theme(), [(text, Role::Quiet)]);
+        write::line(buffer, area, theme, [(text, Role::Quiet)]);
     };
     match (remark, under) {
         (None, _) => write(area, &[&range, &bare]),

@@ -6,10 +6,10 @@
 //! [`crate::tui::prompt::commands`] makes the `:` commands of them.
 
 use crate::atlas::SortKey;
+use crate::tui::app::message::Purpose;
 use crate::tui::app::message::{Copied, Endpoint, Erase, Message};
 use crate::tui::explore::message::{ExploreMessage, ExplorePage, Zoom};
 use crate::tui::keys::key::Arrow;
-use crate::tui::shapes::purpose::Purpose;
 
 /// Something that a user can ask for.
 #[derive(Debug, PartialEq)]

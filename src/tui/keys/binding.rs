@@ -6,136 +6,110 @@ use crate::tui::app::message::Message;
 use crate::tui::keys::action::Action;
 use crate::tui::keys::key::{Arrow, Key};
 
-/// The place where a key is pressed; it decides what the key does.
+/// What a place does with a key that has no binding there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Context {
-    /// Everywhere, unless the key means something else there.
-    Everywhere,
+enum Unbound {
+    /// Nothing.
+    Ignored,
+    /// A character is typed into the field.
+    Typed,
+}
+
+use Unbound::{Ignored, Typed};
+
+/// Rows of the table of places: `Place "name in a settings file" "heading in help" unbound keys, outer place`. A key that
+/// means nothing in a place is looked up in the outer one.
+macro_rules! contexts {
+    ($($(#[$doc:meta])+ $place:ident $name:literal $title:literal $unbound:expr, $outer:expr;)+) => {
+        /// The place where a key is pressed; it decides what the key does.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Context {
+            $($(#[$doc])+ $place,)+
+        }
+
+        impl Context {
+            /// All places, in the order of help.
+            pub const ALL: [Self; [$(Self::$place),+].len()] = [$(Self::$place),+];
+
+            /// Its heading in help.
+            pub fn title(self) -> &'static str {
+                match self {
+                    $(Self::$place => $title,)+
+                }
+            }
+
+            /// Its name in a settings file.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$place => $name,)+
+                }
+            }
+
+            fn unbound(self) -> Unbound {
+                match self {
+                    $(Self::$place => $unbound,)+
+                }
+            }
+
+            /// The place where a key that means nothing here is looked up next.
+            pub(in crate::tui) fn outer(self) -> Option<Self> {
+                match self {
+                    $(Self::$place => $outer,)+
+                }
+            }
+        }
+    };
+}
+
+const EVERYWHERE: Option<Context> = Some(Context::Everywhere);
+const EXPLORE: Option<Context> = Some(Context::Explore);
+
+contexts! {
     /// On the matrix.
-    Matrix,
+    Matrix "matrix" "On the matrix" Ignored, EVERYWHERE;
     /// On the matrix, while a shape is held.
-    Grab,
+    Grab "grab" "While a shape is held" Ignored, Some(Self::Matrix);
     /// In a form.
-    Form,
+    Form "form" "In a form" Typed, EVERYWHERE;
     /// In the list of shapes.
-    List,
+    List "list" "In the list of shapes" Typed, EVERYWHERE;
     /// In the field for a name.
-    Name,
+    Name "name" "Saving" Typed, EVERYWHERE;
     /// In the `:` prompt.
-    Command,
-    /// In the list of keys.
-    Help,
-    /// At a yes-or-no question.
-    Question,
+    Command "command" "In the command line" Typed, EVERYWHERE;
     /// In the form of ranges.
-    Ranges,
+    Ranges "ranges" "Ranges of a sweep" Typed, EVERYWHERE;
     /// While a worker runs.
-    Running,
+    Running "running" "While work is under way" Ignored, EVERYWHERE;
     /// On every page of Explore.
-    Explore,
+    Explore "explore" "Exploring, on every page" Ignored, EVERYWHERE;
     /// On the imprints page of Explore.
-    Imprints,
+    Imprints "imprints" "In the list of imprints" Ignored, EXPLORE;
     /// On its statistics page.
-    Statistics,
+    Statistics "statistics" "In the statistics" Ignored, EXPLORE;
     /// On its histogram page.
-    Histogram,
+    Histogram "histogram" "At the histogram" Ignored, EXPLORE;
     /// On its map page.
-    Map,
+    Map "map" "On the map" Ignored, EXPLORE;
     /// In the field for the name of an exported file.
-    Export,
+    Export "export" "Exporting" Typed, EVERYWHERE;
+    /// At a yes-or-no question.
+    Question "question" "At a question" Ignored, EVERYWHERE;
+    /// In the list of keys.
+    Help "help" "In this list" Ignored, EVERYWHERE;
+    /// Everywhere, unless the key means something else there.
+    Everywhere "everywhere" "Everywhere" Ignored, None;
 }
 
 impl Context {
-    /// All places, in the order of help.
-    pub const ALL: [Self; 17] = [
-        Self::Matrix,
-        Self::Grab,
-        Self::Form,
-        Self::List,
-        Self::Name,
-        Self::Command,
-        Self::Ranges,
-        Self::Running,
-        Self::Explore,
-        Self::Imprints,
-        Self::Statistics,
-        Self::Histogram,
-        Self::Map,
-        Self::Export,
-        Self::Question,
-        Self::Help,
-        Self::Everywhere,
-    ];
-
-    /// Its heading in help.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Everywhere => "Everywhere",
-            Self::Matrix => "On the matrix",
-            Self::Grab => "While a shape is held",
-            Self::Form => "In a form",
-            Self::List => "In the list of shapes",
-            Self::Name => "Saving",
-            Self::Command => "In the command line",
-            Self::Help => "In this list",
-            Self::Question => "At a question",
-            Self::Ranges => "Ranges of a sweep",
-            Self::Running => "While work is under way",
-            Self::Explore => "Exploring, on every page",
-            Self::Imprints => "In the list of imprints",
-            Self::Statistics => "In the statistics",
-            Self::Histogram => "At the histogram",
-            Self::Map => "On the map",
-            Self::Export => "Exporting",
-        }
-    }
-
-    /// Its name in a settings file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Everywhere => "everywhere",
-            Self::Matrix => "matrix",
-            Self::Grab => "grab",
-            Self::Form => "form",
-            Self::List => "list",
-            Self::Name => "name",
-            Self::Command => "command",
-            Self::Help => "help",
-            Self::Question => "question",
-            Self::Ranges => "ranges",
-            Self::Running => "running",
-            Self::Explore => "explore",
-            Self::Imprints => "imprints",
-            Self::Statistics => "statistics",
-            Self::Histogram => "histogram",
-            Self::Map => "map",
-            Self::Export => "export",
-        }
-    }
-
-    /// The place where a key that means nothing here is looked up next.
-    pub(in crate::tui) fn outer(self) -> Option<Self> {
-        match self {
-            Self::Everywhere => None,
-            Self::Grab => Some(Self::Matrix),
-            _ => self.screen().or(Some(Self::Everywhere)),
-        }
-    }
-
     /// The screen that this place is a page of; hints show the keys of both.
     pub fn screen(self) -> Option<Self> {
-        match self {
-            Self::Imprints | Self::Statistics | Self::Histogram | Self::Map => Some(Self::Explore),
-            _ => None,
-        }
+        self.outer().filter(|&outer| outer == Self::Explore)
     }
 
     /// Whether a character that is not bound is typed into a field.
     pub(in crate::tui) fn takes_text(self) -> bool {
-        matches!(
-            self,
-            Self::Form | Self::List | Self::Name | Self::Command | Self::Ranges | Self::Export
-        )
+        self.unbound() == Typed
     }
 }
 

@@ -377,7 +377,7 @@ mod tests {
             ),
         ] {
             let expected = (1, message.to_owned());
-            assert_eq!(refused(&[free.clone(), wrong]), expected);
+            assert_eq!(refused(&[free, wrong]), expected);
         }
     }
 }

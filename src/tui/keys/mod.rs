@@ -9,5 +9,3 @@ pub mod default_keys;
 pub mod action;
 
 pub mod keymap;
-
-pub mod help;

@@ -1,7 +1,9 @@
 //! The matrix and the descriptors beside it.
 
-pub mod update;
+pub mod layout;
 
 pub mod view;
 
 pub mod panel;
+
+pub mod update;

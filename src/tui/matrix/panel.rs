@@ -5,9 +5,8 @@ use ratatui::layout::Rect;
 
 use crate::description::{DESCRIPTORS, Description, Descriptor, Value};
 use crate::formats::value;
-use crate::tui::app::document::Reading;
-use crate::tui::app::state::App;
-use crate::tui::widget::theme::Role;
+use crate::tui::matrix::view::MatrixView;
+use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
 /// Columns of the symbols and of the values.
@@ -15,9 +14,9 @@ const SYMBOL: usize = 7;
 const VALUE: usize = 17;
 
 /// Draws the panel. Where it has fewer lines than there are descriptors, they stand in several columns.
-pub fn draw(app: &App, seen: &Reading, buffer: &mut Buffer, area: Rect) {
-    let theme = app.theme();
-    let described = seen.region(app.chosen).zip(seen.description(app.chosen));
+pub fn draw(matrix: &MatrixView<'_>, theme: &Theme, buffer: &mut Buffer, area: Rect) {
+    let (seen, chosen) = (matrix.reading, matrix.chosen);
+    let described = seen.region(chosen).zip(seen.description(chosen));
     let title = match &described {
         Some(((index, region), _)) => {
             format!(
@@ -46,28 +45,27 @@ pub fn draw(app: &App, seen: &Reading, buffer: &mut Buffer, area: Rect) {
             ..row
         };
         let description = described.as_ref().map(|(_, description)| description);
-        draw_descriptor(app, descriptor, description, buffer, row);
+        draw_descriptor(theme, matrix.pitch_mm, descriptor, description, buffer, row);
     }
 }
 
 /// A descriptor: its symbol, its value, and what that is in millimetres or what it means, as far as there is room.
 fn draw_descriptor(
-    app: &App,
+    theme: &Theme,
+    pitch_mm: f64,
     descriptor: &Descriptor,
     description: Option<&Description>,
     buffer: &mut Buffer,
     row: Rect,
 ) {
-    let theme = app.theme();
     let measured = description.map_or(Value::None, descriptor.measure);
     let text = value::text(measured, descriptor.dimension);
     let text = text
         .as_deref()
         .map_or(theme.none().into(), |text| theme.text(text));
     // Millimetres where the user gave a pitch; a pitch of 1 says nothing new.
-    let pitch = app.history.present().sensor.pitch_mm();
     let scaled =
-        value::in_millimetres(measured, descriptor.dimension, pitch).filter(|_| pitch != 1.0);
+        value::in_millimetres(measured, descriptor.dimension, pitch_mm).filter(|_| pitch_mm != 1.0);
     let symbol = format!("{:SYMBOL$}", descriptor.symbol);
     let value = format!("{text:VALUE$}");
     // A word that is cut tells nothing.

@@ -6,20 +6,18 @@ use crate::storage::{Expected, ShapeOrigin};
 use crate::tui::app::change::{
     begin, change, inform, movable, nudge, refuse, replace, shift, travel, turn, zoom,
 };
-use crate::tui::app::dialog::{Dialog, Help, Question};
+use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::{Document, History};
-use crate::tui::app::layout::Panes;
-use crate::tui::app::message::{Copied, Endpoint, Message};
+use crate::tui::app::message::{Copied, Endpoint, Message, Purpose};
 use crate::tui::app::state::{App, Display, Mode, NarrowPage, RunState};
 use crate::tui::explore;
 use crate::tui::explore::results::around;
 use crate::tui::form::state::FormDialog;
+use crate::tui::help::Help;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
-use crate::tui::prompt::name::NameDialog;
-use crate::tui::prompt::state::CommandDialog;
+use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::runtime::effect::{Effect, LibraryRequest, TerminalEffect};
-use crate::tui::shapes::purpose::Purpose;
 use crate::tui::shapes::state::ListDialog;
 
 /// What there is to say of an empty matrix.
@@ -102,7 +100,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
             app.dialogs.push(Dialog::Question(question));
         }
         Message::Quit | Message::QuitNow => app.run_state = RunState::Quit,
-        Message::Explore(asked) => return explore::start::act(app, asked),
+        Message::Explore(asked) => return explore::work::act(app, asked),
         Message::Help => {
             let help = Help::new(app.context());
             app.dialogs.push(Dialog::Help(help));
@@ -143,7 +141,7 @@ fn edit(app: &mut App, message: &Message) {
                 Display::Percent => Display::Imprint,
             };
         }
-        Message::SwitchPage if Panes::shown(app).is_some_and(|panes| panes.panel.is_some()) => {
+        Message::SwitchPage if app.panes().is_some_and(|panes| panes.panel.is_some()) => {
             inform(app, "matrix and descriptors are both in sight");
         }
         Message::SwitchPage => {

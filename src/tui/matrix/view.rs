@@ -6,113 +6,134 @@ use ratatui::style::{Modifier, Style};
 
 use crate::description::{Region, RegionKind};
 use crate::tui::app::document::Reading;
-use crate::tui::app::layout::TaxelGrid;
 use crate::tui::app::state::{App, Display};
-use crate::tui::widget::theme::Role;
+use crate::tui::matrix::layout::TaxelGrid;
+use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Draws the matrix; answers where the cursor is.
-pub fn draw(app: &App, seen: &Reading, buffer: &mut Buffer, area: Rect) -> Option<Position> {
-    let imprint = &seen.imprint;
-    let theme = app.theme();
-    let grid = TaxelGrid::of(area, imprint, app.cursor());
-    let (cell, columns, rows) = (grid.cell, grid.columns, grid.rows);
-    // A number wants four characters with the space before the next one.
-    let every = match cell {
-        1 => 5,
-        2 => 2,
-        _ => 1,
-    };
-    for (index, column) in columns.visible().filter(|(_, column)| column % every == 0) {
-        let place = write::right_of(write::row(area, 0), grid.x + index * cell);
-        write::line(
-            buffer,
-            place,
-            theme,
-            [(column.to_string().as_str(), Role::Quiet)],
-        );
-    }
-    let chosen = seen.region(app.chosen).map(|(_, region)| region);
-    let mut cursor = None;
-    for (index, row) in rows.visible() {
-        let line = write::row(area, usize::from(index * grid.lines) + 1);
-        write::line(
-            buffer,
-            line,
-            theme,
-            [(format!("{row:>2}").as_str(), Role::Quiet)],
-        );
-        for (index, column) in columns.visible() {
-            let place = Rect {
-                x: grid.x + index * cell,
-                y: line.y,
-                width: cell,
-                height: grid.lines,
-            };
-            let here = (column, row) == app.cursor();
-            draw_taxel(
-                app,
-                seen,
-                role(seen, chosen, column, row),
-                (column, row),
-                buffer,
-                place,
-            );
-            if here {
-                cursor = Some(Position::new(place.x, place.y));
-            }
-        }
-    }
-    cursor
+/// What is drawn of the matrix.
+#[derive(Clone, Copy, Debug)]
+pub struct MatrixView<'a> {
+    /// What is read off the document.
+    pub reading: &'a Reading,
+    /// The millimetres of a cell side.
+    pub pitch_mm: f64,
+    /// The taxel under the cursor: column, row.
+    pub cursor: (u8, u8),
+    /// The index of the chosen region, None for the main one.
+    pub chosen: Option<usize>,
+    /// How taxels are shown.
+    pub display: Display,
 }
 
-/// A taxel: two characters, or more of the same where it is drawn larger. The first one is the cursor's, where that is
-/// here; the second one still tells the state: a blank is an inactive taxel.
-fn draw_taxel(
-    app: &App,
-    seen: &Reading,
-    role: Role,
-    (column, row): (u8, u8),
-    buffer: &mut Buffer,
-    place: Rect,
-) {
-    let theme = app.theme();
-    let [first, second] = match app.display {
-        Display::Imprint => theme.taxel(role),
-        Display::Shades => theme.shade(coverage(seen, column, row)),
-        Display::Percent => percent(app, coverage(seen, column, row)),
-    };
-    let here = (column, row) == app.cursor();
-    // Numbers side by side are told apart by their weight.
-    let heavy = app.display == Display::Percent && column % 2 == 1 && first.is_ascii_digit();
-    let style = theme.style(role);
-    let weight = (style.add_modifier - Modifier::DIM) | Modifier::BOLD;
-    let style = if heavy {
-        Style {
-            add_modifier: weight,
-            ..style
+impl<'a> MatrixView<'a> {
+    /// What is drawn of the present state.
+    pub fn of(app: &'a App) -> Self {
+        Self {
+            reading: app.reading(),
+            pitch_mm: app.history.present().sensor.pitch_mm(),
+            cursor: app.cursor(),
+            chosen: app.chosen(),
+            display: app.display,
         }
-    } else {
-        style
-    };
-    // Full cells are filled, a sign or a number stands in the corner.
-    let fill = if first == second && !first.is_ascii_digit() {
-        first
-    } else {
-        ' '
-    };
-    for position in place.intersection(*buffer.area()).positions() {
-        let top = position.y == place.y;
-        let (character, style) = match (position.x - place.x, top) {
-            (0, true) if here => (
-                if place.width > 1 { '[' } else { first },
-                theme.style(Role::Cursor),
-            ),
-            (0, true) => (first, style),
-            (1, true) => (second, style),
-            _ => (fill, style),
+    }
+
+    /// Draws the matrix. Returns where the cursor is, None where it is not visible.
+    pub fn draw(&self, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
+        let seen = self.reading;
+        let grid = TaxelGrid::of(area, &seen.imprint, self.cursor);
+        let (cell, columns, rows) = (grid.cell, grid.columns, grid.rows);
+        // A number wants four characters with the space before the next one.
+        let every = match cell {
+            1 => 5,
+            2 => 2,
+            _ => 1,
         };
-        buffer[position].set_char(character).set_style(style);
+        for (index, column) in columns.visible().filter(|(_, column)| column % every == 0) {
+            let place = write::right_of(write::row(area, 0), grid.x + index * cell);
+            write::line(
+                buffer,
+                place,
+                theme,
+                [(column.to_string().as_str(), Role::Quiet)],
+            );
+        }
+        let chosen = seen.region(self.chosen).map(|(_, region)| region);
+        let mut cursor = None;
+        for (index, row) in rows.visible() {
+            let line = write::row(area, usize::from(index * grid.lines) + 1);
+            write::line(
+                buffer,
+                line,
+                theme,
+                [(format!("{row:>2}").as_str(), Role::Quiet)],
+            );
+            for (index, column) in columns.visible() {
+                let place = Rect {
+                    x: grid.x + index * cell,
+                    y: line.y,
+                    width: cell,
+                    height: grid.lines,
+                };
+                let here = (column, row) == self.cursor;
+                let role = role(seen, chosen, column, row);
+                self.draw_taxel(theme, role, (column, row), buffer, place);
+                if here {
+                    cursor = Some(Position::new(place.x, place.y));
+                }
+            }
+        }
+        cursor
+    }
+
+    /// A taxel: two characters, or more of the same where it is drawn larger. The first one is the cursor's, where that is
+    /// here; the second one still tells the state: a blank is an inactive taxel.
+    fn draw_taxel(
+        &self,
+        theme: &Theme,
+        role: Role,
+        (column, row): (u8, u8),
+        buffer: &mut Buffer,
+        place: Rect,
+    ) {
+        let seen = self.reading;
+        let [first, second] = match self.display {
+            Display::Imprint => theme.taxel(role),
+            Display::Shades => theme.shade(coverage(seen, column, row)),
+            Display::Percent => percent(theme, coverage(seen, column, row)),
+        };
+        let here = (column, row) == self.cursor;
+        // Numbers side by side are told apart by their weight.
+        let heavy = self.display == Display::Percent && column % 2 == 1 && first.is_ascii_digit();
+        let style = theme.style(role);
+        let weight = (style.add_modifier - Modifier::DIM) | Modifier::BOLD;
+        let style = if heavy {
+            Style {
+                add_modifier: weight,
+                ..style
+            }
+        } else {
+            style
+        };
+        // Full cells are filled, a sign or a number stands in the corner.
+        let fill = if first == second && !first.is_ascii_digit() {
+            first
+        } else {
+            ' '
+        };
+        for position in place.intersection(*buffer.area()).positions() {
+            let top = position.y == place.y;
+            let (character, style) = match (position.x - place.x, top) {
+                (0, true) if here => (
+                    if place.width > 1 { '[' } else { first },
+                    theme.style(Role::Cursor),
+                ),
+                (0, true) => (first, style),
+                (1, true) => (second, style),
+                _ => (fill, style),
+            };
+            buffer[position].set_char(character).set_style(style);
+        }
     }
 }
 
@@ -146,9 +167,9 @@ fn coverage(seen: &Reading, column: u8, row: u8) -> f64 {
     clippy::cast_sign_loss,
     reason = "0 to 99"
 )]
-fn percent(app: &App, coverage: f64) -> [char; 2] {
+fn percent(theme: &Theme, coverage: f64) -> [char; 2] {
     if coverage <= 0.0 || coverage >= 1.0 {
-        return app.theme().shade(coverage);
+        return theme.shade(coverage);
     }
     let percent = (coverage * 100.0) as u8;
     [

@@ -209,7 +209,7 @@ fn common_start(words: &[String]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tui::shapes::purpose::Purpose;
+    use crate::tui::app::message::Purpose;
 
     fn completed(line: &str) -> (String, Vec<String>) {
         let names = ["washer", "Wasp", "my shape"].map(str::to_owned);

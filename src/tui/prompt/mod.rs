@@ -1,11 +1,11 @@
-//! What is typed in one line: a name to save under, and `:` commands.
-
-pub mod name;
+//! What is typed in one line at the foot of the screen: a name to save under, and `:` commands.
 
 pub mod commands;
 
 pub mod state;
 
-pub mod explore;
+pub mod read;
 
-pub mod command;
+pub mod view;
+
+pub mod update;

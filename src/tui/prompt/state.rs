@@ -1,13 +1,42 @@
-//! The field of the command line at the foot of the screen, with the lines that were given before.
+//! The state of the prompts: the name to save under, checked while typing, and the `:` prompt with its history.
 
+use crate::formats::name::LONGEST;
+use crate::formats::{Name, NameError};
 use crate::tui::app::message::Message;
 use crate::tui::prompt::commands::complete;
 use crate::tui::widget::text_field::TextField;
 
-/// No command is longer.
-const LONGEST: usize = 200;
+/// A command has at most this many characters.
+const LONGEST_COMMAND: usize = 200;
 
-/// The field.
+/// The field takes a few characters more than a name may have, so that one sees the message about it.
+const LONGEST_NAME: usize = LONGEST + 8;
+
+/// The name to save under.
+#[derive(Clone, Debug)]
+pub struct NameDialog {
+    /// What was typed.
+    pub field: TextField,
+}
+
+impl NameDialog {
+    /// A field that starts with a name.
+    pub fn new(name: &str) -> Self {
+        Self {
+            field: TextField::new(name, LONGEST_NAME),
+        }
+    }
+
+    /// The name.
+    ///
+    /// # Errors
+    /// The first rule for names that it breaks.
+    pub fn name(&self) -> Result<Name, NameError> {
+        Name::new(self.field.text())
+    }
+}
+
+/// The `:` prompt.
 #[derive(Clone, Debug)]
 pub struct CommandDialog {
     /// What was typed.
@@ -23,7 +52,7 @@ pub struct CommandDialog {
 impl Default for CommandDialog {
     fn default() -> Self {
         Self {
-            field: TextField::new("", LONGEST),
+            field: TextField::new("", LONGEST_COMMAND),
             candidates: Vec::new(),
             recalled: None,
             draft: String::new(),

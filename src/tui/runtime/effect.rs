@@ -5,8 +5,8 @@ use std::sync::Arc;
 use crate::formats::StoredShape;
 use crate::pose::PoseGrid;
 use crate::storage::{Existing, Expected};
+use crate::tui::app::message::Purpose;
 use crate::tui::explore::message::Findings;
-use crate::tui::shapes::purpose::Purpose;
 
 /// An effect.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,9 @@
 //! The list of stored shapes.
 
-pub mod purpose;
-
 pub mod state;
 
+pub mod layout;
+
 pub mod view;
+
+pub mod update;

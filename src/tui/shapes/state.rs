@@ -4,8 +4,7 @@ use std::collections::HashMap;
 
 use crate::formats::name::{LONGEST, folded};
 use crate::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
-use crate::tui::app::message::Message;
-use crate::tui::shapes::purpose::Purpose;
+use crate::tui::app::message::{Message, Purpose};
 use crate::tui::widget::text_field::TextField;
 
 /// So many shapes around the selected one are read at once: more than any screen shows.

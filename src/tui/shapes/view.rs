@@ -5,14 +5,15 @@ use ratatui::layout::{Position, Rect};
 
 use crate::description::{RegionKind, regions};
 use crate::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
-use crate::tui::app::layout::{LIST_HEAD, list, list_first};
-use crate::tui::app::state::App;
+use crate::tui::app::message::{Message, Purpose};
+use crate::tui::app::page::{Page, Slot};
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
-use crate::tui::shapes::purpose::Purpose;
+use crate::tui::keys::keymap::Keymap;
+use crate::tui::shapes::layout::{LIST_HEAD, list, list_first, list_row};
 use crate::tui::shapes::state::ListDialog;
 use crate::tui::widget::columns::narrow;
-use crate::tui::widget::theme::Role;
+use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
 
 /// Columns of a row beside the name: its sign, its size, where it comes from.
@@ -24,9 +25,48 @@ const SHORTEST: usize = 8;
 /// Columns of a name are not more than this without need, so that what follows stays near.
 const USUAL: usize = 24;
 
-/// Draws the list; answers where the text cursor is.
-pub fn draw(app: &App, dialog: &ListDialog, buffer: &mut Buffer, body: Rect) -> Option<Position> {
-    let theme = app.theme();
+impl Page for ListDialog {
+    fn context(&self) -> Context {
+        Context::List
+    }
+
+    fn slot(&self) -> Slot {
+        Slot::Body
+    }
+
+    fn draw(
+        &self,
+        theme: &Theme,
+        keymap: &Keymap,
+        buffer: &mut Buffer,
+        area: Rect,
+    ) -> Option<Position> {
+        Some(draw(theme, keymap, self, buffer, area))
+    }
+
+    /// A click selects a row, a click on the selected row takes it.
+    fn click(&self, area: Rect, at: Position) -> Option<Message> {
+        let (row, selected) = (list_row(area, self, at)?, self.selected());
+        if row == selected {
+            return Some(Message::Accept);
+        }
+        let (to, from) = (i16::try_from(row).ok()?, i16::try_from(selected).ok()?);
+        Some(Message::Scroll(to - from))
+    }
+
+    fn scrolls(&self) -> bool {
+        true
+    }
+}
+
+/// Draws the list. Returns where the text cursor is.
+fn draw(
+    theme: &Theme,
+    keymap: &Keymap,
+    dialog: &ListDialog,
+    buffer: &mut Buffer,
+    body: Rect,
+) -> Position {
     write::clear(buffer, body);
     let (area, preview) = list(body);
     let title = match dialog.purpose() {
@@ -49,7 +89,7 @@ pub fn draw(app: &App, dialog: &ListDialog, buffer: &mut Buffer, body: Rect) -> 
             (0, Purpose::Delete) => "there are no shapes of your own".to_owned(),
             (0, _) => "the library is empty".to_owned(),
             _ => {
-                let key = app.keymap().label(Context::List, &action::ERASE_BEFORE);
+                let key = keymap.label(Context::List, &action::ERASE_BEFORE);
                 format!("no name contains this; {key} shortens it")
             }
         };
@@ -70,19 +110,16 @@ pub fn draw(app: &App, dialog: &ListDialog, buffer: &mut Buffer, body: Rect) -> 
     }
     for (index, (entry, read)) in dialog.rows().enumerate().skip(first).take(lines) {
         let row = write::row(area, index - first + usize::from(LIST_HEAD));
-        draw_row(app, entry, read, index == dialog.selected(), buffer, row);
+        draw_row(theme, entry, read, index == dialog.selected(), buffer, row);
     }
     if let (Some(preview), Some((entry, Some(read)))) = (preview, dialog.choice()) {
-        draw_preview(app, entry, read, buffer, preview);
+        draw_preview(theme, entry, read, buffer, preview);
     }
-    Some(Position::new(
-        end.min(area.right().saturating_sub(1)),
-        area.y,
-    ))
+    Position::new(end.min(area.right().saturating_sub(1)), area.y)
 }
 
 fn draw_row(
-    app: &App,
+    theme: &Theme,
     entry: &LibraryEntry,
     read: Option<&Result<LoadedShape, String>>,
     selected: bool,
@@ -93,8 +130,8 @@ fn draw_row(
     let sign = if selected { "> " } else { "  " };
     let columns = usize::from(row.width).saturating_sub(BESIDE);
     let columns = columns.clamp(SHORTEST, USUAL);
-    let name = app.theme().text(&entry.name);
-    let name = write::fitted(&name, columns, app.theme());
+    let name = theme.text(&entry.name);
+    let name = write::fitted(&name, columns, theme);
     let gap = " ".repeat(columns + 1 - write::width(&name).min(columns));
     let size = match read {
         Some(Ok(loaded)) => format!(
@@ -118,17 +155,16 @@ fn draw_row(
         (size.as_str(), Role::Quiet),
         (origin, Role::Quiet),
     ];
-    write::line(buffer, row, app.theme(), pieces);
+    write::line(buffer, row, theme, pieces);
 }
 
 fn draw_preview(
-    app: &App,
+    theme: &Theme,
     entry: &LibraryEntry,
     read: &Result<LoadedShape, String>,
     buffer: &mut Buffer,
     area: Rect,
 ) {
-    let theme = app.theme();
     // The name may need two lines, what made the shape more.
     let mut used = write::wrapped(buffer, area, theme, &entry.name, Role::Title);
     let mut say = |text: &str, role: Role| {
@@ -158,7 +194,7 @@ fn draw_preview(
             say(&facts, Role::Text);
             // At the same height for most of them.
             let end = say(&source, Role::Quiet).max(4);
-            thumbnail::draw(app, imprint, buffer, write::below(area, end));
+            thumbnail::draw(theme, imprint, buffer, write::below(area, end));
         }
         Err(reason) => {
             say("broken:", Role::Error);

@@ -4,24 +4,18 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use crate::imprint::Imprint;
-use crate::tui::app::state::App;
-use crate::tui::widget::theme::Role;
+use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
 /// Columns and lines that an imprint takes.
-pub fn size(app: &App, imprint: &Imprint) -> (u16, u16) {
+pub fn size(theme: &Theme, imprint: &Imprint) -> (u16, u16) {
     let rows = u16::from(imprint.rows());
-    let lines = if app.theme().ascii {
-        rows
-    } else {
-        rows.div_ceil(2)
-    };
+    let lines = if theme.ascii { rows } else { rows.div_ceil(2) };
     (imprint.columns().into(), lines)
 }
 
 /// Draws an imprint from the top left corner of an area on; of one that is larger, the part around its active taxels.
-pub fn draw(app: &App, imprint: &Imprint, buffer: &mut Buffer, area: Rect) {
-    let theme = app.theme();
+pub fn draw(theme: &Theme, imprint: &Imprint, buffer: &mut Buffer, area: Rect) {
     let step: u8 = if theme.ascii { 1 } else { 2 };
     let (columns, rows) = (imprint.columns(), imprint.rows());
     let seen = |room: u16| u8::try_from(room).unwrap_or(u8::MAX);

@@ -3,11 +3,11 @@
 use std::borrow::Cow;
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 
-pub use crate::tui::app::layout::below;
-use crate::tui::widget::columns::head;
 pub use crate::tui::widget::columns::{broken, width, window};
+use crate::tui::widget::columns::{head, narrow};
+use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
 
 /// Writes pieces of text, each in its role, into the first line of an area; the first that does not fit is shortened,
@@ -70,6 +70,24 @@ pub fn row(area: Rect, index: usize) -> Rect {
     }
 }
 
+/// The first of so many rows, of which some are visible, the selected one as near to the middle as the ends allow.
+pub(in crate::tui) fn first_of(visible: u16, rows: usize, selected: usize) -> usize {
+    let visible = usize::from(visible);
+    selected
+        .saturating_sub(visible / 2)
+        .min(rows.saturating_sub(visible))
+}
+
+/// The part of an area that begins so many lines below its top.
+pub fn below(area: Rect, lines: u16) -> Rect {
+    let lines = lines.min(area.height);
+    Rect {
+        y: area.y + lines,
+        height: area.height - lines,
+        ..area
+    }
+}
+
 /// The part of an area right of `x`.
 pub fn right_of(area: Rect, x: u16) -> Rect {
     let x = x.clamp(area.x, area.right());
@@ -78,6 +96,25 @@ pub fn right_of(area: Rect, x: u16) -> Rect {
         width: area.right() - x,
         ..area
     }
+}
+
+/// A prompt: a label, the text of a field, and a remark after it. Returns where the cursor is. Of a text that is too
+/// long, the part before the cursor is shown.
+pub fn prompt(
+    buffer: &mut Buffer,
+    area: Rect,
+    theme: &Theme,
+    label: &str,
+    field: &TextField,
+    remark: &str,
+) -> Position {
+    clear(buffer, area);
+    let room = usize::from(area.width).saturating_sub(label.len());
+    let (shown, column) = window(field.text(), field.cursor(), room);
+    let pieces = [label, shown, remark].map(|piece| (piece, Role::Text));
+    line(buffer, area, theme, pieces);
+    let column = narrow(label.len() + column);
+    Position::new(area.x.saturating_add(column), area.y)
 }
 
 /// Empties an area.

@@ -3,10 +3,9 @@
 use ratatui::layout::{Position, Rect};
 
 use crate::pose::Axis;
-use crate::tui::app::layout::below;
-use crate::tui::explore::lines::width_of;
 use crate::tui::explore::results::Results;
 use crate::tui::widget::columns::narrow;
+use crate::tui::widget::write::below;
 
 /// The map of x0 and y0.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +33,7 @@ impl MapPane {
     pub fn of(page: Rect, results: &Results) -> Self {
         let grid = &results.sweep().grid;
         let [width, height, ..] = grid.counts().into_array();
-        let label = narrow(width_of(grid, Axis::Y0) + 1);
+        let label = narrow(results.width_of(Axis::Y0) + 1);
         let side = u16::from(grid.sensor().columns()).clamp(22, 32);
         let with_side = page.width >= label + side + 22;
         let room = page.width - if with_side { side + 2 } else { 0 };

@@ -1,7 +1,43 @@
-//! Which imprint each position leaves.
+//! The map page: which imprint each x0 and y0 leaves at one angle.
 
 pub mod letters;
 
 pub mod layout;
 
 pub mod view;
+
+use ratatui::layout::{Position, Rect};
+
+use crate::pose::Axis;
+use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::explore::map::layout::MapPane;
+use crate::tui::explore::message::{ExploreMessage, ExplorePage};
+use crate::tui::explore::page::ResultsPage;
+use crate::tui::explore::results::Results;
+use crate::tui::keys::binding::Context;
+
+/// The page.
+pub static PAGE: ResultsPage = ResultsPage {
+    page: ExplorePage::Map,
+    title: "map",
+    context: Context::Map,
+    draw: view::draw,
+    click,
+    update,
+};
+
+/// A click puts the cursor at a pose.
+fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
+    let (x0, y0) = MapPane::of(page, results).pose(at)?;
+    Some(Message::Explore(ExploreMessage::Point(x0, y0)))
+}
+
+/// Moves the cursor: along y0 by lines, along x0 to the ends.
+fn update(results: &mut Results, message: &Message, _page: Rect) {
+    match *message {
+        Message::Scroll(lines) => results.move_along(Axis::Y0, i64::from(lines)),
+        Message::ScrollTo(Endpoint::First) => results.move_along(Axis::X0, i64::MIN),
+        Message::ScrollTo(Endpoint::Last) => results.move_along(Axis::X0, i64::MAX),
+        _ => {}
+    }
+}

@@ -8,20 +8,22 @@ use crate::formats::value::{counted, grouped};
 use crate::parameter::Parameter;
 use crate::pose::{Axis, PoseGrid};
 use crate::touch::Plane;
-use crate::tui::app::state::App;
-use crate::tui::explore::imprints::view::place;
 use crate::tui::explore::map::layout::MapPane;
 use crate::tui::explore::map::letters::{letter, letters};
 use crate::tui::explore::results::Results;
-use crate::tui::widget::theme::Role;
+use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
 
 /// What letters mean.
 const LEGEND: &str = "  letter: an imprint";
 
-/// Draws the page; answers where the cursor is.
-pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) -> Option<Position> {
-    let theme = app.theme();
+/// Draws the page. Returns where the cursor is.
+pub(in crate::tui) fn draw(
+    results: &Results,
+    theme: &Theme,
+    buffer: &mut Buffer,
+    page: Rect,
+) -> Option<Position> {
     let pane = MapPane::of(page, results);
     let grid = &results.sweep().grid;
     let head = heading(results);
@@ -31,9 +33,9 @@ pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) -> Op
     if write::width(LEGEND) <= usize::from(legend.width) {
         write::line(buffer, legend, theme, [(LEGEND, Role::Quiet)]);
     }
-    let cursor = draw_cells(app, results, &pane, buffer);
-    draw_rulers(app, grid, &pane, buffer, page);
-    draw_pose(app, results, &pane, buffer);
+    let cursor = draw_cells(theme, results, &pane, buffer);
+    draw_rulers(theme, grid, &pane, buffer, page);
+    draw_pose(theme, results, &pane, buffer);
     cursor
 }
 
@@ -59,12 +61,11 @@ fn heading(results: &Results) -> String {
 }
 
 fn draw_cells(
-    app: &App,
+    theme: &Theme,
     results: &Results,
     pane: &MapPane,
     buffer: &mut Buffer,
 ) -> Option<Position> {
-    let theme = app.theme();
     let ((x, y), (width, height)) = (pane.first, pane.count);
     let ids = results
         .sweep()
@@ -108,8 +109,7 @@ fn draw_cells(
 }
 
 /// y0 left of the cells; above them the first x0 and the last.
-fn draw_rulers(app: &App, grid: &PoseGrid, pane: &MapPane, buffer: &mut Buffer, page: Rect) {
-    let theme = app.theme();
+fn draw_rulers(theme: &Theme, grid: &PoseGrid, pane: &MapPane, buffer: &mut Buffer, page: Rect) {
     let ranges = grid.ranges();
     let label = usize::from(pane.cells.x.saturating_sub(page.x)).saturating_sub(1);
     for (line, index) in (0..pane.cells.height).zip(pane.first.1..) {
@@ -142,8 +142,7 @@ fn draw_rulers(app: &App, grid: &PoseGrid, pane: &MapPane, buffer: &mut Buffer, 
 }
 
 /// The pose at the cursor: its imprint, which one it is, where it is.
-fn draw_pose(app: &App, results: &Results, pane: &MapPane, buffer: &mut Buffer) {
-    let theme = app.theme();
+fn draw_pose(theme: &Theme, results: &Results, pane: &MapPane, buffer: &mut Buffer) {
     let result = results.sweep();
     let grid = &result.grid;
     let pose = grid.pose(grid.number(results.place()));
@@ -156,7 +155,7 @@ fn draw_pose(app: &App, results: &Results, pane: &MapPane, buffer: &mut Buffer) 
         ),
         None => ("not swept".to_owned(), String::new()),
     };
-    let detail = format!("{which} at {}; {poses}", place(results, &pose));
+    let detail = format!("{which} at {}; {poses}", results.pose_text(&pose));
     let detail = detail.trim_end_matches("; ");
     write::line(buffer, pane.detail, theme, [(detail, Role::Text)]);
     if let Some(side) = pane.side {
@@ -168,6 +167,6 @@ fn draw_pose(app: &App, results: &Results, pane: &MapPane, buffer: &mut Buffer) 
             height: below.height.saturating_sub(1),
             ..below
         };
-        thumbnail::draw(app, &imprint, buffer, below);
+        thumbnail::draw(theme, &imprint, buffer, below);
     }
 }

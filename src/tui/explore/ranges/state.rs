@@ -11,7 +11,7 @@ use crate::picture::Picture;
 use crate::pose::{Anchor, Axis, DecimalRange, GridError, MAX_POSES, PoseGrid, Ranges};
 use crate::sensor::Sensor;
 use crate::source::Source;
-use crate::tui::app::document::{Document, Reading};
+use crate::tui::app::document::Document;
 use crate::tui::app::message::Message;
 use crate::tui::explore::message::name_of;
 use crate::tui::keys::key::Arrow;
@@ -58,7 +58,8 @@ pub struct RangesError {
 /// What is explored of a document: its figure or picture, or what is drawn as a picture; nothing of an empty matrix.
 pub fn explored(document: &Document) -> Option<Source> {
     document.source.clone().or_else(|| {
-        let imprint = Reading::of(document).imprint;
+        // Without a source, the edits are all there is.
+        let imprint = document.edits;
         (!imprint.is_empty()).then(|| Source::Picture(Picture::at_home(imprint)))
     })
 }

@@ -8,11 +8,14 @@ use ratatui::layout::{Position, Rect};
 
 use crate::formats::value::counted;
 use crate::pose::Anchor;
-use crate::tui::app::state::App;
+use crate::tui::app::message::Message;
+use crate::tui::app::page::{Page, Slot};
 use crate::tui::explore::ranges::layout::RangeRows;
 use crate::tui::explore::ranges::state::{RangeField, RangesForm};
+use crate::tui::keys::binding::Context;
+use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::columns::narrow;
-use crate::tui::widget::theme::Role;
+use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
 const LABEL: usize = 8;
@@ -21,9 +24,33 @@ const INPUT: usize = 14;
 /// A pane from this width on has room for what is allowed beside the field.
 const WIDE: u16 = 40;
 
-/// Draws the form; answers where the text cursor is.
-pub fn draw(app: &App, form: &RangesForm, buffer: &mut Buffer, area: Rect) -> Option<Position> {
-    let theme = app.theme();
+impl Page for RangesForm {
+    fn context(&self) -> Context {
+        Context::Ranges
+    }
+
+    fn slot(&self) -> Slot {
+        Slot::Form
+    }
+
+    fn draw(
+        &self,
+        theme: &Theme,
+        _keymap: &Keymap,
+        buffer: &mut Buffer,
+        area: Rect,
+    ) -> Option<Position> {
+        draw(theme, self, buffer, area)
+    }
+
+    fn click(&self, area: Rect, at: Position) -> Option<Message> {
+        let row = RangeRows::of(area, self).row(at.y - area.y)?;
+        Some(Message::ToField(Some(row)))
+    }
+}
+
+/// Draws the form. Returns where the text cursor is.
+fn draw(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rect) -> Option<Position> {
     write::clear(buffer, area);
     let title = form.title();
     write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
@@ -32,12 +59,12 @@ pub fn draw(app: &App, form: &RangesForm, buffer: &mut Buffer, area: Rect) -> Op
     for (index, line) in rows.lines() {
         let row = write::row(area, line.into());
         let Some(field) = form.fields().get(index) else {
-            let at = draw_anchor(app, form, buffer, row);
+            let at = draw_anchor(theme, form, buffer, row);
             cursor = cursor.or(form.focus().is_none().then_some(at));
             continue;
         };
         let marked = form.focus() == Some(index);
-        let at = draw_field(app, field, marked, buffer, row);
+        let at = draw_field(theme, field, marked, buffer, row);
         cursor = cursor.or(marked.then_some(at));
         let under = write::right_of(write::row(area, usize::from(line) + 1), area.x + 2);
         let beside = write::right_of(row, area.x.saturating_add(narrow(LABEL + INPUT + 1)));
@@ -58,19 +85,18 @@ pub fn draw(app: &App, form: &RangesForm, buffer: &mut Buffer, area: Rect) -> Op
             write::line(buffer, place, theme, [(text.as_str(), role)]);
         }
     }
-    draw_summary(app, form, buffer, write::below(area, rows.end()));
+    draw_summary(theme, form, buffer, write::below(area, rows.end()));
     cursor
 }
 
 /// Label and text; answers where the text cursor would be.
 fn draw_field(
-    app: &App,
+    theme: &Theme,
     field: &RangeField,
     focused: bool,
     buffer: &mut Buffer,
     row: Rect,
 ) -> Position {
-    let theme = app.theme();
     let label = format!("{:LABEL$}", field.parameter().row().label);
     let (shown, cursor) = write::window(field.text(), field.cursor(), INPUT);
     let shown = write::fitted(shown, INPUT, theme);
@@ -83,7 +109,7 @@ fn draw_field(
 }
 
 /// The anchor between angle brackets.
-fn draw_anchor(app: &App, form: &RangesForm, buffer: &mut Buffer, row: Rect) -> Position {
+fn draw_anchor(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, row: Rect) -> Position {
     let label = format!("{:LABEL$}", "Anchor");
     let (name, meaning) = match form.anchor() {
         Anchor::Corner => ("corner", "top left, unturned"),
@@ -102,13 +128,12 @@ fn draw_anchor(app: &App, form: &RangesForm, buffer: &mut Buffer, row: Rect) -> 
         (" >     ", Role::Quiet),
         (meaning, Role::Quiet),
     ];
-    write::line(buffer, row, app.theme(), pieces);
+    write::line(buffer, row, theme, pieces);
     Position::new(row.x.saturating_add(narrow(LABEL)), row.y)
 }
 
 /// How many poses there are, or why there are none; and what is left out.
-fn draw_summary(app: &App, form: &RangesForm, buffer: &mut Buffer, area: Rect) {
-    let theme = app.theme();
+fn draw_summary(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rect) {
     let (text, role) = match form.grid() {
         Ok(grid) => {
             let poses = counted(grid.poses(), "pose");

@@ -1,22 +1,32 @@
-//! How often which values of the chosen descriptor occur: a bar an interval, with its ends and its poses.
+//! The histogram page: how often each value of the chosen descriptor occurs, a bar for each interval.
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 
 use crate::atlas::Histogram;
 use crate::description::Dimension;
 use crate::formats::value::{counted, fitting, grouped};
-use crate::tui::app::state::App;
+use crate::tui::explore::message::ExplorePage;
+use crate::tui::explore::page::{ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
-use crate::tui::widget::theme::Role;
+use crate::tui::keys::binding::Context;
+use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
 /// Characters of a number in the line above the bars.
 const NUMBER: usize = 9;
 
-/// Draws the page.
-pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) {
-    let theme = app.theme();
+/// The page.
+pub static PAGE: ResultsPage = ResultsPage {
+    page: ExplorePage::Histogram,
+    title: "histogram",
+    context: Context::Histogram,
+    draw,
+    click: |_, _, _| None,
+    update: choose_descriptor,
+};
+
+fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
     let (result, feature) = (results.sweep(), results.feature());
     let statistic = &result.statistics[results.feature_number()];
     let number = |value: Option<f64>| {
@@ -48,20 +58,20 @@ pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) {
         let text = format!("{}  no pose has a value", theme.none());
         let row = write::row(page, 2);
         write::line(buffer, row, theme, [(text.as_str(), Role::Quiet)]);
-        return;
+        return None;
     }
     bars(
-        app,
+        theme,
         &histogram,
         feature.descriptor.dimension,
         buffer,
         write::below(page, 2),
     );
+    None
 }
 
 /// A line an interval.
-fn bars(app: &App, histogram: &Histogram, unit: Dimension, buffer: &mut Buffer, area: Rect) {
-    let theme = app.theme();
+fn bars(theme: &Theme, histogram: &Histogram, unit: Dimension, buffer: &mut Buffer, area: Rect) {
     let decimals = histogram.decimals();
     let single = unit == Dimension::Count && histogram.width == 1.0;
     let label = |bin: usize| {

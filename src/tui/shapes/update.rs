@@ -1,4 +1,4 @@
-//! What the library answers.
+//! What messages do in the list of shapes, and what the answers of the library do.
 
 use crate::imprint::Imprint;
 use crate::picture::Picture;
@@ -6,17 +6,33 @@ use crate::storage::{Expected, LoadedShape, ShapeOrigin};
 use crate::tui::app::change::{begin, change, inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::{Document, StoredName};
-use crate::tui::app::message::{Leftover, LibraryEvent, Message};
+use crate::tui::app::message::{Endpoint, Leftover, LibraryEvent, Message, Purpose};
 use crate::tui::app::state::{App, Mode};
 use crate::tui::form::state::FormDialog;
 use crate::tui::keys::action::{self, Arguments};
 use crate::tui::keys::binding::Context;
 use crate::tui::prompt::commands::wants_names;
 use crate::tui::runtime::effect::{Effect, LibraryRequest};
-use crate::tui::shapes::purpose::Purpose;
 use crate::tui::shapes::state::ListDialog;
 
-/// Takes an answer.
+/// Handles a message. The list goes back onto the stack unless a shape is taken.
+pub(in crate::tui) fn update(
+    app: &mut App,
+    mut list: ListDialog,
+    message: Message,
+) -> Option<Effect> {
+    match message {
+        Message::Accept => return choose(app, list),
+        Message::Scroll(lines) => list.go(lines),
+        Message::ScrollTo(Endpoint::First) => list.select(0),
+        Message::ScrollTo(Endpoint::Last) => list.select(usize::MAX),
+        other => list.edit(&other),
+    }
+    app.dialogs.push(Dialog::List(list));
+    look(app)
+}
+
+/// Takes an answer of the library.
 pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<Effect> {
     match answer {
         LibraryEvent::List(Ok(entries)) => match app.dialogs.last_mut() {
@@ -136,8 +152,8 @@ fn offer(app: &mut App, before: &str, left: &Leftover) {
     app.dialogs.push(Dialog::Question(question));
 }
 
-/// Asks for the shapes of the list that have come into sight.
-pub(in crate::tui) fn look(app: &App) -> Option<Effect> {
+/// Reads the shapes of the list that have come into sight.
+fn look(app: &App) -> Option<Effect> {
     let Some(Dialog::List(list)) = app.dialogs.last() else {
         return None;
     };
@@ -146,7 +162,7 @@ pub(in crate::tui) fn look(app: &App) -> Option<Effect> {
 }
 
 /// The selected shape of a list is taken, for what the list is for.
-pub(in crate::tui) fn choose(app: &mut App, list: ListDialog) -> Option<Effect> {
+fn choose(app: &mut App, list: ListDialog) -> Option<Effect> {
     let purpose = list.purpose();
     let chosen = list
         .choice()

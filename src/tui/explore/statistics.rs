@@ -1,19 +1,97 @@
-//! Statistics of every descriptor, a row each, and how many poses and imprints there are.
+//! The statistics page: a row for each descriptor, and how many poses and imprints there are.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::atlas::{STATISTIC_COLUMNS, features};
 use crate::formats::value::{fitting, grouped};
-use crate::tui::app::state::App;
+use crate::tui::app::message::Message;
+use crate::tui::explore::message::{ExploreMessage, ExplorePage};
+use crate::tui::explore::page::{ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
-use crate::tui::explore::statistics::layout::StatisticsTable;
-use crate::tui::widget::theme::Role;
-use crate::tui::widget::write;
+use crate::tui::keys::binding::Context;
+use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::write::{self, below, first_of};
 
-/// Draws the page; answers where the chosen descriptor is.
-pub fn draw(app: &App, results: &Results, buffer: &mut Buffer, page: Rect) -> Option<Position> {
-    let theme = app.theme();
+/// The page.
+pub static PAGE: ResultsPage = ResultsPage {
+    page: ExplorePage::Statistics,
+    title: "statistics",
+    context: Context::Statistics,
+    draw,
+    click: |results, page, at| {
+        let row = StatisticsTable::of(page, results).row(at)?;
+        Some(Message::Explore(ExploreMessage::Select(row)))
+    },
+    update,
+};
+
+/// Scrolls the columns; rows are descriptors.
+fn update(results: &mut Results, message: &Message, page: Rect) {
+    if let Message::Explore(ExploreMessage::Columns(by)) = message {
+        let (_, visible) = StatisticsTable::of(page, results).columns;
+        results.move_columns(*by, STATISTIC_COLUMNS.len() - visible);
+    } else {
+        choose_descriptor(results, message, page);
+    }
+}
+
+/// The table of statistics.
+#[derive(Clone, Copy, Debug)]
+pub struct StatisticsTable {
+    /// How many poses and imprints there are; empty where there is no room.
+    pub totals: Rect,
+    /// The headings.
+    pub head: Rect,
+    /// The rows.
+    pub rows: Rect,
+    /// The row that comes first.
+    pub first: usize,
+    /// Characters of a name.
+    pub name: usize,
+    /// Characters of a column.
+    pub column: usize,
+    /// The column that comes first, and how many there is room for.
+    pub columns: (usize, usize),
+}
+
+impl StatisticsTable {
+    /// The table on its page.
+    pub fn of(page: Rect, results: &Results) -> Self {
+        let (name, count) = (17, STATISTIC_COLUMNS.len());
+        let room = usize::from(page.width).saturating_sub(name);
+        // Eight columns fit into 80 characters.
+        let column = (room / count).clamp(7, 10);
+        let visible = (room / column).min(count);
+        let totals = Rect {
+            height: if page.height > 6 { 2 } else { 0 },
+            ..page
+        };
+        let table = below(page, totals.height);
+        let rows = below(table, 1);
+        Self {
+            totals,
+            head: Rect {
+                height: table.height.min(1),
+                ..table
+            },
+            first: first_of(rows.height, features().len(), results.feature_number()),
+            rows,
+            name,
+            column,
+            columns: (results.column().min(count - visible), visible),
+        }
+    }
+
+    /// The row at a place of the screen.
+    pub fn row(&self, place: Position) -> Option<usize> {
+        let row = self.first + usize::from(place.y.checked_sub(self.rows.y)?);
+        (self.rows.contains(place) && row < features().len()).then_some(row)
+    }
+}
+
+/// Draws the page. Returns where the chosen descriptor is.
+fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
     let table = StatisticsTable::of(page, results);
     for (index, total) in totals(results).iter().enumerate() {
         let row = write::row(table.totals, index);

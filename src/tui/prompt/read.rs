@@ -6,17 +6,18 @@
 use crate::figure::{Figure, FigureKind};
 use crate::formats::Name;
 use crate::parameter::Parameter;
+use crate::pose::{Anchor, Axis, PoseGrid, RangeError, Ranges};
 use crate::quote::shortened;
 use crate::sensor::Sensor;
 use crate::source::Source;
-use crate::storage::{Expected, ShapeOrigin};
 use crate::tui::app::document::Document;
-use crate::tui::app::message::Message;
+use crate::tui::app::message::{Message, Purpose};
 use crate::tui::app::state::App;
+use crate::tui::explore::message::ExploreMessage;
+use crate::tui::explore::ranges::state::explored;
 use crate::tui::keys::action::{self, Arguments};
 use crate::tui::keys::binding::Context;
 use crate::tui::prompt::commands::{PromptCommand, find};
-use crate::tui::shapes::purpose::Purpose;
 
 /// The message of a line.
 ///
@@ -68,7 +69,7 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
         (Arguments::Name, _) => Ok(app.storing(name_of(rest)?)),
         (Arguments::Figure, [kind, pairs @ ..]) => figure(kind, pairs, app),
         (Arguments::Sensor, pairs) => sensor(pairs, app),
-        (Arguments::Ranges, pairs) => crate::tui::prompt::explore::read(pairs, app),
+        (Arguments::Ranges, pairs) => explore(pairs, app),
         (Arguments::Degrees, _) => match rest.parse() {
             Ok(degrees) if (-360..=360).contains(&degrees) => Ok(Message::Turn(degrees)),
             _ => Err(format!(
@@ -187,17 +188,47 @@ fn sensor(pairs: &[&str], app: &App) -> Result<Message, String> {
     )))
 }
 
-impl App {
-    /// What stores the document under a name. Over the file that it came from it asks, as over any other.
-    pub(in crate::tui) fn storing(&self, name: Name) -> Message {
-        let own = self
-            .stored()
-            .filter(|stored| stored.owner == ShapeOrigin::Own && name.same(&stored.name));
-        let stamp = own.map(|stored| stored.stamp);
-        let shape = Box::new(self.history.present().to_shape(name));
-        match stamp {
-            Some(stamp) => Message::Replace(shape, stamp),
-            None => Message::Store(shape, Expected::Nothing),
+/// What the flags ask for; ranges that are not given are the defaults.
+///
+/// # Errors
+/// What is wrong with them, in a sentence.
+fn explore(words: &[&str], app: &App) -> Result<Message, String> {
+    let document = app.shown();
+    let source = explored(document).ok_or_else(|| app.nothing_to_explore())?;
+    let (mut ranges, mut anchor) = (Ranges::default(), Anchor::default());
+    let mut given: Vec<&str> = Vec::new();
+    for pair in words.chunks(2) {
+        let flag = pair.first().copied().unwrap_or_default();
+        let name = flag
+            .strip_prefix("--")
+            .ok_or_else(|| format!("expected a flag like --x0, found {}", shortened(flag)))?;
+        let text = pair
+            .get(1)
+            .ok_or_else(|| format!("{} needs a value", shortened(flag)))?;
+        if given.contains(&flag) {
+            return Err(format!("{flag} is given twice"));
         }
+        given.push(flag);
+        if name == "anchor" {
+            anchor = Anchor::from_name(text).ok_or_else(|| {
+                let names = Anchor::NAMES.join(" or ");
+                format!("--anchor takes {names}, found {}", shortened(text))
+            })?;
+            continue;
+        }
+        let mut axes = Axis::ALL.into_iter();
+        let axis = axes.find(|axis| axis.parameter().flag() == name);
+        let axis = axis.ok_or_else(|| {
+            format!(
+                "{} is unknown, expected --x0, --y0, --angle, --zoom-x, --zoom-y or --anchor",
+                shortened(flag)
+            )
+        })?;
+        ranges[axis] = text
+            .parse()
+            .map_err(|error: RangeError| format!("{flag}: {error}"))?;
     }
+    let grid = PoseGrid::new(source, document.sensor, anchor, ranges);
+    let grid = grid.map_err(|error| error.to_string())?;
+    Ok(Message::Explore(ExploreMessage::Start(Box::new(grid))))
 }

@@ -1,0 +1,65 @@
+//! What the screen knows of a page: of each form, list, prompt, question or result that lies over the matrix.
+//!
+//! [`crate::tui::app::dialog`] has the table of pages. The screen draws them, shows their keys and finds what the mouse
+//! points at through this trait, and so never names one of them.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::tui::app::message::Message;
+use crate::tui::keys::binding::Context;
+use crate::tui::keys::keymap::Keymap;
+use crate::tui::widget::theme::{Role, Theme};
+
+/// Where a page stands on the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slot {
+    /// Between the menu and the line of notices. It hides the lines about the matrix, too.
+    Screen,
+    /// Between the menu and the lines at the foot.
+    Body,
+    /// Beside the matrix, which stays visible.
+    Form,
+    /// In the line of notices, over the page below. Notices stand above it.
+    Prompt,
+    /// In place of a notice, over the page below.
+    Question,
+}
+
+/// A page that lies over the matrix. The top one receives the keys.
+pub trait Page {
+    /// The place where its keys are looked up.
+    fn context(&self) -> Context;
+
+    /// Where it stands.
+    fn slot(&self) -> Slot;
+
+    /// Draws it into the area of its slot. Returns where the text cursor is, None if the page has none.
+    fn draw(
+        &self,
+        theme: &Theme,
+        keymap: &Keymap,
+        buffer: &mut Buffer,
+        area: Rect,
+    ) -> Option<Position>;
+
+    /// What a click at a position of its area means, None if there is nothing to click on.
+    fn click(&self, _area: Rect, _at: Position) -> Option<Message> {
+        None
+    }
+
+    /// Whether the mouse wheel scrolls it.
+    fn scrolls(&self) -> bool {
+        false
+    }
+
+    /// Whether Cancel and Quit go to its own update. Otherwise they close it.
+    fn cancels_itself(&self) -> bool {
+        false
+    }
+
+    /// Its own text for the line of notices. It is shown while there is no notice; that of a question always.
+    fn remark(&self, _keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
+        None
+    }
+}

@@ -1,3 +1,0 @@
-//! How often each value of a descriptor occurs.
-
-pub mod view;

@@ -1,0 +1,287 @@
+//! The imprints page: a row for each distinct imprint, thumbnails from the selected one on, and a line about it.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::atlas::{AtlasEntry, SortKey};
+use crate::formats::value::{counted, fitting, grouped};
+use crate::pose::Axis;
+use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::explore::message::{ExploreMessage, ExplorePage};
+use crate::tui::explore::page::ResultsPage;
+use crate::tui::explore::results::Results;
+use crate::tui::keys::binding::Context;
+use crate::tui::widget::columns::narrow;
+use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::{thumbnail, write};
+
+/// Characters of a value of a descriptor.
+const VALUE: usize = 8;
+/// Characters of a share in percent.
+const SHARE: usize = 6;
+/// Characters of the sign of the selected row.
+const SIGN: usize = 2;
+
+/// The page.
+pub static PAGE: ResultsPage = ResultsPage {
+    page: ExplorePage::Imprints,
+    title: "imprints",
+    context: Context::Imprints,
+    draw,
+    click,
+    update,
+};
+
+/// A click selects a row, a click on the selected row takes it.
+fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
+    let row = ImprintList::of(page, results).row(at, results)?;
+    Some(if row == results.selected() {
+        Message::Accept
+    } else {
+        Message::Explore(ExploreMessage::Select(row))
+    })
+}
+
+/// Selects a row.
+fn update(results: &mut Results, message: &Message, _page: Rect) {
+    match *message {
+        Message::Scroll(lines) => {
+            let by = isize::from(lines);
+            results.select(results.selected().saturating_add_signed(by));
+        }
+        Message::ScrollTo(Endpoint::First) => results.select(0),
+        Message::ScrollTo(Endpoint::Last) => results.select(usize::MAX),
+        Message::Explore(ExploreMessage::Select(row)) => results.select(row),
+        _ => {}
+    }
+}
+
+/// The first visible row: rows are shown page by page, so that a row that is clicked on stays where it is.
+fn first(visible: usize, selected: usize) -> usize {
+    selected - selected % visible.max(1)
+}
+
+/// The list of imprints.
+#[derive(Clone, Debug)]
+pub struct ImprintList {
+    /// The headings.
+    pub head: Rect,
+    /// The rows.
+    pub rows: Rect,
+    /// All about the selected one.
+    pub detail: Rect,
+    /// Thumbnails, where there is room beside the rows.
+    pub gallery: Option<Rect>,
+    /// The row that comes first.
+    pub first: usize,
+    /// Characters of a number of an imprint.
+    pub id: usize,
+    /// Characters of a number of poses.
+    pub poses: usize,
+    /// Characters of the values of the first pose, where there is room for it.
+    pub place: Vec<(Axis, usize)>,
+}
+
+impl ImprintList {
+    /// The list on its page.
+    pub fn of(page: Rect, results: &Results) -> Self {
+        let result = results.sweep();
+        let grid = &result.grid;
+        let id = result.atlas.len().to_string().len().max(2);
+        let poses = grouped(result.poses).len().max(6);
+        let place: Vec<(Axis, usize)> = grid
+            .axes()
+            .map(|axis| (axis, results.width_of(axis)))
+            .collect();
+        let short = SIGN + id + 1 + poses + 1 + SHARE + 1 + 2 + 1 + 2 + 1 + VALUE;
+        let full = short + place.iter().map(|(_, width)| width + 1).sum::<usize>();
+        let room = usize::from(page.width);
+        let thumbnail = usize::from(grid.sensor().columns().min(16)) + 2;
+        let (width, beside) = if full + thumbnail <= room {
+            (full, true)
+        } else if short + thumbnail <= room {
+            (short, true)
+        } else {
+            (if full <= room { full } else { short }, false)
+        };
+        let table = Rect {
+            width: narrow(width).min(page.width),
+            ..page
+        };
+        let x = table.right().saturating_add(2).min(page.right());
+        let gallery = Rect {
+            x,
+            width: page.right() - x,
+            height: page.height.saturating_sub(1),
+            ..page
+        };
+        let rows = Rect {
+            height: page.height.saturating_sub(2),
+            ..write::below(table, 1)
+        };
+        Self {
+            head: Rect {
+                height: page.height.min(1),
+                ..table
+            },
+            first: first(usize::from(rows.height), results.selected()),
+            rows,
+            detail: Rect {
+                height: u16::from(page.height > 1),
+                ..write::below(page, page.height.saturating_sub(1))
+            },
+            gallery: beside.then_some(gallery),
+            id,
+            poses,
+            place: if width == full { place } else { Vec::new() },
+        }
+    }
+
+    /// The row at a place of the screen.
+    pub fn row(&self, place: Position, results: &Results) -> Option<usize> {
+        let row = self.first + usize::from(place.y.checked_sub(self.rows.y)?);
+        (self.rows.contains(place) && row < results.row_count()).then_some(row)
+    }
+}
+
+/// Draws the page. Returns where the selected row is.
+fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
+    let list = ImprintList::of(page, results);
+    let head = heading(theme, results, &list);
+    write::line(buffer, list.head, theme, [(head.as_str(), Role::Title)]);
+    let visible = usize::from(list.rows.height);
+    let mut cursor = None;
+    for (index, entry) in results.rows_from(list.first).take(visible) {
+        let row = write::row(list.rows, index - list.first);
+        let selected = index == results.selected();
+        let (sign, role) = if selected {
+            ("> ", Role::Focus)
+        } else {
+            ("  ", Role::Text)
+        };
+        let text = row_text(theme, results, &list, &entry);
+        let pieces = [(sign, Role::Key), (text.as_str(), role)];
+        write::line(buffer, row, theme, pieces);
+        if selected {
+            cursor = Some(Position::new(row.x, row.y));
+            let text = detail(theme, results, &entry);
+            write::line(buffer, list.detail, theme, [(text.as_str(), Role::Text)]);
+        }
+    }
+    if let Some(area) = list.gallery {
+        draw_gallery(theme, results, buffer, area);
+    }
+    cursor
+}
+
+/// The headings, an arrow at what the rows are sorted by.
+fn heading(theme: &Theme, results: &Results, list: &ImprintList) -> String {
+    let (by, descending) = results.sort_key();
+    let marked = |title: &str, key: SortKey| {
+        let arrow = (by == key).then(|| theme.sorted(descending));
+        arrow.into_iter().chain(title.chars()).collect::<String>()
+    };
+    let (id, poses) = (list.id, list.poses);
+    let mut text = format!(
+        "  {:>id$} {:>poses$} {:>SHARE$}",
+        marked("#", SortKey::FirstPose),
+        marked("poses", SortKey::Poses),
+        "%"
+    );
+    for &(axis, width) in &list.place {
+        text += &format!(" {:>width$}", axis.parameter().row().short);
+    }
+    let key: String = results.feature().key.chars().take(VALUE - 1).collect();
+    text += &format!(
+        " {:>2} {:>2} {:>VALUE$}",
+        marked("p", SortKey::Pieces),
+        marked("h", SortKey::Holes),
+        marked(&key, SortKey::Value)
+    );
+    text
+}
+
+fn row_text(theme: &Theme, results: &Results, list: &ImprintList, entry: &AtlasEntry) -> String {
+    let (id, poses) = (list.id, list.poses);
+    let mut text = format!(
+        "{:>id$} {:>poses$} {:>SHARE$}",
+        entry.id,
+        grouped(entry.count),
+        share(results, entry)
+    );
+    let pose = results.sweep().grid.pose(entry.first_pose);
+    for &(axis, width) in &list.place {
+        text += &format!(" {:>width$}", axis.parameter().format(pose[axis]));
+    }
+    text += &format!(" {:>2} {:>2}", entry.summary.pieces, entry.summary.holes);
+    text += &format!(" {:>VALUE$}", number(theme, results, entry));
+    text
+}
+
+/// In percent.
+fn share(results: &Results, entry: &AtlasEntry) -> String {
+    let share = crate::formats::atlas::share(results.sweep(), entry) * 100.0;
+    format!("{share:.2}")
+}
+
+/// The chosen descriptor's value.
+fn number(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
+    let index = usize::try_from(entry.id).unwrap_or(usize::MAX);
+    let value = results.values().get(index).copied().flatten();
+    value.map_or_else(
+        || theme.none().to_owned(),
+        |value| fitting(value, VALUE - 1),
+    )
+}
+
+/// All about an imprint in one line.
+fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
+    let pose = results.sweep().grid.pose(entry.first_pose);
+    let count = |count: u16, noun: &str| counted(count.into(), noun);
+    format!(
+        "imprint {} at {}; {}, {}, {} {}",
+        entry.id,
+        results.pose_text(&pose),
+        count(entry.summary.pieces, "piece"),
+        count(entry.summary.holes, "hole"),
+        results.feature().key,
+        number(theme, results, entry)
+    )
+}
+
+/// Thumbnails of the selected imprint and those after it, in lines from left to right.
+fn draw_gallery(theme: &Theme, results: &Results, buffer: &mut Buffer, area: Rect) {
+    let Some((_, first)) = results.rows_from(results.selected()).next() else {
+        return;
+    };
+    let (width, height) = thumbnail::size(theme, &first.imprint);
+    let (width, height) = (
+        width.min(area.width),
+        height.min(area.height.saturating_sub(1)),
+    );
+    if width == 0 || height == 0 {
+        return;
+    }
+    let across = (area.width + 2) / (width + 2);
+    // A caption stands over each.
+    let down = area.height / (height + 1);
+    let places =
+        (0..down.max(1)).flat_map(|line| (0..across.max(1)).map(move |column| (column, line)));
+    for ((column, line), (index, entry)) in places.zip(results.rows_from(results.selected())) {
+        let place = Rect {
+            x: area.x + column * (width + 2),
+            y: area.y + line * (height + 1),
+            width,
+            height: height + 1,
+        };
+        let place = place.intersection(area);
+        let sign = if index == results.selected() {
+            ">"
+        } else {
+            "#"
+        };
+        let caption = format!("{sign}{}", entry.id);
+        write::line(buffer, place, theme, [(caption.as_str(), Role::Key)]);
+        thumbnail::draw(theme, &entry.imprint, buffer, write::below(place, 1));
+    }
+}

@@ -1,5 +1,0 @@
-//! The list of distinct imprints.
-
-pub mod layout;
-
-pub mod view;

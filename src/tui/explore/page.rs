@@ -1,0 +1,41 @@
+//! What the results of a sweep know of a page of theirs.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::explore::message::{ExploreMessage, ExplorePage};
+use crate::tui::explore::results::Results;
+use crate::tui::keys::binding::Context;
+use crate::tui::widget::theme::Theme;
+
+/// A page of the results: what [`crate::tui::explore::pages`] lists. The functions get the area of the page.
+#[derive(Debug)]
+pub struct ResultsPage {
+    /// Which page it is.
+    pub page: ExplorePage,
+    /// Its title on its tab.
+    pub title: &'static str,
+    /// The place where its keys are looked up.
+    pub context: Context,
+    /// Draws it. Returns where the cursor is, None if the page has none.
+    pub draw: fn(&Results, &Theme, &mut Buffer, Rect) -> Option<Position>,
+    /// What a click at a position means.
+    pub click: fn(&Results, Rect, Position) -> Option<Message>,
+    /// Handles the messages that mean something else on each page: to scroll and to select a row.
+    pub update: fn(&mut Results, &Message, Rect),
+}
+
+/// The update of a page whose rows are descriptors.
+pub(in crate::tui) fn choose_descriptor(results: &mut Results, message: &Message, _page: Rect) {
+    match *message {
+        Message::Scroll(lines) => {
+            let by = isize::from(lines);
+            results.choose_feature(results.feature_number().saturating_add_signed(by));
+        }
+        Message::ScrollTo(Endpoint::First) => results.choose_feature(0),
+        Message::ScrollTo(Endpoint::Last) => results.choose_feature(usize::MAX),
+        Message::Explore(ExploreMessage::Select(row)) => results.choose_feature(row),
+        _ => {}
+    }
+}

@@ -1,0 +1,183 @@
+//! A sweep or an export in progress: what it is, how far it is, how fast it goes and how long it will take.
+
+use std::time::Duration;
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::formats::value::{counted, grouped};
+use crate::pose::PoseGrid;
+use crate::tui::app::page::{Page, Slot};
+use crate::tui::explore::message::{SweepProgress, name_of};
+use crate::tui::explore::ranges::view::about;
+use crate::tui::keys::binding::Context;
+use crate::tui::keys::keymap::Keymap;
+use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::write;
+
+/// What is done.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WorkKind {
+    /// A grid is gone through.
+    Sweep(Box<PoseGrid>),
+    /// A file of this name is written; of so many poses, where it holds all of them.
+    Write(String, Option<u64>),
+}
+
+/// The work.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Running {
+    /// Its number.
+    pub number: u64,
+    /// What it is.
+    pub job: WorkKind,
+    /// How far it is; none before the first word of it.
+    pub progress: Option<SweepProgress>,
+    /// Whether it was told to stop.
+    pub stopping: bool,
+}
+
+impl Running {
+    /// Work that begins.
+    pub fn new(number: u64, job: WorkKind) -> Self {
+        Self {
+            number,
+            job,
+            progress: None,
+            stopping: false,
+        }
+    }
+
+    /// How many poses there are in all, where it is about poses.
+    pub fn poses(&self) -> Option<u64> {
+        match &self.job {
+            WorkKind::Sweep(grid) => Some(grid.poses()),
+            WorkKind::Write(_, poses) => *poses,
+        }
+    }
+
+    /// Poses a second; none before that can be told.
+    #[expect(clippy::cast_precision_loss, reason = "for reading")]
+    pub fn rate(&self) -> Option<f64> {
+        let SweepProgress { poses, elapsed } = self.progress?;
+        let seconds = elapsed.as_secs_f64();
+        (seconds > 0.0 && poses > 0).then(|| poses as f64 / seconds)
+    }
+
+    /// Seconds that are left at that rate.
+    #[expect(clippy::cast_precision_loss, reason = "for reading")]
+    pub fn left(&self) -> Option<f64> {
+        let rest = self.poses()?.saturating_sub(self.progress?.poses);
+        Some(rest as f64 / self.rate()?)
+    }
+}
+
+/// The gauge is no wider.
+const WIDEST: u16 = 60;
+
+impl Page for Running {
+    fn context(&self) -> Context {
+        Context::Running
+    }
+
+    fn slot(&self) -> Slot {
+        Slot::Body
+    }
+
+    fn draw(
+        &self,
+        theme: &Theme,
+        _keymap: &Keymap,
+        buffer: &mut Buffer,
+        area: Rect,
+    ) -> Option<Position> {
+        draw(theme, self, buffer, area);
+        None
+    }
+
+    /// Its update stops the work.
+    fn cancels_itself(&self) -> bool {
+        true
+    }
+}
+
+fn draw(theme: &Theme, running: &Running, buffer: &mut Buffer, area: Rect) {
+    write::clear(buffer, area);
+    let inner = write::right_of(area, area.x.saturating_add(2));
+    let (title, end) = match &running.job {
+        WorkKind::Sweep(grid) => (
+            format!("Exploring: {}", name_of(grid.source())),
+            "stop keeps what is complete",
+        ),
+        WorkKind::Write(name, _) => (format!("Writing {name}"), "stop leaves nothing behind"),
+    };
+    // On a low screen what matters most comes first.
+    let spaced = usize::from(area.height >= 9);
+    let row = |index: usize| write::row(inner, index * (1 + spaced));
+    write::line(buffer, row(0), theme, [(title.as_str(), Role::Title)]);
+    let done = running.progress.map_or(0, |progress| progress.poses);
+    if let Some(all) = running.poses() {
+        let percent = u128::from(done) * 100 / u128::from(all.max(1));
+        let all_of_them = counted(all, "pose");
+        let text = format!("{} of {all_of_them}, {percent} %", grouped(done));
+        write::line(buffer, row(1), theme, [(text.as_str(), Role::Text)]);
+        gauge(theme, done, all, buffer, row(2));
+    }
+    let time = speed(running);
+    write::line(buffer, row(3), theme, [(time.as_str(), Role::Text)]);
+    let end = if running.stopping { "stopping" } else { end };
+    write::line(buffer, row(4), theme, [(end, Role::Quiet)]);
+}
+
+/// A bar as long as what is done.
+fn gauge(theme: &Theme, done: u64, all: u64, buffer: &mut Buffer, row: Rect) {
+    let [full, _, empty] = theme.bar();
+    let width = row.width.min(WIDEST);
+    let filled = u128::from(done) * u128::from(width) / u128::from(all.max(1));
+    let filled = u16::try_from(filled).unwrap_or(width).min(width);
+    let text = |character: char, count: u16| character.to_string().repeat(count.into());
+    let (done, rest) = (text(full, filled), text(empty, width - filled));
+    let pieces = [(done.as_str(), Role::Chosen), (rest.as_str(), Role::Quiet)];
+    write::line(buffer, row, theme, pieces);
+}
+
+/// Poses a second, and the time that is left; nothing before that can be told.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "saturates"
+)]
+fn speed(running: &Running) -> String {
+    let Some(rate) = running.rate() else {
+        return String::new();
+    };
+    let left = running
+        .left()
+        .and_then(|left| Duration::try_from_secs_f64(left).ok());
+    let left = left.map_or(String::new(), |left| format!(", {} left", about(left)));
+    format!("{} poses a second{left}", grouped(rate as u64))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    #[test]
+    fn rate_and_rest_are_those_of_what_was_done() {
+        let mut running = Running::new(1, WorkKind::Write("a.npy".to_owned(), Some(1000)));
+        assert_eq!((running.rate(), running.left()), (None, None));
+        let progress = |poses, millis| {
+            let elapsed = Duration::from_millis(millis);
+            Some(SweepProgress { poses, elapsed })
+        };
+        running.progress = progress(0, 100);
+        assert_eq!((running.rate(), running.left()), (None, None));
+        running.progress = progress(250, 500);
+        assert_eq!((running.rate(), running.left()), (Some(500.0), Some(1.5)));
+        running.progress = progress(250, 0);
+        assert_eq!(running.rate(), None, "a clock that stands still");
+        running.progress = progress(1200, 500);
+        assert_eq!(running.left(), Some(0.0));
+    }
+}

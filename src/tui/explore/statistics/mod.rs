@@ -1,5 +1,0 @@
-//! Statistics of every descriptor.
-
-pub mod layout;
-
-pub mod view;

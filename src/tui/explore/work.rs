@@ -1,0 +1,232 @@
+//! The way to results: the form of ranges, sweeps and exports in progress, and the events of their workers.
+
+use std::sync::Arc;
+
+use crate::formats::value::grouped;
+use crate::pose::PoseGrid;
+use crate::storage::Existing;
+use crate::tui::app::change::{inform, refuse};
+use crate::tui::app::dialog::{Dialog, Question};
+use crate::tui::app::message::Message;
+use crate::tui::app::state::{App, Mode};
+use crate::tui::explore::export::{ExportDialog, is_poses};
+use crate::tui::explore::message::{ExploreMessage, Findings, WorkerEvent};
+use crate::tui::explore::ranges::state::{RangesForm, explored};
+use crate::tui::explore::results::Results;
+use crate::tui::explore::running::{Running, WorkKind};
+use crate::tui::runtime::effect::{Effect, Work};
+
+/// What is asked for over the matrix or at a question.
+pub(crate) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
+    match asked {
+        ExploreMessage::Open => open(app),
+        ExploreMessage::Ranges => open_ranges(app),
+        ExploreMessage::Start(grid) => Some(start(app, *grid)),
+        ExploreMessage::Write(name, existing) => {
+            let found = Arc::clone(app.results_below()?.findings());
+            let poses = is_poses(&name).then(|| found.sweep.grid.poses());
+            let number = begin(app, WorkKind::Write(name.clone(), poses));
+            Some(Effect::Work(Work::Write(number, found, name, existing)))
+        }
+        _ => None,
+    }
+}
+
+/// The last results where they are those of the shape on the matrix, else a form.
+fn open(app: &mut App) -> Option<Effect> {
+    app.mode = Mode::Draw;
+    match app.results.take() {
+        Some(results) if is_of(app, &results) => {
+            app.dialogs.push(Dialog::Results(results));
+            None
+        }
+        others => {
+            app.results = others;
+            open_ranges(app)
+        }
+    }
+}
+
+/// Whether results are those of the shape on the matrix, wherever it is now.
+fn is_of(app: &App, results: &Results) -> bool {
+    let grid = &results.sweep().grid;
+    let present = app.history.present();
+    explored(present).is_some_and(|source| grid.is_of(&source, &present.sensor))
+}
+
+/// The form, with the ranges of the results below it or those that were last.
+fn open_ranges(app: &mut App) -> Option<Effect> {
+    let below = app.dialogs.last().and_then(|dialog| match dialog {
+        Dialog::Results(results) => Some(results.sweep().grid.clone()),
+        _ => None,
+    });
+    let present = app.history.present();
+    let Some(source) = explored(present) else {
+        refuse(app, app.nothing_to_explore());
+        return None;
+    };
+    let mut form = RangesForm::new(present, source, below.as_ref());
+    let effect = measure(&mut form);
+    app.dialogs.push(Dialog::Ranges(Box::new(form)));
+    effect
+}
+
+/// Asks how long the grid of a form takes, once for each.
+fn measure(form: &mut RangesForm) -> Option<Effect> {
+    let grid = form.unmeasured()?;
+    Some(Effect::Work(Work::Measure(Box::new(grid))))
+}
+
+fn start(app: &mut App, grid: PoseGrid) -> Effect {
+    let number = begin(app, WorkKind::Sweep(Box::new(grid.clone())));
+    Effect::Work(Work::Sweep(number, Box::new(grid)))
+}
+
+/// A new piece of work, and its number.
+fn begin(app: &mut App, job: WorkKind) -> u64 {
+    app.works += 1;
+    app.dialogs
+        .push(Dialog::Running(Running::new(app.works, job)));
+    app.works
+}
+
+/// Handles a message in the form of ranges.
+pub(crate) fn in_ranges(
+    app: &mut App,
+    mut form: Box<RangesForm>,
+    message: Message,
+) -> Option<Effect> {
+    match message {
+        Message::Accept => match form.grid() {
+            Ok(grid) => return Some(start(app, grid)),
+            Err(trouble) => {
+                if trouble.field.is_some() {
+                    form.set_focus(trouble.field);
+                }
+                refuse(app, trouble.full);
+            }
+        },
+        message => form.take(&message),
+    }
+    let effect = measure(&mut form);
+    app.dialogs.push(Dialog::Ranges(form));
+    effect
+}
+
+/// Handles a message over work in progress. To close it means to stop the work.
+pub(crate) fn in_running(app: &mut App, mut running: Running, message: &Message) -> Option<Effect> {
+    let stops = matches!(
+        message,
+        Message::Explore(ExploreMessage::Stop) | Message::Cancel | Message::Quit
+    );
+    if stops {
+        running.stopping = true;
+        inform(app, "stopping");
+    }
+    app.dialogs.push(Dialog::Running(running));
+    stops.then_some(Effect::Work(Work::Stop))
+}
+
+/// Takes what a worker tells.
+pub(crate) fn on_worker(app: &mut App, told: WorkerEvent) -> Option<Effect> {
+    match told {
+        WorkerEvent::Progress(number, progress) => {
+            if let Some(running) = running(app, number) {
+                running.progress = Some(progress);
+            }
+        }
+        WorkerEvent::Estimate(grid, time) => {
+            let mut dialogs = app.dialogs.iter_mut().rev();
+            let form = dialogs.find_map(|dialog| match dialog {
+                Dialog::Ranges(form) => Some(form),
+                _ => None,
+            });
+            if let Some(form) = form {
+                form.take_estimate(&grid, time);
+            }
+        }
+        WorkerEvent::Swept(number, findings) => take_findings(app, number, findings),
+        WorkerEvent::Written(number, name) => {
+            if finish(app, number).is_some() {
+                inform(app, format!("written: {name}"));
+            }
+        }
+        WorkerEvent::Exists(number, name) => {
+            if let Some(place) = finish(app, number) {
+                let text = format!("{name} is there already. Replace it?");
+                let yes = Message::Explore(ExploreMessage::Write(name, Existing::Replaced));
+                ask(app, place, Dialog::Question(Question::new(text, yes)));
+            }
+        }
+        WorkerEvent::Failed(number, reason) => {
+            let name = running(app, number).and_then(|running| match &running.job {
+                WorkKind::Write(name, _) if !running.stopping => Some(name.clone()),
+                _ => None,
+            });
+            if let Some(place) = finish(app, number) {
+                // To be put right.
+                if let Some(name) = name {
+                    ask(app, place, Dialog::Export(ExportDialog::new(&name)));
+                }
+                refuse(app, reason);
+            }
+        }
+        WorkerEvent::Refused(reason) => refuse(app, reason),
+    }
+    None
+}
+
+/// Asks for something in the place of the work that wants to know it; help that lies over that is closed.
+fn ask(app: &mut App, place: usize, dialog: Dialog) {
+    app.dialogs.truncate(place);
+    app.dialogs.push(dialog);
+}
+
+/// The work of that number, if it is still waited for.
+fn running(app: &mut App, number: u64) -> Option<&mut Running> {
+    let mut dialogs = app.dialogs.iter_mut();
+    dialogs.find_map(|dialog| match dialog {
+        Dialog::Running(running) if running.number == number => Some(running),
+        _ => None,
+    })
+}
+
+/// Takes the work of that number away; answers where it lay.
+fn finish(app: &mut App, number: u64) -> Option<usize> {
+    let own =
+        |dialog: &Dialog| matches!(dialog, Dialog::Running(running) if running.number == number);
+    let place = app.dialogs.iter().position(own)?;
+    app.dialogs.remove(place);
+    app.notice = None;
+    Some(place)
+}
+
+/// Results in place of the work, and of earlier results.
+fn take_findings(app: &mut App, number: u64, findings: Arc<Findings>) {
+    let Some(place) = finish(app, number) else {
+        return;
+    };
+    let result = &findings.sweep;
+    if result.poses == 0 {
+        return refuse(app, "stopped before anything was complete");
+    }
+    if !result.complete() {
+        inform(
+            app,
+            format!(
+                "stopped after {} of {} poses",
+                grouped(result.poses),
+                grouped(result.grid.poses())
+            ),
+        );
+    }
+    let results = Dialog::Results(Box::new(Results::new(findings)));
+    app.dialogs.insert(place, results);
+    let earlier = app.dialogs[..place]
+        .iter()
+        .position(|dialog| matches!(dialog, Dialog::Results(_)));
+    if let Some(earlier) = earlier {
+        app.dialogs.remove(earlier);
+    }
+    app.results = None;
+}

@@ -1,0 +1,50 @@
+//! The lines of a form in its pane.
+
+use ratatui::layout::Rect;
+
+use crate::tui::form::state::FormDialog;
+use crate::tui::widget::columns::narrow;
+
+/// Where the lines of a form are.
+#[derive(Clone, Copy, Debug)]
+pub struct FormRows {
+    /// The line of the kind, where there is one.
+    pub kind: Option<u16>,
+    head: u16,
+    /// Lines a field has: two where there is room for an error under it.
+    pub spacing: u16,
+    first: usize,
+    visible: usize,
+}
+
+impl FormRows {
+    /// The lines of a form in its pane; the field that has the focus is visible.
+    pub fn of(area: Rect, dialog: &FormDialog) -> Self {
+        let fields = dialog.form().fields().len();
+        let head = 1 + u16::from(dialog.kind().is_some());
+        let spacing = if area.height >= head + 2 * narrow(fields) {
+            2
+        } else {
+            1
+        };
+        let visible = usize::from(area.height.saturating_sub(head) / spacing);
+        let first = dialog
+            .form()
+            .focus()
+            .map_or(0, |focus| (focus + 1).saturating_sub(visible));
+        Self {
+            kind: dialog.kind().map(|_| 1),
+            head,
+            spacing,
+            first,
+            visible,
+        }
+    }
+
+    /// The visible fields, by number, each with its line from the top of the pane.
+    pub fn fields(&self, count: usize) -> impl Iterator<Item = (usize, u16)> {
+        let rows = *self;
+        (rows.first..count.min(rows.first + rows.visible))
+            .map(move |index| (index, rows.head + narrow(index - rows.first) * rows.spacing))
+    }
+}

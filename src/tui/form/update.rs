@@ -1,0 +1,39 @@
+//! What messages do in a form.
+
+use crate::tui::app::change::{refuse, replace};
+use crate::tui::app::dialog::Dialog;
+use crate::tui::app::message::Message;
+use crate::tui::app::state::App;
+use crate::tui::form::state::FormDialog;
+use crate::tui::keys::key::Arrow;
+use crate::tui::runtime::effect::Effect;
+
+/// Handles a message. The form goes back onto the stack unless it is accepted.
+pub(in crate::tui) fn update(
+    app: &mut App,
+    mut dialog: Box<FormDialog>,
+    message: Message,
+) -> Option<Effect> {
+    match message {
+        Message::Accept => match dialog.form().error() {
+            None => {
+                replace(app, dialog.shown().clone());
+                return None;
+            }
+            Some((index, error)) => {
+                dialog.edit(|form| form.set_focus(Some(index)));
+                refuse(app, error.labelled());
+            }
+        },
+        Message::Field(by) => dialog.move_focus(by),
+        // A click on the kind, when it has the focus already: the next kind.
+        Message::ToField(None) if dialog.form().focus().is_none() => dialog.choose(Arrow::Right),
+        Message::ToField(field) => dialog.edit(|form| form.set_focus(field)),
+        Message::Choose(arrow) => dialog.choose(arrow),
+        Message::Type(character) => dialog.insert(character),
+        Message::Step(direction) => dialog.edit(|form| form.step(direction)),
+        other => dialog.edit(|form| form.take(&other)),
+    }
+    app.dialogs.push(Dialog::Form(dialog));
+    None
+}

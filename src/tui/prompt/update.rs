@@ -1,0 +1,82 @@
+//! What messages do in the prompts.
+
+use crate::tui::app::change::refuse;
+use crate::tui::app::dialog::Dialog;
+use crate::tui::app::message::Message;
+use crate::tui::app::state::App;
+use crate::tui::keys::action::Arguments;
+use crate::tui::keys::key::Arrow;
+use crate::tui::matrix;
+use crate::tui::prompt::commands::wants_names;
+use crate::tui::prompt::read::read;
+use crate::tui::prompt::state::{CommandDialog, NameDialog};
+use crate::tui::runtime::effect::{Effect, LibraryRequest, TerminalEffect};
+
+/// Handles a message in the `:` prompt, which stays open until a command was understood.
+pub(in crate::tui) fn in_command(
+    app: &mut App,
+    mut dialog: CommandDialog,
+    message: Message,
+) -> Option<Effect> {
+    match message {
+        Message::Accept => {
+            let line = dialog.field.text().trim().to_owned();
+            if line.is_empty() {
+                return None;
+            }
+            match read(&line, app) {
+                Ok(message) => {
+                    if app.commands.last() != Some(&line) {
+                        app.commands.push(line);
+                    }
+                    return match message {
+                        Message::Redraw => Some(Effect::Terminal(TerminalEffect::Redraw)),
+                        Message::Suspend => Some(Effect::Terminal(TerminalEffect::Suspend)),
+                        other => matrix::update::act(app, other),
+                    };
+                }
+                Err(error) => refuse(app, error),
+            }
+        }
+        Message::Field(_) => {
+            let wanted = wants_names(dialog.field.text());
+            if wanted.is_none() {
+                dialog.complete(&[]);
+            }
+            app.dialogs.push(Dialog::Command(dialog));
+            // The names are completed when they are known.
+            return wanted.map(|names| {
+                Effect::Library(match names {
+                    Arguments::Deleted => LibraryRequest::Trash,
+                    _ => LibraryRequest::List,
+                })
+            });
+        }
+        Message::Choose(Arrow::Up) => dialog.earlier(&app.commands),
+        Message::Choose(Arrow::Down) => dialog.later(&app.commands),
+        other => dialog.edit(&other),
+    }
+    app.dialogs.push(Dialog::Command(dialog));
+    None
+}
+
+/// Handles a message in the prompt for a name, which stays open until the name is valid.
+pub(in crate::tui) fn in_name(
+    app: &mut App,
+    mut dialog: NameDialog,
+    message: Message,
+) -> Option<Effect> {
+    match message {
+        Message::Accept => match dialog.name() {
+            Ok(name) => {
+                return matrix::update::act(app, app.storing(name));
+            }
+            Err(error) => refuse(app, error.to_string()),
+        },
+        other => {
+            dialog.field.take(&other);
+        }
+    }
+    app.dialogs.push(Dialog::Name(dialog));
+    None
+}
