@@ -421,7 +421,7 @@ impl Solid for Figure {
         match (self.kind, self.kind.corners()) {
             (_, Some(corners)) => self.draw_regular(corners, pen),
             (FigureKind::Ellipse, None) => {
-                self.draw_round_or_square(Point::new(first, second), pen)
+                self.draw_round_or_square(Point::new(first, second), pen);
             }
             (_, None) => self.draw_round_or_square(half, pen),
         }

@@ -41,6 +41,7 @@
 //! `use` lines and holds that law.
 //! ```text
 //!  quote        untrusted text, cut short for messages
+//!  index        whole numbers as indices, checked
 //!  geometry     the area of polygons and ellipses in each cell of a grid           plane, f64
 //!  parameter    what can be set: one table of keys, units, ranges, defaults
 //!  sensor       columns, rows, threshold, pitch
@@ -51,6 +52,7 @@
 //!  pose         exact ranges, the grid of poses and the index of each
 //!  atlas        the distinct imprints of a grid, counted; statistics
 //!  sweep        every pose of a grid at once -> its atlas
+//!  prelude      what a program that uses the crate imports
 //!  ───────────  above: total, no input or output, no panic; below: the world
 //!  formats      text, PBM, CSV, NPY, JSON, atlases; drawings as SVG and PNG
 //!  storage      files: atomic writes, the folder of stored shapes, journal, trash
@@ -102,6 +104,8 @@
 struct Readme;
 
 mod quote;
+
+mod index;
 
 pub mod geometry;
 

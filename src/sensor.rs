@@ -68,6 +68,16 @@ impl Sensor {
             .with(Parameter::Rows, rows.into())
     }
 
+    /// Creates a sensor of `columns × rows` taxels, like [`Self::new`]; a number outside of 1 to [`MAX_SIDE`] becomes the
+    /// nearest in it. So every imprint is the whole matrix of some sensor.
+    pub fn clamped(columns: u8, rows: u8) -> Self {
+        Self {
+            columns: columns.clamp(1, MAX_SIDE),
+            rows: rows.clamp(1, MAX_SIDE),
+            ..Self::default()
+        }
+    }
+
     /// Returns the same sensor with one of [`SENSOR_PARAMETERS`] changed; `value` in the parameter's unit.
     ///
     /// # Errors
@@ -281,7 +291,9 @@ mod tests {
 
     #[test]
     fn a_parameter_of_something_else_is_an_error() {
-        let error = Sensor::default().with(Parameter::X0, 1.0).unwrap_err();
+        let error = Sensor::default()
+            .with(Parameter::X0, 1.0)
+            .expect_err("x0 is no sensor parameter");
         assert_eq!(
             error.to_string(),
             "x0: a parameter that the sensor does not have, \

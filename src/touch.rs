@@ -68,8 +68,8 @@ impl Plane {
         let areas = self.areas.grid();
         let rows = areas.rows();
         let columns = areas.columns();
-        let first = u32::try_from(columns.start).unwrap_or(0);
-        let unused = u64::BITS - u32::try_from(columns.len()).unwrap_or(0);
+        let first = columns.start;
+        let unused = u64::BITS as usize - columns.len();
         // Of a shape wholly right of the sensor the columns are none.
         if rows.is_empty() || columns.is_empty() {
             return;

@@ -21,7 +21,7 @@ pub(crate) struct Classes {
 /// The rows of an imprint at the top left corner.
 #[derive(Clone, Copy)]
 struct Block {
-    width: u32,
+    width: usize,
     height: usize,
     rows: [u64; MAX_SIDE as usize],
 }
@@ -55,7 +55,7 @@ impl Classes {
             return;
         }
         let turned = block.transposed();
-        let wide = |block: &Block| block.width as usize >= block.height;
+        let wide = |block: &Block| block.width >= block.height;
         let mut best: Option<(Block, bool)> = None;
         for block in [block, turned].into_iter().filter(wide) {
             for block in [block, block.mirrored()] {
@@ -89,7 +89,7 @@ impl Block {
             rows: [0; MAX_SIDE as usize],
         };
         if let Some(bounds) = imprint.bounds() {
-            block.width = u32::from(bounds.right - bounds.left);
+            block.width = usize::from(bounds.right - bounds.left);
             for (slot, row) in block.rows.iter_mut().zip(bounds.rows()) {
                 *slot = imprint.words()[usize::from(row)] >> bounds.left;
             }
@@ -121,8 +121,8 @@ impl Block {
 
     fn transposed(&self) -> Self {
         let mut turned = Self {
-            width: u32::try_from(self.height).unwrap_or(0),
-            height: self.width as usize,
+            width: self.height,
+            height: self.width,
             rows: [0; MAX_SIDE as usize],
         };
         for (index, &row) in self.rows[..self.height].iter().enumerate() {

@@ -3,6 +3,8 @@
 //! An open hash table of indices beside the keys themselves. A slot holds the upper half of a hash and an index, so
 //! nearly all comparisons end there; a key counts as found only where all of its words agree.
 
+use crate::index::index;
+
 /// How often a key occurred, and the number of the pose where it did so first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Tally {
@@ -57,17 +59,17 @@ impl ImprintCounter {
     #[inline]
     pub(crate) fn add(&mut self, key: &[u64], hash: u64, count: u64, first: u64) -> usize {
         let mask = self.slots.len() - 1;
-        let mut slot = usize::try_from(hash & mask as u64).unwrap_or(0);
+        let mut slot = index(hash & mask as u64);
         loop {
             let held = self.slots[slot];
             if held == 0 {
                 return self.insert(slot, key, hash, Tally { count, first });
             }
             if (held ^ hash) & !INDEX == 0 {
-                let index = usize::try_from((held & INDEX) - 1).unwrap_or(0);
-                if self.key(index) == key {
-                    self.tallies[index].count += count;
-                    return index;
+                let known = index((held & INDEX) - 1);
+                if self.key(known) == key {
+                    self.tallies[known].count += count;
+                    return known;
                 }
             }
             slot = (slot + 1) & mask;
@@ -82,11 +84,11 @@ impl ImprintCounter {
     /// The index of a key.
     pub(crate) fn find(&self, key: &[u64], hash: u64) -> Option<usize> {
         let mask = self.slots.len() - 1;
-        let mut slot = usize::try_from(hash & mask as u64).unwrap_or(0);
+        let mut slot = index(hash & mask as u64);
         while self.slots[slot] != 0 {
-            let index = usize::try_from((self.slots[slot] & INDEX) - 1).unwrap_or(0);
-            if self.key(index) == key {
-                return Some(index);
+            let known = index((self.slots[slot] & INDEX) - 1);
+            if self.key(known) == key {
+                return Some(known);
             }
             slot = (slot + 1) & mask;
         }
@@ -109,12 +111,12 @@ impl ImprintCounter {
     fn grow(&mut self) {
         let mask = self.slots.len() * 2 - 1;
         let mut slots = vec![0; mask + 1];
-        for (index, &hash) in self.hashes.iter().enumerate() {
-            let mut slot = usize::try_from(hash & mask as u64).unwrap_or(0);
+        for (known, &hash) in self.hashes.iter().enumerate() {
+            let mut slot = index(hash & mask as u64);
             while slots[slot] != 0 {
                 slot = (slot + 1) & mask;
             }
-            slots[slot] = hash & !INDEX | (index as u64 + 1);
+            slots[slot] = hash & !INDEX | (known as u64 + 1);
         }
         self.slots = slots;
     }

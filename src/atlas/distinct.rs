@@ -7,6 +7,7 @@ use crate::atlas::counter::ImprintCounter;
 use crate::atlas::feature::{ImprintSummary, feature_values};
 use crate::atlas::packing::Layout;
 use crate::imprint::Imprint;
+use crate::index::{narrow, wide};
 
 /// Distinct imprints, counted and described.
 #[derive(Clone, Debug)]
@@ -55,7 +56,7 @@ impl Atlas {
                 let id = self
                     .counter
                     .add(key, hash, tally.count * times, tally.first);
-                u32::try_from(id).unwrap_or(u32::MAX)
+                narrow(id)
             })
             .collect()
     }
@@ -64,7 +65,7 @@ impl Atlas {
     pub(crate) fn add_all(&mut self, other: &Self) {
         let ids = self.add(&other.counter, 1);
         for (id, summary) in ids.into_iter().zip(&other.summaries) {
-            if usize::try_from(id).is_ok_and(|id| id == self.summaries.len()) {
+            if wide(id) == self.summaries.len() {
                 self.summaries.push(*summary);
             }
         }
@@ -103,7 +104,7 @@ impl Atlas {
 
     /// The imprint of that number.
     pub fn entry(&self, id: u32) -> Option<AtlasEntry> {
-        let index = usize::try_from(id).ok()?;
+        let index = wide(id);
         let summary = *self.summaries.get(index)?;
         let tally = self.counter.tallies()[index];
         Some(AtlasEntry {
@@ -117,7 +118,7 @@ impl Atlas {
 
     /// All rows in order.
     pub fn entries(&self) -> impl Iterator<Item = AtlasEntry> + '_ {
-        (0..u32::try_from(self.len()).unwrap_or(u32::MAX)).filter_map(|id| self.entry(id))
+        (0..narrow(self.len())).filter_map(|id| self.entry(id))
     }
 
     /// The number of an imprint; none where it does not occur.

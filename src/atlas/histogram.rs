@@ -83,11 +83,11 @@ impl Histogram {
 
     /// How many decimals the ends of the intervals have, at most 12.
     pub fn decimals(&self) -> usize {
-        let short = |decimals: &usize| {
-            let scaled = self.width * 10_f64.powi(i32::try_from(*decimals).unwrap_or(0));
+        let short = |decimals: &u8| {
+            let scaled = self.width * 10_f64.powi(i32::from(*decimals));
             (scaled - scaled.round()).abs() < 1e-6 && scaled.round() >= 1.0
         };
-        (0..12).find(short).unwrap_or(12)
+        (0..12).find(short).unwrap_or(12).into()
     }
 }
 

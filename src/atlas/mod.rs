@@ -35,4 +35,4 @@ pub(crate) use packing::Layout;
 pub(crate) use statistics::statistics;
 pub use statistics::{STATISTIC_COLUMNS, Statistic, StatisticColumn};
 pub(crate) use values::Table;
-pub(crate) use variance::{Spread, TurnSums};
+pub(crate) use variance::{OrientationSums, VarianceParts};

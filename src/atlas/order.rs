@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 
 use crate::atlas::distinct::Atlas;
+use crate::index::narrow;
 
 /// What an atlas can be sorted by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +25,7 @@ pub enum SortKey {
 /// their first poses, and those without a value come last, either way. `values` are those of
 /// [`SortKey::Value`], one per imprint ([`Atlas::values`]); imprints beyond their end have none.
 pub fn sorted(atlas: &Atlas, values: &[Option<f64>], by: SortKey, descending: bool) -> Vec<u32> {
-    let count = u32::try_from(atlas.len()).unwrap_or(u32::MAX);
+    let count = narrow(atlas.len());
     let summaries = |of: fn(&crate::atlas::feature::ImprintSummary) -> u16| {
         let keys: Vec<u64> = atlas
             .summaries()

@@ -5,6 +5,7 @@
 //! playing*, 1970), so turning a taxel over changes it in one step. Keys are compared in full all the same.
 
 use crate::imprint::Imprint;
+use crate::index::from_first;
 
 /// How the imprints of a sensor are packed.
 #[derive(Clone, Debug)]
@@ -104,7 +105,7 @@ impl Layout {
             } else {
                 reversed.unbounded_shl(apart.unsigned_abs())
             };
-            let image = usize::try_from(down - 1).unwrap_or(0).saturating_sub(row);
+            let image = from_first(down - 1).saturating_sub(row);
             let (word, shift) = self.place(image);
             turned[word] |= bits << shift;
             hash ^= self.hash(image, bits);

@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use crate::atlas::feature::{Feature, features};
 use crate::atlas::sums::{Wide, fixed, mean, signed_mean};
 use crate::atlas::values::{Table, places};
-use crate::atlas::variance::{Spread, Sum};
+use crate::atlas::variance::{Sum, VarianceParts};
 
 /// What is known of one feature over all poses that have it. None where no pose has it.
 #[derive(Clone, Copy, Debug)]
@@ -178,7 +178,7 @@ impl Total {
 pub(crate) fn statistics(
     table: &Table,
     counts: &[u64],
-    spread: &Spread,
+    spread: &VarianceParts,
     ideal: impl Fn(&str) -> Option<f64>,
 ) -> Vec<Statistic> {
     let places = places();

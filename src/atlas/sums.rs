@@ -6,6 +6,8 @@
 
 use std::ops::{AddAssign, Sub};
 
+use crate::index::lower_word;
+
 /// One, as a fixed-point number.
 const ONE: f64 = 1_099_511_627_776.0;
 
@@ -65,9 +67,10 @@ impl Wide {
         );
         // upper · 2⁶⁴ + lower
         let (low, carry) = (upper << 64).overflowing_add(lower);
+        // Below 2⁶⁴, as the product is below 2¹⁹².
         let high = (upper >> 64) + u128::from(carry);
         Self {
-            high: u64::try_from(high).unwrap_or(u64::MAX),
+            high: lower_word(high),
             low,
         }
     }
@@ -116,8 +119,7 @@ impl Wide {
 
     /// As three words, the lowest first.
     pub(crate) fn words(self) -> [u64; 3] {
-        let word = |bits: u128| u64::try_from(bits & u128::from(u64::MAX)).unwrap_or(0);
-        [word(self.low), word(self.low >> 64), self.high]
+        [lower_word(self.low), lower_word(self.low >> 64), self.high]
     }
 
     /// From three words.

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use crate::atlas::feature::features;
 use crate::atlas::sums::{Wide, fixed, signed};
 use crate::atlas::values::{Table, places};
+use crate::index::{lower_word, wide};
 use crate::pose::MAX_VALUES;
 
 /// How many poses have a feature and the sum of its values; of a direction the sums of cosines and of sines.
@@ -30,7 +31,7 @@ impl Sum {
         } else {
             // Below 2^98; one multiplication of the processor, which a signed product of this size is not.
             let sum = u128::from(fixed(values[0])) * u128::from(poses);
-            self.x += i128::try_from(sum).unwrap_or(i128::MAX);
+            self.x += sum.cast_signed();
         }
     }
 
@@ -40,9 +41,9 @@ impl Sum {
         self.y += other.y;
     }
 
-    /// Of values that are no direction.
+    /// The sum of values that are not directions. They are not negative; a damaged file may say otherwise, and counts as 0.
     pub(crate) fn total(&self) -> u128 {
-        u128::try_from(self.x).unwrap_or(0)
+        self.x.max(0).cast_unsigned()
     }
 
     /// The length of the sum of the unit vectors.
@@ -54,7 +55,7 @@ impl Sum {
 
 /// The sums of one turn.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(crate) struct TurnSums {
+pub(crate) struct OrientationSums {
     /// Poses gone through, whether or not they have a value.
     poses: u64,
     /// How many turns look like this one, with itself.
@@ -62,14 +63,14 @@ pub(crate) struct TurnSums {
     sums: Vec<Sum>,
 }
 
-impl TurnSums {
+impl OrientationSums {
     /// Of imprints with how many poses of one turn show each.
     pub(crate) fn of(table: &Table, times: u64, counted: impl Iterator<Item = (u32, u64)>) -> Self {
         let mut sums = vec![Sum::default(); features().len()];
         let places = places();
         let mut poses = 0;
         for (id, count) in counted {
-            let row = table.row(usize::try_from(id).unwrap_or(0));
+            let row = table.row(wide(id));
             for (sum, &(place, circular)) in sums.iter_mut().zip(&places) {
                 sum.add(&row[place..], circular, count);
             }
@@ -90,16 +91,16 @@ impl TurnSums {
 
 /// What the turns tell about where the variance comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Spread {
+pub(crate) struct VarianceParts {
     /// Poses of a turn of the grid.
     full: u64,
     /// Of each feature, over the turns that are complete: the sum of (sum² / poses), or of the vectors' lengths.
     between: Vec<Wide>,
     /// Turns of which something is missing still.
-    open: BTreeMap<u64, TurnSums>,
+    open: BTreeMap<u64, OrientationSums>,
 }
 
-impl Spread {
+impl VarianceParts {
     /// Of turns of so many poses.
     pub(crate) fn new(full: u64) -> Self {
         Self {
@@ -110,7 +111,7 @@ impl Spread {
     }
 
     /// Adds a part of a turn. Parts of the same turn stand for as many turns.
-    pub(crate) fn add(&mut self, turn: u64, part: TurnSums) {
+    pub(crate) fn add(&mut self, turn: u64, part: OrientationSums) {
         let sums = match self.open.remove(&turn) {
             Some(mut sums) => {
                 sums.poses += part.poses;
@@ -142,8 +143,7 @@ impl Spread {
     pub(crate) fn words(&self) -> Vec<u64> {
         let halves = |sum: i128| {
             let bits = sum.cast_unsigned();
-            let half = |bits: u128| u64::try_from(bits & u128::from(u64::MAX)).unwrap_or(0);
-            [half(bits), half(bits >> 64)]
+            [lower_word(bits), lower_word(bits >> 64)]
         };
         let mut words: Vec<u64> = self.between.iter().flat_map(|sum| sum.words()).collect();
         for (&turn, sums) in &self.open {
@@ -173,7 +173,7 @@ impl Spread {
                 x: whole(&words[1..3]),
                 y: whole(&words[3..5]),
             };
-            let sums = TurnSums {
+            let sums = OrientationSums {
                 poses: words[1],
                 times: words[2],
                 sums: words[3..].chunks_exact(5).map(sum).collect(),
@@ -198,7 +198,7 @@ impl Spread {
     }
 }
 
-fn close(between: &mut [Wide], turn: &TurnSums) {
+fn close(between: &mut [Wide], turn: &OrientationSums) {
     let features = between.iter_mut().zip(&turn.sums).zip(features());
     for ((between, sum), feature) in features {
         if sum.poses == 0 {

@@ -137,9 +137,12 @@ pub(crate) enum CliError {
     /// Shards that do not make a whole.
     #[error(transparent)]
     Merge(#[from] MergeError),
-    /// By that signal.
+    /// A signal stopped the command.
     #[error("stopped; nothing was written")]
-    Stopped(u8),
+    Stopped {
+        /// The exit status, as a shell reports it for a program that the signal ended.
+        status: u8,
+    },
     /// The system refuses threads or signals.
     #[error("{0}")]
     System(io::Error),
@@ -191,8 +194,7 @@ impl CliError {
                 failure: runner::ScriptFailure::Ended { .. },
                 ..
             } => 3,
-            // As a shell tells of a command that a signal has ended.
-            Self::Stopped(signal) => 128 + signal,
+            Self::Stopped { status } => *status,
             _ => 1,
         }
     }

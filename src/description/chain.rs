@@ -9,9 +9,9 @@ use crate::imprint::{Bounds, Imprint};
 /// The steps of a chain by their kind, so that the length is the same number on every machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ChainSteps {
-    /// ChainSteps to a taxel beside, above or below: length 1.
+    /// Steps to a taxel beside, above or below: length 1.
     pub straight: u32,
-    /// ChainSteps to a taxel across a corner: length √2.
+    /// Steps to a taxel across a corner: length √2.
     pub diagonal: u32,
 }
 
@@ -22,8 +22,7 @@ impl ChainSteps {
     }
 }
 
-/// The windows with three taxels or all four or just a diagonal, those with three, and those with a diagonal; by their
-/// corners.
+/// Masks of the 2 × 2 windows, by their corners: [three, four or just a diagonal active; three; just a diagonal].
 fn windows(upper_left: u64, upper_right: u64, lower_left: u64, lower_right: u64) -> [u64; 3] {
     let (upper, lower) = (upper_left & upper_right, lower_left & lower_right);
     let (either_upper, either_lower) = (upper_left ^ upper_right, lower_left ^ lower_right);
@@ -56,7 +55,7 @@ impl OutlineCounts {
         }
     }
 
-    /// Counts it with a row in so many bits.
+    /// Counts it with `BITS` bits per row.
     fn count<const BITS: u32>(filled: &Imprint, bounds: Bounds) -> Self {
         let rows = &filled.words()[usize::from(bounds.top)..usize::from(bounds.bottom)];
         let mut words = rows.chunks((u64::BITS / BITS) as usize).map(|rows| {
@@ -65,10 +64,12 @@ impl OutlineCounts {
             rows.iter().rev().fold(0, join)
         });
         let (mut taxels, mut inner, mut counts) = (0, 0, [0; 3]);
-        let (mut before, mut here) = (0, words.next().unwrap_or(0));
+        // Below the last row nothing is active.
+        let mut following = || words.next().unwrap_or(0);
+        let (mut before, mut here) = (0, following());
         // One word more where the last one is full: a window reaches below the last row.
         for _ in 0..=rows.len() / (u64::BITS / BITS) as usize {
-            let next = words.next().unwrap_or(0);
+            let next = following();
             let above = here.unbounded_shl(BITS) | before >> (u64::BITS - BITS);
             let below = here.unbounded_shr(BITS) | next << (u64::BITS - BITS);
             taxels += here.count_ones();

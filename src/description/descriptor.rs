@@ -23,7 +23,7 @@ pub struct Description {
     pub na: u32,
     /// Taxels of the region with everything it encloses.
     pub nae: u32,
-    /// OutlineCounts taxels of the filled region.
+    /// Outline taxels of the filled region.
     pub ce: u32,
     /// Sum of the taxels' x coordinates.
     pub num_x: f64,
@@ -107,7 +107,7 @@ fn sums(taxels: &Imprint, bounds: Bounds) -> (u32, u32, u32) {
             let length = (word >> first).trailing_ones();
             columns += length * (2 * first + length - 1) / 2;
             in_row += length;
-            word &= u64::MAX.checked_shl(first + length).unwrap_or(0);
+            word &= u64::MAX.unbounded_shl(first + length);
         }
         count += in_row;
         rows += u32::from(row) * in_row;

@@ -35,7 +35,7 @@ const MAX_HEADER: u64 = 1 << 20;
 /// What was swept: written from a source and a sensor, read as the records that they are checked from.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Header<Shape, Size> {
+struct ArchiveHeader<Shape, Size> {
     format: String,
     source: Shape,
     sensor: Size,
@@ -58,7 +58,7 @@ pub fn write(result: &SweepResult, output: impl Write + Seek) -> Result<(), Arch
     let mut archive = Arrays(ZipWriter::new(output));
     let (grid, parts) = (&result.grid, result.parts());
     let ranges = grid.ranges();
-    let header = serde_json::to_vec(&Header {
+    let header = serde_json::to_vec(&ArchiveHeader {
         format: FORMAT.to_owned(),
         source: grid.source(),
         sensor: grid.sensor(),
@@ -134,11 +134,11 @@ pub fn write(result: &SweepResult, output: impl Write + Seek) -> Result<(), Arch
 struct Arrays<W: Write + Seek>(ZipWriter<W>);
 
 impl<W: Write + Seek> Arrays<W> {
-    fn add(
+    fn add<const N: usize>(
         &mut self,
         name: &str,
         kind: Dtype,
-        shape: &[u64],
+        shape: &[u64; N],
         numbers: &[u8],
     ) -> Result<(), ArchiveError> {
         let options = SimpleFileOptions::default()
@@ -178,8 +178,8 @@ pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
     };
     let header = array("header")?;
     let header = npy::content(&header, Dtype::U8).ok_or(ArchiveError::Array("header"))?;
-    let header: Header<Record<'_>, Values> = serde_json::from_slice(header)
-        .map_err(|error| ArchiveError::Header(crate::formats::quote::message(&error)))?;
+    let header: ArchiveHeader<Record<'_>, Values> = serde_json::from_slice(header)
+        .map_err(|error| ArchiveError::Header(crate::formats::json::message(&error)))?;
     if header.format != FORMAT {
         return Err(ArchiveError::Format(shortened(&header.format)));
     }

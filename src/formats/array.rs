@@ -164,15 +164,18 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ArrayError> {
         return Err(ArrayError::Length { found, expected });
     }
     let mut imprint = Imprint::empty(columns, rows);
-    for (index, bytes) in (0_u16..).zip(numbers.chunks(kind.size)) {
-        let (across, along) = if header.fortran_order {
-            (index / u16::from(rows), index % u16::from(rows))
+    let (slow, fast) = if header.fortran_order {
+        (columns, rows)
+    } else {
+        (rows, columns)
+    };
+    let taxels = (0..slow).flat_map(|outer| (0..fast).map(move |inner| (outer, inner)));
+    for ((outer, inner), bytes) in taxels.zip(numbers.chunks(kind.size)) {
+        let (column, row) = if header.fortran_order {
+            (outer, inner)
         } else {
-            (index % u16::from(columns), index / u16::from(columns))
+            (inner, outer)
         };
-        // Below 64 both: the numbers are as many as there are taxels.
-        let place = u8::try_from(across).ok().zip(u8::try_from(along).ok());
-        let (column, row) = place.unwrap_or_default();
         let active = kind.value(bytes).ok_or(ArrayError::Value {
             row: row + 1,
             column: column + 1,

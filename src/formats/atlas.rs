@@ -64,15 +64,15 @@ pub fn write_csv(result: &SweepResult, output: impl Write) -> io::Result<()> {
 /// Those of the writer.
 pub fn write_jsonl(result: &SweepResult, mut output: impl Write) -> io::Result<()> {
     for entry in result.atlas.entries() {
-        serde_json::to_writer(&mut output, &Line(result, &entry))?;
+        serde_json::to_writer(&mut output, &AtlasLine(result, &entry))?;
         output.write_all(b"\n")?;
     }
     output.flush()
 }
 
-struct Line<'a>(&'a SweepResult, &'a AtlasEntry);
+struct AtlasLine<'a>(&'a SweepResult, &'a AtlasEntry);
 
-impl Serialize for Line<'_> {
+impl Serialize for AtlasLine<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Self(result, entry) = *self;
         let mut map = serializer.serialize_map(None)?;

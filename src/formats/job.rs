@@ -1,6 +1,6 @@
 //! One line of `taxel batch`: a figure, a picture or a whole matrix, and perhaps a sensor of its own.
 
-use crate::formats::quote::message;
+use crate::formats::json::message;
 use crate::formats::record::{Record, RecordError};
 use crate::imprint::Imprint;
 use crate::sensor::Sensor;

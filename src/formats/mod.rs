@@ -8,7 +8,7 @@ pub mod value;
 mod described;
 
 #[cfg(feature = "json")]
-mod quote;
+pub(crate) mod json;
 
 #[cfg(feature = "json")]
 mod record;

@@ -48,7 +48,9 @@ impl Dtype {
 /// assert!(header.starts_with(b"\x93NUMPY\x01\x00\x76\x00{'descr': '<u4', 'fortran_order': False, 'shape': (360, 100), }"));
 /// assert_eq!((header.len(), header.last()), (128, Some(&b'\n')));
 /// ```
-pub fn header(kind: Dtype, shape: &[u64]) -> Vec<u8> {
+pub fn header<const N: usize>(kind: Dtype, shape: &[u64; N]) -> Vec<u8> {
+    // The length of the text takes two bytes; a side takes 22 at most.
+    const { assert!(N <= 64, "numpy has no more axes") };
     let mut sides = String::new();
     for side in shape {
         // Cannot fail: a String takes everything.
@@ -69,8 +71,7 @@ pub fn header(kind: Dtype, shape: &[u64]) -> Vec<u8> {
     }
     text.push('\n');
     let mut header = MAGIC.to_vec();
-    // Shapes of a few sides: far below the 65535 that fit.
-    header.extend(u16::try_from(text.len()).unwrap_or(u16::MAX).to_le_bytes());
+    header.extend(&text.len().to_le_bytes()[..2]);
     header.extend(text.as_bytes());
     header
 }

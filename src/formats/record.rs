@@ -11,7 +11,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::figure::{Figure, FigureKind};
 use crate::formats::described::Rows;
-use crate::formats::quote::without_place;
+use crate::formats::json::without_position;
 use crate::imprint::{Imprint, ImprintError};
 use crate::parameter::{PARAMETERS, Parameter, ParameterError};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
@@ -284,7 +284,10 @@ impl Values {
             )));
         };
         let number = map.next_value::<f64>().map_err(|error| {
-            A::Error::custom(format_args!("{key}: {}", without_place(&error.to_string())))
+            A::Error::custom(format_args!(
+                "{key}: {}",
+                without_position(&error.to_string())
+            ))
         })?;
         once(PARAMETERS[index].key, &mut self.0[index], number)
     }

@@ -5,8 +5,8 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::fmt;
 
 use crate::formats::described::Rows;
+use crate::formats::json::{self, message};
 use crate::formats::name::{Name, NameError};
-use crate::formats::quote::message;
 use crate::formats::record::{Record, RecordError, RowsOrName, Values};
 use crate::imprint::Imprint;
 use crate::quote::shortened;
@@ -146,8 +146,7 @@ impl StoredShape {
 
     /// The file's content, a line per row of the imprint.
     pub fn write(&self) -> String {
-        // Cannot fail: every key is a text and every number finite.
-        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
+        let mut text = json::pretty(self);
         text.push('\n');
         text
     }

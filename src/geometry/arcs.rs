@@ -9,10 +9,11 @@
 //! the cells on its two sides; and all lines are computed before the way down begins, since a processor then works on
 //! several of them at once.
 
-use crate::geometry::cell_grid::{CellGrid, index};
+use crate::geometry::cell_grid::CellGrid;
 use crate::geometry::ellipse_cuts::{EllipseCuts, Sums};
 use crate::geometry::outline::{Ellipse, Point, Side};
 use crate::geometry::real::Real;
+use crate::index::from_first;
 
 /// Draws ellipses, again and again without allocating.
 #[derive(Clone, Debug, Default)]
@@ -97,8 +98,8 @@ impl<T: Real> Arcs<T> {
             for (number, ends) in (first..).zip(self.horizontal[..=rows].windows(2)) {
                 let (mut way, goal) = (ends[0][side], ends[1][side]);
                 let row = RowPass {
-                    number: index(number),
-                    start: grid.start(index(number)),
+                    number: from_first(number),
+                    start: grid.start(from_first(number)),
                     sign,
                     quarter,
                 };

@@ -16,6 +16,7 @@ use std::ops::Range;
 
 use crate::geometry::outline::Point;
 use crate::geometry::real::Real;
+use crate::index::from_first;
 
 /// A grid of `columns × rows` unit cells with its top left corner at the origin.
 #[derive(Clone, Debug)]
@@ -91,7 +92,7 @@ impl<T: Real> CellGrid<T> {
     /// The rows that may hold something; all others are empty.
     pub(crate) fn rows(&self) -> Range<usize> {
         let row = |y: T| y.max(T::ZERO).min(self.bottom()).cell().0;
-        let rows = usize::try_from(self.rows).unwrap_or(0);
+        let rows = from_first(self.rows);
         row(self.low.y)..(row(self.high.y) + 1).min(rows)
     }
 
@@ -184,9 +185,4 @@ impl<T: Real> CellGrid<T> {
         self.low = Point::new(self.low.x.min(low.x), self.low.y.min(low.y));
         self.high = Point::new(self.high.x.max(high.x), self.high.y.max(high.y));
     }
-}
-
-/// A number that is not negative, as an index.
-pub(crate) fn index(value: i32) -> usize {
-    usize::try_from(value).unwrap_or(0)
 }

@@ -9,9 +9,10 @@
 //! uses [`cell_area`] for it.
 
 use crate::geometry::arcs::Arcs;
-use crate::geometry::cell_grid::{CellGrid, index};
+use crate::geometry::cell_grid::CellGrid;
 use crate::geometry::outline::{Ellipse, Moving, Pen, Point, Side, Solid};
 use crate::geometry::real::Real;
+use crate::index::from_first;
 
 /// A grid of `columns × rows` unit cells with its top left corner at the origin, that sums up what is drawn on it.
 #[derive(Clone, Debug)]
@@ -150,9 +151,9 @@ impl<T: Real> Overlap<T> {
         let (mut here, mut row) = (top, top.floor());
         while here < end {
             let next = T::whole(row + 1).min(end);
-            let start = self.grid.start(index(row));
+            let start = self.grid.start(from_first(row));
             self.grid
-                .add(start, index(row), T::ZERO, sign * (next - here));
+                .add(start, from_first(row), T::ZERO, sign * (next - here));
             (here, row) = (next, row + 1);
         }
     }

@@ -16,6 +16,7 @@ use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::geometry::circle;
+use crate::index::from_first;
 
 mod sealed {
     /// What only the numbers of this file are.
@@ -327,7 +328,7 @@ impl Real for Double {
     }
     fn cell(self) -> (usize, Self) {
         let floor = self.floor();
-        (usize::try_from(floor).unwrap_or(0), Self::whole(floor))
+        (from_first(floor), Self::whole(floor))
     }
     fn sqrt(self) -> Self {
         if self.high <= 0.0 {

@@ -8,6 +8,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+use crate::index::narrow;
 use crate::quote::shortened;
 
 /// The most values that one range may have.
@@ -57,8 +58,7 @@ impl DecimalRange {
 
     /// The same values in units of as few decimals as they need; the step of a single value is 1. Equal ranges are
     /// equal in their fields then, however they were written.
-    fn shortest(mut start: i64, step: i64, places: usize, count: u64) -> Self {
-        let mut places = u32::try_from(places).unwrap_or(0);
+    fn shortest(mut start: i64, step: i64, mut places: u32, count: u64) -> Self {
         let mut step = if count == 1 { 10_i64.pow(places) } else { step };
         while places > 0 && start % 10 == 0 && step % 10 == 0 {
             (start, step, places) = (start / 10, step / 10, places - 1);
@@ -181,7 +181,7 @@ impl FromStr for DecimalRange {
         if count > MAX_VALUES {
             return Err(RangeError::Many { count });
         }
-        Ok(Self::shortest(first, by, places, count))
+        Ok(Self::shortest(first, by, narrow(places), count))
     }
 }
 

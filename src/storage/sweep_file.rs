@@ -156,12 +156,12 @@ impl PoseFile {
         existing: Existing,
     ) -> Result<Self, SweepFileError> {
         let mut file = UnfinishedFile::new(&path.into(), existing)?;
-        let mut shape = grid.counts().into_array().to_vec();
+        let mut shape = grid.counts().into_array();
         shape.reverse();
-        if shape[..2] == [1, 1] {
-            shape.drain(..2);
-        }
-        let header = npy::header(Dtype::U32, &shape);
+        let header = match shape {
+            [1, 1, angles, rows, columns] => npy::header(Dtype::U32, &[angles, rows, columns]),
+            _ => npy::header(Dtype::U32, &shape),
+        };
         file.write(&header)?;
         Ok(Self {
             file,

@@ -10,7 +10,7 @@
 
 use crate::geometry::{Ellipse, Side};
 use crate::sensor::MAX_SIDE;
-use crate::sweep::ellipse_band::Oval;
+use crate::sweep::ellipse_band::EllipseBand;
 use crate::sweep::isolate::Ring;
 use crate::sweep::span::{DOUBT, Level, NEAR, Spans};
 use crate::sweep::track::Track;
@@ -30,13 +30,15 @@ impl Elliptic {
     pub(crate) fn new(ellipses: &[(Ellipse<f64>, Side)]) -> Option<Self> {
         let (outer, inner) = match ellipses {
             [(outer, Side::Inside)] => (outer, None),
-            [(outer, Side::Inside), (inner, Side::Outside)] => (outer, Some(Oval::new(inner))),
+            [(outer, Side::Inside), (inner, Side::Outside)] => {
+                (outer, Some(EllipseBand::new(inner)))
+            }
             _ => return None,
         };
         Some(Self {
             ring: Ring {
                 threshold: 1.0,
-                outer: Oval::new(outer),
+                outer: EllipseBand::new(outer),
                 inner,
             },
             tracks: vec![Tracks::default(); usize::from(MAX_SIDE)].into(),
@@ -73,21 +75,21 @@ impl Elliptic {
 }
 
 /// A span, and the gap in it.
-struct Found {
+struct Passages {
     from: f64,
     to: f64,
     hole: Option<(f64, f64)>,
 }
 
 /// What the passages of the rows before lead to; none where not all is certain.
-fn follow(ring: &Ring, tracks: &mut Tracks) -> Option<Found> {
+fn follow(ring: &Ring, tracks: &mut Tracks) -> Option<Passages> {
     let [from, to, hole, end] = tracks;
     let (outer, threshold) = (&ring.outer, ring.threshold);
     let (from, to) = (
         from.follow(outer, threshold, true)?,
         to.follow(outer, threshold, false)?,
     );
-    let solid = Found {
+    let solid = Passages {
         from,
         to,
         hole: None,
@@ -100,7 +102,7 @@ fn follow(ring: &Ring, tracks: &mut Tracks) -> Option<Found> {
     if first <= from + 2.0 * NEAR || last >= to - 2.0 * NEAR {
         return None;
     }
-    let covered = |oval: &Oval, u: f64| oval.coverage(&oval.at(u), &oval.at(u + 1.0));
+    let covered = |oval: &EllipseBand, u: f64| oval.coverage(&oval.at(u), &oval.at(u + 1.0));
     let least = covered(outer, first).min(covered(outer, last));
     // The hole is nowhere high enough to matter.
     if least - inner.highest() > threshold + DOUBT {
@@ -116,13 +118,13 @@ fn follow(ring: &Ring, tracks: &mut Tracks) -> Option<Found> {
     let left = first >= full || covered(outer, first) - covered(inner, full) > threshold + DOUBT;
     let right =
         last <= full_end || covered(outer, last) - covered(inner, full_end) > threshold + DOUBT;
-    (apart && left && right).then_some(Found {
+    (apart && left && right).then_some(Passages {
         hole: Some((hole, end)),
         ..solid
     })
 }
 
-/// Takes summary of where the passages are, as far as the spans tell.
+/// Notes where the passages are, as far as the spans tell.
 fn learn(spans: &Spans, tracks: &mut Tracks) {
     let all = spans.all();
     match (spans.sharp(), all) {

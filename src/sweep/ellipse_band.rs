@@ -13,7 +13,7 @@ const SLACK: f64 = 1e-12;
 
 /// An ellipse prepared for bands; see `geometry::curve` for the formulas.
 #[derive(Clone, Debug)]
-pub(crate) struct Oval {
+pub(crate) struct EllipseBand {
     pub(crate) x: f64,
     y: f64,
     pub(crate) reach_x: f64,
@@ -25,7 +25,7 @@ pub(crate) struct Oval {
     scale_x: f64,
     /// The band, relative to the centre, and what is known of it.
     top: f64,
-    stretches: [Stretch; 5],
+    stretches: [EllipseStretch; 5],
     count: usize,
     /// From where to where the section is highest, and how high.
     peak: (f64, f64),
@@ -35,7 +35,7 @@ pub(crate) struct Oval {
 
 /// `W = area + linear·d + square·d² + round·Φ(d)` between two places, relative to the centre.
 #[derive(Clone, Copy, Debug, Default)]
-struct Stretch {
+struct EllipseStretch {
     left: f64,
     right: f64,
     area: f64,
@@ -46,7 +46,7 @@ struct Stretch {
 
 /// What there is at a place: the height of the section, the area on the left, and half of the ellipse's own section.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub(crate) struct Section {
     pub(crate) height: f64,
     area: f64,
     half: f64,
@@ -54,7 +54,7 @@ pub(crate) struct Place {
     stretch: Option<usize>,
 }
 
-impl Oval {
+impl EllipseBand {
     pub(crate) fn new(ellipse: &Ellipse<f64>) -> Self {
         let (centre, reach) = (ellipse.centre, ellipse.reach());
         let (x_square, y_square) = (reach.x * reach.x, reach.y * reach.y);
@@ -69,7 +69,7 @@ impl Oval {
             scale_y: area / x_square,
             scale_x: area / y_square,
             top: 0.0,
-            stretches: [Stretch::default(); 5],
+            stretches: [EllipseStretch::default(); 5],
             count: 0,
             peak: (0.0, 0.0),
             highest: 0.0,
@@ -152,7 +152,7 @@ impl Oval {
             (false, true) => (-top, 0.5 * self.middle_y, 1.0),
             (false, false) => (1.0, 0.0, 0.0),
         };
-        let mut stretch = Stretch {
+        let mut stretch = EllipseStretch {
             left,
             right,
             area: 0.0,
@@ -203,10 +203,10 @@ impl Oval {
     }
 
     /// The height of the section at a place, the area on the left of it, and what goes with them.
-    pub(crate) fn at(&self, x: f64) -> Place {
+    pub(crate) fn at(&self, x: f64) -> Section {
         let d = x - self.x;
         let stretches = &self.stretches[..self.count];
-        let outside = |area: f64| Place {
+        let outside = |area: f64| Section {
             height: 0.0,
             area,
             half: 0.0,
@@ -226,7 +226,7 @@ impl Oval {
         } else {
             0.0
         };
-        Place {
+        Section {
             height: self.clipped(d, half),
             area: stretch.area + stretch.grown(d, round),
             half,
@@ -235,7 +235,7 @@ impl Oval {
     }
 
     /// The area inside of the cell between two places that are a cell apart.
-    pub(crate) fn coverage(&self, left: &Place, right: &Place) -> f64 {
+    pub(crate) fn coverage(&self, left: &Section, right: &Section) -> f64 {
         match (left.stretch, right.stretch) {
             // Between the lines all along: full, without any rounding.
             (Some(first), Some(last)) if first == last && self.stretches[first].round == 0.0 => 1.0,
@@ -248,7 +248,7 @@ impl Oval {
     /// Half of the ellipse's own section is `√((R − d)(R + d))`, with slope `d / half`; within `way` of `d` it stays above
     /// 0.7 of itself where `half² ≥ 4·R·way`. Near an end of the ellipse it changes by the root of `2·R·way` at most.
     /// Clipping by the band's lines makes a change smaller only.
-    pub(crate) fn change(&self, place: &Place, way: f64) -> f64 {
+    pub(crate) fn change(&self, place: &Section, way: f64) -> f64 {
         let reach = self.reach_x;
         let half = if place.half * place.half >= 4.0 * reach * way {
             1.5 * reach / place.half * way
@@ -297,13 +297,14 @@ impl Oval {
 
     /// Places between which the cell is full; none where no cell is.
     pub(crate) fn full(&self) -> Option<(f64, f64)> {
-        let full = |stretch: &&Stretch| stretch.round == 0.0 && stretch.right - stretch.left > 1.0;
+        let full =
+            |stretch: &&EllipseStretch| stretch.round == 0.0 && stretch.right - stretch.left > 1.0;
         let stretch = self.stretches[..self.count].iter().find(full)?;
         Some((self.x + stretch.left, self.x + stretch.right - 1.0))
     }
 }
 
-impl Stretch {
+impl EllipseStretch {
     /// `W` but for its constant.
     fn grown(&self, d: f64, round: f64) -> f64 {
         (self.linear + self.square * d) * d + self.round * round

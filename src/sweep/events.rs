@@ -4,6 +4,7 @@
 //! where to look. Playing them back gives one imprint per run of steps at which nothing happens.
 
 use crate::atlas::Layout;
+use crate::index::{index, narrow, wide};
 
 /// Which taxels are active at first, and which turn over at which step.
 #[derive(Clone, Debug)]
@@ -31,7 +32,7 @@ const NONE: u32 = u32::MAX;
 
 impl<'a> Events<'a> {
     pub(crate) fn new(layout: &'a Layout, count: u64) -> Self {
-        let steps = usize::try_from(count).unwrap_or(0);
+        let steps = index(count);
         Self {
             layout,
             count,
@@ -57,8 +58,8 @@ impl<'a> Events<'a> {
     }
 
     /// A taxel turns over at a step, 1 to the last.
-    pub(crate) fn turn_over(&mut self, row: usize, column: usize, step: i32) {
-        let step = usize::try_from(step).unwrap_or(0);
+    pub(crate) fn turn_over(&mut self, row: usize, column: usize, step: u32) {
+        let step = wide(step);
         let (word, shift) = self.layout.place(row);
         let (bits, bit) = (&mut self.marked[step / 64], 1 << (step % 64));
         let before = if *bits & bit == 0 {
@@ -67,11 +68,11 @@ impl<'a> Events<'a> {
             self.last[step]
         };
         *bits |= bit;
-        self.last[step] = u32::try_from(self.list.len()).unwrap_or(NONE);
+        self.last[step] = narrow(self.list.len());
         self.list.push(Event {
             mask: 1 << (shift + column),
             number: self.layout.numbers(row)[column],
-            word: u32::try_from(word).unwrap_or(0),
+            word: narrow(word),
             before,
         });
     }
@@ -79,16 +80,16 @@ impl<'a> Events<'a> {
     /// Gives key, hash, first step and the step after the last of each run in turn, and forgets the marks.
     pub(crate) fn play(&mut self, mut run: impl FnMut(&[u64], u64, u64, u64)) {
         let mut from = 0;
-        for (index, marked) in self.marked.iter_mut().enumerate() {
+        for (place, marked) in self.marked.iter_mut().enumerate() {
             while *marked != 0 {
                 let bit = marked.trailing_zeros();
                 *marked &= *marked - 1;
-                let step = index as u64 * 64 + u64::from(bit);
-                run(&self.key, self.hash, from, step);
-                from = step;
-                let mut event = self.last[usize::try_from(step).unwrap_or(0)];
-                while let Some(turned) = self.list.get(usize::try_from(event).unwrap_or(0)) {
-                    self.key[usize::try_from(turned.word).unwrap_or(0)] ^= turned.mask;
+                let step = place * 64 + wide(bit);
+                run(&self.key, self.hash, from, step as u64);
+                from = step as u64;
+                let mut event = self.last[step];
+                while let Some(turned) = self.list.get(wide(event)) {
+                    self.key[wide(turned.word)] ^= turned.mask;
                     self.hash ^= turned.number;
                     event = turned.before;
                 }

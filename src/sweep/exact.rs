@@ -7,6 +7,7 @@
 use crate::geometry::Overlap;
 use crate::geometry::Point;
 use crate::geometry::{Double, Real};
+use crate::index::index;
 use crate::pose::{Boundary, PoseGrid};
 use crate::touch::least;
 
@@ -39,8 +40,9 @@ impl<'a> Exact<'a> {
 
     /// Whether the taxel is active when the shape lies at value `x` of x0 and value `y` of y0.
     #[cold]
+    #[expect(clippy::cast_precision_loss, reason = "a column or a row")]
     pub(crate) fn active(&mut self, column: usize, row: usize, x: u64, y: u64) -> bool {
-        let whole = |index: usize| Double::whole(i32::try_from(index).unwrap_or(0));
+        let whole = |index: usize| Double::from(index as f64);
         let by = Point::new(
             self.place(x, false) - whole(column),
             self.place(y, true) - whole(row),
@@ -54,12 +56,12 @@ impl<'a> Exact<'a> {
     }
 
     /// Where the anchor lies at a value of x0, or of y0. Reading a decimal takes longer than looking it up.
-    fn place(&mut self, index: u64, down: bool) -> Double {
-        let slot = usize::try_from(index).unwrap_or(0) % REMEMBERED;
+    fn place(&mut self, number: u64, down: bool) -> Double {
+        let slot = index(number) % REMEMBERED;
         let (known, place) = &mut self.places[2 * slot + usize::from(down)];
-        if *known != Some(index) {
-            let offset = self.grid.offset::<Double>(self.turn, index, index);
-            (*known, *place) = (Some(index), if down { offset.y } else { offset.x });
+        if *known != Some(number) {
+            let offset = self.grid.offset::<Double>(self.turn, number, number);
+            (*known, *place) = (Some(number), if down { offset.y } else { offset.x });
         }
         *place
     }

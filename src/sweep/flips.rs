@@ -4,6 +4,7 @@
 //! within [`NEAR`] of the end of a span, or in a span that is in doubt, [`Exact`] decides for that taxel and pose.
 
 use crate::geometry::Real;
+use crate::index::from_first;
 use crate::sweep::events::Events;
 use crate::sweep::exact::Exact;
 use crate::sweep::span::{NEAR, Span, Spans};
@@ -57,7 +58,7 @@ impl Marker<'_, '_, '_> {
     fn end(&mut self, at: f64, right: bool) -> usize {
         let columns = usize::from(self.events.layout.columns());
         let start = at + self.steps.first;
-        let mut column = usize::try_from(Real::floor(start - NEAR) + 1).unwrap_or(0);
+        let mut column = from_first(Real::floor(start - NEAR) + 1);
         let mut first = None;
         while column < columns {
             let step = self.passing(column, start, right);
@@ -66,7 +67,7 @@ impl Marker<'_, '_, '_> {
                 if step >= self.steps.count {
                     break;
                 }
-                self.events.turn_over(self.row, column, step);
+                self.events.turn_over(self.row, column, step.unsigned_abs());
             }
             column += 1;
         }
@@ -89,8 +90,9 @@ impl Marker<'_, '_, '_> {
         nearest + i32::from(active != right)
     }
 
+    /// Whether a taxel is active at a step, which is not negative; computed exactly.
     fn active(&mut self, column: usize, step: i32) -> bool {
-        let x = u64::try_from(step).unwrap_or(0);
+        let x = step.unsigned_abs().into();
         self.exact.active(column, self.row, x, self.y)
     }
 
@@ -128,12 +130,7 @@ impl Marker<'_, '_, '_> {
                         taxel.set(step, true, self.events);
                         step = sure.end.min(to + 1);
                     } else {
-                        let active = self.exact.active(
-                            column,
-                            self.row,
-                            u64::try_from(step).unwrap_or(0),
-                            self.y,
-                        );
+                        let active = self.active(column, step);
                         taxel.set(step, active, self.events);
                         step += 1;
                     }
@@ -157,6 +154,7 @@ struct Taxel {
 }
 
 impl Taxel {
+    /// Sets whether it is active from a step on, which is not negative.
     fn set(&mut self, step: i32, active: bool, events: &mut Events<'_>) {
         if active == self.active {
             return;
@@ -165,7 +163,7 @@ impl Taxel {
         if step == 0 {
             events.start(self.row, 1 << self.column);
         } else {
-            events.turn_over(self.row, self.column, step);
+            events.turn_over(self.row, self.column, step.unsigned_abs());
         }
     }
 }

@@ -9,7 +9,7 @@
 //!
 //! **Error.** Below 1e-11: closed forms of numbers below 10^4. Frame: the anchor at the origin; cell sides.
 
-use crate::sweep::ellipse_band::Oval;
+use crate::sweep::ellipse_band::EllipseBand;
 use crate::sweep::span::{DOUBT, Level, NEAR, Spans};
 
 /// An interval that cannot be settled is not halved below this width: what lies in it is decided with more digits.
@@ -19,8 +19,8 @@ const NARROW: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub(crate) struct Ring {
     pub(crate) threshold: f64,
-    pub(crate) outer: Oval,
-    pub(crate) inner: Option<Oval>,
+    pub(crate) outer: EllipseBand,
+    pub(crate) inner: Option<EllipseBand>,
 }
 
 /// A place and what the coverage has above the threshold there.
@@ -37,7 +37,7 @@ impl Ring {
 
     /// What the coverage at a place has above the threshold.
     fn excess(&self, u: f64) -> f64 {
-        let covered = |oval: &Oval| oval.coverage(&oval.at(u), &oval.at(u + 1.0));
+        let covered = |oval: &EllipseBand| oval.coverage(&oval.at(u), &oval.at(u + 1.0));
         let outer = covered(&self.outer);
         let inner = self.inner.as_ref().map_or(0.0, covered);
         if outer == 1.0 && inner == 0.0 {

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use crate::pose::{Axis, PoseGrid, period};
 use crate::quote::shortened;
-use crate::sweep::point_symmetry::HalfTurn;
+use crate::sweep::point_symmetry::PointSymmetry;
 
 /// One of `of` nearly equal pieces of a grid, `number` from 1.
 ///
@@ -58,8 +58,9 @@ impl Shard {
     /// Its rows, out of so many.
     pub fn rows(&self, rows: u64) -> Range<u64> {
         let cut = |piece: u32| {
-            let rows = u128::from(rows) * u128::from(piece) / u128::from(self.of);
-            u64::try_from(rows).unwrap_or(u64::MAX)
+            // rows · piece / of, rounded down, without a product beyond 64 bits.
+            let (piece, of) = (u64::from(piece), u64::from(self.of));
+            rows / of * piece + rows % of * piece / of
         };
         cut(self.number - 1)..cut(self.number)
     }
@@ -155,7 +156,7 @@ pub(crate) fn tasks(
     let width = grid.row_length();
     let count = pieces.len() as u64;
     // Only inside of one task can rows be images of each other.
-    let halved = width * height <= HALVED_TASK_POSES && HalfTurn::of(grid).is_some();
+    let halved = width * height <= HALVED_TASK_POSES && PointSymmetry::of(grid).is_some();
     let most = if halved {
         HALVED_TASK_POSES
     } else {

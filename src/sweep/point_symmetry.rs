@@ -16,12 +16,12 @@ use crate::source::Source;
 
 /// How the poses of a turn are mapped onto each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct HalfTurn {
-    pub(crate) x: Fold,
-    pub(crate) y: Fold,
+pub(crate) struct PointSymmetry {
+    pub(crate) x: IndexReflection,
+    pub(crate) y: IndexReflection,
 }
 
-impl HalfTurn {
+impl PointSymmetry {
     /// None where the shape or the ranges are not mapped onto themselves. Whether the shape lies inside of the sensor is
     /// for the caller to see.
     pub(crate) fn of(grid: &PoseGrid) -> Option<Self> {
@@ -30,8 +30,8 @@ impl HalfTurn {
         }
         let [width, height] = twice_to_centre(grid)?;
         Some(Self {
-            x: Fold::of(&grid.ranges()[Axis::X0], width)?,
-            y: Fold::of(&grid.ranges()[Axis::Y0], height)?,
+            x: IndexReflection::of(&grid.ranges()[Axis::X0], width)?,
+            y: IndexReflection::of(&grid.ranges()[Axis::Y0], height)?,
         })
     }
 }
@@ -72,14 +72,14 @@ fn twice_to_centre(grid: &PoseGrid) -> Option<[f64; 2]> {
 /// How the values of a range are mapped onto each other: value `i` to value `last − i`, or to `last − i + count` where
 /// that would be negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Fold {
+pub(crate) struct IndexReflection {
     pub(crate) count: u64,
     pub(crate) last: u64,
     /// The sum of the coordinates of a centre and its image, in cells, for values up to `last`, and for those after it.
     cells: [i32; 2],
 }
 
-impl Fold {
+impl IndexReflection {
     /// Of a range whose values lie `extent / 2` before the centre.
     fn of(range: &DecimalRange, extent: f64) -> Option<Self> {
         // The shortest decimal that reads back as the number is the one that was given.
@@ -135,11 +135,11 @@ mod tests {
     fn has_images(source: Source, anchor: Anchor, zoom: &str) -> bool {
         let ranges = Ranges::default().with(Axis::ZoomX, zoom.parse().expect("a range"));
         let grid = PoseGrid::new(source, Sensor::default(), anchor, ranges).expect("a grid");
-        HalfTurn::of(&grid).is_some()
+        PointSymmetry::of(&grid).is_some()
     }
 
-    fn fold(range: &str, extent: f64) -> Option<Fold> {
-        Fold::of(&range.parse().expect("a range"), extent)
+    fn fold(range: &str, extent: f64) -> Option<IndexReflection> {
+        IndexReflection::of(&range.parse().expect("a range"), extent)
     }
 
     #[test]

@@ -5,7 +5,8 @@
 //! the row had been gone through itself.
 
 use crate::atlas::{ImprintCounter, Layout};
-use crate::sweep::point_symmetry::HalfTurn;
+use crate::index::{narrow, wide};
+use crate::sweep::point_symmetry::PointSymmetry;
 
 /// The runs of several rows: index in a counter, and length.
 #[derive(Clone, Debug, Default)]
@@ -22,9 +23,7 @@ impl Runs {
     }
 
     pub(crate) fn push(&mut self, index: usize, length: u64) {
-        let (index, length) = (u32::try_from(index), u32::try_from(length));
-        self.list
-            .push((index.unwrap_or(u32::MAX), length.unwrap_or(u32::MAX)));
+        self.list.push((narrow(index), narrow(length)));
     }
 
     /// Those of a row, counted from 0; none of a row that is not there.
@@ -37,9 +36,9 @@ impl Runs {
 
 /// The images of the imprints of a task.
 #[derive(Debug)]
-pub(crate) struct Images<'a> {
+pub(crate) struct ReflectedRows<'a> {
     layout: &'a Layout,
-    half_turn: HalfTurn,
+    half_turn: PointSymmetry,
     /// By index in the counter: those of its images, by whether x0 comes round, and y0.
     known: Vec<[Option<u32>; 4]>,
     key: Vec<u64>,
@@ -47,8 +46,8 @@ pub(crate) struct Images<'a> {
     row: Vec<(usize, u64)>,
 }
 
-impl<'a> Images<'a> {
-    pub(crate) fn new(layout: &'a Layout, half_turn: HalfTurn) -> Self {
+impl<'a> ReflectedRows<'a> {
+    pub(crate) fn new(layout: &'a Layout, half_turn: PointSymmetry) -> Self {
         Self {
             layout,
             half_turn,
@@ -84,8 +83,7 @@ impl<'a> Images<'a> {
                 if length == 0 {
                     continue;
                 }
-                let index = usize::try_from(index).unwrap_or(0);
-                let image = self.image(counter, index, [after, round], pose);
+                let image = self.image(counter, wide(index), [after, round], pose);
                 counter.count(image, length);
                 self.row.push((image, length));
                 pose += length;
@@ -117,8 +115,8 @@ impl<'a> Images<'a> {
                 .layout
                 .half_turned(counter.key(index), cells, &mut self.key);
             let image = counter.add(&self.key, hash, 0, first);
-            u32::try_from(image).unwrap_or(u32::MAX)
+            narrow(image)
         });
-        usize::try_from(*image).unwrap_or(0)
+        wide(*image)
     }
 }

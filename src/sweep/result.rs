@@ -3,8 +3,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::atlas::{Atlas, ImprintCounter, Spread, Statistic, Table, statistics};
+use crate::atlas::{Atlas, ImprintCounter, Statistic, Table, VarianceParts, statistics};
 use crate::imprint::Imprint;
+use crate::index::{index, wide};
 use crate::pose::{Axis, PoseGrid, PoseIndex};
 use crate::sweep::ideal::Ideal;
 use crate::sweep::plan::{Shard, Task};
@@ -41,7 +42,7 @@ pub struct SweepResult {
     pub atlas: Atlas,
     /// Of each feature of [`crate::atlas::features`].
     pub statistics: Vec<Statistic>,
-    pub(crate) spread: Spread,
+    pub(crate) spread: VarianceParts,
 }
 
 impl SweepResult {
@@ -57,7 +58,7 @@ impl SweepResult {
         (poses, partly_off): (u64, u64),
         atlas: Atlas,
         table: &Table,
-        spread: Spread,
+        spread: VarianceParts,
     ) -> Self {
         let ideal = Ideal::of(grid.source());
         let counts: Vec<u64> = atlas.counts().collect();
@@ -84,7 +85,7 @@ impl SweepResult {
         let (grid, of) = (first.grid.clone(), first.shard.of());
         let turn = grid.row_length() * grid.rows_per_orientation();
         let mut atlas = Atlas::new(grid.sensor().columns(), grid.sensor().rows());
-        let (mut spread, mut poses, mut partly_off) = (Spread::new(turn), 0, 0);
+        let (mut spread, mut poses, mut partly_off) = (VarianceParts::new(turn), 0, 0);
         let mut expected = 1..=of;
         for result in results {
             let number = expected.next();
@@ -155,12 +156,11 @@ impl SweepResult {
         let ids: Vec<Option<u32>> = (0..counter.len())
             .map(|index| self.atlas.number(counter.key(index), counter.hash(index)))
             .collect();
-        let rows = 0..usize::try_from(rows).unwrap_or(0);
+        let rows = 0..index(rows);
         let runs = rows.flat_map(|row| found.runs.row(row));
-        let runs = runs.flat_map(|&(index, length)| {
-            let index = usize::try_from(index).unwrap_or(usize::MAX);
-            let length = usize::try_from(length).unwrap_or(0);
-            std::iter::repeat_n(ids.get(index).copied().flatten(), length)
+        let runs = runs.flat_map(|&(imprint, length)| {
+            let id = ids.get(wide(imprint)).copied().flatten();
+            std::iter::repeat_n(id, wide(length))
         });
         runs.collect()
     }
@@ -230,7 +230,7 @@ impl SweepResult {
                 "an imprint that is there twice",
             )?;
         }
-        let spread = Spread::from_words(width * grid.rows_per_orientation(), &parts.spread)
+        let spread = VarianceParts::from_words(width * grid.rows_per_orientation(), &parts.spread)
             .ok_or(PartsError("sums of another version"))?;
         atlas.add(&counter, 1);
         atlas.describe();

@@ -9,7 +9,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use crate::atlas::{Atlas, Spread, Table, TurnSums};
+use crate::atlas::{Atlas, OrientationSums, Table, VarianceParts};
+use crate::index::{index, wide};
 use crate::pose::{Axis, PoseGrid};
 use crate::sweep::plan::{Shard, Task, tasks};
 use crate::sweep::result::SweepResult;
@@ -103,7 +104,7 @@ impl<'a> Sweep<'a> {
             grid,
             atlas: Atlas::new(sensor.columns(), sensor.rows()),
             table: Table::default(),
-            spread: Spread::new(width * height),
+            spread: VarianceParts::new(width * height),
             poses: 0,
             partly_off: 0,
             stopped: AtomicBool::new(false),
@@ -144,7 +145,7 @@ struct UnderWay<'a, 'w> {
     grid: &'a PoseGrid,
     atlas: Atlas,
     table: Table,
-    spread: Spread,
+    spread: VarianceParts,
     poses: u64,
     partly_off: u64,
     stopped: AtomicBool,
@@ -201,12 +202,12 @@ impl UnderWay<'_, '_> {
         self.atlas.describe();
         self.table.extend(self.atlas.summaries());
         let table = &self.table;
-        let sums: Vec<TurnSums> = done
+        let sums: Vec<OrientationSums> = done
             .par_iter()
             .map(|(task, found, ids)| {
                 let counts = found.counter.tallies().iter().map(|tally| tally.count);
                 let counted = ids.iter().copied().zip(counts);
-                TurnSums::of(table, task.turns.len() as u64, counted)
+                OrientationSums::of(table, task.turns.len() as u64, counted)
             })
             .collect();
         for ((task, found, ids), sums) in done.iter().zip(sums) {
@@ -224,13 +225,11 @@ impl UnderWay<'_, '_> {
 /// Spells out the runs of a task, for each of its turns.
 fn show_rows(grid: &PoseGrid, task: &Task, found: &Found, ids: &[u32], show: &mut TakeRow<'_>) {
     let (width, height) = (grid.row_length(), grid.rows_per_orientation());
-    let width = usize::try_from(width).unwrap_or(usize::MAX);
-    let mut row = Vec::with_capacity(width);
-    for (index, y) in task.rows.clone().enumerate() {
+    let mut row = Vec::with_capacity(index(width));
+    for (nth, y) in task.rows.clone().enumerate() {
         row.clear();
-        for &(index, length) in found.runs.row(index) {
-            let [index, length] = [index, length].map(|n| usize::try_from(n).unwrap_or(0));
-            row.extend(std::iter::repeat_n(ids[index], length));
+        for &(imprint, length) in found.runs.row(nth) {
+            row.extend(std::iter::repeat_n(ids[wide(imprint)], wide(length)));
         }
         for &turn in task.turns.iter() {
             show(turn * height + y, &row);

@@ -7,15 +7,16 @@
 use crate::atlas::{ImprintCounter, Layout};
 use crate::geometry::Extent;
 use crate::geometry::Real;
+use crate::index::from_first;
 use crate::pose::{Axis, Boundary, PoseGrid};
 use crate::sweep::ellipse::Elliptic;
 use crate::sweep::events::Events;
 use crate::sweep::exact::Exact;
 use crate::sweep::flips::{Marker, Steps};
 use crate::sweep::plan::Task;
-use crate::sweep::point_symmetry::HalfTurn;
+use crate::sweep::point_symmetry::PointSymmetry;
 use crate::sweep::polygon::Polygonal;
-use crate::sweep::reflected_rows::{Images, Runs};
+use crate::sweep::reflected_rows::{ReflectedRows, Runs};
 use crate::sweep::span::Spans;
 use crate::touch::DOUBTFUL;
 
@@ -45,8 +46,8 @@ pub(crate) fn go(
 ) -> Option<Found> {
     let turn = task.turns[0];
     let mut sweeper = Sweeper::new(grid, layout, turn);
-    let half_turn = HalfTurn::of(grid).filter(|_| sweeper.lies_inside());
-    let mut images = half_turn.map(|half_turn| Images::new(layout, half_turn));
+    let half_turn = PointSymmetry::of(grid).filter(|_| sweeper.lies_inside());
+    let mut images = half_turn.map(|half_turn| ReflectedRows::new(layout, half_turn));
     let mut found = Found {
         counter: ImprintCounter::new(layout.words()),
         partly_off: 0,
@@ -204,7 +205,7 @@ impl<'a> Sweeper<'a> {
         let first = Real::floor(extent.top + offset).max(0);
         let last = Real::floor(extent.bottom + offset).min(rows - 1);
         for row in first..=last {
-            let (top, row) = (f64::from(row) - offset, usize::try_from(row).unwrap_or(0));
+            let (top, row) = (f64::from(row) - offset, from_first(row));
             self.shape.band(top, row, threshold, &mut self.spans);
             Marker {
                 steps: self.steps,

@@ -67,7 +67,7 @@ impl Spans {
         self.level = None;
     }
 
-    /// Takes summary that from `at` on the level is this one. Places come in ascending order.
+    /// Notes that from `at` on the level is this one. Places come in ascending order.
     pub(crate) fn turn(&mut self, at: f64, level: Level) {
         if let Some((from, old)) = self.level {
             if old == level {

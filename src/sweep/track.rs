@@ -6,10 +6,10 @@
 //! where to look, and one step of Newton's method usually ends there.
 //!
 //! **Certainty.** At a place the excess over the level is `e` and the slope `m`; within `e/m` and a little the
-//! slope cannot change by more than `c` ([`Oval::change`]). Then the passage lies between `e/(m + c)` and `e/(m − c)`
+//! slope cannot change by more than `c` ([`EllipseBand::change`]). Then the passage lies between `e/(m + c)` and `e/(m − c)`
 //! away. It is taken for known once that is narrower than [`NEAR`] asks for.
 
-use crate::sweep::ellipse_band::Oval;
+use crate::sweep::ellipse_band::EllipseBand;
 use crate::sweep::span::{NEAR, STEEP};
 
 /// Where a passage was in the last rows.
@@ -41,7 +41,7 @@ impl Track {
     }
 
     /// The passage through a level in the present band, rising or falling; none where it cannot be told for certain.
-    pub(crate) fn follow(&mut self, oval: &Oval, level: f64, rising: bool) -> Option<f64> {
+    pub(crate) fn follow(&mut self, oval: &EllipseBand, level: f64, rising: bool) -> Option<f64> {
         let mut u = self.expected()?;
         for _ in 0..4 {
             let (left, right) = (oval.at(u), oval.at(u + 1.0));

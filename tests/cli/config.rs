@@ -17,7 +17,7 @@ fn refused(text: &str, expected: &str) {
 fn nothing_has_to_be_said() {
     for text in ["", "\n# nothing\n", "[sensor]\n[keys]\n[keys.matrix]\n"] {
         let config = Config::read(text).expect("a file of settings");
-        assert!(config.sensor().is_empty() && config.changes().is_empty());
+        assert!(config.sensor_entries().is_empty() && config.changes().is_empty());
     }
 }
 

@@ -57,8 +57,9 @@ fn figure() -> Command {
     let kind = Arg::new("kind")
         .value_name("KIND")
         .required(true)
-        .value_parser(PossibleValuesParser::new(
+        .value_parser(parameters::one_of(
             FigureKind::ALL.map(FigureKind::name),
+            FigureKind::from_name,
         ))
         .hide_possible_values(true)
         .help(parameters::wrapped(&list(kinds, "or"), 64));
@@ -144,8 +145,9 @@ fn sweep() -> Command {
         .value_name("KIND")
         .required_unless_present("picture")
         .conflicts_with("picture")
-        .value_parser(PossibleValuesParser::new(
+        .value_parser(parameters::one_of(
             FigureKind::ALL.map(FigureKind::name),
+            FigureKind::from_name,
         ))
         .hide_possible_values(true)
         .help("Kind of figure, as of 'taxel figure'");
@@ -178,7 +180,7 @@ fn sweep() -> Command {
     let anchor = Arg::new("anchor")
         .long("anchor")
         .value_name("POINT")
-        .value_parser(PossibleValuesParser::new(Anchor::NAMES))
+        .value_parser(parameters::one_of(Anchor::NAMES, Anchor::from_name))
         .hide_possible_values(true)
         .help_heading("Grid")
         .help("What x0 and y0 place: corner or centre");

@@ -1,5 +1,6 @@
 //! Flags made from the table of parameters: name, help text, and the values that were given.
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgMatches};
 
 use crate::cli::error::CliError;
@@ -79,6 +80,14 @@ fn parse(text: &str) -> Result<Number, String> {
     let value = number::read(text).ok_or_else(|| number::complaint(text))?;
     let text = text.trim().to_owned();
     Ok(Number { text, value })
+}
+
+/// Accepts one of some names, and gives what it stands for.
+pub(super) fn one_of<T: Clone + Send + Sync + 'static, const N: usize>(
+    names: [&'static str; N],
+    named: fn(&str) -> Option<T>,
+) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(names).try_map(move |name| named(&name).ok_or("not one of the names"))
 }
 
 /// As clap writes its own help texts.

@@ -10,7 +10,7 @@ use crate::cli::arguments::help::{
 };
 use crate::cli::arguments::parameters;
 use crate::cli::commands::completions::Shell;
-use crate::cli::input::content::Place;
+use crate::cli::input::content::InputSource;
 use crate::cli::settings::file::AUTO;
 use crate::storage::Existing;
 use crate::tui::script::command;
@@ -19,9 +19,9 @@ use crate::tui::widget::theme::{ColorDepth, Palette};
 /// A script and how it is run.
 #[derive(Clone, Debug)]
 pub(crate) struct Script {
-    /// Where its lines come from, where they do.
-    pub(crate) place: Option<Place>,
-    /// Keys that are pressed before.
+    /// Where its lines are read from; none if only `keys` are given.
+    pub(crate) source: Option<InputSource>,
+    /// Keys to press before the script.
     pub(crate) keys: Option<String>,
     pub(crate) size: (u16, u16),
     pub(crate) styles: bool,
@@ -35,22 +35,22 @@ pub(crate) struct Script {
 impl Script {
     /// What the arguments of [`script`] ask for.
     pub(crate) fn of(matches: &ArgMatches) -> Self {
-        let place = matches.get_one::<PathBuf>("file").map(|file| {
+        let source = matches.get_one::<PathBuf>("file").map(|file| {
             if file.as_os_str() == "-" {
-                Place::Standard
+                InputSource::Standard
             } else {
-                Place::File(file.clone())
+                InputSource::File(file.clone())
             }
         });
         let keys = matches.get_one::<String>("keys").cloned();
         // Neither a file nor keys: the script comes on standard input.
-        let place = if keys.is_none() {
-            place.or(Some(Place::Standard))
+        let source = if keys.is_none() {
+            source.or(Some(InputSource::Standard))
         } else {
-            place
+            source
         };
         Self {
-            place,
+            source,
             keys,
             size: matches.get_one("size").copied().unwrap_or((80, 24)),
             styles: matches.get_flag("styles"),
@@ -98,7 +98,10 @@ pub(crate) fn completions() -> Command {
     let shell = Arg::new("shell")
         .value_name("SHELL")
         .required(true)
-        .value_parser(PossibleValuesParser::new(Shell::ALL.map(Shell::name)))
+        .value_parser(parameters::one_of(
+            Shell::ALL.map(Shell::name),
+            Shell::from_name,
+        ))
         .hide_possible_values(true)
         .help("bash, zsh or fish");
     Command::new("completions")

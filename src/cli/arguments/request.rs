@@ -207,29 +207,23 @@ fn request(
         "config" => Request::Settings,
         "picture" => {
             let kept = kept(own, command, "picture")?;
-            Request::Picture(what(own), Given::of(own), form(own, settings)?, kept)
+            Request::Picture(what(own)?, Given::of(own), form(own, settings)?, kept)
         }
-        "describe" => Request::Describe(what(own), form(own, settings)?),
+        "describe" => Request::Describe(what(own)?, form(own, settings)?),
         "export" => {
             let pitch = pitch(own, settings)?;
-            let to = own.get_one::<PathBuf>("to").cloned();
-            let export = export(own, &to.unwrap_or_default(), command, "export")?;
-            Request::Export(what(own), export, pitch)
+            let to = required::<PathBuf>(own, "to")?;
+            let export = export(own, &to, command, "export")?;
+            Request::Export(what(own)?, export, pitch)
         }
         "library" => Request::Library(chore(own, settings)?),
         "script" => Request::Script(Script::of(own)),
-        "completions" => {
-            let name = own.get_one::<String>("shell");
-            let shell = name.and_then(|name| Shell::from_name(name));
-            // Required, and one of the names: there is always one.
-            Request::Completions(shell.unwrap_or(Shell::Bash))
-        }
+        "completions" => Request::Completions(required::<Shell>(own, "shell")?),
         "man" => Request::Man(own.get_one::<PathBuf>("folder").cloned()),
         "sweep" => Request::Sweep(Box::new(sweep(own, command, settings)?)),
         "merge" => {
-            let files = own.get_many::<PathBuf>("files");
-            let files = files.map(|files| files.cloned().collect());
-            Request::Merge(files.unwrap_or_default(), wanted(own))
+            let files = own.get_many::<PathBuf>("files").into_iter().flatten();
+            Request::Merge(files.cloned().collect(), wanted(own))
         }
         _ => Request::Batch(settings.sensor()),
     })
@@ -256,8 +250,7 @@ fn sweep(
         let (figure, sensor) = source(matches, command, "sweep", settings)?;
         Swept::Figure(figure, sensor)
     };
-    let anchor = matches.get_one::<String>("anchor");
-    let anchor = anchor.and_then(|name| Anchor::from_name(name));
+    let anchor = matches.get_one::<Anchor>("anchor").copied();
     Ok(SweepArguments {
         what,
         anchor: anchor.unwrap_or_default(),
@@ -297,10 +290,7 @@ fn source(
     name: &str,
     settings: &Effective,
 ) -> Result<(Source, Sensor), CliError> {
-    // Required, and one of the names: there is always one.
-    let kind = matches.get_one::<String>("kind");
-    let kind = kind.and_then(|name| FigureKind::from_name(name));
-    let kind = kind.unwrap_or(FigureKind::Ellipse);
+    let kind = required::<FigureKind>(matches, "kind")?;
     let given = Given::of(matches);
     if let Some(parameter) = given.foreign(kind) {
         let own = kind
@@ -331,7 +321,7 @@ fn chore(matches: &ArgMatches, settings: &Effective) -> Result<Chore, CliError> 
         ("show", Some(name)) => Chore::Show(name, form(own, settings)?),
         ("save", Some(name)) => {
             let force = own.get_flag("force");
-            Chore::Save(Saving { name, force }, what(own))
+            Chore::Save(Saving { name, force }, what(own)?)
         }
         ("delete", Some(name)) => Chore::Delete(name),
         ("restore", Some(name)) => Chore::Restore(name),
@@ -340,10 +330,20 @@ fn chore(matches: &ArgMatches, settings: &Effective) -> Result<Chore, CliError> 
     })
 }
 
-/// The argument that is a name or a file; required.
-fn what(matches: &ArgMatches) -> OsString {
-    let what = matches.get_one::<OsString>("what");
-    what.cloned().unwrap_or_default()
+/// The argument that is a name or a file.
+fn what(matches: &ArgMatches) -> Result<OsString, CliError> {
+    required(matches, "what")
+}
+
+/// The value of an argument that clap makes sure of: without it the command is refused before this is called.
+fn required<T: Clone + Send + Sync + 'static>(
+    matches: &ArgMatches,
+    id: &str,
+) -> Result<T, CliError> {
+    matches.get_one::<T>(id).cloned().ok_or_else(|| {
+        let message = format!("the argument '{id}' is required\n");
+        clap::Error::raw(ErrorKind::MissingRequiredArgument, message).into()
+    })
 }
 
 fn kept(matches: &ArgMatches, command: &mut clap::Command, name: &str) -> Result<Kept, CliError> {

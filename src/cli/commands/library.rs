@@ -13,22 +13,21 @@ use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::report;
 use crate::description::{RegionKind, regions};
-use crate::formats::StoredShape;
-use crate::parameter::Parameter;
+use crate::formats::{StoredShape, json};
 use crate::quote::legible;
 use crate::sensor::Sensor;
 use crate::storage::{Library, LibraryEntry, ShapeOrigin};
 
 /// A line of the list.
-struct Line {
+struct ListLine {
     name: String,
     origin: ShapeOrigin,
     /// What the file holds, or why it is broken.
-    found: Result<Summary, String>,
+    found: Result<ShapeSummary, String>,
 }
 
 /// What the list tells of a shape.
-struct Summary {
+struct ShapeSummary {
     columns: u8,
     rows: u8,
     na: u32,
@@ -36,12 +35,12 @@ struct Summary {
     holes: usize,
 }
 
-impl Line {
+impl ListLine {
     fn of(library: &Library, entry: LibraryEntry) -> Self {
         let found = library.load(&entry.name);
         Self {
             found: found
-                .map(|loaded| Summary::of(&loaded.shape))
+                .map(|loaded| ShapeSummary::of(&loaded.shape))
                 .map_err(|error| legible(&error.to_string())),
             name: entry.name,
             origin: entry.origin,
@@ -57,7 +56,7 @@ impl Line {
     }
 }
 
-impl Summary {
+impl ShapeSummary {
     fn of(shape: &StoredShape) -> Self {
         let regions = regions(&shape.imprint);
         let holes = regions
@@ -74,7 +73,7 @@ impl Summary {
     }
 }
 
-impl Serialize for Line {
+impl Serialize for ListLine {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("name", &self.name)?;
@@ -94,22 +93,20 @@ impl Serialize for Line {
 }
 
 /// Reads every shape.
-fn lines(library: &Library) -> Result<Vec<Line>, CliError> {
+fn lines(library: &Library) -> Result<Vec<ListLine>, CliError> {
     let entries = library.list()?.into_iter();
-    Ok(entries.map(|entry| Line::of(library, entry)).collect())
+    Ok(entries.map(|entry| ListLine::of(library, entry)).collect())
 }
 
 /// All shapes.
-pub(crate) fn list(shelf: &Shelf, json: bool, charset: Charset) -> Result<String, CliError> {
+pub(crate) fn list(shelf: &Shelf, as_json: bool, charset: Charset) -> Result<String, CliError> {
     let lines = lines(&shelf.library()?)?;
-    if json {
-        // Cannot fail: every key is a text and every number finite.
-        let text = serde_json::to_string(&lines).unwrap_or_default();
-        return Ok(report::ascii_json(&text) + "\n");
+    if as_json {
+        return Ok(report::ascii_json(&json::text(&lines)) + "\n");
     }
     let names: Vec<_> = lines.iter().map(|line| charset.line(&line.name)).collect();
-    let width = names.iter().map(|name| name.chars().count()).max();
-    let width = width.unwrap_or(0).max("name".len());
+    let widths = names.iter().map(|name| name.chars().count());
+    let width = widths.fold("name".len(), usize::max);
     let mut text = format!(
         "{:width$}  origin   {:>7}   NA  pieces  holes\n",
         "name", "size"
@@ -147,15 +144,7 @@ pub(crate) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String
         Content::Shape(shape) => shape.renamed(saving.name),
         Content::Imprint(imprint) => StoredShape {
             name: saving.name,
-            sensor: [
-                (Parameter::Columns, imprint.columns()),
-                (Parameter::Rows, imprint.rows()),
-            ]
-            .into_iter()
-            .fold(Sensor::default(), |sensor, (parameter, side)| {
-                // A side of an imprint is one of a sensor.
-                sensor.with(parameter, f64::from(side)).unwrap_or(sensor)
-            }),
+            sensor: Sensor::clamped(imprint.columns(), imprint.rows()),
             imprint,
             source: None,
         },

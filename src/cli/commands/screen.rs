@@ -41,7 +41,7 @@ pub(crate) fn screen(
     };
     let library = shelf.library()?;
     let mut record = record
-        .map(|path| Record::begin(path, &options, &library))
+        .map(|path| ScreenRecord::begin(path, &options, &library))
         .transpose()?;
     let mut watch = |input: &terminal::input::Input| {
         if let Some(record) = &mut record {
@@ -63,7 +63,7 @@ pub(crate) fn screen(
 }
 
 /// A record that is being written.
-struct Record {
+struct ScreenRecord {
     path: PathBuf,
     /// Why nothing more is written, once something could not be.
     file: io::Result<File>,
@@ -71,7 +71,7 @@ struct Record {
     begun: bool,
 }
 
-impl Record {
+impl ScreenRecord {
     /// A new file: one that is there may be the record of something else.
     fn begin(path: PathBuf, options: &Options, library: &Library) -> Result<Self, CliError> {
         // All that may fail before there is a file, which would be in the way of the next try.
@@ -107,8 +107,10 @@ impl Record {
 
     /// The last lines; a record of nothing goes again.
     fn end(mut self, outcome: Option<terminal::Outcome>) -> io::Result<()> {
-        let lines = outcome.map(|outcome| self.recorder.end(outcome));
-        self.write(&lines.unwrap_or_default());
+        if let Some(outcome) = outcome {
+            let lines = self.recorder.end(outcome);
+            self.write(&lines);
+        }
         if !self.begun {
             // An empty file is left then, and told by nobody.
             let _ = fs::remove_file(&self.path);
@@ -130,21 +132,16 @@ fn found(library: &Library) -> Result<Vec<ScriptSetting>, CliError> {
 
 /// A name like that of a file which is not there yet.
 fn free(path: &Path) -> PathBuf {
-    let part =
-        |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
-    let (stem, end) = (part(path.file_stem()), part(path.extension()));
-    let end = if end.is_empty() {
-        end
-    } else {
-        format!(".{end}")
+    let last = path.with_extension("new");
+    let Some(stem) = path.file_stem().map(|stem| stem.to_string_lossy()) else {
+        return last;
     };
+    let end = path.extension().map(|end| end.to_string_lossy());
+    let end = end.map_or(String::new(), |end| format!(".{end}"));
     let names = (2..).map(|number| path.with_file_name(format!("{stem}-{number}{end}")));
     let is_free = |path: &PathBuf| {
         let there = fs::symlink_metadata(path);
         there.is_err_and(|error: io::Error| error.kind() == ErrorKind::NotFound)
     };
-    names
-        .take(1000)
-        .find(is_free)
-        .unwrap_or_else(|| path.with_extension("new"))
+    names.take(1000).find(is_free).unwrap_or(last)
 }

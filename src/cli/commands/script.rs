@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use crate::cli::arguments::program::Script;
 use crate::cli::commands::export;
 use crate::cli::error::CliError;
-use crate::cli::input::content::Place;
+use crate::cli::input::content::InputSource;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::settings::resolved::Effective;
@@ -31,10 +31,10 @@ pub(crate) fn run(
     shelf: &Shelf,
     charset: Charset,
 ) -> Result<(), CliError> {
-    let name = asked.place.as_ref().map(Place::name);
-    let script = match &asked.place {
-        Some(place) => text(place).map_err(|error| CliError::NoScript {
-            name: place.name(),
+    let name = asked.source.as_ref().map(InputSource::name);
+    let script = match &asked.source {
+        Some(source) => text(source).map_err(|error| CliError::NoScript {
+            name: source.name(),
             error: error.into(),
         })?,
         None => String::new(),
@@ -127,23 +127,24 @@ impl Names {
             Err(_) => format!("screen-{}", self.0.len() + 1),
         };
         // Some file systems take upper and lower case for the same.
-        let is_free = |name: &String| !self.0.contains(&folded(name));
-        let others = (2..).map(|number| format!("{name}-{number}"));
-        let name = std::iter::once(name.clone()).chain(others).find(is_free);
-        let name = name.unwrap_or_default();
-        self.0.push(folded(&name));
-        name
+        let (mut free, mut number) = (name.clone(), 1);
+        while self.0.contains(&folded(&free)) {
+            number += 1;
+            free = format!("{name}-{number}");
+        }
+        self.0.push(folded(&free));
+        free
     }
 }
 
 /// A long text: a record holds all of a library. What is not UTF-8 is replaced.
-fn text(place: &Place) -> io::Result<String> {
+fn text(source: &InputSource) -> io::Result<String> {
     let mut bytes = Vec::new();
-    match place {
-        Place::File(path) => File::open(path)?
+    match source {
+        InputSource::File(path) => File::open(path)?
             .take(MOST_BYTES + 1)
             .read_to_end(&mut bytes)?,
-        Place::Standard => io::stdin()
+        InputSource::Standard => io::stdin()
             .lock()
             .take(MOST_BYTES + 1)
             .read_to_end(&mut bytes)?,

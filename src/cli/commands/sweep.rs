@@ -12,10 +12,13 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::flag;
+
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::progress::Progress;
-use crate::cli::output::sweep_summary::Summary;
+use crate::cli::output::sweep_summary::SweepSummary;
 use crate::formats::{ArchiveError, archive};
 use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, Ranges, common_ranges, default_ranges};
 use crate::sensor::Sensor;
@@ -174,7 +177,7 @@ fn leave(
     for file in atlas.into_iter().chain(poses) {
         file.persist().map_err(SweepFileError::from)?;
     }
-    let summary = Summary::new(result, start.elapsed());
+    let summary = SweepSummary::new(result, start.elapsed());
     Ok(if wanted.json {
         summary.json()
     } else {
@@ -182,32 +185,35 @@ fn leave(
     })
 }
 
-/// Signals that stop the work; a second one ends the program as if nobody listened.
+/// Signals that stop the work, each with the exit status that a shell reports for it: 128 and its number.
+const STOPPING: [(i32, u8); 3] = [(SIGINT, 130), (SIGTERM, 143), (SIGHUP, 129)];
+
+/// Whether the work is to stop. A second signal ends the program at once, as if none were caught.
 struct Signals {
     stopped: Arc<AtomicBool>,
-    /// Which came last; 0 where none has.
+    /// The index in [`STOPPING`] of the signal that came last.
     last: Arc<AtomicUsize>,
 }
 
 impl Signals {
     /// Listens from now on.
     fn heard() -> io::Result<Self> {
-        use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-        use signal_hook::flag;
         let (stopped, last) = (Arc::default(), Arc::default());
-        // Where nobody looks on, `nohup` may have asked that a lost terminal does not matter.
-        let lost = io::stderr().is_terminal().then_some(SIGHUP);
-        for signal in [SIGINT, SIGTERM].into_iter().chain(lost) {
-            flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&stopped))?;
-            let number = usize::try_from(signal).unwrap_or_default();
-            flag::register_usize(signal, Arc::clone(&last), number)?;
+        let terminal = io::stderr().is_terminal();
+        for (index, &(signal, status)) in STOPPING.iter().enumerate() {
+            // Without a terminal SIGHUP keeps its meaning: `nohup` may have told the program to ignore it.
+            if signal == SIGHUP && !terminal {
+                continue;
+            }
+            flag::register_conditional_shutdown(signal, status.into(), Arc::clone(&stopped))?;
+            flag::register_usize(signal, Arc::clone(&last), index)?;
             flag::register(signal, Arc::clone(&stopped))?;
         }
         Ok(Self { stopped, last })
     }
 
     fn failure(&self) -> CliError {
-        let signal = self.last.load(Ordering::Relaxed);
-        CliError::Stopped(u8::try_from(signal).unwrap_or_default())
+        let (_, status) = STOPPING[self.last.load(Ordering::Relaxed)];
+        CliError::Stopped { status }
     }
 }

@@ -12,7 +12,6 @@ use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::report;
 use crate::formats::StoredShape;
-use crate::parameter::Parameter;
 use crate::picture::Picture;
 use crate::sensor::Sensor;
 use crate::source::Source;
@@ -91,14 +90,11 @@ pub(crate) fn picture(
         }
         Content::Imprint(imprint) => {
             let paper = Sensor::default();
-            let side = |own: u8, paper: u8| f64::from(own.max(paper));
-            let sensor = paper
-                .with(Parameter::Columns, side(imprint.columns(), paper.columns()))
-                .and_then(|sensor| {
-                    sensor.with(Parameter::Rows, side(imprint.rows(), paper.rows()))
-                });
-            // Both are sides of an imprint or of a sensor: in range.
-            (Picture::at_home(imprint), sensor.unwrap_or(paper))
+            let sensor = Sensor::clamped(
+                imprint.columns().max(paper.columns()),
+                imprint.rows().max(paper.rows()),
+            );
+            (Picture::at_home(imprint), sensor)
         }
     };
     let sensor = given.sensor(sensor)?;

@@ -11,14 +11,14 @@ use crate::quote::legible;
 
 /// Where input comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Place {
+pub(crate) enum InputSource {
     /// A file.
     File(PathBuf),
     /// Standard input, written `-`.
     Standard,
 }
 
-impl Place {
+impl InputSource {
     /// Its name in messages.
     pub(crate) fn name(&self) -> String {
         match self {
@@ -55,11 +55,11 @@ pub(crate) enum InputError {
     Shape(#[from] ShapeError),
 }
 
-/// Reads the content of a place: a stored shape where its first character is `{`, an imprint otherwise.
-pub(crate) fn read(place: &Place) -> Result<Content, InputError> {
-    let bytes = match place {
-        Place::File(path) => bytes(File::open(path)?)?,
-        Place::Standard => bytes(io::stdin().lock())?,
+/// Reads a source: a stored shape where its first character is `{`, an imprint otherwise.
+pub(crate) fn read(source: &InputSource) -> Result<Content, InputError> {
+    let bytes = match source {
+        InputSource::File(path) => bytes(File::open(path)?)?,
+        InputSource::Standard => bytes(io::stdin().lock())?,
     };
     // Some editors begin every text with a byte order mark.
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
@@ -72,7 +72,7 @@ pub(crate) fn read(place: &Place) -> Result<Content, InputError> {
 
 fn bytes(source: impl Read) -> Result<Vec<u8>, InputError> {
     let mut bytes = Vec::new();
-    let limit = u64::try_from(MAX_BYTES).unwrap_or(u64::MAX);
+    let limit = MAX_BYTES as u64;
     source.take(limit + 1).read_to_end(&mut bytes)?;
     if bytes.len() > MAX_BYTES {
         return Err(InputError::Large);

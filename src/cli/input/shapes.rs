@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use crate::cli::error::CliError;
 use crate::cli::input::content;
-use crate::cli::input::content::{Content, InputError, Place};
+use crate::cli::input::content::{Content, InputError, InputSource};
 use crate::formats::StoredShape;
 use crate::imprint::Imprint;
 use crate::storage::{Expected, Library, LibraryError};
@@ -51,14 +51,14 @@ impl Shelf {
 
     /// The shape of that name, else the content of that file; of standard input for `-`.
     pub(crate) fn find(&self, what: &OsStr) -> Result<Content, CliError> {
-        let read = |place: &Place| {
-            content::read(place).map_err(|error| CliError::Input {
-                name: place.name(),
+        let read = |source: &InputSource| {
+            content::read(source).map_err(|error| CliError::Input {
+                name: source.name(),
                 error,
             })
         };
         if what == "-" {
-            return read(&Place::Standard);
+            return read(&InputSource::Standard);
         }
         let named = what
             .to_str()
@@ -70,7 +70,7 @@ impl Shelf {
             Some(Err(LibraryError::Name(_) | LibraryError::NoPlace)) | None => None,
             // A library that cannot be read is told of unless there is such a file.
             Some(Err(error)) => {
-                return match read(&Place::File(what.into())) {
+                return match read(&InputSource::File(what.into())) {
                     Err(CliError::Input {
                         error: InputError::Read(missing),
                         ..
@@ -79,7 +79,7 @@ impl Shelf {
                 };
             }
         };
-        match (read(&Place::File(what.into())), nowhere) {
+        match (read(&InputSource::File(what.into())), nowhere) {
             (
                 Err(CliError::Input {
                     error: InputError::Read(error),

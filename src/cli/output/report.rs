@@ -8,7 +8,7 @@ use std::fmt::Write;
 
 use crate::cli::output::charset::Charset;
 use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension, RegionKind, regions};
-use crate::formats::{DescribedImprint, value};
+use crate::formats::{DescribedImprint, json, value};
 use crate::imprint::Imprint;
 use crate::parameter::number::short;
 use crate::sensor::Sensor;
@@ -20,8 +20,7 @@ const WIDTH: usize = 80;
 
 /// The answer as one line of JSON.
 pub(crate) fn json(imprint: &Imprint) -> String {
-    // Cannot fail: every key is a text and every number finite.
-    let mut line = serde_json::to_string(&DescribedImprint(imprint)).unwrap_or_default();
+    let mut line = json::text(&DescribedImprint(imprint));
     line.push('\n');
     line
 }
@@ -113,14 +112,14 @@ fn line(text: &mut String, line: &str) {
 }
 
 /// A line of the table: a descriptor, and the factor that its values are shown times.
-struct Quantity {
+struct TableRow {
     descriptor: &'static Descriptor,
     factor: f64,
     label: String,
 }
 
 /// All lines; with a pitch, each length and area again in mm and mm².
-fn quantities(pitch: Option<f64>) -> Vec<Quantity> {
+fn table_rows(pitch: Option<f64>) -> Vec<TableRow> {
     let mut all = Vec::new();
     for descriptor in DESCRIPTORS {
         let (factor, unit) = match descriptor.dimension {
@@ -130,7 +129,7 @@ fn quantities(pitch: Option<f64>) -> Vec<Quantity> {
             Dimension::Direction => (1.0, ", deg"),
             Dimension::Share => (100.0, ", %"),
         };
-        all.push(Quantity {
+        all.push(TableRow {
             descriptor,
             factor,
             label: format!("{:<5}  {}{unit}", descriptor.symbol, descriptor.name),
@@ -140,7 +139,7 @@ fn quantities(pitch: Option<f64>) -> Vec<Quantity> {
             (Dimension::Area, Some(pitch)) => Some((pitch * pitch, "mm²")),
             _ => None,
         };
-        all.extend(metric.map(|(factor, unit)| Quantity {
+        all.extend(metric.map(|(factor, unit)| TableRow {
             descriptor,
             factor,
             label: format!("{:<5}  in {unit}", ""),
@@ -153,21 +152,26 @@ fn quantities(pitch: Option<f64>) -> Vec<Quantity> {
 fn labels(pitch: Option<f64>, charset: Charset) -> Vec<String> {
     let mut labels = vec![String::new()];
     labels.extend(
-        quantities(pitch)
+        table_rows(pitch)
             .iter()
-            .map(|quantity| charset.line(&quantity.label).into_owned()),
+            .map(|row| charset.line(&row.label).into_owned()),
     );
-    let width = labels.iter().map(|label| label.chars().count()).max();
-    let width = width.unwrap_or(0);
+    let width = widest(&labels);
     labels
         .iter()
         .map(|label| format!("{label:<width$}"))
         .collect()
 }
 
+/// The width of the widest cell, in characters.
+fn widest(cells: &[String]) -> usize {
+    let widths = cells.iter().map(|cell| cell.chars().count());
+    widths.fold(0, usize::max)
+}
+
 /// A column for each region, its heading first, padded to one width each.
 fn columns(descriptions: &[Description], pitch: Option<f64>, charset: Charset) -> Vec<Vec<String>> {
-    let quantities = quantities(pitch);
+    let rows = table_rows(pitch);
     let (mut exteriors, mut holes) = (0, 0);
     let column = |description: &Description| {
         let number = match description.kind {
@@ -176,13 +180,12 @@ fn columns(descriptions: &[Description], pitch: Option<f64>, charset: Charset) -
         };
         *number += 1;
         let mut column = vec![format!("{} {number}", description.kind.name())];
-        column.extend(quantities.iter().map(|quantity| {
-            let value = (quantity.descriptor.measure)(description);
-            let text = value::times(value, quantity.factor, 4);
+        column.extend(rows.iter().map(|row| {
+            let value = (row.descriptor.measure)(description);
+            let text = value::times(value, row.factor, 4);
             charset.line(text.as_deref().unwrap_or("–")).into_owned()
         }));
-        let width = column.iter().map(|cell| cell.chars().count()).max();
-        let width = width.unwrap_or(0);
+        let width = widest(&column);
         column
             .iter()
             .map(|cell| format!("{cell:>width$}"))

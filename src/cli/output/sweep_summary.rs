@@ -7,17 +7,18 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::atlas::{STATISTIC_COLUMNS, Statistic, StatisticColumn};
 use crate::cli::output::charset::Charset;
+use crate::formats::json;
 use crate::pose::{Axis, PoseGrid};
 use crate::sweep::SweepResult;
 
 /// A result, and how long it took.
-pub(crate) struct Summary<'a> {
+pub(crate) struct SweepSummary<'a> {
     result: &'a SweepResult,
     classes: (usize, usize),
     took: Duration,
 }
 
-impl<'a> Summary<'a> {
+impl<'a> SweepSummary<'a> {
     pub(crate) fn new(result: &'a SweepResult, took: Duration) -> Self {
         Self {
             result,
@@ -28,8 +29,7 @@ impl<'a> Summary<'a> {
 
     /// One line of JSON.
     pub(crate) fn json(&self) -> String {
-        // Cannot fail: every key is a text and every number finite.
-        let mut line = serde_json::to_string(self).unwrap_or_default();
+        let mut line = json::text(self);
         line.push('\n');
         line
     }
@@ -91,7 +91,7 @@ impl<'a> Summary<'a> {
     }
 }
 
-impl Serialize for Summary<'_> {
+impl Serialize for SweepSummary<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let result = self.result;
         let mut map = serializer.serialize_map(None)?;

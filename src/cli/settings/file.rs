@@ -4,7 +4,7 @@
 //! ```
 //! use taxel::cli::settings::file::Config;
 //! let config = Config::read("theme = 'light'\n[sensor]\ncolumns = 32\n[keys.matrix]\nx = 'toggle'\n").unwrap();
-//! assert_eq!(config.sensor()[0].line, 3);
+//! assert_eq!(config.sensor_entries()[0].line, 3);
 //! let error = Config::read("theme = 'light'\ncolour = 'never'\n").unwrap_err();
 //! assert_eq!(error.to_string(),
 //!     "2:1: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, keys");
@@ -63,7 +63,8 @@ pub struct Config {
     pub(crate) mouse: Option<Written<bool>>,
     /// An absolute path, or one below the user's home that starts with `~/`.
     pub(crate) library: Option<Written<String>>,
-    sensor: Vec<Written<(Parameter, f64)>>,
+    sensor: Sensor,
+    sensor_entries: Vec<Written<Parameter>>,
     changes: Vec<Written<Change>>,
     keymap: Keymap,
 }
@@ -117,8 +118,8 @@ pub enum Wrong {
     Keymap(#[from] KeymapError),
 }
 
-/// An entry of a table: its key and its value.
-type Entry<'t, 'i> = (&'t str, usize, &'t Spanned<DeValue<'i>>);
+/// An entry of a table: its key, the byte at which it starts, and its value.
+type TomlEntry<'t, 'i> = (&'t str, usize, &'t Spanned<DeValue<'i>>);
 
 /// What is wrong, and at which byte.
 type Refusal = (usize, Wrong);
@@ -139,9 +140,14 @@ impl Config {
         })
     }
 
-    /// What it says of the sensor.
-    pub fn sensor(&self) -> &[Written<(Parameter, f64)>] {
+    /// The default sensor, changed as the file says.
+    pub fn sensor(&self) -> &Sensor {
         &self.sensor
+    }
+
+    /// The parameters of the sensor that the file sets.
+    pub fn sensor_entries(&self) -> &[Written<Parameter>] {
+        &self.sensor_entries
     }
 
     /// The keys that it changes.
@@ -170,7 +176,7 @@ impl Config {
         Ok(config)
     }
 
-    fn take(&mut self, text: &str, entry: Entry<'_, '_>) -> Result<(), Refusal> {
+    fn take(&mut self, text: &str, entry: TomlEntry<'_, '_>) -> Result<(), Refusal> {
         let (key, byte, value) = entry;
         let line = place(text, byte).0;
         match key {
@@ -192,17 +198,17 @@ impl Config {
                 self.library = Some(Written { value, line });
             }
             "sensor" => {
-                let mut sensor = Sensor::default();
                 for (key, byte, value) in entries(table(value)?) {
                     let known = SENSOR.iter().find(|(name, _)| *name == key);
                     let names = || SENSOR.map(|(name, _)| name);
                     let (_, parameter) = known.ok_or_else(|| unknown(key, byte, &names()))?;
                     let number = number(value)?;
-                    sensor = sensor
+                    self.sensor = self
+                        .sensor
                         .with(*parameter, number)
                         .map_err(|error| (value.span().start, error.into()))?;
-                    self.sensor.push(Written {
-                        value: (*parameter, number),
+                    self.sensor_entries.push(Written {
+                        value: *parameter,
                         line: place(text, byte).0,
                     });
                 }
@@ -241,7 +247,7 @@ impl Config {
         }
         let changes: Vec<Change> = self.changes.iter().map(|own| own.value).collect();
         self.keymap = Keymap::with(&changes).map_err(|(index, error)| {
-            let (key, value) = spans.get(index).copied().unwrap_or_default();
+            let (key, value) = spans[index];
             let byte = if matches!(error, KeymapError::Elsewhere(_)) {
                 value
             } else {
@@ -254,8 +260,8 @@ impl Config {
 }
 
 /// The entries of a table in the order of the text.
-fn entries<'t, 'i>(table: &'t DeTable<'i>) -> Vec<Entry<'t, 'i>> {
-    let mut entries: Vec<Entry<'_, '_>> = table
+fn entries<'t, 'i>(table: &'t DeTable<'i>) -> Vec<TomlEntry<'t, 'i>> {
+    let mut entries: Vec<TomlEntry<'_, '_>> = table
         .iter()
         .map(|(key, value)| (&**key.get_ref(), key.span().start, value))
         .collect();
@@ -267,7 +273,7 @@ fn entries<'t, 'i>(table: &'t DeTable<'i>) -> Vec<Entry<'t, 'i>> {
 fn place(text: &str, byte: usize) -> (usize, usize) {
     let before = text.get(..byte).unwrap_or(text);
     let line = before.split('\n').count();
-    let column = before.rsplit('\n').next().unwrap_or_default();
+    let column = before.rfind('\n').map_or(before, |end| &before[end + 1..]);
     (line, column.chars().count() + 1)
 }
 

@@ -50,7 +50,7 @@ impl Loaded {
             message,
         };
         let mut bytes = Vec::new();
-        let limit = u64::try_from(MAX_BYTES).unwrap_or(u64::MAX);
+        let limit = MAX_BYTES as u64;
         let read = File::open(&path).and_then(|file| file.take(limit + 1).read_to_end(&mut bytes));
         let there = match read {
             Err(error) if error.kind() == ErrorKind::NotFound && may_be_missing => false,
@@ -75,14 +75,14 @@ impl Loaded {
 
 /// Where a value comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum Origin {
+enum SettingOrigin {
     Default,
     File(usize),
     Environment(&'static str),
     Flag(String),
 }
 
-impl fmt::Display for Origin {
+impl fmt::Display for SettingOrigin {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Default => f.write_str("default"),
@@ -97,7 +97,7 @@ impl fmt::Display for Origin {
 #[derive(Clone, Debug)]
 struct Settled<T> {
     value: T,
-    origin: Origin,
+    origin: SettingOrigin,
 }
 
 /// The first that says something: a flag, a variable of the environment, the file, the program.
@@ -107,13 +107,13 @@ fn settled<T: Clone>(
     file: Option<&Written<T>>,
     default: T,
 ) -> Settled<T> {
-    let flag = flag.map(|(value, name)| (value, Origin::Flag(name.to_owned())));
-    let variable = variable.map(|(value, name)| (value, Origin::Environment(name)));
-    let file = file.map(|own| (own.value.clone(), Origin::File(own.line)));
+    let flag = flag.map(|(value, name)| (value, SettingOrigin::Flag(name.to_owned())));
+    let variable = variable.map(|(value, name)| (value, SettingOrigin::Environment(name)));
+    let file = file.map(|own| (own.value.clone(), SettingOrigin::File(own.line)));
     let (value, origin) = flag
         .or(variable)
         .or(file)
-        .unwrap_or((default, Origin::Default));
+        .unwrap_or((default, SettingOrigin::Default));
     Settled { value, origin }
 }
 
@@ -127,7 +127,7 @@ pub(crate) struct Effective {
     mouse: Settled<bool>,
     library: Settled<Option<PathBuf>>,
     sensor: Sensor,
-    of_sensor: Vec<(&'static str, Parameter, Origin)>,
+    of_sensor: Vec<(&'static str, Parameter, SettingOrigin)>,
 }
 
 impl Effective {
@@ -143,21 +143,14 @@ impl Effective {
             value: location::below_home(&own.value),
             line: own.line,
         });
-        let mut sensor = Sensor::default();
         let mut of_sensor = Vec::new();
         for (name, parameter) in SENSOR {
-            let own = config.sensor().iter().find(|own| own.value.0 == parameter);
-            if let Some(Written {
-                value: (_, number), ..
-            }) = own
-            {
-                // The file was checked when it was read.
-                sensor = sensor.with(parameter, *number).unwrap_or(sensor);
-            }
+            let mut entries = config.sensor_entries().iter();
+            let own = entries.find(|own| own.value == parameter);
             let origin = match own {
-                _ if chosen.sensor.has(parameter) => Origin::Flag(name.to_owned()),
-                Some(own) => Origin::File(own.line),
-                None => Origin::Default,
+                _ if chosen.sensor.has(parameter) => SettingOrigin::Flag(name.to_owned()),
+                Some(own) => SettingOrigin::File(own.line),
+                None => SettingOrigin::Default,
             };
             of_sensor.push((name, parameter, origin));
         }
@@ -193,7 +186,7 @@ impl Effective {
                 written.as_ref(),
                 location::folder(None, None).ok(),
             ),
-            sensor: chosen.sensor.sensor(sensor)?,
+            sensor: chosen.sensor.sensor(*config.sensor())?,
             of_sensor,
             loaded,
         })
@@ -226,8 +219,8 @@ impl Effective {
 
     /// The pitch in mm, where one is set.
     pub(crate) fn pitch(&self) -> Option<f64> {
-        let set = |(_, parameter, origin): &&(_, Parameter, Origin)| {
-            *parameter == Parameter::Pitch && *origin != Origin::Default
+        let set = |(_, parameter, origin): &&(_, Parameter, SettingOrigin)| {
+            *parameter == Parameter::Pitch && *origin != SettingOrigin::Default
         };
         let pitch = self.of_sensor.iter().find(set);
         pitch.map(|_| self.sensor.pitch_mm())
@@ -266,7 +259,7 @@ impl Effective {
             }
             None => "# no file\n".to_owned(),
         };
-        let mut line = |entry: &str, origin: &Origin| text += &told(entry, origin);
+        let mut line = |entry: &str, origin: &SettingOrigin| text += &told(entry, origin);
         let quoted = |text: &str| quoted(text, charset);
         let theme = named(&Palette::NAMES, self.theme.value.as_ref());
         line(&format!("theme = \"{theme}\""), &self.theme.origin);
@@ -290,10 +283,10 @@ impl Effective {
             Parameter::Threshold => self.sensor.threshold(),
             _ => self.sensor.pitch_mm(),
         };
-        let line = |(name, parameter, origin): &(&str, Parameter, Origin)| {
+        let line = |(name, parameter, origin): &(&str, Parameter, SettingOrigin)| {
             let entry = match (parameter, origin) {
                 // A pitch that is set has lengths told in mm too.
-                (Parameter::Pitch, Origin::Default) => "# pitch is not set".to_owned(),
+                (Parameter::Pitch, SettingOrigin::Default) => "# pitch is not set".to_owned(),
                 (parameter, _) => format!("{name} = {}", value(*parameter)),
             };
             told(&entry, origin)
@@ -313,7 +306,8 @@ impl Effective {
             let freed = freed.map(|own| (own.value.key, "none"));
             for (key, action) in bound.chain(freed) {
                 let change = here().find(|own| own.value.key == key);
-                let origin = change.map_or(Origin::Default, |own| Origin::File(own.line));
+                let origin =
+                    change.map_or(SettingOrigin::Default, |own| SettingOrigin::File(own.line));
                 let entry = format!("{} = \"{action}\"", quoted(&key.to_string()));
                 text += &told(&entry, &origin);
             }
@@ -323,7 +317,7 @@ impl Effective {
 }
 
 /// An entry and where it comes from, the latter in a column of its own.
-fn told(entry: &str, origin: &Origin) -> String {
+fn told(entry: &str, origin: &SettingOrigin) -> String {
     format!("{entry:<37}  # {origin}\n")
 }
 

@@ -16,8 +16,8 @@ impl Ticks {
         let fits = |factor: &f64| factor * power >= smallest * (1.0 - 1e-9);
         let factor = [1.0, 2.0, 5.0].into_iter().find(fits).unwrap_or(10.0);
         let step = factor * power;
-        let decimals = (1..=12).find(|&n| step * 10_f64.powi(n) >= 10.0 * (1.0 - 1e-9));
-        let decimals = decimals.map_or(12, |n| usize::try_from(n - 1).unwrap_or(0));
+        let decimals = (1..=12_u8).find(|&n| step * 10_f64.powi(n.into()) >= 10.0 * (1.0 - 1e-9));
+        let decimals = usize::from(decimals.map_or(12, |n| n - 1));
         let place = |index: u32| f64::from(index) * step;
         let last = length * (1.0 + 1e-9);
         let places = (0..=10).map(place).take_while(|&place| place <= last);

@@ -5,6 +5,7 @@
 //! follows from its distance: within half a pixel of the edge it falls from 1 to 0. So ends and corners are round.
 
 use crate::formats::drawing::scene::{Position, Segment, Stroke};
+use crate::index::wide;
 
 /// Straight pieces of a cubic curve. An ellipse has eight curves: no piece is off by more than 0.04 pixels of 600.
 const PIECES: u8 = 32;
@@ -20,9 +21,8 @@ pub(super) struct Ink {
 impl Ink {
     /// A white page.
     pub(super) fn new(width: u32, height: u32) -> Self {
-        let count = usize::try_from(u64::from(width) * u64::from(height)).unwrap_or(0);
         Self {
-            pixels: vec![255; count],
+            pixels: vec![255; wide(width) * wide(height)],
             width,
             height,
         }
@@ -117,8 +117,7 @@ impl Ink {
 
 /// Where a pixel stands.
 fn index(x: u32, y: u32, width: u32) -> usize {
-    let index = u64::from(y) * u64::from(width) + u64::from(x);
-    usize::try_from(index).unwrap_or(usize::MAX)
+    wide(y).saturating_mul(wide(width)).saturating_add(wide(x))
 }
 
 /// How much of each pixel of a page is drawn on.

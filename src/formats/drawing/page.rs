@@ -64,7 +64,7 @@ pub(super) struct DrawingPage {
 }
 
 /// The page while it is laid out.
-struct Layout<'a> {
+struct PageLayout<'a> {
     subject: &'a Subject<'a>,
     marks: Vec<Element>,
     corner: Position,
@@ -87,7 +87,7 @@ impl DrawingPage {
             MARGIN + TEXT * 2.0 + advance(along.width()) + 6.0,
             MARGIN + title + TEXT * 3.0 + 4.0,
         );
-        let mut layout = Layout {
+        let mut layout = PageLayout {
             subject,
             marks: Vec::new(),
             corner,
@@ -114,12 +114,12 @@ impl DrawingPage {
 }
 
 /// The width of a text.
+#[expect(clippy::cast_precision_loss, reason = "far fewer than 2^53 characters")]
 fn advance(characters: usize) -> f64 {
-    // No text is long enough for the difference.
-    TEXT * ADVANCE * f64::from(u16::try_from(characters).unwrap_or(u16::MAX))
+    TEXT * ADVANCE * characters as f64
 }
 
-impl Layout<'_> {
+impl PageLayout<'_> {
     /// Where a point of the plane, in cell sides, is on the page.
     fn place(&self, (x, y): Position) -> Position {
         (self.corner.0 + x * self.cell, self.corner.1 + y * self.cell)
@@ -265,7 +265,7 @@ impl Layout<'_> {
     /// What the signs mean, with the values of what is described.
     fn legend(&mut self) {
         let pitch = self.subject.pitch_mm.unwrap_or(1.0);
-        let told = |value: Value| value::times(value, pitch, 4).unwrap_or_default();
+        let told = |value: Value| value::times(value, pitch, 4).unwrap_or_else(|| "–".to_owned());
         let unit = self.unit();
         let mut y = self.end.1 + ROW * 1.4;
         let mut row = |layout: &mut Self, text: &str, sign: &dyn Fn(&mut Self, Position)| {

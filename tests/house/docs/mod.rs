@@ -171,5 +171,8 @@ fn the_settings_shown_can_be_read() {
     let (_, rest) = text.split_once("```toml\n").expect("a file of settings");
     let (file, _) = rest.split_once("```").expect("its end");
     let config = taxel::cli::settings::file::Config::read(file).expect("it can be read");
-    assert_eq!((config.sensor().len(), config.changes().len()), (4, 2));
+    assert_eq!(
+        (config.sensor_entries().len(), config.changes().len()),
+        (4, 2)
+    );
 }

@@ -69,7 +69,7 @@ pub(crate) fn config(bytes: &[u8]) {
         return;
     };
     match Config::read(text) {
-        Ok(config) => assert!(config.sensor().len() <= SENSOR_PARAMETERS.len()),
+        Ok(config) => assert!(config.sensor_entries().len() <= SENSOR_PARAMETERS.len()),
         Err(error) => {
             is_short(&error.to_string());
             let lines = text.split('\n').count();

@@ -1,0 +1,64 @@
+//! Whole numbers as indices: the conversions that can lose something, each written and justified here once.
+//!
+//! A number that does not fit must never become another number that looks right. Where a type cannot rule it out, it
+//! becomes the largest index or `u32`, which lies beyond every slice, so that looking it up finds nothing.
+
+const _: () = assert!(
+    usize::BITS >= u32::BITS,
+    "a u32 is an index on every supported target"
+);
+
+/// A `u32` as an index; nothing is lost.
+#[cfg(any(feature = "sweep", feature = "png"))]
+pub(crate) const fn wide(number: u32) -> usize {
+    number as usize
+}
+
+/// A `u64` as an index; one beyond the address space lies beyond every slice.
+#[cfg(feature = "sweep")]
+pub(crate) fn index(number: u64) -> usize {
+    usize::try_from(number).unwrap_or(usize::MAX)
+}
+
+/// A signed coordinate as an index; what lies before the first column or row belongs to it.
+pub(crate) const fn from_first(coordinate: i32) -> usize {
+    (if coordinate > 0 {
+        coordinate.unsigned_abs()
+    } else {
+        0
+    }) as usize
+}
+
+/// A number of something in four bytes. Tables with such numbers hold fewer than 2³² entries; `u32::MAX` means none.
+#[cfg(feature = "sweep")]
+pub(crate) fn narrow(number: impl TryInto<u32>) -> u32 {
+    number.try_into().unwrap_or(u32::MAX)
+}
+
+/// The lower word of a wide number.
+#[cfg(feature = "sweep")]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "the upper word is dropped on purpose"
+)]
+pub(crate) const fn lower_word(number: u128) -> u64 {
+    number as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_coordinate_before_the_first_belongs_to_it() {
+        assert_eq!([-3, 0, 5].map(from_first), [0, 0, 5]);
+    }
+
+    #[cfg(feature = "sweep")]
+    #[test]
+    fn what_does_not_fit_is_beyond_every_slice() {
+        assert_eq!((narrow(7_usize), narrow(1_u64 << 32)), (7, u32::MAX));
+        assert_eq!((index(7), wide(7)), (7, 7));
+        assert_eq!(lower_word((3 << 64) + 5), 5);
+    }
+}
