@@ -92,7 +92,9 @@ fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, Cli
             };
             let (grid, taken) = sweep::grid(source, sensor, asked.anchor, &asked.ranges)?;
             if !asked.wanted.quiet {
-                taken.iter().for_each(|note| self::note(note, charset));
+                for note in &taken {
+                    self::note(note, charset);
+                }
             }
             let (shard, jobs) = (asked.shard, asked.jobs);
             print(&sweep::sweep(&grid, shard, jobs, &asked.wanted, charset)?)?;
