@@ -113,6 +113,16 @@ impl Imprint {
         Bounds::around(across, down)
     }
 
+    /// Whether a taxel in the first or last row or column is active, so that what it is an imprint of may be cut off.
+    pub fn touches_rim(&self) -> bool {
+        self.bounds().is_some_and(|bounds| {
+            bounds.left == 0
+                || bounds.top == 0
+                || bounds.right == self.columns
+                || bounds.bottom == self.rows
+        })
+    }
+
     /// The active taxels, (column, row), in reading order.
     pub fn active(&self) -> impl Iterator<Item = (u8, u8)> + '_ {
         (0..self.rows).flat_map(move |row| {

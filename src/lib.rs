@@ -52,6 +52,7 @@
 //!  pose         exact ranges, the grid of poses and the index of each
 //!  atlas        the distinct imprints of a grid, counted; statistics
 //!  sweep        every pose of a grid at once -> its atlas
+//!  recognition  models of shapes: the posterior of a touch, the limit of any method
 //!  prelude      what a program that uses the crate imports
 //!  ───────────  above: total, no input or output, no panic; below: the world
 //!  formats      text, PBM, CSV, NPY, JSON, atlases; drawings as SVG and PNG
@@ -75,9 +76,10 @@
 //! json                formats::StoredShape, Job
 //! sweep               pose, atlas, sweep; formats::atlas, archive;     json
 //!                     storage::AtlasFile, PoseFile, UnfinishedFile
+//! recognition         recognition; formats::model                      sweep
 //! png                 formats::Drawing::png
 //! library             storage                                          json
-//! tui                 tui                                              library, sweep
+//! tui                 tui                                              library, recognition
 //! cli (the default)   cli, and the program                             tui, png
 //! ```
 //!
@@ -133,6 +135,9 @@ pub mod atlas;
 
 #[cfg(feature = "sweep")]
 pub mod sweep;
+
+#[cfg(feature = "recognition")]
+pub mod recognition;
 
 pub mod prelude;
 

@@ -85,6 +85,64 @@ impl Description {
         [rising, 180.0 - rising]
     }
 
+    /// The sides of the rectangle, across and down.
+    fn whole_sides(&self) -> [i64; 2] {
+        let Bounds {
+            left,
+            top,
+            right,
+            bottom,
+        } = self.rect;
+        [right - left, bottom - top].map(i64::from)
+    }
+
+    /// Twice the sums of the coordinates, which are whole.
+    fn doubled_sums(&self) -> [i64; 2] {
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "at most 4096 coordinates of at most 64"
+        )]
+        [self.num_x, self.num_y].map(|sum| (2.0 * sum) as i64)
+    }
+
+    /// Twice the coordinates of the rectangle's centre, which are whole.
+    fn doubled_centre(&self) -> [i64; 2] {
+        let Bounds {
+            left,
+            top,
+            right,
+            bottom,
+        } = self.rect;
+        [(left, right), (top, bottom)].map(|(low, high)| i64::from(low) + i64::from(high))
+    }
+
+    /// The way from the centre of gravity to the rectangle's centre, in units of 1/(2 NA).
+    fn exact_cg_to_cd(&self) -> [i64; 2] {
+        let (sums, centre) = (self.doubled_sums(), self.doubled_centre());
+        [0, 1].map(|axis| i64::from(self.na) * centre[axis] - sums[axis])
+    }
+
+    /// P²/NAE as a + b√2.
+    fn exact_compactness(&self) -> [i64; 4] {
+        let [straight, diagonal] = [self.steps.straight, self.steps.diagonal].map(i64::from);
+        ratios(
+            [
+                straight * straight + 2 * diagonal * diagonal,
+                2 * straight * diagonal,
+            ],
+            i64::from(self.nae),
+        )
+    }
+
+    fn roundness(&self) -> Value {
+        let length = self.steps.length();
+        if length > 0.0 {
+            Value::Number(4.0 * PI * f64::from(self.nae) / (length * length))
+        } else {
+            Value::None
+        }
+    }
+
     fn cg_cd_direction(&self) -> Value {
         let way = self.cd() - self.cg();
         if way.length() < 1e-9 {
@@ -151,6 +209,37 @@ pub enum Dimension {
     Share,
 }
 
+/// Whether a descriptor changes when the whole imprint is moved, turned or mirrored on its matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ChangesUnder {
+    /// Moved by whole taxels.
+    pub shift: bool,
+    /// Turned by 90°.
+    pub quarter_turn: bool,
+    /// Mirrored left to right.
+    pub mirror: bool,
+}
+
+impl ChangesUnder {
+    /// The same wherever and however the imprint lies.
+    const NOTHING: Self = Self {
+        shift: false,
+        quarter_turn: false,
+        mirror: false,
+    };
+    /// It says where the imprint lies.
+    const SHIFTS: Self = Self {
+        shift: true,
+        quarter_turn: true,
+        mirror: true,
+    };
+}
+
+/// A descriptor's value as whole numbers, so that equal values are equal exactly: ratios in lowest terms, lengths as
+/// numbers of steps. None where the value does not exist.
+pub type ExactValue = Option<[i64; 4]>;
+
 /// A row of [`DESCRIPTORS`].
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
@@ -165,91 +254,232 @@ pub struct Descriptor {
     pub dimension: Dimension,
     /// Whether it stands in the JSON answers, whose form is fixed; the others can be computed from these.
     pub in_answer: bool,
+    /// What changes it. One that changes with shifts says nothing of the shape by itself.
+    pub changes_under: ChangesUnder,
     /// How it follows from the counts and sums.
     pub measure: fn(&Description) -> Value,
+    /// Two imprints have the same value just where this is the same; what [`Self::measure`] rounds is not rounded here.
+    pub exact: fn(&Description) -> ExactValue,
 }
 
-const fn row(
-    key: &'static str,
-    symbol: &'static str,
-    name: &'static str,
-    dimension: Dimension,
-    measure: fn(&Description) -> Value,
-) -> Descriptor {
-    Descriptor {
-        key,
-        symbol,
-        name,
-        dimension,
-        in_answer: true,
-        measure,
+impl Descriptor {
+    const fn new(
+        key: &'static str,
+        symbol: &'static str,
+        name: &'static str,
+        dimension: Dimension,
+        measure: fn(&Description) -> Value,
+        exact: fn(&Description) -> ExactValue,
+    ) -> Self {
+        Self {
+            key,
+            symbol,
+            name,
+            dimension,
+            in_answer: true,
+            changes_under: ChangesUnder::NOTHING,
+            measure,
+            exact,
+        }
     }
+
+    /// One that says where the imprint lies.
+    const fn of_place(self) -> Self {
+        Self {
+            changes_under: ChangesUnder::SHIFTS,
+            ..self
+        }
+    }
+
+    /// One that changes with quarter turns, and perhaps with mirror images.
+    const fn of_orientation(self, mirror: bool) -> Self {
+        let changes_under = ChangesUnder {
+            shift: false,
+            quarter_turn: true,
+            mirror,
+        };
+        Self {
+            changes_under,
+            ..self
+        }
+    }
+
+    /// One that the answers leave out.
+    const fn not_in_answers(self) -> Self {
+        Self {
+            in_answer: false,
+            ..self
+        }
+    }
+
+    /// Returns the descriptor with that key, such as `"na"`.
+    ///
+    /// ```
+    /// use taxel::description::Descriptor;
+    /// let direction = Descriptor::from_key("cg_cd_direction").expect("in the table");
+    /// assert!(direction.changes_under.mirror && !direction.changes_under.shift);
+    /// assert!(Descriptor::from_key("colour").is_none());
+    /// ```
+    pub fn from_key(key: &str) -> Option<&'static Self> {
+        DESCRIPTORS.iter().find(|descriptor| descriptor.key == key)
+    }
+}
+
+/// Counts, exactly.
+fn whole<const N: usize>(numbers: [u32; N]) -> [i64; 4] {
+    let mut exact = [0; 4];
+    for (slot, number) in exact.iter_mut().zip(numbers) {
+        *slot = i64::from(number);
+    }
+    exact
+}
+
+/// Two ratios with one positive denominator, each in lowest terms.
+fn ratios(numerators: [i64; 2], denominator: i64) -> [i64; 4] {
+    let [one, other] = numerators.map(|numerator| {
+        let common = gcd(numerator.unsigned_abs(), denominator.unsigned_abs());
+        [numerator / common, denominator / common]
+    });
+    [one[0], one[1], other[0], other[1]]
+}
+
+/// The direction of a vector; None of one without length.
+fn direction([x, y]: [i64; 2]) -> ExactValue {
+    let common = gcd(x.unsigned_abs(), y.unsigned_abs());
+    (common > 0).then(|| [x / common, y / common, 0, 0])
+}
+
+/// The greatest common divisor, of numbers far below 2⁶³; 0 of two zeros.
+fn gcd(one: u64, other: u64) -> i64 {
+    let (mut one, mut other) = (one, other);
+    while other > 0 {
+        (one, other) = (other, one % other);
+    }
+    one.cast_signed()
 }
 
 /// The table, in the paper's order; `roundness` is what image analysis uses in place of F.
 pub const DESCRIPTORS: &[Descriptor] = &[
-    row("na", "NA", "active taxels", Dimension::Count, |d| {
-        Value::Count(d.na)
-    }),
-    row("nae", "NAE", "filled taxels", Dimension::Count, |d| {
-        Value::Count(d.nae)
-    }),
-    row("ce", "CE", "outline taxels", Dimension::Count, |d| {
-        Value::Count(d.ce)
-    }),
-    row("num_x", "NumX", "sum of x", Dimension::Length, |d| {
-        Value::Number(d.num_x)
-    }),
-    row("num_y", "NumY", "sum of y", Dimension::Length, |d| {
-        Value::Number(d.num_y)
-    }),
-    row("cg", "CG", "centre of gravity", Dimension::Length, |d| {
-        Value::Point(d.cg())
-    }),
-    row("p", "P", "outline length", Dimension::Length, |d| {
-        Value::Number(d.steps.length())
-    }),
-    row("f", "F", "P²/NAE", Dimension::Ratio, |d| {
-        Value::Number(d.steps.length() * d.steps.length() / f64::from(d.nae))
-    }),
-    Descriptor {
-        in_answer: false,
-        ..row(
-            "roundness",
-            "Round",
-            "4π·NAE/P²",
-            Dimension::Ratio,
-            |d| {
-                let length = d.steps.length();
-                if length > 0.0 {
-                    Value::Number(4.0 * PI * f64::from(d.nae) / (length * length))
-                } else {
-                    Value::None
-                }
-            },
-        )
-    },
-    row(
+    Descriptor::new(
+        "na",
+        "NA",
+        "active taxels",
+        Dimension::Count,
+        |d| Value::Count(d.na),
+        |d| Some(whole([d.na])),
+    ),
+    Descriptor::new(
+        "nae",
+        "NAE",
+        "filled taxels",
+        Dimension::Count,
+        |d| Value::Count(d.nae),
+        |d| Some(whole([d.nae])),
+    ),
+    Descriptor::new(
+        "ce",
+        "CE",
+        "outline taxels",
+        Dimension::Count,
+        |d| Value::Count(d.ce),
+        |d| Some(whole([d.ce])),
+    ),
+    Descriptor::new(
+        "num_x",
+        "NumX",
+        "sum of x",
+        Dimension::Length,
+        |d| Value::Number(d.num_x),
+        |d| Some(ratios([d.doubled_sums()[0], 0], 2)),
+    )
+    .of_place(),
+    Descriptor::new(
+        "num_y",
+        "NumY",
+        "sum of y",
+        Dimension::Length,
+        |d| Value::Number(d.num_y),
+        |d| Some(ratios([d.doubled_sums()[1], 0], 2)),
+    )
+    .of_place(),
+    Descriptor::new(
+        "cg",
+        "CG",
+        "centre of gravity",
+        Dimension::Length,
+        |d| Value::Point(d.cg()),
+        |d| Some(ratios(d.doubled_sums(), 2 * i64::from(d.na))),
+    )
+    .of_place(),
+    Descriptor::new(
+        "p",
+        "P",
+        "outline length",
+        Dimension::Length,
+        |d| Value::Number(d.steps.length()),
+        |d| Some(whole([d.steps.straight, d.steps.diagonal])),
+    ),
+    Descriptor::new(
+        "f",
+        "F",
+        "P²/NAE",
+        Dimension::Ratio,
+        |d| Value::Number(d.steps.length() * d.steps.length() / f64::from(d.nae)),
+        |d| Some(d.exact_compactness()),
+    ),
+    Descriptor::new(
+        "roundness",
+        "Round",
+        "4π·NAE/P²",
+        Dimension::Ratio,
+        Description::roundness,
+        |d| (d.steps != ChainSteps::default()).then(|| d.exact_compactness()),
+    )
+    .not_in_answers(),
+    Descriptor::new(
         "rect",
         "Rect",
         "upright rectangle",
         Dimension::Length,
         |d| Value::Rect(d.rect),
+        |d| {
+            let Bounds {
+                left,
+                top,
+                right,
+                bottom,
+            } = d.rect;
+            Some(whole([left, top, right, bottom].map(u32::from)))
+        },
+    )
+    .of_place(),
+    Descriptor::new(
+        "cd",
+        "CD",
+        "rectangle's centre",
+        Dimension::Length,
+        |d| Value::Point(d.cd()),
+        |d| Some(ratios(d.doubled_centre(), 2)),
+    )
+    .of_place(),
+    Descriptor::new(
+        "area",
+        "Area",
+        "rectangle's taxels",
+        Dimension::Area,
+        |d| Value::Count(d.area()),
+        |d| Some(whole([d.area()])),
     ),
-    row("cd", "CD", "rectangle's centre", Dimension::Length, |d| {
-        Value::Point(d.cd())
-    }),
-    row("area", "Area", "rectangle's taxels", Dimension::Area, |d| {
-        Value::Count(d.area())
-    }),
-    row(
+    Descriptor::new(
         "diagonals",
         "Diag",
         "its diagonals",
         Dimension::Direction,
         |d| Value::Pair(d.diagonals()),
-    ),
-    row(
+        |d| direction(d.whole_sides()),
+    )
+    .of_orientation(false),
+    Descriptor::new(
         "side_ratio",
         "Ratio",
         "long / short side",
@@ -258,22 +488,38 @@ pub const DESCRIPTORS: &[Descriptor] = &[
             let sides = d.sides();
             Value::Number(sides.max_element() / sides.min_element())
         },
+        |d| {
+            let [width, height] = d.whole_sides();
+            direction([width.max(height), width.min(height)])
+        },
     ),
-    row("filling", "Fill", "NA/Area", Dimension::Share, |d| {
-        Value::Number(f64::from(d.na) / f64::from(d.area()))
-    }),
-    row(
+    Descriptor::new(
+        "filling",
+        "Fill",
+        "NA/Area",
+        Dimension::Share,
+        |d| Value::Number(f64::from(d.na) / f64::from(d.area())),
+        |d| Some(ratios([i64::from(d.na), 0], i64::from(d.area()))),
+    ),
+    Descriptor::new(
         "cg_cd",
         "CG-CD",
         "distance CG to CD",
         Dimension::Length,
         |d| Value::Number(d.cg().distance(d.cd())),
+        |d| {
+            let [x, y] = d.exact_cg_to_cd();
+            let unit = 2 * i64::from(d.na);
+            Some(ratios([x * x + y * y, 0], unit * unit))
+        },
     ),
-    row(
+    Descriptor::new(
         "cg_cd_direction",
         "dir",
         "direction CG to CD",
         Dimension::Direction,
         Description::cg_cd_direction,
-    ),
+        |d| direction(d.exact_cg_to_cd()),
+    )
+    .of_orientation(true),
 ];

@@ -10,5 +10,7 @@ mod chain;
 mod descriptor;
 
 pub use chain::ChainSteps;
-pub use descriptor::{DESCRIPTORS, Description, Descriptor, Dimension, Value};
+pub use descriptor::{
+    ChangesUnder, DESCRIPTORS, Description, Descriptor, Dimension, ExactValue, Value,
+};
 pub use region::{Region, RegionKind, each_region, main_region, regions};

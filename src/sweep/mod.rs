@@ -49,6 +49,9 @@ mod run;
 
 mod sample;
 
+mod count;
+
+pub use count::{CountedImprints, PoseRun};
 pub use plan::{Shard, ShardError};
 pub(crate) use result::Parts;
 pub use result::{MergeError, PartsError, SweepResult};

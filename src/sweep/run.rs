@@ -38,9 +38,9 @@ pub type TakeRow<'a> = dyn FnMut(u64, &[u32]) + Send + 'a;
 /// # Ok::<(), taxel::pose::GridError>(())
 /// ```
 pub struct Sweep<'a> {
-    grid: &'a PoseGrid,
-    shard: Shard,
-    progress: &'a (dyn Fn(u64) -> bool + Sync),
+    pub(super) grid: &'a PoseGrid,
+    pub(super) shard: Shard,
+    pub(super) progress: &'a (dyn Fn(u64) -> bool + Sync),
     rows: Option<&'a mut TakeRow<'a>>,
 }
 
@@ -127,7 +127,7 @@ impl<'a> Sweep<'a> {
 
 /// The next tasks that run side by side: enough to keep all threads busy till the end of them, few enough for the
 /// memory, which holds what each of them found. `width` is the number of poses in a row.
-fn portion(tasks: &mut impl Iterator<Item = Task>, width: u64) -> Vec<Task> {
+pub(super) fn portion(tasks: &mut impl Iterator<Item = Task>, width: u64) -> Vec<Task> {
     const POSES: u64 = 4_000_000;
     let threads = rayon::current_num_threads();
     let mut poses = 0;

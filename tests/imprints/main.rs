@@ -21,6 +21,9 @@ mod ties;
 #[cfg(feature = "json")]
 mod properties;
 
+#[cfg(feature = "recognition")]
+mod recognition;
+
 #[cfg(feature = "json")]
 mod reference;
 

@@ -1,0 +1,180 @@
+//! The answer to one touch, or to several of one shape.
+
+use crate::imprint::Imprint;
+use crate::recognition::model::Model;
+use crate::recognition::nearest::Nearest;
+
+/// How far an answer can be trusted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum AnswerState {
+    /// No other shape of the set leaves these imprints.
+    Certain,
+    /// Other shapes leave them less often, or the imprint may be cut off.
+    Likely,
+    /// Another shape leaves them as often.
+    Tied,
+    /// The likeliest shape is less likely than was asked for.
+    Rejected,
+    /// No shape of the set leaves them.
+    Unknown,
+}
+
+impl AnswerState {
+    /// Returns its name in JSON and on the screen.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Certain => "certain",
+            Self::Likely => "likely",
+            Self::Tied => "tied",
+            Self::Rejected => "rejected",
+            Self::Unknown => "unknown",
+        }
+    }
+}
+
+/// What was touched: imprints of one shape in poses that do not depend on each other, and the least probability that is
+/// good enough for an answer.
+#[derive(Clone, Copy, Debug)]
+pub struct Evidence<'a> {
+    touches: &'a [Imprint],
+    reject_below: Option<f64>,
+}
+
+impl<'a> Evidence<'a> {
+    /// These touches; any probability will do.
+    pub fn of(touches: &'a [Imprint]) -> Self {
+        Self {
+            touches,
+            reject_below: None,
+        }
+    }
+
+    /// Rejects an answer that is less probable.
+    #[must_use]
+    pub fn reject_below(self, probability: f64) -> Self {
+        Self {
+            reject_below: Some(probability),
+            ..self
+        }
+    }
+}
+
+/// Which shape was touched, as far as the touches tell.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Answer {
+    /// How far it can be trusted.
+    pub state: AnswerState,
+    /// The shape, by its number in the set; of tied ones the first. None if rejected or unknown.
+    pub shape: Option<usize>,
+    /// All shapes that are as likely, if the state is [`AnswerState::Tied`]; otherwise empty.
+    pub tied: Vec<usize>,
+    /// Whether an imprint reaches the rim of its matrix, so that it may be cut off. Such an answer is never certain.
+    pub at_rim: bool,
+    /// Every shape of positive probability, the likeliest first, equals in the order of the set.
+    pub ranking: Vec<(usize, f64)>,
+}
+
+/// Logarithms of products of the same whole numbers in another order differ by less.
+const SAME: f64 = 1e-12;
+
+impl Model {
+    /// Says which shape was touched. Nothing was touched, nothing is known: the answer to no touch is the prior.
+    ///
+    /// ```
+    /// use taxel::prelude::*;
+    /// use taxel::recognition::{AnswerState, Evidence, NamedShape, Training};
+    ///
+    /// let sensor = Sensor::default();
+    /// let shapes = [
+    ///     NamedShape::new("square", Figure::rectangle(4.0, 4.0).on(&sensor)?),
+    ///     NamedShape::new("bar", Figure::rectangle(8.0, 2.0).on(&sensor)?),
+    /// ];
+    /// let ranges = Ranges::default().with(Axis::Angle, "0:345:15".parse()?);
+    /// let model = Training::new(shapes, sensor, Anchor::Centre, ranges)?.run()?;
+    ///
+    /// let touch = "......\n.####.\n.####.\n.####.\n.####.\n......".parse()?;
+    /// let answer = model.recognise(Evidence::of(&[touch]));
+    /// assert_eq!((answer.state, answer.shape), (AnswerState::Certain, Some(0)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn recognise(&self, evidence: Evidence<'_>) -> Answer {
+        let at_rim = evidence.touches.iter().any(Imprint::touches_rim);
+        let mut answer = Answer {
+            state: AnswerState::Unknown,
+            shape: None,
+            tied: Vec::new(),
+            at_rim,
+            ranking: self.ranking(evidence.touches),
+        };
+        let Some(&(first, most)) = answer.ranking.first() else {
+            return answer;
+        };
+        let others = answer.ranking[1..].iter();
+        let equal = others.take_while(|(_, other)| most - other <= SAME * most);
+        let equal: Vec<usize> = equal.map(|&(shape, _)| shape).collect();
+        answer.shape = Some(first);
+        answer.state = if evidence.reject_below.is_some_and(|least| most < least) {
+            answer.shape = None;
+            AnswerState::Rejected
+        } else if !equal.is_empty() {
+            answer.tied = std::iter::once(first).chain(equal).collect();
+            AnswerState::Tied
+        } else if answer.ranking.len() == 1 && !at_rim {
+            AnswerState::Certain
+        } else {
+            AnswerState::Likely
+        };
+        answer
+    }
+
+    /// The shapes of positive probability, the likeliest first.
+    fn ranking(&self, touches: &[Imprint]) -> Vec<(usize, f64)> {
+        if let [touch] = touches {
+            let posterior = self.posterior(touch).unwrap_or_default();
+            return ranked(posterior.into_iter().enumerate());
+        }
+        // ln(w Π n), of the shapes that leave every one of the keys.
+        let mut logarithms: Vec<Option<f64>> = self
+            .shapes()
+            .iter()
+            .map(|shape| Some(f64::from(shape.weight).ln()))
+            .collect();
+        for touch in touches {
+            let counts = self.counts_of(touch);
+            for (shape, logarithm) in logarithms.iter_mut().enumerate() {
+                let count = counts
+                    .iter()
+                    .find(|count| usize::from(count.shape) == shape);
+                #[expect(clippy::cast_precision_loss, reason = "a logarithm has no more digits")]
+                let more = count.map(|count| (count.poses as f64).ln());
+                *logarithm = logarithm.zip(more).map(|(sum, more)| sum + more);
+            }
+        }
+        let most = logarithms
+            .iter()
+            .flatten()
+            .copied()
+            .fold(f64::NEG_INFINITY, f64::max);
+        let odds = |logarithm: Option<f64>| logarithm.map_or(0.0, |own| (own - most).exp());
+        let odds: Vec<f64> = logarithms.into_iter().map(odds).collect();
+        let sum: f64 = odds.iter().sum();
+        ranked(odds.into_iter().map(|odds| odds / sum).enumerate())
+    }
+
+    /// Returns the imprint of the model that is most like the touch that explains the answer least: the first that no
+    /// shape leaves, otherwise the last one. None without a touch, or if no key fits its matrix.
+    pub fn nearest_of(&self, evidence: Evidence<'_>) -> Option<Nearest> {
+        let unknown = |touch: &&Imprint| self.counts_of(touch).is_empty();
+        let touches = evidence.touches;
+        self.nearest(touches.iter().find(unknown).or(touches.last())?)
+    }
+}
+
+/// Those of positive probability, the likeliest first, equals in their order.
+fn ranked(posterior: impl Iterator<Item = (usize, f64)>) -> Vec<(usize, f64)> {
+    let mut ranked: Vec<_> = posterior.filter(|&(_, share)| share > 0.0).collect();
+    ranked.sort_by(|(_, one), (_, other)| other.total_cmp(one));
+    ranked
+}

@@ -1,0 +1,218 @@
+//! How well any method can name the shapes of a model from one touch: exact counts over all its touches.
+
+use crate::recognition::model::{Model, NamedShape, ShapeCount, share};
+
+/// What the best classifier of one touch does, over every touch of a model.
+///
+/// A touch is a shape in a pose. A shape of weight w counts as if it were touched w times in each pose. All counts are
+/// exact; `right` of `touches` is the *Bayes accuracy*, which no classifier of one touch exceeds on these poses.
+///
+/// ```
+/// use taxel::prelude::*;
+/// use taxel::recognition::{Evaluation, NamedShape, Training};
+///
+/// let sensor = Sensor::default();
+/// let shapes = [
+///     NamedShape::new("square", Figure::rectangle(4.0, 4.0).on(&sensor)?),
+///     NamedShape::new("other", Figure::rectangle(4.0, 4.0).on(&sensor)?),
+/// ];
+/// let ranges = Ranges::default().with(Axis::Angle, "0:80:10".parse()?);
+/// let model = Training::new(shapes, sensor, Anchor::Centre, ranges)?.run()?;
+/// let limit = Evaluation::of(&model);
+/// // Two names for one shape: half of the touches are named right, none is certain, a touch tells nothing.
+/// assert_eq!((limit.error(), limit.certain, limit.information_bits), (0.5, 0, 0.0));
+/// assert_eq!(limit.tied, limit.touches);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Evaluation {
+    /// The names of the shapes.
+    pub labels: Vec<String>,
+    /// Number of touches.
+    pub touches: u128,
+    /// Touches that are named right.
+    pub right: u128,
+    /// Touches that only one shape can leave.
+    pub certain: u128,
+    /// Touches whose most frequent shape is not the only one that is as frequent: named by the order of the set.
+    pub tied: u128,
+    /// Touches whose shape is one of the two most frequent.
+    pub right_in_top_two: u128,
+    /// What a touch tells of the shape on average, in bits: H(S) − H(S | key).
+    pub information_bits: f64,
+    /// What there is to tell, in bits: H(S).
+    pub prior_bits: f64,
+    /// Number of distinct keys, or of distinct values where descriptors are given in their place.
+    pub keys: usize,
+    /// How many of these only one shape leaves.
+    pub keys_of_one_shape: usize,
+    /// `confusion[i][j]`: touches of shape i that are named j.
+    pub confusion: Vec<Vec<u128>>,
+}
+
+impl Evaluation {
+    /// Evaluates a model.
+    pub fn of(model: &Model) -> Self {
+        let keys = 0..model.keys().len();
+        let mut evaluation = Self::new(model);
+        for key in keys {
+            evaluation.add(model, model.counts(key));
+        }
+        evaluation.finished()
+    }
+
+    /// An evaluation that has seen no touch.
+    pub(super) fn new(model: &Model) -> Self {
+        let shapes = model.shapes();
+        Self {
+            labels: shapes.iter().map(|shape| shape.name.clone()).collect(),
+            touches: u128::from(model.poses()) * model.weights(),
+            right: 0,
+            certain: 0,
+            tied: 0,
+            right_in_top_two: 0,
+            information_bits: 0.0,
+            prior_bits: prior_bits(shapes),
+            keys: 0,
+            keys_of_one_shape: 0,
+            confusion: vec![vec![0; shapes.len()]; shapes.len()],
+        }
+    }
+
+    /// Adds all touches of one key, or of one value; at least one.
+    pub(super) fn add(&mut self, model: &Model, counts: &[ShapeCount]) {
+        self.keys += 1;
+        let (mut named, mut most, mut second, mut ties) = (0, 0, 0, 0);
+        let mut sum = 0;
+        for &count in counts {
+            let touches = model.weighted(count);
+            sum += touches;
+            if touches > most {
+                (named, second, most) = (usize::from(count.shape), most, touches);
+                ties = 1;
+            } else {
+                ties += u32::from(touches == most);
+                second = second.max(touches);
+            }
+        }
+        self.right += most;
+        self.right_in_top_two += most + second;
+        if ties > 1 {
+            self.tied += sum;
+        }
+        if counts.len() == 1 {
+            self.certain += sum;
+            self.keys_of_one_shape += 1;
+        }
+        for &count in counts {
+            let touches = model.weighted(count);
+            let shape = usize::from(count.shape);
+            self.confusion[shape][named] += touches;
+            // Of all touches, those of this shape with this key; per touch of the key and of the shape.
+            let prior = u128::from(model.shapes()[shape].weight);
+            let joint = share(touches, self.touches);
+            let ratio = share(touches, sum) / share(prior, model.weights());
+            self.information_bits += joint * ratio.log2();
+        }
+    }
+
+    /// Rounds what cannot be exact: information is neither negative nor more than there is.
+    pub(super) fn finished(mut self) -> Self {
+        self.information_bits = self.information_bits.clamp(0.0, self.prior_bits);
+        self
+    }
+
+    /// Returns the share of touches that are named right.
+    pub fn accuracy(&self) -> f64 {
+        share(self.right, self.touches)
+    }
+
+    /// Returns the share of touches that are named wrong: the Bayes error.
+    pub fn error(&self) -> f64 {
+        share(self.touches - self.right, self.touches)
+    }
+
+    /// Returns the share of the touches of a shape that are named so.
+    ///
+    /// # Panics
+    /// If there is no such shape.
+    pub fn recall(&self, shape: usize) -> f64 {
+        let row = &self.confusion[shape];
+        share(row[shape], row.iter().sum())
+    }
+
+    /// Returns the share of the touches named so that are of that shape; None if none is named so.
+    ///
+    /// # Panics
+    /// If there is no such shape.
+    pub fn precision(&self, shape: usize) -> Option<f64> {
+        let named: u128 = self.confusion.iter().map(|row| row[shape]).sum();
+        (named > 0).then(|| share(self.confusion[shape][shape], named))
+    }
+
+    /// Returns the pairs of shapes that are taken for each other, the most touches first: (one, other, touches).
+    pub fn worst_pairs(&self) -> Vec<(usize, usize, u128)> {
+        let shapes = self.labels.len();
+        let pairs = (0..shapes).flat_map(|one| (one + 1..shapes).map(move |other| (one, other)));
+        let mut pairs: Vec<_> = pairs
+            .map(|(one, other)| {
+                let touches = self.confusion[one][other] + self.confusion[other][one];
+                (one, other, touches)
+            })
+            .filter(|&(_, _, touches)| touches > 0)
+            .collect();
+        pairs.sort_by_key(|&(one, other, touches)| (std::cmp::Reverse(touches), one, other));
+        pairs
+    }
+}
+
+/// H(S), in bits.
+fn prior_bits(shapes: &[NamedShape]) -> f64 {
+    let sum: u128 = shapes.iter().map(|shape| u128::from(shape.weight)).sum();
+    let bits = shapes.iter().map(|shape| {
+        let prior = share(u128::from(shape.weight), sum);
+        // 0 − x, since a negative zero would be shown as −0.
+        0.0 - prior * prior.log2()
+    });
+    bits.sum()
+}
+
+impl Model {
+    /// Returns, for each pair of shapes, the error of the best classifier that has to tell just these two apart:
+    /// `errors[i][j]`, from 0 to ½ for equal weights; 0 on the diagonal.
+    pub fn pair_errors(&self) -> Vec<Vec<f64>> {
+        let shapes = self.shapes().len();
+        let mut wrong = vec![vec![0_u128; shapes]; shapes];
+        for key in 0..self.keys().len() {
+            let counts = self.counts(key);
+            for (index, &one) in counts.iter().enumerate() {
+                for &other in &counts[index + 1..] {
+                    let least = self.weighted(one).min(self.weighted(other));
+                    wrong[usize::from(one.shape)][usize::from(other.shape)] += least;
+                }
+            }
+        }
+        let weight = |shape: usize| u128::from(self.shapes()[shape].weight);
+        let error = |one: usize, other: usize| {
+            let touches = u128::from(self.poses()) * (weight(one) + weight(other));
+            share(wrong[one.min(other)][one.max(other)], touches)
+        };
+        let row = |one: usize| (0..shapes).map(|other| error(one, other)).collect();
+        (0..shapes).map(row).collect()
+    }
+
+    /// Returns the shapes that could never be rejected, whatever else is touched: every key of theirs is left by another
+    /// shape of the set too, so a touch of them is never certain.
+    pub fn never_certain(&self) -> Vec<usize> {
+        let mut certain = vec![false; self.shapes().len()];
+        for key in 0..self.keys().len() {
+            if let [only] = self.counts(key) {
+                certain[usize::from(only.shape)] = true;
+            }
+        }
+        (0..certain.len())
+            .filter(|&shape| !certain[shape])
+            .collect()
+    }
+}

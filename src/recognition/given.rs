@@ -1,0 +1,309 @@
+//! What descriptors are worth: the limit of one touch where only some of them are known of the imprint.
+//!
+//! Two imprints count as one where all given descriptors of their main regions agree. They are compared exactly
+//! ([`Descriptor::exact`]), or in steps of a [`Rounding`]. A value that does not exist agrees with itself only.
+
+use std::collections::HashMap;
+
+use rayon::prelude::*;
+
+use crate::atlas::ImprintSummary;
+use crate::description::{DESCRIPTORS, Description, Descriptor, Value};
+use crate::quote::shortened;
+use crate::recognition::evaluation::Evaluation;
+use crate::recognition::model::{Model, ShapeCount};
+
+/// A descriptor that says something of the shape: one that does not change when the imprint is moved.
+#[derive(Clone, Copy, Debug)]
+pub struct ShapeDescriptor(&'static Descriptor);
+
+impl PartialEq for ShapeDescriptor {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.key == other.0.key
+    }
+}
+
+/// Why a text is not a list of descriptors, or not a rounding.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GivenError {
+    /// Another name.
+    #[error("descriptor {found:?} is unknown, expected one of {}", ShapeDescriptor::keys().join(", "))]
+    Unknown {
+        /// What was given.
+        found: String,
+    },
+    /// A descriptor that says where the imprint lies.
+    #[error("{key} says where the imprint lies, not what it is; expected one of {}", ShapeDescriptor::keys().join(", "))]
+    OfPlace {
+        /// The descriptor.
+        key: &'static str,
+    },
+    /// A rounding that is none.
+    #[error("rounding {found:?}: expected a descriptor and a step above 0, such as cg_cd=0.01")]
+    Rounding {
+        /// What was given.
+        found: String,
+    },
+}
+
+impl ShapeDescriptor {
+    /// Returns all of them, in the order of [`DESCRIPTORS`].
+    pub fn all() -> impl Iterator<Item = Self> {
+        let all = DESCRIPTORS.iter();
+        all.filter(|row| !row.changes_under.shift).map(Self)
+    }
+
+    fn keys() -> Vec<&'static str> {
+        Self::all().map(Self::key).collect()
+    }
+
+    /// Returns its row in the table.
+    pub fn descriptor(self) -> &'static Descriptor {
+        self.0
+    }
+
+    /// Returns its name in JSON.
+    pub fn key(self) -> &'static str {
+        self.0.key
+    }
+}
+
+impl std::str::FromStr for ShapeDescriptor {
+    type Err = GivenError;
+
+    fn from_str(text: &str) -> Result<Self, GivenError> {
+        let text = text.trim();
+        match Descriptor::from_key(text) {
+            Some(row) if row.changes_under.shift => Err(GivenError::OfPlace { key: row.key }),
+            Some(row) => Ok(Self(row)),
+            None => Err(GivenError::Unknown {
+                found: shortened(text),
+            }),
+        }
+    }
+}
+
+/// A descriptor measured in steps only: values are rounded to the nearest multiple of the step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rounding {
+    descriptor: ShapeDescriptor,
+    step: f64,
+}
+
+impl std::str::FromStr for Rounding {
+    type Err = GivenError;
+
+    fn from_str(text: &str) -> Result<Self, GivenError> {
+        let error = || GivenError::Rounding {
+            found: shortened(text),
+        };
+        let (descriptor, step) = text.split_once('=').ok_or_else(error)?;
+        let step: f64 = step.trim().parse().map_err(|_| error())?;
+        // Below this a step is finer than the numbers themselves.
+        if !(1e-9..=1e9).contains(&step) {
+            return Err(error());
+        }
+        Ok(Self {
+            descriptor: descriptor.parse()?,
+            step,
+        })
+    }
+}
+
+/// Descriptors that are known of an imprint, in place of the imprint itself.
+///
+/// ```
+/// use taxel::recognition::GivenDescriptors;
+/// let given = GivenDescriptors::new("na, p".parse::<GivenDescriptors>()?.descriptors().to_vec(), Vec::new());
+/// assert_eq!(given.to_string(), "na,p");
+/// assert!("na,cg".parse::<GivenDescriptors>().is_err());
+/// # Ok::<(), taxel::recognition::GivenError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GivenDescriptors {
+    descriptors: Vec<ShapeDescriptor>,
+    roundings: Vec<Rounding>,
+}
+
+impl GivenDescriptors {
+    /// These descriptors, some of them rounded.
+    pub fn new(descriptors: Vec<ShapeDescriptor>, roundings: Vec<Rounding>) -> Self {
+        Self {
+            descriptors,
+            roundings,
+        }
+    }
+
+    /// Returns the descriptors.
+    pub fn descriptors(&self) -> &[ShapeDescriptor] {
+        &self.descriptors
+    }
+
+    /// Returns the limit of one touch where only these descriptors are known.
+    pub fn evaluate(&self, model: &Model) -> Evaluation {
+        let table = GivenTable::new(model);
+        let mut classes = table.one_class();
+        for &descriptor in &self.descriptors {
+            classes = table.refined(&classes, descriptor, &self.roundings);
+        }
+        table.evaluate(&classes)
+    }
+}
+
+impl std::str::FromStr for GivenDescriptors {
+    type Err = GivenError;
+
+    /// Reads a list with commas.
+    fn from_str(text: &str) -> Result<Self, GivenError> {
+        let descriptors = text.split(',').map(str::parse);
+        Ok(Self::new(
+            descriptors.collect::<Result<_, _>>()?,
+            Vec::new(),
+        ))
+    }
+}
+
+impl std::fmt::Display for GivenDescriptors {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let keys: Vec<_> = self.descriptors.iter().map(|one| one.key()).collect();
+        f.write_str(&keys.join(","))
+    }
+}
+
+/// The descriptions of all keys of a model, and the classes that descriptors put them in.
+#[derive(Debug)]
+pub struct GivenTable<'a> {
+    model: &'a Model,
+    /// Of the main region of each key; None of the empty one.
+    descriptions: Vec<Option<Description>>,
+}
+
+/// For each key the number of its class, from 0 in order of their first keys.
+type Classes = Vec<u32>;
+
+impl<'a> GivenTable<'a> {
+    /// Describes the keys of a model.
+    pub fn new(model: &'a Model) -> Self {
+        let describe = |key| ImprintSummary::of(&model.keys().imprint(key)?).description;
+        let keys = (0..model.keys().len()).into_par_iter();
+        Self {
+            model,
+            descriptions: keys.with_min_len(256).map(describe).collect(),
+        }
+    }
+
+    /// Returns what is known of each key, in their order; None of the empty one.
+    pub(super) fn descriptions(&self) -> &[Option<Description>] {
+        &self.descriptions
+    }
+
+    /// Nothing is known: all keys are one class.
+    fn one_class(&self) -> Classes {
+        vec![0; self.descriptions.len()]
+    }
+
+    /// The classes that remain where one descriptor more is known.
+    fn refined(
+        &self,
+        classes: &Classes,
+        descriptor: ShapeDescriptor,
+        roundings: &[Rounding],
+    ) -> Classes {
+        let rounding = roundings
+            .iter()
+            .find(|rounding| rounding.descriptor == descriptor);
+        let value = |description: &Option<Description>| {
+            let description = description.as_ref()?;
+            match rounding {
+                Some(rounding) => rounding.rounded((descriptor.0.measure)(description)),
+                None => (descriptor.0.exact)(description),
+            }
+        };
+        let mut numbers = HashMap::new();
+        let members = classes.iter().zip(&self.descriptions);
+        let number = members.map(|(&class, description)| {
+            let next = u32::try_from(numbers.len()).expect("no more classes than keys");
+            *numbers.entry((class, value(description))).or_insert(next)
+        });
+        number.collect()
+    }
+
+    fn evaluate(&self, classes: &Classes) -> Evaluation {
+        let mut counts: Vec<(u32, ShapeCount)> = Vec::new();
+        for (key, &class) in classes.iter().enumerate() {
+            counts.extend(self.model.counts(key).iter().map(|&count| (class, count)));
+        }
+        counts.sort_unstable_by_key(|&(class, count)| (class, count.shape));
+        counts.dedup_by(|next, kept| {
+            let same = (next.0, next.1.shape) == (kept.0, kept.1.shape);
+            if same {
+                kept.1.poses += next.1.poses;
+            }
+            same
+        });
+        let mut evaluation = Evaluation::new(self.model);
+        let mut own = Vec::new();
+        for class in counts.chunk_by(|one, other| one.0 == other.0) {
+            own.clear();
+            own.extend(class.iter().map(|&(_, count)| count));
+            evaluation.add(self.model, &own);
+        }
+        evaluation.finished()
+    }
+}
+
+impl Rounding {
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "values of descriptors over a step of at least 1e-9 are far below 2⁶³"
+    )]
+    fn rounded(&self, value: Value) -> Option<[i64; 4]> {
+        let steps = |value: f64| (value / self.step).round() as i64;
+        let mut rounded = [0; 4];
+        match value {
+            Value::None => return None,
+            Value::Count(count) => rounded[0] = steps(f64::from(count)),
+            Value::Number(number) => rounded[0] = steps(number),
+            Value::Point(point) => [rounded[0], rounded[1]] = [steps(point.x), steps(point.y)],
+            Value::Pair(pair) => [rounded[0], rounded[1]] = pair.map(steps),
+            Value::Rect(rect) => {
+                let sides = [rect.left, rect.top, rect.right, rect.bottom];
+                rounded = sides.map(|side| steps(f64::from(side)));
+            }
+        }
+        Some(rounded)
+    }
+}
+
+/// Chooses descriptors one after the other: each time the one with which most touches are named right, the first in the
+/// table of equals, until none names one touch more.
+///
+/// Returns each descriptor with the evaluation of all chosen so far.
+pub fn greedy(model: &Model, roundings: &[Rounding]) -> Vec<(ShapeDescriptor, Evaluation)> {
+    let table = GivenTable::new(model);
+    let mut classes = table.one_class();
+    let mut chosen: Vec<(ShapeDescriptor, Evaluation)> = Vec::new();
+    let mut right = table.evaluate(&classes).right;
+    loop {
+        let open = ShapeDescriptor::all().filter(|one| chosen.iter().all(|(own, _)| own != one));
+        let tried = open.map(|descriptor| {
+            let classes = table.refined(&classes, descriptor, roundings);
+            (descriptor, table.evaluate(&classes), classes)
+        });
+        let best = tried.reduce(|best, next| {
+            if next.1.right > best.1.right {
+                next
+            } else {
+                best
+            }
+        });
+        match best {
+            Some((descriptor, evaluation, refined)) if evaluation.right > right => {
+                (right, classes) = (evaluation.right, refined);
+                chosen.push((descriptor, evaluation));
+            }
+            _ => return chosen,
+        }
+    }
+}

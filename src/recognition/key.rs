@@ -1,0 +1,276 @@
+//! Keys: what of an imprint does not depend on where it lies.
+
+use std::hash::BuildHasher;
+
+use hashbrown::{DefaultHashBuilder, HashTable};
+
+use crate::imprint::Imprint;
+
+/// All active taxels of an imprint, of all its pieces, cut to their bounding box. Of an empty imprint it has no side.
+///
+/// Keys are ordered by height, width, and the taxels in reading order.
+///
+/// ```
+/// use taxel::prelude::*;
+/// use taxel::recognition::ImprintKey;
+///
+/// let here: Imprint = "....\n.##.\n..#.".parse().unwrap();
+/// let there: Imprint = "##\n.#".parse().unwrap();
+/// assert_eq!(ImprintKey::of(&here), ImprintKey::of(&there));
+/// assert_eq!(ImprintKey::of(&here).imprint(), Some(there));
+/// assert_eq!(ImprintKey::of(&Imprint::empty(4, 4)).imprint(), None);
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ImprintKey {
+    height: u8,
+    width: u8,
+    /// A bit per taxel of the box, in reading order.
+    bits: Vec<u64>,
+}
+
+impl ImprintKey {
+    /// Returns the key of an imprint.
+    pub fn of(imprint: &Imprint) -> Self {
+        let mut key = Self {
+            height: 0,
+            width: 0,
+            bits: Vec::new(),
+        };
+        key.set(imprint);
+        key
+    }
+
+    /// Becomes the key of another imprint.
+    pub(super) fn set(&mut self, imprint: &Imprint) {
+        self.bits.clear();
+        let Some(bounds) = imprint.bounds() else {
+            (self.height, self.width) = (0, 0);
+            return;
+        };
+        self.width = bounds.right - bounds.left;
+        self.height = bounds.bottom - bounds.top;
+        self.bits.resize(words(self.width, self.height), 0);
+        let mut place = 0;
+        for row in bounds.rows() {
+            let row = imprint.words()[usize::from(row)] >> bounds.left;
+            or_bits(&mut self.bits, place, row);
+            place += usize::from(self.width);
+        }
+    }
+
+    /// Returns the imprint, on a matrix of just its size; None of the empty key.
+    pub fn imprint(&self) -> Option<Imprint> {
+        self.borrowed().imprint()
+    }
+
+    /// Returns the number of columns of its box.
+    pub fn width(&self) -> u8 {
+        self.width
+    }
+
+    /// Returns the number of rows of its box.
+    pub fn height(&self) -> u8 {
+        self.height
+    }
+
+    pub(super) fn borrowed(&self) -> KeyRef<'_> {
+        KeyRef {
+            height: self.height,
+            width: self.width,
+            bits: &self.bits,
+        }
+    }
+}
+
+/// Number of words that the taxels of a box take.
+fn words(width: u8, height: u8) -> usize {
+    (usize::from(width) * usize::from(height)).div_ceil(64)
+}
+
+/// Sets the bits of a row from bit `place` on.
+pub(super) fn or_bits(bits: &mut [u64], place: usize, row: u64) {
+    let (word, shift) = (place / 64, place % 64);
+    bits[word] |= row << shift;
+    let rest = row.unbounded_shr(u32::try_from(64 - shift).expect("at most 64"));
+    if rest != 0 {
+        bits[word + 1] |= rest;
+    }
+}
+
+/// A key of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(super) struct KeyRef<'a> {
+    pub(super) height: u8,
+    pub(super) width: u8,
+    pub(super) bits: &'a [u64],
+}
+
+impl KeyRef<'_> {
+    /// Its rows from the top, bit `i` for column `i`.
+    pub(super) fn rows(self) -> impl Iterator<Item = u64> {
+        let mask = u64::MAX.unbounded_shr(64 - u32::from(self.width));
+        (0..usize::from(self.height)).map(move |row| {
+            let (word, shift) = (row * usize::from(self.width)).div_mod(64);
+            let low = self.bits[word] >> shift;
+            let high = self.bits.get(word + 1).map_or(0, |&word| word);
+            (low | high.unbounded_shl(64 - shift)) & mask
+        })
+    }
+
+    pub(super) fn imprint(self) -> Option<Imprint> {
+        if self.height == 0 {
+            return None;
+        }
+        let mut imprint = Imprint::empty(self.width, self.height);
+        for (row, word) in self.rows().enumerate() {
+            imprint.set_word(row, word);
+        }
+        Some(imprint)
+    }
+}
+
+trait DivMod {
+    fn div_mod(self, by: u32) -> (usize, u32);
+}
+
+impl DivMod for usize {
+    fn div_mod(self, by: u32) -> (usize, u32) {
+        let by = by as usize;
+        (self / by, u32::try_from(self % by).expect("below `by`"))
+    }
+}
+
+/// Many keys, each in as few words as its box needs, found by a seeded hash.
+#[derive(Clone, Debug, Default)]
+pub struct KeyTable {
+    sizes: Vec<(u8, u8)>,
+    /// Where the bits of each key start.
+    starts: Vec<usize>,
+    bits: Vec<u64>,
+    index: HashTable<u32>,
+    hasher: DefaultHashBuilder,
+}
+
+impl KeyTable {
+    /// Returns the number of keys.
+    pub fn len(&self) -> usize {
+        self.sizes.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.sizes.is_empty()
+    }
+
+    /// Returns the imprint of a key, on a matrix of just its size; None of the empty key.
+    ///
+    /// # Panics
+    /// If there are not that many keys.
+    pub fn imprint(&self, index: usize) -> Option<Imprint> {
+        self.get(index).imprint()
+    }
+
+    /// Returns where a key stands.
+    pub fn find(&self, key: &ImprintKey) -> Option<usize> {
+        self.find_ref(key.borrowed())
+    }
+
+    pub(super) fn get(&self, index: usize) -> KeyRef<'_> {
+        let (height, width) = self.sizes[index];
+        let start = self.starts[index];
+        KeyRef {
+            height,
+            width,
+            bits: &self.bits[start..start + words(width, height)],
+        }
+    }
+
+    pub(super) fn find_ref(&self, key: KeyRef<'_>) -> Option<usize> {
+        let hash = self.hash(key);
+        let same = |&index: &u32| self.get(index as usize) == key;
+        self.index.find(hash, same).map(|&index| index as usize)
+    }
+
+    /// Adds a key unless it is there; returns where it stands.
+    pub(super) fn intern(&mut self, key: KeyRef<'_>) -> usize {
+        let hash = self.hash(key);
+        let same = |&index: &u32| self.get(index as usize) == key;
+        if let Some(&index) = self.index.find(hash, same) {
+            return index as usize;
+        }
+        let index = self.len();
+        let number = u32::try_from(index).expect("2³² keys take more memory than there is");
+        self.sizes.push((key.height, key.width));
+        self.starts.push(self.bits.len());
+        self.bits.extend_from_slice(key.bits);
+        let Self {
+            sizes,
+            starts,
+            bits,
+            index: table,
+            hasher,
+        } = self;
+        table.insert_unique(hash, number, |&index| {
+            let ((height, width), start) = (sizes[index as usize], starts[index as usize]);
+            hash_of(
+                hasher,
+                KeyRef {
+                    height,
+                    width,
+                    bits: &bits[start..start + words(width, height)],
+                },
+            )
+        });
+        index
+    }
+
+    /// The same keys in their order, and for each the number that it had.
+    pub(super) fn sorted(&self) -> (Self, Vec<usize>) {
+        let mut order: Vec<usize> = (0..self.len()).collect();
+        order.sort_unstable_by_key(|&index| self.get(index));
+        let mut sorted = Self::default();
+        for &index in &order {
+            sorted.intern(self.get(index));
+        }
+        (sorted, order)
+    }
+
+    fn hash(&self, key: KeyRef<'_>) -> u64 {
+        hash_of(&self.hasher, key)
+    }
+}
+
+fn hash_of(hasher: &DefaultHashBuilder, key: KeyRef<'_>) -> u64 {
+    hasher.hash_one(key)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_give_back_their_imprints_of_any_size() {
+        let mut table = KeyTable::default();
+        for side in [1_u8, 7, 8, 9, 31, 63, 64] {
+            let mut imprint = Imprint::empty(64, 64);
+            // Both corners, and a pattern that no shift repeats.
+            for place in 0..side {
+                imprint.set(place, place, true);
+                imprint.set(side - 1, place * place % side, true);
+            }
+            let key = ImprintKey::of(&imprint);
+            assert_eq!(key.imprint(), Some(imprint.resized(side, side)));
+            assert_eq!((key.width(), key.height()), (side, side));
+            let index = table.intern(key.borrowed());
+            assert_eq!(
+                (table.intern(key.borrowed()), table.find(&key)),
+                (index, Some(index))
+            );
+            assert_eq!(table.imprint(index), key.imprint());
+        }
+        assert_eq!(table.len(), 7);
+        let (sorted, order) = table.sorted();
+        assert_eq!(order, [0, 1, 2, 3, 4, 5, 6]);
+        assert!((1..sorted.len()).all(|index| sorted.get(index - 1) < sorted.get(index)));
+    }
+}

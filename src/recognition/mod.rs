@@ -1,0 +1,43 @@
+//! Names a shape from one touch, and says how well any method could.
+//!
+//! A sweep knows *every* imprint of a shape and how often it occurs, so the best classifier of one touch is not learned
+//! but counted. Where a touch lies is not known; what is left of an imprint then is its [`ImprintKey`], the active taxels cut to
+//! their bounding box. A [`Model`] holds, for each key, in how many poses each shape leaves it, `n[s, k]`. From these
+//! integers follow the [`posterior`](Model::posterior) of a touch and, exactly, the [`Evaluation`]: which touches the best
+//! classifier names right, which are certain, and how much a touch tells in bits. No classifier of one touch errs less on
+//! these poses.
+//!
+//! ```text
+//! shapes + poses -> Training -> Model -> Answer       of an imprint: posterior, state, nearest imprint
+//!                                     -> Evaluation   of the model: the limit of one touch
+//!                                     -> given        the same where only some descriptors are known
+//!                                     -> peers        the paper's way: classifiers on descriptors
+//! ```
+//!
+//! Convention of this project, after the definition of the Bayes classifier (R. O. Duda, P. E. Hart and D. G. Stork,
+//! *Pattern Classification*, 2001, chapter 2).
+
+mod key;
+
+mod model;
+
+mod training;
+
+mod evaluation;
+
+mod given;
+
+mod nearest;
+
+mod answer;
+
+mod peers;
+
+pub use answer::{Answer, AnswerState, Evidence};
+pub use evaluation::Evaluation;
+pub use given::{GivenDescriptors, GivenError, GivenTable, Rounding, ShapeDescriptor, greedy};
+pub use key::{ImprintKey, KeyTable};
+pub use model::{Model, ModelError, ModelParts, NamedShape, ShapeCount};
+pub use nearest::Nearest;
+pub use peers::{Peer, PeerEvaluation, PeerSettings};
+pub use training::{Training, TrainingError};

@@ -1,0 +1,461 @@
+//! The model of a set of shapes: in how many poses each shape leaves each key.
+
+use std::collections::HashSet;
+
+use crate::imprint::Imprint;
+use crate::pose::{Anchor, Ranges};
+use crate::quote::shortened;
+use crate::recognition::key::{ImprintKey, KeyTable};
+use crate::sensor::Sensor;
+use crate::source::Source;
+use crate::sweep::Shard;
+
+/// A shape and the name that answers give.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct NamedShape {
+    /// Its name, which no other shape of the set has.
+    pub name: String,
+    /// The shape; where it lies does not matter.
+    pub source: Source,
+    /// How likely it is before the touch, in relation to the others; at least 1.
+    pub weight: u32,
+}
+
+impl NamedShape {
+    /// A shape as likely as any other.
+    pub fn new(name: impl Into<String>, source: impl Into<Source>) -> Self {
+        Self {
+            name: name.into(),
+            source: source.into(),
+            weight: 1,
+        }
+    }
+
+    /// The same shape, with another weight.
+    #[must_use]
+    pub fn weighted(self, weight: u32) -> Self {
+        Self { weight, ..self }
+    }
+}
+
+/// In how many poses a shape leaves a key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ShapeCount {
+    /// The number of the shape in the set.
+    pub shape: u16,
+    /// Its poses with this key; at least 1.
+    pub poses: u64,
+}
+
+impl ShapeCount {
+    pub(super) fn new(shape: u16, poses: u64) -> Self {
+        Self { shape, poses }
+    }
+}
+
+/// What can be told apart by one touch: shapes, the poses in which each was touched, and the keys that these left.
+///
+/// Made by [`Training`](crate::recognition::Training), or read from a file.
+#[derive(Clone, Debug)]
+pub struct Model {
+    shapes: Vec<NamedShape>,
+    sensor: Sensor,
+    anchor: Anchor,
+    ranges: Ranges,
+    shard: Shard,
+    /// Poses of each shape: as many for one as for another.
+    poses: u64,
+    /// Poses of each shape that reach beyond the sensor.
+    cut: Vec<u64>,
+    /// In their order.
+    keys: KeyTable,
+    /// Where the counts of each key start, and where those of the last end.
+    starts: Vec<usize>,
+    /// For each key its shapes in the order of the set.
+    counts: Vec<ShapeCount>,
+}
+
+/// What a model is made of, as its file holds it.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct ModelParts {
+    /// The shapes, at least one.
+    pub shapes: Vec<NamedShape>,
+    /// The sensor that they were touched with.
+    pub sensor: Sensor,
+    /// What x0 and y0 locate.
+    pub anchor: Anchor,
+    /// The poses.
+    pub ranges: Ranges,
+    /// Which part of the poses this is.
+    pub shard: Shard,
+    /// Poses of each shape in that part.
+    pub poses: u64,
+    /// Poses of each shape that reach beyond the sensor.
+    pub cut: Vec<u64>,
+    /// An imprint of each key, None for that of an empty touch; in order or not.
+    pub keys: Vec<(Option<Imprint>, Vec<ShapeCount>)>,
+}
+
+impl ModelParts {
+    /// Parts without a key.
+    pub fn new(
+        shapes: Vec<NamedShape>,
+        sensor: Sensor,
+        (anchor, ranges): (Anchor, Ranges),
+        (shard, poses): (Shard, u64),
+    ) -> Self {
+        Self {
+            cut: vec![0; shapes.len()],
+            shapes,
+            sensor,
+            anchor,
+            ranges,
+            shard,
+            poses,
+            keys: Vec::new(),
+        }
+    }
+}
+
+/// The most shapes of a set.
+pub(super) const MAX_SHAPES: usize = 1 << 15;
+
+/// Why shapes or numbers make no model.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ModelError {
+    /// No shape, or too many.
+    #[error("{found} shapes, expected 1 to {MAX_SHAPES}")]
+    Shapes {
+        /// How many.
+        found: usize,
+    },
+    /// A name that is empty or that two shapes have.
+    #[error("name {name:?} is given twice; each shape needs its own")]
+    Name {
+        /// The name.
+        name: String,
+    },
+    /// A shape without a name.
+    #[error("shape {number} has no name")]
+    NoName {
+        /// Counted from 1.
+        number: usize,
+    },
+    /// A weight of 0.
+    #[error("weight of {name:?}: 0, expected at least 1")]
+    Weight {
+        /// The shape.
+        name: String,
+    },
+    /// Numbers that contradict each other.
+    #[error("{0}")]
+    Parts(&'static str),
+    /// Models that are not parts of one training.
+    #[error("shard {shard} belongs to another training")]
+    Foreign {
+        /// The one that does not fit the first.
+        shard: Shard,
+    },
+    /// A shard that is there twice.
+    #[error("shard {shard} is given twice")]
+    Twice {
+        /// That one.
+        shard: Shard,
+    },
+    /// A shard that is not there.
+    #[error("shard {number}/{of} is missing")]
+    Missing {
+        /// Which, from 1.
+        number: u32,
+        /// Out of so many.
+        of: u32,
+    },
+}
+
+/// Checks the names and weights of a set.
+///
+/// # Errors
+/// The first fault.
+pub(super) fn check_shapes(shapes: &[NamedShape]) -> Result<(), ModelError> {
+    if shapes.is_empty() || shapes.len() > MAX_SHAPES {
+        return Err(ModelError::Shapes {
+            found: shapes.len(),
+        });
+    }
+    let mut names = HashSet::new();
+    for (index, shape) in shapes.iter().enumerate() {
+        let name = || shortened(&shape.name);
+        if shape.name.is_empty() {
+            return Err(ModelError::NoName { number: index + 1 });
+        }
+        if !names.insert(shape.name.as_str()) {
+            return Err(ModelError::Name { name: name() });
+        }
+        if shape.weight == 0 {
+            return Err(ModelError::Weight { name: name() });
+        }
+    }
+    Ok(())
+}
+
+impl Model {
+    /// Puts a model together.
+    ///
+    /// # Errors
+    /// If names or weights are not as they should be, or if the counts of a shape do not sum up to its poses.
+    pub fn from_parts(mut parts: ModelParts) -> Result<Self, ModelError> {
+        let keys = std::mem::take(&mut parts.keys);
+        let mut table = KeyTable::default();
+        let mut counted = Vec::with_capacity(keys.len());
+        let mut key = ImprintKey::of(&Imprint::empty(1, 1));
+        for (imprint, counts) in &keys {
+            key.set(&imprint.unwrap_or(Imprint::empty(1, 1)));
+            if table.intern(key.borrowed()) != counted.len() {
+                return Err(ModelError::Parts("a key is there twice"));
+            }
+            counted.push(counts.as_slice());
+        }
+        Self::of_table(parts, &table, |index| counted[index].iter().copied())
+    }
+
+    /// Puts a model together of the keys of a table in any order and the counts of each, by shape.
+    pub(super) fn of_table<I: IntoIterator<Item = ShapeCount>>(
+        head: ModelParts,
+        table: &KeyTable,
+        counts_of: impl Fn(usize) -> I,
+    ) -> Result<Self, ModelError> {
+        check_shapes(&head.shapes)?;
+        let check = |holds: bool, what| holds.then_some(()).ok_or(ModelError::Parts(what));
+        let shapes = head.shapes.len();
+        check(head.cut.len() == shapes, "a shape without its cut poses")?;
+        let (keys, order) = table.sorted();
+        let (mut starts, mut counts) = (vec![0], Vec::new());
+        let mut sums = vec![0_u64; shapes];
+        for index in order {
+            let start = counts.len();
+            counts.extend(counts_of(index));
+            let own: &[ShapeCount] = &counts[start..];
+            check(
+                own.iter()
+                    .all(|count| usize::from(count.shape) < shapes && count.poses > 0),
+                "a count of a shape that is not in the set",
+            )?;
+            check(
+                !own.is_empty() && own.windows(2).all(|pair| pair[0].shape < pair[1].shape),
+                "counts that are not in the order of the shapes",
+            )?;
+            for count in own {
+                let sum = &mut sums[usize::from(count.shape)];
+                *sum = sum
+                    .checked_add(count.poses)
+                    .ok_or(ModelError::Parts("counts beyond any number of poses"))?;
+            }
+            starts.push(counts.len());
+        }
+        check(
+            sums.iter().all(|&sum| sum == head.poses),
+            "counts that do not sum up to the number of poses",
+        )?;
+        check(
+            head.cut.iter().all(|&cut| cut <= head.poses),
+            "more poses cut off than there are",
+        )?;
+        Ok(Self {
+            shapes: head.shapes,
+            sensor: head.sensor,
+            anchor: head.anchor,
+            ranges: head.ranges,
+            shard: head.shard,
+            poses: head.poses,
+            cut: head.cut,
+            keys,
+            starts,
+            counts,
+        })
+    }
+
+    /// Puts all shards of one training together: the same model as that of one run.
+    ///
+    /// # Errors
+    /// If a shard is missing, there twice, or of another training.
+    pub fn merge(shards: impl IntoIterator<Item = Self>) -> Result<Self, ModelError> {
+        let mut shards: Vec<Self> = shards.into_iter().collect();
+        shards.sort_by_key(|model| model.shard.number());
+        let first = shards.first().ok_or(ModelError::Shapes { found: 0 })?;
+        let of = first.shard.of();
+        for (model, number) in shards.iter().zip(1..) {
+            let shard = model.shard;
+            if !model.same_training(first) {
+                return Err(ModelError::Foreign { shard });
+            }
+            if shard.number() < number {
+                return Err(ModelError::Twice { shard });
+            }
+            if shard.number() > number {
+                return Err(ModelError::Missing { number, of });
+            }
+        }
+        if let Ok(given) = u32::try_from(shards.len())
+            && given < of
+        {
+            let number = given + 1;
+            return Err(ModelError::Missing { number, of });
+        }
+        let mut head = first.head();
+        head.shard = Shard::WHOLE;
+        head.poses = shards.iter().map(|model| model.poses).sum();
+        for (shape, cut) in head.cut.iter_mut().enumerate() {
+            *cut = shards.iter().map(|model| model.cut[shape]).sum();
+        }
+        let mut gathered = Gathered::default();
+        for model in &shards {
+            for index in 0..model.keys.len() {
+                let slot = gathered.slot(&model.keys, index);
+                for &count in model.counts(index) {
+                    slot_add(&mut gathered.counts[slot], count);
+                }
+            }
+        }
+        Self::of_table(head, &gathered.keys, |index| {
+            gathered.counts[index].iter().copied()
+        })
+    }
+
+    fn same_training(&self, other: &Self) -> bool {
+        self.shapes == other.shapes
+            && self.sensor == other.sensor
+            && self.anchor == other.anchor
+            && self.ranges == other.ranges
+            && self.shard.of() == other.shard.of()
+    }
+
+    /// All but its keys.
+    fn head(&self) -> ModelParts {
+        ModelParts {
+            shapes: self.shapes.clone(),
+            sensor: self.sensor,
+            anchor: self.anchor,
+            ranges: self.ranges,
+            shard: self.shard,
+            poses: self.poses,
+            cut: self.cut.clone(),
+            keys: Vec::new(),
+        }
+    }
+
+    /// Returns the shapes, in the order of the set.
+    pub fn shapes(&self) -> &[NamedShape] {
+        &self.shapes
+    }
+
+    /// Returns the sensor that the shapes were touched with.
+    pub fn sensor(&self) -> &Sensor {
+        &self.sensor
+    }
+
+    /// Returns what the ranges of x0 and y0 locate.
+    pub fn anchor(&self) -> Anchor {
+        self.anchor
+    }
+
+    /// Returns the poses in which each shape was touched.
+    pub fn ranges(&self) -> &Ranges {
+        &self.ranges
+    }
+
+    /// Returns which part of the poses the model holds; a model that is asked should be [`Shard::WHOLE`].
+    pub fn shard(&self) -> Shard {
+        self.shard
+    }
+
+    /// Returns the number of poses of each shape.
+    pub fn poses(&self) -> u64 {
+        self.poses
+    }
+
+    /// Returns how many poses of each shape the sensor cuts off, in the order of the set.
+    pub fn cut(&self) -> &[u64] {
+        &self.cut
+    }
+
+    /// Returns the keys in their order.
+    pub fn keys(&self) -> &KeyTable {
+        &self.keys
+    }
+
+    /// Returns the shapes that leave a key, in the order of the set.
+    ///
+    /// # Panics
+    /// If there are not that many keys.
+    pub fn counts(&self, key: usize) -> &[ShapeCount] {
+        &self.counts[self.starts[key]..self.starts[key + 1]]
+    }
+
+    /// Returns the shapes that leave the key of an imprint; empty if none does.
+    pub fn counts_of(&self, imprint: &Imprint) -> &[ShapeCount] {
+        self.keys
+            .find(&ImprintKey::of(imprint))
+            .map_or(&[], |key| self.counts(key))
+    }
+
+    /// Returns P(shape | imprint) for each shape of the set; None of an imprint that no shape leaves.
+    pub fn posterior(&self, imprint: &Imprint) -> Option<Vec<f64>> {
+        let counts = self.counts_of(imprint);
+        if counts.is_empty() {
+            return None;
+        }
+        let mut posterior = vec![0.0; self.shapes.len()];
+        let total: u128 = counts.iter().map(|&count| self.weighted(count)).sum();
+        for &count in counts {
+            posterior[usize::from(count.shape)] = share(self.weighted(count), total);
+        }
+        Some(posterior)
+    }
+
+    /// A count times the weight of its shape.
+    pub(super) fn weighted(&self, count: ShapeCount) -> u128 {
+        u128::from(count.poses) * u128::from(self.shapes[usize::from(count.shape)].weight)
+    }
+
+    /// The sum of all weights.
+    pub(super) fn weights(&self) -> u128 {
+        let weights = self.shapes.iter().map(|shape| u128::from(shape.weight));
+        weights.sum()
+    }
+}
+
+/// A part of a whole, which is above 0.
+#[expect(clippy::cast_precision_loss, reason = "a share has no more digits")]
+pub(super) fn share(part: u128, whole: u128) -> f64 {
+    part as f64 / whole as f64
+}
+
+/// Keys with their counts, while they are gathered.
+#[derive(Debug, Default)]
+pub(super) struct Gathered {
+    pub(super) keys: KeyTable,
+    pub(super) counts: Vec<Vec<ShapeCount>>,
+}
+
+impl Gathered {
+    /// Where the counts of a key of another table are gathered.
+    pub(super) fn slot(&mut self, keys: &KeyTable, index: usize) -> usize {
+        let slot = self.keys.intern(keys.get(index));
+        if slot == self.counts.len() {
+            self.counts.push(Vec::new());
+        }
+        slot
+    }
+}
+
+/// Adds a count to those of a key, which stay in the order of the shapes.
+fn slot_add(counts: &mut Vec<ShapeCount>, more: ShapeCount) {
+    match counts.binary_search_by_key(&more.shape, |count| count.shape) {
+        Ok(index) => counts[index].poses += more.poses,
+        Err(index) => counts.insert(index, more),
+    }
+}

@@ -1,0 +1,618 @@
+//! Classifiers in the paper's way, by descriptors of the imprint: what they reach, beside the limit of one touch.
+//!
+//! All of them see the same touches as the [`Evaluation`] of the model. Means, deviations and covariances are those of all
+//! poses, exact but for rounding; what is sampled is sampled with a seed. Features are numbers of the main region that do
+//! not change under shifts, each in units of its deviation over all touches. A direction that goes all around enters as its
+//! cosine and its sine, both 0 where it does not exist. Left out are other features that do not exist for some imprint,
+//! constants, and copies of others (NA and NAE of solid shapes).
+//!
+//! Source: R. O. Duda, P. E. Hart and D. G. Stork, *Pattern Classification*, 2001, chapters 2 to 4.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg64;
+use rayon::prelude::*;
+
+use crate::atlas::{feature_values, features};
+use crate::description::{Description, Descriptor};
+use crate::imprint::Imprint;
+use crate::recognition::evaluation::Evaluation;
+use crate::recognition::given::{GivenTable, ShapeDescriptor};
+use crate::recognition::model::{Model, share};
+
+/// A classifier that is not the best one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Peer {
+    /// The nearest class mean, in units of each class's standard deviation.
+    Z,
+    /// A Gaussian for each class, with independent features.
+    Diagonal,
+    /// Gaussians with a common covariance.
+    Lda,
+    /// A Gaussian for each class, with its own covariance.
+    Qda,
+    /// The nearest touches of a sample.
+    Knn,
+    /// The nearest of the most frequent imprints, in taxels that differ.
+    Template,
+}
+
+impl Peer {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::Z,
+        Self::Diagonal,
+        Self::Lda,
+        Self::Qda,
+        Self::Knn,
+        Self::Template,
+    ];
+
+    /// Returns its name on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Z => "z",
+            Self::Diagonal => "diagonal",
+            Self::Lda => "lda",
+            Self::Qda => "qda",
+            Self::Knn => "knn",
+            Self::Template => "template",
+        }
+    }
+
+    /// Returns the peer of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|peer| peer.name() == name)
+    }
+}
+
+/// What the peers may use.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct PeerSettings {
+    /// The descriptors that the features come from; None for all that do not change under shifts.
+    pub descriptors: Option<Vec<ShapeDescriptor>>,
+    /// How many neighbours of [`Peer::Knn`] vote.
+    pub neighbours: usize,
+    /// How many poses of each shape [`Peer::Knn`] draws.
+    pub sample: usize,
+    /// The seed that they are drawn with.
+    pub seed: u64,
+    /// How many imprints of each shape [`Peer::Template`] compares with.
+    pub templates: usize,
+}
+
+impl Default for PeerSettings {
+    /// All descriptors, 1 neighbour of 2,000 poses with seed 0, 100 templates.
+    fn default() -> Self {
+        Self {
+            descriptors: None,
+            neighbours: 1,
+            sample: 2000,
+            seed: 0,
+            templates: 100,
+        }
+    }
+}
+
+/// What a peer reached.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct PeerEvaluation {
+    /// Which one.
+    pub peer: Peer,
+    /// As for the best classifier. `information_bits` is what the given name tells of the shape; `certain` counts nothing,
+    /// since these classifiers do not know when they are.
+    pub evaluation: Evaluation,
+    /// The features that it used; empty for [`Peer::Template`].
+    pub features: Vec<String>,
+    /// Those that were left out, with the reason.
+    pub dropped: Vec<(String, &'static str)>,
+}
+
+/// Scores of the shapes for a key, the best the lowest.
+type Scores = Vec<f64>;
+
+/// What is added to a variance of 1, so that covariances of dependent features can be inverted.
+const RIDGE: f64 = 0.001;
+/// The same for single variances, which only need not be 0.
+const LEAST_VARIANCE: f64 = 1e-9;
+
+impl Peer {
+    /// Trains it on a model's touches and classifies all of them.
+    ///
+    /// Ties go to the first in the order of the set.
+    pub fn evaluate(self, model: &Model, settings: &PeerSettings) -> PeerEvaluation {
+        if self == Self::Template {
+            let templates = Templates::new(model, settings.templates.max(1));
+            let scores = |key: usize| templates.scores(model, key);
+            return PeerEvaluation {
+                peer: self,
+                evaluation: evaluate(model, scores),
+                features: Vec::new(),
+                dropped: Vec::new(),
+            };
+        }
+        let table = FeatureTable::new(model, settings.descriptors.as_deref());
+        let evaluation = match self {
+            Self::Z => {
+                let classes = table.gaussians(model);
+                evaluate(model, |key| table.z_scores(&classes, key))
+            }
+            Self::Diagonal => {
+                let classes = table.gaussians(model);
+                evaluate(model, |key| table.diagonal_scores(model, &classes, key))
+            }
+            Self::Lda | Self::Qda => {
+                let classes = table.covariances(model, self == Self::Lda);
+                evaluate(model, |key| table.covariance_scores(model, &classes, key))
+            }
+            Self::Knn | Self::Template => {
+                let sample = Sample::new(model, settings);
+                let neighbours = settings.neighbours.max(1);
+                evaluate(model, |key| sample.scores(&table, neighbours, key))
+            }
+        };
+        PeerEvaluation {
+            peer: self,
+            evaluation,
+            features: table.names,
+            dropped: table.dropped,
+        }
+    }
+}
+
+/// Classifies every key by its scores.
+fn evaluate(model: &Model, scores: impl Fn(usize) -> Scores + Sync) -> Evaluation {
+    let ranked: Vec<[Option<usize>; 3]> = (0..model.keys().len())
+        .into_par_iter()
+        .map(|key| first_two(&scores(key)))
+        .collect();
+    let mut evaluation = Evaluation::new(model);
+    evaluation.keys = model.keys().len();
+    for (key, [named, second, tie]) in ranked.into_iter().enumerate() {
+        for &count in model.counts(key) {
+            let (shape, touches) = (usize::from(count.shape), model.weighted(count));
+            let Some(named) = named else { continue };
+            evaluation.confusion[shape][named] += touches;
+            if named == shape {
+                evaluation.right += touches;
+            }
+            if named == shape || second == Some(shape) {
+                evaluation.right_in_top_two += touches;
+            }
+            if tie.is_some() {
+                evaluation.tied += touches;
+            }
+        }
+    }
+    evaluation.information_bits = information(&evaluation.confusion);
+    evaluation.finished()
+}
+
+/// The shape of the lowest score, that of the next, and the latter again if both are equal.
+fn first_two(scores: &[f64]) -> [Option<usize>; 3] {
+    let lowest = |without: Option<usize>| {
+        let open = (0..scores.len()).filter(|&shape| Some(shape) != without);
+        open.reduce(|best, next| {
+            if scores[next] < scores[best] {
+                next
+            } else {
+                best
+            }
+        })
+    };
+    let first = lowest(None);
+    let second = lowest(first);
+    let tie = first
+        .zip(second)
+        .filter(|&(one, other)| scores[one] == scores[other]);
+    [first, second, tie.map(|(_, second)| second)]
+}
+
+/// What the name tells of the shape, in bits.
+fn information(confusion: &[Vec<u128>]) -> f64 {
+    let total: u128 = confusion.iter().flatten().sum();
+    let rows: Vec<u128> = confusion.iter().map(|row| row.iter().sum()).collect();
+    let column = |named: usize| confusion.iter().map(|row| row[named]).sum::<u128>();
+    let columns: Vec<u128> = (0..confusion.len()).map(column).collect();
+    let mut bits = 0.0;
+    for (row, touches) in confusion.iter().enumerate() {
+        for (named, &touches) in touches
+            .iter()
+            .enumerate()
+            .filter(|(_, touches)| **touches > 0)
+        {
+            let ratio = share(touches, rows[row]) / share(columns[named], total);
+            bits += share(touches, total) * ratio.log2();
+        }
+    }
+    bits
+}
+
+/// The features of all keys, in units of their deviation.
+struct FeatureTable {
+    names: Vec<String>,
+    dropped: Vec<(String, &'static str)>,
+    /// A row per key.
+    values: Vec<f64>,
+}
+
+/// Mean and variance of each feature, of one class.
+struct Gaussian {
+    means: Vec<f64>,
+    variances: Vec<f64>,
+}
+
+/// Mean and covariance of one class.
+struct Covariance {
+    mean: DVector<f64>,
+    factor: Option<Cholesky<f64, Dyn>>,
+    log_determinant: f64,
+}
+
+impl FeatureTable {
+    fn new(model: &Model, descriptors: Option<&[ShapeDescriptor]>) -> Self {
+        let table = GivenTable::new(model);
+        let keys = table.descriptions().len();
+        let wanted =
+            |key: &str| descriptors.is_none_or(|own| own.iter().any(|one| one.key() == key));
+        let (mut names, mut dropped) = (Vec::new(), Vec::new());
+        let mut kept: Vec<Vec<f64>> = Vec::new();
+        for (name, descriptor, column) in columns(table.descriptions()) {
+            if descriptor.changes_under.shift || !wanted(descriptor.key) {
+                continue;
+            }
+            let (mean, variance) = moments(model, &column);
+            let reason = if column.iter().any(|value| value.is_nan()) {
+                "does not exist for some imprints"
+            } else if variance <= LEAST_VARIANCE * (1.0 + mean * mean) {
+                "constant"
+            } else if kept.contains(&column) {
+                "a copy of another"
+            } else {
+                names.push(name);
+                kept.push(column);
+                continue;
+            };
+            dropped.push((name, reason));
+        }
+        let mut values = vec![0.0; keys * kept.len()];
+        for (index, column) in kept.iter().enumerate() {
+            let (mean, variance) = moments(model, column);
+            for (key, value) in column.iter().enumerate() {
+                values[key * kept.len() + index] = (value - mean) / variance.sqrt();
+            }
+        }
+        Self {
+            names,
+            dropped,
+            values,
+        }
+    }
+
+    fn row(&self, key: usize) -> &[f64] {
+        &self.values[key * self.names.len()..][..self.names.len()]
+    }
+
+    fn gaussians(&self, model: &Model) -> Vec<Gaussian> {
+        let covariances = self.moments_of_classes(model);
+        let gaussian = |(mean, covariance): (DVector<f64>, DMatrix<f64>)| Gaussian {
+            means: mean.iter().copied().collect(),
+            variances: covariance
+                .diagonal()
+                .iter()
+                .map(|variance| variance + LEAST_VARIANCE)
+                .collect(),
+        };
+        covariances.into_iter().map(gaussian).collect()
+    }
+
+    /// Mean and population covariance of each class, over all its poses.
+    fn moments_of_classes(&self, model: &Model) -> Vec<(DVector<f64>, DMatrix<f64>)> {
+        let (shapes, width) = (model.shapes().len(), self.names.len());
+        let mut means = vec![DVector::zeros(width); shapes];
+        let mut covariances = vec![DMatrix::zeros(width, width); shapes];
+        let poses = u128::from(model.poses());
+        for key in 0..model.keys().len() {
+            for count in model.counts(key) {
+                let part = share(count.poses.into(), poses);
+                let row = self.row(key).iter();
+                let mean = &mut means[usize::from(count.shape)];
+                mean.iter_mut()
+                    .zip(row)
+                    .for_each(|(sum, value)| *sum += part * value);
+            }
+        }
+        for key in 0..model.keys().len() {
+            let row = DVector::from_column_slice(self.row(key));
+            for count in model.counts(key) {
+                let shape = usize::from(count.shape);
+                let away = &row - &means[shape];
+                let part = share(count.poses.into(), poses);
+                covariances[shape].ger(part, &away, &away, 1.0);
+            }
+        }
+        means.into_iter().zip(covariances).collect()
+    }
+
+    fn covariances(&self, model: &Model, common: bool) -> Vec<Covariance> {
+        let classes = self.moments_of_classes(model);
+        let ridge = DMatrix::identity(self.names.len(), self.names.len()) * RIDGE;
+        let mut pooled = DMatrix::zeros(self.names.len(), self.names.len());
+        for (shape, (_, covariance)) in model.shapes().iter().zip(&classes) {
+            pooled += covariance * share(shape.weight.into(), model.weights());
+        }
+        let class = |(mean, covariance): (DVector<f64>, DMatrix<f64>)| {
+            let matrix = if common { pooled.clone() } else { covariance } + &ridge;
+            let factor = Cholesky::new(matrix);
+            let log_determinant = factor.as_ref().map_or(0.0, |factor| {
+                2.0 * factor
+                    .l_dirty()
+                    .diagonal()
+                    .iter()
+                    .map(|side| side.ln())
+                    .sum::<f64>()
+            });
+            Covariance {
+                mean,
+                factor,
+                log_determinant,
+            }
+        };
+        classes.into_iter().map(class).collect()
+    }
+
+    fn z_scores(&self, classes: &[Gaussian], key: usize) -> Scores {
+        let distance = |class: &Gaussian| class.distance(self.row(key));
+        classes.iter().map(distance).collect()
+    }
+
+    fn diagonal_scores(&self, model: &Model, classes: &[Gaussian], key: usize) -> Scores {
+        let score = |(class, prior): (&Gaussian, f64)| {
+            let logarithms: f64 = class.variances.iter().map(|variance| variance.ln()).sum();
+            class.distance(self.row(key)) + logarithms + prior
+        };
+        classes.iter().zip(priors(model)).map(score).collect()
+    }
+
+    fn covariance_scores(&self, model: &Model, classes: &[Covariance], key: usize) -> Scores {
+        let row = DVector::from_column_slice(self.row(key));
+        let score = |(class, prior): (&Covariance, f64)| {
+            let away = &row - &class.mean;
+            let distance = match &class.factor {
+                Some(factor) => away.dot(&factor.solve(&away)),
+                None => away.norm_squared(),
+            };
+            distance + class.log_determinant + prior
+        };
+        classes.iter().zip(priors(model)).map(score).collect()
+    }
+}
+
+/// The features with their names and descriptors, and the value of each for every key, NaN where it does not exist.
+fn columns(
+    descriptions: &[Option<Description>],
+) -> impl Iterator<Item = (String, &'static Descriptor, Vec<f64>)> {
+    let mut columns = vec![vec![f64::NAN; descriptions.len()]; features().len()];
+    for (key, description) in descriptions.iter().enumerate() {
+        if let Some(description) = description {
+            feature_values(description, |feature, value| columns[feature][key] = value);
+        }
+    }
+    let all = features().iter().zip(columns);
+    all.flat_map(|(feature, column)| {
+        let descriptor = feature.descriptor;
+        if !feature.circular {
+            return vec![(feature.key.clone(), descriptor, column)];
+        }
+        let part = |suffix: &str, of: fn(f64) -> f64| {
+            let values = column.iter().map(|degrees| {
+                if degrees.is_nan() {
+                    0.0
+                } else {
+                    of(degrees.to_radians())
+                }
+            });
+            let name = format!("{}_{suffix}", feature.key);
+            (name, descriptor, values.collect())
+        };
+        vec![part("cos", f64::cos), part("sin", f64::sin)]
+    })
+}
+
+impl Gaussian {
+    /// The square of the distance from the mean, in deviations.
+    fn distance(&self, row: &[f64]) -> f64 {
+        let parts = row.iter().zip(self.means.iter().zip(&self.variances));
+        parts
+            .map(|(value, (mean, variance))| (value - mean) * (value - mean) / variance)
+            .sum()
+    }
+}
+
+/// −2 ln P(shape).
+fn priors(model: &Model) -> impl Iterator<Item = f64> + '_ {
+    let weights = model.weights();
+    let shapes = model.shapes().iter();
+    shapes.map(move |shape| -2.0 * share(shape.weight.into(), weights).ln())
+}
+
+/// Mean and population variance of a feature over all touches of all shapes.
+fn moments(model: &Model, column: &[f64]) -> (f64, f64) {
+    let touches = u128::from(model.poses()) * model.weights();
+    let mean_of = |value: &dyn Fn(f64) -> f64| {
+        let keys = column.iter().enumerate().map(|(key, &own)| {
+            let counts = model.counts(key).iter();
+            let weight: u128 = counts.map(|&count| model.weighted(count)).sum();
+            share(weight, touches) * value(own)
+        });
+        keys.sum::<f64>()
+    };
+    let mean = mean_of(&|value| value);
+    (mean, mean_of(&|value| (value - mean) * (value - mean)))
+}
+
+/// Touches drawn at random.
+struct Sample {
+    /// The number of the key of each, and its shape.
+    touches: Vec<(usize, usize)>,
+    shapes: usize,
+}
+
+impl Sample {
+    fn new(model: &Model, settings: &PeerSettings) -> Self {
+        let shapes = model.shapes().len();
+        // For each shape its keys, and the number of poses up to and with each.
+        let mut sums: Vec<Vec<(u64, usize)>> = vec![Vec::new(); shapes];
+        for key in 0..model.keys().len() {
+            for count in model.counts(key) {
+                let sums = &mut sums[usize::from(count.shape)];
+                let before = sums.last().map_or(0, |&(sum, _)| sum);
+                sums.push((before + count.poses, key));
+            }
+        }
+        let mut random = Pcg64::seed_from_u64(settings.seed);
+        let mut sample = Vec::new();
+        for (shape, sums) in sums.iter().enumerate() {
+            for _ in 0..settings.sample {
+                let pose = below(&mut random, model.poses());
+                let index = sums.partition_point(|&(sum, _)| sum <= pose);
+                if let Some(&(_, key)) = sums.get(index) {
+                    sample.push((key, shape));
+                }
+            }
+        }
+        // Touches with the same key stand side by side and are compared with once.
+        sample.sort_unstable();
+        Self {
+            touches: sample,
+            shapes,
+        }
+    }
+
+    /// Minus the votes of each shape. All touches as near as the last neighbour vote too, since
+    /// many touches have the same features.
+    fn scores(&self, table: &FeatureTable, neighbours: usize, key: usize) -> Scores {
+        let row = table.row(key);
+        let mut last = (usize::MAX, 0.0);
+        let mut distances: Vec<(f64, usize)> = Vec::with_capacity(self.touches.len());
+        for &(other, shape) in &self.touches {
+            if other != last.0 {
+                let parts = row.iter().zip(table.row(other));
+                last = (
+                    other,
+                    parts.map(|(one, two)| (one - two) * (one - two)).sum(),
+                );
+            }
+            distances.push((last.1, shape));
+        }
+        let mut scores = vec![0.0; self.shapes];
+        let Some(rank) = neighbours.min(distances.len()).checked_sub(1) else {
+            return scores;
+        };
+        let order = |one: &(f64, usize), other: &(f64, usize)| one.0.total_cmp(&other.0);
+        let farthest = distances.select_nth_unstable_by(rank, order).1.0;
+        for (_, shape) in distances
+            .iter()
+            .filter(|(distance, _)| *distance <= farthest)
+        {
+            scores[*shape] -= 1.0;
+        }
+        scores
+    }
+}
+
+/// A number from 0 to below `end`, each as likely as any other to within 2⁻⁶⁴.
+fn below(random: &mut Pcg64, end: u64) -> u64 {
+    let product = u128::from(random.next_u64()) * u128::from(end);
+    u64::try_from(product >> 64).expect("below `end`")
+}
+
+/// The most frequent imprints of each shape.
+struct Templates(Vec<Vec<Imprint>>);
+
+impl Templates {
+    fn new(model: &Model, most: usize) -> Self {
+        let mut all: Vec<Vec<(std::cmp::Reverse<u64>, usize)>> =
+            vec![Vec::new(); model.shapes().len()];
+        for key in 0..model.keys().len() {
+            for count in model.counts(key) {
+                all[usize::from(count.shape)].push((std::cmp::Reverse(count.poses), key));
+            }
+        }
+        let imprints = |mut own: Vec<(std::cmp::Reverse<u64>, usize)>| {
+            own.sort_unstable();
+            let first = own.iter().take(most);
+            first
+                .filter_map(|&(_, key)| model.keys().imprint(key))
+                .collect()
+        };
+        Self(all.into_iter().map(imprints).collect())
+    }
+
+    /// The least number of taxels that differ, over all templates of a shape and all their shifts.
+    fn scores(&self, model: &Model, key: usize) -> Scores {
+        let imprint = model.keys().imprint(key);
+        let own = |templates: &Vec<Imprint>| {
+            let distances = templates.iter().map(|template| match &imprint {
+                Some(imprint) => distance(imprint, template),
+                None => template.count(),
+            });
+            distances.min().map_or(f64::INFINITY, f64::from)
+        };
+        self.0.iter().map(own).collect()
+    }
+}
+
+/// The least number of taxels in which two imprints differ, over all shifts of one against the other.
+fn distance(one: &Imprint, other: &Imprint) -> u32 {
+    let sum = one.count() + other.count();
+    let mut shared = 0;
+    let (rows, columns) = (i32::from(one.rows()), i32::from(one.columns()));
+    for down in 1 - i32::from(other.rows())..rows {
+        let first = usize::try_from(down.max(0)).expect("not negative");
+        let skipped = usize::try_from((-down).max(0)).expect("not negative");
+        let pairs = || {
+            one.words()[first..]
+                .iter()
+                .zip(&other.words()[skipped.min(other.words().len())..])
+        };
+        for across in 1 - i32::from(other.columns())..columns {
+            let moved = |word: u64| {
+                if across < 0 {
+                    word >> across.unsigned_abs()
+                } else {
+                    word.unbounded_shl(across.unsigned_abs())
+                }
+            };
+            let common = pairs()
+                .map(|(own, &word)| (own & moved(word)).count_ones())
+                .sum();
+            shared = shared.max(common);
+        }
+    }
+    sum - 2 * shared
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_take_the_best_shift() {
+        let read = |text: &str| text.parse::<Imprint>().expect("an imprint");
+        assert_eq!(distance(&read("##.#"), &read("#.#")), 1);
+        assert_eq!(distance(&read("#.\n##"), &read("##\n.#\n.#")), 2);
+        assert_eq!(distance(&read("#"), &read("###\n###")), 5);
+        assert_eq!(distance(&read("#..\n...\n..#"), &read("#..\n...\n..#")), 0);
+    }
+
+    #[test]
+    fn ties_go_to_the_first() {
+        assert_eq!(first_two(&[2.0, 1.0, 1.0]), [Some(1), Some(2), Some(2)]);
+        assert_eq!(first_two(&[2.0, 1.0, 3.0]), [Some(1), Some(0), None]);
+        assert_eq!(first_two(&[2.0]), [Some(0), None, None]);
+    }
+}

@@ -1,0 +1,214 @@
+//! Training: touches every shape in every pose, and counts the keys.
+
+use std::fmt;
+
+use rayon::prelude::*;
+
+use crate::pose::{Anchor, GridError, PoseGrid, Ranges};
+use crate::recognition::key::{ImprintKey, KeyTable};
+use crate::recognition::model::{
+    Gathered, Model, ModelError, ModelParts, NamedShape, ShapeCount, check_shapes,
+};
+use crate::sensor::Sensor;
+use crate::sweep::{CountedImprints, Shard, Sweep};
+
+/// A training to run: shapes, a sensor and the poses in which each shape touches it.
+///
+/// It uses rayon's current thread pool; the model is the same for any number of threads.
+///
+/// ```
+/// use taxel::prelude::*;
+/// use taxel::recognition::{NamedShape, Training};
+///
+/// let sensor = Sensor::default();
+/// let shapes = [
+///     NamedShape::new("square", Figure::rectangle(4.0, 4.0).on(&sensor)?),
+///     NamedShape::new("bar", Figure::rectangle(8.0, 2.0).on(&sensor)?),
+/// ];
+/// let ranges = Ranges::default().with(Axis::Angle, "0:345:15".parse()?);
+/// let model = Training::new(shapes, sensor, Anchor::Centre, ranges)?.run()?;
+/// assert_eq!(model.poses(), 24 * 100 * 100);
+///
+/// let touch: Imprint = "####\n####\n####\n####".parse()?;
+/// assert_eq!(model.posterior(&touch), Some(vec![1.0, 0.0]));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Training<'a> {
+    grids: Vec<PoseGrid>,
+    shapes: Vec<NamedShape>,
+    allow_cut: bool,
+    shard: Shard,
+    progress: &'a (dyn Fn(u64) -> bool + Sync),
+}
+
+impl fmt::Debug for Training<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Training")
+            .field("shapes", &self.shapes)
+            .field("shard", &self.shard)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Why there is no model.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TrainingError {
+    /// A set that is none.
+    #[error(transparent)]
+    Set(#[from] ModelError),
+    /// A shape that has no such poses.
+    #[error("{name}: {error}")]
+    Grid {
+        /// The shape.
+        name: String,
+        /// Why.
+        error: GridError,
+    },
+    /// Poses that the sensor cuts off, which would tell of its rim.
+    #[error(
+        "{name}: the {columns} x {rows} sensor cuts off {cut} of {poses} poses; use a larger sensor or other positions, or allow it"
+    )]
+    Cut {
+        /// The first shape with such poses.
+        name: String,
+        /// Columns of the sensor.
+        columns: u8,
+        /// Rows of the sensor.
+        rows: u8,
+        /// How many poses are cut.
+        cut: u64,
+        /// Out of so many.
+        poses: u64,
+    },
+    /// It was stopped.
+    #[error("stopped before the end")]
+    Stopped,
+}
+
+impl<'a> Training<'a> {
+    /// A training over a whole grid of poses, the same for each shape.
+    ///
+    /// # Errors
+    /// If a name is missing or given twice, a weight is 0, or a pose is out of range for a shape.
+    pub fn new(
+        shapes: impl IntoIterator<Item = NamedShape>,
+        sensor: Sensor,
+        anchor: Anchor,
+        ranges: Ranges,
+    ) -> Result<Self, TrainingError> {
+        let shapes: Vec<NamedShape> = shapes.into_iter().collect();
+        check_shapes(&shapes)?;
+        let grid = |shape: &NamedShape| {
+            PoseGrid::new(shape.source.clone(), sensor, anchor, ranges).map_err(|error| {
+                TrainingError::Grid {
+                    name: shape.name.clone(),
+                    error,
+                }
+            })
+        };
+        Ok(Self {
+            grids: shapes.iter().map(grid).collect::<Result<_, _>>()?,
+            shapes,
+            allow_cut: false,
+            shard: Shard::WHOLE,
+            progress: &|_| true,
+        })
+    }
+
+    /// Takes poses that the sensor cuts off, too. Their imprints tell of the sensor's rim, not of the shape alone.
+    #[must_use]
+    pub fn allow_cut(mut self, allow: bool) -> Self {
+        self.allow_cut = allow;
+        self
+    }
+
+    /// Takes one part of the poses only; [`Model::merge`] puts all parts together.
+    #[must_use]
+    pub fn shard(mut self, shard: Shard) -> Self {
+        self.shard = shard;
+        self
+    }
+
+    /// Calls `progress` from time to time, from any thread, with the number of poses done since the last call. The
+    /// training stops when it returns `false`.
+    #[must_use]
+    pub fn progress(mut self, progress: &'a (dyn Fn(u64) -> bool + Sync)) -> Self {
+        self.progress = progress;
+        self
+    }
+
+    /// Returns the number of poses of all shapes together in its shard.
+    pub fn poses(&self) -> u64 {
+        let rows = |grid: &PoseGrid| self.shard.rows(grid.rows());
+        let own = self.grids.iter();
+        own.map(|grid| (rows(grid).end - rows(grid).start) * grid.row_length())
+            .sum()
+    }
+
+    /// Returns the grid of poses of each shape, in the order of the set.
+    pub fn grids(&self) -> &[PoseGrid] {
+        &self.grids
+    }
+
+    /// Runs it.
+    ///
+    /// # Errors
+    /// [`TrainingError::Cut`] if the sensor cuts off a pose and that is not allowed; [`TrainingError::Stopped`].
+    pub fn run(self) -> Result<Model, TrainingError> {
+        let mut gathered = Gathered::default();
+        let mut cut = Vec::new();
+        let mut poses = 0;
+        for (shape, grid) in (0..).zip(&self.grids) {
+            let sweep = Sweep::new(grid).shard(self.shard).progress(self.progress);
+            let counted = sweep.count().ok_or(TrainingError::Stopped)?;
+            if counted.partly_off > 0 && !self.allow_cut {
+                return Err(TrainingError::Cut {
+                    name: self.shapes[usize::from(shape)].name.clone(),
+                    columns: grid.sensor().columns(),
+                    rows: grid.sensor().rows(),
+                    cut: counted.partly_off,
+                    poses: counted.poses,
+                });
+            }
+            let (keys, counts) = keys_of(&counted);
+            for (index, poses) in counts.into_iter().enumerate() {
+                let slot = gathered.slot(&keys, index);
+                gathered.counts[slot].push(ShapeCount::new(shape, poses));
+            }
+            cut.push(counted.partly_off);
+            poses = counted.poses;
+        }
+        let grid = &self.grids[0];
+        let poses_of = (grid.anchor(), *grid.ranges());
+        let mut head = ModelParts::new(self.shapes, *grid.sensor(), poses_of, (self.shard, poses));
+        head.cut = cut;
+        let counts = |index: usize| gathered.counts[index].iter().copied();
+        Ok(Model::of_table(head, &gathered.keys, counts)?)
+    }
+}
+
+/// The keys of imprints, and in how many poses each occurs.
+fn keys_of(counted: &CountedImprints) -> (KeyTable, Vec<u64>) {
+    const CHUNK: usize = 4096;
+    let chunks: Vec<Vec<(ImprintKey, u64)>> = (0..counted.len().div_ceil(CHUNK))
+        .into_par_iter()
+        .map(|chunk| {
+            let indices = chunk * CHUNK..counted.len().min((chunk + 1) * CHUNK);
+            let key = |index| {
+                let (imprint, count) = counted.get(index);
+                (ImprintKey::of(&imprint), count)
+            };
+            indices.map(key).collect()
+        })
+        .collect();
+    let (mut keys, mut counts) = (KeyTable::default(), Vec::new());
+    for (key, count) in chunks.into_iter().flatten() {
+        let slot = keys.intern(key.borrowed());
+        if slot == counts.len() {
+            counts.push(0);
+        }
+        counts[slot] += count;
+    }
+    (keys, counts)
+}

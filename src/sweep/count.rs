@@ -1,0 +1,232 @@
+//! The distinct imprints of a grid and nothing about them but how often each occurs, and the poses that leave one of
+//! them: what models of recognition are made of.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rayon::prelude::*;
+
+use crate::atlas::{ImprintCounter, Layout};
+use crate::imprint::Imprint;
+use crate::pose::{Axis, PoseGrid};
+use crate::sweep::plan::{Task, tasks};
+use crate::sweep::run::{Sweep, portion};
+use crate::sweep::runs::{self, Found};
+
+/// The distinct imprints of a grid, counted.
+#[derive(Clone, Debug)]
+pub struct CountedImprints {
+    layout: Layout,
+    counter: ImprintCounter,
+    /// Number of poses.
+    pub poses: u64,
+    /// Number of these that reach beyond the sensor.
+    pub partly_off: u64,
+}
+
+impl CountedImprints {
+    /// Returns the number of distinct imprints.
+    pub fn len(&self) -> usize {
+        self.counter.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Returns an imprint, counted from 0, and in how many poses it occurs.
+    ///
+    /// # Panics
+    /// If there are not that many.
+    pub fn get(&self, index: usize) -> (Imprint, u64) {
+        let imprint = self.layout.imprint(self.counter.key(index));
+        (imprint, self.counter.tallies()[index].count)
+    }
+}
+
+/// Neighbouring poses of one row that leave the same imprint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PoseRun {
+    /// The number of the first of them in the grid.
+    pub first: u64,
+    /// How many there are.
+    pub poses: u64,
+    /// How many orientations show the same, this one included, where symmetry makes them equal; the numbers of the
+    /// others are not given.
+    pub orientations: u64,
+}
+
+impl Sweep<'_> {
+    /// Counts the imprints without describing them. `rows` is not called. None if it was stopped.
+    ///
+    /// ```
+    /// use taxel::prelude::*;
+    /// let square = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
+    /// let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
+    /// let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
+    /// let counted = Sweep::new(&grid).count().expect("not stopped");
+    /// let counts: Vec<u64> = (0..counted.len()).map(|index| counted.get(index).1).collect();
+    /// assert_eq!((counted.poses, counts.iter().sum::<u64>()), (10_000, 10_000));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn count(self) -> Option<CountedImprints> {
+        let sensor = *self.grid.sensor();
+        let layout = Layout::new(sensor.columns(), sensor.rows());
+        let mut counted = CountedImprints {
+            counter: ImprintCounter::new(layout.words()),
+            layout,
+            poses: 0,
+            partly_off: 0,
+        };
+        let CountedImprints {
+            layout,
+            counter,
+            poses,
+            partly_off,
+        } = &mut counted;
+        let width = self.grid.row_length();
+        self.each(layout, false, |task, found| {
+            let orientations = task.turns.len() as u64;
+            let own = &found.counter;
+            for (index, tally) in own.tallies().iter().enumerate() {
+                let count = tally.count * orientations;
+                counter.add(own.key(index), own.hash(index), count, tally.first);
+            }
+            *poses += (task.rows.end - task.rows.start) * width * orientations;
+            *partly_off += found.partly_off * orientations;
+        })
+        .then_some(counted)
+    }
+
+    /// Finds the poses that leave an imprint of which `wanted` says yes. None if it was stopped.
+    ///
+    /// They come in an order that does not depend on the number of threads.
+    pub fn poses_where(self, wanted: &(dyn Fn(&Imprint) -> bool + Sync)) -> Option<Vec<PoseRun>> {
+        let (width, height) = (self.grid.row_length(), self.grid.rows_per_orientation());
+        let sensor = self.grid.sensor();
+        let layout = Layout::new(sensor.columns(), sensor.rows());
+        let mut runs = Vec::new();
+        self.each(&layout, true, |task, found| {
+            let wanted: Vec<bool> = (0..found.counter.len())
+                .map(|index| wanted(&layout.imprint(found.counter.key(index))))
+                .collect();
+            for (row, y) in task.rows.clone().enumerate() {
+                let mut first = (task.turns[0] * height + y) * width;
+                for &(index, length) in found.runs.row(row) {
+                    if wanted[index as usize] {
+                        runs.push(PoseRun {
+                            first,
+                            poses: u64::from(length),
+                            orientations: task.turns.len() as u64,
+                        });
+                    }
+                    first += u64::from(length);
+                }
+            }
+        })
+        .then_some(runs)
+    }
+
+    /// Sweeps, and shows what each task found in the order of tasks. `false` if it was stopped.
+    fn each(self, layout: &Layout, keep_runs: bool, mut take: impl FnMut(&Task, &Found)) -> bool {
+        let Self {
+            grid,
+            shard,
+            progress,
+            ..
+        } = self;
+        let rows = shard.rows(grid.rows());
+        let stopped = AtomicBool::new(false);
+        let block_rows = grid.ranges()[Axis::Angle].count() * grid.rows_per_orientation();
+        for block in rows.start / block_rows..rows.end.div_ceil(block_rows) {
+            let mut tasks = tasks(grid, &rows, block).peekable();
+            while tasks.peek().is_some() {
+                let portion = portion(&mut tasks, grid.row_length());
+                let found: Vec<Option<Found>> = portion
+                    .par_iter()
+                    .map(|task| found(grid, layout, task, keep_runs, progress, &stopped))
+                    .collect();
+                if stopped.load(Ordering::Relaxed) {
+                    return false;
+                }
+                for (task, found) in portion.iter().zip(found) {
+                    if let Some(found) = found {
+                        take(task, &found);
+                    }
+                }
+            }
+        }
+        true
+    }
+}
+
+/// What a task found; None once the sweep was stopped.
+fn found(
+    grid: &PoseGrid,
+    layout: &Layout,
+    task: &Task,
+    keep_runs: bool,
+    progress: &(dyn Fn(u64) -> bool + Sync),
+    stopped: &AtomicBool,
+) -> Option<Found> {
+    let orientations = task.turns.len() as u64;
+    let go_on = |poses: u64| {
+        if !progress(poses * orientations) {
+            stopped.store(true, Ordering::Relaxed);
+        }
+        !stopped.load(Ordering::Relaxed)
+    };
+    go_on(0)
+        .then(|| runs::go(grid, layout, task, keep_runs, go_on))
+        .flatten()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Figure, FigureKind};
+    use crate::pose::{Anchor, Ranges};
+    use crate::sensor::Sensor;
+
+    #[test]
+    fn runs_hold_each_pose_once_and_agree_with_the_counts() {
+        for kind in [
+            FigureKind::Triangle,
+            FigureKind::Rectangle,
+            FigureKind::Ellipse,
+        ] {
+            let sensor = Sensor::default();
+            let coarse = |text: &str| text.parse().expect("a range");
+            let ranges = Ranges::default()
+                .with(Axis::X0, coarse("5:6:0.1"))
+                .with(Axis::Y0, coarse("5:6:0.2"))
+                .with(Axis::Angle, coarse("0:350:10"));
+            let source = Figure::default_of(kind, &sensor).into();
+            let grid = PoseGrid::new(source, sensor, Anchor::Corner, ranges).expect("in range");
+            let counted = Sweep::new(&grid).count().expect("not stopped");
+            let mut poses = 0;
+            for index in 0..counted.len() {
+                let (imprint, count) = counted.get(index);
+                let same = |other: &Imprint| *other == imprint;
+                let runs = Sweep::new(&grid).poses_where(&same).expect("not stopped");
+                let found: u64 = runs.iter().map(|run| run.poses * run.orientations).sum();
+                assert_eq!(found, count, "{imprint}");
+                for run in runs {
+                    let placed = grid.placed(grid.pose(run.first + run.poses - 1));
+                    assert_eq!(crate::touch::Plane::new(sensor).touch(&placed), imprint);
+                }
+                poses += count;
+            }
+            assert_eq!((poses, counted.poses), (grid.poses(), grid.poses()));
+        }
+    }
+
+    #[test]
+    fn a_stopped_count_gives_nothing() {
+        let sensor = Sensor::default();
+        let source = Figure::default_of(FigureKind::Heptagon, &sensor).into();
+        let grid = PoseGrid::new(source, sensor, Anchor::Corner, Ranges::default());
+        let grid = grid.expect("in range");
+        assert!(Sweep::new(&grid).progress(&|_| false).count().is_none());
+    }
+}

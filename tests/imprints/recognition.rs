@@ -1,0 +1,459 @@
+//! Recognition from one touch: the published figures of two sets, and the definitions by brute force on small grids.
+
+use std::collections::HashMap;
+
+use taxel::prelude::*;
+use taxel::recognition::{
+    AnswerState, Evaluation, Evidence, GivenDescriptors, ImprintKey, Model, NamedShape, Peer,
+    PeerSettings, Rounding, Training, TrainingError, greedy,
+};
+use taxel::sweep::Shard;
+
+fn sensor(side: u8) -> Sensor {
+    let sensor = Sensor::default();
+    [Parameter::Columns, Parameter::Rows]
+        .into_iter()
+        .try_fold(sensor, |sensor, parameter| {
+            sensor.with(parameter, side.into())
+        })
+        .expect("in range")
+}
+
+fn ranges(x0: &str, y0: &str, angle: &str) -> Ranges {
+    Ranges::default()
+        .with(Axis::X0, x0.parse().expect("a range"))
+        .with(Axis::Y0, y0.parse().expect("a range"))
+        .with(Axis::Angle, angle.parse().expect("a range"))
+}
+
+/// The grid of the published figures.
+fn published() -> Ranges {
+    ranges("10:10.99:0.01", "10:10.99:0.01", "0:359:1")
+}
+
+/// Seven figures of about 30 cells.
+fn s1() -> Vec<NamedShape> {
+    let sensor = sensor(32);
+    let shape = |name: &str, figure: taxel::figure::FigureBuilder| {
+        NamedShape::new(name, figure.on(&sensor).expect("in range"))
+    };
+    vec![
+        shape("disc", Figure::ellipse(3.09, 3.09)),
+        shape("rectangle", Figure::rectangle(6.0, 5.0)),
+        shape("triangle", Figure::triangle(8.32)),
+        shape("pentagon", Figure::pentagon(4.18)),
+        shape("hexagon", Figure::hexagon(3.4)),
+        shape("heptagon", Figure::heptagon(2.87)),
+        shape("octagon", Figure::octagon(2.49)),
+    ]
+}
+
+/// Four rectangles that are hard to tell apart.
+fn s4() -> Vec<NamedShape> {
+    let sensor = sensor(32);
+    let sides = [(6.0, 3.0), (6.0, 3.2), (6.2, 3.0), (4.2, 4.2)];
+    let shape = |(width, height): (f64, f64)| {
+        let figure = Figure::rectangle(width, height).on(&sensor);
+        NamedShape::new(format!("{width}x{height}"), figure.expect("in range"))
+    };
+    sides.map(shape).to_vec()
+}
+
+fn train(shapes: Vec<NamedShape>, side: u8, ranges: Ranges) -> Model {
+    let training = Training::new(shapes, sensor(side), Anchor::Corner, ranges).expect("a set");
+    training.run().expect("no pose is cut off")
+}
+
+#[test]
+fn seven_figures_are_told_apart_as_often_as_published() {
+    let model = train(s1(), 32, published());
+    let limit = Evaluation::of(&model);
+    assert_eq!((limit.touches, limit.right), (25_200_000, 16_880_246));
+    assert_eq!(
+        (limit.certain, limit.tied, limit.keys),
+        (9_653_396, 0, 9_875)
+    );
+    let given = |text: &str| {
+        text.parse::<GivenDescriptors>()
+            .expect("descriptors")
+            .evaluate(&model)
+    };
+    assert_eq!(given("na,p").right, 13_074_891);
+    assert_eq!(format!("{:.2}", given("cg_cd").error()), "0.41");
+    let rounding: Rounding = "cg_cd=0.01".parse().expect("a rounding");
+    let rounded = GivenDescriptors::new(
+        "cg_cd"
+            .parse::<GivenDescriptors>()
+            .expect("one")
+            .descriptors()
+            .into(),
+        vec![rounding],
+    );
+    assert_eq!(format!("{:.2}", rounded.evaluate(&model).error()), "0.54");
+
+    // No choice of descriptors passes the limit, and each one chosen adds something.
+    let chosen = greedy(&model, &[]);
+    assert_eq!(chosen[0].0.key(), "cg_cd");
+    assert!(
+        chosen
+            .windows(2)
+            .all(|pair| pair[0].1.right < pair[1].1.right)
+    );
+    assert!(
+        chosen
+            .iter()
+            .all(|(_, evaluation)| evaluation.right <= limit.right)
+    );
+
+    // Nor does any classifier by descriptors.
+    let settings = PeerSettings::default();
+    for peer in Peer::ALL {
+        let reached = peer.evaluate(&model, &settings).evaluation;
+        let sum: u128 = reached.confusion.iter().flatten().sum();
+        println!("{} {:.4}", peer.name(), reached.error());
+        assert_eq!(sum, limit.touches);
+        assert!(reached.right <= limit.right, "{}", peer.name());
+        assert!(
+            reached.error() < 0.65,
+            "{} guesses: {}",
+            peer.name(),
+            reached.error()
+        );
+    }
+}
+
+#[test]
+fn four_rectangles_are_confused_as_published() {
+    let model = train(s4(), 32, published());
+    let limit = Evaluation::of(&model);
+    assert_eq!((limit.touches, limit.right), (14_400_000, 10_498_796));
+    assert_eq!((limit.certain, limit.tied), (4_821_044, 524));
+    assert_eq!(
+        limit.confusion,
+        [
+            [1_642_740, 650_164, 1_307_096, 0],
+            [261_984, 2_673_920, 664_096, 0],
+            [572_156, 445_708, 2_582_136, 0],
+            [0, 0, 0, 3_600_000]
+        ]
+    );
+    assert_eq!(format!("{:.4}", limit.information_bits), "1.2066");
+    assert_eq!(limit.prior_bits, 2.0);
+    assert_eq!((limit.recall(3), limit.precision(3)), (1.0, Some(1.0)));
+    assert_eq!(limit.worst_pairs()[0], (0, 2, 1_307_096 + 572_156));
+    assert_eq!(
+        limit.keys_of_one_shape,
+        (0..model.keys().len())
+            .filter(|&key| model.counts(key).len() == 1)
+            .count()
+    );
+    let errors = model.pair_errors();
+    assert_eq!((errors[0][3], errors[0][2]), (errors[3][0], errors[2][0]));
+    assert_eq!(errors[0][3], 0.0);
+    assert!(errors[0][2] > errors[0][1]);
+}
+
+/// A small training whose every touch can be made one by one.
+fn small() -> (Vec<NamedShape>, Ranges) {
+    let sensor = sensor(16);
+    let picture: Imprint = "###\n#..\n#..".parse().expect("an imprint");
+    let picture = Picture::of(picture).on(&sensor).expect("in range");
+    let bar = Figure::rectangle(3.0, 2.0).on(&sensor).expect("in range");
+    let ring = Figure::ellipse(2.0, 2.0)
+        .thickness(0.8)
+        .on(&sensor)
+        .expect("in range");
+    let shapes = vec![
+        NamedShape::new("angle", picture),
+        NamedShape::new("bar", bar).weighted(3),
+        NamedShape::new("ring", ring),
+    ];
+    (shapes, ranges("5:5.9:0.1", "5:5.75:0.25", "0:350:10"))
+}
+
+#[test]
+fn counts_are_those_of_touching_pose_by_pose() {
+    let (shapes, ranges) = small();
+    let sensor = sensor(16);
+    let mut counts: HashMap<(ImprintKey, usize), u64> = HashMap::new();
+    for (index, shape) in shapes.iter().enumerate() {
+        let grid = PoseGrid::new(shape.source.clone(), sensor, Anchor::Corner, ranges);
+        let grid = grid.expect("in range");
+        for number in 0..grid.poses() {
+            let imprint = Plane::new(sensor).touch(&grid.placed(grid.pose(number)));
+            *counts.entry((ImprintKey::of(&imprint), index)).or_default() += 1;
+        }
+    }
+    let model = train(shapes, 16, ranges);
+    let mut found = 0;
+    for key in 0..model.keys().len() {
+        let imprint = model.keys().imprint(key).expect("none is empty");
+        for count in model.counts(key) {
+            assert_eq!(
+                counts[&(ImprintKey::of(&imprint), count.shape.into())],
+                count.poses
+            );
+            found += 1;
+        }
+    }
+    assert_eq!(found, counts.len());
+
+    // The weighted limit, from its definition.
+    let keys: std::collections::HashSet<&ImprintKey> = counts.keys().map(|(key, _)| key).collect();
+    let weighted = |key: &ImprintKey, shape: usize| {
+        let weight = u64::from(model.shapes()[shape].weight);
+        counts
+            .get(&(key.clone(), shape))
+            .copied()
+            .unwrap_or_default()
+            * weight
+    };
+    let right: u64 = keys
+        .iter()
+        .map(|key| {
+            (0..3)
+                .map(|shape| weighted(key, shape))
+                .max()
+                .expect("three")
+        })
+        .sum();
+    let limit = Evaluation::of(&model);
+    assert_eq!(
+        (limit.right, limit.touches),
+        (right.into(), u128::from(model.poses()) * 5)
+    );
+}
+
+#[test]
+fn shards_together_are_the_whole() {
+    let (shapes, ranges) = small();
+    let whole = train(shapes.clone(), 16, ranges);
+    let part = |number| {
+        let training = Training::new(shapes.clone(), sensor(16), Anchor::Corner, ranges);
+        let shard = Shard::new(number, 3).expect("a shard");
+        training
+            .expect("a set")
+            .shard(shard)
+            .run()
+            .expect("no pose is cut off")
+    };
+    let merged = Model::merge([part(3), part(1), part(2)]).expect("all three");
+    assert_eq!(Evaluation::of(&merged), Evaluation::of(&whole));
+    assert_eq!(
+        (merged.poses(), merged.shard()),
+        (whole.poses(), Shard::WHOLE)
+    );
+    for key in 0..whole.keys().len() {
+        assert_eq!(merged.keys().imprint(key), whole.keys().imprint(key));
+        assert_eq!(merged.counts(key), whole.counts(key));
+    }
+    let error = |parts: Vec<Model>| Model::merge(parts).expect_err("no whole").to_string();
+    assert_eq!(error(vec![part(1), part(3)]), "shard 2/3 is missing");
+    assert_eq!(error(vec![part(1), part(2)]), "shard 3/3 is missing");
+    assert_eq!(
+        error(vec![part(1), part(1), part(2)]),
+        "shard 1/3 is given twice"
+    );
+    assert_eq!(
+        error(vec![part(1), whole]),
+        "shard 1/1 belongs to another training"
+    );
+}
+
+#[test]
+fn a_model_does_not_depend_on_threads() {
+    let (shapes, ranges) = small();
+    let with = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.expect("threads")
+            .install(|| train(shapes.clone(), 16, ranges))
+    };
+    let (one, three) = (with(1), with(3));
+    assert_eq!(Evaluation::of(&one), Evaluation::of(&three));
+    assert!((0..one.keys().len()).all(|key| one.counts(key) == three.counts(key)));
+}
+
+#[test]
+fn cut_poses_are_refused_unless_allowed() {
+    let large = Figure::triangle(11.77).on(&sensor(16)).expect("in range");
+    let set = || {
+        let shapes = [NamedShape::new("triangle", large)];
+        let poses = ranges("5:5.99:0.01", "5:5.99:0.01", "0:350:10");
+        Training::new(shapes, sensor(16), Anchor::Corner, poses).expect("a set")
+    };
+    let Err(TrainingError::Cut { cut, poses, .. }) = set().run() else {
+        panic!("poses that are cut off are trained");
+    };
+    assert_eq!((cut, poses), (360_000, 360_000));
+    let model = set().allow_cut(true).run().expect("allowed");
+    assert_eq!(model.cut(), [360_000]);
+}
+
+#[test]
+fn answers_say_how_far_they_can_be_trusted() {
+    let model = train(s4(), 32, published());
+    let read = |text: &str| text.parse::<Imprint>().expect("an imprint");
+    let recognise = |touch: &Imprint| model.recognise(Evidence::of(std::slice::from_ref(touch)));
+
+    let square = read("......\n.####.\n.####.\n.####.\n.####.\n......");
+    let answer = recognise(&square);
+    assert_eq!(
+        (answer.state, answer.shape),
+        (AnswerState::Certain, Some(3))
+    );
+    assert_eq!(answer.ranking, [(3, 1.0)]);
+
+    // The same at the rim may be a part of anything.
+    let cut = read("####.\n####.\n####.\n####.\n.....");
+    let answer = recognise(&cut);
+    assert_eq!((answer.state, answer.at_rim), (AnswerState::Likely, true));
+
+    let bar = read("........\n.######.\n.######.\n.######.\n........");
+    let answer = recognise(&bar);
+    let probabilities: f64 = answer
+        .ranking
+        .iter()
+        .map(|(_, probability)| probability)
+        .sum();
+    assert!((probabilities - 1.0).abs() < 1e-12 && answer.ranking.len() == 3);
+    assert!(answer.ranking.windows(2).all(|pair| pair[0].1 >= pair[1].1));
+    let best = answer.ranking[0].1;
+    let touches = [bar];
+    let strict = model.recognise(Evidence::of(&touches).reject_below(best + 0.01));
+    assert_eq!((strict.state, strict.shape), (AnswerState::Rejected, None));
+
+    // Two equal touches count twice.
+    let twice = [bar, bar];
+    let answer = model.recognise(Evidence::of(&twice));
+    let counts = model.counts_of(&bar);
+    let squares: f64 = counts
+        .iter()
+        .map(|count| (count.poses as f64).powi(2))
+        .sum();
+    for &(shape, probability) in &answer.ranking {
+        let own = counts
+            .iter()
+            .find(|count| usize::from(count.shape) == shape);
+        let expected = (own.expect("it has one").poses as f64).powi(2) / squares;
+        assert!((probability - expected).abs() < 1e-12);
+    }
+    // Contradicting ones leave nothing.
+    let answer = model.recognise(Evidence::of(&[bar, square]));
+    assert_eq!(
+        (answer.state, answer.shape, answer.ranking.len()),
+        (AnswerState::Unknown, None, 0)
+    );
+}
+
+#[test]
+fn an_unknown_imprint_has_a_nearest_one() {
+    let model = train(s4(), 32, published());
+    let mut touch: Imprint = ".########.".repeat(1).parse().expect("an imprint");
+    touch = touch.resized(12, 9);
+    let mut shifted = Imprint::empty(12, 9);
+    for row in 2..5 {
+        shifted.set_word(row, 0b0111_1110 << 1);
+    }
+    shifted.toggle(10, 7);
+    let answer = model.recognise(Evidence::of(std::slice::from_ref(&shifted)));
+    assert_eq!(answer.state, AnswerState::Unknown);
+    let nearest = model.nearest(&shifted).expect("keys fit");
+    assert_eq!(nearest.distance, 1);
+    assert_eq!(
+        nearest
+            .imprint
+            .differing(&shifted)
+            .active()
+            .collect::<Vec<_>>(),
+        [(10, 7)]
+    );
+
+    // Against every key and shift, one by one.
+    for touch in [touch, shifted] {
+        let nearest = model.nearest(&touch).expect("keys fit");
+        let mut least = u32::MAX;
+        for key in 0..model.keys().len() {
+            let imprint = model.keys().imprint(key).expect("none is empty");
+            if imprint.columns() > touch.columns() || imprint.rows() > touch.rows() {
+                continue;
+            }
+            for row in 0..=usize::from(touch.rows() - imprint.rows()) {
+                for column in 0..=touch.columns() - imprint.columns() {
+                    let mut moved = Imprint::empty(touch.columns(), touch.rows());
+                    for (index, &word) in imprint.words().iter().enumerate() {
+                        moved.set_word(row + index, word << column);
+                    }
+                    least = least.min(moved.differing(&touch).count());
+                }
+            }
+        }
+        assert_eq!(nearest.distance, least);
+        assert_eq!(nearest.imprint.differing(&touch).count(), least);
+    }
+    assert!(model.nearest(&Imprint::empty(2, 2)).is_none());
+}
+
+#[test]
+fn two_names_for_one_shape_can_never_be_told_apart() {
+    let sensor = sensor(16);
+    let bar = Figure::rectangle(3.0, 2.0).on(&sensor).expect("in range");
+    let disc = Figure::ellipse(2.0, 2.0).on(&sensor).expect("in range");
+    let shapes = vec![
+        NamedShape::new("bar", bar),
+        NamedShape::new("copy", bar),
+        NamedShape::new("disc", disc),
+    ];
+    let model = train(shapes, 16, ranges("5:5.9:0.1", "5:5.9:0.1", "0:350:10"));
+    assert_eq!(model.never_certain(), [0, 1]);
+    assert_eq!(model.pair_errors()[0][1], 0.5);
+    let limit = Evaluation::of(&model);
+    assert_eq!((limit.recall(1), limit.precision(1)), (0.0, None));
+    let bar: Imprint = ".....\n.###.\n.###.\n.....".parse().expect("an imprint");
+    let answer = model.recognise(Evidence::of(&[bar]));
+    if answer.state == AnswerState::Tied {
+        assert_eq!(
+            (answer.shape, answer.tied.as_slice()),
+            (Some(0), [0, 1].as_slice())
+        );
+    } else {
+        assert_eq!(answer.ranking.len(), 3);
+    }
+}
+
+#[test]
+fn sets_and_descriptors_that_make_no_sense_are_refused() {
+    let error = |shapes: Vec<NamedShape>| {
+        let training = Training::new(shapes, sensor(16), Anchor::Corner, Ranges::default());
+        training.expect_err("no set").to_string()
+    };
+    let disc = Figure::ellipse(2.0, 2.0).on(&sensor(16)).expect("in range");
+    assert_eq!(error(vec![]), "0 shapes, expected 1 to 32768");
+    assert_eq!(
+        error(vec![NamedShape::new("", disc)]),
+        "shape 1 has no name"
+    );
+    let twice = vec![NamedShape::new("disc", disc), NamedShape::new("disc", disc)];
+    assert_eq!(
+        error(twice),
+        "name \"disc\" is given twice; each shape needs its own"
+    );
+    let weightless = vec![NamedShape::new("disc", disc).weighted(0)];
+    assert_eq!(
+        error(weightless),
+        "weight of \"disc\": 0, expected at least 1"
+    );
+
+    let given = |text: &str| {
+        text.parse::<GivenDescriptors>()
+            .expect_err("no descriptors")
+            .to_string()
+    };
+    assert!(
+        given("na,colour")
+            .starts_with("descriptor \"colour\" is unknown, expected one of na, nae, ce, p, f,")
+    );
+    assert!(given("cg").starts_with("cg says where the imprint lies, not what it is"));
+    for text in ["cg_cd", "cg_cd=0", "cg_cd=-1", "cg_cd=x", "cg_cd=nan"] {
+        assert!(text.parse::<Rounding>().is_err(), "{text}");
+    }
+}
