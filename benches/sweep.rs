@@ -167,7 +167,7 @@ fn touch_peer(
     }
 }
 
-/// FigureKind, sizes and wall of a figure, for the peer; none of a picture.
+/// Kind, sizes and wall of a figure, for the peer; none of a picture.
 fn sizes(source: &Source) -> Option<(FigureKind, [f32; 2], Option<f32>)> {
     let Source::Figure(figure) = source else {
         return None;

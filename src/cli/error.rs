@@ -1,4 +1,7 @@
-//! Everything that can go wrong on the command line, and the exit status and message of each: the one place for these.
+//! Everything that can go wrong on the command line.
+//!
+//! Each failure has its message beside it here, and its exit status in [`CliError::status`]. Text that comes from
+//! files or arguments is shortened before it is quoted, and escaped when it is printed.
 
 use std::io;
 
@@ -11,13 +14,13 @@ use crate::storage::{FileError, LibraryError, SweepFileError};
 use crate::sweep::MergeError;
 use crate::tui::script::runner;
 
-/// Why a command was not done, or not wholly.
+/// Why a command failed, or was not done completely.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum CliError {
-    /// The command itself is wrong.
+    /// The arguments are wrong: clap's own message, with the usage of the command.
     #[error(transparent)]
     Usage(#[from] clap::Error),
-    /// A number is, though it is one.
+    /// A number out of range.
     #[error("--{flag} {text}: out of range, {expected}")]
     Range {
         /// The flag without its dashes.
@@ -27,7 +30,7 @@ pub(crate) enum CliError {
         /// What is allowed.
         expected: String,
     },
-    /// A file is.
+    /// An invalid input file.
     #[error("{name}: {error}")]
     Input {
         /// Its name.
@@ -35,30 +38,30 @@ pub(crate) enum CliError {
         /// What is wrong with it.
         error: InputError,
     },
-    /// Some of the lines of a batch are; each has said so in its place.
+    /// Some lines of a batch were wrong. Each has its own message among the answers.
     #[error("{bad} of {lines} lines could not be answered")]
     Lines {
-        /// How many.
+        /// How many were wrong.
         bad: u64,
-        /// Of how many that were not blank.
+        /// How many there were, not counting blank ones.
         lines: u64,
     },
-    /// The poses of a batch cannot be read on.
+    /// Standard input failed in the middle of a batch.
     #[error("standard input: cannot read: {0}")]
     Read(io::Error),
-    /// The answer cannot be written.
+    /// Standard output failed.
     #[error("cannot write: {0}")]
     Write(io::Error),
-    /// The library refuses.
+    /// The library cannot do it: no such shape, no folder, a damaged file.
     #[error("{}", legible(&.0.to_string()))]
     Library(#[from] LibraryError),
-    /// Neither a name nor a file.
+    /// The argument is neither the name of a shape nor a file.
     #[error("no shape is called {name:?}, and no file either")]
     Nowhere {
-        /// What was asked for.
+        /// The argument.
         name: String,
     },
-    /// The name is that of another shape.
+    /// There is a shape or a file of that name already.
     #[error("{name:?} is there already; --force replaces it")]
     Taken {
         /// The name.
@@ -72,18 +75,18 @@ pub(crate) enum CliError {
         /// Why not.
         error: io::Error,
     },
-    /// Some shapes of the library are; each has been told.
+    /// Some shapes of the library are damaged. Each has been listed.
     #[error("{broken} of {shapes} shapes cannot be read")]
     Shapes {
-        /// How many.
+        /// How many are damaged.
         broken: usize,
-        /// Of how many.
+        /// How many there are.
         shapes: usize,
     },
-    /// The file of settings cannot be read, or says something wrong.
+    /// The settings file cannot be read, or has an error in it.
     #[error("{place}: {message}")]
     Settings {
-        /// Its name, with line and column where these are known.
+        /// Its name, with line and column if they are known.
         place: String,
         /// What is wrong.
         message: String,
@@ -96,23 +99,23 @@ pub(crate) enum CliError {
         /// Why not.
         error: InputError,
     },
-    /// A script did not hold.
+    /// A script failed: an expectation, a command, or the program ended too early.
     #[error("{}{failure}", name.as_ref().map_or_else(String::new, |name| format!("{name}: ")))]
     Script {
-        /// Its name; none of keys that are no script.
+        /// Its name; None for the keys of `--keys`.
         name: Option<String>,
-        /// What did not.
+        /// What failed.
         failure: runner::ScriptFailure,
     },
-    /// There is a file already where a record was to be.
+    /// `--record` names a file that exists.
     #[error("{name} is there already, and a record does not replace it; {free} would be a new one")]
     Recorded {
         /// Its name.
         name: String,
-        /// A name that is free.
+        /// A similar name that is free.
         free: String,
     },
-    /// A record cannot be begun.
+    /// The file of `--record` cannot be created.
     #[error("{name}: cannot record: {error}")]
     Record {
         /// Its file's name.
@@ -120,10 +123,10 @@ pub(crate) enum CliError {
         /// Why not.
         error: io::Error,
     },
-    /// There is no such grid.
+    /// The ranges do not make a grid for the shape.
     #[error(transparent)]
     Grid(#[from] GridError),
-    /// An atlas that cannot be read.
+    /// An atlas cannot be read.
     #[error("{name}: {error}")]
     Atlas {
         /// The file's name.
@@ -131,10 +134,10 @@ pub(crate) enum CliError {
         /// What is wrong with it.
         error: ArchiveError,
     },
-    /// An atlas or the numbers of all poses that cannot be written.
+    /// An atlas, or the file of all poses, cannot be written.
     #[error(transparent)]
     SweepFile(SweepFileError),
-    /// Shards that do not make a whole.
+    /// The shards are not those of one grid, or some are missing or given twice.
     #[error(transparent)]
     Merge(#[from] MergeError),
     /// A signal stopped the command.
@@ -143,10 +146,10 @@ pub(crate) enum CliError {
         /// The exit status, as a shell reports it for a program that the signal ended.
         status: u8,
     },
-    /// The system refuses threads or signals.
+    /// The system does not allow more threads or signal handlers.
     #[error("{0}")]
     System(io::Error),
-    /// There is no screen.
+    /// The screen cannot be opened: no terminal, or it failed.
     #[error("{0}")]
     Screen(io::Error),
 }
@@ -174,12 +177,12 @@ impl From<SweepFileError> for CliError {
 }
 
 impl CliError {
-    /// Nobody reads on: `taxel batch | head -1`. No failure of ours.
+    /// Whether the reader of our output has closed it, as in `taxel batch | head -1`. That is not an error.
     fn is_closed_pipe(&self) -> bool {
         matches!(self, Self::Write(error) | Self::Screen(error) if error.kind() == io::ErrorKind::BrokenPipe)
     }
 
-    /// The exit status.
+    /// The exit status; see the table in [`crate::cli`].
     pub(crate) fn status(&self) -> u8 {
         match self {
             _ if self.is_closed_pipe() => 0,
@@ -199,7 +202,7 @@ impl CliError {
         }
     }
 
-    /// What standard error shows, with its line end; nothing for a closed pipe.
+    /// The message for standard error, with its line end; None for a closed pipe.
     pub(crate) fn message(&self, charset: Charset) -> Option<String> {
         match self {
             _ if self.is_closed_pipe() => None,

@@ -1,11 +1,28 @@
-//! The command line: `taxel figure`, `picture`, `describe`, `export`, `batch`, `sweep`, `merge`, `library`, and the
-//! screen where no command is given; `script`, `config`, `completions` and `man` beside them.
+//! The command line: `taxel figure`, `picture`, `describe`, `export`, `batch`, `sweep`, `merge` and `library`; the
+//! screen if no command is given; and `script`, `config`, `completions` and `man`.
 //!
-//! Answers go to standard output, messages to standard error, one line each, and what went wrong starts with `error:`.
-//! The exit status is 0 where all was done, 1 where the input was wrong, 2 where the command, the settings or the script
-//! was, 3 where the program ended before its script, and 128 + n where signal n ended it. A pipe that is closed at its
-//! other end is no error: the program stops there. Apart from the screen nothing writes an escape code, but for the bar of
-//! a sweep on a terminal.
+//! The way of a command through the folders of this room, which are listed below in this order:
+//! ```text
+//! arguments -> clap (arguments/definitions) -> Request (arguments/request)
+//!   + settings: flag, environment, file, default (settings/)
+//!   -> perform(), below -> commands/*.rs, one file each; shapes and files come from input/
+//!   -> text or JSON (output/) -> standard output
+//! CliError (error.rs) -> message on standard error, exit status
+//! ```
+//!
+//! Answers go to standard output. Messages go to standard error, one line each; those about failures start with
+//! `error:`. The exit status:
+//!
+//! | status | meaning |
+//! |---|---|
+//! | 0 | done |
+//! | 1 | the input was wrong: a file, a shape, a line of a batch |
+//! | 2 | the command, the settings or the script was wrong |
+//! | 3 | the program ended before its script did |
+//! | 128 + n | signal n ended the command |
+//!
+//! A closed pipe, as in `taxel batch | head -1`, is not an error: the program stops and returns 0. Only the screen writes
+//! escape codes, and the progress bar of a sweep, if standard error is a terminal.
 
 mod error;
 
@@ -31,7 +48,10 @@ use error::CliError;
 use input::shapes::Shelf;
 use output::charset::Charset;
 
-/// Does what the arguments ask for, the first of which is the program's own name, and gives the exit status.
+/// Runs the program with the given arguments and returns its exit status. The first argument is the program's own name.
+///
+/// Everything the user sees is written here or below: the answer to standard output, messages to standard error. If
+/// standard error cannot be written to, the exit status still tells what happened.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let mut charset = Charset::of(&arguments, std::env::var_os);
@@ -46,7 +66,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     failure.status()
 }
 
-/// Does it; the characters that may be written are those of the settings once these are known.
+/// Reads the arguments and runs the command that they ask for.
+///
+/// `characters` is the character set for messages: at first that of the locale, then that of the settings, which are
+/// known only once the arguments are read.
 fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, CliError> {
     let Asked {
         request,
@@ -108,6 +131,7 @@ fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, Cli
     Ok(0)
 }
 
+/// Runs a subcommand of `taxel library`.
 fn chore(chore: Chore, shelf: &Shelf, charset: Charset) -> Result<(), CliError> {
     match chore {
         Chore::List(json) => print(&library::list(shelf, json, charset)?),
@@ -131,21 +155,27 @@ fn chore(chore: Chore, shelf: &Shelf, charset: Charset) -> Result<(), CliError> 
     }
 }
 
+/// Prints what a touch answers, and its notes to standard error.
 fn answer(touched: &Touched, charset: Charset) -> Result<(), CliError> {
     write(&touched.answer)?;
     touched.notes.iter().for_each(|text| note(text, charset));
     Ok(())
 }
 
-/// Writes a remark to standard error. Where it cannot be written, the exit status still tells.
+/// Writes a note to standard error. A note that cannot be written is dropped: it is not part of the answer.
 fn note(text: &str, charset: Charset) {
     let _ = writeln!(io::stderr().lock(), "{}", charset.line(text));
 }
 
+/// Writes text to standard output.
 fn print(text: &str) -> Result<(), CliError> {
     write(text.as_bytes())
 }
 
+/// Writes bytes to standard output, at once.
+///
+/// # Errors
+/// [`CliError::Write`], which is not reported if the pipe was closed at its other end.
 fn write(bytes: &[u8]) -> Result<(), CliError> {
     let mut output = io::stdout().lock();
     output

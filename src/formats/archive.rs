@@ -14,7 +14,7 @@ use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
-use crate::atlas::{feature_values, features};
+use crate::atlas::{Atlas, ImprintSummary, feature_values, features};
 use crate::formats::npy;
 use crate::formats::npy::Dtype;
 use crate::formats::record::{Record, RecordError, Values};
@@ -57,8 +57,39 @@ struct ArchiveHeader<Shape, Size> {
 pub fn write(result: &SweepResult, output: impl Write + Seek) -> Result<(), ArchiveError> {
     let mut archive = Arrays(ZipWriter::new(output));
     let (grid, parts) = (&result.grid, result.parts());
-    let ranges = grid.ranges();
-    let header = serde_json::to_vec(&ArchiveHeader {
+    let header = header(result, &parts)?;
+    archive.add("header", Dtype::U8, &[header.len() as u64], &header)?;
+    let count = parts.counts.len() as u64;
+    let height = u64::from(grid.sensor().rows());
+    archive.add("rows", Dtype::U64, &[count, height], &bytes(&parts.rows))?;
+    archive.add("count", Dtype::U64, &[count], &bytes(&parts.counts))?;
+    let first_poses = bytes(&parts.first_poses);
+    archive.add("first_pose", Dtype::U64, &[count], &first_poses)?;
+    let axes: Vec<_> = grid.axes().collect();
+    let mut first = Vec::new();
+    for &number in &parts.first_poses {
+        let pose = grid.pose(number);
+        let values = axes.iter().map(|&axis| pose[axis]);
+        first.extend(values.flat_map(f64::to_le_bytes));
+    }
+    archive.add("first", Dtype::F64, &[count, axes.len() as u64], &first)?;
+    let pieces = regions_of_each(&result.atlas, |summary| summary.pieces);
+    archive.add("pieces", Dtype::U16, &[count], &pieces)?;
+    let holes = regions_of_each(&result.atlas, |summary| summary.holes);
+    archive.add("holes", Dtype::U16, &[count], &holes)?;
+    for (feature, column) in features().iter().zip(feature_columns(&result.atlas)) {
+        archive.add(&feature.key, Dtype::F64, &[count], &column)?;
+    }
+    let length = parts.spread.len() as u64;
+    archive.add("spread", Dtype::U64, &[length], &bytes(&parts.spread))?;
+    archive.0.finish()?.flush()?;
+    Ok(())
+}
+
+/// The header as JSON: what was swept, over which ranges, and the counts of the whole result.
+fn header(result: &SweepResult, parts: &Parts) -> Result<Vec<u8>, ArchiveError> {
+    let (grid, ranges) = (&result.grid, result.grid.ranges());
+    serde_json::to_vec(&ArchiveHeader {
         format: FORMAT.to_owned(),
         source: grid.source(),
         sensor: grid.sensor(),
@@ -72,48 +103,26 @@ pub fn write(result: &SweepResult, output: impl Write + Seek) -> Result<(), Arch
         poses: parts.poses,
         partly_off: parts.partly_off,
     })
-    .map_err(|error| ArchiveError::Io(error.into()))?;
-    archive.add("header", Dtype::U8, &[header.len() as u64], &header)?;
-    let count = parts.counts.len() as u64;
-    let words =
-        |words: &[u64]| -> Vec<u8> { words.iter().flat_map(|word| word.to_le_bytes()).collect() };
-    let height = u64::from(grid.sensor().rows());
-    archive.add("rows", Dtype::U64, &[count, height], &words(&parts.rows))?;
-    archive.add("count", Dtype::U64, &[count], &words(&parts.counts))?;
-    archive.add(
-        "first_pose",
-        Dtype::U64,
-        &[count],
-        &words(&parts.first_poses),
-    )?;
-    let own: Vec<_> = grid.axes().collect();
-    let mut first = Vec::new();
-    for &number in &parts.first_poses {
-        let pose = grid.pose(number);
-        let own = own.iter().map(|&axis| pose[axis]);
-        first.extend(own.flat_map(f64::to_le_bytes));
-    }
-    archive.add("first", Dtype::F64, &[count, own.len() as u64], &first)?;
-    let small = |of: fn(&crate::atlas::ImprintSummary) -> u16| {
-        let summaries = result.atlas.entries().map(|entry| entry.summary);
-        summaries
-            .flat_map(|summary| of(&summary).to_le_bytes())
-            .collect::<Vec<u8>>()
-    };
-    archive.add(
-        "pieces",
-        Dtype::U16,
-        &[count],
-        &small(|summary| summary.pieces),
-    )?;
-    archive.add(
-        "holes",
-        Dtype::U16,
-        &[count],
-        &small(|summary| summary.holes),
-    )?;
-    let mut columns = vec![Vec::with_capacity(parts.counts.len() * 8); features().len()];
-    for entry in result.atlas.entries() {
+    .map_err(|error| ArchiveError::Io(error.into()))
+}
+
+/// Words as the bytes of an array.
+fn bytes(words: &[u64]) -> Vec<u8> {
+    words.iter().flat_map(|word| word.to_le_bytes()).collect()
+}
+
+/// The number of pieces, or of holes, of each imprint, as the bytes of an array.
+fn regions_of_each(atlas: &Atlas, number: fn(&ImprintSummary) -> u16) -> Vec<u8> {
+    let summaries = atlas.entries().map(|entry| entry.summary);
+    summaries
+        .flat_map(|summary| number(&summary).to_le_bytes())
+        .collect()
+}
+
+/// An array for each feature, as bytes: its value for each imprint, NaN where it does not exist.
+fn feature_columns(atlas: &Atlas) -> Vec<Vec<u8>> {
+    let mut columns = vec![Vec::with_capacity(atlas.len() * 8); features().len()];
+    for entry in atlas.entries() {
         let mut row = vec![f64::NAN; columns.len()];
         if let Some(description) = &entry.summary.description {
             feature_values(description, |index, value| row[index] = value);
@@ -122,15 +131,10 @@ pub fn write(result: &SweepResult, output: impl Write + Seek) -> Result<(), Arch
             column.extend(value.to_le_bytes());
         }
     }
-    for (feature, column) in features().iter().zip(columns) {
-        archive.add(&feature.key, Dtype::F64, &[count], &column)?;
-    }
-    let length = parts.spread.len() as u64;
-    archive.add("spread", Dtype::U64, &[length], &words(&parts.spread))?;
-    archive.0.finish()?.flush()?;
-    Ok(())
+    columns
 }
 
+/// The archive being written, an array at a time.
 struct Arrays<W: Write + Seek>(ZipWriter<W>);
 
 impl<W: Write + Seek> Arrays<W> {

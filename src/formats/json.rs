@@ -5,6 +5,7 @@ use serde::Serialize;
 use crate::quote::legible;
 
 /// A value on one line.
+#[cfg(feature = "tui")]
 pub(crate) fn text(value: &(impl Serialize + ?Sized)) -> String {
     serde_json::to_string(value).unwrap_or_else(|error| failure(&error))
 }

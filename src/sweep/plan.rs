@@ -123,10 +123,28 @@ pub(crate) fn tasks(
     );
     let first_row = block * angles * height;
     let clipped = |row: u64| row.clamp(first_row, first_row + angles * height) - first_row;
-    let rows = clipped(shard.start)..clipped(shard.end);
-    // Angles that the shard holds only a part of stand for themselves.
+    let pieces = pieces(grid, clipped(shard.start)..clipped(shard.end));
+    let length = task_rows(grid, pieces.len() as u64);
+    pieces.into_iter().flat_map(move |(members, rows)| {
+        let turns = members.into_iter().map(|angle| block * angles + angle);
+        let turns: Arc<[u64]> = turns.collect();
+        let starts = (0..(rows.end - rows.start).div_ceil(length)).map(move |task| task * length);
+        starts.map(move |start| Task {
+            turns: Arc::clone(&turns),
+            rows: rows.start + start..rows.end.min(rows.start + start + length),
+        })
+    })
+}
+
+/// Angles whose imprints are the same, and the values of y0 to sweep for the first of them.
+type Piece = (Vec<u64>, Range<u64>);
+
+/// The angles of a block, gathered by a period of the shape; `rows` are those of the block that a shard holds. Angles that it
+/// holds only a part of are pieces of their own.
+fn pieces(grid: &PoseGrid, rows: Range<u64>) -> Vec<Piece> {
+    let height = grid.rows_per_orientation();
     let full = rows.start.div_ceil(height)..rows.end / height;
-    let mut pieces: Vec<(Vec<u64>, Range<u64>)> = Vec::new();
+    let mut pieces: Vec<Piece> = Vec::new();
     let partial = |angle: u64| {
         let start = angle * height;
         let part = rows.start.max(start)..rows.end.min(start + height);
@@ -153,8 +171,12 @@ pub(crate) fn tasks(
     if full.start <= full.end && full.end * height < rows.end {
         pieces.push(partial(full.end));
     }
-    let width = grid.row_length();
-    let count = pieces.len() as u64;
+    pieces
+}
+
+/// How many rows make a task of a block with `count` pieces.
+fn task_rows(grid: &PoseGrid, count: u64) -> u64 {
+    let (width, height) = (grid.row_length(), grid.rows_per_orientation());
     // Only inside of one task can rows be images of each other.
     let halved = width * height <= HALVED_TASK_POSES && PointSymmetry::of(grid).is_some();
     let most = if halved {
@@ -162,14 +184,5 @@ pub(crate) fn tasks(
     } else {
         TASK_POSES
     };
-    let length = (most / width).min(height * count / TASKS).max(1);
-    pieces.into_iter().flat_map(move |(members, rows)| {
-        let turns = members.into_iter().map(|angle| block * angles + angle);
-        let turns: Arc<[u64]> = turns.collect();
-        let starts = (0..(rows.end - rows.start).div_ceil(length)).map(move |task| task * length);
-        starts.map(move |start| Task {
-            turns: Arc::clone(&turns),
-            rows: rows.start + start..rows.end.min(rows.start + start + length),
-        })
-    })
+    (most / width).min(height * count / TASKS).max(1)
 }

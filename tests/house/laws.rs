@@ -182,8 +182,9 @@ fn fallbacks(source: &Source<'_>) -> BTreeSet<usize> {
     };
     let words: Vec<_> = source.tokens.iter().map(|token| token.0).collect();
     let silent = |at: &usize| match words[*at..] {
-        ["unwrap_or_default", ..] | ["unwrap_or", "(", "MAX", ")", ..] => true,
-        ["unwrap_or", "(", _, "::", "MAX", ")", ..] => true,
+        ["unwrap_or_default", ..]
+        | ["unwrap_or", "(", "MAX", ")", ..]
+        | ["unwrap_or", "(", _, "::", "MAX", ")", ..] => true,
         ["unwrap_or", "(", whole, ")", ..] => zero(whole),
         ["unwrap_or", "(", whole, ".", digits, ")", ..] => zero(whole) && zero(digits),
         _ => false,

@@ -12,7 +12,7 @@ use taxel::description::{DESCRIPTORS, Description, RegionKind, Value, main_regio
 use taxel::imprint::Imprint;
 use taxel::touch::Plane;
 
-/// RegionKind; NA, NAE, CE; the sums of x and of y; straight and diagonal steps; left, top, right, bottom.
+/// Kind of region; NA, NAE, CE; the sums of x and of y; straight and diagonal steps; left, top, right, bottom.
 type Row = (RegionKind, [u32; 3], [f64; 2], [u32; 2], [u8; 4]);
 
 use RegionKind::{Exterior, Hole};

@@ -158,25 +158,6 @@ fn sweep() -> Command {
         .help("Sweep a stored shape instead");
     let sizes = parameters::figure_parameters()
         .filter(|&parameter| Axis::ALL.iter().all(|axis| axis.parameter() != parameter));
-    let defaults = Ranges::default();
-    let ranges = Axis::ALL.map(|axis| {
-        let (row, flag) = (axis.parameter().row(), axis.parameter().flag());
-        let default = match axis {
-            Axis::X0 | Axis::Y0 => "one cell that suits the shape".to_owned(),
-            _ => defaults[axis].to_string(),
-        };
-        let help = format!(
-            "{}; default {default}",
-            parameters::capitalised(row.meaning)
-        );
-        Arg::new(format!("range_{}", row.key))
-            .long(flag)
-            .value_name("START:END:STEP")
-            .allow_hyphen_values(true)
-            .value_parser(parse_range)
-            .help_heading("Grid")
-            .help(parameters::wrapped(&help, 46))
-    });
     let anchor = Arg::new("anchor")
         .long("anchor")
         .value_name("POINT")
@@ -206,10 +187,30 @@ fn sweep() -> Command {
         .arg(kind)
         .arg(picture)
         .args(sizes.map(|parameter| parameters::arg(parameter).help_heading("Figure")))
-        .args(ranges)
+        .args(Axis::ALL.map(range))
         .arg(anchor)
         .args(sensor_of_imprints())
         .args([atlas(), poses, replace(), jobs, shard, json(), quiet()])
+}
+
+/// The flag of an axis of the grid, which takes a range.
+fn range(axis: Axis) -> Arg {
+    let (row, flag) = (axis.parameter().row(), axis.parameter().flag());
+    let default = match axis {
+        Axis::X0 | Axis::Y0 => "one cell that suits the shape".to_owned(),
+        _ => Ranges::default()[axis].to_string(),
+    };
+    let help = format!(
+        "{}; default {default}",
+        parameters::capitalised(row.meaning)
+    );
+    Arg::new(format!("range_{}", row.key))
+        .long(flag)
+        .value_name("START:END:STEP")
+        .allow_hyphen_values(true)
+        .value_parser(parse_range)
+        .help_heading("Grid")
+        .help(parameters::wrapped(&help, 46))
 }
 
 fn merge() -> Command {

@@ -50,62 +50,72 @@ pub(crate) fn run(
         Some(library) => World::quiet(library),
         None => World::scratch().map_err(CliError::Screen)?,
     };
-    let plain = Theme::plain(charset == Charset::Ascii);
-    let options = Options {
-        sensor: settings.sensor(),
-        theme: match asked.drawings {
-            // Drawings have colours unless the script says otherwise. They change nothing of what is printed.
-            Some(_) => Theme {
-                depth: ColorDepth::True,
-                palette: Palette::Dark,
-                ..plain
-            },
-            None => plain,
-        },
-        mouse: true,
-    };
-    let running = ScriptOptions {
-        options,
-        size: asked.size,
-        styles: asked.styles,
-        json: asked.json,
-        keymap: settings.keymap().clone(),
-    };
-    let (mut output, mut lost) = (io::stdout().lock(), None);
+    let running = options(asked, settings, charset);
     if let Some(folder) = &asked.drawings {
         fs::create_dir_all(folder).map_err(|error| CliError::File {
             name: folder.to_string_lossy().into_owned(),
             error,
         })?;
     }
-    let mut names = Names::default();
-    let mut show = |shown: ScriptOutput<'_>| {
-        let done = match (shown, &asked.drawings) {
-            (ScriptOutput::Text(text), _) => {
-                let written = output.write_all(text.as_bytes());
-                written
-                    .and_then(|()| output.flush())
-                    .map_err(CliError::Write)
-            }
-            (ScriptOutput::Screen(name, session), Some(folder)) => {
-                let name = names.next(name);
-                let path = folder.join(format!("{name}.svg"));
-                export::put(&path, session.svg(&name).as_bytes(), asked.existing)
-            }
-            _ => Ok(()),
-        };
-        match done {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(failure) => {
-                lost = Some(failure);
-                ControlFlow::Break(())
-            }
+    let (mut output, mut names, mut lost) = (io::stdout().lock(), Names::default(), None);
+    let mut show = |shown: ScriptOutput<'_>| match write(shown, asked, &mut output, &mut names) {
+        Ok(()) => ControlFlow::Continue(()),
+        Err(failure) => {
+            lost = Some(failure);
+            ControlFlow::Break(())
         }
     };
     let result = runner::run_shown(&script, &keys, &running, world, &mut show);
     match lost {
         Some(failure) => Err(failure),
         None => result.map_err(|failure| CliError::Script { name, failure }),
+    }
+}
+
+/// How the script is run.
+fn options(asked: &Script, settings: &Effective, charset: Charset) -> ScriptOptions {
+    let plain = Theme::plain(charset == Charset::Ascii);
+    let theme = match asked.drawings {
+        // Drawings have colours unless the script says otherwise. What is printed stays the same.
+        Some(_) => Theme {
+            depth: ColorDepth::True,
+            palette: Palette::Dark,
+            ..plain
+        },
+        None => plain,
+    };
+    ScriptOptions {
+        options: Options {
+            sensor: settings.sensor(),
+            theme,
+            mouse: true,
+        },
+        size: asked.size,
+        styles: asked.styles,
+        json: asked.json,
+        keymap: settings.keymap().clone(),
+    }
+}
+
+/// Prints a text at once; draws a screen into the folder for drawings, if there is one.
+fn write(
+    shown: ScriptOutput<'_>,
+    asked: &Script,
+    output: &mut impl Write,
+    names: &mut Names,
+) -> Result<(), CliError> {
+    match (shown, &asked.drawings) {
+        (ScriptOutput::Text(text), _) => {
+            let written = output.write_all(text.as_bytes());
+            let flushed = written.and_then(|()| output.flush());
+            flushed.map_err(CliError::Write)
+        }
+        (ScriptOutput::Screen(name, session), Some(folder)) => {
+            let name = names.next(name);
+            let path = folder.join(format!("{name}.svg"));
+            export::put(&path, session.svg(&name).as_bytes(), asked.existing)
+        }
+        _ => Ok(()),
     }
 }
 

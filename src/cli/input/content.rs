@@ -1,4 +1,7 @@
-//! What the commands read: an imprint in any form or a stored shape, from a file or from standard input.
+//! Reads an imprint in any form, or a stored shape, from a file or from standard input.
+//!
+//! The form is recognised from the content, never from the file's name: `{` begins a stored shape, anything else is an
+//! imprint as text, PBM, CSV or NPY ([`imprint_file`]). At most [`MAX_BYTES`] are read.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -9,17 +12,17 @@ use crate::formats::{ImprintFormatError, ShapeError, StoredShape, imprint_file};
 use crate::imprint::Imprint;
 use crate::quote::legible;
 
-/// Where input comes from.
+/// Where to read from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum InputSource {
     /// A file.
     File(PathBuf),
-    /// Standard input, written `-`.
+    /// Standard input, given as `-`.
     Standard,
 }
 
 impl InputSource {
-    /// Its name in messages.
+    /// Its name for messages: the path, or `standard input`.
     pub(crate) fn name(&self) -> String {
         match self {
             Self::File(path) => path.to_string_lossy().into_owned(),
@@ -32,30 +35,33 @@ impl InputSource {
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
 pub(crate) enum Content {
-    /// An imprint alone.
+    /// An imprint: a matrix without a sensor or a name.
     Imprint(Imprint),
-    /// A stored shape.
+    /// A stored shape: an imprint with its name, sensor and source.
     Shape(StoredShape),
 }
 
-/// Why a file cannot be described.
+/// Why input cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum InputError {
     /// It cannot be opened or read.
     #[error("cannot read: {0}")]
     Read(#[from] io::Error),
-    /// No imprint and no shape is as large.
+    /// It is larger than any imprint or shape.
     #[error("larger than 1 MiB, which neither an imprint nor a shape is")]
     Large,
-    /// No imprint.
+    /// It is not an imprint in any known form.
     #[error(transparent)]
     Imprint(#[from] ImprintFormatError),
-    /// JSON, but no shape.
+    /// It starts like JSON, but is not a stored shape.
     #[error("{}", legible(&.0.to_string()))]
     Shape(#[from] ShapeError),
 }
 
-/// Reads a source: a stored shape where its first character is `{`, an imprint otherwise.
+/// Reads a source. If the first character is `{` it is a stored shape, otherwise an imprint.
+///
+/// # Errors
+/// [`InputError`], without the name of the source.
 pub(crate) fn read(source: &InputSource) -> Result<Content, InputError> {
     let bytes = match source {
         InputSource::File(path) => bytes(File::open(path)?)?,
@@ -70,6 +76,7 @@ pub(crate) fn read(source: &InputSource) -> Result<Content, InputError> {
     }
 }
 
+/// All bytes of a source, up to the limit.
 fn bytes(source: impl Read) -> Result<Vec<u8>, InputError> {
     let mut bytes = Vec::new();
     let limit = MAX_BYTES as u64;

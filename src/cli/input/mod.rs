@@ -1,4 +1,6 @@
-//! Reads what commands are given: files, standard input, shapes of the library.
+//! What commands read: imprints and stored shapes, from files, standard input and the library.
+//!
+//! `shapes` decides what a `NAME|FILE` argument means; `content` reads a file and recognises its form.
 
 pub(super) mod content;
 

@@ -1,4 +1,7 @@
-//! The library as the commands use it: shapes by name or by file, and storing them.
+//! The library as the commands see it: looks up shapes by name or file, and stores them.
+//!
+//! A `NAME|FILE` argument is looked up in this order: `-` is standard input; then a shape of the library; then a file.
+//! A path such as `./washer.json` cannot be a name, so it always means the file.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -13,19 +16,19 @@ use crate::formats::StoredShape;
 use crate::imprint::Imprint;
 use crate::storage::{Expected, Library, LibraryError};
 
-/// The library, opened when it is used first.
+/// The library, opened when it is first used: most commands never need it.
 #[derive(Debug)]
 pub(crate) struct Shelf {
     folder: Option<PathBuf>,
-    /// Whether the arguments name it.
+    /// Whether `--library` names the folder.
     asked: bool,
     library: RefCell<Option<Library>>,
-    /// What [`Shelf::imprint`] has found. A run uses what a shape was when it was asked for first.
+    /// What [`Shelf::imprint`] has found. A batch keeps using a shape as it was when it was first looked up.
     found: RefCell<HashMap<String, Imprint>>,
 }
 
 impl Shelf {
-    /// The library in that folder, where there is a place for one; and whether the arguments name it.
+    /// A shelf for the library in `folder`, None if the user has no home; `asked` if `--library` names the folder.
     pub(crate) fn new(folder: Option<PathBuf>, asked: bool) -> Self {
         Self {
             folder,
@@ -36,6 +39,9 @@ impl Shelf {
     }
 
     /// The library.
+    ///
+    /// # Errors
+    /// [`LibraryError::NoPlace`] if there is no folder for one.
     pub(crate) fn library(&self) -> Result<Library, LibraryError> {
         let mut library = self.library.borrow_mut();
         if library.is_none() {
@@ -44,12 +50,15 @@ impl Shelf {
         library.clone().ok_or(LibraryError::NoPlace)
     }
 
-    /// The library that the arguments name, if they do.
+    /// The library that `--library` names, or None if it is not given: scripts use an empty library of their own then.
     pub(crate) fn named(&self) -> Result<Option<Library>, LibraryError> {
         self.asked.then(|| self.library()).transpose()
     }
 
-    /// The shape of that name, else the content of that file; of standard input for `-`.
+    /// Looks up a `NAME|FILE` argument: `-`, then a name, then a file.
+    ///
+    /// # Errors
+    /// [`CliError::Nowhere`] if it is neither; otherwise what is wrong with the shape or the file.
     pub(crate) fn find(&self, what: &OsStr) -> Result<Content, CliError> {
         let read = |source: &InputSource| {
             content::read(source).map_err(|error| CliError::Input {
@@ -66,9 +75,9 @@ impl Shelf {
         let nowhere = match named {
             Some(Ok(loaded)) => return Ok(Content::Shape(loaded.shape)),
             Some(Err(LibraryError::Unknown { name })) => Some(name),
-            // What cannot be a name may be a path, and a path needs no library.
+            // What cannot be a name may be a path, and paths do not need a library.
             Some(Err(LibraryError::Name(_) | LibraryError::NoPlace)) | None => None,
-            // A library that cannot be read is told of unless there is such a file.
+            // An error of the library is reported only if there is no such file.
             Some(Err(error)) => {
                 return match read(&InputSource::File(what.into())) {
                     Err(CliError::Input {
@@ -91,20 +100,26 @@ impl Shelf {
         }
     }
 
-    /// The imprint of the shape of that name; read once.
+    /// The imprint of a stored shape, for the lines of a batch. Each shape is read once.
+    ///
+    /// # Errors
+    /// If there is no such shape, or it cannot be read.
     pub(crate) fn imprint(&self, name: &str) -> Result<Imprint, LibraryError> {
         if let Some(imprint) = self.found.borrow().get(name) {
             return Ok(*imprint);
         }
         let shape = self.library()?.load(name)?.shape;
-        // Only what is there is kept, and under one name each, not under all ways to write it in upper and lower case:
-        // no input makes this larger than the library.
+        // Only shapes that exist are kept, each under its stored name and not as it was spelled in the input: so the map
+        // never outgrows the library, whatever the input asks for.
         let mut found = self.found.borrow_mut();
         Ok(*found.entry(shape.name.to_string()).or_insert(shape.imprint))
     }
 
-    /// Stores a shape, in place of an own one of that name only by `force`; answers the name that it has there, which may
-    /// differ in upper and lower case.
+    /// Stores a shape and returns the name that it has in the library, which may differ in upper and lower case. With
+    /// `force` it replaces an own shape of that name.
+    ///
+    /// # Errors
+    /// [`CliError::Taken`] if there is one and `force` is false; otherwise those of the library.
     pub(crate) fn save(&self, shape: &StoredShape, force: bool) -> Result<String, CliError> {
         let library = self.library()?;
         let saved = match library.save(shape, Expected::Nothing) {

@@ -1,4 +1,8 @@
-//! Which characters the terminal shows, and how text is brought down to these.
+//! The characters that may be written, and how text is converted to them.
+//!
+//! In a locale that is not UTF-8, or with `--ascii`, all output is ASCII: known signs get a spelling (`°` becomes
+//! ` deg`), everything else a Rust escape (`\u{e9}`). In either character set control characters are escaped, because text
+//! from files and arguments must not be able to control the terminal.
 
 use std::borrow::Cow;
 use std::ffi::OsString;
@@ -9,16 +13,16 @@ use std::fmt::Write;
 pub(crate) enum Charset {
     /// Space to `~`.
     Ascii,
-    /// All that can be seen.
+    /// Every visible character.
     Unicode,
 }
 
 impl Charset {
-    /// ASCII where an argument is `--ascii` or the locale is not UTF-8.
+    /// ASCII if an argument is `--ascii` or the locale is not UTF-8.
     ///
-    /// The arguments are looked at before they are read, so that a message about them keeps to ASCII too. Of the
-    /// variables `LC_ALL`, `LC_CTYPE`, `LANG` the first that is set and not empty decides, as POSIX has it; where
-    /// none is, the locale is `C`.
+    /// This looks for `--ascii` before the arguments are parsed, so that a message about wrong arguments is in ASCII
+    /// too. As POSIX defines, the first of `LC_ALL`, `LC_CTYPE` and `LANG` that is set and not empty decides; if none
+    /// is, the locale is `C`.
     pub(crate) fn of(
         arguments: &[OsString],
         variable: impl Fn(&'static str) -> Option<OsString>,
@@ -29,7 +33,7 @@ impl Charset {
             .find(|value| !value.is_empty())
             .unwrap_or_default();
         let locale = locale.to_string_lossy().to_ascii_lowercase();
-        // language_COUNTRY.codeset@modifier, or the codeset alone, as macOS has it.
+        // language_COUNTRY.codeset@modifier, or only the codeset, as on macOS.
         let codeset = locale
             .split('@')
             .next()
@@ -43,7 +47,7 @@ impl Charset {
         }
     }
 
-    /// An active and an inactive taxel, two columns of the terminal each, so that cells look square.
+    /// An active and an inactive taxel. Each takes two columns of the terminal, so that cells look square.
     pub(crate) fn taxels(self) -> (&'static str, &'static str) {
         match self {
             Self::Ascii => ("# ", ". "),
@@ -51,8 +55,7 @@ impl Charset {
         }
     }
 
-    /// One line of text as it may be written: control characters are escaped, since text from files and arguments
-    /// must not steer the terminal.
+    /// Converts one line of text. Line ends are escaped like other control characters; see [`Self::lines`].
     pub(crate) fn line(self, text: &str) -> Cow<'_, str> {
         if text.chars().all(|character| self.has(character)) {
             return Cow::Borrowed(text);
@@ -75,12 +78,13 @@ impl Charset {
         Cow::Owned(line)
     }
 
-    /// The same for text of several lines.
+    /// Converts text of several lines, keeping its line ends.
     pub(crate) fn lines(self, text: &str) -> String {
         let lines: Vec<Cow<'_, str>> = text.split('\n').map(|line| self.line(line)).collect();
         lines.join("\n")
     }
 
+    /// Whether a character can be written as it is.
     fn has(self, character: char) -> bool {
         match self {
             Self::Ascii => matches!(character, ' '..='~'),
@@ -89,7 +93,7 @@ impl Charset {
     }
 }
 
-/// Characters without a shape of their own that reorder or break the text around them.
+/// Whether a character is invisible but reorders or breaks the text around it, such as a bidirectional override.
 fn is_unseen(character: char) -> bool {
     matches!(character, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}')
 }

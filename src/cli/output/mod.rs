@@ -1,4 +1,6 @@
-//! Writes answers: the character set, the tables, progress.
+//! Formats answers: the character set, the table of an imprint, the summary of a sweep, progress.
+//!
+//! Nothing here writes to standard output: commands return text, and [`crate::cli::run`] writes it.
 
 pub(super) mod charset;
 

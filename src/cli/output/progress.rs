@@ -1,6 +1,10 @@
-//! How far a sweep is, on standard error: a bar on a terminal, a line every ten seconds otherwise, or nothing.
+//! The progress of a sweep, on standard error.
 //!
-//! The only place of the command line that may write escape codes, through its library and to a terminal only.
+//! On a terminal it is a bar; otherwise, as in the log of a job, a line every ten seconds; with `--quiet` nothing. This is
+//! the only place of the command line that writes escape codes, and only to a terminal. A line in a log looks like this:
+//! ```text
+//! 250 of 1000 poses, 25 %, 30 s left
+//! ```
 
 use std::io::{IsTerminal, Write};
 use std::sync::Mutex;
@@ -11,24 +15,28 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use crate::cli::output::charset::Charset;
 
-/// A line comes this often where there is no terminal.
+/// The time between two lines, without a terminal.
 const PAUSE: Duration = Duration::from_secs(10);
 
-/// Shows the progress of so many poses.
+/// Shows how many poses of a sweep are done. It is shared by all threads of the sweep.
 pub(crate) struct Progress {
     all: u64,
     done: AtomicU64,
     shown: Shown,
 }
 
+/// How progress is shown.
 enum Shown {
+    /// Not at all.
     Nothing,
+    /// As a bar on the terminal.
     Bar(ProgressBar),
-    /// When it began, and when the last line came.
+    /// In lines: when the sweep began, and when the last line was written.
     Lines(Instant, Mutex<Instant>),
 }
 
 impl Progress {
+    /// Starts to show the progress of `all` poses.
     pub(crate) fn new(all: u64, quiet: bool, charset: Charset) -> Self {
         let shown = if quiet {
             Shown::Nothing
@@ -40,9 +48,9 @@ impl Progress {
                 Charset::Unicode => "█▌░",
             };
             let style = ProgressStyle::with_template(template);
-            // Millions a second: without the decimals that its library would show.
+            // Millions of poses a second: the library's own format would show decimals.
             let rate = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
-                // A line too short is all that can happen.
+                // Cannot fail: the text is kept in memory.
                 let _ = write!(text, "{:.0} poses/s", state.per_sec());
             };
             bar.set_style(
@@ -63,20 +71,20 @@ impl Progress {
         }
     }
 
-    /// So many poses more are done.
+    /// Reports that `poses` more are done. Any thread may call it.
     pub(crate) fn add(&self, poses: u64) {
         let done = self.done.fetch_add(poses, Ordering::Relaxed) + poses;
         match &self.shown {
             Shown::Nothing => {}
             Shown::Bar(bar) => bar.set_position(done),
             Shown::Lines(start, last) => {
-                // Another thread that is at it shows as much.
+                // If another thread is writing a line, this one need not.
                 let Ok(mut last) = last.try_lock() else {
                     return;
                 };
                 if last.elapsed() >= PAUSE {
                     *last = Instant::now();
-                    // Where not even this can be written, the sweep goes on.
+                    // The sweep goes on if standard error cannot be written to.
                     let _ = std::io::stderr()
                         .lock()
                         .write_all(self.line(done, start.elapsed()).as_bytes());
@@ -85,6 +93,7 @@ impl Progress {
         }
     }
 
+    /// A line of the log. The time left assumes that the rest takes as long per pose.
     #[expect(clippy::cast_precision_loss, reason = "for reading")]
     fn line(&self, done: u64, elapsed: Duration) -> String {
         let share = done as f64 / self.all as f64;
@@ -96,7 +105,7 @@ impl Progress {
         )
     }
 
-    /// Takes the bar away.
+    /// Removes the bar; lines stay.
     pub(crate) fn finish(&self) {
         if let Shown::Bar(bar) = &self.shown {
             bar.finish_and_clear();

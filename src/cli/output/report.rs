@@ -1,8 +1,19 @@
-//! An imprint with its descriptors as people read it: the matrix with rulers, what made it, a table of its regions.
+//! An imprint and its descriptors as text: the matrix with rulers, what made it, and a table of its regions.
+//! ```text
+//!     0   2
+//!  0  ██████
+//!  1  ██· ██
+//!  2  ██████
 //!
-//! The rulers count columns and rows from 0; the number of a column stands at its left edge, so it is the plane's x
-//! there. In the table a line is a descriptor and a column a region; where the regions do not fit beside each other
-//! the table goes on below. Lengths are in sides of a cell, and in mm where a pitch is given.
+//! 3 × 3 taxels, NA 8 in all
+//!
+//!                                     exterior 1       hole 1
+//! NA     active taxels                         8            1
+//! NAE    filled taxels                         9            1
+//! ```
+//! The rulers count columns and rows from 0. The number of a column stands at its left edge, where x is that number. In
+//! the table a line is a descriptor and a column is a region; regions that do not fit into 80 columns follow in
+//! another block below. Lengths are in cells; if the pitch is known, another line gives them in mm.
 
 use std::fmt::Write;
 
@@ -15,18 +26,18 @@ use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::touch::reaches_beyond;
 
-/// No line of a table is longer, unless a single region is.
+/// The width of a table, in characters. A single region is never split, even if it is wider.
 const WIDTH: usize = 80;
 
-/// The answer as one line of JSON.
+/// The answer of `--json`: one line with the imprint, its regions and their descriptors, and a line end.
 pub(crate) fn json(imprint: &Imprint) -> String {
     let mut line = json::text(&DescribedImprint(imprint));
     line.push('\n');
     line
 }
 
-/// JSON that quotes what others wrote, with all but ASCII escaped: the same bytes in every locale, and safe on a
-/// terminal.
+/// JSON with everything but ASCII escaped: the same bytes in every locale, and safe to print even if it quotes text from
+/// files.
 pub(crate) fn ascii_json(json: &str) -> String {
     let mut ascii = String::with_capacity(json.len());
     for unit in json.encode_utf16() {
@@ -39,7 +50,7 @@ pub(crate) fn ascii_json(json: &str) -> String {
     ascii
 }
 
-/// What made the imprint, and whether all of it is on the sensor.
+/// The lines that say what made an imprint, and that it reaches beyond the sensor if it does.
 pub(crate) fn made(source: &Source, sensor: &Sensor) -> Vec<String> {
     let mut lines = vec![source.to_string()];
     if reaches_beyond(source, sensor) {
@@ -48,7 +59,8 @@ pub(crate) fn made(source: &Source, sensor: &Sensor) -> Vec<String> {
     lines
 }
 
-/// The size of the matrix, of its cells where a pitch is known, the sensor's threshold, and the active taxels.
+/// The line with the size of the matrix, the pitch and the threshold if they are known, and the active taxels:
+/// `16 × 16 taxels of 2.5 mm, threshold 0.5, NA 36 in all`.
 pub(crate) fn size(imprint: &Imprint, sensor: Option<&Sensor>, pitch: Option<f64>) -> String {
     let cells = pitch.map_or(String::new(), |pitch| format!(" of {} mm", short(pitch)));
     let threshold = sensor.map_or(String::new(), |sensor| {
@@ -58,7 +70,8 @@ pub(crate) fn size(imprint: &Imprint, sensor: Option<&Sensor>, pitch: Option<f64
     format!("{columns} × {rows} taxels{cells}{threshold}, NA {na} in all")
 }
 
-/// The matrix, the lines that say what made it, and the table of its regions.
+/// The whole report: the matrix, the lines `made` that say where it comes from, and the table of its regions. With `pitch`,
+/// the side of a cell in mm, lengths and areas are given in mm and mm² too.
 pub(crate) fn table(
     imprint: &Imprint,
     made: &[String],
@@ -83,6 +96,7 @@ pub(crate) fn table(
     )
 }
 
+/// The matrix, two characters a taxel, with a ruler above and row numbers on the left.
 fn matrix(imprint: &Imprint, charset: Charset) -> String {
     let (active, inactive) = charset.taxels();
     let ruler: Vec<String> = (0..imprint.columns())
@@ -105,20 +119,21 @@ fn matrix(imprint: &Imprint, charset: Charset) -> String {
     text
 }
 
-/// Adds a line without the spaces at its end.
+/// Appends a line, without trailing spaces.
 fn line(text: &mut String, line: &str) {
     text.push_str(line.trim_end());
     text.push('\n');
 }
 
-/// A line of the table: a descriptor, and the factor that its values are shown times.
+/// A line of the table: a descriptor, the factor from its values to those shown (the pitch, or 100 for percent), and the
+/// label on the left.
 struct TableRow {
     descriptor: &'static Descriptor,
     factor: f64,
     label: String,
 }
 
-/// All lines; with a pitch, each length and area again in mm and mm².
+/// The lines of the table. With a pitch, each length is followed by the same in mm and each area by the same in mm².
 fn table_rows(pitch: Option<f64>) -> Vec<TableRow> {
     let mut all = Vec::new();
     for descriptor in DESCRIPTORS {
@@ -148,7 +163,7 @@ fn table_rows(pitch: Option<f64>) -> Vec<TableRow> {
     all
 }
 
-/// The left column of the table, its heading first, all padded to one width.
+/// The left column of the table, padded to one width; the first cell, above the labels, is empty.
 fn labels(pitch: Option<f64>, charset: Charset) -> Vec<String> {
     let mut labels = vec![String::new()];
     labels.extend(
@@ -169,7 +184,7 @@ fn widest(cells: &[String]) -> usize {
     widths.fold(0, usize::max)
 }
 
-/// A column for each region, its heading first, padded to one width each.
+/// A column for each region, with its heading, such as `hole 2`, in the first cell; each padded to its own width.
 fn columns(descriptions: &[Description], pitch: Option<f64>, charset: Charset) -> Vec<Vec<String>> {
     let rows = table_rows(pitch);
     let (mut exteriors, mut holes) = (0, 0);
@@ -194,7 +209,7 @@ fn columns(descriptions: &[Description], pitch: Option<f64>, charset: Charset) -
     descriptions.iter().map(column).collect()
 }
 
-/// The columns beside each other, as many as fit, then the others below.
+/// Puts columns side by side, as many as fit into [`WIDTH`], and the rest into further blocks below, each with the labels.
 fn blocks(labels: &[String], mut columns: &[Vec<String>]) -> String {
     let width = |column: &[String]| column.first().map_or(0, |cell| cell.chars().count());
     let mut text = String::new();

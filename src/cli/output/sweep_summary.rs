@@ -1,4 +1,15 @@
-//! What a sweep found, in short: as people read it, and as one line of JSON.
+//! The summary of a sweep: as text, and as one line of JSON.
+//!
+//! The text gives the counts, then a line per feature and a column per statistic. `–` marks a value that does not exist:
+//! ```text
+//! 10000 poses: x0 5:5.99:0.01, y0 5:5.99:0.01
+//! 393 distinct imprints, 376 up to shifts, 58 up to quarter turns and mirror images too
+//! 0 poses reach beyond the sensor, 0 leave no imprint; 0.03 s
+//!
+//!                         min       mean        max         sd  …
+//! na                  35.0000    37.6952    40.0000     1.2792  …
+//! ```
+//! The keys of the JSON are described in `docs/files.md`.
 
 use std::fmt::Write;
 use std::time::Duration;
@@ -11,7 +22,7 @@ use crate::formats::json;
 use crate::pose::{Axis, PoseGrid};
 use crate::sweep::SweepResult;
 
-/// A result, and how long it took.
+/// The result of a sweep, and how long it took.
 pub(crate) struct SweepSummary<'a> {
     result: &'a SweepResult,
     classes: (usize, usize),
@@ -19,6 +30,7 @@ pub(crate) struct SweepSummary<'a> {
 }
 
 impl<'a> SweepSummary<'a> {
+    /// Summarises a result. This counts the classes of its imprints, which takes a moment for a large atlas.
     pub(crate) fn new(result: &'a SweepResult, took: Duration) -> Self {
         Self {
             result,
@@ -27,14 +39,14 @@ impl<'a> SweepSummary<'a> {
         }
     }
 
-    /// One line of JSON.
+    /// The summary as one line of JSON, with its line end.
     pub(crate) fn json(&self) -> String {
         let mut line = json::text(self);
         line.push('\n');
         line
     }
 
-    /// Counts, and a table of the statistics.
+    /// The counts and a table of the statistics, as text.
     pub(crate) fn text(&self, charset: Charset) -> String {
         let SweepResult {
             grid,
@@ -118,6 +130,7 @@ impl Serialize for GridRanges<'_> {
     }
 }
 
+/// The statistics of all features, by key.
 struct Descriptors<'a>(&'a [Statistic]);
 
 impl Serialize for Descriptors<'_> {
@@ -127,6 +140,7 @@ impl Serialize for Descriptors<'_> {
     }
 }
 
+/// The statistics of one feature, by column.
 struct Row<'a>(&'a Statistic);
 
 impl Serialize for Row<'_> {

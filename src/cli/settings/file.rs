@@ -1,6 +1,7 @@
-//! The file of settings, read from its text.
+//! The settings file: TOML text in, checked values out.
 //!
-//! It is TOML. All of it may be left out; what it does not know it refuses, and every refusal tells its place:
+//! Every entry is optional. An unknown entry or a wrong value is an error with its line and column, so a misspelled key is
+//! never silently ignored:
 //! ```
 //! use taxel::cli::settings::file::Config;
 //! let config = Config::read("theme = 'light'\n[sensor]\ncolumns = 32\n[keys.matrix]\nx = 'toggle'\n").unwrap();
@@ -22,10 +23,10 @@ use crate::tui::keys::key::{Key, parse};
 use crate::tui::keys::keymap::{Change, Keymap, KeymapError};
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
-/// What stands for a choice that the program makes.
+/// The word that leaves a choice to the program.
 pub(crate) const AUTO: &str = "auto";
 
-/// The keys at the top of the file, in the order in which they are told.
+/// The keys at the top level of the file, in the order in which messages list them.
 const TOP: [&str; 7] = [
     "theme", "color", "charset", "mouse", "library", "sensor", "keys",
 ];
@@ -38,22 +39,22 @@ pub(crate) const SENSOR: [(&str, Parameter); 4] = [
     ("pitch", Parameter::Pitch),
 ];
 
-/// Which characters may be written.
+/// The names of the character sets, and whether each is ASCII only.
 pub(crate) const CHARSETS: [(&str, bool); 2] = [("ascii", true), ("unicode", false)];
 
-/// Something that the file says, and on which line.
+/// A value in the file, and its line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Written<T> {
-    /// What.
+    /// The value.
     pub value: T,
     /// The line, from 1.
     pub line: usize,
 }
 
-/// No file of settings is longer, in bytes: 64 KiB. Of a mebibyte of malice the parser would make seventy.
+/// The largest settings file, in bytes. The parser may need seventy times the size of a hostile file.
 pub const MAX_BYTES: usize = 64 << 10;
 
-/// What the file says; nothing where it is silent. Of a choice none is `auto`.
+/// The content of the file. None means that the file does not set it; an inner None means `auto`.
 #[derive(Clone, Debug, Default)]
 pub struct Config {
     pub(crate) theme: Option<Written<Option<Palette>>>,
@@ -69,7 +70,7 @@ pub struct Config {
     keymap: Keymap,
 }
 
-/// What is wrong with the file, and where: line and column, both from 1, the column in characters.
+/// An error in the file, with its line and column. Both count from 1, the column in characters.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{line}:{column}: {wrong}")]
 pub struct ConfigError {
@@ -77,7 +78,7 @@ pub struct ConfigError {
     pub line: usize,
     /// The column.
     pub column: usize,
-    /// What.
+    /// What is wrong there.
     pub wrong: Wrong,
 }
 
@@ -88,32 +89,32 @@ pub enum Wrong {
     /// It is longer than [`MAX_BYTES`].
     #[error("larger than 64 KiB, which no file of settings is")]
     Large,
-    /// It is no TOML.
+    /// It is not valid TOML.
     #[error("{0}")]
     Syntax(String),
-    /// A key, or a place with keys, that there is none of.
+    /// There is no such entry, or no such place for keys.
     #[error("unknown key {found:?}, expected one of {}", expected.join(", "))]
     Unknown {
-        /// What stands there.
+        /// The key found.
         found: String,
-        /// What could.
+        /// The keys that are possible there.
         expected: Vec<&'static str>,
     },
-    /// A value that is not of the kind.
+    /// A value of the wrong type, or not one of the possible ones.
     #[error("expected {expected}, found {found}")]
     Value {
-        /// What could stand there.
+        /// What is possible there.
         expected: String,
-        /// What does.
+        /// What was found.
         found: String,
     },
-    /// A number that no sensor has.
+    /// A number out of range for a sensor.
     #[error(transparent)]
     Sensor(#[from] ParameterError),
     /// Not the notation of one key.
     #[error("{0:?} is not one key, expected one as in x, <Tab>, <C-x>")]
     Key(String),
-    /// A change of keys that cannot be made.
+    /// A key that cannot be bound that way.
     #[error(transparent)]
     Keymap(#[from] KeymapError),
 }
@@ -121,14 +122,14 @@ pub enum Wrong {
 /// An entry of a table: its key, the byte at which it starts, and its value.
 type TomlEntry<'t, 'i> = (&'t str, usize, &'t Spanned<DeValue<'i>>);
 
-/// What is wrong, and at which byte.
+/// An error, and the byte at which it is.
 type Refusal = (usize, Wrong);
 
 impl Config {
-    /// What a text says.
+    /// Reads the text of a settings file.
     ///
     /// # Errors
-    /// The first thing that is wrong.
+    /// The first error in it.
     pub fn read(text: &str) -> Result<Self, ConfigError> {
         Self::of(text).map_err(|(byte, wrong)| {
             let (line, column) = place(text, byte);
@@ -150,12 +151,12 @@ impl Config {
         &self.sensor_entries
     }
 
-    /// The keys that it changes.
+    /// The key bindings that the file changes.
     pub fn changes(&self) -> &[Written<Change>] {
         &self.changes
     }
 
-    /// The keys as they are with its changes.
+    /// All key bindings, with the changes of the file.
     pub fn keymap(&self) -> &Keymap {
         &self.keymap
     }
@@ -176,6 +177,7 @@ impl Config {
         Ok(config)
     }
 
+    /// Takes one entry of the top level.
     fn take(&mut self, text: &str, entry: TomlEntry<'_, '_>) -> Result<(), Refusal> {
         let (key, byte, value) = entry;
         let line = place(text, byte).0;
@@ -219,6 +221,7 @@ impl Config {
         Ok(())
     }
 
+    /// Takes the table `[keys]`: a table per place, in which each key is given an action or `"none"`.
     fn bind_keys(&mut self, text: &str, value: &Spanned<DeValue<'_>>) -> Result<(), Refusal> {
         let mut spans = Vec::new();
         for (name, byte, value) in entries(table(value)?) {
@@ -259,7 +262,7 @@ impl Config {
     }
 }
 
-/// The entries of a table in the order of the text.
+/// The entries of a table, in the order in which they are written: so errors are reported from the top.
 fn entries<'t, 'i>(table: &'t DeTable<'i>) -> Vec<TomlEntry<'t, 'i>> {
     let mut entries: Vec<TomlEntry<'_, '_>> = table
         .iter()
@@ -269,7 +272,7 @@ fn entries<'t, 'i>(table: &'t DeTable<'i>) -> Vec<TomlEntry<'t, 'i>> {
     entries
 }
 
-/// Line and column of a byte.
+/// The line and column of a byte, both from 1.
 fn place(text: &str, byte: usize) -> (usize, usize) {
     let before = text.get(..byte).unwrap_or(text);
     let line = before.split('\n').count();
@@ -284,7 +287,7 @@ fn one_key(text: &str) -> Option<Key> {
     }
 }
 
-/// One of some names, or `auto`.
+/// A value that is one of some names, or `auto`, which gives None.
 fn choice<T: Copy, const N: usize>(
     names: &[(&'static str, T); N],
     value: &Spanned<DeValue<'_>>,
@@ -311,7 +314,7 @@ fn table<'t, 'i>(value: &'t Spanned<DeValue<'i>>) -> Result<&'t DeTable<'i>, Ref
     table.ok_or_else(|| other_kind("a table", value))
 }
 
-/// What is no finite number is refused by the parameter.
+/// A number in decimal notation. NaN and infinities pass here; the parameter's range refuses them.
 fn number(value: &Spanned<DeValue<'_>>) -> Result<f64, Refusal> {
     let (text, decimal) = match value.get_ref() {
         DeValue::Integer(number) => (number.as_str(), number.radix() == 10),

@@ -1,4 +1,4 @@
-//! What the flags say of the settings.
+//! The flags that override settings: `--theme`, `--color`, `--ascii`, `--no-mouse`, `--library` and those of the sensor.
 
 use std::path::PathBuf;
 
@@ -7,17 +7,17 @@ use clap::ArgMatches;
 use crate::cli::arguments::parameters::Given;
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
-/// What a flag with several words says.
+/// The value of a flag that takes one of several words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Choice<T> {
-    /// `auto`: the program chooses, whatever the file says.
+    /// `auto`: the program chooses, even if the file says otherwise.
     Auto,
-    /// One of the others.
+    /// Another word, which stands for this value.
     Made(T),
 }
 
 impl<T> Choice<T> {
-    /// What was chosen, if it is not left to the program.
+    /// The value chosen, or None for `auto`.
     pub(crate) fn made(self) -> Option<T> {
         match self {
             Self::Auto => None,
@@ -26,7 +26,7 @@ impl<T> Choice<T> {
     }
 }
 
-/// What the flags say; nothing where they are silent.
+/// The settings given as flags. None, false or empty means that the flag was not given.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Chosen {
     pub(crate) theme: Option<Choice<Palette>>,
@@ -38,7 +38,7 @@ pub(crate) struct Chosen {
 }
 
 impl Chosen {
-    /// Those of a command; it needs not have all the flags.
+    /// The flags of a command. A flag that the command does not have counts as not given.
     pub(crate) fn of(matches: &ArgMatches) -> Self {
         let chosen = |name: &str| {
             let chosen = matches.try_get_one::<String>(name).ok().flatten();
@@ -59,7 +59,7 @@ impl Chosen {
     }
 }
 
-/// What a name stands for.
+/// The value that a word stands for; anything unknown is `auto`, but clap has refused such words already.
 fn value_of<T: Copy>(names: &[(&'static str, T)], name: &str) -> Choice<T> {
     let found = names.iter().find(|(own, _)| *own == name);
     found.map_or(Choice::Auto, |(_, value)| Choice::Made(*value))

@@ -1,19 +1,21 @@
-//! In which size of cells lengths are told in mm too.
+//! The pitch for lengths in mm: lengths are always given in cells, and in mm too if a pitch is known.
 
 use crate::sensor::Sensor;
 
-/// What is known of the pitch, in mm, besides a stored shape.
+/// The pitch in mm, as far as it is known before a stored shape is read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Pitch {
-    /// By a flag.
+    /// From `--pitch`.
     pub(crate) given: Option<f64>,
-    /// By the settings.
+    /// From the settings file.
     pub(crate) usual: Option<f64>,
 }
 
 impl Pitch {
-    /// The pitch that counts: that of the flag, else of the sensor, else of the settings; none where nobody has said one.
-    /// The default of a sensor, which every stored shape has that was never told otherwise, says nothing.
+    /// The pitch in effect, in mm: that of the flag, else of a stored shape's sensor, else of the settings; None if none of
+    /// them sets one.
+    ///
+    /// A sensor with the default pitch counts as unset: a shape stored without a pitch has it too.
     pub(crate) fn of(self, sensor: Option<&Sensor>) -> Option<f64> {
         let own = sensor.map(Sensor::pitch_mm);
         let own = own.filter(|&pitch| pitch != Sensor::default().pitch_mm());

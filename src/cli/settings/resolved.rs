@@ -1,4 +1,13 @@
-//! The settings that hold: a flag before the environment, that before the file, that before the program's own.
+//! The settings in effect, each with where it comes from.
+//!
+//! A flag beats the environment, the environment beats the file, the file beats the default. `taxel config` prints the
+//! result as a settings file in which a comment names the origin of each line:
+//! ```text
+//! # /home/ana/.config/taxel/config.toml
+//! theme = "light"                        # file, line 1
+//! color = "never"                        # environment, NO_COLOR
+//! mouse = true                           # default
+//! ```
 
 use std::ffi::OsString;
 use std::fmt;
@@ -17,20 +26,25 @@ use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
-/// The variable that names the file.
+/// The environment variable that names the settings file.
 pub(crate) const VARIABLE: &str = "TAXEL_CONFIG";
 
-/// The file of settings.
+/// The settings file, or what stands in for it if there is none.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Loaded {
-    /// Where it is, or would be.
+    /// Where it is or would be; None if the user has no home.
     path: Option<PathBuf>,
+    /// Whether the file exists.
     there: bool,
     config: Config,
 }
 
 impl Loaded {
-    /// The file asked for, else that of the variable, else the user's own, which may be missing.
+    /// Reads the settings file: the one of `--config`, else of `TAXEL_CONFIG`, else the user's own. Only the user's own
+    /// may be missing.
+    ///
+    /// # Errors
+    /// [`CliError::Settings`] if it cannot be read or has an error.
     pub(crate) fn find(asked: Option<PathBuf>) -> Result<Self, CliError> {
         let variable = std::env::var_os(VARIABLE).filter(|value| !value.is_empty());
         if let Some(path) = asked.or_else(|| variable.map(PathBuf::from)) {
@@ -43,6 +57,7 @@ impl Loaded {
         )
     }
 
+    /// Reads a settings file, at most one byte more than [`MAX_BYTES`] of it.
     fn read(path: PathBuf, may_be_missing: bool) -> Result<Self, CliError> {
         let name = path.display();
         let failure = |message: String| CliError::Settings {
@@ -73,12 +88,16 @@ impl Loaded {
     }
 }
 
-/// Where a value comes from.
+/// Where a value comes from, as `taxel config` shows it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum SettingOrigin {
+    /// The program.
     Default,
+    /// This line of the settings file.
     File(usize),
+    /// This environment variable.
     Environment(&'static str),
+    /// This flag, without its dashes.
     Flag(String),
 }
 
@@ -100,7 +119,7 @@ struct Settled<T> {
     origin: SettingOrigin,
 }
 
-/// The first that says something: a flag, a variable of the environment, the file, the program.
+/// Picks the value of a setting: that of the flag, else of the environment variable, else of the file, else the default.
 fn settled<T: Clone>(
     flag: Option<(T, &str)>,
     variable: Option<(T, &'static str)>,
@@ -117,7 +136,7 @@ fn settled<T: Clone>(
     Settled { value, origin }
 }
 
-/// All settings. Of a choice none is `auto`.
+/// All settings in effect. For a choice None means `auto`.
 #[derive(Clone, Debug)]
 pub(crate) struct Effective {
     loaded: Loaded,
@@ -127,11 +146,15 @@ pub(crate) struct Effective {
     mouse: Settled<bool>,
     library: Settled<Option<PathBuf>>,
     sensor: Sensor,
-    of_sensor: Vec<(&'static str, Parameter, SettingOrigin)>,
+    /// The parameters of the sensor, each with the name of its flag.
+    of_sensor: [(&'static str, Parameter, SettingOrigin); SENSOR.len()],
 }
 
 impl Effective {
-    /// What holds with these flags, this environment and this file.
+    /// Puts settings together: `loaded` is the file, `chosen` the flags, `variable` reads the environment.
+    ///
+    /// # Errors
+    /// [`CliError::Range`] if a flag of the sensor is out of range.
     pub(crate) fn new(
         loaded: Loaded,
         chosen: Chosen,
@@ -143,17 +166,15 @@ impl Effective {
             value: location::below_home(&own.value),
             line: own.line,
         });
-        let mut of_sensor = Vec::new();
-        for (name, parameter) in SENSOR {
+        let of_sensor = SENSOR.map(|(name, parameter)| {
             let mut entries = config.sensor_entries().iter();
-            let own = entries.find(|own| own.value == parameter);
-            let origin = match own {
+            let origin = match entries.find(|own| own.value == parameter) {
                 _ if chosen.sensor.has(parameter) => SettingOrigin::Flag(name.to_owned()),
                 Some(own) => SettingOrigin::File(own.line),
                 None => SettingOrigin::Default,
             };
-            of_sensor.push((name, parameter, origin));
-        }
+            (name, parameter, origin)
+        });
         Ok(Self {
             theme: settled(
                 chosen.theme.map(|theme| (theme.made(), "theme")),
@@ -192,32 +213,32 @@ impl Effective {
         })
     }
 
-    /// What colours are chosen for.
+    /// The palette; None if it depends on the terminal.
     pub(crate) fn theme(&self) -> Option<Palette> {
         self.theme.value
     }
 
-    /// How many colours.
+    /// The number of colours; None if it depends on the terminal.
     pub(crate) fn color(&self) -> Option<ColorDepth> {
         self.color.value
     }
 
-    /// Whether the mouse is reported.
+    /// Whether the screen reacts to the mouse.
     pub(crate) fn mouse(&self) -> bool {
         self.mouse.value
     }
 
-    /// The library's folder, where there is one.
+    /// The library's folder; None if the user has no home and nothing names another.
     pub(crate) fn library(&self) -> Option<&PathBuf> {
         self.library.value.as_ref()
     }
 
-    /// The sensor.
+    /// The sensor: the default one, changed by the file and the flags.
     pub(crate) fn sensor(&self) -> Sensor {
         self.sensor
     }
 
-    /// The pitch in mm, where one is set.
+    /// The pitch in mm, if the file or a flag sets it. The default pitch is not shown in mm.
     pub(crate) fn pitch(&self) -> Option<f64> {
         let set = |(_, parameter, origin): &&(_, Parameter, SettingOrigin)| {
             *parameter == Parameter::Pitch && *origin != SettingOrigin::Default
@@ -226,12 +247,12 @@ impl Effective {
         pitch.map(|_| self.sensor.pitch_mm())
     }
 
-    /// The keys.
+    /// All key bindings, with the changes of the file.
     pub(crate) fn keymap(&self) -> &Keymap {
         self.loaded.config.keymap()
     }
 
-    /// The characters that may be written: what is set, else those of the locale.
+    /// The character set of the command line's output: the one set, else that of the locale.
     pub(crate) fn charset(&self, locale: Charset) -> Charset {
         match self.charset.value {
             Some(true) => Charset::Ascii,
@@ -240,12 +261,12 @@ impl Effective {
         }
     }
 
-    /// Whether the characters are ASCII only, where that is not left to the locale and the terminal.
+    /// Whether the screen is ASCII only; None if that depends on the locale and the terminal.
     pub(crate) fn ascii(&self) -> Option<bool> {
         self.charset.value
     }
 
-    /// All of them as a file of settings, each with where it comes from.
+    /// All settings as the text of a settings file; a comment at the end of each line names its origin.
     pub(crate) fn text(&self, charset: Charset) -> String {
         let mut text = match &self.loaded.path {
             Some(path) => {
@@ -276,6 +297,7 @@ impl Effective {
         text + "\n[sensor]\n" + &self.sensor_text() + &self.keys_text(&quoted)
     }
 
+    /// The table `[sensor]`.
     fn sensor_text(&self) -> String {
         let value = |parameter| match parameter {
             Parameter::Columns => f64::from(self.sensor.columns()),
@@ -285,7 +307,7 @@ impl Effective {
         };
         let line = |(name, parameter, origin): &(&str, Parameter, SettingOrigin)| {
             let entry = match (parameter, origin) {
-                // A pitch that is set has lengths told in mm too.
+                // An entry, even with the default value, would show lengths in mm.
                 (Parameter::Pitch, SettingOrigin::Default) => "# pitch is not set".to_owned(),
                 (parameter, _) => format!("{name} = {}", value(*parameter)),
             };
@@ -294,6 +316,7 @@ impl Effective {
         self.of_sensor.iter().map(line).collect()
     }
 
+    /// The tables `[keys.…]`: every key with its action, and those that the file has freed.
     fn keys_text(&self, quoted: &impl Fn(&str) -> String) -> String {
         let changes = self.loaded.config.changes();
         let mut text = String::new();
@@ -316,18 +339,18 @@ impl Effective {
     }
 }
 
-/// An entry and where it comes from, the latter in a column of its own.
+/// A line of the text: the entry, and its origin as a comment, aligned.
 fn told(entry: &str, origin: &SettingOrigin) -> String {
     format!("{entry:<37}  # {origin}\n")
 }
 
-/// The name of a choice.
+/// The name of a choice; `auto` for None.
 fn named<T: PartialEq>(names: &[(&'static str, T)], value: Option<&T>) -> &'static str {
     let found = names.iter().find(|(_, own)| Some(own) == value);
     found.map_or(AUTO, |(name, _)| name)
 }
 
-/// A text as TOML has it in quotes.
+/// A text as a TOML string. Characters that are not in the character set, or not visible, are escaped.
 fn quoted(text: &str, charset: Charset) -> String {
     let mut quoted = String::from("\"");
     for character in text.chars() {

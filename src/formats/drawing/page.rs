@@ -262,45 +262,72 @@ impl PageLayout<'_> {
         self.subject.pitch_mm.map_or("cells", |_| "mm")
     }
 
-    /// What the signs mean, with the values of what is described.
+    /// The legend below the plane: what each sign means, with the values of the region described.
     fn legend(&mut self) {
-        let pitch = self.subject.pitch_mm.unwrap_or(1.0);
-        let told = |value: Value| value::times(value, pitch, 4).unwrap_or_else(|| "–".to_owned());
-        let unit = self.unit();
         let mut y = self.end.1 + ROW * 1.4;
-        let mut row = |layout: &mut Self, text: &str, sign: &dyn Fn(&mut Self, Position)| {
-            sign(layout, (layout.corner.0 + SWATCH / 2.0, y - TEXT * 0.35));
-            let place = (layout.corner.0 + SWATCH + 6.0, y);
-            layout.text(text, place, TextAnchor::Start);
-            layout.end.1 = y + TEXT * 0.3;
-            y += ROW;
+        self.legend_of_taxels(&mut y);
+        if !self.subject.outline.is_empty() {
+            self.legend_row(&mut y, "outline", |layout, place| {
+                layout.line("legend", stretch(place), OUTLINE);
+            });
+        }
+        let Some((_, description)) = self.subject.described else {
+            return;
         };
-        let box_of = |(x, y): Position| ((x - 6.0, y - 4.0), (x + 6.0, y + 4.0));
+        let (pitch, unit) = (self.subject.pitch_mm.unwrap_or(1.0), self.unit());
+        let told = |value: Value| value::times(value, pitch, 4).unwrap_or_else(|| "–".to_owned());
+        let rect = told(Value::Rect(description.rect));
+        self.legend_row(
+            &mut y,
+            &format!("rectangle {rect} {unit}"),
+            |layout, place| {
+                layout.line("legend", stretch(place), RECTANGLE);
+            },
+        );
+        let cg = told(Value::Point(description.cg()));
+        self.legend_row(&mut y, &format!("CG {cg} {unit}"), |layout, place| {
+            layout.line("legend", cross(place, 3.5), POINT);
+        });
+        let cd = told(Value::Point(description.cd()));
+        self.legend_row(&mut y, &format!("CD {cd} {unit}"), |layout, place| {
+            layout.line("legend", circle(place, 3.5), POINT);
+        });
+    }
+
+    /// The legend's first rows: the taxels of the region described, and the other active ones.
+    fn legend_of_taxels(&mut self, y: &mut f64) {
         let all = self.subject.imprint.count();
-        let described = self.subject.described.as_ref().map(|(_, it)| *it);
-        let na = described.map_or(0, |description| description.na);
-        let what = match described.map(|description| description.kind) {
-            Some(RegionKind::Hole) => format!("taxels of the hole described: {na}"),
-            Some(RegionKind::Exterior) if na == all => format!("active taxels: {na}"),
-            Some(RegionKind::Exterior) => format!("active taxels of the region described: {na}"),
-            None => "no active taxels".to_owned(),
+        let described = self
+            .subject
+            .described
+            .as_ref()
+            .map(|(_, it)| (it.kind, it.na));
+        let (what, na, others) = match described {
+            Some((RegionKind::Hole, na)) => {
+                (format!("taxels of the hole described: {na}"), na, all)
+            }
+            Some((RegionKind::Exterior, na)) if na == all => {
+                (format!("active taxels: {na}"), na, 0)
+            }
+            Some((RegionKind::Exterior, na)) => (
+                format!("active taxels of the region described: {na}"),
+                na,
+                all - na,
+            ),
+            None => ("no active taxels".to_owned(), 0, all),
         };
-        row(self, &what, &|layout, place| {
+        self.legend_row(y, &what, |layout, place| {
             if na > 0 {
                 layout.filled("legend", vec![box_of(place)], DESCRIBED);
             }
             let (low, high) = box_of(place);
             layout.line("legend", rectangle(low, high), CELLS);
         });
-        let others = match described.map(|description| description.kind) {
-            Some(RegionKind::Hole) => all,
-            _ => all - na,
-        };
         if others > 0 {
-            row(
-                self,
+            self.legend_row(
+                y,
                 &format!("other active taxels: {others}"),
-                &|layout, place| {
+                |layout, place| {
                     let (low, high) = box_of(place);
                     layout.filled("legend", vec![(low, high)], OTHER);
                     layout.line("legend", hatch(&[(low, high)]), HATCH);
@@ -308,35 +335,27 @@ impl PageLayout<'_> {
                 },
             );
         }
-        let stretch = |(x, y): Position| {
-            let half = SWATCH / 2.0;
-            vec![Segment::Move((x - half, y)), Segment::Line((x + half, y))]
-        };
-        if !self.subject.outline.is_empty() {
-            row(self, "outline", &|layout, place| {
-                layout.line("legend", stretch(place), OUTLINE);
-            });
-        }
-        let Some(description) = described else {
-            return;
-        };
-        let rect = told(Value::Rect(description.rect));
-        row(
-            self,
-            &format!("rectangle {rect} {unit}"),
-            &|layout, place| {
-                layout.line("legend", stretch(place), RECTANGLE);
-            },
-        );
-        let cg = told(Value::Point(description.cg()));
-        row(self, &format!("CG {cg} {unit}"), &|layout, place| {
-            layout.line("legend", cross(place, 3.5), POINT);
-        });
-        let cd = told(Value::Point(description.cd()));
-        row(self, &format!("CD {cd} {unit}"), &|layout, place| {
-            layout.line("legend", circle(place, 3.5), POINT);
-        });
     }
+
+    /// A row of the legend: `sign` draws at the given place, the text stands to its right. `y` moves to the next row.
+    fn legend_row(&mut self, y: &mut f64, text: &str, sign: impl FnOnce(&mut Self, Position)) {
+        sign(self, (self.corner.0 + SWATCH / 2.0, *y - TEXT * 0.35));
+        let place = (self.corner.0 + SWATCH + 6.0, *y);
+        self.text(text, place, TextAnchor::Start);
+        self.end.1 = *y + TEXT * 0.3;
+        *y += ROW;
+    }
+}
+
+/// The box of a legend's sign.
+fn box_of((x, y): Position) -> (Position, Position) {
+    ((x - 6.0, y - 4.0), (x + 6.0, y + 4.0))
+}
+
+/// A legend's piece of a line.
+fn stretch((x, y): Position) -> Vec<Segment> {
+    let half = SWATCH / 2.0;
+    vec![Segment::Move((x - half, y)), Segment::Line((x + half, y))]
 }
 
 /// A stroke through each cell, from its lower left corner up.

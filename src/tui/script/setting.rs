@@ -12,7 +12,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use crate::formats::StoredShape;
+use crate::formats::{StoredShape, json};
 use crate::parameter::{Parameter, ParameterError};
 use crate::quote::shortened;
 use crate::sensor::{SENSOR_PARAMETERS, Sensor};
@@ -126,8 +126,7 @@ fn name_of<T: Copy + PartialEq>(value: T, choices: &[(&'static str, T)]) -> &'st
 }
 
 fn in_a_line(shape: &StoredShape) -> String {
-    // A shape is plain text and numbers: there is nothing that JSON has no form for.
-    serde_json::to_string(shape).unwrap_or_default()
+    json::text(shape)
 }
 
 /// The lines that tell how the program was started: how it looks and its sensor.
