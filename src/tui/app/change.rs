@@ -111,7 +111,7 @@ pub(in crate::tui) fn shift(app: &mut App, dx: f64, dy: f64) {
     let moved: Vec<(Parameter, f64)> = ways
         .into_iter()
         .filter(|(_, by)| *by != 0.0)
-        .map(|(parameter, by)| (parameter, tidy(source.get(parameter).unwrap_or(0.0) + by)))
+        .filter_map(|(parameter, by)| Some((parameter, tidy(source.get(parameter)? + by))))
         .collect();
     set(app, source, &moved);
 }
@@ -119,12 +119,11 @@ pub(in crate::tui) fn shift(app: &mut App, dx: f64, dy: f64) {
 /// Turns the shape, as seen.
 pub(in crate::tui) fn turn(app: &mut App, clockwise: i16) {
     let Some(source) = movable(app) else { return };
-    let value = source.get(Parameter::Angle).unwrap_or(0.0) + f64::from(clockwise) * source.sense();
-    set(
-        app,
-        source,
-        &[(Parameter::Angle, tidy(value).rem_euclid(360.0))],
-    );
+    if let Some(angle) = source.get(Parameter::Angle) {
+        let turned = tidy(angle + f64::from(clockwise) * source.sense());
+        let angle = turned.rem_euclid(360.0);
+        set(app, source, &[(Parameter::Angle, angle)]);
+    }
 }
 
 /// Makes a picture larger or smaller by a step.

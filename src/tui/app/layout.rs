@@ -5,6 +5,7 @@ use ratatui::layout::Rect;
 use crate::imprint::Imprint;
 use crate::tui::app::page::Slot;
 use crate::tui::matrix::layout::{matrix_width, scale};
+use crate::tui::widget::write::right_of;
 
 /// The panel is not made narrower than this; below, it is a page of its own.
 const PANEL: u16 = 30;
@@ -63,49 +64,19 @@ impl Panes {
             height: area.height - 1 - foot,
             ..area
         };
-        // Square taxels first; narrow ones only for a matrix that would not fit with square ones at all.
-        let beside_panel = |cell: u16| {
-            Some(matrix_width(imprint, cell)).filter(|width| width + 1 + PANEL <= area.width)
-        };
-        let whole = matrix_width(imprint, 2);
-        let large = scale(
-            imprint,
-            body.width.saturating_sub(1 + WIDE_PANEL),
-            body.height,
-        );
-        let large = (large > 1).then(|| matrix_width(imprint, 2 * large));
-        let width = large
-            .or_else(|| beside_panel(2))
-            .or_else(|| beside_panel(1).filter(|_| whole > area.width));
-        let left = width.unwrap_or(whole.min(area.width));
+        let width = whole_matrix(area, body, imprint);
         let matrix = Rect {
-            width: left,
+            width: width.unwrap_or(matrix_width(imprint, 2).min(area.width)),
             ..body
         };
-        let beside = Rect {
-            x: (matrix.right() + 1).min(body.right()),
-            ..body
-        };
-        let beside = Rect {
-            width: body.right() - beside.x,
-            ..beside
-        };
-        let below = body.height.min(8);
-        let form = if beside.width >= FORM {
-            beside
-        } else {
-            Rect {
-                y: body.bottom() - below,
-                height: below,
-                ..body
-            }
-        };
+        let left = (matrix.right() + 1).min(body.right());
+        let beside = right_of(body, left);
         Some(Self {
             menu: Rect { height: 1, ..area },
             body,
             matrix,
             panel: width.map(|_| beside),
-            form,
+            form: form(body, beside),
             source: if foot > 2 { line(foot) } else { absent },
             taxel: line(if foot == 4 { 3 } else { 2 }),
             notice: line(2),
@@ -124,5 +95,33 @@ impl Panes {
             Slot::Form => self.form,
             Slot::Prompt | Slot::Question => self.notice,
         }
+    }
+}
+
+/// The width of the matrix where the panel fits beside all of it, None where it does not. Square taxels come first, as
+/// large as there is room for; narrow ones only for a matrix that would not fit with square ones at all.
+fn whole_matrix(area: Rect, body: Rect, imprint: &Imprint) -> Option<u16> {
+    let beside_panel = |cell: u16| {
+        Some(matrix_width(imprint, cell)).filter(|width| width + 1 + PANEL <= area.width)
+    };
+    let room = body.width.saturating_sub(1 + WIDE_PANEL);
+    let large = scale(imprint, room, body.height);
+    let large = (large > 1).then(|| matrix_width(imprint, 2 * large));
+    let too_wide = matrix_width(imprint, 2) > area.width;
+    large
+        .or_else(|| beside_panel(2))
+        .or_else(|| beside_panel(1).filter(|_| too_wide))
+}
+
+/// The area of a form: beside the matrix, or over its foot where there is too little room.
+fn form(body: Rect, beside: Rect) -> Rect {
+    if beside.width >= FORM {
+        return beside;
+    }
+    let height = body.height.min(8);
+    Rect {
+        y: body.bottom() - height,
+        height,
+        ..body
     }
 }

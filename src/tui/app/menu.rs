@@ -7,7 +7,7 @@ use crate::tui::app::message::Message;
 use crate::tui::keys::binding::{Binding, Context};
 use crate::tui::keys::default_keys::{DEFAULT_KEYS, MENU};
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::widget::columns::narrow;
+use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -37,7 +37,8 @@ pub fn items(area: Rect, keymap: &Keymap) -> Vec<MenuItem<'_>> {
         let Some(message) = row.keys.first().and_then(|(_, action)| action.message()) else {
             continue;
         };
-        let name = binding.help.split([':', ',']).next().unwrap_or_default();
+        let end = binding.help.find([':', ',']);
+        let name = end.map_or(binding.help, |end| &binding.help[..end]);
         let label = binding.short_labels();
         // An option without a key can still be clicked on.
         let key = if label.is_empty() || !with_key && name.to_lowercase().starts_with(&label) {

@@ -9,6 +9,7 @@ use crate::tui::app::message::{Message, Mouse, MouseKind};
 use crate::tui::app::page::Page;
 use crate::tui::app::state::{App, NarrowPage};
 use crate::tui::matrix::layout::TaxelGrid;
+use crate::tui::widget::number::taxels;
 
 /// What the mouse points at.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,7 +78,7 @@ fn paint(app: &mut App, active: bool, from: (u8, u8), to: (u8, u8)) {
                 i32::from(step),
                 i32::from(steps),
             );
-            u8::try_from((2 * a * steps + 2 * (b - a) * step + steps) / (2 * steps)).unwrap_or(0)
+            taxels((2 * a * steps + 2 * (b - a) * step + steps) / (2 * steps))
         };
         let (column, row) = (between(from.0, to.0), between(from.1, to.1));
         if imprint.get(column, row) != active {

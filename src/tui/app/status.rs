@@ -106,14 +106,12 @@ fn taxel(app: &App, seen: &Reading, panes: &Panes) -> String {
     let width = usize::from(panes.taxel.width);
     if width >= if step.is_empty() { 60 } else { 80 } {
         let place = format!("column {column:>across$}, row {row:>down$}");
-        let covered = coverage.map(|coverage| format!("  covered {coverage:.6}"));
-        let covered = covered.unwrap_or_default();
+        let covered = coverage.map_or(String::new(), |coverage| format!("  covered {coverage:.6}"));
         let gap = if step.is_empty() { "" } else { "  " };
         return format!("{place}{covered}  {state:>8}  {all}{gap}{step}");
     }
     // What can be found elsewhere gives way first; no word is cut.
-    let coverage = coverage.map(|coverage| format!("{coverage:.6}"));
-    let coverage = coverage.unwrap_or_default();
+    let coverage = coverage.map_or(String::new(), |coverage| format!("{coverage:.6}"));
     let line = |pieces: &[&str]| {
         let pieces = pieces.iter().filter(|piece| !piece.is_empty());
         pieces.copied().collect::<Vec<_>>().join("  ")

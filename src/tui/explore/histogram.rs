@@ -83,8 +83,8 @@ fn bars(theme: &Theme, histogram: &Histogram, unit: Dimension, buffer: &mut Buff
         }
     };
     let labels: Vec<String> = (0..histogram.poses.len()).map(label).collect();
-    let longest = labels.iter().map(String::len).max().unwrap_or(0);
-    let most = histogram.poses.iter().copied().max().unwrap_or(0).max(1);
+    let longest = labels.iter().map(String::len).fold(0, usize::max);
+    let most = histogram.poses.iter().copied().fold(1, u64::max);
     let count = grouped(most).len();
     let all: u64 = histogram.poses.iter().sum::<u64>() + histogram.without;
     let used = longest + 2 + 1 + count + 9;
@@ -93,7 +93,7 @@ fn bars(theme: &Theme, histogram: &Histogram, unit: Dimension, buffer: &mut Buff
     for (index, (label, &poses)) in labels.iter().zip(&histogram.poses).enumerate() {
         let halves = u128::from(poses) * 2 * room as u128 / u128::from(most);
         let halves = usize::try_from(halves)
-            .unwrap_or(0)
+            .unwrap_or(2 * room)
             .max(usize::from(poses > 0));
         let mut bar = full.to_string().repeat(halves / 2);
         if halves % 2 == 1 && room > 0 {

@@ -11,7 +11,7 @@ use crate::tui::explore::message::{ExploreMessage, ExplorePage};
 use crate::tui::explore::page::ResultsPage;
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
-use crate::tui::widget::columns::narrow;
+use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
 
@@ -226,8 +226,8 @@ fn share(results: &Results, entry: &AtlasEntry) -> String {
 
 /// The chosen descriptor's value.
 fn number(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
-    let index = usize::try_from(entry.id).unwrap_or(usize::MAX);
-    let value = results.values().get(index).copied().flatten();
+    let index = usize::try_from(entry.id).ok();
+    let value = index.and_then(|index| *results.values().get(index)?);
     value.map_or_else(
         || theme.none().to_owned(),
         |value| fitting(value, VALUE - 1),

@@ -8,6 +8,7 @@ use crate::pose::{Axis, Pose, PoseIndex};
 use crate::sweep::SweepResult;
 use crate::tui::explore::message::{ExplorePage, Findings, Zoom};
 use crate::tui::keys::key::Arrow;
+use crate::tui::widget::number::around;
 
 /// The results, as they are looked at.
 #[derive(Clone, Debug)]
@@ -66,8 +67,7 @@ impl Results {
 
     /// Goes to another page, the first after the last.
     pub fn next_page(&mut self, by: i8) {
-        let now = ExplorePage::ALL.iter().position(|&page| page == self.page);
-        let next = around(now.unwrap_or(0), by, ExplorePage::ALL.len());
+        let next = around(self.page as usize, by, ExplorePage::ALL.len());
         self.page = ExplorePage::ALL[next];
     }
 
@@ -187,9 +187,11 @@ impl Results {
     /// Shows another angle.
     pub fn turn(&mut self, by: i16) {
         let count = self.sweep().grid.counts()[Axis::Angle];
-        let by = i128::from(by) + i128::from(self.place[Axis::Angle]);
-        // All around, where the angles may go all around too.
-        self.place[Axis::Angle] = u64::try_from(by.rem_euclid(count.into())).unwrap_or(0);
+        let now = self.place[Axis::Angle];
+        // The first angle follows the last, as the angles may go all around.
+        let forward = u64::from(by.unsigned_abs()) % count;
+        let step = if by < 0 { count - forward } else { forward };
+        self.place[Axis::Angle] = (now + step) % count;
     }
 
     /// Shows another zoom, up to the last one.
@@ -245,13 +247,6 @@ impl Results {
     pub fn id(&self, imprint: &Imprint) -> Option<u32> {
         self.sweep().atlas.find(imprint)
     }
-}
-
-/// `by` further on among `count`, the first after the last.
-pub fn around(now: usize, by: i8, count: usize) -> usize {
-    let forward = usize::from(by.unsigned_abs()) % count;
-    let step = if by < 0 { count - forward } else { forward };
-    (now + step) % count
 }
 
 #[cfg(test)]

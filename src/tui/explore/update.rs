@@ -115,10 +115,11 @@ fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
     let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(pose));
     let mut document = Document::touched(app.history.present().sensor, source);
     document.edits = Reading::of(&document).imprint.differing(&imprint);
-    let number = results.id(&imprint).map(|id| format!("imprint {id} "));
+    let number = results
+        .id(&imprint)
+        .map_or(String::new(), |id| format!("imprint {id} "));
     change(app, document);
     app.chosen = None;
-    let number = number.unwrap_or_default();
     let undo = app.key_of(&action::UNDO);
     let explore = app.key_of(&action::EXPLORE);
     inform(

@@ -11,7 +11,7 @@ use crate::tui::explore::pages;
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::widget::columns::narrow;
+use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 

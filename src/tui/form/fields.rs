@@ -23,9 +23,7 @@ pub struct ParameterField {
 impl ParameterField {
     /// A field that shows a value; empty without one.
     pub fn new(parameter: Parameter, value: Option<f64>, optional: bool) -> Self {
-        let text = value
-            .map(|value| parameter.format(value))
-            .unwrap_or_default();
+        let text = value.map_or(String::new(), |value| parameter.format(value));
         let mut input = TextField::new(text.clone(), LONGEST);
         input.enter();
         Self {

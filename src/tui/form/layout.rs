@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 
 use crate::tui::form::state::FormDialog;
-use crate::tui::widget::columns::narrow;
+use crate::tui::widget::number::narrow;
 
 /// Where the lines of a form are.
 #[derive(Clone, Copy, Debug)]

@@ -11,6 +11,7 @@ use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
 use crate::tui::form::fields::{ParameterField, ParameterForm};
 use crate::tui::keys::key::Arrow;
+use crate::tui::widget::number::around;
 
 /// What a form is about.
 #[derive(Clone, Debug, PartialEq)]
@@ -217,14 +218,10 @@ impl FormDialog {
 
     /// Goes `by` rows on; the kind is a row above the fields, and the last row is followed by the first.
     pub fn move_focus(&mut self, by: i8) {
-        let head = i64::from(self.kind().is_some());
-        let rows = i64::try_from(self.form.fields().len()).unwrap_or(0) + head;
-        let now = self
-            .form
-            .focus()
-            .map_or(0, |index| i64::try_from(index).unwrap_or(0) + head);
-        let next = (now + i64::from(by)).rem_euclid(rows);
-        self.edit(|form| form.set_focus(usize::try_from(next - head).ok()));
+        let head = usize::from(self.kind().is_some());
+        let now = self.form.focus().map_or(0, |index| index + head);
+        let next = around(now, by, self.form.fields().len() + head);
+        self.edit(|form| form.set_focus(next.checked_sub(head)));
     }
 
     /// An arrow: chooses the kind, moves in a field or to another one.
@@ -252,10 +249,10 @@ impl FormDialog {
     /// The first kind, `step` after `step` from the present one on, that fits; the present one where none does.
     fn next_kind(&mut self, step: usize, fits: impl Fn(FigureKind) -> bool) {
         let kinds = FigureKind::ALL;
-        let now = kinds
-            .iter()
-            .position(|&kind| Some(kind) == self.kind())
-            .unwrap_or(0);
+        let own = |kind: FigureKind| kinds.iter().position(|&other| other == kind);
+        let Some(now) = self.kind().and_then(own) else {
+            return;
+        };
         let next = (1..=kinds.len())
             .map(|count| kinds[(now + count * step) % kinds.len()])
             .find(|&kind| fits(kind));

@@ -13,7 +13,7 @@ use crate::tui::form::layout::FormRows;
 use crate::tui::form::state::FormDialog;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::widget::columns::narrow;
+use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 

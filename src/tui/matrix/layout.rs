@@ -3,6 +3,7 @@
 use ratatui::layout::Rect;
 
 use crate::imprint::Imprint;
+use crate::tui::widget::number::taxels;
 
 /// Columns of the row ruler.
 pub const RULER: u16 = 3;
@@ -31,7 +32,7 @@ pub struct AxisWindow {
 impl AxisWindow {
     /// `cells` of which `room` can be seen, the cursor as near to the middle as the ends allow.
     fn new(cells: u8, room: u16, cursor: u8) -> Self {
-        let count = u8::try_from(room).unwrap_or(u8::MAX).min(cells);
+        let count = taxels(room).min(cells);
         Self {
             first: cursor.saturating_sub(count / 2).min(cells - count),
             count,
@@ -44,7 +45,7 @@ impl AxisWindow {
     }
 
     fn at(self, place: u16) -> Option<u8> {
-        (place < u16::from(self.count)).then(|| self.first + u8::try_from(place).unwrap_or(0))
+        (place < u16::from(self.count)).then(|| self.first + taxels(place))
     }
 }
 

@@ -6,6 +6,7 @@ use ratatui::layout::Rect;
 use crate::description::{DESCRIPTORS, Description, Descriptor, Value};
 use crate::formats::value;
 use crate::tui::matrix::view::MatrixView;
+use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -31,11 +32,9 @@ pub fn draw(matrix: &MatrixView<'_>, theme: &Theme, buffer: &mut Buffer, area: R
     write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
     let lines = usize::from(area.height.saturating_sub(1)).max(1);
     let columns = DESCRIPTORS.len().div_ceil(lines);
-    let width = area.width / u16::try_from(columns).unwrap_or(u16::MAX).max(1);
+    let width = area.width / narrow(columns).max(1);
     for (index, descriptor) in DESCRIPTORS.iter().enumerate() {
-        let column = u16::try_from(index / lines)
-            .unwrap_or(u16::MAX)
-            .saturating_mul(width);
+        let column = narrow(index / lines).saturating_mul(width);
         let row = write::right_of(
             write::row(area, index % lines + 1),
             area.x.saturating_add(column),

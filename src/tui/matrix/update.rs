@@ -11,7 +11,6 @@ use crate::tui::app::document::{Document, History};
 use crate::tui::app::message::{Copied, Endpoint, Message, Purpose};
 use crate::tui::app::state::{App, Display, Mode, NarrowPage, RunState};
 use crate::tui::explore;
-use crate::tui::explore::results::around;
 use crate::tui::form::state::FormDialog;
 use crate::tui::help::Help;
 use crate::tui::keys::action;
@@ -19,104 +18,112 @@ use crate::tui::keys::key::Arrow;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::runtime::effect::{Effect, LibraryRequest, TerminalEffect};
 use crate::tui::shapes::state::ListDialog;
+use crate::tui::widget::number::around;
 
 /// What there is to say of an empty matrix.
 const NO_REGION: &str = "no region: the matrix is empty";
 
-/// Does what a message says.
+/// Handles a message.
 pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
     let sensor = app.history.present().sensor;
     match message {
-        Message::New => {
-            begin(app, Document::empty(sensor), None);
+        Message::New => begin(app, Document::empty(sensor), None),
+        Message::Become(document) => {
+            app.mode = Mode::Draw;
+            replace(app, *document);
         }
         Message::Load => return Some(open_list(app, Purpose::Load)),
         Message::Delete => return Some(open_list(app, Purpose::Delete)),
         Message::Picture => return Some(open_list(app, Purpose::Picture)),
         Message::Figure => open_form(app, FormDialog::figure(app.history.present())),
         Message::Sensor => open_form(app, FormDialog::sensor(app.history.present())),
-        Message::Save if app.reading().imprint.is_empty() => {
-            refuse(app, "nothing to save: the matrix is empty");
-        }
-        Message::Save => {
-            let own = app
-                .stored()
-                .filter(|stored| stored.owner == ShapeOrigin::Own);
-            let name = own.map_or("", |stored| &stored.name);
-            app.dialogs.push(Dialog::Name(NameDialog::new(name)));
-        }
-        Message::Store(shape, expected) => {
-            return Some(Effect::Library(LibraryRequest::Store(shape, expected)));
-        }
-        Message::AskRemove(name) => {
-            let question = Question::new(format!("Delete {name}?"), Message::Remove(name));
-            app.dialogs.push(Dialog::Question(question));
-        }
-        Message::LoadNamed(name) => {
-            return Some(Effect::Library(LibraryRequest::Named(Purpose::Load, name)));
-        }
-        Message::PictureNamed(name) => {
-            return Some(Effect::Library(LibraryRequest::Named(
-                Purpose::Picture,
-                name,
-            )));
-        }
-        Message::Restore(name) => return Some(Effect::Library(LibraryRequest::Restore(name))),
-        Message::Become(document) => {
-            app.mode = Mode::Draw;
-            replace(app, *document);
-        }
+        Message::Save => save(app),
         Message::Command => app.dialogs.push(Dialog::Command(CommandDialog::default())),
-        Message::Copy(what) => return copy(app, what),
-        Message::MouseOnOff => {
-            app.mouse = !app.mouse;
-            let key = app.key_of(&action::MOUSE);
-            inform(
-                app,
-                if app.mouse {
-                    format!("the mouse sets taxels; {key} leaves it to the terminal")
-                } else {
-                    format!("the mouse selects text; {key} lets it set taxels")
-                },
-            );
-            return Some(Effect::Terminal(TerminalEffect::Mouse(app.mouse)));
-        }
-        Message::Replace(shape, stamp) => {
-            let text = format!("Replace {}?", shape.name);
-            let question = Question::new(text, Message::Store(shape, Expected::Stamp(stamp)));
-            app.dialogs.push(Dialog::Question(question));
-        }
-        Message::Remove(name) => return Some(Effect::Library(LibraryRequest::Remove(name))),
-        Message::Recover => return Some(Effect::Library(LibraryRequest::Recover)),
-        Message::GiveUp => return Some(Effect::Library(LibraryRequest::GiveUp)),
-        Message::Quit if app.unsaved() || app.history.left_unsaved() => {
-            let what = if app.unsaved() {
-                "The imprint"
-            } else {
-                "An earlier drawing"
-            };
-            let text = format!("{what} is not saved. Quit anyway?");
-            let question = Question::new(text, Message::QuitNow);
-            app.dialogs.push(Dialog::Question(question));
-        }
-        Message::Quit | Message::QuitNow => app.run_state = RunState::Quit,
-        Message::Explore(asked) => return explore::work::act(app, asked),
         Message::Help => {
             let help = Help::new(app.context());
             app.dialogs.push(Dialog::Help(help));
         }
-        Message::Undo if app.removed.is_some() => {
-            return app
-                .removed
-                .take()
-                .map(|name| Effect::Library(LibraryRequest::Restore(name)));
+        Message::AskRemove(name) => ask(app, format!("Delete {name}?"), Message::Remove(name)),
+        Message::Replace(shape, stamp) => {
+            let text = format!("Replace {}?", shape.name);
+            ask(app, text, Message::Store(shape, Expected::Stamp(stamp)));
         }
-        other => edit(app, &other),
+        Message::Quit => quit(app),
+        Message::QuitNow => app.run_state = RunState::Quit,
+        Message::Copy(what) => return copy(app, what),
+        Message::MouseOnOff => return Some(switch_mouse(app)),
+        Message::Explore(asked) => return explore::work::act(app, asked),
+        Message::Undo if app.removed.is_some() => {
+            let name = app.removed.take()?;
+            return Some(Effect::Library(LibraryRequest::Restore(name)));
+        }
+        other => match library_request(other) {
+            Ok(request) => return Some(Effect::Library(request)),
+            Err(other) => edit(app, &other),
+        },
     }
     None
 }
 
-/// What needs nothing from outside: the cursor, what is shown, and the shape.
+/// The request that a message makes to the library; the message itself if it makes none.
+fn library_request(message: Message) -> Result<LibraryRequest, Message> {
+    Ok(match message {
+        Message::Store(shape, expected) => LibraryRequest::Store(shape, expected),
+        Message::LoadNamed(name) => LibraryRequest::Named(Purpose::Load, name),
+        Message::PictureNamed(name) => LibraryRequest::Named(Purpose::Picture, name),
+        Message::Restore(name) => LibraryRequest::Restore(name),
+        Message::Remove(name) => LibraryRequest::Remove(name),
+        Message::Recover => LibraryRequest::Recover,
+        Message::GiveUp => LibraryRequest::GiveUp,
+        other => return Err(other),
+    })
+}
+
+/// Asks a question where only yes does something.
+fn ask(app: &mut App, text: String, yes: Message) {
+    app.dialogs.push(Dialog::Question(Question::new(text, yes)));
+}
+
+/// Opens the prompt for a name. It proposes the name of the document, if that is a shape of the user's own.
+fn save(app: &mut App) {
+    if app.reading().imprint.is_empty() {
+        return refuse(app, "nothing to save: the matrix is empty");
+    }
+    let own = app
+        .stored()
+        .filter(|stored| stored.owner == ShapeOrigin::Own);
+    let name = own.map_or("", |stored| &stored.name);
+    app.dialogs.push(Dialog::Name(NameDialog::new(name)));
+}
+
+/// Quits, after a question if work would be lost.
+fn quit(app: &mut App) {
+    let what = if app.unsaved() {
+        "The imprint"
+    } else if app.history.left_unsaved() {
+        "An earlier drawing"
+    } else {
+        app.run_state = RunState::Quit;
+        return;
+    };
+    let text = format!("{what} is not saved. Quit anyway?");
+    ask(app, text, Message::QuitNow);
+}
+
+/// Switches the mouse: it sets taxels, or the terminal selects text with it.
+fn switch_mouse(app: &mut App) -> Effect {
+    app.mouse = !app.mouse;
+    let key = app.key_of(&action::MOUSE);
+    let text = if app.mouse {
+        format!("the mouse sets taxels; {key} leaves it to the terminal")
+    } else {
+        format!("the mouse selects text; {key} lets it set taxels")
+    };
+    inform(app, text);
+    Effect::Terminal(TerminalEffect::Mouse(app.mouse))
+}
+
+/// Handles what needs nothing from outside: the cursor, what is shown, and the shape.
 fn edit(app: &mut App, message: &Message) {
     let sensor = app.history.present().sensor;
     match *message {

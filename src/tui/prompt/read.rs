@@ -70,34 +70,41 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
         (Arguments::Figure, [kind, pairs @ ..]) => figure(kind, pairs, app),
         (Arguments::Sensor, pairs) => sensor(pairs, app),
         (Arguments::Ranges, pairs) => explore(pairs, app),
-        (Arguments::Degrees, _) => match rest.parse() {
-            Ok(degrees) if (-360..=360).contains(&degrees) => Ok(Message::Turn(degrees)),
-            _ => Err(format!(
-                "turn takes whole degrees from -360 to 360, found {:?}",
-                shortened(rest)
-            )),
-        },
-        (Arguments::Taxel, [column, row]) => {
-            let sensor = app.shown().sensor;
-            let within = |text: &str, count: u8| text.parse().ok().filter(|&at: &u8| at < count);
-            match (within(column, sensor.columns()), within(row, sensor.rows())) {
-                (Some(column), Some(row)) => Ok(Message::PointAt(column, row)),
-                _ => Err(format!(
-                    "there is no such taxel: columns are 0 to {}, rows 0 to {}",
-                    sensor.columns() - 1,
-                    sensor.rows() - 1
-                )),
-            }
-        }
-        (Arguments::Distance, [dx, dy]) => {
-            let cells = |text: &str| text.parse().ok().filter(|cells: &f64| cells.is_finite());
-            match (cells(dx), cells(dy)) {
-                (Some(dx), Some(dy)) => Ok(Message::Move(dx, dy)),
-                _ => Err(unexpected()),
-            }
-        }
+        (Arguments::Degrees, _) => degrees(rest),
+        (Arguments::Taxel, [column, row]) => taxel(column, row, &app.shown().sensor),
+        (Arguments::Distance, [dx, dy]) => distance(dx, dy).ok_or_else(unexpected),
         (Arguments::Taxel | Arguments::Distance, _) => Err(unexpected()),
     }
+}
+
+/// Whole degrees, at most one turn either way.
+fn degrees(text: &str) -> Result<Message, String> {
+    match text.parse() {
+        Ok(degrees) if (-360..=360).contains(&degrees) => Ok(Message::Turn(degrees)),
+        _ => Err(format!(
+            "turn takes whole degrees from -360 to 360, found {:?}",
+            shortened(text)
+        )),
+    }
+}
+
+/// A taxel of the sensor.
+fn taxel(column: &str, row: &str, sensor: &Sensor) -> Result<Message, String> {
+    let within = |text: &str, count: u8| text.parse().ok().filter(|&at: &u8| at < count);
+    match (within(column, sensor.columns()), within(row, sensor.rows())) {
+        (Some(column), Some(row)) => Ok(Message::PointAt(column, row)),
+        _ => Err(format!(
+            "there is no such taxel: columns are 0 to {}, rows 0 to {}",
+            sensor.columns() - 1,
+            sensor.rows() - 1
+        )),
+    }
+}
+
+/// Cells along x and y, None unless both are finite numbers.
+fn distance(dx: &str, dy: &str) -> Option<Message> {
+    let cells = |text: &str| text.parse().ok().filter(|cells: &f64| cells.is_finite());
+    Some(Message::Move(cells(dx)?, cells(dy)?))
 }
 
 /// Says what a command takes and what was found.
@@ -126,7 +133,7 @@ fn name_of(text: &str) -> Result<Name, String> {
 fn numbers(pairs: &[&str], sensor: &Sensor) -> Result<Vec<(Parameter, f64)>, String> {
     let mut numbers: Vec<(Parameter, f64)> = Vec::new();
     for pair in pairs.chunks(2) {
-        let flag = pair.first().copied().unwrap_or_default();
+        let flag = pair[0];
         let key = flag
             .strip_prefix("--")
             .ok_or_else(|| format!("expected a flag like --side, found {}", shortened(flag)))?;
@@ -198,7 +205,7 @@ fn explore(words: &[&str], app: &App) -> Result<Message, String> {
     let (mut ranges, mut anchor) = (Ranges::default(), Anchor::default());
     let mut given: Vec<&str> = Vec::new();
     for pair in words.chunks(2) {
-        let flag = pair.first().copied().unwrap_or_default();
+        let flag = pair[0];
         let name = flag
             .strip_prefix("--")
             .ok_or_else(|| format!("expected a flag like --x0, found {}", shortened(flag)))?;

@@ -113,6 +113,7 @@ pub fn read(script: &str) -> Result<Vec<(usize, ScriptCommand)>, ScriptError> {
         .collect()
 }
 
+/// Reads one line.
 fn command(line: &str) -> Result<ScriptCommand, String> {
     let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
     let rest = rest.trim();
@@ -136,29 +137,8 @@ fn command(line: &str) -> Result<ScriptCommand, String> {
         "Paste" => quoted(rest).map(ScriptCommand::Paste),
         "Click" if rest.starts_with('"') => quoted(rest).map(ScriptCommand::ClickText),
         "Click" => place(rest).map(ScriptCommand::Click),
-        "Drag" => match rest
-            .split_whitespace()
-            .map(place)
-            .collect::<Result<Vec<_>, _>>()?
-        {
-            places if places.len() > 1 => Ok(ScriptCommand::Drag(places)),
-            _ => Err(format!(
-                "expected two places or more, found {:?}",
-                shortened(rest)
-            )),
-        },
-        "Scroll" => {
-            let (at, turns) = two(rest)?;
-            let turns = turns
-                .parse()
-                .ok()
-                .filter(|turns: &i16| turns.unsigned_abs() <= 1000)
-                .ok_or_else(|| {
-                    let found = shortened(turns);
-                    format!("expected a whole number of turns, found {found:?}")
-                })?;
-            Ok(ScriptCommand::Scroll(place(at)?, turns))
-        }
+        "Drag" => drag(rest),
+        "Scroll" => scroll(rest),
         "Screen" if rest.contains(char::is_control) => Err(format!(
             "a name for a screen has no control characters, found {:?}",
             shortened(rest)
@@ -173,18 +153,7 @@ fn command(line: &str) -> Result<ScriptCommand, String> {
         }
         "ExpectStyle" => {
             let (at, name) = two(rest)?;
-            let letter = STYLES
-                .iter()
-                .find(|(style, _)| *style == name)
-                .map(|(_, letter)| *letter);
-            let names = STYLES.map(|(style, _)| style).join(", ");
-            Ok(ScriptCommand::ExpectStyle(
-                place(at)?,
-                letter.ok_or_else(|| {
-                    let name = shortened(name);
-                    format!("style {name:?} is unknown, expected {names}")
-                })?,
-            ))
+            Ok(ScriptCommand::ExpectStyle(place(at)?, style(name)?))
         }
         "Signal" if SIGNALS.contains(&rest) => Ok(ScriptCommand::Signal(rest.to_owned())),
         "Signal" => Err(format!(
@@ -202,6 +171,39 @@ fn command(line: &str) -> Result<ScriptCommand, String> {
     }
 }
 
+/// Two places or more.
+fn drag(text: &str) -> Result<ScriptCommand, String> {
+    let places: Result<Vec<_>, _> = text.split_whitespace().map(place).collect();
+    let places = places?;
+    if places.len() < 2 {
+        let found = shortened(text);
+        return Err(format!("expected two places or more, found {found:?}"));
+    }
+    Ok(ScriptCommand::Drag(places))
+}
+
+/// A place and a number of turns of the wheel, downwards if positive.
+fn scroll(text: &str) -> Result<ScriptCommand, String> {
+    let (at, turns) = two(text)?;
+    let number = turns.parse().ok();
+    let number = number.filter(|turns: &i16| turns.unsigned_abs() <= 1000);
+    let number = number.ok_or_else(|| {
+        let found = shortened(turns);
+        format!("expected a whole number of turns, found {found:?}")
+    })?;
+    Ok(ScriptCommand::Scroll(place(at)?, number))
+}
+
+/// The letter of a style, from its name.
+fn style(name: &str) -> Result<char, String> {
+    let style = STYLES.iter().find(|(style, _)| *style == name);
+    style.map(|(_, letter)| *letter).ok_or_else(|| {
+        let names = STYLES.map(|(style, _)| style).join(", ");
+        format!("style {:?} is unknown, expected {names}", shortened(name))
+    })
+}
+
+/// A place, and what follows it.
 fn two(text: &str) -> Result<(&str, &str), String> {
     let (first, second) = text.split_once(char::is_whitespace).ok_or_else(|| {
         format!(

@@ -10,6 +10,7 @@ use ratatui::buffer::Buffer;
 use ratatui::style::{Color, Modifier};
 
 use crate::formats::xml::escaped;
+use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Palette, Theme};
 use crate::tui::widget::write;
 
@@ -102,6 +103,11 @@ impl TextStyle {
     }
 }
 
+/// The width of a number of columns.
+fn units(columns: usize) -> u32 {
+    u32::from(narrow(columns)) * WIDTH
+}
+
 /// The paper where it differs, the blocks, then the text.
 fn draw(
     svg: &mut String,
@@ -111,19 +117,15 @@ fn draw(
     symbols: &[&str],
 ) {
     let (x, y) = (u32::from(column) * WIDTH, u32::from(row) * HEIGHT);
-    let count = u32::try_from(symbols.len()).unwrap_or(u32::MAX);
     if look.paper != paper {
-        rectangle(svg, (x, y), (count * WIDTH, HEIGHT), look.paper, 4);
+        rectangle(svg, (x, y), (units(symbols.len()), HEIGHT), look.paper, 4);
     }
     let mut at = 0;
     while let Some(symbol) = symbols.get(at) {
         let alike = symbols[at..].iter().take_while(|other| *other == symbol);
         let alike = alike.count();
         if let Some((down, high, quarters)) = block(symbol) {
-            let (left, wide) = (
-                x + u32::try_from(at).unwrap_or(0) * WIDTH,
-                u32::try_from(alike).unwrap_or(0) * WIDTH,
-            );
+            let (left, wide) = (x + units(at), units(alike));
             let quarters = if look.dim { quarters.min(2) } else { quarters };
             rectangle(svg, (left, y + down), (wide, high), look.ink, quarters);
         }
@@ -140,7 +142,6 @@ fn draw(
     }
     for (from, text) in pieces(symbols) {
         let length = write::width(&text);
-        let units = |columns: usize| u32::try_from(columns).unwrap_or(0) * WIDTH;
         let (x, y, length) = (x + units(from), y + BASE, units(length));
         // Cannot fail: a String takes everything.
         let _ = writeln!(

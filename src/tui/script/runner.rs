@@ -238,50 +238,48 @@ fn look(
             Some(part) => printed(show(ScriptOutput::Text(&format!("{part}\n"))))?,
             None => return fails(format!("the state has no {:?}", shortened(pointer))),
         },
-        ScriptCommand::Expect(pattern) => {
-            if !pattern.is_match(&session.screen()) {
-                return fails(format!(
-                    "no /{}/ on the screen",
-                    shortened(pattern.as_str())
-                ));
-            }
+        ScriptCommand::Quit if !session.app().ended() => {
+            return fails("the program has not ended".to_owned());
         }
-        ScriptCommand::ExpectNot(pattern) => {
-            if pattern.is_match(&session.screen()) {
-                return fails(format!(
-                    "/{}/ is on the screen",
-                    shortened(pattern.as_str())
-                ));
-            }
-        }
+        ScriptCommand::Quit | ScriptCommand::Wait => {}
+        command => match expect(session, command) {
+            Some(Err(message)) => return fails(message),
+            Some(Ok(())) => {}
+            None => return Ok(false),
+        },
+    }
+    Ok(true)
+}
+
+/// Compares the screen with what a command expects, None if it expects nothing.
+fn expect(session: &Session, command: &ScriptCommand) -> Option<Result<(), String>> {
+    let failure = match command {
+        ScriptCommand::Expect(pattern) => (!pattern.is_match(&session.screen()))
+            .then(|| format!("no /{}/ on the screen", shortened(pattern.as_str()))),
+        ScriptCommand::ExpectNot(pattern) => pattern
+            .is_match(&session.screen())
+            .then(|| format!("/{}/ is on the screen", shortened(pattern.as_str()))),
         ScriptCommand::ExpectAt((column, row), text) => {
             let shown = session.screen();
             let line = line_of(&shown, *row);
             let rest = line.chars().skip(character_at(line, *column));
             let found: String = rest.take(text.chars().count()).collect();
-            if found != *text {
-                return fails(format!(
-                    "at {column},{row} there is {:?}, expected {:?}",
-                    shortened(&found),
-                    shortened(text)
-                ));
-            }
+            (found != *text).then(|| {
+                let (found, text) = (shortened(&found), shortened(text));
+                format!("at {column},{row} there is {found:?}, expected {text:?}")
+            })
         }
         ScriptCommand::ExpectStyle((column, row), letter) => {
             let index = character_at(line_of(&session.screen(), *row), *column);
             let found = line_of(&session.styles(), *row).chars().nth(index);
-            if found != Some(*letter) {
+            (found != Some(*letter)).then(|| {
                 let found = found.map_or("nothing".to_owned(), |found| format!("style {found}"));
-                return fails(format!("at {column},{row} is {found}, expected {letter}"));
-            }
+                format!("at {column},{row} is {found}, expected {letter}")
+            })
         }
-        ScriptCommand::Quit if !session.app().ended() => {
-            return fails("the program has not ended".to_owned());
-        }
-        ScriptCommand::Quit | ScriptCommand::Wait => {}
-        _ => return Ok(false),
-    }
-    Ok(true)
+        _ => return None,
+    };
+    Some(failure.map_or(Ok(()), Err))
 }
 
 fn show_screen(
@@ -383,7 +381,7 @@ fn state(session: &Session) -> Value {
     let app = session.app();
     let document = app.shown();
     let seen = app.reading();
-    let answer = serde_json::to_value(DescribedImprint(&seen.imprint)).unwrap_or_default();
+    let answer = json!(DescribedImprint(&seen.imprint));
     let (column, row) = app.cursor();
     json!({
         "document": { "sensor": document.sensor, "source": document.source, "name": app.stored_name() },

@@ -125,6 +125,7 @@ fn name_of<T: Copy + PartialEq>(value: T, choices: &[(&'static str, T)]) -> &'st
     choice.map_or("", |(name, _)| name)
 }
 
+/// A shape as JSON in one line.
 fn in_a_line(shape: &StoredShape) -> String {
     json::text(shape)
 }

@@ -2,8 +2,8 @@
 
 use crate::imprint::Imprint;
 use crate::picture::Picture;
-use crate::storage::{Expected, LoadedShape, ShapeOrigin};
-use crate::tui::app::change::{begin, change, inform, refuse};
+use crate::storage::{Expected, LibraryEntry, LoadedShape, ShapeOrigin};
+use crate::tui::app::change::{begin, change as change_to, inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::{Document, StoredName};
 use crate::tui::app::message::{Endpoint, Leftover, LibraryEvent, Message, Purpose};
@@ -32,25 +32,15 @@ pub(in crate::tui) fn update(
     look(app)
 }
 
-/// Takes an answer of the library.
+/// Handles an answer of the library.
 pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<Effect> {
     match answer {
-        LibraryEvent::List(Ok(entries)) => match app.dialogs.last_mut() {
-            Some(Dialog::List(list)) => {
-                *list = ListDialog::new(list.purpose(), entries);
-                return look(app);
-            }
-            Some(Dialog::Command(command)) => {
-                let mut names = entries;
-                match wants_names(command.field.text()) {
-                    Some(Arguments::Shape(Purpose::Load | Purpose::Picture)) => {}
-                    _ => names.retain(|entry| entry.origin == ShapeOrigin::Own),
-                }
-                let names: Vec<String> = names.into_iter().map(|entry| entry.name).collect();
-                command.complete(&names);
-            }
-            _ => {}
-        },
+        LibraryEvent::List(Ok(entries)) => return on_list(app, entries),
+        LibraryEvent::List(Err(reason)) => {
+            app.dialogs
+                .pop_if(|dialog| matches!(dialog, Dialog::List(_)));
+            refuse(app, reason);
+        }
         LibraryEvent::Trash(Ok(names)) => {
             if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
                 command.complete(&names);
@@ -66,10 +56,41 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
             open_picture(app, &loaded.shape.imprint, name);
         }
         LibraryEvent::Named(_, Ok(loaded)) => {
-            if let Err(text) = place(app, &loaded) {
-                refuse(app, text);
+            if let Err(reason) = place(app, &loaded) {
+                refuse(app, reason);
             }
         }
+        LibraryEvent::Named(_, Err(reason))
+        | LibraryEvent::Trash(Err(reason))
+        | LibraryEvent::Failed(reason) => refuse(app, reason),
+        change => on_change(app, change),
+    }
+    None
+}
+
+/// Handles the list of shapes: for the page of that name, or for completion in the `:` prompt.
+fn on_list(app: &mut App, mut entries: Vec<LibraryEntry>) -> Option<Effect> {
+    match app.dialogs.last_mut() {
+        Some(Dialog::List(list)) => {
+            *list = ListDialog::new(list.purpose(), entries);
+            look(app)
+        }
+        Some(Dialog::Command(command)) => {
+            match wants_names(command.field.text()) {
+                Some(Arguments::Shape(Purpose::Load | Purpose::Picture)) => {}
+                _ => entries.retain(|entry| entry.origin == ShapeOrigin::Own),
+            }
+            let names: Vec<String> = entries.into_iter().map(|entry| entry.name).collect();
+            command.complete(&names);
+            None
+        }
+        _ => None,
+    }
+}
+
+/// Handles what has changed in the library, and unsaved work.
+fn on_change(app: &mut App, change: LibraryEvent) {
+    match change {
         LibraryEvent::Stored(name, stamp) => {
             inform(app, format!("saved as {name}"));
             app.history.stored(StoredName {
@@ -80,13 +101,11 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
         }
         LibraryEvent::Differs(shape, stamp, text) => {
             let yes = Message::Store(shape, Expected::Stamp(stamp));
-            app.dialogs.push(Dialog::Question(Question::new(
-                format!("{text}. Replace it?"),
-                yes,
-            )));
+            let question = Question::new(format!("{text}. Replace it?"), yes);
+            app.dialogs.push(Dialog::Question(question));
         }
         LibraryEvent::Removed(name) => {
-            // What is on the matrix may be all that is left of it.
+            // The matrix may show the only copy that is left.
             app.history.removed(&name);
             let undo = app.key_of(&action::UNDO);
             inform(app, format!("{name} deleted; {undo} brings it back"));
@@ -99,14 +118,9 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
         LibraryEvent::Found(left) => offer(app, "", &left),
         LibraryEvent::Recovered(shape) => {
             begin(app, Document::empty(shape.sensor), None);
-            change(app, Document::of_shape(&shape));
+            change_to(app, Document::of_shape(&shape));
             let save = app.key_of(&action::SAVE);
             inform(app, format!("brought back; {save} saves it"));
-        }
-        LibraryEvent::List(Err(text)) => {
-            app.dialogs
-                .pop_if(|dialog| matches!(dialog, Dialog::List(_)));
-            refuse(app, text);
         }
         LibraryEvent::GivenUp(name, left) => {
             app.removed = Some(name.clone());
@@ -122,16 +136,15 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
             let text = "the unsaved work cannot be moved to the trash, and is offered again at the next start";
             refuse(app, format!("{text}: {reason}"));
         }
-        LibraryEvent::Named(_, Err(text))
-        | LibraryEvent::Trash(Err(text))
-        | LibraryEvent::Failed(text) => {
-            refuse(app, text);
-        }
+        LibraryEvent::List(_)
+        | LibraryEvent::Trash(_)
+        | LibraryEvent::Read(_)
+        | LibraryEvent::Named(..)
+        | LibraryEvent::Failed(_) => {}
     }
-    None
 }
 
-/// Asks whether work shall be brought back that a program left when it died.
+/// Asks whether to bring back the unsaved work of a program that crashed.
 fn offer(app: &mut App, before: &str, left: &Leftover) {
     let key = |answer| app.keymap().label(Context::Question, answer);
     let (yes, no) = (key(&action::ACCEPT), key(&action::DECLINE));

@@ -12,7 +12,7 @@ use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::shapes::layout::{LIST_HEAD, list, list_first, list_row};
 use crate::tui::shapes::state::ListDialog;
-use crate::tui::widget::columns::narrow;
+use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
 

@@ -53,13 +53,13 @@ enum InputState {
     Sequence,
     /// In a function key of the Linux console: ESC [ [, then one more.
     Function,
-    /// So many bytes of a mouse report in the old form are still to come.
-    OldMouse(u8),
+    /// In a mouse report of the old form: three bytes follow ESC [ M.
+    OldMouse,
     /// In an answer: ESC ] or ESC P up to BEL or ESC \.
     Answer,
     /// In pasted text.
     Paste,
-    /// In a character, of which so many bytes are still to come.
+    /// In a character, of which this many bytes are still to come.
     Character(u8),
 }
 
@@ -124,51 +124,9 @@ impl InputReader {
             InputState::Ground => self.plain(byte),
             InputState::Escape => self.after_escape(byte),
             InputState::Paste => self.in_paste(byte),
-            InputState::Answer => match (byte, self.held.pop()) {
-                (BEL, _) | (b'\\', Some(ESC)) => self.ground(),
-                (ESC, _) => self.held.push(ESC),
-                (_, Some(ESC)) => self.after_escape(byte),
-                (..0x20, _) => {
-                    self.ground();
-                    self.plain(byte);
-                }
-                _ => {}
-            },
-            InputState::OldMouse(left) => {
-                self.held.push(byte);
-                self.state = InputState::OldMouse(left - 1);
-                if left == 1 {
-                    let [button, x, y] = [0, 1, 2]
-                        .map(|index| u16::from(self.held.get(index).copied().unwrap_or(0)));
-                    let released = button & 3 == 3;
-                    self.mouse(
-                        button.saturating_sub(32),
-                        x.saturating_sub(32),
-                        y.saturating_sub(32),
-                        released,
-                    );
-                    self.ground();
-                }
-            }
-            InputState::Character(left) => {
-                if byte & 0xc0 != 0x80 {
-                    // Broken off: what comes now is a new beginning.
-                    self.ground();
-                    return self.plain(byte);
-                }
-                self.held.push(byte);
-                self.state = InputState::Character(left - 1);
-                if left == 1 {
-                    let character = std::str::from_utf8(&self.held)
-                        .ok()
-                        .and_then(|text| text.chars().next());
-                    // U+0080 to U+009F are control characters of one byte elsewhere.
-                    if let Some(character) = character.filter(|character| !character.is_control()) {
-                        self.key(Key::Char(character));
-                    }
-                    self.ground();
-                }
-            }
+            InputState::Answer => self.in_answer(byte),
+            InputState::OldMouse => self.in_old_mouse(byte),
+            InputState::Character(left) => self.in_character(byte, left),
             // A control character breaks a sequence off.
             _ if byte < 0x20 => {
                 self.ground();
@@ -188,22 +146,71 @@ impl InputReader {
                     self.letter(byte, false);
                 }
             }
-            InputState::Sequence => match byte {
-                b'[' if self.held.is_empty() => self.state = InputState::Function,
-                // Shift-arrows of rxvt.
-                b'a'..=b'd' if self.held.is_empty() => {
-                    self.ground();
-                    self.letter(byte.to_ascii_uppercase(), true);
-                }
-                b'M' if self.held.is_empty() => self.state = InputState::OldMouse(3),
-                0x40..=0x7e => {
-                    let held = std::mem::take(&mut self.held);
-                    self.ground();
-                    self.sequence(&held, byte);
-                }
-                _ if self.held.len() < LONGEST => self.held.push(byte),
-                _ => {}
-            },
+            InputState::Sequence => self.in_sequence(byte),
+        }
+    }
+
+    /// A string that the terminal sends as an answer: skipped up to its end, BEL or `ESC \`.
+    fn in_answer(&mut self, byte: u8) {
+        match (byte, self.held.pop()) {
+            (BEL, _) | (b'\\', Some(ESC)) => self.ground(),
+            (ESC, _) => self.held.push(ESC),
+            (_, Some(ESC)) => self.after_escape(byte),
+            (..0x20, _) => {
+                self.ground();
+                self.plain(byte);
+            }
+            _ => {}
+        }
+    }
+
+    /// `ESC [ M button x y`, each 32 more than its value.
+    fn in_old_mouse(&mut self, byte: u8) {
+        self.held.push(byte);
+        if let [button, x, y] = self.held[..] {
+            let value = |byte: u8| u16::from(byte.saturating_sub(32));
+            self.mouse(value(button), value(x), value(y), button & 3 == 3);
+            self.ground();
+        }
+    }
+
+    /// A character of several bytes, of which `left` are still to come.
+    fn in_character(&mut self, byte: u8, left: u8) {
+        if byte & 0xc0 != 0x80 {
+            // The character is incomplete, and this byte begins something new.
+            self.ground();
+            return self.plain(byte);
+        }
+        self.held.push(byte);
+        self.state = InputState::Character(left - 1);
+        if left == 1 {
+            let text = std::str::from_utf8(&self.held).ok();
+            let character = text.and_then(|text| text.chars().next());
+            // U+0080 to U+009F are control characters of one byte elsewhere.
+            if let Some(character) = character.filter(|character| !character.is_control()) {
+                self.key(Key::Char(character));
+            }
+            self.ground();
+        }
+    }
+
+    /// `ESC [` and then parameters, up to a final byte.
+    fn in_sequence(&mut self, byte: u8) {
+        match byte {
+            b'[' if self.held.is_empty() => self.state = InputState::Function,
+            // Shift-arrows of rxvt.
+            b'a'..=b'd' if self.held.is_empty() => {
+                self.ground();
+                self.letter(byte.to_ascii_uppercase(), true);
+            }
+            b'M' if self.held.is_empty() => self.state = InputState::OldMouse,
+            0x40..=0x7e => {
+                let held = std::mem::take(&mut self.held);
+                self.ground();
+                self.sequence(&held, byte);
+            }
+            _ if self.held.len() < LONGEST => self.held.push(byte),
+            _ => {}
         }
     }
 
@@ -245,7 +252,10 @@ impl InputReader {
 
     /// `ESC [ parameters final`.
     fn sequence(&mut self, parameters: &[u8], last: u8) {
-        let text = std::str::from_utf8(parameters).unwrap_or_default();
+        // Bytes that are no text are no parameters.
+        let Ok(text) = std::str::from_utf8(parameters) else {
+            return;
+        };
         if let Some(report) = text.strip_prefix('<') {
             let [button, x, y] = numbers(report);
             return self.mouse(button, x, y, last == b'm');
@@ -339,12 +349,15 @@ impl InputReader {
     }
 }
 
-/// Up to three numbers between semicolons; what follows a colon is a part of a number, and is left out.
+/// Up to three numbers between semicolons; 0 for one that is missing or malformed. What follows a colon is a part of a
+/// number, and is skipped.
 fn numbers(text: &str) -> [u16; 3] {
     let mut numbers = [0; 3];
     for (number, part) in numbers.iter_mut().zip(text.split(';')) {
-        let digits = part.split(':').next().unwrap_or_default();
-        *number = digits.parse().unwrap_or(0);
+        let digits = part.split_once(':').map_or(part, |(digits, _)| digits);
+        if let Ok(value) = digits.parse() {
+            *number = value;
+        }
     }
     numbers
 }

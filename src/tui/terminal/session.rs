@@ -145,8 +145,10 @@ fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::new();
     for group in bytes.chunks(3) {
-        let byte = |index: usize| u32::from(group.get(index).copied().unwrap_or(0));
-        let joined = byte(0) << 16 | byte(1) << 8 | byte(2);
+        // Three bytes below an empty one; those that are missing are 0.
+        let mut joined = [0; 4];
+        joined[1..=group.len()].copy_from_slice(group);
+        let joined = u32::from_be_bytes(joined);
         for index in 0..4 {
             let digit = (joined >> (18 - 6 * index) & 63) as usize;
             let digit = char::from(DIGITS[digit]);

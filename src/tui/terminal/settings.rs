@@ -98,9 +98,9 @@ impl TerminalSettings {
         flags: &Flags,
     ) -> Self {
         let text = |name| {
-            variable(name)
-                .and_then(|value| value.into_string().ok())
-                .unwrap_or_default()
+            // A variable that is not set is empty, and so is one that is no text.
+            let value = variable(name).and_then(|value| value.into_string().ok());
+            value.unwrap_or_default()
         };
         let term = text("TERM");
         let kind = TerminalKind::of(&term);

@@ -2,11 +2,6 @@
 
 use ratatui::text::Span;
 
-/// A number of columns or lines, as places on the screen are counted.
-pub(in crate::tui) fn narrow(length: usize) -> u16 {
-    u16::try_from(length).unwrap_or(u16::MAX)
-}
-
 /// The columns that a text takes.
 pub fn width(text: &str) -> usize {
     Span::raw(text).width()

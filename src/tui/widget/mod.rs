@@ -2,6 +2,8 @@
 
 pub mod text_field;
 
+pub mod number;
+
 pub mod columns;
 
 pub mod theme;

@@ -4,6 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use crate::imprint::Imprint;
+use crate::tui::widget::number::taxels;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -18,10 +19,9 @@ pub fn size(theme: &Theme, imprint: &Imprint) -> (u16, u16) {
 pub fn draw(theme: &Theme, imprint: &Imprint, buffer: &mut Buffer, area: Rect) {
     let step: u8 = if theme.ascii { 1 } else { 2 };
     let (columns, rows) = (imprint.columns(), imprint.rows());
-    let seen = |room: u16| u8::try_from(room).unwrap_or(u8::MAX);
     let (width, height) = (
-        seen(area.width).min(columns),
-        seen(area.height.saturating_mul(step.into())).min(rows),
+        taxels(area.width).min(columns),
+        taxels(area.height.saturating_mul(step.into())).min(rows),
     );
     let (mut left, mut top) = (0, 0);
     if let Some(bounds) = imprint.bounds() {

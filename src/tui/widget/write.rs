@@ -5,8 +5,9 @@ use std::borrow::Cow;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
+use crate::tui::widget::columns::head;
 pub use crate::tui::widget::columns::{broken, width, window};
-use crate::tui::widget::columns::{head, narrow};
+use crate::tui::widget::number::narrow;
 use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
 
@@ -56,12 +57,12 @@ pub fn fitted<'a>(text: &'a str, room: usize, theme: &Theme) -> Cow<'a, str> {
 /// The first of several texts that fits into so many columns; the last one where none does.
 pub fn first_fitting<'a>(texts: &[&'a str], room: usize) -> &'a str {
     let fitting = texts.iter().find(|text| width(text) <= room);
-    fitting.or(texts.last()).copied().unwrap_or_default()
+    fitting.or(texts.last()).copied().unwrap_or("")
 }
 
 /// The line of an area that lies `index` below its top; empty where the area ends before.
 pub fn row(area: Rect, index: usize) -> Rect {
-    let index = u16::try_from(index).unwrap_or(u16::MAX);
+    let index = narrow(index);
     let inside = index < area.height;
     Rect {
         y: area.y.saturating_add(if inside { index } else { 0 }),

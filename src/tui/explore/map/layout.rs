@@ -4,7 +4,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::pose::Axis;
 use crate::tui::explore::results::Results;
-use crate::tui::widget::columns::narrow;
+use crate::tui::widget::number::narrow;
 use crate::tui::widget::write::below;
 
 /// The map of x0 and y0.
@@ -50,8 +50,8 @@ impl MapPane {
         let from = |at: u64, seen: u64, all: u64| at.saturating_sub(seen / 2).min(all - seen);
         let cells = Rect {
             x: page.x + label.min(page.width),
-            width: u16::try_from(seen_x).unwrap_or(0) * cell,
-            height: u16::try_from(seen_y).unwrap_or(0),
+            width: narrow(seen_x) * cell,
+            height: narrow(seen_y),
             ..body
         };
         let line = |index: u16| Rect {

@@ -49,7 +49,8 @@ pub fn letters(ids: &[Option<u32>], width: usize) -> Vec<Option<u8>> {
             let mut around = neighbours[&id].iter();
             around.any(|other| chosen.get(other) == Some(letter))
         };
-        let own = u8::try_from(id % u32::from(LETTERS)).unwrap_or(0);
+        // The remainder has one byte.
+        let [own, ..] = (id % u32::from(LETTERS)).to_le_bytes();
         let others = || (0..LETTERS).map(|step| (own + step) % LETTERS);
         let unused = |letter: &u8| !used.contains(letter);
         let letter = others()

@@ -11,6 +11,7 @@ use crate::touch::Plane;
 use crate::tui::explore::map::layout::MapPane;
 use crate::tui::explore::map::letters::{letter, letters};
 use crate::tui::explore::results::Results;
+use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
 
@@ -75,7 +76,7 @@ fn draw_cells(
     let [at_x, at_y, ..] = results.place().into_array();
     let here =
         pane.count != (0, 0) && (x..x + width).contains(&at_x) && (y..y + height).contains(&at_y);
-    let step = |from: u64, to: u64| u16::try_from(to - from).unwrap_or(0);
+    let step = |from: u64, to: u64| narrow(to - from);
     let cursor = here.then(|| {
         Position::new(
             pane.cells.x + step(x, at_x) * pane.cell,

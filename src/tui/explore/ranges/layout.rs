@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 
 use crate::tui::explore::ranges::state::RangesForm;
-use crate::tui::widget::columns::narrow;
+use crate::tui::widget::number::narrow;
 
 /// The lines of the form of ranges.
 #[derive(Clone, Copy, Debug)]

@@ -15,6 +15,7 @@ use crate::tui::app::document::Document;
 use crate::tui::app::message::Message;
 use crate::tui::explore::message::name_of;
 use crate::tui::keys::key::Arrow;
+use crate::tui::widget::number::around;
 use crate::tui::widget::text_field::TextField;
 
 /// No field takes more characters.
@@ -231,9 +232,7 @@ impl RangesForm {
     /// Goes `by` rows on; the last row is followed by the first.
     pub fn move_focus(&mut self, by: i8) {
         let count = self.fields.len();
-        let rows = i64::try_from(count + 1).unwrap_or(1);
-        let now = i64::try_from(self.focus.unwrap_or(count)).unwrap_or(0);
-        let next = usize::try_from((now + i64::from(by)).rem_euclid(rows)).unwrap_or(0);
+        let next = around(self.focus.unwrap_or(count), by, count + 1);
         self.set_focus((next < count).then_some(next));
     }
 

@@ -14,7 +14,7 @@ use crate::tui::explore::ranges::layout::RangeRows;
 use crate::tui::explore::ranges::state::{RangeField, RangesForm};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::widget::columns::narrow;
+use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 

@@ -3,6 +3,7 @@
 use super::*;
 use proptest::prelude::*;
 use ratatui::Terminal;
+use ratatui::buffer::Buffer;
 use ratatui::style::{Color, Modifier, Style};
 
 const SIZE: Size = Size {
@@ -58,32 +59,34 @@ fn check(frames: &[(Vec<Writing>, ScreenCursor)], synchronized: bool, erases: bo
         if let Some((x, y)) = *cursor {
             assert_eq!(screen.cursor_position(), (y, x));
         }
-        for position in buffer.area.positions() {
-            let (expected, found) = (&buffer[position], screen.cell(position.y, position.x));
-            let found = found.expect("a cell");
-            if found.is_wide_continuation() {
-                continue;
-            }
-            let symbol = if found.has_contents() {
-                found.contents()
-            } else {
-                " "
-            };
-            assert_eq!(expected.symbol(), symbol, "at {position} of frame {index}");
-            let has = |attribute| expected.modifier.contains(attribute);
-            let reversed = (has(Modifier::REVERSED), has(Modifier::UNDERLINED));
-            assert_eq!(
-                reversed,
-                (found.inverse(), found.underline()),
-                "at {position}"
-            );
-            if symbol != " " {
-                let weight = (has(Modifier::BOLD), has(Modifier::DIM));
-                assert_eq!(weight, (found.bold(), found.dim()), "at {position}");
-                assert_eq!(color_of(expected.fg), found.fgcolor(), "at {position}");
-            }
-            assert_eq!(color_of(expected.bg), found.bgcolor(), "at {position}");
+        shows(screen, &buffer, index);
+    }
+}
+
+/// The emulator shows a buffer, cell by cell.
+fn shows(screen: &vt100::Screen, buffer: &Buffer, frame: usize) {
+    for position in buffer.area.positions() {
+        let (expected, found) = (&buffer[position], screen.cell(position.y, position.x));
+        let found = found.expect("a cell");
+        if found.is_wide_continuation() {
+            continue;
         }
+        let symbol = if found.has_contents() {
+            found.contents()
+        } else {
+            " "
+        };
+        assert_eq!(expected.symbol(), symbol, "at {position} of frame {frame}");
+        let has = |attribute| expected.modifier.contains(attribute);
+        let reversed = (has(Modifier::REVERSED), has(Modifier::UNDERLINED));
+        let found_reversed = (found.inverse(), found.underline());
+        assert_eq!(reversed, found_reversed, "at {position}");
+        if symbol != " " {
+            let weight = (has(Modifier::BOLD), has(Modifier::DIM));
+            assert_eq!(weight, (found.bold(), found.dim()), "at {position}");
+            assert_eq!(color_of(expected.fg), found.fgcolor(), "at {position}");
+        }
+        assert_eq!(color_of(expected.bg), found.bgcolor(), "at {position}");
     }
 }
 
