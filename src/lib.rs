@@ -46,9 +46,11 @@
 //!  parameter    what can be set: one table of keys, units, ranges, defaults
 //!  sensor       columns, rows, threshold, pitch
 //!  imprint      the matrix: a u64 a row
+//!  matrix       a value a taxel
 //!  figure  picture  source        what touches: seven figures, a stored imprint
 //!  touch        shape + sensor -> coverage of each taxel -> imprint
 //!  description  imprint -> regions -> DESCRIPTORS
+//!  frame        what a real sensor measures: crop, tare, gain, threshold -> imprint
 //!  pose         exact ranges, the grid of poses and the index of each
 //!  atlas        the distinct imprints of a grid, counted; statistics
 //!  sweep        every pose of a grid at once -> its atlas
@@ -77,9 +79,10 @@
 //! sweep               pose, atlas, sweep; formats::atlas, archive;     json
 //!                     storage::AtlasFile, PoseFile, UnfinishedFile
 //! recognition         recognition; formats::model                      sweep
+//! frames              formats::recording                               json
 //! png                 formats::Drawing::png
 //! library             storage                                          json
-//! tui                 tui                                              library, recognition
+//! tui                 tui                                              library, recognition, frames
 //! cli (the default)   cli, and the program                             tui, png
 //! ```
 //!
@@ -117,6 +120,8 @@ pub mod sensor;
 
 pub mod imprint;
 
+pub mod matrix;
+
 pub mod figure;
 
 pub mod picture;
@@ -126,6 +131,8 @@ pub mod source;
 pub mod touch;
 
 pub mod description;
+
+pub mod frame;
 
 #[cfg(feature = "sweep")]
 pub mod pose;

@@ -33,6 +33,9 @@ pub mod array;
 
 pub mod imprint_file;
 
+#[cfg(feature = "frames")]
+pub mod recording;
+
 pub(crate) mod xml;
 
 mod drawing;

@@ -80,7 +80,7 @@ pub fn header<const N: usize>(kind: Dtype, shape: &[u64; N]) -> Vec<u8> {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Header {
-    /// Their type, as numpy writes it: `<f8` and the like.
+    /// Their type, as numpy writes it: `<f8` and the like; of records the list of their fields, in its brackets.
     pub code: String,
     /// Whether the first axis is the fastest.
     pub fortran_order: bool,
@@ -88,7 +88,7 @@ pub struct Header {
     pub shape: Vec<u64>,
 }
 
-/// The header of a file, and the numbers behind it; none of what is no array, or one of records.
+/// The header of a file, and the numbers behind it; none of what is no array.
 ///
 /// ```
 /// use taxel::formats::npy::{Dtype, header, parse};
@@ -121,7 +121,7 @@ fn dictionary(text: &str) -> Option<Header> {
         let fresh;
         (fresh, rest) = match key {
             "descr" => {
-                let (text, after) = quoted(after)?;
+                let (text, after) = quoted(after).or_else(|| bracketed(after))?;
                 (code.replace(text.to_owned()).is_none(), after)
             }
             "fortran_order" => {
@@ -163,6 +163,12 @@ fn quoted(text: &str) -> Option<(&str, &str)> {
         .filter(|quote| matches!(quote, '\'' | '"'))?;
     let (inner, after) = text[1..].split_once(quote)?;
     (!inner.contains('\\')).then_some((inner, after))
+}
+
+/// A list in square brackets with these, and what comes after it. Names of fields have no brackets.
+fn bracketed(text: &str) -> Option<(&str, &str)> {
+    let end = text.starts_with('[').then(|| text.find(']'))??;
+    Some(text.split_at(end + 1))
 }
 
 /// The numbers between the brackets of a tuple; a comma may follow the last.

@@ -4,6 +4,9 @@ mod drawing;
 
 mod exchange;
 
+#[cfg(feature = "frames")]
+mod frames;
+
 #[cfg(feature = "cli")]
 mod hostile;
 

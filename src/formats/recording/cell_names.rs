@@ -1,0 +1,189 @@
+//! Which fields of a table are cells, by the names in its header: `S0_0`, `r3c12`, or counted 0, 1, 2 and so on.
+
+/// What the header of a table says of its cells.
+#[derive(Debug, PartialEq)]
+pub(crate) enum NamedCells {
+    /// Rows, columns, and the field of each cell in reading order.
+    Grid(u16, u16, Vec<usize>),
+    /// Counted fields, one after the other: the first of them and how many.
+    Counted(usize, usize),
+}
+
+/// What a field that is no cell says of a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum FieldRole {
+    /// What the recording calls the frame.
+    Label,
+    /// Its time; the number is what makes seconds of it.
+    Time(f64),
+}
+
+/// The cells that the names describe; None where they describe none.
+pub(crate) fn cells(names: &[&str]) -> Option<NamedCells> {
+    grid(names).or_else(|| counted(names))
+}
+
+/// A name's text around its last numbers, and these.
+fn split<const N: usize>(name: &str) -> Option<(String, [u32; N])> {
+    let mut numbers = [0; N];
+    let mut skeleton = String::new();
+    let mut rest = name;
+    for number in numbers.iter_mut().rev() {
+        let end = rest.rfind(|character: char| character.is_ascii_digit())? + 1;
+        let start = rest[..end].rfind(|character: char| !character.is_ascii_digit());
+        let start = start.map_or(0, |start| {
+            start + rest[start..].chars().next().map_or(1, char::len_utf8)
+        });
+        *number = rest[start..end].parse().ok()?;
+        skeleton = format!("#{}{skeleton}", &rest[end..]);
+        rest = &rest[..start];
+    }
+    Some((format!("{rest}{skeleton}"), numbers))
+}
+
+fn grid(names: &[&str]) -> Option<NamedCells> {
+    let (last, _) = split::<2>(names.last()?)?;
+    let named = names.iter().enumerate().filter_map(|(field, name)| {
+        let (skeleton, numbers) = split::<2>(name)?;
+        (skeleton == last).then_some((field, numbers))
+    });
+    let named: Vec<(usize, [u32; 2])> = named.collect();
+    let range = |part: usize| {
+        let numbers = named.iter().map(|(_, numbers)| numbers[part]);
+        numbers.clone().min().zip(numbers.max())
+    };
+    let ((top, bottom), (left, right)) = range(0).zip(range(1))?;
+    let side = |low: u32, high: u32| {
+        u16::try_from(high - low + 1)
+            .ok()
+            .filter(|&side| side <= 512)
+    };
+    let (rows, columns) = side(top, bottom).zip(side(left, right))?;
+    let mut fields = vec![None; usize::from(rows) * usize::from(columns)];
+    if named.len() != fields.len() || named.len() < 2 {
+        return None;
+    }
+    for &(field, [row, column]) in &named {
+        // Below 512 both.
+        let index = (row - top) * u32::from(columns) + (column - left);
+        fields[usize::try_from(index).ok()?] = Some(field);
+    }
+    let fields: Option<Vec<usize>> = fields.into_iter().collect();
+    Some(NamedCells::Grid(rows, columns, fields?))
+}
+
+fn counted(names: &[&str]) -> Option<NamedCells> {
+    let named = |name: &&str| split::<1>(name);
+    let mut best: Option<(usize, usize)> = None;
+    let mut start = 0;
+    while start < names.len() {
+        let Some((skeleton, [first])) = named(&names[start]).filter(|(_, [first])| *first < 2)
+        else {
+            start += 1;
+            continue;
+        };
+        let follows = |(index, name): &(usize, &&str)| {
+            let expected = u32::try_from(*index)
+                .ok()
+                .and_then(|index| first.checked_add(index));
+            named(name).is_some_and(|(own, [number])| own == skeleton && Some(number) == expected)
+        };
+        let length = names[start..]
+            .iter()
+            .enumerate()
+            .take_while(follows)
+            .count();
+        if best.is_none_or(|(_, most)| length > most) {
+            best = Some((start, length));
+        }
+        start += length.max(1);
+    }
+    best.filter(|(_, length)| *length > 2)
+        .map(|(start, length)| NamedCells::Counted(start, length))
+}
+
+/// What a field's name says of the frame, if it is a usual one.
+pub(crate) fn role(name: &str) -> Option<FieldRole> {
+    let name = name.to_lowercase();
+    let words: Vec<&str> = name
+        .split(|character: char| !character.is_alphabetic())
+        .filter(|word| !word.is_empty())
+        .collect();
+    let first = *words.first()?;
+    let has = |units: &[&str]| words.iter().any(|word| units.contains(word));
+    let factor = if has(&["ns", "nsec", "nanoseconds", "nanos"]) {
+        1e-9
+    } else if has(&["us", "µs", "usec", "microseconds", "micros"]) {
+        1e-6
+    } else if has(&["ms", "msec", "milliseconds", "millis"]) {
+        1e-3
+    } else {
+        1.0
+    };
+    let times = [
+        "t",
+        "time",
+        "timestamp",
+        "seconds",
+        "sec",
+        "s",
+        "stamp",
+        "clock",
+    ];
+    let labels = [
+        "frame", "index", "idx", "number", "no", "nr", "n", "id", "label", "seq", "sequence",
+        "sample", "count",
+    ];
+    if times.contains(&first) || factor < 1.0 {
+        Some(FieldRole::Time(factor))
+    } else if labels.contains(&first) {
+        Some(FieldRole::Label)
+    } else {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_cells_are_found() {
+        let grid = |rows, columns, fields: &[usize]| {
+            Some(NamedCells::Grid(rows, columns, fields.to_vec()))
+        };
+        assert_eq!(cells(&["time", "S0_0", "S0_1"]), grid(1, 2, &[1, 2]));
+        assert_eq!(
+            cells(&["r1c1", "r2c1", "r1c2", "r2c2"]),
+            grid(2, 2, &[0, 2, 1, 3])
+        );
+        assert_eq!(cells(&["pad2[0][0]", "pad2[1][0]"]), grid(2, 1, &[0, 1]));
+        assert_eq!(
+            cells(&["frame", "time", "0", "1", "2", "3"]),
+            Some(NamedCells::Counted(2, 4))
+        );
+        assert_eq!(
+            cells(&["v1", "v2", "v3", "note"]),
+            Some(NamedCells::Counted(0, 3))
+        );
+        // A cell is missing; nothing counts.
+        assert_eq!(cells(&["r0c0", "r0c1", "r1c0"]), None);
+        assert_eq!(cells(&["a", "b"]), None);
+    }
+
+    #[test]
+    fn times_have_units() {
+        let time = |factor| Some(FieldRole::Time(factor));
+        for (name, expected) in [
+            ("time", time(1.0)),
+            ("t_ns", time(1e-9)),
+            ("Time (ms)", time(1e-3)),
+            ("timestamp", time(1.0)),
+            ("Frame", Some(FieldRole::Label)),
+            ("force", None),
+            ("", None),
+        ] {
+            assert_eq!(role(name), expected, "{name}");
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Which form a recording has, by its content.
+
+use std::io::{BufReader, Read, Seek, SeekFrom};
+
+use crate::formats::recording::error::RecordingError;
+use crate::formats::recording::event::{ReadOptions, RecordingFormat, Sink};
+use crate::formats::recording::lines::is_blank;
+use crate::formats::recording::{
+    delimited, emed, json_lines, npz, numpy, popu, ros_text, tekscan, xsensor, zebris,
+};
+
+/// So many bytes tell the form.
+const LOOKED_AT: u64 = 1 << 16;
+
+/// Bytes read at a time.
+const CHUNK: usize = 1 << 16;
+
+/// The form of a recording, by its first 64 KiB; None of what is no recording. A text of numbers counts as a table.
+pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
+    let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
+    let trimmed = text.trim_ascii_start();
+    let has = |word: &[u8]| start.windows(word.len()).any(|window| window == word);
+    let line_with = |word: &[u8]| {
+        let mut lines = text.split(|&byte| byte == b'\n');
+        lines.any(|line| line.starts_with(word))
+    };
+    let first = trimmed.split(|&byte| byte == b'\n').next().unwrap_or(b"");
+    Some(match start {
+        [0x93, b'N', b'U', b'M', b'P', b'Y', ..] => RecordingFormat::Npy,
+        [b'P', b'K', 3 | 5, 4 | 6, ..] => RecordingFormat::Npz,
+        _ if is_blank(trimmed) || start.contains(&0) => return None,
+        _ if trimmed.starts_with(b"{") => {
+            if has(b"\"snapshots\"") || has(b"_columns\"") {
+                RecordingFormat::Popu
+            } else {
+                RecordingFormat::JsonLines
+            }
+        }
+        _ if line_with(b"ASCII_DATA") || line_with(b"DATA_TYPE ") => RecordingFormat::Tekscan,
+        _ if line_with(b"FRAME,") && line_with(b"SENSOR,") => RecordingFormat::Xsensor,
+        _ if has(b"SensCountX=") => RecordingFormat::Zebris,
+        _ if has(b"Pict-No.:") && has(b"Matrix:") => RecordingFormat::Emed,
+        _ if is_ros(trimmed, first) => RecordingFormat::Ros2,
+        _ if is_table(first) => RecordingFormat::Csv,
+        _ => return None,
+    })
+}
+
+fn is_ros(text: &[u8], first: &[u8]) -> bool {
+    text.starts_with(b"array(")
+        || text.starts_with(b"layout:")
+        || text.starts_with(b"data:")
+        || ros_text::is_layout(first)
+        || first.starts_with(b"[") && text.windows(4).any(|word| word == b"\n---")
+}
+
+/// Whether a line may be the first of a table: it has a digit, and fields.
+fn is_table(line: &[u8]) -> bool {
+    let is_text = line
+        .iter()
+        .all(|&byte| byte >= b' ' || byte == b'\t' || byte == b'\r');
+    let has_digit = line.iter().any(u8::is_ascii_digit);
+    let has_mark = line.trim_ascii().iter().any(|byte| b",;\t ".contains(byte));
+    is_text && has_mark && (has_digit || line.contains(&b',') || line.contains(&b';'))
+}
+
+/// Reads a recording from its beginning to its end, and reports what is found to `sink`, which may break off.
+///
+/// # Errors
+/// If it cannot be read, is no recording, is damaged, or does not say how its values are arranged. Whole frames before a
+/// damage have been reported.
+pub fn read(
+    mut input: impl Read + Seek,
+    options: ReadOptions,
+    sink: &mut Sink<'_>,
+) -> Result<RecordingFormat, RecordingError> {
+    let mut start = Vec::new();
+    input.seek(SeekFrom::Start(0))?;
+    input.by_ref().take(LOOKED_AT).read_to_end(&mut start)?;
+    input.seek(SeekFrom::Start(0))?;
+    let format = recognised(&start).ok_or(RecordingError::Unknown)?;
+    let mut input = BufReader::with_capacity(CHUNK, input);
+    match format {
+        RecordingFormat::Tekscan => tekscan::read(input, sink),
+        RecordingFormat::Xsensor => xsensor::read(input, sink),
+        RecordingFormat::Emed => emed::read(input, sink),
+        RecordingFormat::Zebris => zebris::read(input, sink),
+        RecordingFormat::Npy => numpy::read(&mut input, options, sink),
+        RecordingFormat::Npz => npz::read(input, options, sink),
+        RecordingFormat::JsonLines => json_lines::read(input, options, sink),
+        RecordingFormat::Popu => popu::read(input, sink),
+        RecordingFormat::Ros2 => ros_text::read(input, options, sink),
+        RecordingFormat::Csv => delimited::read(input, options, sink),
+        RecordingFormat::Mcap | RecordingFormat::Flexitac => Err(RecordingError::Unknown),
+    }?;
+    Ok(format)
+}

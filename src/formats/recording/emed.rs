@@ -1,0 +1,216 @@
+//! novel's emed `.lst` export: pages with a header, the printed window of the matrix with its indices, and sums of forces.
+//!
+//! The printed window is the frame; the numbers of its first row and column are reported with it. Pages without a
+//! `Pict-No.`, which summarise (MVP, MPP), are passed over.
+
+use std::io::BufRead;
+
+use crate::formats::recording::error::RecordingError;
+use crate::formats::recording::event::{ChannelInfo, RecordingEvent, RecordingNote, Sink};
+use crate::formats::recording::lines::{TextLines, text};
+use crate::formats::recording::number;
+use crate::formats::recording::text_row::{self, Field};
+use crate::frame::{Frame, MAX_FRAME_SIDE};
+
+/// A pressure of 1 kPa on 1 cm² is a force of 0.1 N.
+const NEWTON: f64 = 0.1;
+/// Values and forces have two decimals.
+const ROUNDING: f64 = 0.005;
+
+#[derive(Default)]
+struct EmedState {
+    area_cm2: Option<f64>,
+    pitch_mm: Option<[f64; 2]>,
+    seconds: Option<f64>,
+    label: Option<i64>,
+    frames: u64,
+}
+
+/// Reads a recording.
+pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), RecordingError> {
+    let mut lines = TextLines::new(input);
+    let mut state = EmedState::default();
+    let mut frame = Frame::new(1, 1);
+    while lines.advance_to_content()? {
+        let line = text(lines.line());
+        if line.contains("Page") {
+            state.label = None;
+        }
+        state.line(&line);
+        let is_window = line.starts_with(['\t', ' '])
+            && line
+                .split_whitespace()
+                .next()
+                .is_some_and(|word| word.parse::<u32>().is_ok());
+        if state.label.is_some() && is_window {
+            let notes = state.window(&mut lines, &mut frame)?;
+            if state.give(&mut frame, notes, sink) {
+                break;
+            }
+        }
+    }
+    if state.label.is_some() {
+        let message = "ends before the values of a picture";
+        return Err(RecordingError::in_line(lines.number() + 1, message));
+    }
+    Ok(())
+}
+
+/// The number that follows a word.
+fn after(line: &str, word: &str) -> Option<f64> {
+    let rest = line.split_once(word)?.1.trim_start();
+    let end = rest.find(|character: char| !character.is_ascii_digit() && character != '.');
+    number::read(&rest.as_bytes()[..end.unwrap_or(rest.len())])
+}
+
+impl EmedState {
+    fn line(&mut self, line: &str) {
+        if let Some(area) = after(line, "Sensor area:") {
+            self.area_cm2 = Some(area);
+        }
+        if let Some(time) = after(line, "Time/picture:") {
+            let factor = if line.contains("ms") { 1e-3 } else { 1.0 };
+            self.seconds = Some(time * factor).filter(|&seconds| seconds > 0.0);
+        }
+        if let (Some(x), Some((_, rest))) = (
+            after(line, "Sensor size:"),
+            line.split_once("Sensor size:")
+                .and_then(|(_, rest)| rest.split_once('x')),
+        ) {
+            let factor = if rest.contains("mm") { 1.0 } else { 10.0 };
+            let y = after(&format!(":{rest}"), ":");
+            self.pitch_mm = y.map(|y| [x * factor, y * factor]);
+        }
+        if let Some(label) = after(line, "Pict-No.:") {
+            #[expect(clippy::cast_possible_truncation, reason = "the number of a picture")]
+            let label = label as i64;
+            self.label = Some(label);
+        }
+    }
+
+    /// Reads the window below the line of column numbers. Returns sums that do not hold.
+    fn window(
+        &self,
+        lines: &mut TextLines<impl BufRead>,
+        frame: &mut Frame,
+    ) -> Result<Vec<RecordingNote>, RecordingError> {
+        let heading = text(lines.line());
+        let heading_line = lines.number();
+        let words: Vec<&str> = heading.split_whitespace().collect();
+        let has_force = words.last() == Some(&"Force");
+        let numbers = &words[..words.len() - usize::from(has_force)];
+        let counted =
+            (numbers.first().and_then(|first| first.parse::<u32>().ok())).filter(|&first| {
+                let mut expected = (first..).zip(numbers);
+                expected.all(|(number, word)| word.parse() == Ok(number))
+            });
+        let columns = u16::try_from(numbers.len()).ok();
+        let columns = columns.filter(|columns| (1..=MAX_FRAME_SIDE).contains(columns));
+        let (Some(first_column), Some(columns)) = (counted, columns) else {
+            let message = "expected the numbers of columns, one after the other";
+            return Err(RecordingError::in_line(heading_line, message));
+        };
+        let mut values = vec![0.0; usize::from(columns) + 1 + usize::from(has_force)];
+        let (mut all, mut stated, mut first_row) = (Vec::new(), Vec::new(), 0);
+        let mut rows = 0_u16;
+        loop {
+            let content = lines.advance()? && !lines.line().trim_ascii().is_empty();
+            if !content || lines.line().starts_with(b"Force") {
+                if has_force && !content || rows == 0 {
+                    let message = "the picture ends here, expected more rows, then their Force";
+                    return Err(RecordingError::in_line(lines.number(), message));
+                }
+                break;
+            }
+            let (line, number) = (lines.line(), lines.number());
+            text_row::fill(
+                &mut values,
+                line,
+                number,
+                b'\t',
+                |field| match text_row::value(field) {
+                    Field::NoCell => Field::Wrong,
+                    field => field,
+                },
+            )?;
+            if rows == 0 {
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "saturates; the next row would not follow it"
+                )]
+                let first = values[0] as u32;
+                first_row = first;
+            }
+            if values[0] != f64::from(first_row) + f64::from(rows) {
+                let message = format!(
+                    "found row {}, expected row {}",
+                    values[0],
+                    f64::from(first_row) + f64::from(rows)
+                );
+                return Err(RecordingError::in_field(number, 1, message));
+            }
+            if rows == MAX_FRAME_SIDE {
+                let message = format!("more than {MAX_FRAME_SIDE} rows");
+                return Err(RecordingError::in_line(number, message));
+            }
+            rows += 1;
+            all.extend_from_slice(&values[1..=usize::from(columns)]);
+            stated.extend(values.get(usize::from(columns) + 1).copied());
+        }
+        frame.reset(columns, rows);
+        frame.values_mut().copy_from_slice(&all);
+        frame.first = Some((first_row, first_column));
+        frame.number = self.frames;
+        frame.label = self.label;
+        Ok(self.sums(frame, &stated))
+    }
+
+    /// The forces of rows that are not those of the values.
+    fn sums(&self, frame: &Frame, stated: &[f64]) -> Vec<RecordingNote> {
+        let Some(area) = self.area_cm2 else {
+            return Vec::new();
+        };
+        let rows = frame.values().chunks(frame.columns().into());
+        let note = |(row, &stated): (&[f64], &f64)| {
+            let found = row.iter().sum::<f64>() * area * NEWTON;
+            let rounding =
+                ROUNDING * (1.0 + f64::from(frame.columns()) * area * NEWTON) + 1e-9 * found.abs();
+            ((found - stated).abs() > rounding).then_some(RecordingNote::Checksum {
+                frame: frame.number,
+                label: frame.label,
+                what: "the force of a row",
+                stated,
+                found,
+            })
+        };
+        rows.zip(stated).filter_map(note).collect()
+    }
+
+    /// Gives the frame; true if no more is wanted.
+    fn give(&mut self, frame: &mut Frame, notes: Vec<RecordingNote>, sink: &mut Sink<'_>) -> bool {
+        if self.frames == 0 {
+            let info = ChannelInfo {
+                shape: Some((frame.rows(), frame.columns())),
+                unit: Some("kPa".to_owned()),
+                seconds_per_frame: self.seconds,
+                pitch_mm: self.pitch_mm,
+                ..ChannelInfo::default()
+            };
+            if sink(RecordingEvent::Channel(&info)).is_break() {
+                return true;
+            }
+        }
+        #[expect(clippy::cast_precision_loss, reason = "fewer than 2^52 pictures")]
+        let number = self.frames as f64;
+        frame.time = self.seconds.map(|seconds| seconds * number);
+        self.frames += 1;
+        self.label = None;
+        for note in notes {
+            if sink(RecordingEvent::Note(&note)).is_break() {
+                return true;
+            }
+        }
+        sink(RecordingEvent::Frame(frame)).is_break()
+    }
+}

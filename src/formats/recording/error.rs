@@ -1,0 +1,75 @@
+//! What can be wrong with a recording, and where.
+
+use std::io;
+
+/// Why a recording cannot be read, or not to its end.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RecordingError {
+    /// The system refuses.
+    #[error("cannot read: {0}")]
+    Io(#[from] io::Error),
+    /// None of the forms that are known.
+    #[error("not a recording of a known form: expected {FORMS}")]
+    Unknown,
+    /// The file does not follow its form from here on. Lines and columns count from 1; a column is a field of the line.
+    #[error("{}{message}", place(*line, *column))]
+    Damaged {
+        /// Which line, in a text.
+        line: Option<u64>,
+        /// Which field of it, where it is one.
+        column: Option<u64>,
+        /// What is wrong, and what would be right.
+        message: String,
+    },
+    /// The file does not say how its values are arranged.
+    #[error(
+        "{values} values a frame, but not in how many rows and columns: name them with --rows and --columns"
+    )]
+    Shape {
+        /// How many values a frame has.
+        values: u64,
+    },
+}
+
+const FORMS: &str = "Tekscan ASCII, XSENSOR CSV, emed .lst, zebris .apd, CSV, NPY, NPZ, JSON lines, PoPu JSON, \
+                     ros2 topic echo";
+
+fn place(line: Option<u64>, column: Option<u64>) -> String {
+    match (line, column) {
+        (Some(line), Some(column)) => format!("line {line}, column {column}: "),
+        (Some(line), None) => format!("line {line}: "),
+        _ => String::new(),
+    }
+}
+
+impl RecordingError {
+    /// A damage without a place.
+    pub(crate) fn damaged(message: impl Into<String>) -> Self {
+        let message = message.into();
+        Self::Damaged {
+            line: None,
+            column: None,
+            message,
+        }
+    }
+
+    /// A damage of a line.
+    pub(crate) fn in_line(line: u64, message: impl Into<String>) -> Self {
+        let message = message.into();
+        Self::Damaged {
+            line: Some(line),
+            column: None,
+            message,
+        }
+    }
+
+    /// A damage of a field of a line.
+    pub(crate) fn in_field(line: u64, column: usize, message: impl Into<String>) -> Self {
+        Self::Damaged {
+            line: Some(line),
+            column: Some(column as u64),
+            message: message.into(),
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! What a reader reports while it reads: what is in the file, frame after frame, and what is odd.
+
+use std::fmt;
+use std::ops::ControlFlow;
+
+use crate::frame::Frame;
+
+/// The forms of recordings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum RecordingFormat {
+    /// Tekscan's ASCII export.
+    Tekscan,
+    /// XSENSOR's CSV export.
+    Xsensor,
+    /// novel's emed `.lst` export.
+    Emed,
+    /// A zebris `.apd` picture.
+    Zebris,
+    /// Numbers parted by commas, semicolons, tabs or spaces: a frame a line, or a row a line.
+    Csv,
+    /// An array of numpy.
+    Npy,
+    /// An archive of such arrays.
+    Npz,
+    /// A JSON object a line.
+    JsonLines,
+    /// JSON of the `PoPu` data set.
+    Popu,
+    /// What `ros2 topic echo` prints.
+    Ros2,
+    /// An MCAP file.
+    Mcap,
+    /// Bytes of a `FlexiTac` board.
+    Flexitac,
+}
+
+impl RecordingFormat {
+    /// Its name in answers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tekscan => "tekscan",
+            Self::Xsensor => "xsensor",
+            Self::Emed => "emed",
+            Self::Zebris => "zebris",
+            Self::Csv => "csv",
+            Self::Npy => "npy",
+            Self::Npz => "npz",
+            Self::JsonLines => "jsonl",
+            Self::Popu => "popu",
+            Self::Ros2 => "ros2",
+            Self::Mcap => "mcap",
+            Self::Flexitac => "flexitac",
+        }
+    }
+}
+
+/// What is known beforehand.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ReadOptions {
+    /// Rows and columns, for files that do not say them.
+    pub shape: Option<(u16, u16)>,
+}
+
+impl ReadOptions {
+    /// With rows and columns, for files that do not say them.
+    #[must_use]
+    pub fn with_shape(mut self, rows: u16, columns: u16) -> Self {
+        self.shape = Some((rows, columns));
+        self
+    }
+}
+
+/// What a recording says of one of its channels. None where it does not say it.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct ChannelInfo {
+    /// The channel's name: a sensor, an array, a topic.
+    pub name: Option<String>,
+    /// Rows and columns of its frames.
+    pub shape: Option<(u16, u16)>,
+    /// The unit of its values.
+    pub unit: Option<String>,
+    /// When the recording began, as it writes it.
+    pub start: Option<String>,
+    /// Seconds from a frame to the next.
+    pub seconds_per_frame: Option<f64>,
+    /// The distance of two cells, in mm, along x and along y.
+    pub pitch_mm: Option<[f64; 2]>,
+    /// The value from which on the recording's own software shows a cell as touched.
+    pub threshold: Option<f64>,
+}
+
+/// Something odd that does not stop a reader.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum RecordingNote {
+    /// A sum of a frame that the file states is not that of its values.
+    Checksum {
+        /// The frame's number, from 0.
+        frame: u64,
+        /// What its file calls it.
+        label: Option<i64>,
+        /// What is summed.
+        what: &'static str,
+        /// What the file says.
+        stated: f64,
+        /// What the values give.
+        found: f64,
+    },
+    /// Rows and columns follow from the number of values alone.
+    Square {
+        /// How many rows, and how many columns.
+        side: u16,
+    },
+    /// Bytes that belong to no frame.
+    Garbled {
+        /// How many frames were dropped.
+        frames: u64,
+    },
+}
+
+impl fmt::Display for RecordingNote {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Checksum {
+                frame,
+                label,
+                what,
+                stated,
+                found,
+            } => {
+                let label = label.map_or(String::new(), |label| format!(" (label {label})"));
+                write!(
+                    f,
+                    "frame {frame}{label}: {what} should be {stated}, but the values give {found}"
+                )
+            }
+            Self::Square { side } => write!(
+                f,
+                "the header counts {} values, taken as {side} rows of {side} columns",
+                u32::from(*side) * u32::from(*side)
+            ),
+            Self::Garbled { frames } => {
+                write!(
+                    f,
+                    "{frames} torn, short, long or garbled frames were dropped"
+                )
+            }
+        }
+    }
+}
+
+/// What a reader reports.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub enum RecordingEvent<'a> {
+    /// A channel, before its first frame. The first one is channel 0, the next one 1.
+    Channel(&'a ChannelInfo),
+    /// A frame.
+    Frame(&'a Frame),
+    /// Something odd.
+    Note(&'a RecordingNote),
+}
+
+/// Takes what a reader reports; `Break` ends the reading without an error.
+pub(crate) type Sink<'a> = dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()> + 'a;

@@ -1,0 +1,291 @@
+//! A JSON object a line: `{"t": 0.1, "frame": [[0, 12], [null, 3]]}`, null where there is no cell.
+
+use std::fmt;
+use std::io::BufRead;
+
+use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+
+use crate::formats::json;
+use crate::formats::recording::error::RecordingError;
+use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
+use crate::formats::recording::lines::TextLines;
+use crate::frame::{Frame, LARGEST_VALUE, MAX_FRAME_SIDE};
+use crate::quote::shortened;
+
+/// Reads a recording.
+pub(super) fn read(
+    input: impl BufRead,
+    options: ReadOptions,
+    sink: &mut Sink<'_>,
+) -> Result<(), RecordingError> {
+    let mut lines = TextLines::new(input);
+    let mut line = FrameLine::new(options.shape);
+    let mut start = None;
+    let mut shape = None;
+    let mut frame = Frame::new(1, 1);
+    while lines.advance_to_content()? {
+        let number = lines.number();
+        line.read(lines.line()).map_err(|error| match error {
+            FrameLineError::Json(column, message) => {
+                RecordingError::in_field(number, column, message)
+            }
+            FrameLineError::Shape(values) => RecordingError::Shape { values },
+        })?;
+        let (rows, columns) = line.shape;
+        if shape.is_none() {
+            shape = Some(line.shape);
+            let info = ChannelInfo {
+                shape,
+                ..ChannelInfo::default()
+            };
+            if sink(RecordingEvent::Channel(&info)).is_break() {
+                break;
+            }
+        }
+        if let Some((first_rows, first_columns)) = shape.filter(|own| *own != line.shape) {
+            let message = format!(
+                "found {rows} rows of {columns}, expected {first_rows} of {first_columns} as before"
+            );
+            return Err(RecordingError::in_line(number, message));
+        }
+        frame.reset(columns, rows);
+        frame.values_mut().copy_from_slice(&line.values);
+        frame.time = line.time.map(|time| time - *start.get_or_insert(time));
+        frame.label = line.label;
+        if sink(RecordingEvent::Frame(&frame)).is_break() {
+            break;
+        }
+        frame.number += 1;
+    }
+    Ok(())
+}
+
+/// What a line says, in memory that is used again.
+#[derive(Debug)]
+pub(crate) struct FrameLine {
+    /// Rows and columns, for lists of cells without rows.
+    asked: Option<(u16, u16)>,
+    pub(crate) shape: (u16, u16),
+    pub(crate) values: Vec<f64>,
+    pub(crate) time: Option<f64>,
+    pub(crate) label: Option<i64>,
+}
+
+/// Why a line is no frame.
+#[derive(Debug)]
+pub(crate) enum FrameLineError {
+    /// What is wrong, from which byte on, counted from 1.
+    Json(usize, String),
+    /// A list of so many cells without rows.
+    Shape(u64),
+}
+
+impl FrameLine {
+    pub(crate) fn new(asked: Option<(u16, u16)>) -> Self {
+        Self {
+            asked,
+            shape: (0, 0),
+            values: Vec::new(),
+            time: None,
+            label: None,
+        }
+    }
+
+    /// Reads a line.
+    pub(crate) fn read(&mut self, line: &[u8]) -> Result<(), FrameLineError> {
+        self.values.clear();
+        (self.time, self.label) = (None, None);
+        let mut rows = 0;
+        let mut content = serde_json::Deserializer::from_slice(line);
+        let read = ObjectSeed(self, &mut rows)
+            .deserialize(&mut content)
+            .and_then(|()| content.end());
+        read.map_err(|error| {
+            let message = json::message(&error);
+            FrameLineError::Json(error.column().max(1), message)
+        })?;
+        let values = self.values.len();
+        let wrong = |message: String| Err(FrameLineError::Json(1, message));
+        if let Some(columns) = values.checked_div(rows) {
+            let side = |side: usize| {
+                u16::try_from(side)
+                    .ok()
+                    .filter(|side| (1..=MAX_FRAME_SIDE).contains(side))
+            };
+            let Some(shape) = side(rows).zip(side(columns)) else {
+                return wrong(format!(
+                    "{rows} rows of {columns}, expected 1 to 512 of each"
+                ));
+            };
+            if let Some((asked_rows, asked_columns)) = self.asked.filter(|asked| *asked != shape) {
+                return wrong(format!(
+                    "{rows} rows of {columns}, and {asked_rows} of {asked_columns} were named"
+                ));
+            }
+            self.shape = shape;
+            return Ok(());
+        }
+        let Some((rows, columns)) = self.asked else {
+            return Err(FrameLineError::Shape(values as u64));
+        };
+        if values != usize::from(rows) * usize::from(columns) {
+            return wrong(format!(
+                "found {values} values, expected {}",
+                u32::from(rows) * u32::from(columns)
+            ));
+        }
+        self.shape = (rows, columns);
+        Ok(())
+    }
+}
+
+/// The object of a line; the number of rows goes into the second field, 0 for cells without rows.
+struct ObjectSeed<'a>(&'a mut FrameLine, &'a mut usize);
+
+impl<'de> DeserializeSeed<'de> for ObjectSeed<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_map(self)
+    }
+}
+
+impl<'de> Visitor<'de> for ObjectSeed<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object with a key \"frame\"")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
+        let mut found = false;
+        while let Some(key) = map.next_key::<std::borrow::Cow<'de, str>>()? {
+            match &*key {
+                "frame" if found => return Err(A::Error::custom("\"frame\" stands twice")),
+                "frame" => {
+                    found = true;
+                    map.next_value_seed(CellsSeed(&mut self.0.values, Some(self.1)))?;
+                }
+                "t" | "time" => {
+                    let time: Option<f64> = map.next_value()?;
+                    self.0.time = time.filter(|time| time.abs() <= LARGEST_VALUE);
+                }
+                "label" => self.0.label = map.next_value()?,
+                _ => drop(map.next_value::<IgnoredAny>()?),
+            }
+        }
+        if !found {
+            return Err(A::Error::custom("no key \"frame\""));
+        }
+        Ok(())
+    }
+}
+
+/// A list of rows, or of cells. Where a count of rows is asked for, lists inside of this one are rows.
+pub(super) struct CellsSeed<'a>(
+    pub(super) &'a mut Vec<f64>,
+    pub(super) Option<&'a mut usize>,
+);
+
+/// A frame of 512 × 512 has as many.
+const MOST_CELLS: usize = 512 * 512;
+
+impl<'de> DeserializeSeed<'de> for CellsSeed<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_seq(self)
+    }
+}
+
+impl<'de> Visitor<'de> for CellsSeed<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a list of numbers, or of rows of them")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
+        let Self(values, mut rows) = self;
+        let (mut width, mut cells) = (None, false);
+        loop {
+            let before = values.len();
+            let Some(is_row) = list.next_element_seed(CellSeed(values, rows.is_some()))? else {
+                return Ok(());
+            };
+            if values.len() > MOST_CELLS {
+                return Err(A::Error::custom("more than 512 × 512 cells"));
+            }
+            cells |= !is_row;
+            let Some(rows) = rows.as_mut().filter(|_| is_row) else {
+                if width.is_some() {
+                    return Err(A::Error::custom("rows and numbers in one list"));
+                }
+                continue;
+            };
+            **rows += 1;
+            let found = values.len() - before;
+            let expected = *width.get_or_insert(found);
+            if found != expected || cells {
+                let row = **rows;
+                let message = format!("row {row} has {found} values, expected {expected}");
+                return Err(A::Error::custom(message));
+            }
+        }
+    }
+}
+
+/// A number, null, or a row of these; true for a row.
+struct CellSeed<'a>(&'a mut Vec<f64>, bool);
+
+impl<'de> DeserializeSeed<'de> for CellSeed<'_> {
+    type Value = bool;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<bool, D::Error> {
+        deserializer.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for CellSeed<'_> {
+    type Value = bool;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a number or null")
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<bool, E> {
+        if value.abs() > LARGEST_VALUE {
+            let found = shortened(&value.to_string());
+            return Err(E::custom(format!("{found} is too large for a value")));
+        }
+        self.0.push(value);
+        Ok(false)
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "the nearest float")]
+    fn visit_u64<E: Error>(self, value: u64) -> Result<bool, E> {
+        self.0.push(value as f64);
+        Ok(false)
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "the nearest float")]
+    fn visit_i64<E: Error>(self, value: i64) -> Result<bool, E> {
+        self.0.push(value as f64);
+        Ok(false)
+    }
+
+    fn visit_unit<E: Error>(self) -> Result<bool, E> {
+        self.0.push(f64::NAN);
+        Ok(false)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<bool, A::Error> {
+        if !self.1 {
+            return Err(A::Error::custom(
+                "a list inside of a row, expected a number or null",
+            ));
+        }
+        CellsSeed(self.0, None).visit_seq(list)?;
+        Ok(true)
+    }
+}

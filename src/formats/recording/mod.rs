@@ -1,0 +1,60 @@
+//! Recordings of real tactile and pressure sensors: files of any length in, frames out, one after the other.
+//!
+//! What form a file has is found by its content. Nothing is cut or padded: where the number of values does not fit the rows
+//! and columns, that is an error, and where a file does not say how many there are, they are asked for. Every whole frame
+//! before a damage is given, then the error with line and column. Memory does not grow with the length of a recording.
+//!
+//! ```
+//! use std::io::Cursor;
+//! use std::ops::ControlFlow;
+//! use taxel::formats::recording::{ReadOptions, RecordingEvent, RecordingFormat, read};
+//! let file = b"time,r0c0,r0c1,r1c0,r1c1\n0.0,1,2,3,4\n0.1,5,6,7,8\n";
+//! let mut sums = Vec::new();
+//! let format = read(Cursor::new(file), ReadOptions::default(), &mut |event| {
+//!     if let RecordingEvent::Frame(frame) = event {
+//!         sums.push((frame.time, frame.values().iter().sum::<f64>()));
+//!     }
+//!     ControlFlow::Continue(())
+//! })?;
+//! assert_eq!(format, RecordingFormat::Csv);
+//! assert_eq!(sums, [(Some(0.0), 10.0), (Some(0.1), 26.0)]);
+//! # Ok::<(), taxel::formats::recording::RecordingError>(())
+//! ```
+
+mod error;
+
+mod event;
+
+mod number;
+
+mod lines;
+
+mod text_row;
+
+mod tekscan;
+
+mod xsensor;
+
+mod emed;
+
+mod zebris;
+
+mod delimited;
+
+mod cell_names;
+
+mod numpy;
+
+mod npz;
+
+mod json_lines;
+
+mod popu;
+
+mod ros_text;
+
+mod detect;
+
+pub use detect::{read, recognised};
+pub use error::RecordingError;
+pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingFormat, RecordingNote};

@@ -1,0 +1,463 @@
+//! Frames as an array of numpy: frames × rows × columns, rows × columns, frames × cells, or records of taxel itself.
+//!
+//! Any type of real number in either byte order, C or Fortran order. NaN is no cell. Source: that of
+//! [`crate::formats::npy`].
+
+use std::io::{ErrorKind, Read};
+
+use crate::formats::npy;
+use crate::formats::npy::Header;
+use crate::formats::recording::error::RecordingError;
+use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
+use crate::frame::{Frame, LARGEST_VALUE, MAX_FRAME_SIDE};
+use crate::quote::shortened;
+
+/// A longer header is none.
+const LONGEST_HEADER: usize = 1 << 20;
+
+/// An array in Fortran order has the values of a frame all over the file: it is read as a whole, up to 256 MiB.
+const LARGEST_FORTRAN: u64 = 1 << 28;
+
+/// How a number stands in the file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct NumberType {
+    kind: u8,
+    size: usize,
+    big_endian: bool,
+}
+
+impl NumberType {
+    /// That of a code such as `<f4`.
+    pub(super) fn of(code: &str) -> Option<Self> {
+        let [order, kind, size @ ..] = code.as_bytes() else {
+            return None;
+        };
+        let size = match (kind, size) {
+            (b'b' | b'i' | b'u', b"1") => 1,
+            (b'i' | b'u' | b'f', b"2") => 2,
+            (b'i' | b'u' | b'f', b"4") => 4,
+            (b'i' | b'u' | b'f', b"8") => 8,
+            _ => return None,
+        };
+        matches!(order, b'<' | b'>' | b'|' | b'=').then_some(Self {
+            kind: *kind,
+            size,
+            big_endian: *order == b'>',
+        })
+    }
+
+    /// Bytes of a number.
+    pub(super) fn size(self) -> usize {
+        self.size
+    }
+
+    /// The bytes as a word.
+    fn word(self, bytes: &[u8]) -> u64 {
+        let mut word = [0; 8];
+        for (slot, byte) in word.iter_mut().zip(bytes) {
+            *slot = *byte;
+        }
+        if self.big_endian {
+            word[..self.size].reverse();
+        }
+        u64::from_le_bytes(word)
+    }
+
+    /// A whole number; none of floats.
+    pub(super) fn whole(self, bytes: &[u8]) -> Option<i128> {
+        let word = self.word(bytes);
+        let unused = 64 - 8 * self.size;
+        match self.kind {
+            b'i' => Some(i128::from((word << unused).cast_signed() >> unused)),
+            b'u' | b'b' => Some(i128::from(word)),
+            _ => None,
+        }
+    }
+
+    /// The number, of the nearest float.
+    #[expect(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        reason = "beyond 2^53 the nearest float; halves and singles are cut to their width"
+    )]
+    pub(super) fn value(self, bytes: &[u8]) -> f64 {
+        if let Some(whole) = self.whole(bytes) {
+            return whole as f64;
+        }
+        let word = self.word(bytes);
+        match self.size {
+            2 => half(word as u16),
+            4 => f32::from_bits(word as u32).into(),
+            _ => f64::from_bits(word),
+        }
+    }
+}
+
+/// A number of IEEE 754's binary16.
+fn half(bits: u16) -> f64 {
+    let (exponent, fraction) = (i32::from(bits >> 10 & 31), f64::from(bits & 1023));
+    let value = match exponent {
+        0 => fraction * 2_f64.powi(-24),
+        31 if fraction == 0.0 => f64::INFINITY,
+        31 => f64::NAN,
+        _ => (1024.0 + fraction) * 2_f64.powi(exponent - 25),
+    };
+    if bits >> 15 == 1 { -value } else { value }
+}
+
+/// Reads what stands before the numbers.
+pub(super) fn header(input: &mut impl Read) -> Result<Header, RecordingError> {
+    let wrong = || RecordingError::damaged("no header of a numpy array, version 1 to 3");
+    let mut start = [0; 8];
+    let mut whole = |bytes: &mut [u8]| match input.read_exact(bytes) {
+        Err(error) if error.kind() == ErrorKind::UnexpectedEof => Err(wrong()),
+        read => read.map_err(RecordingError::Io),
+    };
+    whole(&mut start)?;
+    let mut bytes = start.to_vec();
+    let mut length = vec![0; if start[6] == 1 { 2 } else { 4 }];
+    whole(&mut length)?;
+    bytes.extend(&length);
+    let length = length
+        .iter()
+        .rev()
+        .fold(0, |sum, byte| sum << 8 | usize::from(*byte));
+    if length > LONGEST_HEADER {
+        return Err(wrong());
+    }
+    let mut text = vec![0; length];
+    whole(&mut text)?;
+    bytes.extend(text);
+    npy::parse(&bytes)
+        .map(|(header, _)| header)
+        .ok_or_else(wrong)
+}
+
+/// How the numbers of an array become frames.
+#[derive(Debug)]
+pub(super) struct ArrayLayout {
+    number: NumberType,
+    frames: u64,
+    rows: u16,
+    columns: u16,
+    fortran: bool,
+    record: Option<RecordLayout>,
+}
+
+impl ArrayLayout {
+    /// That of a header.
+    pub(super) fn of(header: &Header, options: ReadOptions) -> Result<Self, RecordingError> {
+        if header.code.starts_with('[') {
+            return Self::of_records(header);
+        }
+        let number = NumberType::of(&header.code).ok_or_else(|| {
+            let found = shortened(&header.code);
+            RecordingError::damaged(format!("numbers of type {found:?}, expected real ones"))
+        })?;
+        let (frames, rows, columns) = shape(&header.shape, options)?;
+        Ok(Self {
+            number,
+            frames,
+            rows,
+            columns,
+            fortran: header.fortran_order && header.shape.len() > 1,
+            record: None,
+        })
+    }
+
+    fn of_records(header: &Header) -> Result<Self, RecordingError> {
+        let record = RecordLayout::of(&header.code).filter(|_| header.shape.len() == 1);
+        let record = record.ok_or_else(|| {
+            let message = "records other than taxel writes, expected time, number and values";
+            RecordingError::damaged(message)
+        })?;
+        Ok(Self {
+            number: record.number,
+            // Of a recording that was cut off, more may be there than its header counts.
+            frames: u64::MAX,
+            rows: record.rows,
+            columns: record.columns,
+            fortran: false,
+            record: Some(record),
+        })
+    }
+
+    /// Number of frames, where the header says it.
+    pub(super) fn frames(&self) -> u64 {
+        self.frames
+    }
+
+    pub(super) fn shape(&self) -> (u16, u16) {
+        (self.rows, self.columns)
+    }
+}
+
+/// Frames, rows and columns of an array of that shape.
+fn shape(axes: &[u64], options: ReadOptions) -> Result<(u64, u16, u16), RecordingError> {
+    let side = |length: u64| {
+        u16::try_from(length)
+            .ok()
+            .filter(|side| (1..=MAX_FRAME_SIDE).contains(side))
+    };
+    let asked = options.shape;
+    let cells = asked.map(|(rows, columns)| u64::from(rows) * u64::from(columns));
+    let found = match *axes {
+        [frames, rows, columns] => side(rows).zip(side(columns)).map(|(r, c)| (frames, r, c)),
+        [rows, columns] => match (asked, side(rows).zip(side(columns))) {
+            (Some(asked), Some(own)) if asked == own => Some((1, own.0, own.1)),
+            (Some((r, c)), _) if cells == Some(columns) => Some((rows, r, c)),
+            (None, Some((r, c))) => Some((1, r, c)),
+            (None, None) => return Err(RecordingError::Shape { values: columns }),
+            _ => None,
+        },
+        [length] if cells == Some(length) => asked.map(|(r, c)| (1, r, c)),
+        [length] if cells.is_none() => return Err(RecordingError::Shape { values: length }),
+        _ => None,
+    };
+    let found = found.filter(|&(_, rows, columns)| asked.is_none_or(|own| own == (rows, columns)));
+    found.ok_or_else(|| {
+        let axes: Vec<String> = axes.iter().take(8).map(ToString::to_string).collect();
+        let asked = asked.map_or(String::new(), |(rows, columns)| {
+            format!(", and {rows} rows of {columns} were named")
+        });
+        RecordingError::damaged(format!(
+            "an array of shape ({}), expected frames, rows and columns, at most 512 rows and columns{asked}",
+            axes.join(", ")
+        ))
+    })
+}
+
+/// Where the fields of a record of taxel's own recordings are.
+#[derive(Debug)]
+struct RecordLayout {
+    size: usize,
+    time: Option<(usize, NumberType)>,
+    label: Option<(usize, NumberType)>,
+    values: usize,
+    number: NumberType,
+    rows: u16,
+    columns: u16,
+}
+
+impl RecordLayout {
+    /// That of `[('time', '<f8'), ('number', '<u8'), ('values', '<f8', (28, 28))]`.
+    fn of(code: &str) -> Option<Self> {
+        let mut rest = code.strip_prefix('[')?.strip_suffix(']')?.trim();
+        let (mut size, mut time, mut label, mut values) = (0_usize, None, None, None);
+        while let Some(field) = rest.strip_prefix('(') {
+            let mut words = field.splitn(5, '\'');
+            let (_, name, _, kind, after) = (
+                words.next()?,
+                words.next()?,
+                words.next()?,
+                words.next()?,
+                words.next()?,
+            );
+            let number = NumberType::of(kind)?;
+            let after = after.trim_start().trim_start_matches(',').trim_start();
+            let (sides, after) = match after.strip_prefix('(') {
+                Some(sides) => {
+                    let (sides, after) = sides.split_once(')')?;
+                    let sides = sides
+                        .split(',')
+                        .map(str::trim)
+                        .filter(|side| !side.is_empty());
+                    let sides: Option<Vec<u16>> = sides.map(|side| side.parse().ok()).collect();
+                    (sides?, after)
+                }
+                None => (Vec::new(), after),
+            };
+            let count = sides.iter().try_fold(1_usize, |product, side| {
+                product.checked_mul(usize::from(*side))
+            })?;
+            match (name, &sides[..]) {
+                ("time", []) => time = Some((size, number)),
+                ("number", []) => label = Some((size, number)),
+                ("values", &[rows, columns]) => values = Some((size, number, rows, columns)),
+                _ => {}
+            }
+            size = size.checked_add(count.checked_mul(number.size)?)?;
+            let after = after.trim_start().strip_prefix(')')?.trim_start();
+            rest = after.strip_prefix(',').unwrap_or(after).trim_start();
+        }
+        let (values, number, rows, columns) = values?;
+        let fits = |side: u16| (1..=MAX_FRAME_SIDE).contains(&side);
+        (rest.is_empty() && fits(rows) && fits(columns) && size < 1 << 24).then_some(Self {
+            size,
+            time,
+            label,
+            values,
+            number,
+            rows,
+            columns,
+        })
+    }
+}
+
+/// Reads a recording.
+pub(super) fn read(
+    input: &mut impl Read,
+    options: ReadOptions,
+    sink: &mut Sink<'_>,
+) -> Result<(), RecordingError> {
+    let layout = ArrayLayout::of(&header(input)?, options)?;
+    let info = ChannelInfo {
+        shape: Some(layout.shape()),
+        ..ChannelInfo::default()
+    };
+    if sink(RecordingEvent::Channel(&info)).is_break() {
+        return Ok(());
+    }
+    let ended = frames(input, &layout, 0, &[], sink)?;
+    if !ended && layout.record.is_none() && input.read(&mut [0])? > 0 {
+        let count = layout.frames;
+        let message = format!("more bytes than the {count} frames of the header take");
+        return Err(RecordingError::damaged(message));
+    }
+    Ok(())
+}
+
+/// Reads all frames of an array; true if no more is wanted. The times are in seconds, one a frame, or none.
+pub(super) fn frames(
+    input: &mut impl Read,
+    layout: &ArrayLayout,
+    channel: usize,
+    times: &[f64],
+    sink: &mut Sink<'_>,
+) -> Result<bool, RecordingError> {
+    let mut frame = Frame::new(layout.columns, layout.rows);
+    frame.channel = channel;
+    if layout.fortran {
+        return fortran(input, layout, frame, times, sink);
+    }
+    let cells = usize::from(layout.rows) * usize::from(layout.columns) * layout.number.size;
+    let size = layout.record.as_ref().map_or(cells, |record| record.size);
+    let mut bytes = vec![0; size];
+    let mut start = None;
+    while frame.number < layout.frames {
+        let length = fill(input, &mut bytes)?;
+        if length < size {
+            // A recording that is being written, or was cut off, ends anywhere.
+            if layout.record.is_some() {
+                break;
+            }
+            return Err(short(frame.number, layout.frames));
+        }
+        let values = layout.record.as_ref().map_or(0, |record| record.values);
+        let values = &bytes[values..values + cells];
+        for (slot, bytes) in frame
+            .values_mut()
+            .iter_mut()
+            .zip(values.chunks(layout.number.size))
+        {
+            *slot = layout.number.value(bytes);
+        }
+        frame.time = usize::try_from(frame.number)
+            .ok()
+            .and_then(|number| times.get(number))
+            .copied();
+        if let Some(record) = &layout.record {
+            let (time, label) = moment(record, &bytes, &mut start);
+            (frame.time, frame.label) = (time, label);
+        }
+        if give(&frame, sink)? {
+            return Ok(true);
+        }
+        frame.number += 1;
+    }
+    Ok(false)
+}
+
+/// Time, in seconds since the first record, and label of a record.
+fn moment(
+    record: &RecordLayout,
+    bytes: &[u8],
+    start: &mut Option<f64>,
+) -> (Option<f64>, Option<i64>) {
+    let time = record
+        .time
+        .map(|(at, number)| number.value(&bytes[at..at + number.size]));
+    let time = time.filter(|time| time.is_finite());
+    let time = time.map(|time| time - *start.get_or_insert(time));
+    let label = record
+        .label
+        .and_then(|(at, number)| number.whole(&bytes[at..at + number.size]));
+    (time, label.and_then(|label| i64::try_from(label).ok()))
+}
+
+fn short(frame: u64, frames: u64) -> RecordingError {
+    RecordingError::damaged(format!(
+        "the file ends inside of frame {frame}, expected {frames} frames"
+    ))
+}
+
+/// Gives a frame whose values are finite or none; true if no more is wanted.
+fn give(frame: &Frame, sink: &mut Sink<'_>) -> Result<bool, RecordingError> {
+    let wrong = frame
+        .values()
+        .iter()
+        .position(|value| value.abs() > LARGEST_VALUE);
+    if let Some(index) = wrong {
+        let columns = usize::from(frame.columns());
+        let (number, row, column) = (frame.number, index / columns, index % columns);
+        return Err(RecordingError::damaged(format!(
+            "frame {number}, row {row}, column {column}: infinite, expected a number, or NaN where there is no cell"
+        )));
+    }
+    Ok(sink(RecordingEvent::Frame(frame)).is_break())
+}
+
+/// Fills as much as there is.
+pub(super) fn fill(input: &mut impl Read, bytes: &mut [u8]) -> Result<usize, RecordingError> {
+    let mut length = 0;
+    while length < bytes.len() {
+        match input.read(&mut bytes[length..]) {
+            Ok(0) => break,
+            Ok(count) => length += count,
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            Err(error) => return Err(error.into()),
+        }
+    }
+    Ok(length)
+}
+
+/// The same for an array whose first axis is the fastest.
+fn fortran(
+    input: &mut impl Read,
+    layout: &ArrayLayout,
+    mut frame: Frame,
+    times: &[f64],
+    sink: &mut Sink<'_>,
+) -> Result<bool, RecordingError> {
+    let (rows, columns) = (u64::from(layout.rows), u64::from(layout.columns));
+    let size = layout.number.size as u64;
+    let expected = (rows * columns * size).checked_mul(layout.frames);
+    let Some(expected) = expected.filter(|&bytes| bytes <= LARGEST_FORTRAN) else {
+        return Err(RecordingError::damaged(
+            "an array of more than 256 MiB in Fortran order: save numpy.ascontiguousarray of it",
+        ));
+    };
+    let mut bytes = Vec::new();
+    input.by_ref().take(expected).read_to_end(&mut bytes)?;
+    if (bytes.len() as u64) < expected {
+        return Err(short(0, layout.frames));
+    }
+    let size = layout.number.size;
+    let (rows, columns) = (usize::from(layout.rows), usize::from(layout.columns));
+    let frames = bytes.len() / (rows * columns * size);
+    for number in 0..frames {
+        for row in 0..rows {
+            for column in 0..columns {
+                let index = (number + frames * (row + rows * column)) * size;
+                let value = layout.number.value(&bytes[index..index + size]);
+                frame.values_mut()[row * columns + column] = value;
+            }
+        }
+        frame.time = times.get(number).copied();
+        if give(&frame, sink)? {
+            return Ok(true);
+        }
+        frame.number += 1;
+    }
+    Ok(false)
+}

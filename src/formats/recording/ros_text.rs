@@ -1,0 +1,255 @@
+//! What `ros2 topic echo` prints of a message with an array: with `--csv`, as `array('H', [0, 1])`, or as YAML.
+//!
+//! Messages are parted by `---`. An echo without `--full-length` leaves out what is beyond 128 elements, and is refused.
+
+use std::io::BufRead;
+
+use crate::formats::recording::error::RecordingError;
+use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
+use crate::formats::recording::lines::TextLines;
+use crate::formats::recording::text_row::{self, Field};
+use crate::frame::{Frame, MAX_FRAME_SIDE};
+
+/// The values of a message, and the sizes of its layout, in memory that is used again.
+#[derive(Debug, Default)]
+pub(crate) struct RosMessage {
+    pub(crate) sizes: Vec<u32>,
+    pub(crate) values: Vec<f64>,
+    /// Inside of the list of a YAML text, or of an array that goes on in the next line.
+    open: bool,
+    any: bool,
+}
+
+/// What a line makes of a message.
+#[derive(Debug, PartialEq)]
+pub(crate) enum RosLine {
+    /// It goes on.
+    More,
+    /// It is whole.
+    Whole,
+    /// It was cut off by `ros2 topic echo`.
+    Cut,
+    /// This field, counted from 1, is no number.
+    Wrong(usize),
+}
+
+/// The most values that are kept of a message; one more than any frame has.
+const MOST_VALUES: usize = 512 * 512 + 1;
+
+impl RosMessage {
+    pub(crate) fn clear(&mut self) {
+        self.sizes.clear();
+        self.values.clear();
+        (self.open, self.any) = (false, false);
+    }
+
+    /// Whether a line of this message was read.
+    pub(crate) fn begun(&self) -> bool {
+        self.any
+    }
+
+    fn push(&mut self, field: &[u8]) -> bool {
+        let field = field.trim_ascii();
+        let value = match text_row::value(field) {
+            Field::Value(value) => value,
+            _ if field.eq_ignore_ascii_case(b"nan") || field.eq_ignore_ascii_case(b".nan") => {
+                f64::NAN
+            }
+            _ => return false,
+        };
+        if self.values.len() < MOST_VALUES {
+            self.values.push(value);
+        }
+        true
+    }
+
+    /// Reads the next line of a text.
+    pub(crate) fn line(&mut self, line: &[u8]) -> RosLine {
+        let line = line.trim_ascii();
+        if line.is_empty() {
+            return RosLine::More;
+        }
+        if line == b"---" {
+            return if self.any {
+                RosLine::Whole
+            } else {
+                RosLine::More
+            };
+        }
+        self.any = true;
+        if line.windows(3).any(|word| word == b"...") {
+            return RosLine::Cut;
+        }
+        if let Some(size) = line.strip_prefix(b"size:") {
+            self.sizes.extend(whole(size));
+            return RosLine::More;
+        }
+        if line == b"data:" {
+            self.open = true;
+            return RosLine::More;
+        }
+        if let Some(value) = line.strip_prefix(b"- ").filter(|_| self.open) {
+            return if self.push(value) {
+                RosLine::More
+            } else {
+                RosLine::Wrong(1)
+            };
+        }
+        let bracket = line.iter().position(|&byte| byte == b'[');
+        match bracket {
+            Some(start) => self.list(&line[start + 1..]),
+            None if self.open && line[0] != b'-' => self.list(line),
+            None if is_layout(line) => self.csv(line),
+            None => RosLine::More,
+        }
+    }
+
+    /// Numbers up to a bracket.
+    fn list(&mut self, line: &[u8]) -> RosLine {
+        let end = line.iter().position(|&byte| byte == b']');
+        self.open = end.is_none();
+        let list = &line[..end.unwrap_or(line.len())];
+        let is_mark = |byte: &u8| *byte == b',' || byte.is_ascii_whitespace();
+        let fields = list.split(is_mark).filter(|field| !field.is_empty());
+        for (index, field) in fields.enumerate() {
+            if !self.push(field) {
+                return RosLine::Wrong(index + 1);
+            }
+        }
+        RosLine::More
+    }
+
+    /// A line of `--csv`: label, size and stride of each dimension, the offset, the values. It is a whole message.
+    fn csv(&mut self, line: &[u8]) -> RosLine {
+        let mut fields = line.split(|&byte| byte == b',').enumerate().peekable();
+        while fields.next_if(|(_, field)| is_label(field)).is_some() {
+            let size = fields.next().and_then(|(_, field)| whole(field));
+            let stride = fields.next().and_then(|(_, field)| whole(field));
+            let (Some(size), Some(_)) = (size, stride) else {
+                return RosLine::Wrong(1 + 3 * self.sizes.len());
+            };
+            self.sizes.push(size);
+        }
+        // The offset.
+        fields.next();
+        for (index, field) in fields {
+            if !self.push(field) {
+                return RosLine::Wrong(index + 1);
+            }
+        }
+        RosLine::Whole
+    }
+
+    /// Rows and columns of the layout, where it has these two.
+    pub(crate) fn shape(&self) -> Option<(u16, u16)> {
+        let &[rows, columns, ref rest @ ..] = &self.sizes[..] else {
+            return None;
+        };
+        let side = |side: u32| {
+            u16::try_from(side)
+                .ok()
+                .filter(|side| (1..=MAX_FRAME_SIDE).contains(side))
+        };
+        rest.iter()
+            .all(|&size| size == 1)
+            .then(|| side(rows).zip(side(columns)))?
+    }
+}
+
+fn whole(field: &[u8]) -> Option<u32> {
+    str::from_utf8(field.trim_ascii()).ok()?.parse().ok()
+}
+
+fn is_label(field: &[u8]) -> bool {
+    matches!(text_row::value(field.trim_ascii()), Field::Wrong)
+}
+
+/// Whether a line begins with the layout of an array: a label, then how many there are and how many values they take.
+pub(crate) fn is_layout(line: &[u8]) -> bool {
+    let mut fields = line.split(|&byte| byte == b',');
+    let (mut strides, mut dimensions) = (Vec::new(), 0);
+    while dimensions < 8 {
+        let Some(label) = fields.next() else {
+            return false;
+        };
+        if !is_label(label) {
+            break;
+        }
+        let (Some(size), Some(stride)) =
+            (fields.next().and_then(whole), fields.next().and_then(whole))
+        else {
+            return false;
+        };
+        strides.push((size, stride));
+        dimensions += 1;
+    }
+    // A stride is the product of its own size and those after it.
+    let mut product = 1_u32;
+    let fits = strides.iter().rev().all(|&(size, stride)| {
+        product = product.saturating_mul(size);
+        size > 0 && stride == product
+    });
+    !strides.is_empty() && fits
+}
+
+/// Reads a recording.
+pub(super) fn read(
+    input: impl BufRead,
+    options: ReadOptions,
+    sink: &mut Sink<'_>,
+) -> Result<(), RecordingError> {
+    let mut lines = TextLines::new(input);
+    let mut message = RosMessage::default();
+    let mut frame = Frame::new(1, 1);
+    loop {
+        let ended = !lines.advance()?;
+        let number = lines.number();
+        let state = if ended {
+            RosLine::Whole
+        } else {
+            message.line(lines.line())
+        };
+        match state {
+            RosLine::More => continue,
+            RosLine::Whole if ended && !message.begun() => return Ok(()),
+            RosLine::Whole if message.open && !message.values.is_empty() && ended => {
+                let text = "ends inside of a message, expected '---'";
+                return Err(RecordingError::in_line(number + 1, text));
+            }
+            RosLine::Whole => {}
+            RosLine::Cut => {
+                let text = "the echo leaves out values ('...'): record it with --full-length";
+                return Err(RecordingError::in_line(number, text));
+            }
+            RosLine::Wrong(column) => {
+                let text = "found something else than a number";
+                return Err(RecordingError::in_field(number, column, text));
+            }
+        }
+        let values = message.values.len();
+        let shape = message.shape().or(options.shape);
+        let (rows, columns) = shape.ok_or(RecordingError::Shape {
+            values: values as u64,
+        })?;
+        let expected = usize::from(rows) * usize::from(columns);
+        if values != expected {
+            return Err(text_row::count(number, values, expected));
+        }
+        if frame.number == 0 {
+            let info = ChannelInfo {
+                shape,
+                ..ChannelInfo::default()
+            };
+            if sink(RecordingEvent::Channel(&info)).is_break() {
+                return Ok(());
+            }
+        }
+        frame.reset(columns, rows);
+        frame.values_mut().copy_from_slice(&message.values);
+        message.clear();
+        if sink(RecordingEvent::Frame(&frame)).is_break() || ended {
+            return Ok(());
+        }
+        frame.number += 1;
+    }
+}

@@ -1,0 +1,210 @@
+//! Tekscan's ASCII export (I-Scan, F-Scan): a header of keys, then the frames, row by row.
+//!
+//! `COMMENTS` may run over several lines that look like keys or frames, so the first `ROWS` and `COLS` count, and frames
+//! begin only after `ASCII_DATA @@`. Spreadsheet programs add a byte order mark and pad lines with commas. `B` stands
+//! where the sensor has no cell.
+
+use std::io::BufRead;
+use std::ops::ControlFlow;
+
+use crate::formats::recording::error::RecordingError;
+use crate::formats::recording::event::{ChannelInfo, RecordingEvent, RecordingNote, Sink};
+use crate::formats::recording::lines::{TextLines, is_blank, text, unpadded};
+use crate::formats::recording::number;
+use crate::formats::recording::text_row::{self, Field};
+use crate::frame::{Frame, MAX_FRAME_SIDE};
+use crate::quote::shortened;
+
+/// The largest difference of a sum that is no error.
+const ROUNDING: f64 = 0.5;
+
+#[derive(Default)]
+struct TekscanHeader {
+    rows: Option<u16>,
+    columns: Option<u16>,
+    row_spacing: Option<f64>,
+    column_spacing: Option<f64>,
+    info: ChannelInfo,
+}
+
+impl TekscanHeader {
+    /// Reads a line `KEY value`.
+    fn line(&mut self, line: &[u8], number: u64) -> Result<(), RecordingError> {
+        let is_end = |byte: &u8| byte.is_ascii_whitespace() || *byte == b',';
+        let end = line.iter().position(is_end);
+        let (key, value) = line.split_at(end.unwrap_or(line.len()));
+        let value = value.trim_ascii();
+        let side = || {
+            let side = str::from_utf8(value)
+                .ok()
+                .and_then(|text| text.parse().ok());
+            side.filter(|side| (1..=MAX_FRAME_SIDE).contains(side))
+                .ok_or_else(|| {
+                    let found = shortened(&text(value));
+                    let key = text(key);
+                    let message = format!("{key} {found}: expected 1 to {MAX_FRAME_SIDE}");
+                    RecordingError::in_line(number, message)
+                })
+        };
+        match key {
+            b"ROWS" if self.rows.is_none() => self.rows = Some(side()?),
+            b"COLS" if self.columns.is_none() => self.columns = Some(side()?),
+            b"ROW_SPACING" if self.row_spacing.is_none() => self.row_spacing = spacing(value),
+            b"COL_SPACING" if self.column_spacing.is_none() => {
+                self.column_spacing = spacing(value);
+            }
+            b"SECONDS_PER_FRAME" if self.info.seconds_per_frame.is_none() => {
+                let seconds = number::read(value).filter(|&seconds| seconds > 0.0);
+                self.info.seconds_per_frame = seconds;
+            }
+            b"UNITS" if self.info.unit.is_none() => self.info.unit = Some(text(value)),
+            b"TIME" if self.info.start.is_none() => self.info.start = Some(text(value)),
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
+/// A length with its unit, in mm; none without a unit.
+fn spacing(value: &[u8]) -> Option<f64> {
+    let end = value.iter().position(u8::is_ascii_whitespace)?;
+    let (length, unit) = value.split_at(end);
+    let length = number::read(length).filter(|&length| length > 0.0)?;
+    match unit.trim_ascii().to_ascii_lowercase().as_slice() {
+        b"mm" | b"millimeters" | b"millimetres" => Some(length),
+        b"cm" | b"centimeters" | b"centimetres" => Some(length * 10.0),
+        b"in" | b"inch" | b"inches" => Some(length * 25.4),
+        _ => None,
+    }
+}
+
+/// Reads a recording.
+pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), RecordingError> {
+    let mut lines = TextLines::new(input);
+    let mut header = TekscanHeader::default();
+    loop {
+        if !lines.advance()? {
+            return Err(RecordingError::damaged(
+                "the header has no end, expected a line 'ASCII_DATA @@'",
+            ));
+        }
+        let line = unpadded(lines.line());
+        if line.starts_with(b"ASCII_DATA") {
+            break;
+        }
+        header.line(line, lines.number())?;
+    }
+    let (Some(rows), Some(columns)) = (header.rows, header.columns) else {
+        return Err(RecordingError::in_line(
+            lines.number(),
+            "the header has no ROWS or no COLS",
+        ));
+    };
+    let mut info = header.info;
+    info.shape = Some((rows, columns));
+    info.pitch_mm = header
+        .column_spacing
+        .zip(header.row_spacing)
+        .map(|(x, y)| [x, y]);
+    if sink(RecordingEvent::Channel(&info)).is_break() {
+        return Ok(());
+    }
+    frames(&mut lines, (rows, columns), &info, sink)
+}
+
+fn frames(
+    lines: &mut TextLines<impl BufRead>,
+    (rows, columns): (u16, u16),
+    info: &ChannelInfo,
+    sink: &mut Sink<'_>,
+) -> Result<(), RecordingError> {
+    let mut frame = Frame::new(columns, rows);
+    let is_raw = |unit: &String| unit.eq_ignore_ascii_case("raw");
+    let is_raw = info.unit.as_ref().is_some_and(is_raw);
+    for number in 0_u32.. {
+        if !lines.advance_to_content()? {
+            let message = "ends here, expected another frame or '@@'";
+            return Err(RecordingError::in_line(lines.number() + 1, message));
+        }
+        if lines.line().trim_ascii_start().starts_with(b"@@") {
+            break;
+        }
+        let title = title(lines.line(), lines.number())?;
+        frame.reset(columns, rows);
+        frame.number = number.into();
+        frame.label = Some(title.label);
+        let by_number = info.seconds_per_frame.map(|step| step * f64::from(number));
+        frame.time = title.time.or(by_number);
+        for row in frame.values_mut().chunks_mut(columns.into()) {
+            let content = lines.advance()? && !is_blank(lines.line());
+            if !content {
+                let message = format!("the frame ends here, expected {rows} rows");
+                let number = lines.number() + u64::from(lines.line().is_empty());
+                return Err(RecordingError::in_line(number, message));
+            }
+            text_row::fill(
+                row,
+                lines.line(),
+                lines.number(),
+                b',',
+                |field| match field {
+                    b"B" | b"b" => Field::NoCell,
+                    field => text_row::value(field),
+                },
+            )?;
+        }
+        if let Some(stated) = title.sum.filter(|_| is_raw) {
+            let values = frame.values().iter().filter(|value| !value.is_nan());
+            let found: f64 = values.sum();
+            if (found - stated).abs() > ROUNDING {
+                let note = RecordingNote::Checksum {
+                    frame: frame.number,
+                    label: frame.label,
+                    what: "Raw Sum",
+                    stated,
+                    found,
+                };
+                if sink(RecordingEvent::Note(&note)).is_break() {
+                    break;
+                }
+            }
+        }
+        if sink(RecordingEvent::Frame(&frame)) == ControlFlow::Break(()) {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// The first line of a frame.
+struct FrameTitle {
+    label: i64,
+    time: Option<f64>,
+    sum: Option<f64>,
+}
+
+/// Reads `Frame 2` or `Frame 2, 0.1,, date time,,,Raw Sum=,,307`.
+fn title(line: &[u8], number: u64) -> Result<FrameTitle, RecordingError> {
+    let line = unpadded(line);
+    let mut fields = line.split(|&byte| byte == b',').map(<[u8]>::trim_ascii);
+    let first = fields.next().unwrap_or(b"");
+    let label = first.strip_prefix(b"Frame").map(<[u8]>::trim_ascii);
+    let label = label.and_then(|label| str::from_utf8(label).ok()?.parse().ok());
+    let label = label.ok_or_else(|| {
+        let found = shortened(&text(first));
+        RecordingError::in_line(
+            number,
+            format!("found {found:?}, expected 'Frame' and its number, or '@@'"),
+        )
+    })?;
+    let time = fields.next().and_then(number::read);
+    let sum = fields
+        .skip_while(|field| !field.starts_with(b"Raw Sum"))
+        .skip(1)
+        .find(|field| !field.is_empty());
+    Ok(FrameTitle {
+        label,
+        time,
+        sum: sum.and_then(number::read),
+    })
+}

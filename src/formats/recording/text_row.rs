@@ -1,0 +1,72 @@
+//! A row of values in a line of text.
+
+use crate::formats::recording::error::RecordingError;
+use crate::formats::recording::lines::text;
+use crate::formats::recording::number;
+use crate::frame::LARGEST_VALUE;
+use crate::quote::shortened;
+
+/// What a field says of its cell.
+pub(crate) enum Field {
+    /// Its value.
+    Value(f64),
+    /// That there is none.
+    NoCell,
+    /// Nothing that can be understood.
+    Wrong,
+}
+
+/// A number, which may be a cell's value.
+pub(crate) fn value(field: &[u8]) -> Field {
+    match number::read(field) {
+        Some(value) if value.abs() <= LARGEST_VALUE => Field::Value(value),
+        _ => Field::Wrong,
+    }
+}
+
+/// Fills a row of values from the fields of a line, parted by `separator`, blanks around them aside. Fields beyond the
+/// values must be empty.
+///
+/// # Errors
+/// If a field is wrong, or there are more or fewer than values.
+pub(crate) fn fill(
+    values: &mut [f64],
+    line: &[u8],
+    number: u64,
+    separator: u8,
+    read: impl Fn(&[u8]) -> Field,
+) -> Result<(), RecordingError> {
+    let expected = values.len();
+    let mut fields = line.split(|&byte| byte == separator).enumerate();
+    for (slot, found) in values.iter_mut().zip(0..) {
+        let field = fields.next().map(|(_, field)| field.trim_ascii());
+        let Some(field) = field.filter(|field| !field.is_empty()) else {
+            return Err(count(number, found, expected));
+        };
+        *slot = match read(field) {
+            Field::Value(value) => value,
+            Field::NoCell => f64::NAN,
+            Field::Wrong => return Err(wrong(number, found + 1, field)),
+        };
+    }
+    if fields.any(|(_, field)| !field.trim_ascii().is_empty()) {
+        let fields = line.split(|&byte| byte == separator);
+        let last = fields
+            .enumerate()
+            .filter(|(_, field)| !field.trim_ascii().is_empty());
+        let found = last.last().map_or(0, |(index, _)| index + 1);
+        return Err(count(number, found, expected));
+    }
+    Ok(())
+}
+
+/// A line with another number of values.
+pub(crate) fn count(line: u64, found: usize, expected: usize) -> RecordingError {
+    RecordingError::in_line(line, format!("found {found} values, expected {expected}"))
+}
+
+/// A field that is no value.
+pub(crate) fn wrong(line: u64, column: usize, field: &[u8]) -> RecordingError {
+    let found = shortened(&text(field));
+    RecordingError::in_field(line, column, format!("found {found:?}, expected a number"))
+}

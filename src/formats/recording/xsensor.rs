@@ -1,0 +1,250 @@
+//! XSENSOR's CSV export: frames of one or several sensors, each a block of its own; groups of cells are passed over.
+//!
+//! Lines are padded with commas, and every second one has nothing else. A sensor's name is its channel. `GROUP` blocks list
+//! the cells of a part of a sensor, which are in the sensor's matrix already.
+
+use std::io::BufRead;
+
+use crate::formats::recording::error::RecordingError;
+use crate::formats::recording::event::{ChannelInfo, RecordingEvent, Sink};
+use crate::formats::recording::lines::{TextLines, text, unpadded};
+use crate::formats::recording::number;
+use crate::formats::recording::text_row;
+use crate::frame::{Frame, MAX_FRAME_SIDE};
+use crate::quote::shortened;
+
+/// No file has more sensors: each has a name of its own.
+const MOST_CHANNELS: usize = 64;
+
+/// A sensor's frames so far.
+struct XsensorChannel {
+    name: String,
+    frames: u64,
+}
+
+/// What is known of the frame and of the sensor that are being read.
+#[derive(Default)]
+struct XsensorState {
+    unit: Option<String>,
+    threshold: Option<f64>,
+    label: Option<i64>,
+    date: Option<String>,
+    clock: Option<String>,
+    /// The first moment, in seconds.
+    start: Option<f64>,
+    /// The sensor whose block this is; none outside of one.
+    sensor: Option<String>,
+    rows: Option<u16>,
+    columns: Option<u16>,
+    width_cm: Option<f64>,
+    height_cm: Option<f64>,
+    channels: Vec<XsensorChannel>,
+}
+
+/// Reads a recording.
+pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), RecordingError> {
+    let mut lines = TextLines::new(input);
+    let mut state = XsensorState::default();
+    let mut frame = Frame::new(1, 1);
+    while lines.advance_to_content()? {
+        let (key, value) = pair(lines.line());
+        match key.as_str() {
+            "SENSELS" if state.sensor.is_some() => {
+                state.matrix(&mut lines, &mut frame)?;
+                let name = state.sensor.take().unwrap_or(key);
+                if state.give(name, &mut frame, sink, lines.number())? {
+                    return Ok(());
+                }
+            }
+            _ => state.line(&key, &value, lines.number())?,
+        }
+    }
+    Ok(())
+}
+
+/// The two first fields of a line; a field in quotes may have commas.
+fn pair(line: &[u8]) -> (String, String) {
+    let line = text(unpadded(line));
+    let (key, value) = line.split_once(',').unwrap_or((&line, ""));
+    let value = value.trim();
+    let value = match value.strip_prefix('"') {
+        Some(quoted) => quoted.split('"').next().unwrap_or(quoted),
+        None => value.split(',').next().unwrap_or(value),
+    };
+    (key.trim().to_owned(), value.trim().to_owned())
+}
+
+impl XsensorState {
+    fn line(&mut self, key: &str, value: &str, number: u64) -> Result<(), RecordingError> {
+        let positive = || number::read(value.as_bytes()).filter(|&value| value > 0.0);
+        let side = || {
+            let side = value.parse().ok();
+            let side = side.filter(|side| (1..=MAX_FRAME_SIDE).contains(side));
+            side.ok_or_else(|| {
+                let found = shortened(value);
+                let message = format!("{key} {found}: expected 1 to {MAX_FRAME_SIDE}");
+                RecordingError::in_line(number, message)
+            })
+        };
+        match key {
+            "Units:" | "Units" => self.unit = Some(value.to_owned()),
+            "Threshold:" | "Threshold" => self.threshold = number::read(value.as_bytes()),
+            "FRAME" => {
+                self.label = value.parse().ok();
+                self.sensor = None;
+            }
+            "Date" => self.date = Some(value.to_owned()),
+            "Time" => self.clock = Some(value.to_owned()),
+            "SENSOR" => {
+                self.sensor = Some(value.to_owned());
+                (self.rows, self.columns) = (None, None);
+                (self.width_cm, self.height_cm) = (None, None);
+            }
+            "GROUP" => self.sensor = None,
+            "Rows" if self.sensor.is_some() => self.rows = Some(side()?),
+            "Columns" if self.sensor.is_some() => self.columns = Some(side()?),
+            "Sensel Width (cm)" => self.width_cm = positive(),
+            "Sensel Height (cm)" => self.height_cm = positive(),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Reads the rows below `SENSELS`.
+    fn matrix(
+        &self,
+        lines: &mut TextLines<impl BufRead>,
+        frame: &mut Frame,
+    ) -> Result<(), RecordingError> {
+        let (Some(rows), Some(columns)) = (self.rows, self.columns) else {
+            let message = "SENSELS of a sensor without Rows and Columns";
+            return Err(RecordingError::in_line(lines.number(), message));
+        };
+        frame.reset(columns, rows);
+        for row in frame.values_mut().chunks_mut(columns.into()) {
+            if !lines.advance_to_content()? {
+                let message = format!("ends inside of a frame, expected {rows} rows");
+                return Err(RecordingError::in_line(lines.number() + 1, message));
+            }
+            let (line, number) = (lines.line(), lines.number());
+            text_row::fill(row, line, number, b',', text_row::value)?;
+        }
+        Ok(())
+    }
+
+    /// Gives the frame, and its channel before the first one; true if no more is wanted.
+    fn give(
+        &mut self,
+        name: String,
+        frame: &mut Frame,
+        sink: &mut Sink<'_>,
+        line: u64,
+    ) -> Result<bool, RecordingError> {
+        let moment = self.moment();
+        let start = self.start.or(moment);
+        self.start = start;
+        let known = self.channels.iter().position(|own| own.name == name);
+        let channel = match known {
+            Some(channel) => channel,
+            None if self.channels.len() == MOST_CHANNELS => {
+                let message = format!("more than {MOST_CHANNELS} sensors");
+                return Err(RecordingError::in_line(line, message));
+            }
+            None => {
+                let info = ChannelInfo {
+                    name: Some(name.clone()),
+                    shape: self.rows.zip(self.columns),
+                    unit: self.unit.clone(),
+                    start: self
+                        .date
+                        .clone()
+                        .zip(self.clock.clone())
+                        .map(|(date, clock)| format!("{date} {clock}")),
+                    seconds_per_frame: None,
+                    pitch_mm: self
+                        .width_cm
+                        .zip(self.height_cm)
+                        .map(|(x, y)| [x * 10.0, y * 10.0]),
+                    threshold: self.threshold,
+                };
+                self.channels.push(XsensorChannel { name, frames: 0 });
+                if sink(RecordingEvent::Channel(&info)).is_break() {
+                    return Ok(true);
+                }
+                self.channels.len() - 1
+            }
+        };
+        frame.channel = channel;
+        frame.number = self.channels[channel].frames;
+        self.channels[channel].frames += 1;
+        frame.label = self.label;
+        frame.time = moment
+            .zip(start)
+            .map(|(moment, start)| rounded(moment - start));
+        Ok(sink(RecordingEvent::Frame(frame)).is_break())
+    }
+
+    /// The moment of the frame in seconds.
+    fn moment(&self) -> Option<f64> {
+        let mut parts = self.clock.as_ref()?.split(':');
+        let mut part = || number::read(parts.next()?.trim().as_bytes());
+        let (hours, minutes, seconds) = (part()?, part()?, part()?);
+        let date = self.date.as_ref();
+        let days = date.and_then(|date| days(date)).map_or(0.0, f64::from);
+        Some(days * 86_400.0 + hours * 3600.0 + minutes * 60.0 + seconds)
+    }
+}
+
+/// The difference of two clocks that tell thousandths.
+fn rounded(seconds: f64) -> f64 {
+    (seconds * 1e6).round() / 1e6
+}
+
+/// The number of a day such as `2022 Aug 16`, from an arbitrary one on.
+fn days(date: &str) -> Option<i32> {
+    const MONTHS: [&str; 12] = [
+        "jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec",
+    ];
+    let mut words = date.split_whitespace();
+    let year: i32 = words
+        .next()?
+        .parse()
+        .ok()
+        .filter(|year| (1..=9999).contains(year))?;
+    let month = words.next()?.to_ascii_lowercase();
+    let month = (0..)
+        .zip(MONTHS)
+        .find(|(_, name)| month.starts_with(name))?
+        .0;
+    let day: i32 = words
+        .next()?
+        .parse()
+        .ok()
+        .filter(|day| (1..=31).contains(day))?;
+    // Years that begin in March have the leap day at their end.
+    let (year, month) = if month < 2 {
+        (year - 1, month + 10)
+    } else {
+        (year, month - 2)
+    };
+    Some(year * 365 + year / 4 - year / 100 + year / 400 + (month * 153 + 2) / 5 + day)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::days;
+
+    #[test]
+    fn days_follow_each_other() {
+        let pairs = [
+            ("2022 Aug 31", "2022 Sep 1"),
+            ("2021 Dec 31", "2022 January 1"),
+            ("2024 Feb 28", "2024 Feb 29"),
+            ("2023 Feb 28", "2023 Mar 1"),
+        ];
+        for (day, next) in pairs {
+            assert_eq!(days(day).map(|day| day + 1), days(next), "{day}");
+        }
+        assert_eq!(days("16.8.2022"), None);
+    }
+}

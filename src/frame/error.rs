@@ -1,0 +1,93 @@
+//! Why a frame, or how it is to be processed, is refused.
+
+use std::fmt;
+
+/// What is wrong with a frame or with the way it is to be processed.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum FrameError {
+    /// More cells are left than an imprint can have.
+    Large {
+        /// Columns that are left.
+        columns: u16,
+        /// Rows that are left.
+        rows: u16,
+    },
+    /// The crop reaches beyond the frame.
+    Crop {
+        /// The frame's columns.
+        columns: u16,
+        /// The frame's rows.
+        rows: u16,
+    },
+    /// A mask, a gain or a tare of another size than what is left of the frame.
+    Size {
+        /// Which of these.
+        what: &'static str,
+        /// Its columns and rows.
+        found: (u16, u16),
+        /// Those of the frame.
+        expected: (u16, u16),
+    },
+    /// A threshold that is no number, or out of range.
+    Rule {
+        /// Which value.
+        what: &'static str,
+        /// What it should be.
+        expected: &'static str,
+    },
+    /// A tare of more frames than there are.
+    Tare {
+        /// How many there are.
+        frames: u64,
+        /// How many are needed.
+        wanted: u64,
+    },
+    /// A tare of so many frames of such a size that their values take too much memory.
+    TareSize {
+        /// How many frames are possible.
+        most: u64,
+    },
+    /// The noise rule without a tare to take the noise from.
+    NoTare,
+}
+
+impl fmt::Display for FrameError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Large { columns, rows } => write!(
+                f,
+                "{columns} × {rows} cells are left, expected at most 64 × 64: crop the frame"
+            ),
+            Self::Crop { columns, rows } => write!(
+                f,
+                "the crop reaches beyond the frame, which has {columns} columns and {rows} rows"
+            ),
+            Self::Size {
+                what,
+                found,
+                expected,
+            } => write!(
+                f,
+                "the {what} has {} columns and {} rows, expected {} and {} as the frame has",
+                found.0, found.1, expected.0, expected.1
+            ),
+            Self::Rule { what, expected } => write!(f, "{what}: expected {expected}"),
+            Self::Tare { frames, wanted } => write!(
+                f,
+                "a tare of {wanted} frames, but there are {frames}: expected at most {frames}"
+            ),
+            Self::TareSize { most } => {
+                write!(
+                    f,
+                    "too many frames for a tare: expected at most {most} of this size"
+                )
+            }
+            Self::NoTare => {
+                f.write_str("a threshold from noise needs a tare of at least two frames")
+            }
+        }
+    }
+}
+
+impl std::error::Error for FrameError {}

@@ -1,0 +1,45 @@
+//! Frames of real sensors: what each cell measures, and how that becomes an imprint.
+//!
+//! A [`Frame`] comes as the sensor or a recording has it, up to 512 × 512 values. [`Processing`] does the rest, in this
+//! order, and allocates nothing per frame:
+//!
+//! 1. [`View`]: crop, flip, turn by quarters, and the mask of dead cells; what is left has at most 64 × 64 cells.
+//! 2. [`Tare`]: the median of each cell over the first frames is taken off.
+//! 3. Gain: each cell is multiplied by a factor of its own, if there are such.
+//! 4. [`Rule`]: which values make a taxel active; then pieces that are too small are dropped.
+//!
+//! Nothing is interpolated, smoothed or normalised. A cell without a value is NaN in memory and never active.
+//!
+//! ```
+//! use taxel::frame::{Frame, Processing, Rule};
+//! let mut frame = Frame::new(3, 2);
+//! frame.values_mut().copy_from_slice(&[0.0, 12.0, f64::NAN, 3.0, 10.0, 0.0]);
+//! let mut processing = Processing::default();
+//! processing.rule = Some(Rule::at_least(10.0)?);
+//! let processed = processing.run(&frame)?;
+//! assert_eq!((processed.sum, processed.max, processed.cells), (25.0, Some(12.0), 5));
+//! assert_eq!(processed.imprint.map(|imprint| imprint.to_string()).as_deref(), Some(".#.\n.#."));
+//! # Ok::<(), taxel::frame::FrameError>(())
+//! ```
+
+mod error;
+
+mod recorded;
+
+mod view;
+
+mod tare;
+
+mod rule;
+
+mod processing;
+
+mod peak;
+
+pub use error::FrameError;
+pub use peak::Peak;
+pub use processing::{Processed, Processing};
+pub use recorded::{Frame, LARGEST_VALUE, MAX_FRAME_SIDE};
+pub use rule::Rule;
+pub use tare::{Tare, TareFrames};
+pub use view::{Crop, View};

@@ -1,0 +1,176 @@
+//! A frame from what the sensor sends to its imprint, without allocating anything per frame.
+
+use crate::frame::error::FrameError;
+use crate::frame::recorded::{Frame, LARGEST_VALUE};
+use crate::frame::rule::{Rule, without_small};
+use crate::frame::tare::Tare;
+use crate::frame::view::View;
+use crate::imprint::Imprint;
+use crate::matrix::Matrix;
+
+/// All that is done with a frame, in the order of the fields.
+#[derive(Clone, Debug)]
+pub struct Processing {
+    /// Crop, flip, turn, mask.
+    pub view: View,
+    /// What is taken off each cell.
+    pub tare: Option<Tare>,
+    /// What each cell is multiplied by.
+    pub gain: Option<Matrix<f64>>,
+    /// Which values are active; without one there is no imprint.
+    pub rule: Option<Rule>,
+    /// 8-connected pieces of fewer taxels than this are dropped.
+    pub least: u32,
+    raw: Matrix<f64>,
+    tared: Matrix<f64>,
+}
+
+impl Default for Processing {
+    /// Nothing is done, and there is no imprint.
+    fn default() -> Self {
+        Self {
+            view: View::default(),
+            tare: None,
+            gain: None,
+            rule: None,
+            least: 0,
+            raw: Matrix::filled(1, 1, f64::NAN),
+            tared: Matrix::filled(1, 1, f64::NAN),
+        }
+    }
+}
+
+/// A frame and what has become of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Processed<'a> {
+    /// The values after crop, flip, turn and mask, in the sensor's unit; NaN where there is no cell.
+    pub raw: &'a Matrix<f64>,
+    /// The same after tare and gain.
+    pub tared: &'a Matrix<f64>,
+    /// The sum of the raw values; 0 without cells.
+    pub sum: f64,
+    /// The largest raw value; None without cells.
+    pub max: Option<f64>,
+    /// Number of cells that have a value.
+    pub cells: u32,
+    /// The sum of the values after tare and gain, by which peaks are compared.
+    pub tared_sum: f64,
+    /// The imprint; None without a rule.
+    pub imprint: Option<Imprint>,
+}
+
+impl Processing {
+    /// Processes a frame.
+    ///
+    /// # Errors
+    /// If the view, the tare, the gain or the rule does not fit the frame.
+    pub fn run(&mut self, frame: &Frame) -> Result<Processed<'_>, FrameError> {
+        self.view.of(frame, &mut self.raw)?;
+        let (sum, max, cells) = summary(self.raw.values());
+        self.tared.reset(self.raw.columns(), self.raw.rows(), 0.0);
+        self.tared.values_mut().copy_from_slice(self.raw.values());
+        if let Some(tare) = &self.tare {
+            tare.take_off(&mut self.tared)?;
+        }
+        if let Some(gain) = &self.gain {
+            multiply(&mut self.tared, gain)?;
+        }
+        let tared_sum = if self.tare.is_none() && self.gain.is_none() {
+            sum
+        } else {
+            summary(self.tared.values()).0
+        };
+        let rule = self.rule.as_ref();
+        let imprint = rule.map(|rule| rule.imprint(&self.tared, self.tare.as_ref()));
+        let imprint = imprint.transpose()?.map(|imprint| {
+            if self.least > 1 {
+                without_small(&imprint, self.least)
+            } else {
+                imprint
+            }
+        });
+        Ok(Processed {
+            raw: &self.raw,
+            tared: &self.tared,
+            sum,
+            max,
+            cells,
+            tared_sum,
+            imprint,
+        })
+    }
+}
+
+/// The sum, the largest and the number of the values that are there.
+fn summary(values: &[f64]) -> (f64, Option<f64>, u32) {
+    let (mut sum, mut max, mut cells) = (0.0, f64::NEG_INFINITY, 0);
+    for &value in values {
+        if !value.is_nan() {
+            sum += value;
+            max = max.max(value);
+            cells += 1;
+        }
+    }
+    (sum, (cells > 0).then_some(max), cells)
+}
+
+/// Multiplies each value by the gain of its cell; what becomes too large has no value.
+fn multiply(values: &mut Matrix<f64>, gain: &Matrix<f64>) -> Result<(), FrameError> {
+    let size = |of: &Matrix<f64>| (u16::from(of.columns()), u16::from(of.rows()));
+    if size(gain) != size(values) {
+        return Err(FrameError::Size {
+            what: "gain",
+            found: size(gain),
+            expected: size(values),
+        });
+    }
+    for (value, gain) in values.values_mut().iter_mut().zip(gain.values()) {
+        *value *= gain;
+        if value.abs() > LARGEST_VALUE {
+            *value = f64::NAN;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::TareFrames;
+
+    #[test]
+    fn sum_and_max_are_raw_and_the_imprint_is_tared() {
+        let mut frame = Frame::new(2, 1);
+        frame.values_mut().copy_from_slice(&[10.0, 12.0]);
+        let mut processing = Processing::default();
+        let raw = processing.run(&frame).expect("it fits").raw.clone();
+        let mut tare = TareFrames::new(1);
+        tare.add(&raw).expect("it fits");
+        processing.tare = Some(tare.finish().expect("one frame"));
+        let mut gain = Matrix::filled(2, 1, 1.0);
+        gain.set(1, 0, 3.0);
+        processing.gain = Some(gain);
+        processing.rule = Some(Rule::AtLeast(9.0));
+        frame.values_mut().copy_from_slice(&[18.0, 15.0]);
+        let processed = processing.run(&frame).expect("it fits");
+        assert_eq!((processed.sum, processed.max), (33.0, Some(18.0)));
+        assert_eq!(processed.tared.values(), [8.0, 9.0]);
+        assert_eq!(processed.tared_sum, 17.0);
+        let imprint = processed.imprint.map(|imprint| imprint.to_string());
+        assert_eq!(imprint.as_deref(), Some(".#"));
+    }
+
+    #[test]
+    fn a_frame_without_cells_has_no_maximum() {
+        let mut processing = Processing {
+            rule: Some(Rule::Percent(50.0)),
+            ..Processing::default()
+        };
+        let processed = processing.run(&Frame::new(3, 3)).expect("it fits");
+        assert_eq!(
+            (processed.sum, processed.max, processed.cells),
+            (0.0, None, 0)
+        );
+        assert!(processed.imprint.is_some_and(|imprint| imprint.is_empty()));
+    }
+}

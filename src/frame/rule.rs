@@ -1,0 +1,275 @@
+//! Which values make a taxel active.
+
+use crate::description::{RegionKind, each_region};
+use crate::frame::error::FrameError;
+use crate::frame::recorded::LARGEST_VALUE;
+use crate::frame::tare::Tare;
+use crate::imprint::Imprint;
+use crate::matrix::Matrix;
+
+/// How a threshold is set. Comparisons include the threshold itself; a cell without a value is never active.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Rule {
+    /// Active from this value on, in the sensor's unit.
+    AtLeast(f64),
+    /// Active from this share of the frame's largest value on, in percent; nothing is where that is 0 or less.
+    Percent(f64),
+    /// Active from `high` on, and from `low` on where an 8-connected path of such cells leads to one that is.
+    Hysteresis {
+        /// The lower threshold.
+        low: f64,
+        /// The upper threshold.
+        high: f64,
+    },
+    /// Active from this many standard deviations of the cell's own noise above its tare on.
+    Noise(f64),
+}
+
+fn checked(
+    what: &'static str,
+    value: f64,
+    fits: bool,
+    expected: &'static str,
+) -> Result<f64, FrameError> {
+    let fits = fits && value.abs() <= LARGEST_VALUE;
+    fits.then_some(value)
+        .ok_or(FrameError::Rule { what, expected })
+}
+
+impl Rule {
+    /// A fixed threshold, in the sensor's unit.
+    ///
+    /// # Errors
+    /// If it is not finite, or beyond ±1e300.
+    pub fn at_least(threshold: f64) -> Result<Self, FrameError> {
+        let value = checked("threshold", threshold, true, "a number, -1e300 to 1e300")?;
+        Ok(Self::AtLeast(value))
+    }
+
+    /// A share of the largest value, in percent.
+    ///
+    /// # Errors
+    /// If it is not above 0 and at most 100.
+    pub fn percent(percent: f64) -> Result<Self, FrameError> {
+        let fits = percent > 0.0 && percent <= 100.0;
+        let expected = "a number above 0, up to 100";
+        Ok(Self::Percent(checked("percent", percent, fits, expected)?))
+    }
+
+    /// Two thresholds, in the sensor's unit.
+    ///
+    /// # Errors
+    /// If one is not finite, or `low` is above `high`.
+    pub fn hysteresis(low: f64, high: f64) -> Result<Self, FrameError> {
+        let expected = "a number at most that of the upper threshold";
+        Ok(Self::Hysteresis {
+            low: checked("lower threshold", low, low <= high, expected)?,
+            high: checked("upper threshold", high, true, "a number, -1e300 to 1e300")?,
+        })
+    }
+
+    /// Standard deviations of noise; needs a tare.
+    ///
+    /// # Errors
+    /// If the number is not above 0 and at most 1000.
+    pub fn noise(deviations: f64) -> Result<Self, FrameError> {
+        let fits = deviations > 0.0 && deviations <= 1000.0;
+        let expected = "a number above 0, up to 1000";
+        Ok(Self::Noise(checked("noise", deviations, fits, expected)?))
+    }
+
+    /// The imprint of tared values.
+    ///
+    /// # Errors
+    /// If noise is asked for without a tare of two frames or more, or its size differs.
+    pub fn imprint(
+        &self,
+        values: &Matrix<f64>,
+        tare: Option<&Tare>,
+    ) -> Result<Imprint, FrameError> {
+        Ok(match *self {
+            Self::AtLeast(threshold) => from(values, threshold),
+            Self::Percent(percent) => {
+                let max = values.values().iter().copied().fold(f64::NAN, f64::max);
+                if max > 0.0 {
+                    from(values, percent / 100.0 * max)
+                } else {
+                    Imprint::empty(values.columns(), values.rows())
+                }
+            }
+            Self::Hysteresis { low, high } => {
+                let mut imprint = Imprint::empty(values.columns(), values.rows());
+                let (weak, strong) = (from(values, low), from(values, high));
+                each_region(&weak, |region| {
+                    let piece = region.taxels();
+                    let has_strong = piece
+                        .words()
+                        .iter()
+                        .zip(strong.words())
+                        .any(|(piece, strong)| piece & strong != 0);
+                    if region.kind() == RegionKind::Exterior && has_strong {
+                        unite(&mut imprint, piece);
+                    }
+                });
+                imprint
+            }
+            Self::Noise(deviations) => {
+                let tare = tare.filter(|tare| tare.frames() > 1);
+                let tare = tare.ok_or(FrameError::NoTare)?;
+                let size = |of: &Matrix<f64>| (u16::from(of.columns()), u16::from(of.rows()));
+                if size(tare.baseline()) != size(values) {
+                    return Err(FrameError::Size {
+                        what: "tare",
+                        found: size(tare.baseline()),
+                        expected: size(values),
+                    });
+                }
+                active(values, |index, value| {
+                    value >= tare.margin(index, deviations)
+                })
+            }
+        })
+    }
+}
+
+/// The cells from a threshold on.
+fn from(values: &Matrix<f64>, threshold: f64) -> Imprint {
+    active(values, |_, value| value >= threshold)
+}
+
+fn active(values: &Matrix<f64>, is_active: impl Fn(usize, f64) -> bool) -> Imprint {
+    let columns = usize::from(values.columns());
+    let mut imprint = Imprint::empty(values.columns(), values.rows());
+    for (row, line) in values.values().chunks(columns).enumerate() {
+        let mut word = 0;
+        for (column, &value) in line.iter().enumerate() {
+            word |= u64::from(is_active(row * columns + column, value)) << column;
+        }
+        imprint.set_word(row, word);
+    }
+    imprint
+}
+
+fn unite(imprint: &mut Imprint, piece: &Imprint) {
+    for (word, piece) in imprint.words_mut().iter_mut().zip(piece.words()) {
+        *word |= piece;
+    }
+}
+
+/// The same imprint without its 8-connected pieces of fewer than `least` taxels.
+pub(crate) fn without_small(imprint: &Imprint, least: u32) -> Imprint {
+    let mut rest = Imprint::empty(imprint.columns(), imprint.rows());
+    each_region(imprint, |region| {
+        let piece = region.taxels();
+        if region.kind() == RegionKind::Exterior && piece.count() >= least {
+            unite(&mut rest, piece);
+        }
+    });
+    rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::tare::TareFrames;
+
+    fn matrix(rows: &[&[f64]]) -> Matrix<f64> {
+        let columns = u8::try_from(rows[0].len()).expect("few");
+        let mut matrix = Matrix::filled(columns, u8::try_from(rows.len()).expect("few"), 0.0);
+        matrix.values_mut().copy_from_slice(&rows.concat());
+        matrix
+    }
+
+    fn imprint(rule: Result<Rule, FrameError>, values: &Matrix<f64>) -> String {
+        let imprint = rule.and_then(|rule| rule.imprint(values, None));
+        imprint.expect("a rule that fits").to_string()
+    }
+
+    #[test]
+    fn thresholds_include_themselves_and_no_cell_is_never_active() {
+        let values = matrix(&[&[9.999, 10.0, f64::NAN, 40.0]]);
+        assert_eq!(imprint(Rule::at_least(10.0), &values), ".#.#");
+        assert_eq!(imprint(Rule::percent(25.0), &values), ".#.#");
+        assert_eq!(imprint(Rule::at_least(-1.0), &values), "##.#");
+    }
+
+    #[test]
+    fn percent_of_nothing_is_nothing() {
+        for nothing in [0.0, -3.0, f64::NAN] {
+            assert_eq!(
+                imprint(Rule::percent(50.0), &matrix(&[&[nothing; 2]])),
+                ".."
+            );
+        }
+    }
+
+    #[test]
+    fn hysteresis_follows_corners_but_not_gaps() {
+        let values = matrix(&[
+            &[5.0, 0.0, 0.0, 5.0],
+            &[0.0, 5.0, 0.0, 5.0],
+            &[0.0, 0.0, 9.0, 0.0],
+            &[5.0, 0.0, 0.0, 0.0],
+        ]);
+        assert_eq!(
+            imprint(Rule::hysteresis(5.0, 9.0), &values),
+            "#..#\n.#.#\n..#.\n...."
+        );
+        // A weak ring around a strong one is another piece.
+        let mut ring = Matrix::filled(5, 5, 5.0);
+        for (column, row) in [
+            (1, 1),
+            (2, 1),
+            (3, 1),
+            (1, 2),
+            (3, 2),
+            (1, 3),
+            (2, 3),
+            (3, 3),
+        ] {
+            ring.set(column, row, 0.0);
+        }
+        ring.set(2, 2, 9.0);
+        assert_eq!(
+            imprint(Rule::hysteresis(5.0, 9.0), &ring),
+            ".....\n.....\n..#..\n.....\n....."
+        );
+    }
+
+    #[test]
+    fn noise_is_each_cells_own() {
+        let mut tare = TareFrames::new(3);
+        for frame in [[0.0, 0.0], [1.0, 10.0], [2.0, 20.0]] {
+            tare.add(&matrix(&[&frame])).expect("of one size");
+        }
+        let tare = tare.finish().expect("three frames");
+        let rule = Rule::noise(3.0).expect("in range");
+        let mut values = matrix(&[&[6.0, 6.0]]);
+        tare.take_off(&mut values).expect("of one size");
+        let imprint = rule.imprint(&values, Some(&tare)).expect("a tare");
+        assert_eq!(imprint.to_string(), "#.");
+        assert_eq!(rule.imprint(&values, None), Err(FrameError::NoTare));
+    }
+
+    #[test]
+    fn small_pieces_are_dropped() {
+        let imprint: Imprint = "##.#\n#...\n..##".parse().expect("rows");
+        assert_eq!(without_small(&imprint, 2).to_string(), "##..\n#...\n..##");
+        assert_eq!(without_small(&imprint, 3).to_string(), "##..\n#...\n....");
+    }
+
+    #[test]
+    fn rules_out_of_range_are_refused() {
+        for rule in [
+            Rule::at_least(f64::NAN),
+            Rule::percent(0.0),
+            Rule::percent(100.1),
+            Rule::hysteresis(3.0, 2.0),
+            Rule::hysteresis(1.0, f64::INFINITY),
+            Rule::noise(-1.0),
+        ] {
+            assert!(matches!(rule, Err(FrameError::Rule { .. })), "{rule:?}");
+        }
+    }
+}

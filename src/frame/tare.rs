@@ -1,0 +1,207 @@
+//! What the cells show when nothing touches them: the median of each over some frames, and how much it varies.
+
+use crate::frame::error::FrameError;
+use crate::matrix::Matrix;
+
+/// The values that a tare keeps until it is finished: 256 MiB of them.
+const MAX_VALUES: u64 = 1 << 25;
+
+/// The normal distribution's standard deviation is this times its median absolute deviation.
+const MAD_TO_DEVIATION: f64 = 1.4826;
+
+/// Gathers the frames of a tare.
+#[derive(Clone, Debug)]
+pub struct TareFrames {
+    wanted: u64,
+    size: Option<(u8, u8)>,
+    /// Frame by frame.
+    values: Vec<f64>,
+    frames: u64,
+}
+
+impl TareFrames {
+    /// Prepares for `wanted` frames, at least one.
+    pub fn new(wanted: u64) -> Self {
+        Self {
+            wanted: wanted.max(1),
+            size: None,
+            values: Vec::new(),
+            frames: 0,
+        }
+    }
+
+    /// Number of frames that are still missing.
+    pub fn missing(&self) -> u64 {
+        self.wanted - self.frames
+    }
+
+    /// Adds a frame; does nothing once there are enough.
+    ///
+    /// # Errors
+    /// If it is of another size than the first one, or so many frames of this size take too much memory.
+    pub fn add(&mut self, frame: &Matrix<f64>) -> Result<(), FrameError> {
+        if self.missing() == 0 {
+            return Ok(());
+        }
+        let cells = frame.values().len() as u64;
+        if self.wanted.saturating_mul(cells) > MAX_VALUES {
+            let most = MAX_VALUES / cells.max(1);
+            return Err(FrameError::TareSize { most });
+        }
+        let size = (frame.columns(), frame.rows());
+        let expected = *self.size.get_or_insert(size);
+        if size != expected {
+            return Err(FrameError::Size {
+                what: "tare",
+                found: (expected.0.into(), expected.1.into()),
+                expected: (size.0.into(), size.1.into()),
+            });
+        }
+        self.values.extend_from_slice(frame.values());
+        self.frames += 1;
+        Ok(())
+    }
+
+    /// Returns the tare.
+    ///
+    /// # Errors
+    /// If frames are missing.
+    pub fn finish(self) -> Result<Tare, FrameError> {
+        let (frames, wanted) = (self.frames, self.wanted);
+        let (Some((columns, rows)), true) = (self.size, frames == wanted) else {
+            return Err(FrameError::Tare { frames, wanted });
+        };
+        let mut baseline = Matrix::filled(columns, rows, f64::NAN);
+        let mut spread = baseline.clone();
+        let cells = baseline.values().len();
+        let mut present = Vec::new();
+        for cell in 0..cells {
+            present.clear();
+            let values = self.values.iter().skip(cell).step_by(cells);
+            present.extend(values.filter(|value| !value.is_nan()));
+            let middle = median(&mut present);
+            for value in &mut present {
+                *value = (*value - middle).abs();
+            }
+            baseline.values_mut()[cell] = middle;
+            spread.values_mut()[cell] = median(&mut present);
+        }
+        Ok(Tare {
+            baseline,
+            spread,
+            step: step(self.values),
+            frames,
+        })
+    }
+}
+
+/// The value in the middle, the mean of the two there are in the middle of an even number; NaN of none.
+fn median(values: &mut [f64]) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    match values {
+        [] => f64::NAN,
+        _ if values.len() % 2 == 1 => values[middle],
+        _ => f64::midpoint(values[middle - 1], values[middle]),
+    }
+}
+
+/// The smallest difference between two values; 1 where all are equal.
+fn step(mut values: Vec<f64>) -> f64 {
+    values.retain(|value| !value.is_nan());
+    values.sort_unstable_by(f64::total_cmp);
+    let differences = values.windows(2).map(|pair| pair[1] - pair[0]);
+    let least = differences
+        .filter(|&difference| difference > 0.0)
+        .fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { 1.0 }
+}
+
+/// What is taken off each cell.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tare {
+    baseline: Matrix<f64>,
+    /// The median absolute deviation of each cell.
+    spread: Matrix<f64>,
+    /// One step of the values.
+    step: f64,
+    frames: u64,
+}
+
+impl Tare {
+    /// The median of each cell, in the sensor's unit; NaN where a cell never had a value.
+    pub fn baseline(&self) -> &Matrix<f64> {
+        &self.baseline
+    }
+
+    /// How many frames it was made of.
+    pub fn frames(&self) -> u64 {
+        self.frames
+    }
+
+    /// By how much a tared value of each cell must exceed 0 to stand out from noise: `k` standard deviations, estimated
+    /// from the median absolute deviation, but at least one step of the values.
+    pub(crate) fn margin(&self, index: usize, k: f64) -> f64 {
+        let spread = self.spread.values()[index];
+        (k * MAD_TO_DEVIATION * spread).max(self.step)
+    }
+
+    /// Takes it off.
+    ///
+    /// # Errors
+    /// If the values are of another size.
+    pub fn take_off(&self, values: &mut Matrix<f64>) -> Result<(), FrameError> {
+        let size = |of: &Matrix<f64>| (u16::from(of.columns()), u16::from(of.rows()));
+        let (found, expected) = (size(&self.baseline), size(values));
+        if found != expected {
+            return Err(FrameError::Size {
+                what: "tare",
+                found,
+                expected,
+            });
+        }
+        for (value, baseline) in values.values_mut().iter_mut().zip(self.baseline.values()) {
+            *value -= baseline;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tare(frames: &[[f64; 2]]) -> Result<Tare, FrameError> {
+        let mut tare = TareFrames::new(frames.len() as u64);
+        for frame in frames {
+            let mut matrix = Matrix::filled(2, 1, 0.0);
+            matrix.values_mut().copy_from_slice(frame);
+            tare.add(&matrix)?;
+        }
+        tare.finish()
+    }
+
+    #[test]
+    fn the_median_is_of_the_values_present() {
+        let tare = tare(&[[1.0, f64::NAN], [4.0, 7.0], [3.0, 9.0], [10.0, f64::NAN]]);
+        let tare = tare.expect("four frames");
+        assert_eq!(tare.baseline().values(), [3.5, 8.0]);
+        // Deviations 2.5, 0.5, 0.5, 6.5 and 1, 1; the values are 1, 3, 4, 7, 9, 10.
+        assert_eq!(tare.margin(0, 2.0), 2.0 * MAD_TO_DEVIATION * 1.5);
+        assert_eq!(tare.margin(1, 0.1), 1.0);
+        let mut values = Matrix::filled(2, 1, 10.0);
+        tare.take_off(&mut values).expect("of its size");
+        assert_eq!(values.values(), [6.5, 2.0]);
+    }
+
+    #[test]
+    fn a_tare_needs_all_its_frames_and_some_memory() {
+        let few = TareFrames::new(3).finish();
+        assert_eq!(
+            few.map_err(|error| error.to_string()),
+            Err("a tare of 3 frames, but there are 0: expected at most 0".to_owned())
+        );
+        let many = TareFrames::new(1 << 40).add(&Matrix::filled(64, 64, 0.0));
+        assert_eq!(many, Err(FrameError::TareSize { most: 8192 }));
+    }
+}

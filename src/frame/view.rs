@@ -1,0 +1,233 @@
+//! Which part of a frame is looked at, and from which side: crop, flip, turn, mask.
+
+use crate::frame::error::FrameError;
+use crate::frame::recorded::{Frame, LARGEST_VALUE};
+use crate::imprint::Imprint;
+use crate::matrix::Matrix;
+use crate::sensor::MAX_SIDE;
+
+/// A rectangle of whole cells of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    /// Its first column, from 0.
+    pub left: u16,
+    /// Its first row, from 0.
+    pub top: u16,
+    /// Number of its columns.
+    pub columns: u16,
+    /// Number of its rows.
+    pub rows: u16,
+}
+
+/// Crop, flip, turn and mask, done in this order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct View {
+    /// The part that is kept; the whole frame where there is none.
+    pub crop: Option<Crop>,
+    /// Whether columns are reversed: the left one becomes the right one.
+    pub flip_x: bool,
+    /// Whether rows are reversed.
+    pub flip_y: bool,
+    /// Quarter turns clockwise as seen; four are none.
+    pub quarter_turns: u8,
+    /// Dead cells: those that are active here have no value. Of the size of what is left.
+    pub mask: Option<Imprint>,
+}
+
+impl View {
+    /// Writes what is seen of a frame into a matrix of its size. Values that are infinite, or too large for a sum, become
+    /// NaN.
+    ///
+    /// # Errors
+    /// If the crop reaches beyond the frame, more than 64 × 64 cells are left, or the mask is of another size.
+    pub fn of(&self, frame: &Frame, seen: &mut Matrix<f64>) -> Result<(), FrameError> {
+        let whole = Crop {
+            left: 0,
+            top: 0,
+            columns: frame.columns(),
+            rows: frame.rows(),
+        };
+        let crop = self.crop.unwrap_or(whole);
+        let fits = |start: u16, length: u16, all: u16| {
+            length > 0 && u32::from(start) + u32::from(length) <= u32::from(all)
+        };
+        if !fits(crop.left, crop.columns, frame.columns())
+            || !fits(crop.top, crop.rows, frame.rows())
+        {
+            let (columns, rows) = (frame.columns(), frame.rows());
+            return Err(FrameError::Crop { columns, rows });
+        }
+        let side = |length: u16| u8::try_from(length).ok().filter(|&side| side <= MAX_SIDE);
+        let (Some(columns), Some(rows)) = (side(crop.columns), side(crop.rows)) else {
+            let (columns, rows) = (crop.columns, crop.rows);
+            return Err(FrameError::Large { columns, rows });
+        };
+        if self.quarter_turns.is_multiple_of(2) {
+            seen.reset(columns, rows, f64::NAN);
+        } else {
+            seen.reset(rows, columns, f64::NAN);
+        }
+        self.copy(frame, crop, columns, seen);
+        self.hide(seen)
+    }
+
+    fn copy(&self, frame: &Frame, crop: Crop, columns: u8, seen: &mut Matrix<f64>) {
+        let width = usize::from(frame.columns());
+        let from = usize::from(crop.top) * width + usize::from(crop.left);
+        let plain = self.quarter_turns.is_multiple_of(4) && !self.flip_x && !self.flip_y;
+        let rows = seen.rows().max(seen.columns());
+        for row in 0..rows {
+            let start = from + usize::from(row) * width;
+            if u16::from(row) >= crop.rows {
+                break;
+            }
+            let values = &frame.values()[start..start + usize::from(columns)];
+            if plain {
+                let to = usize::from(row) * usize::from(columns);
+                seen.values_mut()[to..to + usize::from(columns)].copy_from_slice(values);
+                continue;
+            }
+            for (column, &value) in (0..columns).zip(values) {
+                let (x, y) = self.position(column, row, columns, crop.rows);
+                seen.set(x, y, value);
+            }
+        }
+        for value in seen.values_mut() {
+            if value.abs() > LARGEST_VALUE {
+                *value = f64::NAN;
+            }
+        }
+    }
+
+    /// Where a cell of the cropped frame comes to.
+    fn position(&self, column: u8, row: u8, columns: u8, rows: u16) -> (u8, u8) {
+        // At most 64: checked before.
+        let last_row = u8::try_from(rows.saturating_sub(1)).unwrap_or(MAX_SIDE - 1);
+        let last_column = columns.saturating_sub(1);
+        let x = if self.flip_x {
+            last_column - column
+        } else {
+            column
+        };
+        let y = if self.flip_y { last_row - row } else { row };
+        match self.quarter_turns % 4 {
+            0 => (x, y),
+            1 => (last_row - y, x),
+            2 => (last_column - x, last_row - y),
+            _ => (y, last_column - x),
+        }
+    }
+
+    fn hide(&self, seen: &mut Matrix<f64>) -> Result<(), FrameError> {
+        let Some(mask) = &self.mask else {
+            return Ok(());
+        };
+        let found = (mask.columns().into(), mask.rows().into());
+        let expected = (seen.columns().into(), seen.rows().into());
+        if found != expected {
+            return Err(FrameError::Size {
+                what: "mask",
+                found,
+                expected,
+            });
+        }
+        for (column, row) in mask.active() {
+            seen.set(column, row, f64::NAN);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `1 2 3 / 4 5 6` seen, rows parted by `/`.
+    fn seen(view: &View) -> Result<String, FrameError> {
+        let mut frame = Frame::new(3, 2);
+        frame
+            .values_mut()
+            .copy_from_slice(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        let mut seen = Matrix::filled(1, 1, 0.0);
+        view.of(&frame, &mut seen)?;
+        let row = |row| {
+            seen.row(row)
+                .iter()
+                .map(ToString::to_string)
+                .collect::<String>()
+        };
+        Ok((0..seen.rows()).map(row).collect::<Vec<_>>().join("/"))
+    }
+
+    #[test]
+    fn a_view_crops_then_flips_then_turns_clockwise() {
+        let view = View::default();
+        assert_eq!(seen(&view).as_deref(), Ok("123/456"));
+        let turned = |quarter_turns| View {
+            quarter_turns,
+            ..View::default()
+        };
+        assert_eq!(seen(&turned(1)).as_deref(), Ok("41/52/63"));
+        assert_eq!(seen(&turned(2)).as_deref(), Ok("654/321"));
+        assert_eq!(seen(&turned(3)).as_deref(), Ok("36/25/14"));
+        let view = View {
+            crop: Some(Crop {
+                left: 1,
+                top: 0,
+                columns: 2,
+                rows: 2,
+            }),
+            flip_x: true,
+            ..turned(1)
+        };
+        assert_eq!(seen(&view).as_deref(), Ok("63/52"));
+        let flipped = View {
+            flip_y: true,
+            ..View::default()
+        };
+        assert_eq!(seen(&flipped).as_deref(), Ok("456/123"));
+    }
+
+    #[test]
+    fn a_mask_is_laid_on_last_and_must_fit() {
+        let mask = |rows: &str| View {
+            quarter_turns: 1,
+            mask: rows.parse().ok(),
+            ..View::default()
+        };
+        assert_eq!(seen(&mask("#.\n..\n..")).as_deref(), Ok("NaN1/52/63"));
+        let wrong = seen(&mask("#..")).map_err(|error| error.to_string());
+        assert_eq!(
+            wrong,
+            Err("the mask has 3 columns and 1 rows, expected 2 and 3 as the frame has".to_owned())
+        );
+    }
+
+    #[test]
+    fn what_is_left_has_at_most_64_a_side() {
+        let mut matrix = Matrix::filled(1, 1, 0.0);
+        let frame = Frame::new(65, 2);
+        let large = View::default().of(&frame, &mut matrix);
+        assert_eq!(
+            large,
+            Err(FrameError::Large {
+                columns: 65,
+                rows: 2
+            })
+        );
+        let crop = |left, columns| View {
+            crop: Some(Crop {
+                left,
+                top: 0,
+                columns,
+                rows: 2,
+            }),
+            ..View::default()
+        };
+        assert_eq!(crop(1, 64).of(&frame, &mut matrix), Ok(()));
+        assert!(matches!(
+            crop(2, 64).of(&frame, &mut matrix),
+            Err(FrameError::Crop { .. })
+        ));
+    }
+}

@@ -1,0 +1,44 @@
+//! Recordings of sensors: those of `../shared/reference`, where they are at hand, and small ones made up here.
+
+mod reference;
+
+use std::io::Cursor;
+use std::ops::ControlFlow;
+
+use taxel::formats::recording::{
+    ChannelInfo, ReadOptions, RecordingError, RecordingEvent, RecordingNote, read,
+};
+use taxel::frame::Frame;
+
+/// All that a recording has.
+#[derive(Debug, Default)]
+pub(crate) struct Recorded {
+    pub(crate) format: Option<&'static str>,
+    pub(crate) channels: Vec<ChannelInfo>,
+    pub(crate) frames: Vec<Frame>,
+    pub(crate) notes: Vec<RecordingNote>,
+    pub(crate) error: Option<RecordingError>,
+}
+
+/// Reads all of a recording; of a damaged one, all that is before the damage.
+pub(crate) fn recorded(bytes: &[u8], shape: Option<(u16, u16)>) -> Recorded {
+    let mut options = ReadOptions::default();
+    if let Some((rows, columns)) = shape {
+        options = options.with_shape(rows, columns);
+    }
+    let mut found = Recorded::default();
+    let read = read(Cursor::new(bytes), options, &mut |event| {
+        match event {
+            RecordingEvent::Channel(info) => found.channels.push(info.clone()),
+            RecordingEvent::Frame(frame) => found.frames.push(frame.clone()),
+            RecordingEvent::Note(note) => found.notes.push(note.clone()),
+            _ => {}
+        }
+        ControlFlow::Continue(())
+    });
+    match read {
+        Ok(format) => found.format = Some(format.name()),
+        Err(error) => found.error = Some(error),
+    }
+    found
+}

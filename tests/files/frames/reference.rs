@@ -1,0 +1,288 @@
+//! Frames of real sensors, answered by independent software, where these files are at hand; they are not part of the
+//! project.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use serde_json::Value;
+use taxel::formats::DescribedImprint;
+use taxel::formats::recording::RecordingNote;
+use taxel::frame::{FrameError, Peak, Processing, Rule, TareFrames};
+use taxel::matrix::Matrix;
+
+use super::{Recorded, recorded};
+
+/// The folder, or none where it is missing, which is said aloud.
+fn folder() -> Option<PathBuf> {
+    let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/reference"));
+    if folder.join("frames.jsonl").is_file() {
+        return Some(folder);
+    }
+    eprintln!("SKIPPED: no recordings at {}", folder.display());
+    None
+}
+
+/// A recording that is read to its end.
+fn whole(name: &str, shape: Option<(u16, u16)>) -> Option<Recorded> {
+    let bytes = std::fs::read(folder()?.join(name)).expect("a file of the reference");
+    let found = recorded(&bytes, shape);
+    assert!(found.error.is_none(), "{name}: {:?}", found.error);
+    Some(found)
+}
+
+fn rule(case: &Value) -> Result<(Rule, u32), FrameError> {
+    let number = |key: &str| case["rule"][key].as_f64();
+    let rule = match (number("at_least"), number("percent")) {
+        (Some(threshold), _) => Rule::at_least(threshold),
+        (_, Some(percent)) => Rule::percent(percent),
+        _ => Rule::hysteresis(
+            number("low").expect("a rule"),
+            number("high").expect("a rule"),
+        ),
+    };
+    let least = case["rule"]["least"].as_u64().unwrap_or(0);
+    Ok((rule?, u32::try_from(least).expect("few")))
+}
+
+#[test]
+fn every_reference_frame_is_answered_alike() {
+    let Some(folder) = folder() else {
+        return;
+    };
+    let text = std::fs::read_to_string(folder.join("frames.jsonl")).expect("it is a file");
+    let mut files = BTreeMap::new();
+    for line in text.lines() {
+        let case: Value = serde_json::from_str(line).expect("JSON");
+        let name = case["file"].as_str().expect("a name").to_owned();
+        let found = files
+            .entry(name.clone())
+            .or_insert_with(|| whole(&name, None).expect("it is there"));
+        assert_eq!(found.frames.len() as u64, case["frames"], "{name}");
+        let mut processing = Processing::default();
+        let (rule, least) = rule(&case).expect("in range");
+        (processing.rule, processing.least) = (Some(rule), least);
+        let tare = case["tare"].as_u64().expect("a number");
+        if tare > 0 {
+            let mut frames = TareFrames::new(tare);
+            for frame in &found.frames {
+                let mut seen = Matrix::filled(1, 1, 0.0);
+                processing.view.of(frame, &mut seen).expect("it fits");
+                frames.add(&seen).expect("it fits");
+            }
+            processing.tare = Some(frames.finish().expect("enough frames"));
+        }
+        let mut peak = Peak::default();
+        for frame in &found.frames {
+            let processed = processing.run(frame).expect("it fits");
+            peak.add(frame.number, processed.tared_sum);
+        }
+        assert_eq!(peak.number(), case["peak"].as_u64(), "{name}");
+        let index = case["index"].as_u64().expect("a number");
+        let frame = &found.frames[usize::try_from(index).expect("small")];
+        assert_eq!(frame.label, case["label"].as_i64(), "{name}");
+        let processed = processing.run(frame).expect("it fits");
+        let of = |key: &str| case[key].as_f64().expect(key);
+        assert_eq!(f64::from(processed.cells), of("cells"), "{name}");
+        assert!((processed.sum - of("sum")).abs() < 1e-9, "{name}");
+        assert_eq!(processed.max, case["max"].as_f64(), "{name}");
+        assert_eq!(
+            (
+                f64::from(processed.raw.rows()),
+                f64::from(processed.raw.columns())
+            ),
+            (of("rows"), of("columns")),
+            "{name}"
+        );
+        let imprint = processed.imprint.expect("a rule");
+        let answer = serde_json::to_value(DescribedImprint(&imprint)).expect("JSON");
+        assert!(same(&answer, &case["answer"]), "{line}\n{answer}");
+    }
+    assert!(text.lines().count() >= 12, "the file is cut short");
+}
+
+/// Whether two answers are equal: numbers with a fraction within 1e-9.
+fn same(found: &Value, expected: &Value) -> bool {
+    match (found, expected) {
+        (Value::Number(a), Value::Number(b)) => {
+            let (a, b) = (a.as_f64(), b.as_f64());
+            a.zip(b).is_some_and(|(a, b)| (a - b).abs() <= 1e-9)
+        }
+        (Value::Array(a), Value::Array(b)) => {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b))
+        }
+        (Value::Object(a), Value::Object(b)) => {
+            let key =
+                |(key, value): (&String, &Value)| a.get(key).is_some_and(|own| same(own, value));
+            a.len() == b.len() && b.iter().all(key)
+        }
+        (a, b) => a == b,
+    }
+}
+
+#[test]
+fn tekscan_states_the_sum_of_each_frame() {
+    let Some(found) = whole("data/pressuRe/iscan_test.csv", None) else {
+        return;
+    };
+    // Each frame states its sum; a reader that misreads one value reports it.
+    assert_eq!((found.frames.len(), found.notes), (309, Vec::new()));
+    let info = &found.channels[0];
+    assert_eq!(info.unit.as_deref(), Some("raw"));
+    assert_eq!(info.pitch_mm, Some([1.27, 1.27]));
+    assert_eq!(info.seconds_per_frame, Some(0.1));
+    assert_eq!((info.threshold, found.format), (None, Some("tekscan")));
+    assert_eq!(found.frames[4].time, Some(0.4));
+}
+
+#[test]
+fn a_wrong_sum_is_reported_with_the_number_of_its_frame() {
+    let Some(folder) = folder() else {
+        return;
+    };
+    let file = folder.join("data/pressuRe/iscan_test.csv");
+    let text = std::fs::read_to_string(file).expect("text");
+    let found = recorded(
+        text.replacen("Raw Sum=,,308", "Raw Sum=,,309", 1)
+            .as_bytes(),
+        None,
+    );
+    assert_eq!(found.frames.len(), 309);
+    let [RecordingNote::Checksum { frame, label, .. }] = found.notes[..] else {
+        panic!("{:?}", found.notes);
+    };
+    assert_eq!((frame, label), (2, Some(3)));
+}
+
+#[test]
+fn xsensor_states_peak_and_mean_of_each_frame() {
+    let Some(found) = whole("data/xsensor/xsensor_3frames.csv", None) else {
+        return;
+    };
+    let text = std::fs::read(
+        folder()
+            .expect("it is there")
+            .join("data/xsensor/xsensor_3frames.csv"),
+    );
+    let text = String::from_utf8(text.expect("a file")).expect("UTF-8");
+    // Those of sensors come before those of groups, which have no rows.
+    let mut stated = Vec::new();
+    for block in text.split("SENSOR,").skip(1) {
+        let value = |key: &str| -> f64 {
+            let rest = block.split_once(key).expect(key).1;
+            rest.split(',')
+                .nth(1)
+                .expect("a value")
+                .parse()
+                .expect("a number")
+        };
+        stated.push((value("Average Pressure"), value("Peak Pressure")));
+    }
+    assert_eq!(
+        (stated.len(), found.frames.len(), found.channels.len()),
+        (6, 6, 2)
+    );
+    for (frame, (mean, peak)) in found.frames.iter().zip(stated) {
+        let loaded: Vec<f64> = frame
+            .values()
+            .iter()
+            .copied()
+            .filter(|&value| value > 0.0)
+            .collect();
+        let sum: f64 = loaded.iter().sum();
+        let count = f64::from(u32::try_from(loaded.len()).expect("few"));
+        assert_eq!(loaded.iter().copied().fold(0.0, f64::max), peak);
+        assert!((sum / count - mean).abs() <= 0.005_001, "{mean}");
+        assert_eq!((frame.rows(), frame.columns()), (31, 11));
+    }
+    let channel = &found.channels[1];
+    assert_eq!(
+        channel.name.as_deref(),
+        Some("HX210.11.31.M11-DFM-RF S0073")
+    );
+    assert_eq!(channel.threshold, Some(51.72));
+    assert_eq!(channel.unit.as_deref(), Some("mmHg"));
+    let times: Vec<_> = found.frames.iter().map(|frame| frame.time).collect();
+    assert_eq!(times[..2], [Some(0.0); 2]);
+    assert!(times[2] > Some(0.0), "{times:?}");
+}
+
+#[test]
+fn emed_states_the_force_of_each_row() {
+    let Some(found) = whole("data/emed/emed_3pictures.lst", None) else {
+        return;
+    };
+    assert_eq!((found.frames.len(), &found.notes[..]), (3, &[][..]));
+    let frame = &found.frames[2];
+    assert_eq!((frame.rows(), frame.columns()), (54, 22));
+    assert_eq!((frame.first, frame.label), (Some((30, 26)), Some(3)));
+    assert_eq!(frame.time, Some(0.02));
+    assert_eq!(found.channels[0].pitch_mm, Some([5.0, 5.0]));
+}
+
+#[test]
+fn zebris_counts_lines_as_x() {
+    let Some(found) = whole("data/zebris/MDwalk2.apd", None) else {
+        return;
+    };
+    let info = &found.channels[0];
+    assert_eq!(info.shape, Some((32, 15)));
+    assert_eq!(info.unit.as_deref(), Some("N/cm2"));
+    assert_eq!(info.pitch_mm, Some([8.46591, 8.46591]));
+}
+
+/// Frames 61 to 72 of the I-Scan file in other forms, each with what must be named.
+#[test]
+fn the_same_frames_in_other_forms_give_the_same_imprints() {
+    let Some(iscan) = whole("data/pressuRe/iscan_test.csv", None) else {
+        return;
+    };
+    let shape = Some((28, 28));
+    for (name, named, times) in [
+        ("frames_u2.npy", None, false),
+        ("frames_f4_nan.npy", None, false),
+        ("frames.npz", None, true),
+        ("wide.csv", None, true),
+        ("matsense.csv", shape, true),
+        ("frames.jsonl", None, true),
+        ("ros2_echo.csv", None, false),
+        ("ros2_echo_field.txt", shape, false),
+    ] {
+        let found = whole(&format!("data/made/{name}"), named).expect("it is there");
+        assert_eq!(
+            (found.frames.len(), found.channels.len()),
+            (12, 1),
+            "{name}"
+        );
+        let rule = Rule::at_least(10.0).expect("a number");
+        let mut processing = Processing::default();
+        processing.rule = Some(rule);
+        for (index, frame) in found.frames.iter().enumerate() {
+            let own = processing.run(frame).expect("it fits").imprint;
+            let theirs = processing
+                .run(&iscan.frames[60 + index])
+                .expect("it fits")
+                .imprint;
+            assert_eq!(own, theirs, "{name}, frame {index}");
+            assert_eq!(frame.number, index as u64);
+            let tenths = f64::from(u32::try_from(index).expect("few"));
+            let close = |time: f64| (time * 10.0 - tenths).abs() < 1e-6;
+            assert_eq!(
+                frame.time.is_some_and(close),
+                times,
+                "{name}: {:?}",
+                frame.time
+            );
+        }
+    }
+    for name in ["matsense.csv", "ros2_echo_field.txt"] {
+        let bytes = std::fs::read(folder().expect("there").join("data/made").join(name));
+        let error = recorded(&bytes.expect("a file"), None)
+            .error
+            .expect("no shape");
+        let message = error.to_string();
+        assert!(
+            message.contains("--rows") && message.contains("--columns"),
+            "{message}"
+        );
+    }
+}
