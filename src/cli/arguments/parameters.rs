@@ -9,6 +9,7 @@ use crate::parameter::{PARAMETERS, Parameter, ParameterError, Unit, number};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
 use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::storage::Existing;
+use crate::tui::widget::columns::broken;
 
 /// Help texts are broken so that they fit 80 columns beside the flags.
 const HELP_WIDTH: usize = 52;
@@ -97,23 +98,9 @@ pub(crate) fn capitalised(text: &str) -> String {
     first.into_iter().chain(characters).collect()
 }
 
-/// Breaks a text at spaces into lines of at most `width` characters, or of one word.
+/// Breaks a text at spaces into lines of at most `width` columns.
 pub(crate) fn wrapped(text: &str, width: usize) -> String {
-    let mut lines = String::new();
-    let mut used = 0;
-    for word in text.split(' ') {
-        let length = word.chars().count();
-        if used > 0 && used + 1 + length > width {
-            lines.push('\n');
-            used = 0;
-        } else if used > 0 {
-            lines.push(' ');
-            used += 1;
-        }
-        lines.push_str(word);
-        used += length;
-    }
-    lines
+    broken(text, width).join("\n")
 }
 
 /// The values that were given by flags, not checked yet.

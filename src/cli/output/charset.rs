@@ -6,7 +6,8 @@
 
 use std::borrow::Cow;
 use std::ffi::OsString;
-use std::fmt::Write;
+
+use crate::tui::widget::theme::spelling;
 
 /// The characters that may be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,17 +63,12 @@ impl Charset {
         }
         let mut line = String::with_capacity(text.len() + 8);
         for character in text.chars() {
-            match character {
-                _ if self.has(character) => line.push(character),
-                '²' => line.push_str("^2"),
-                'π' => line.push_str("pi"),
-                '°' => line.push_str(" deg"),
-                '·' => line.push('*'),
-                '×' => line.push('x'),
-                '–' => line.push('-'),
-                '…' => line.push_str("..."),
-                // Cannot fail: a String takes everything.
-                _ => drop(write!(line, "{}", character.escape_unicode())),
+            if self.has(character) {
+                line.push(character);
+            } else if let Some(spelling) = spelling(character) {
+                line.push_str(spelling);
+            } else {
+                line.extend(character.escape_unicode());
             }
         }
         Cow::Owned(line)

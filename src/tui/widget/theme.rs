@@ -228,6 +228,19 @@ impl Theme {
         }
     }
 
+    /// The character for two taxels, one above the other, of which the upper and the lower may be active. In ASCII only the
+    /// upper one is shown.
+    pub fn half(&self, upper: bool, lower: bool) -> char {
+        match (self.ascii, upper, lower) {
+            (true, true, _) => '#',
+            (true, false, _) => '.',
+            (false, true, true) => '█',
+            (false, true, false) => '▀',
+            (false, false, true) => '▄',
+            (false, false, false) => '·',
+        }
+    }
+
     /// What marks the heading that rows are sorted by, from the largest on or from the smallest.
     pub fn sorted(&self, descending: bool) -> char {
         match (self.ascii, descending) {
@@ -252,21 +265,31 @@ impl Theme {
     }
 }
 
-/// The nearest text in ASCII: "17°" becomes "17 deg".
+/// The spelling in ASCII of a sign that the program writes, None for any other character. The screen and the command
+/// line share this table.
+pub(crate) fn spelling(sign: char) -> Option<&'static str> {
+    Some(match sign {
+        '°' => " deg",
+        '²' => "^2",
+        '×' => "x",
+        '·' => "*",
+        'π' => "pi",
+        '–' | '—' => "-",
+        '…' => "...",
+        '→' => "->",
+        _ => return None,
+    })
+}
+
+/// The nearest text in ASCII: "17°" becomes "17 deg". A character without a spelling becomes a question mark, so that
+/// the columns of the screen stay in place.
 fn to_ascii(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     for character in text.chars() {
-        match character {
-            '°' => plain.push_str(" deg"),
-            '²' => plain.push_str("^2"),
-            '×' => plain.push('x'),
-            '·' => plain.push('*'),
-            'π' => plain.push_str("pi"),
-            '–' | '—' => plain.push('-'),
-            '…' => plain.push_str("..."),
-            '→' => plain.push_str("->"),
-            other if other.is_ascii() => plain.push(other),
-            _ => plain.push('?'),
+        match spelling(character) {
+            Some(spelling) => plain.push_str(spelling),
+            None if character.is_ascii() => plain.push(character),
+            None => plain.push('?'),
         }
     }
     plain

@@ -32,16 +32,9 @@ pub fn draw(theme: &Theme, imprint: &Imprint, buffer: &mut Buffer, area: Rect) {
         top = from(middle(bounds.top, bounds.bottom), height, rows) / step * step;
     }
     for (line, row) in (top..rows).step_by(step.into()).enumerate() {
-        let half = |column: u8| match (
-            imprint.get(column, row),
-            step == 2 && imprint.get(column, row + 1),
-        ) {
-            (true, true) => '█',
-            (true, false) if theme.ascii => '#',
-            (true, false) => '▀',
-            (false, true) => '▄',
-            (false, false) if theme.ascii => '.',
-            (false, false) => '·',
+        let half = |column: u8| {
+            let lower = step == 2 && imprint.get(column, row + 1);
+            theme.half(imprint.get(column, row), lower)
         };
         let text: String = (left..left + width).map(half).collect();
         let place = write::row(area, line);
