@@ -1,4 +1,8 @@
-//! The commands and their flags as clap takes them, with the texts of their help.
+//! The commands and their flags, for clap, with the short texts of their help.
+//!
+//! A function per command, in the order of the help, then the flags that several of them share. Flags of parameters are
+//! made from the table of parameters ([`parameters`]), so their ranges and defaults are written nowhere else. Values are parsed
+//! here into their types: a file name that is not an atlas, or a range that goes backwards, is a usage error.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -26,7 +30,7 @@ use crate::sensor::SENSOR_PARAMETERS;
 use crate::storage::{AtlasFile, is_poses};
 use crate::sweep::{Shard, ShardError};
 
-/// All commands.
+/// The program with all its commands.
 pub(crate) fn all() -> Command {
     Command::new("taxel")
         .version(env!("TAXEL_VERSION"))
@@ -50,6 +54,8 @@ pub(crate) fn all() -> Command {
         .subcommand(man())
 }
 
+/// `taxel figure KIND`: a flag for each parameter that some kind has; [`Given::foreign`](parameters::Given::foreign)
+/// refuses those of another kind.
 fn figure() -> Command {
     let kinds = FigureKind::ALL
         .into_iter()
@@ -75,6 +81,7 @@ fn figure() -> Command {
         .arg(json())
 }
 
+/// `taxel picture NAME|FILE`.
 fn picture() -> Command {
     let own = |parameter: Parameter| parameters::arg_with_own(parameter);
     Command::new("picture")
@@ -90,6 +97,7 @@ fn picture() -> Command {
         .arg(json())
 }
 
+/// `taxel describe NAME|FILE`.
 fn describe() -> Command {
     Command::new("describe")
         .about("Describe an imprint or a stored shape")
@@ -101,6 +109,7 @@ fn describe() -> Command {
         .arg(json())
 }
 
+/// `taxel export NAME|FILE TO`.
 fn export() -> Command {
     let to = Arg::new("to")
         .value_name("TO")
@@ -119,6 +128,7 @@ fn export() -> Command {
         .arg(replace())
 }
 
+/// `--format`, for names whose ending does not tell the form.
 fn format() -> Arg {
     let names = export::names();
     let help = format!(
@@ -133,6 +143,7 @@ fn format() -> Arg {
         .help(parameters::wrapped(&help, 52))
 }
 
+/// `taxel batch`.
 fn batch() -> Command {
     Command::new("batch")
         .about("Answer poses, one JSON object a line, on standard input")
@@ -140,6 +151,7 @@ fn batch() -> Command {
         .args(sensor_of_imprints())
 }
 
+/// `taxel sweep KIND`, or `taxel sweep --picture NAME|FILE`.
 fn sweep() -> Command {
     let kind = Arg::new("kind")
         .value_name("KIND")
@@ -213,6 +225,7 @@ fn range(axis: Axis) -> Arg {
         .help(parameters::wrapped(&help, 46))
 }
 
+/// `taxel merge FILE.npz…`.
 fn merge() -> Command {
     let files = Arg::new("files")
         .value_name("FILE.npz")
@@ -226,6 +239,7 @@ fn merge() -> Command {
         .args([files, atlas().required(true), replace(), json(), quiet()])
 }
 
+/// `--atlas`, the file that a sweep or a merge writes.
 fn atlas() -> Arg {
     Arg::new("atlas")
         .long("atlas")
@@ -234,11 +248,12 @@ fn atlas() -> Arg {
         .help("Write the atlas, as .csv, .jsonl or .npz")
 }
 
-/// As [`force`], of files.
+/// `--force`, for commands that write a file.
 fn replace() -> Arg {
     force().help("Replace a file that is there already")
 }
 
+/// `--quiet`.
 fn quiet() -> Arg {
     Arg::new("quiet")
         .long("quiet")
@@ -246,10 +261,12 @@ fn quiet() -> Arg {
         .help("Show no progress")
 }
 
+/// The file of an atlas; its ending must be that of one of the forms.
 fn parse_atlas(text: &str) -> Result<AtlasFile, &'static str> {
     AtlasFile::new(text)
 }
 
+/// The file of all poses, which must end in `.npy`.
 fn parse_poses(text: &str) -> Result<PathBuf, &'static str> {
     let path = PathBuf::from(text);
     let fits = is_poses(&path);
@@ -257,14 +274,17 @@ fn parse_poses(text: &str) -> Result<PathBuf, &'static str> {
         .ok_or("expected a name that ends in .npy")
 }
 
+/// A range of the grid, such as `5:5.99:0.01`.
 fn parse_range(text: &str) -> Result<DecimalRange, RangeError> {
     text.parse()
 }
 
+/// A piece of the grid, such as `3/40`.
 fn parse_shard(text: &str) -> Result<Shard, ShardError> {
     text.parse()
 }
 
+/// `taxel library` with its own subcommands.
 fn library() -> Command {
     let command = |name: &'static str, about: &'static str, examples: &'static str| {
         Command::new(name).about(about).after_help(examples)
@@ -295,29 +315,32 @@ fn library() -> Command {
         .subcommand(command("check", "Check every file", CHECK_EXAMPLES))
 }
 
+/// All flags of the sensor.
 fn sensor() -> Vec<Arg> {
     of_sensor(&SENSOR_PARAMETERS)
 }
 
-/// Without the pitch, where no length is shown.
+/// The flags of the sensor without `--pitch`, for commands that show no lengths.
 fn sensor_of_imprints() -> Vec<Arg> {
     let own = SENSOR_PARAMETERS.into_iter();
     let own = own.filter(|&parameter| parameter != Parameter::Pitch);
     of_sensor(&own.collect::<Vec<_>>())
 }
 
+/// The flags of some parameters of the sensor.
 fn of_sensor(parameters: &[Parameter]) -> Vec<Arg> {
     let flag = |&parameter: &Parameter| parameters::arg(parameter).help_heading("Sensor");
     parameters.iter().map(flag).collect()
 }
 
-/// What may be kept of a touch.
+/// `--save` and `--export`: at least one of them must be given for `--force` to make sense.
 fn kept() -> ArgGroup {
     ArgGroup::new("kept")
         .args(["save", "export"])
         .multiple(true)
 }
 
+/// What to keep of a touch: `--save`, `--export` with `--format`, and `--force`.
 fn keeping() -> [Arg; 4] {
     let save = Arg::new("save")
         .long("save")
@@ -343,6 +366,7 @@ fn keeping() -> [Arg; 4] {
     ]
 }
 
+/// `--force`, for commands that store a shape.
 fn force() -> Arg {
     Arg::new("force")
         .long("force")
@@ -350,6 +374,7 @@ fn force() -> Arg {
         .help("Replace a shape that has the name already")
 }
 
+/// `--library`, which every command takes.
 fn folder() -> Arg {
     Arg::new("library")
         .long("library")
@@ -359,6 +384,7 @@ fn folder() -> Arg {
         .help("The library's folder")
 }
 
+/// A positional argument that is the name of a stored shape.
 fn name(help: &'static str) -> Arg {
     Arg::new("name")
         .value_name("NAME")
@@ -367,10 +393,12 @@ fn name(help: &'static str) -> Arg {
         .help(help)
 }
 
+/// The name of a shape; see [`Name`] for which are allowed.
 fn parse_name(text: &str) -> Result<Name, NameError> {
     Name::new(text)
 }
 
+/// A positional argument that is a name or a file; [`Shelf::find`](crate::cli::input::shapes::Shelf::find) tells which.
 fn what(help: &'static str) -> Arg {
     Arg::new("what")
         .value_name("NAME|FILE")
@@ -379,6 +407,7 @@ fn what(help: &'static str) -> Arg {
         .help(help)
 }
 
+/// `--json`.
 fn json() -> Arg {
     Arg::new("json")
         .long("json")
@@ -386,7 +415,7 @@ fn json() -> Arg {
         .help("Answer in one line of JSON")
 }
 
-/// "a, b or c", and the like with another word.
+/// Joins names as in a sentence: `a, b or c`, with `word` before the last.
 pub(crate) fn list(names: impl Iterator<Item = String>, word: &str) -> String {
     let names: Vec<String> = names.collect();
     match names.split_last() {

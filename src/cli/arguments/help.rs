@@ -1,11 +1,16 @@
-//! The longer texts of the help: what a command is for, and examples of it. None is wider than 80 columns.
+//! The longer texts of the help, which follow the flags of a command: what to know about it, and examples.
+//!
+//! A text may begin with some lines of explanation; then comes `Examples:` with one command per line, indented. Man pages are
+//! made from the same texts. No line is wider than 80 columns. A test runs every example (`tests/cli/shell.rs`).
 
+/// What the program is for: the first lines of `taxel --help`.
 pub(crate) const ABOUT: &str = "\
 Which shapes can a robot recognise by one touch?
 
 Touches figures with a matrix of tactile sensors, computes the exact imprint and
 describes it. Without a command the screen opens, where all of this is live.";
 
+/// Below the flags of `taxel --help`: units, exit status and an example of most commands.
 pub(crate) const EXAMPLES: &str = "\
 All lengths are in sides of a sensory cell, x to the right, y down.
 Exit status: 0 done, 1 the input was wrong, 2 the command was, 128 + n ended by
@@ -21,6 +26,7 @@ Examples:
   taxel export washer washer.svg
   taxel batch < poses.jsonl > answers.jsonl";
 
+/// `taxel figure`: on which sensor the ranges of the flags hold.
 pub(crate) const FIGURE_EXAMPLES: &str = "\
 Ranges are those of the 16 x 16 sensor: on another one its larger side takes the
 place of 16. A flag that is not given takes its default.
@@ -32,6 +38,7 @@ Examples:
   taxel figure hexagon --side 6 --thickness 2.5 --save \"my nut\"
   taxel figure ellipse --angle 30 --radius-x 6 --export oval.svg";
 
+/// `taxel picture`: where a picture comes from, and which sensor touches it.
 pub(crate) const PICTURE_EXAMPLES: &str = "\
 A name of the library goes before a file of the same name. A file is a stored
 shape or an imprint. The sensor is that of the stored shape; an imprint alone
@@ -43,6 +50,7 @@ Examples:
   taxel picture key --angle 30 --zoom-x 0.8 --zoom-y 0.8 --json
   taxel picture imprint.txt --x0 2 --save \"moved imprint\"";
 
+/// `taxel describe`: the forms that can be read.
 pub(crate) const DESCRIBE_EXAMPLES: &str = "\
 An imprint is text, a line a row, '#' for an active taxel and '.' for an
 inactive one; or a bitmap (PBM), a table of 0 and 1 (CSV) or an array of numpy
@@ -55,6 +63,7 @@ Examples:
   taxel describe ./washer.json --json
   printf '.##.\\n#..#\\n.##.\\n' | taxel describe -";
 
+/// `taxel export`: the forms that can be written.
 pub(crate) const EXPORT_EXAMPLES: &str = "\
 The ending of TO tells the form:
   .txt  rows of '#' and '.'         .svg  a drawing: matrix, outline where it is
@@ -70,6 +79,7 @@ Examples:
   taxel export key - --format pbm-plain
   taxel figure hexagon --angle 17 --export hexagon.png";
 
+/// `taxel batch`: the form of a line, and what becomes of a wrong one.
 pub(crate) const BATCH_EXAMPLES: &str = r###"Each line is a JSON object:
   {"figure":"hexagon","side":3,"x0":2.1,"y0":1.35,"angle":17,"thickness":1}
   {"picture":["##","#."],"x0":5,"y0":3,"angle":10,"zoom_x":1.5,"zoom_y":1}
@@ -88,6 +98,7 @@ Examples:
   taxel batch < poses.jsonl > answers.jsonl
   echo '{"imprint":["##","#."]}' | taxel batch"###;
 
+/// `taxel script`: all commands of a script.
 pub(crate) const SCRIPT_EXAMPLES: &str = r#"One command a line; places are column,row of the screen, from 0:
   Size 80x24          Set ascii on        Set theme light   Set columns 8
   Set library "DIR"   Set shape {...}     Set leftover {}   Set mouse off
@@ -108,6 +119,7 @@ Examples:
   taxel script test.taxel --svg . --force
   echo 'State /regions/0/f' | taxel script -k 'fh<Enter>' -"#;
 
+/// `taxel config`: where the settings file is, and an example of one.
 pub(crate) const CONFIG_EXAMPLES: &str = r#"What is printed is a file of settings itself. Yours is config.toml in the folder
 taxel among your settings, or the file that --config or TAXEL_CONFIG names:
   theme = "light"               # as --theme, --color; charset = "ascii"
@@ -126,18 +138,20 @@ Examples:
   taxel config --theme light --columns 32 | grep flag
   TAXEL_CONFIG=/dev/null taxel config | grep keys"#;
 
+/// `taxel completions`: where each shell looks for them.
 pub(crate) const COMPLETIONS_EXAMPLES: &str = "\
 Examples:
   taxel completions bash > ~/.local/share/bash-completion/completions/taxel
   taxel completions zsh > ~/.zfunc/_taxel    # a folder of your fpath
   taxel completions fish > ~/.config/fish/completions/taxel.fish";
 
+/// `taxel man`: how to read and install the pages.
 pub(crate) const MAN_EXAMPLES: &str = "\
 Examples:
   taxel man | man -l -
   taxel man ~/.local/share/man/man1 && man taxel-figure";
 
-/// Of the manual only.
+/// The environment variables, for the manual page; `--help` leaves them out.
 pub(crate) const ENVIRONMENT: &str = "
   TAXEL_LIBRARY    the library's folder
   TAXEL_CONFIG     the file of settings
@@ -147,13 +161,14 @@ pub(crate) const ENVIRONMENT: &str = "
                    ASCII only, unless the locale is UTF-8
   COLUMNS, LINES   the size of a terminal that does not tell it";
 
-/// Of the manual only.
+/// The files, for the manual page; `--help` leaves them out.
 pub(crate) const FILES: &str = "
   ~/.config/taxel/config.toml
                    settings; 'taxel config' shows what it can say
   ~/.local/share/taxel/library
                    the shapes, one JSON file each";
 
+/// `taxel sweep`: ranges and their defaults.
 pub(crate) const SWEEP_EXAMPLES: &str = "\
 A range is START:END:STEP with the end included, or one number; decimals are
 exact. What is not given has the paper's resolution: one cell by hundredths and
@@ -170,6 +185,7 @@ Examples:
   taxel sweep hexagon --side 12 --columns 64 --rows 64 --x0 20:20.99:0.01 \\
     --shard 3/40 --atlas hexagon-3.npz --quiet";
 
+/// `taxel merge`.
 pub(crate) const MERGE_EXAMPLES: &str = "\
 All shards together give the same atlas as one sweep of the whole grid.
 
@@ -177,6 +193,7 @@ Examples:
   taxel merge hexagon-*.npz --atlas hexagon.npz
   taxel merge a.npz b.npz --atlas both.csv --json";
 
+/// `taxel library`: what a library is, and which folder it is.
 pub(crate) const LIBRARY_EXAMPLES: &str = "\
 A library is a folder with one JSON file a shape. The shapes that come with the
 program are always listed; they can be copied, not changed. A name has 1 to 64
@@ -190,6 +207,7 @@ Examples:
   taxel library save ring imprint.txt
   taxel library --library ./shapes check";
 
+/// `taxel library list`.
 pub(crate) const LIST_EXAMPLES: &str = "\
 Size in columns x rows, active taxels, pieces and holes. What cannot be read is
 listed as broken, with the reason.
@@ -198,12 +216,14 @@ Examples:
   taxel library list
   taxel library list --json";
 
+/// `taxel library show`.
 pub(crate) const SHOW_EXAMPLES: &str = "\
 Examples:
   taxel library show washer
   taxel library show \"my nut\" --pitch 2.5
   taxel library show key --json";
 
+/// `taxel library save`.
 pub(crate) const SAVE_EXAMPLES: &str = "\
 A file is a stored shape or an imprint. A name of the library goes
 before a file of the same name: so a shape is copied.
@@ -213,6 +233,7 @@ Examples:
   taxel library save \"my washer\" washer
   printf '.##.\\n#..#\\n.##.\\n' | taxel library save ring - --force";
 
+/// `taxel library delete`.
 pub(crate) const DELETE_EXAMPLES: &str = "\
 The last 50 that were deleted are kept.
 
@@ -220,17 +241,20 @@ Examples:
   taxel library delete ring
   taxel library restore ring";
 
+/// `taxel library restore`.
 pub(crate) const RESTORE_EXAMPLES: &str = "\
 Of several deleted ones of that name the last comes back.
 
 Examples:
   taxel library restore ring";
 
+/// `taxel library path`.
 pub(crate) const PATH_EXAMPLES: &str = "\
 Examples:
   taxel library path
   ls \"$(taxel library path)\"";
 
+/// `taxel library check`.
 pub(crate) const CHECK_EXAMPLES: &str = "\
 Reads every shape, and tells what else lies in the folder. The exit status is 1
 where a shape is broken.

@@ -1,4 +1,14 @@
 //! Defines the command-line arguments and reads them.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `definitions` | the commands and their flags, for clap |
+//! | `program` | the same for `script`, `config`, `completions`, `man` and the screen's own flags |
+//! | `parameters` | flags made from the table of parameters, and their values |
+//! | `help` | the longer texts of the help |
+//! | `request` | from what clap has read to a `Request` |
+//!
+//! Everything that can be wrong with the arguments alone is found here, before a file is read or a thread started.
 
 pub(super) mod help;
 

@@ -1,4 +1,8 @@
-//! Flags made from the table of parameters: name, help text, and the values that were given.
+//! Flags made from the table of parameters, and the values given by them.
+//!
+//! A row of the table gives a flag its name, value name and help with range and default. clap only checks that a value is a
+//! number; whether it is in range depends on the sensor, which may be changed by other flags, so [`Given`] collects the
+//! numbers and they are checked when a sensor, figure or picture is made from them.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgMatches};
@@ -11,17 +15,17 @@ use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::storage::Existing;
 use crate::tui::widget::columns::broken;
 
-/// Help texts are broken so that they fit 80 columns beside the flags.
+/// The width of help texts, in characters: with the flags on their left they fit into 80 columns.
 const HELP_WIDTH: usize = 52;
 
-/// A number as it was given, for messages, and its value.
+/// A number, with its text for messages.
 #[derive(Clone, Debug)]
 struct Number {
     text: String,
     value: f64,
 }
 
-/// All parameters that some figure has, in the order of the table.
+/// The parameters that at least one kind of figure has, in the order of the table.
 pub(crate) fn figure_parameters() -> impl Iterator<Item = Parameter> {
     PARAMETERS
         .iter()
@@ -29,13 +33,14 @@ pub(crate) fn figure_parameters() -> impl Iterator<Item = Parameter> {
         .filter(|&parameter| kinds_with(parameter).next().is_some())
 }
 
+/// The kinds of figures that have a parameter.
 fn kinds_with(parameter: Parameter) -> impl Iterator<Item = FigureKind> {
     FigureKind::ALL
         .into_iter()
         .filter(move |kind| kind.parameters().contains(&parameter))
 }
 
-/// The flag of a parameter; its range and default are those of the default sensor.
+/// The flag of a parameter. Its help shows range and default for the default sensor.
 pub(crate) fn arg(parameter: Parameter) -> Arg {
     let default = match parameter {
         Parameter::Thickness | Parameter::Pitch => String::new(),
@@ -44,7 +49,7 @@ pub(crate) fn arg(parameter: Parameter) -> Arg {
     arg_with(parameter, &default)
 }
 
-/// The same where a stored shape has values of its own, which stay as they are unless others are given.
+/// The flag of a parameter that a stored shape has a value for: without the flag it keeps that value.
 pub(crate) fn arg_with_own(parameter: Parameter) -> Arg {
     match parameter {
         Parameter::Angle | Parameter::ZoomX | Parameter::ZoomY | Parameter::Pitch => arg(parameter),
@@ -52,6 +57,7 @@ pub(crate) fn arg_with_own(parameter: Parameter) -> Arg {
     }
 }
 
+/// The flag of a parameter; `default` is the end of its help.
 fn arg_with(parameter: Parameter, default: &str) -> Arg {
     let row = parameter.row();
     let unit = match row.unit {
@@ -77,13 +83,14 @@ fn arg_with(parameter: Parameter, default: &str) -> Arg {
         .value_parser(parse)
 }
 
+/// Parses a number; text that is not one is a usage error.
 fn parse(text: &str) -> Result<Number, String> {
     let value = number::read(text).ok_or_else(|| number::complaint(text))?;
     let text = text.trim().to_owned();
     Ok(Number { text, value })
 }
 
-/// Accepts one of some names, and gives what it stands for.
+/// A parser that accepts one of some names, and returns what it stands for.
 pub(super) fn one_of<T: Clone + Send + Sync + 'static, const N: usize>(
     names: [&'static str; N],
     named: fn(&str) -> Option<T>,
@@ -91,7 +98,7 @@ pub(super) fn one_of<T: Clone + Send + Sync + 'static, const N: usize>(
     PossibleValuesParser::new(names).try_map(move |name| named(&name).ok_or("not one of the names"))
 }
 
-/// As clap writes its own help texts.
+/// A text with its first letter in upper case, as in clap's own help.
 pub(crate) fn capitalised(text: &str) -> String {
     let mut characters = text.chars();
     let first = characters.next().map(|first| first.to_ascii_uppercase());
@@ -103,12 +110,12 @@ pub(crate) fn wrapped(text: &str, width: usize) -> String {
     broken(text, width).join("\n")
 }
 
-/// The values that were given by flags, not checked yet.
+/// The values given by flags. They are numbers, but may be out of range.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Given(Vec<(Parameter, Number)>);
 
 impl Given {
-    /// Those of a command; it needs not have all the flags.
+    /// The values given to a command. Flags that the command does not have count as not given.
     pub(crate) fn of(matches: &ArgMatches) -> Self {
         let given = |parameter: Parameter| {
             let number = matches.try_get_one::<Number>(parameter.row().key);
@@ -118,7 +125,7 @@ impl Given {
         Self(parameters.filter_map(given).collect())
     }
 
-    /// The name of the first flag.
+    /// The name of the first flag given.
     pub(crate) fn first(&self) -> Option<String> {
         self.0.first().map(|(parameter, _)| parameter.flag())
     }
@@ -128,7 +135,10 @@ impl Given {
         self.0.iter().any(|(given, _)| *given == parameter)
     }
 
-    /// Gives a thing the values among `own`, one after the other.
+    /// Sets the given values of the parameters `own`, one after the other, by `with`.
+    ///
+    /// # Errors
+    /// [`CliError::Range`] for the first one out of range.
     fn fold<T>(
         &self,
         own: &[Parameter],
@@ -147,26 +157,26 @@ impl Given {
         Ok(thing)
     }
 
-    /// A sensor with what was given.
+    /// A sensor, changed as given.
     pub(crate) fn sensor(&self, sensor: Sensor) -> Result<Sensor, CliError> {
         self.fold(&SENSOR_PARAMETERS, sensor, Sensor::with)
     }
 
-    /// The pitch in mm, where one was given.
+    /// The pitch in mm, if it was given.
     pub(crate) fn pitch(&self) -> Result<Option<f64>, CliError> {
         self.fold(&[Parameter::Pitch], None, |_, parameter, value| {
             Sensor::LARGEST.check(parameter, value).map(Some)
         })
     }
 
-    /// The first flag that was given though this kind of figure has no such parameter.
+    /// The first parameter given that this kind of figure does not have.
     pub(crate) fn foreign(&self, kind: FigureKind) -> Option<Parameter> {
         figure_parameters()
             .filter(|&parameter| !kind.parameters().contains(&parameter))
             .find(|&parameter| self.0.iter().any(|(given, _)| *given == parameter))
     }
 
-    /// The default figure of a kind with what was given.
+    /// The default figure of a kind, changed as given.
     pub(crate) fn figure(&self, kind: FigureKind, sensor: &Sensor) -> Result<Figure, CliError> {
         let figure = Figure::default_of(kind, sensor);
         self.fold(kind.parameters(), figure, |figure, parameter, value| {
@@ -174,7 +184,7 @@ impl Given {
         })
     }
 
-    /// A picture with what was given.
+    /// A picture, changed as given.
     pub(crate) fn picture(&self, picture: Picture, sensor: &Sensor) -> Result<Picture, CliError> {
         self.fold(&PICTURE_PARAMETERS, picture, |picture, parameter, value| {
             picture.with(parameter, value, sensor)
@@ -182,7 +192,7 @@ impl Given {
     }
 }
 
-/// What happens to files that are there, by `--force`.
+/// What to do about files that exist: with `--force` they are replaced.
 pub(crate) fn existing(matches: &ArgMatches) -> Existing {
     if matches.get_flag("force") {
         Existing::Replaced

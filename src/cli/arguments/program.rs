@@ -1,4 +1,5 @@
-//! The commands and flags that are about the program itself: its screen, its settings, its place in a shell.
+//! The commands and flags about the program itself: the look of its screen, scripts, settings, shell completions and manual
+//! pages.
 
 use std::path::PathBuf;
 
@@ -16,24 +17,27 @@ use crate::storage::Existing;
 use crate::tui::script::command;
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
-/// A script and how it is run.
+/// The arguments of `taxel script`: what to run and how.
 #[derive(Clone, Debug)]
 pub(crate) struct Script {
     /// Where its lines are read from; none if only `keys` are given.
     pub(crate) source: Option<InputSource>,
     /// Keys to press before the script.
     pub(crate) keys: Option<String>,
+    /// Columns and rows of the screen.
     pub(crate) size: (u16, u16),
+    /// Whether screens are printed with a grid of style letters.
     pub(crate) styles: bool,
+    /// Whether screens are printed as lines of JSON.
     pub(crate) json: bool,
-    /// The folder that its screens are drawn into, if they are.
+    /// The folder for drawings of its screens, if they are wanted.
     pub(crate) drawings: Option<PathBuf>,
-    /// What happens to drawings that are there already.
+    /// What to do about drawings that exist.
     pub(crate) existing: Existing,
 }
 
 impl Script {
-    /// What the arguments of [`script`] ask for.
+    /// Reads the arguments of [`script`]. Without a file and without `--keys` the script comes from standard input.
     pub(crate) fn of(matches: &ArgMatches) -> Self {
         let source = matches.get_one::<PathBuf>("file").map(|file| {
             if file.as_os_str() == "-" {
@@ -43,7 +47,6 @@ impl Script {
             }
         });
         let keys = matches.get_one::<String>("keys").cloned();
-        // Neither a file nor keys: the script comes on standard input.
         let source = if keys.is_none() {
             source.or(Some(InputSource::Standard))
         } else {
@@ -61,6 +64,7 @@ impl Script {
     }
 }
 
+/// `taxel script [FILE]`.
 pub(crate) fn script() -> Command {
     let file = Arg::new("file")
         .value_name("FILE")
@@ -94,6 +98,7 @@ pub(crate) fn script() -> Command {
         .args([file, keys, size(), styles, json, svg, force])
 }
 
+/// `taxel completions SHELL`.
 pub(crate) fn completions() -> Command {
     let shell = Arg::new("shell")
         .value_name("SHELL")
@@ -110,6 +115,7 @@ pub(crate) fn completions() -> Command {
         .arg(shell)
 }
 
+/// `taxel man [DIR]`.
 pub(crate) fn man() -> Command {
     let folder = Arg::new("folder")
         .value_name("DIR")
@@ -121,7 +127,7 @@ pub(crate) fn man() -> Command {
         .arg(folder)
 }
 
-/// How the screen looks, where the environment does not say it well.
+/// `--color`, `--theme` and `--no-mouse`: the look of the screen, for terminals that do not describe themselves well.
 pub(crate) fn look() -> [Arg; 3] {
     let choice = |name: &'static str, values: Vec<&'static str>, help: &'static str| {
         let values = std::iter::once(AUTO).chain(values);
@@ -153,6 +159,7 @@ pub(crate) fn look() -> [Arg; 3] {
     .map(|arg| arg.help_heading("Terminal"))
 }
 
+/// `--record`.
 pub(crate) fn record() -> Arg {
     Arg::new("record")
         .long("record")
@@ -161,6 +168,7 @@ pub(crate) fn record() -> Arg {
         .help("Write what is typed as a script, to a new file")
 }
 
+/// `taxel config`. It takes the flags of settings too, to show what they would change.
 pub(crate) fn config() -> Command {
     Command::new("config")
         .about("Print the settings and where each comes from")
@@ -168,6 +176,7 @@ pub(crate) fn config() -> Command {
         .args(look())
 }
 
+/// `--config`, which every command takes.
 pub(crate) fn config_file() -> Arg {
     Arg::new("config")
         .long("config")
@@ -176,6 +185,7 @@ pub(crate) fn config_file() -> Arg {
         .help("Settings in place of your own")
 }
 
+/// `--size`, for the screen and for scripts.
 pub(crate) fn size() -> Arg {
     Arg::new("size")
         .long("size")
@@ -184,11 +194,13 @@ pub(crate) fn size() -> Arg {
         .help("Columns and rows of the screen")
 }
 
+/// Columns and rows, such as `80x24`.
 fn parse_size(text: &str) -> Result<(u16, u16), String> {
     command::size(text)
 }
 
-/// Declared for the help only: [`crate::cli::output::charset::Charset`] has seen it before.
+/// `--ascii`. [`Charset`](crate::cli::output::charset::Charset) has looked for it before clap does, because messages about
+/// wrong arguments need it; this declares it for the help and for the screen.
 pub(crate) fn ascii() -> Arg {
     Arg::new("ascii")
         .long("ascii")

@@ -1,4 +1,6 @@
-//! What the arguments ask for. Nothing below this module knows clap.
+//! From what clap has read to a [`Request`]: plain values, in their types and checked. Nothing below this module knows clap.
+//!
+//! Settings are resolved on the way, since they decide about defaults: the sensor of a figure, the pitch of a table.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -26,114 +28,126 @@ use crate::source::Source;
 use crate::storage::AtlasFile;
 use crate::sweep::Shard;
 
-/// What is asked for, and with which settings.
+/// What the arguments ask for.
 #[derive(Clone, Debug)]
 pub(crate) struct Asked {
+    /// The command.
     pub(crate) request: Request,
-    /// Whether the arguments name the library's folder.
+    /// Whether `--library` is given.
     pub(crate) library_named: bool,
+    /// The settings in effect.
     pub(crate) settings: Effective,
 }
 
-/// What is to be done.
+/// A command with its arguments.
 #[derive(Clone, Debug)]
 pub(crate) enum Request {
-    /// To print this text.
+    /// Print this text: the help, or the version.
     Help(String),
-    /// The screen, of so many columns and rows whatever the terminal says, and recorded or not.
+    /// Open the screen: with this size, if the terminal's own is not wanted, and with a record in this file.
     Screen(Option<(u16, u16)>, Option<PathBuf>),
-    /// To drive the screen without a terminal.
+    /// Run a script.
     Script(Script),
-    /// To touch a figure.
+    /// Touch a figure.
     Figure(Box<Source>, Sensor, Form, Kept),
-    /// To touch a stored shape, moved as the values say.
+    /// Touch a stored shape, moved as given.
     Picture(OsString, Given, Form, Kept),
-    /// To describe a stored shape, or what a file holds.
+    /// Describe a stored shape or a file.
     Describe(OsString, Form),
-    /// To write a shape of the library or of a file, in mm where a pitch is given.
+    /// Write a stored shape or a file in another form.
     Export(OsString, Export, Pitch),
-    /// To answer lines.
+    /// Answer lines of JSON; the sensor is for lines without one.
     Batch(Sensor),
-    /// To go through a grid.
+    /// Sweep a grid of poses.
     Sweep(Box<SweepArguments>),
-    /// To put the shards in these files together.
+    /// Merge the shards in these files.
     Merge(Vec<PathBuf>, Wanted),
-    /// Something about the library.
+    /// A subcommand of `taxel library`.
     Library(Chore),
-    /// To print the settings.
+    /// Print the settings.
     Settings,
-    /// To print completions.
+    /// Print completions for a shell.
     Completions(Shell),
-    /// To print the program's page of the manual, or to write all pages into a folder.
+    /// Print the manual page of the program, or write those of all commands into a folder.
     Man(Option<PathBuf>),
 }
 
-/// A grid and how it is gone through.
+/// The arguments of `taxel sweep`.
 #[derive(Clone, Debug)]
 pub(crate) struct SweepArguments {
+    /// The shape to sweep.
     pub(crate) what: Swept,
+    /// The point of the shape that x0 and y0 place.
     pub(crate) anchor: Anchor,
     pub(crate) ranges: GivenRanges,
+    /// The part of the grid to sweep.
     pub(crate) shard: Shard,
-    /// Threads; 0 for as many as there are cores.
+    /// The number of threads; 0 means one per core.
     pub(crate) jobs: usize,
     pub(crate) wanted: Wanted,
 }
 
-/// What is swept.
+/// The shape of a sweep.
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
 pub(crate) enum Swept {
-    /// A figure.
+    /// A figure on a sensor.
     Figure(Source, Sensor),
-    /// A stored shape, on a sensor changed as the values say.
+    /// A stored shape, read later, and the values that change its sensor.
     Picture(OsString, Given),
 }
 
-/// What is to be done with the library.
+/// A subcommand of `taxel library`.
 #[derive(Clone, Debug)]
 pub(crate) enum Chore {
-    /// To list it; as JSON or not.
+    /// List all shapes; whether as JSON.
     List(bool),
-    /// To describe one of its shapes.
+    /// Describe a shape.
     Show(Name, Form),
-    /// To store a shape of the library or of a file.
+    /// Store a shape of the library or of a file under this name.
     Save(Saving, OsString),
-    /// To move a shape into the trash.
+    /// Move a shape into the trash.
     Delete(Name),
-    /// To bring it back.
+    /// Bring a deleted shape back.
     Restore(Name),
-    /// To tell its folder.
+    /// Print the library's folder.
     Path,
-    /// To read all of it.
+    /// Read every shape, and report what is damaged or left over.
     Check,
 }
 
-/// What is to be kept of a touch.
+/// What to keep of a touch, besides printing it.
 #[derive(Clone, Debug)]
 pub(crate) struct Kept {
+    /// `--save`.
     pub(crate) saving: Option<Saving>,
+    /// `--export`.
     pub(crate) export: Option<Export>,
 }
 
-/// The name that a shape is to be stored under.
+/// How to store a shape.
 #[derive(Clone, Debug)]
 pub(crate) struct Saving {
+    /// Its name from now on.
     pub(crate) name: Name,
-    /// Whether an own shape of that name is replaced.
+    /// Whether to replace an own shape of that name.
     pub(crate) force: bool,
 }
 
 /// How an imprint and its descriptors are shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Form {
-    /// One line of JSON; what is drawn beside it is in mm where a pitch is known.
+    /// One line of JSON, in cells. The pitch is for a drawing that is exported beside it.
     Json(Pitch),
-    /// The matrix and a table, in mm too where a pitch is known.
+    /// The matrix and a table; in mm too if the pitch is known.
     Table(Pitch),
 }
 
-/// What the arguments ask for; the first is the program's own name.
+/// Reads the arguments, of which the first is the program's own name, and the settings that they name.
+///
+/// # Errors
+/// [`CliError::Usage`] with clap's message; [`CliError::Settings`] for the settings file; [`CliError::Range`] for values out of
+/// range.
 pub(crate) fn read(arguments: Vec<OsString>) -> Result<Asked, CliError> {
     let mut command = definitions::all();
     let matches = match command.try_get_matches_from_mut(arguments) {
@@ -167,7 +181,7 @@ pub(crate) fn read(arguments: Vec<OsString>) -> Result<Asked, CliError> {
         return Err(command.error(ErrorKind::ArgumentConflict, message).into());
     }
     let loaded = match (name, asked()) {
-        // What these print is the same for everybody.
+        // The output of these does not depend on settings.
         ("completions" | "man", _) | ("script", None) => Loaded::default(),
         (_, asked) => Loaded::find(asked)?,
     };
@@ -180,18 +194,19 @@ pub(crate) fn read(arguments: Vec<OsString>) -> Result<Asked, CliError> {
     })
 }
 
-/// A flag of the screen that is given, as what comes before a command would be lost.
+/// The first flag of the screen that is given. Before a command such a flag would have no effect, so it is refused.
 fn of_screen(matches: &ArgMatches) -> Option<String> {
     let flags = ["color", "theme", "no-mouse", "size", "record"];
     let given = |flag: &&str| matches.value_source(flag) == Some(ValueSource::CommandLine);
     flags.into_iter().find(given).map(str::to_owned)
 }
 
+/// The settings in effect, from the file, the flags of a command and the environment.
 fn effective(loaded: Loaded, matches: &ArgMatches) -> Result<Effective, CliError> {
     Effective::new(loaded, Chosen::of(matches), std::env::var_os)
 }
 
-/// What a command asks for.
+/// Reads the arguments of the command `name`; `command` makes usage errors.
 fn request(
     name: &str,
     own: &ArgMatches,
@@ -229,6 +244,10 @@ fn request(
     })
 }
 
+/// The arguments of `taxel sweep`.
+///
+/// # Errors
+/// A usage error for sizes of a figure given with a picture; otherwise as [`source`].
 fn sweep(
     matches: &ArgMatches,
     command: &mut clap::Command,
@@ -263,6 +282,7 @@ fn sweep(
     })
 }
 
+/// What a sweep or a merge is to write and print.
 fn wanted(matches: &ArgMatches) -> Wanted {
     let poses = matches.try_get_one::<PathBuf>("poses");
     Wanted {
@@ -274,7 +294,7 @@ fn wanted(matches: &ArgMatches) -> Wanted {
     }
 }
 
-/// An error that shows the usage of the command that it is made by.
+/// A usage error with the usage of the command `name`.
 fn misused(command: &mut clap::Command, name: &str, message: &str) -> CliError {
     let error = command.find_subcommand_mut(name).map_or_else(
         || clap::Error::raw(ErrorKind::ArgumentConflict, format!("{message}\n")),
@@ -283,7 +303,10 @@ fn misused(command: &mut clap::Command, name: &str, message: &str) -> CliError {
     error.into()
 }
 
-/// The figure that the arguments of a command give, and the sensor.
+/// The figure given to a command, and its sensor.
+///
+/// # Errors
+/// A usage error for a parameter that this kind of figure does not have; [`CliError::Range`] for values out of range.
 fn source(
     matches: &ArgMatches,
     command: &mut clap::Command,
@@ -310,6 +333,7 @@ fn source(
     Ok((figure, sensor))
 }
 
+/// The subcommand of `taxel library`.
 fn chore(matches: &ArgMatches, settings: &Effective) -> Result<Chore, CliError> {
     let Some((command, own)) = matches.subcommand() else {
         // Required: there is always one.
@@ -346,6 +370,7 @@ fn required<T: Clone + Send + Sync + 'static>(
     })
 }
 
+/// What to keep of a touch.
 fn kept(matches: &ArgMatches, command: &mut clap::Command, name: &str) -> Result<Kept, CliError> {
     let path = matches.get_one::<PathBuf>("export");
     let export = path.map(|path| export(matches, path, command, name));
@@ -355,7 +380,7 @@ fn kept(matches: &ArgMatches, command: &mut clap::Command, name: &str) -> Result
     })
 }
 
-/// The file at the path, in the format that it has or that is given.
+/// The file to write, in the form given by `--format` or by its ending.
 fn export(
     matches: &ArgMatches,
     path: &Path,
@@ -367,12 +392,14 @@ fn export(
     export.map_err(|message| misused(command, name, &message))
 }
 
+/// `--save` with its `--force`.
 fn saving(matches: &ArgMatches) -> Option<Saving> {
     let name = matches.get_one::<Name>("save")?.clone();
     let force = matches.get_flag("force");
     Some(Saving { name, force })
 }
 
+/// The pitch, as far as the flags and the settings know it.
 fn pitch(matches: &ArgMatches, settings: &Effective) -> Result<Pitch, CliError> {
     Ok(Pitch {
         given: Given::of(matches).pitch()?,
@@ -380,6 +407,7 @@ fn pitch(matches: &ArgMatches, settings: &Effective) -> Result<Pitch, CliError> 
     })
 }
 
+/// JSON with `--json`, a table otherwise.
 fn form(matches: &ArgMatches, settings: &Effective) -> Result<Form, CliError> {
     let pitch = pitch(matches, settings)?;
     Ok(if matches.get_flag("json") {

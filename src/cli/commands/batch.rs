@@ -1,8 +1,11 @@
-//! `taxel batch`: lines of JSON in, lines of JSON out, in the same order.
-//!
-//! Memory does not grow with the number of lines: one line and its answer are held at a time. Answers are collected
-//! and written together, but never held back while the program waits: before a read that may have to wait for more
-//! input, everything is written out. Blank lines are skipped, though counted in the numbers of lines.
+//! `taxel batch`: answers lines of JSON with lines of JSON, in the same order.
+//! ```text
+//! {"imprint":["##","#."]}   ->   {"imprint":["##","#."],"na":3,"regions":[…]}
+//! {"figure":"hexagonal"}    ->   {"error":"line 2: …"}
+//! ```
+//! Memory does not grow with the number of lines: only one line and its answer are held at a time. Answers are buffered, but
+//! all of them are written out before any read that may have to wait for more input: so a program that sends a line and waits
+//! for its answer gets it. Blank lines are skipped, but count in line numbers.
 
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 
@@ -14,13 +17,16 @@ use crate::quote::legible;
 use crate::sensor::Sensor;
 use crate::touch::Plane;
 
-/// A longer line is refused; so one line cannot take all memory.
+/// The longest line, in bytes. Longer ones are refused, so that a line cannot use up all memory.
 const MAX_LINE: usize = 1 << 20;
 
-/// Bytes read and written at a time.
+/// The number of bytes to read and write at a time.
 const CHUNK: usize = 1 << 16;
 
-/// Answers each line of `input`; pictures by name are looked up.
+/// Answers each line of `input`. `sensor` is for lines without one; `lookup` finds pictures given by name.
+///
+/// # Errors
+/// [`CliError::Lines`] at the end if some lines were wrong; [`CliError::Read`] or [`CliError::Write`] at once.
 pub(crate) fn answer_lines(
     sensor: Sensor,
     lookup: &dyn Fn(&str) -> Result<Imprint, String>,
@@ -64,23 +70,23 @@ pub(crate) fn answer_lines(
     Ok(())
 }
 
-/// The answer to a bad line.
+/// Writes the answer to a wrong line.
 fn refuse(answer: &mut Vec<u8>, message: &str) {
     let json = serde_json::json!({ "error": message }).to_string();
     answer.extend(report::ascii_json(&json).bytes());
 }
 
-/// Lines of any bytes, read one by one.
+/// Reads lines of any bytes, one by one.
 struct Lines<R> {
     input: BufReader<R>,
     line: Vec<u8>,
 }
 
-/// A line without its end.
+/// A line without its line end.
 enum Line<'a> {
-    /// All of it.
+    /// A complete line.
     Content(&'a [u8]),
-    /// Longer than [`MAX_LINE`], and read over.
+    /// A line longer than [`MAX_LINE`], which has been skipped.
     Long,
 }
 
@@ -92,7 +98,7 @@ impl<R: Read> Lines<R> {
         }
     }
 
-    /// The next line; none at the end. `pause` is called before each read that may have to wait.
+    /// Returns the next line; None at the end. Calls `pause` before each read that may have to wait.
     fn next(
         &mut self,
         mut pause: impl FnMut() -> Result<(), CliError>,

@@ -1,11 +1,11 @@
-//! `taxel completions`: what a shell completes after `taxel`, from the commands themselves.
+//! `taxel completions`: writes a shell's completions for `taxel`, made from the definitions of the commands.
 
 use clap::Command;
 use clap::builder::PossibleValue;
 use clap_complete::generate;
 use clap_complete::shells::{Bash, Fish, Zsh};
 
-/// A shell that completions can be written for.
+/// A shell with completions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shell {
     Bash,
@@ -17,7 +17,7 @@ impl Shell {
     /// All of them.
     pub(crate) const ALL: [Self; 3] = [Self::Bash, Self::Zsh, Self::Fish];
 
-    /// As it is called.
+    /// Its name, as in the argument.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Bash => "bash",
@@ -26,13 +26,13 @@ impl Shell {
         }
     }
 
-    /// The one of that name.
+    /// The shell of that name; None for any other word.
     pub(crate) fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|shell| shell.name() == name)
     }
 }
 
-/// The completions of all commands as a script of that shell.
+/// The completions of all commands, as a script for the shell.
 pub(crate) fn script(shell: Shell, mut all: Command) -> Vec<u8> {
     let (mut script, name) = (Vec::new(), "taxel");
     match shell {
@@ -46,7 +46,7 @@ pub(crate) fn script(shell: Shell, mut all: Command) -> Vec<u8> {
     script
 }
 
-/// For fish the words that a command takes are written here: what is generated knows commands and flags only.
+/// The words that commands take as arguments, for fish: clap's generator writes only commands and flags for it.
 fn words_of_fish(all: &Command) -> String {
     let mut lines = String::new();
     for command in all.get_subcommands() {

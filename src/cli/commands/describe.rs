@@ -1,11 +1,12 @@
-//! `taxel describe`: what is stored under a name or in a file, shown.
+//! `taxel describe`: prints an imprint or a stored shape with its descriptors.
 
 use crate::cli::arguments::request::Form;
 use crate::cli::input::content::Content;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::report;
 
-/// The imprint with what describes it. A stored shape says what made it.
+/// Returns the answer: one line of JSON, or the matrix and a table of its regions. For a stored shape the table is preceded
+/// by its name, what made it, and its sensor.
 pub(crate) fn content(content: &Content, form: Form, charset: Charset) -> String {
     let imprint = match content {
         Content::Imprint(imprint) => imprint,

@@ -1,4 +1,7 @@
-//! `taxel export`, and `--export` of a touch: an imprint in the forms of other programs, or drawn.
+//! `taxel export`, and `--export` of a touch: writes an imprint in a form for other programs, or draws it.
+//!
+//! A file is complete or not there at all: it is written under another name in the same folder and renamed. Standard output,
+//! given as `-`, gets the same bytes.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -12,18 +15,19 @@ use crate::imprint::Imprint;
 use crate::source::Source;
 use crate::storage::{Existing, FileError, FinishedFile, UnfinishedFile};
 
-/// What a file is to hold.
+/// The form of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Format {
-    /// The imprint.
+    /// The imprint, as text, PBM, CSV or NPY.
     Imprint(ImprintFormat),
-    /// A drawing of it with its descriptors.
+    /// A drawing of the imprint with its descriptors.
     Svg,
-    /// The same in pixels.
+    /// The same drawing in pixels.
     Png,
 }
 
 impl Format {
+    /// The form of that name, as in `--format`.
     fn of(name: &str) -> Option<Self> {
         match name {
             "svg" => Some(Self::Svg),
@@ -35,6 +39,7 @@ impl Format {
         }
     }
 
+    /// The form that a file's ending stands for.
     fn of_ending(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
         let format = ImprintFormat::of_ending(&ending).map(Self::Imprint);
@@ -42,26 +47,26 @@ impl Format {
     }
 }
 
-/// The names of all formats, as `--format` takes them.
+/// The names of all forms, for `--format`.
 pub(crate) fn names() -> Vec<&'static str> {
     let imprints = ImprintFormat::ALL.iter().map(|format| format.name());
     imprints.chain(["svg", "png"]).collect()
 }
 
-/// A file that is to be written.
+/// A file to write.
 #[derive(Clone, Debug)]
 pub(crate) struct Export {
-    /// Standard output where there is none.
+    /// Its path; None for standard output.
     path: Option<PathBuf>,
     format: Format,
     existing: Existing,
 }
 
 impl Export {
-    /// The file of that name, `-` for standard output, in the format of that name or else of its ending.
+    /// A file at `path`, or standard output for `-`, in the form named by `format`, or else by the ending of the path.
     ///
     /// # Errors
-    /// Where neither tells the format.
+    /// A message, if neither names a form.
     pub(crate) fn new(
         path: &Path,
         format: Option<&str>,
@@ -88,7 +93,9 @@ impl Export {
         })
     }
 
-    /// Writes an imprint, all but for the name of the file.
+    /// Writes the file completely, but does not give it its name yet.
+    ///
+    /// A drawing shows the outline of `source` if there is one, has `title` above it, and axes in mm with a `pitch`.
     pub(crate) fn begin(
         &self,
         imprint: &Imprint,
@@ -102,7 +109,7 @@ impl Export {
                 drawing = drawing.with_outline(source);
             }
             match (source, pitch) {
-                // What made it is told in cells, whatever the axes are in.
+                // The title describes the source, which is always in cells.
                 (Some(_), Some(pitch)) => drawing
                     .with_pitch(pitch)
                     .with_title(&format!("{title} (in cells)")),
@@ -122,17 +129,20 @@ impl Export {
     }
 }
 
-/// An export that lacks only its name. Dropped, nothing is left of it.
+/// A file that only lacks its name. If it is dropped, nothing is left of it.
 #[derive(Debug)]
 pub(crate) enum Begun {
-    /// It has none: it is for standard output.
+    /// The bytes for standard output.
     Content(Vec<u8>),
     /// A file.
     File(FinishedFile),
 }
 
 impl Begun {
-    /// Gives the file its name, and what is to be said of it; or gives the content.
+    /// Gives the file its name.
+    ///
+    /// # Errors
+    /// If that fails, for example because a file of that name exists by now.
     pub(crate) fn end(self) -> Result<Exported, CliError> {
         match self {
             Self::Content(content) => Ok(Exported::Content(content)),
@@ -145,27 +155,28 @@ impl Begun {
     }
 }
 
-/// What is left of an export for standard output.
+/// What to print after an export.
 #[derive(Clone, Debug)]
 pub(crate) enum Exported {
-    /// The file itself.
+    /// The exported bytes.
     Content(Vec<u8>),
-    /// Where it is.
+    /// A note that says where the file is.
     Said(String),
 }
 
-/// Writes a file, all of it or none.
+/// Writes a file: completely or not at all.
 pub(crate) fn put(path: &Path, content: &[u8], existing: Existing) -> Result<(), CliError> {
     Ok(finished(path, content, existing)?.persist()?)
 }
 
+/// Writes a file completely, without its name.
 fn finished(path: &Path, content: &[u8], existing: Existing) -> Result<FinishedFile, FileError> {
     let mut file = UnfinishedFile::new(path, existing)?;
     file.write(content)?;
     file.finish()
 }
 
-/// Writes the shape of that name, else what is in that file. A stored shape is drawn with the outline that made it.
+/// Looks up a shape and exports it. The drawing of a stored shape shows the outline of what made it.
 pub(crate) fn export(
     shelf: &Shelf,
     what: &OsStr,

@@ -1,4 +1,12 @@
-//! `taxel library`: the shapes listed, shown, stored, deleted, brought back, checked.
+//! `taxel library`: lists, shows, stores, deletes, restores and checks shapes.
+//!
+//! `list` prints a line per shape; a damaged one is listed with the reason instead of its numbers:
+//! ```text
+//! name           origin      size   NA  pieces  holes
+//! oval ring      shipped  16 × 16   52       1      1
+//! washer         shipped  16 × 16   36       1      1
+//! zigzag         broken   …/zigzag.json: sensor: missing
+//! ```
 
 use std::ffi::OsStr;
 use std::fmt::Write;
@@ -18,15 +26,15 @@ use crate::quote::legible;
 use crate::sensor::Sensor;
 use crate::storage::{Library, LibraryEntry, ShapeOrigin};
 
-/// A line of the list.
+/// A line of the list: a shape of the library.
 struct ListLine {
     name: String,
     origin: ShapeOrigin,
-    /// What the file holds, or why it is broken.
+    /// What the list shows of it, or why it cannot be read.
     found: Result<ShapeSummary, String>,
 }
 
-/// What the list tells of a shape.
+/// What the list shows of a shape that can be read.
 struct ShapeSummary {
     columns: u8,
     rows: u8,
@@ -36,6 +44,7 @@ struct ShapeSummary {
 }
 
 impl ListLine {
+    /// Reads a shape.
     fn of(library: &Library, entry: LibraryEntry) -> Self {
         let found = library.load(&entry.name);
         Self {
@@ -47,6 +56,7 @@ impl ListLine {
         }
     }
 
+    /// The word in the column `origin`.
     fn origin(&self) -> &'static str {
         match (&self.found, self.origin) {
             (Err(_), _) => "broken",
@@ -57,6 +67,7 @@ impl ListLine {
 }
 
 impl ShapeSummary {
+    /// Counts the regions of a shape.
     fn of(shape: &StoredShape) -> Self {
         let regions = regions(&shape.imprint);
         let holes = regions
@@ -92,13 +103,16 @@ impl Serialize for ListLine {
     }
 }
 
-/// Reads every shape.
+/// Reads every shape of the library, own and shipped.
+///
+/// # Errors
+/// If the folder cannot be listed. A shape that cannot be read is not an error here, but a line of its own.
 fn lines(library: &Library) -> Result<Vec<ListLine>, CliError> {
     let entries = library.list()?.into_iter();
     Ok(entries.map(|entry| ListLine::of(library, entry)).collect())
 }
 
-/// All shapes.
+/// Lists all shapes: a table, or an array of objects in JSON.
 pub(crate) fn list(shelf: &Shelf, as_json: bool, charset: Charset) -> Result<String, CliError> {
     let lines = lines(&shelf.library()?)?;
     if as_json {
@@ -127,7 +141,10 @@ pub(crate) fn list(shelf: &Shelf, as_json: bool, charset: Charset) -> Result<Str
     Ok(text)
 }
 
-/// One shape.
+/// Describes a stored shape, as `taxel describe` does.
+///
+/// # Errors
+/// If there is no such shape, or it cannot be read.
 pub(crate) fn show(
     shelf: &Shelf,
     name: &str,
@@ -138,7 +155,10 @@ pub(crate) fn show(
     Ok(describe::content(&Content::Shape(shape), form, charset))
 }
 
-/// Stores what is found under a name or in a file. An imprint alone is a whole matrix.
+/// Stores a shape of the library or of a file under another name. An imprint alone gets a sensor of its own size.
+///
+/// # Errors
+/// [`CliError::Taken`] if there is an own shape of that name and `--force` is not given.
 pub(crate) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String, CliError> {
     let shape = match shelf.find(what)? {
         Content::Shape(shape) => shape.renamed(saving.name),
@@ -153,7 +173,10 @@ pub(crate) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String
     Ok(format!("saved as {name}\n"))
 }
 
-/// Moves a shape into the trash.
+/// Moves an own shape into the trash.
+///
+/// # Errors
+/// If there is no such shape, or it is one that comes with the program.
 pub(crate) fn delete(shelf: &Shelf, name: &str) -> Result<String, CliError> {
     let name = shelf.library()?.delete(name)?;
     Ok(format!(
@@ -161,13 +184,17 @@ pub(crate) fn delete(shelf: &Shelf, name: &str) -> Result<String, CliError> {
     ))
 }
 
-/// Brings a shape back.
+/// Brings the shape of that name back that was deleted last.
+///
+/// # Errors
+/// If there is none in the trash, or there is a shape of that name again.
 pub(crate) fn restore(shelf: &Shelf, name: &str) -> Result<String, CliError> {
     let name = shelf.library()?.restore(name)?;
     Ok(format!("restored {name}\n"))
 }
 
-/// Reads every file; what it says, and how many shapes are broken of how many.
+/// Reads every shape, and looks for other files in the folder. Returns the report, the number of damaged shapes, and the
+/// number of all shapes.
 pub(crate) fn check(shelf: &Shelf, charset: Charset) -> Result<(String, usize, usize), CliError> {
     let library = shelf.library()?;
     let lines = lines(&library)?;

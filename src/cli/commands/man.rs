@@ -1,7 +1,8 @@
-//! `taxel man`: the help of every command as a page of the manual.
+//! `taxel man`: the help of every command as a manual page.
 //!
-//! A page is made from the same texts as the help. In what follows the flags, a line that is indented stands as it is,
-//! others are filled; `Examples:` is a heading of its own.
+//! A page has the same texts as the help, in the sections NAME, SYNOPSIS, DESCRIPTION, OPTIONS, SUBCOMMANDS and EXAMPLES; the
+//! program's own page also has ENVIRONMENT and FILES. Of the text below the flags, indented lines stand as they are and others
+//! are filled; `Examples:` begins the section of that name.
 
 use std::fs;
 use std::io;
@@ -17,12 +18,18 @@ use crate::cli::commands::export;
 use crate::cli::error::CliError;
 use crate::storage::Existing;
 
-/// The program's own page.
+/// The page of the program itself.
+///
+/// # Errors
+/// None in practice: it is written to memory.
 pub(crate) fn main_page() -> Result<Vec<u8>, CliError> {
     page(&built()).map_err(CliError::Write)
 }
 
-/// Writes all pages into a folder, which is made where it is not there.
+/// Writes the pages of all commands into a folder, which is created if necessary.
+///
+/// # Errors
+/// If the folder cannot be created or a file cannot be written.
 pub(crate) fn write(folder: &Path) -> Result<(), CliError> {
     fs::create_dir_all(folder).map_err(|error| CliError::File {
         name: folder.display().to_string(),
@@ -31,32 +38,33 @@ pub(crate) fn write(folder: &Path) -> Result<(), CliError> {
     for command in all(&built()) {
         let file = folder.join(format!("{}.1", name(command)));
         let page = page(command).map_err(CliError::Write)?;
-        // Those of an earlier version go.
+        // Pages of an earlier version are replaced.
         export::put(&file, &page, Existing::Replaced)?;
     }
     Ok(())
 }
 
-/// The commands with all that clap adds to them, but for its `help`, of which there is nothing to say.
+/// The commands with everything that clap adds to them, except its `help`, which needs no page.
 fn built() -> Command {
     let mut all = definitions::all().disable_help_subcommand(true);
     all.build();
     all
 }
 
-/// A command and all below it.
+/// A command and all its subcommands, at any depth.
 fn all(command: &Command) -> Vec<&Command> {
     let below = command.get_subcommands().flat_map(all);
     std::iter::once(command).chain(below).collect()
 }
 
-/// "taxel-library-list".
+/// The name of a command's page, such as `taxel-library-list`.
 fn name(command: &Command) -> &str {
     command
         .get_display_name()
         .unwrap_or_else(|| command.get_name())
 }
 
+/// The page of a command, in roff.
 fn page(command: &Command) -> io::Result<Vec<u8>> {
     let mut page = Vec::new();
     let about = command
@@ -102,7 +110,7 @@ fn page(command: &Command) -> io::Result<Vec<u8>> {
     Ok(page)
 }
 
-/// Paragraphs, which an empty line ends, and lines that stand as they are.
+/// Writes a text: paragraphs, which are filled and end at an empty line, and indented lines, which stand as they are.
 fn filled(roff: &mut Roff, text: &str) {
     let mut as_it_is = false;
     for line in text.trim_matches('\n').lines() {

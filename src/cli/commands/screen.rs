@@ -1,4 +1,7 @@
-//! The screen on the terminal, recorded where that is asked for.
+//! `taxel` without a command: opens the screen, and with `--record` writes what is typed as a script.
+//!
+//! A record is a script that does the same again (`taxel script`): first the sensor, the look and the user's shapes, then every
+//! key with the screen's size. It is written as it happens, so that it survives a crash, and never replaces a file.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
@@ -16,7 +19,11 @@ use crate::tui::script::setting::{ScriptSetting, of_options};
 use crate::tui::terminal;
 use crate::tui::terminal::settings::{Flags, TerminalSettings};
 
-/// Runs the program on the terminal; the exit status tells how it ended.
+/// Runs the screen until the user quits, and returns the exit status.
+///
+/// # Errors
+/// [`CliError::Screen`] if there is no terminal; [`CliError::Recorded`] or [`CliError::Record`] if the record cannot be
+/// created. A record that fails later only gives a message.
 pub(crate) fn screen(
     settings: &Effective,
     size: Option<(u16, u16)>,
@@ -24,7 +31,7 @@ pub(crate) fn screen(
     shelf: &Shelf,
     charset: Charset,
 ) -> Result<u8, CliError> {
-    // A locale without UTF-8 is as good as a flag; one with it does not speak for the terminal.
+    // A locale that is not UTF-8 means ASCII; one that is says nothing about the terminal's font.
     let ascii = (charset == Charset::Ascii).then_some(true);
     let flags = Flags {
         color: settings.color(),
@@ -54,7 +61,7 @@ pub(crate) fn screen(
     if let Some(record) = record {
         let name = record.path.to_string_lossy().into_owned();
         if let Err(error) = record.end(ended.as_ref().ok().copied()) {
-            // The screen did what it should: its status stays.
+            // The screen itself did not fail, so its status stays.
             let message = format!("error: {name}: the record ends early: {error}");
             let _ = writeln!(io::stderr().lock(), "{}", charset.line(&message));
         }
@@ -62,19 +69,23 @@ pub(crate) fn screen(
     Ok(ended.map_err(CliError::Screen)?.status())
 }
 
-/// A record that is being written.
+/// A record being written.
 struct ScreenRecord {
     path: PathBuf,
-    /// Why nothing more is written, once something could not be.
+    /// The file, or the error that ended the record.
     file: io::Result<File>,
     recorder: Recorder,
+    /// Whether anything has been written.
     begun: bool,
 }
 
 impl ScreenRecord {
-    /// A new file: one that is there may be the record of something else.
+    /// Creates the file, which must not exist: it may be another record.
+    ///
+    /// # Errors
+    /// [`CliError::Recorded`] if it exists; [`CliError::Record`] if it cannot be created.
     fn begin(path: PathBuf, options: &Options, library: &Library) -> Result<Self, CliError> {
-        // All that may fail before there is a file, which would be in the way of the next try.
+        // First whatever else may fail: a file left behind would be in the way of the next try.
         let mut start = of_options(options);
         start.extend(found(library)?);
         let file = File::create_new(&path).map_err(|error| match error.kind() {
@@ -95,9 +106,10 @@ impl ScreenRecord {
         })
     }
 
+    /// Appends lines. After the first error nothing more is written.
     fn write(&mut self, lines: &str) {
         self.begun |= !lines.is_empty();
-        // A disk that is full must not end the program; the record ends instead, without a gap.
+        // A full disk must not end the program. The record ends instead, without a gap.
         if let Ok(file) = &mut self.file
             && let Err(error) = file.write_all(lines.as_bytes())
         {
@@ -105,21 +117,24 @@ impl ScreenRecord {
         }
     }
 
-    /// The last lines; a record of nothing goes again.
+    /// Writes how the program ended. An empty record is removed.
+    ///
+    /// # Errors
+    /// The error that ended the record early, if there was one.
     fn end(mut self, outcome: Option<terminal::Outcome>) -> io::Result<()> {
         if let Some(outcome) = outcome {
             let lines = self.recorder.end(outcome);
             self.write(&lines);
         }
         if !self.begun {
-            // An empty file is left then, and told by nobody.
+            // At worst an empty file stays.
             let _ = fs::remove_file(&self.path);
         }
         self.file.map(drop)
     }
 }
 
-/// What the program finds at its start: the user's shapes, but for those that cannot be read, and unsaved work.
+/// What the program finds at its start, for the record: the user's shapes, except damaged ones, and unsaved work.
 fn found(library: &Library) -> Result<Vec<ScriptSetting>, CliError> {
     let own = library.list()?;
     let own = own.iter().filter(|entry| entry.origin == ShapeOrigin::Own);
@@ -130,7 +145,7 @@ fn found(library: &Library) -> Result<Vec<ScriptSetting>, CliError> {
     Ok(shapes.chain(left).collect())
 }
 
-/// A name like that of a file which is not there yet.
+/// A similar name for a file that does not exist: `demo-2.taxel` for `demo.taxel`.
 fn free(path: &Path) -> PathBuf {
     let last = path.with_extension("new");
     let Some(stem) = path.file_stem().map(|stem| stem.to_string_lossy()) else {

@@ -1,4 +1,8 @@
-//! The screen driven by a script, without a terminal.
+//! `taxel script`: runs the screen without a terminal, driven by a script.
+//!
+//! The program under test is the same as on a terminal, except that keys come from the script, nothing is drawn but what it
+//! asks for, and the library is an empty one of its own unless `--library` names one. So scripts are tests (those in
+//! `tests/scripts`), demonstrations, and records of `taxel --record`.
 
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
@@ -21,10 +25,13 @@ use crate::tui::script::runner;
 use crate::tui::script::runner::{ScriptOptions, ScriptOutput};
 use crate::tui::widget::theme::{ColorDepth, Palette, Theme};
 
-/// No script is longer.
+/// The longest script, in bytes.
 const MOST_BYTES: u64 = 16 << 20;
 
-/// Runs a script, and prints what it asks for as it comes.
+/// Runs a script, and prints and draws its screens as they come.
+///
+/// # Errors
+/// [`CliError::NoScript`] if it cannot be read; [`CliError::Script`] if it is wrong or an expectation fails.
 pub(crate) fn run(
     asked: &Script,
     settings: &Effective,
@@ -119,13 +126,13 @@ fn write(
     }
 }
 
-/// The names of drawings, each another one.
+/// The names of drawings so far: each drawing gets one of its own.
 #[derive(Debug, Default)]
 struct Names(Vec<String>);
 
 impl Names {
-    /// The name of a screen as that of a file: what cannot be in a name is a dash. One without a name has its number, one
-    /// that is there already another behind it.
+    /// The file name, without ending, for a screen of this name. Characters that a name cannot have become `-`, a screen
+    /// without a name gets its number, and a name that is taken gets a number behind it.
     fn next(&mut self, name: &str) -> String {
         let fits = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
         let name: String = name
@@ -136,7 +143,7 @@ impl Names {
             Ok(name) => name.to_string(),
             Err(_) => format!("screen-{}", self.0.len() + 1),
         };
-        // Some file systems take upper and lower case for the same.
+        // Some file systems do not distinguish upper and lower case.
         let (mut free, mut number) = (name.clone(), 1);
         while self.0.contains(&folded(&free)) {
             number += 1;
@@ -147,7 +154,10 @@ impl Names {
     }
 }
 
-/// A long text: a record holds all of a library. What is not UTF-8 is replaced.
+/// Reads a script. It may be long, since a record holds a whole library. Invalid UTF-8 is replaced.
+///
+/// # Errors
+/// Those of the file, and more than [`MOST_BYTES`] bytes.
 fn text(source: &InputSource) -> io::Result<String> {
     let mut bytes = Vec::new();
     match source {

@@ -1,9 +1,11 @@
-//! `taxel sweep` and `taxel merge`: a grid gone through, its atlas written, its statistics shown.
+//! `taxel sweep` and `taxel merge`: sweeps a grid of poses or puts shards together, writes the atlas, prints statistics.
 //!
-//! Files are written under another name in the same folder and renamed when all are whole; one that is there already is
-//! replaced by `--force` only, which is found out before the work. An interrupt, a request to end and a lost terminal
-//! stop a sweep within a few thousand poses and a file at its next block, and what is not whole is taken away; a second
-//! one ends the program at once.
+//! Files are written under another name in the same folder and renamed when all of them are complete. A file that exists is
+//! replaced only with `--force`; this is checked before the work begins.
+//!
+//! SIGINT, SIGTERM and, on a terminal, SIGHUP stop a sweep within a few thousand poses and a file at its next block.
+//! Incomplete files are removed, and the exit status is 128 and the number of the signal. A second signal ends the program at
+//! once.
 
 use std::fs::File;
 use std::io::{self, IsTerminal};
@@ -26,16 +28,22 @@ use crate::source::Source;
 use crate::storage::{AtlasFile, Existing, FinishedFile, PoseFile, SweepFileError};
 use crate::sweep::{Shard, Sweep, SweepResult};
 
-/// What a sweep or a merge is to leave.
+/// What a sweep or a merge is to write and print.
 #[derive(Clone, Debug)]
 pub(crate) struct Wanted {
+    /// `--atlas`: the file of all distinct imprints.
     pub(crate) atlas: Option<AtlasFile>,
+    /// `--poses`: the file of each pose's imprint.
     pub(crate) poses: Option<PathBuf>,
+    /// What to do about files that exist.
     pub(crate) existing: Existing,
+    /// Whether the summary is one line of JSON.
     pub(crate) json: bool,
+    /// Whether to show no progress.
     pub(crate) quiet: bool,
 }
 
+/// The error for an atlas that cannot be read.
 fn refused(path: &Path, error: impl Into<ArchiveError>) -> CliError {
     CliError::Atlas {
         name: path.to_string_lossy().into_owned(),
@@ -88,7 +96,10 @@ pub(crate) fn grid(
     Ok((grid, notes))
 }
 
-/// Sweeps a shard of a grid on so many threads, and gives what is to be printed.
+/// Sweeps a shard of a grid on `jobs` threads (0: one per core), writes the files, and returns the summary to print.
+///
+/// # Errors
+/// [`CliError::Stopped`] after a signal; otherwise those of the files.
 pub(crate) fn sweep(
     grid: &PoseGrid,
     shard: Shard,
@@ -133,7 +144,10 @@ pub(crate) fn sweep(
     leave(&result, start, wanted, poses, charset, &signals)
 }
 
-/// Puts shards together, and gives what is to be printed.
+/// Merges the shards in `files`, writes the atlas, and returns the summary to print.
+///
+/// # Errors
+/// If a file cannot be read, or the shards are not all those of one grid, each once.
 pub(crate) fn merge(
     files: &[PathBuf],
     wanted: &Wanted,
@@ -150,11 +164,12 @@ pub(crate) fn merge(
         results.push(result.map_err(|error| refused(path, error))?);
     }
     let result = SweepResult::merge(results)?;
-    // Until here an interrupt ends the program, which has left nothing.
+    // Until here nothing is written, so a signal may simply end the program.
     let signals = Signals::heard().map_err(CliError::System)?;
     leave(&result, start, wanted, None, charset, &signals)
 }
 
+/// Writes the atlas, gives the files their names, and returns the summary to print.
 fn leave(
     result: &SweepResult,
     start: Instant,
@@ -173,7 +188,7 @@ fn leave(
         }
         None => None,
     };
-    // All files or none, as far as a machine can be asked for that.
+    // Both files are complete; renaming them hardly ever fails.
     for file in atlas.into_iter().chain(poses) {
         file.persist().map_err(SweepFileError::from)?;
     }
@@ -196,7 +211,10 @@ struct Signals {
 }
 
 impl Signals {
-    /// Listens from now on.
+    /// Catches the signals from now on.
+    ///
+    /// # Errors
+    /// If the system does not allow it.
     fn heard() -> io::Result<Self> {
         let (stopped, last) = (Arc::default(), Arc::default());
         let terminal = io::stderr().is_terminal();
@@ -212,6 +230,7 @@ impl Signals {
         Ok(Self { stopped, last })
     }
 
+    /// The error of a command that the last signal stopped.
     fn failure(&self) -> CliError {
         let (_, status) = STOPPING[self.last.load(Ordering::Relaxed)];
         CliError::Stopped { status }

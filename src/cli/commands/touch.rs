@@ -1,5 +1,5 @@
-//! `taxel figure` and `taxel picture`: one touch, shown, and stored or written to a file where that is
-//! asked for.
+//! `taxel figure` and `taxel picture`: touches a shape once, prints the imprint and its descriptors, and with `--save` and
+//! `--export` stores or writes it too.
 
 use std::ffi::OsStr;
 
@@ -17,15 +17,21 @@ use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::touch::Plane;
 
-/// What a touch has to say.
+/// The output of a touch.
 pub(crate) struct Touched {
-    /// The imprint with what describes it; or the file that is for standard output, in its place.
+    /// For standard output: the imprint with its descriptors; or, with `--export -`, the exported file instead.
     pub(crate) answer: Vec<u8>,
-    /// What was done besides and the answer does not tell, a line each.
+    /// For standard error: what else was done, a line each. A table has these lines itself.
     pub(crate) notes: Vec<String>,
 }
 
-/// Touches a source, and stores the shape or writes a file where that is asked for.
+/// Touches a source, and stores and exports the shape as wanted.
+///
+/// If the shape is to be stored and exported, either both succeed or neither is done: the file is written under another
+/// name first, then the shape is stored, then the file gets its name.
+///
+/// # Errors
+/// Those of the library and of the file.
 pub(crate) fn touch(
     source: Source,
     sensor: Sensor,
@@ -54,7 +60,7 @@ pub(crate) fn touch(
         notes.push(format!("saved as {}", shelf.save(&shape, force)?));
     }
     let mut instead = None;
-    // Both or none: the file has been written all but for its name.
+    // The file is complete; giving it its name hardly ever fails.
     match begun.map(Begun::end).transpose()? {
         Some(Exported::Content(content)) => instead = Some(content),
         Some(Exported::Said(said)) => notes.push(said),
@@ -77,7 +83,12 @@ pub(crate) fn touch(
     })
 }
 
-/// A stored shape as a picture, moved as the values say, and the sensor that touches it.
+/// Looks up a shape and returns it as a picture, moved as given, with its sensor.
+///
+/// The sensor is that of the stored shape. An imprint alone lies on the default sensor, or on a larger one if it needs that.
+///
+/// # Errors
+/// If the shape cannot be read, or a value is out of range.
 pub(crate) fn picture(
     what: &OsStr,
     given: &Given,

@@ -57,10 +57,13 @@ pub const MAX_BYTES: usize = 64 << 10;
 /// The content of the file. None means that the file does not set it; an inner None means `auto`.
 #[derive(Clone, Debug, Default)]
 pub struct Config {
+    /// The palette of the screen.
     pub(crate) theme: Option<Written<Option<Palette>>>,
+    /// How many colours the screen uses.
     pub(crate) color: Option<Written<Option<ColorDepth>>>,
     /// Whether characters are ASCII only.
     pub(crate) charset: Option<Written<Option<bool>>>,
+    /// Whether the screen reacts to the mouse.
     pub(crate) mouse: Option<Written<bool>>,
     /// An absolute path, or one below the user's home that starts with `~/`.
     pub(crate) library: Option<Written<String>>,
@@ -280,6 +283,7 @@ fn place(text: &str, byte: usize) -> (usize, usize) {
     (line, column.chars().count() + 1)
 }
 
+/// The key that a text denotes; None for several keys, or for text that denotes none.
 fn one_key(text: &str) -> Option<Key> {
     match parse(text).ok()?[..] {
         [key] => Some(key),
@@ -304,11 +308,13 @@ fn choice<T: Copy, const N: usize>(
     Ok(Written { value, line })
 }
 
+/// A value that must be text.
 fn string<'t>(value: &'t Spanned<DeValue<'_>>) -> Result<&'t str, Refusal> {
     let text = value.get_ref().as_str();
     text.ok_or_else(|| other_kind("text in quotes", value))
 }
 
+/// A value that must be a table.
 fn table<'t, 'i>(value: &'t Spanned<DeValue<'i>>) -> Result<&'t DeTable<'i>, Refusal> {
     let table = value.get_ref().as_table();
     table.ok_or_else(|| other_kind("a table", value))
@@ -325,16 +331,19 @@ fn number(value: &Spanned<DeValue<'_>>) -> Result<f64, Refusal> {
     number.ok_or_else(|| unfit("a decimal number".to_owned(), text, value))
 }
 
+/// The error for a key that there is not.
 fn unknown(found: &str, byte: usize, expected: &[&'static str]) -> Refusal {
     let (found, expected) = (legible(found), expected.to_vec());
     (byte, Wrong::Unknown { found, expected })
 }
 
+/// The error for a value of the right type that is not a possible one.
 fn unfit(expected: String, found: &str, value: &Spanned<DeValue<'_>>) -> Refusal {
     let found = format!("{:?}", legible(found));
     (value.span().start, Wrong::Value { expected, found })
 }
 
+/// The error for a value of the wrong type.
 fn other_kind(expected: &str, value: &Spanned<DeValue<'_>>) -> Refusal {
     let found = value.get_ref().type_str();
     let (expected, found) = (expected.to_owned(), found.to_owned());

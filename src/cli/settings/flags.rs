@@ -29,11 +29,17 @@ impl<T> Choice<T> {
 /// The settings given as flags. None, false or empty means that the flag was not given.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Chosen {
+    /// `--theme`.
     pub(crate) theme: Option<Choice<Palette>>,
+    /// `--color`.
     pub(crate) color: Option<Choice<ColorDepth>>,
+    /// `--ascii`.
     pub(crate) ascii: bool,
+    /// `--no-mouse`.
     pub(crate) no_mouse: bool,
+    /// `--library`.
     pub(crate) library: Option<PathBuf>,
+    /// `--columns`, `--rows`, `--threshold` and `--pitch`.
     pub(crate) sensor: Given,
 }
 
