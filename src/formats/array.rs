@@ -1,10 +1,11 @@
 //! An imprint as an array of numpy (`numpy.load`): rows × columns, true for an active taxel.
 //!
-//! Written is `bool`. Read are two-dimensional arrays of `bool`, whole numbers or floats of either byte order, in C or
-//! Fortran order, whose values are 0 and 1, of the format's versions 1 to 3. Source: that of [`crate::formats::npy`].
+//! Written is `bool`. Read are two-dimensional arrays of `bool`, whole numbers or floats (of 16 bits, too) of either byte
+//! order, in C or Fortran order, whose values are 0 and one other, of the format's versions 1 to 3. Source: that of [`crate::formats::npy`].
 
 use std::fmt;
 
+use crate::formats::mask::Mask;
 use crate::formats::npy;
 use crate::formats::npy::Dtype;
 use crate::imprint::Imprint;
@@ -34,13 +35,15 @@ pub enum ArrayError {
         /// How many there should be.
         expected: usize,
     },
-    /// Something else than 0 or 1.
+    /// A third value, or one that is no number.
     Value {
         /// Counted from 1.
         row: u8,
         /// Counted from 1.
         column: u8,
     },
+    /// No 0, and one other value everywhere that is neither 1 nor 255.
+    Unclear,
 }
 
 impl fmt::Display for ArrayError {
@@ -58,7 +61,13 @@ impl fmt::Display for ArrayError {
             Self::Length { found, expected } => {
                 write!(f, "found {found} bytes of numbers, expected {expected}")
             }
-            Self::Value { row, column } => write!(f, "row {row}, column {column}: expected 0 or 1"),
+            Self::Value { row, column } => write!(
+                f,
+                "row {row}, column {column}: expected 0, or the one other value of active taxels"
+            ),
+            Self::Unclear => {
+                f.write_str("one value everywhere, expected 0, 1 or 255, or two of which one is 0")
+            }
         }
     }
 }
@@ -75,59 +84,60 @@ fn sides(found: &[u64]) -> String {
 struct Type {
     /// Bytes of a number.
     size: usize,
-    /// The bytes of 1, as they stand in the file.
-    one: [u8; 8],
-    /// The bytes of a negative zero, where there is one.
-    negative_zero: Option<[u8; 8]>,
+    /// Whether its highest byte comes first.
+    big_endian: bool,
+    /// Of a float, the bits of its infinity, which numbers stay below; the highest bit is its sign.
+    infinity: Option<u64>,
+    /// The bits of 1, and of 255 where there is one.
+    active: [u64; 2],
 }
 
 impl Type {
     fn of(code: &str) -> Option<Self> {
         let mut letters = code.chars();
         let order = letters.next()?;
-        let (kind, size) = match letters.as_str() {
-            "b1" => ('b', 1),
-            "f4" => ('f', 4),
-            "f8" => ('f', 8),
-            other => {
-                let size = other.strip_prefix(['i', 'u'])?;
-                (
-                    'i',
-                    ["1", "2", "4", "8"]
-                        .iter()
-                        .position(|own| *own == size)
-                        .map(|n| 1 << n)?,
-                )
+        let (size, infinity, active) = match letters.as_str() {
+            "b1" | "i1" => (1, None, [1, 1]),
+            "u1" | "i2" | "u2" | "i4" | "u4" | "i8" | "u8" => {
+                let size = letters.as_str().get(1..)?.parse().ok()?;
+                (size, None, [1, 255])
             }
-        };
-        if !matches!(order, '<' | '>' | '|' | '=') {
-            return None;
-        }
-        let bytes = |number: u64| {
-            // The number's own bytes first, whatever comes after them.
-            let mut bytes = number.to_le_bytes();
-            if order == '>' {
-                bytes[..size].reverse();
+            "f2" => (2, Some(0x7c00), [0x3c00, 0x5bf8]),
+            "f4" => {
+                let bits = |number: f32| u64::from(number.to_bits());
+                (4, Some(bits(f32::INFINITY)), [bits(1.0), bits(255.0)])
             }
-            bytes
+            "f8" => (
+                8,
+                Some(f64::INFINITY.to_bits()),
+                [1_f64.to_bits(), 255_f64.to_bits()],
+            ),
+            _ => return None,
         };
-        let (one, negative_zero) = match (kind, size) {
-            ('f', 4) => (1_f32.to_bits().into(), Some((-0_f32).to_bits().into())),
-            ('f', _) => (1_f64.to_bits(), Some((-0_f64).to_bits())),
-            _ => (1, None),
-        };
-        Some(Self {
+        matches!(order, '<' | '>' | '|' | '=').then_some(Self {
             size,
-            one: bytes(one),
-            negative_zero: negative_zero.map(bytes),
+            big_endian: order == '>',
+            infinity,
+            active,
         })
     }
 
-    /// Whether the bytes of a number stand for an active taxel; none of what is neither 0 nor 1.
-    fn value(&self, bytes: &[u8]) -> Option<bool> {
-        let is = |number: &[u8; 8]| bytes == &number[..self.size];
-        let zero = is(&[0; 8]) || self.negative_zero.as_ref().is_some_and(is);
-        (zero || is(&self.one)).then_some(!zero)
+    /// The bits of a number that is not 0; an error for what is not finite.
+    fn value(&self, bytes: &[u8]) -> Result<Option<u64>, ()> {
+        let mut bits = [0; 8];
+        bits[..bytes.len()].copy_from_slice(bytes);
+        if self.big_endian {
+            bits[..bytes.len()].reverse();
+        }
+        let bits = u64::from_le_bytes(bits);
+        let Some(infinity) = self.infinity else {
+            return Ok((bits != 0).then_some(bits));
+        };
+        let magnitude = bits & !(1 << (8 * self.size - 1));
+        if magnitude >= infinity {
+            return Err(());
+        }
+        Ok((magnitude != 0).then_some(bits))
     }
 }
 
@@ -164,6 +174,7 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ArrayError> {
         return Err(ArrayError::Length { found, expected });
     }
     let mut imprint = Imprint::empty(columns, rows);
+    let mut mask = Mask::new();
     let (slow, fast) = if header.fortran_order {
         (columns, rows)
     } else {
@@ -176,11 +187,17 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ArrayError> {
         } else {
             (inner, outer)
         };
-        let active = kind.value(bytes).ok_or(ArrayError::Value {
+        let value = ArrayError::Value {
             row: row + 1,
             column: column + 1,
-        })?;
+        };
+        let Ok(Ok(active)) = kind.value(bytes).map(|number| mask.take(number)) else {
+            return Err(value);
+        };
         imprint.set(column, row, active);
+    }
+    if mask.unclear(&kind.active).is_some() {
+        return Err(ArrayError::Unclear);
     }
     Ok(imprint)
 }
@@ -225,6 +242,15 @@ mod tests {
             ("|b1", vec![1, 0, 1]),
             ("|i1", vec![1, 0, 1]),
             ("<u2", vec![1, 0, 0, 0, 1, 0]),
+            ("|u1", vec![255, 0, 255]),
+            ("<i2", vec![255, 255, 0, 0, 255, 255]),
+            // 1, a negative zero and 1 in halves.
+            ("<f2", vec![0x00, 0x3c, 0x00, 0x80, 0x00, 0x3c]),
+            (">f2", vec![0x5b, 0xf8, 0x00, 0x00, 0x5b, 0xf8]),
+            (
+                "<f4",
+                row([&0.5_f32.to_le_bytes(), &[0; 4], &0.5_f32.to_le_bytes()]),
+            ),
             (">i2", vec![0, 1, 0, 0, 0, 1]),
             ("<f4", row([&one, &(-0_f32).to_le_bytes(), &one])),
             (
@@ -291,9 +317,25 @@ mod tests {
             &small("|b1", "(1, 2)", b"\x01"),
             "found 1 bytes of numbers, expected 2",
         );
+        let third = "expected 0, or the one other value of active taxels";
         wrong(
             &small("|u1", "(1, 2)", b"\x01\xff"),
-            "row 1, column 2: expected 0 or 1",
+            &format!("row 1, column 2: {third}"),
+        );
+        // Infinity and NaN.
+        for high in [0x7c, 0xfc, 0x7e] {
+            wrong(
+                &small("<f2", "(1, 1)", &[0, high]),
+                &format!("row 1, column 1: {third}"),
+            );
+        }
+        wrong(
+            &small("|u1", "(1, 2)", b"\x07\x07"),
+            "one value everywhere, expected 0, 1 or 255, or two of which one is 0",
+        );
+        wrong(
+            &small("<f16", "(1, 1)", &[0; 16]),
+            "type \"<f16\", expected bool, whole numbers or floats",
         );
     }
 }

@@ -1,6 +1,6 @@
 //! The forms in which an imprint alone goes to other programs and comes from them.
 //!
-//! Which form a file has is told by its first bytes when it is read, by the ending of its name when it is written.
+//! Which form a file has is told by its content when it is read, by the ending of its name when it is written.
 //!
 //! ```
 //! use taxel::formats::imprint_file::{ImprintFormat, read};
@@ -19,7 +19,7 @@ use crate::formats::array::ArrayError;
 use crate::formats::pbm::PbmError;
 use crate::formats::table::TableError;
 use crate::formats::text::TextError;
-use crate::formats::{array, pbm, table, text};
+use crate::formats::{array, foreign, pbm, table, text};
 use crate::imprint::Imprint;
 
 /// No file of an imprint is larger; a larger one is refused unread. 1 MiB.
@@ -83,6 +83,11 @@ impl ImprintFormat {
 pub enum ImprintFormatError {
     /// Too many of them.
     Large,
+    /// A file of another kind.
+    Foreign {
+        /// What it is, with its article: "a PNG image".
+        kind: &'static str,
+    },
     /// No text of `#` and `.`.
     Text(TextError),
     /// No bitmap.
@@ -97,6 +102,10 @@ impl fmt::Display for ImprintFormatError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Large => f.write_str("larger than 1 MiB, which no imprint is"),
+            Self::Foreign { kind } => write!(
+                f,
+                "{kind}, expected rows of '#' and '.', a table (CSV), PBM, PGM of two shades or NPY"
+            ),
             Self::Text(error) => error.fmt(f),
             Self::Pbm(error) => write!(f, "PBM: {error}"),
             Self::Table(error) => write!(f, "CSV: {error}"),
@@ -109,8 +118,9 @@ impl std::error::Error for ImprintFormatError {}
 
 /// The imprint in any bytes, of any form.
 ///
-/// A bitmap begins with `P` and a digit, an array with its magic bytes, a table with a digit, a quote, a sign or a word;
-/// all else is text. A byte order mark before a table or a text is passed over.
+/// A bitmap or greymap begins with `P` and a digit, an array with its magic bytes. Images and archives of other kinds
+/// are refused by name. All else is a text of `#` and `.` or a table of numbers; a byte order mark before it is passed
+/// over, and line ends may be of any system.
 ///
 /// # Errors
 /// What is wrong first, and where.
@@ -118,17 +128,49 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ImprintFormatError> {
     if bytes.len() > MAX_BYTES {
         return Err(ImprintFormatError::Large);
     }
-    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    match (bytes, text.trim_ascii_start()) {
-        ([0x93, ..], _) => array::read(bytes).map_err(ImprintFormatError::Array),
-        ([b'P', b'0'..=b'9', ..], _) => pbm::read(bytes).map_err(ImprintFormatError::Pbm),
-        (
-            _,
-            [
-                b'0'..=b'9' | b'"' | b'+' | b'-' | b'T' | b't' | b'F' | b'f',
-                ..,
-            ],
-        ) => table::read(text).map_err(ImprintFormatError::Table),
-        _ => text::read(text).map_err(ImprintFormatError::Text),
+    if let Some(kind) = foreign::kind(bytes) {
+        return Err(ImprintFormatError::Foreign { kind });
     }
+    match bytes {
+        [0x93, ..] => return array::read(bytes).map_err(ImprintFormatError::Array),
+        // Tables may name their columns P1, P2.
+        [b'P', b'0'..=b'9', b',' | b';' | b'\t', ..] => {}
+        [b'P', b'0'..=b'9', ..] => return pbm::read(bytes).map_err(ImprintFormatError::Pbm),
+        _ => {}
+    }
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    // Long ago a line ended in CR alone.
+    let lines;
+    let text = if text.contains(&b'\r') && !text.contains(&b'\n') {
+        let unix = |&byte: &u8| if byte == b'\r' { b'\n' } else { byte };
+        lines = text.iter().map(unix).collect::<Vec<u8>>();
+        &lines
+    } else {
+        text
+    };
+    if is_table(text) {
+        table::read(text).map_err(ImprintFormatError::Table)
+    } else {
+        text::read(text).map_err(ImprintFormatError::Text)
+    }
+}
+
+/// Whether a text is a table of numbers: its first line that is neither blank nor a comment is not one of taxels, and
+/// there is a number, a separator or a word of a table in it.
+fn is_table(text: &[u8]) -> bool {
+    let lines = text.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
+    let mut lines = lines.filter(|line| !line.is_empty());
+    let taxels = |line: &[u8]| {
+        let taxels = line.iter().filter(|byte| matches!(byte, b'#' | b'.'));
+        2 * taxels.count() >= line.len()
+    };
+    let first = lines.find(|line| taxels(line) || !line.starts_with(b"#"));
+    first.is_some_and(|line| {
+        let begins = |word: &str| {
+            let start = line.get(..word.len());
+            start.is_some_and(|start| start.eq_ignore_ascii_case(word.as_bytes()))
+        };
+        let sign = |byte: &u8| byte.is_ascii_digit() || matches!(byte, b',' | b';' | b'\t' | b'"');
+        !taxels(line) && (begins("true") || begins("false") || text.iter().any(sign))
+    })
 }

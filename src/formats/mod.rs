@@ -23,9 +23,15 @@ pub mod shape;
 
 pub mod npy;
 
+mod foreign;
+
+mod mask;
+
 pub mod text;
 
 pub mod pbm;
+
+mod pgm;
 
 pub mod table;
 

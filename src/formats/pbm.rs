@@ -3,9 +3,12 @@
 //! Source: <https://netpbm.sourceforge.net/doc/pbm.html>. A comment runs from `#` to the end of its line; the digits of
 //! a plain one need no spaces between them. A file holds one bitmap, of at most 64 × 64. Bits that fill up the last byte
 //! of a row do not count. Lines and columns of errors count from 1, a column is a byte.
+//!
+//! Read are grey images of two shades, too (`P2`, `P5`): [`read`] says which shade is an active taxel.
 
 use std::fmt;
 
+use crate::formats::pgm;
 use crate::imprint::Imprint;
 use crate::sensor::MAX_SIDE;
 
@@ -13,7 +16,7 @@ use crate::sensor::MAX_SIDE;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PbmError {
-    /// Neither of the two kinds.
+    /// None of the four kinds.
     Magic,
     /// No number where one must be, or none from 1 to 64.
     Side {
@@ -49,6 +52,29 @@ pub enum PbmError {
         /// What they are.
         unit: &'static str,
     },
+    /// No brightest shade where one must be, or none from 1 to 65535.
+    Maximum {
+        /// Which line.
+        line: usize,
+        /// Which byte of it.
+        column: usize,
+    },
+    /// No shade where one must be, or one above the brightest.
+    Shade {
+        /// Which line.
+        line: usize,
+        /// Which byte of it.
+        column: usize,
+    },
+    /// A third shade.
+    Third {
+        /// Row, from 1.
+        row: u8,
+        /// Column, from 1.
+        column: u8,
+    },
+    /// One shade everywhere that is neither black nor the brightest.
+    Unclear,
     /// Something comes after the end.
     Long {
         /// How many.
@@ -59,7 +85,7 @@ pub enum PbmError {
 impl fmt::Display for PbmError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Magic => f.write_str("expected P1 or P4 at the start"),
+            Self::Magic => f.write_str("expected P1, P4, P2 or P5 at the start"),
             Self::Side { line, column, what } => write!(
                 f,
                 "line {line}, column {column}: expected the {what}, 1 to 64"
@@ -77,9 +103,22 @@ impl fmt::Display for PbmError {
                 expected,
                 unit,
             } => write!(f, "found {found} {unit}, expected {expected}"),
+            Self::Maximum { line, column } => write!(
+                f,
+                "line {line}, column {column}: expected the brightest shade, 1 to 65535"
+            ),
+            Self::Shade { line, column } => write!(
+                f,
+                "line {line}, column {column}: expected a shade, 0 to the brightest"
+            ),
+            Self::Third { row, column } => write!(
+                f,
+                "row {row}, column {column}: a third shade, expected an image of two"
+            ),
+            Self::Unclear => f.write_str("one shade of grey everywhere, expected two"),
             Self::Long { found } => write!(
                 f,
-                "found {found} bytes after the bitmap, expected one bitmap and no more"
+                "found {found} bytes after the image, expected one image and no more"
             ),
         }
     }
@@ -87,7 +126,10 @@ impl fmt::Display for PbmError {
 
 impl std::error::Error for PbmError {}
 
-/// Reads any bytes.
+/// Reads any bytes: a bitmap, or a grey image of two shades.
+///
+/// In a bitmap black is active. In a grey image the brighter of the two shades is, as in the masks of other programs;
+/// one that is all black is empty, one that is all of the brightest shade is full.
 ///
 /// # Errors
 /// What is wrong first, and where.
@@ -99,19 +141,23 @@ impl std::error::Error for PbmError {}
 /// assert_eq!(plain(&cup), "P1\n3 2\n101\n111\n");
 /// assert_eq!(raw(&cup), b"P4\n3 2\n\xa0\xe0");
 /// assert_eq!(read(&raw(&cup))?, cup);
+/// assert_eq!(read(b"P2 3 2 255  255 0 255  255 255 255")?, cup);
 /// # Ok::<(), taxel::formats::pbm::PbmError>(())
 /// ```
 pub fn read(bytes: &[u8]) -> Result<Imprint, PbmError> {
     let raw = match bytes.get(..2) {
-        Some(b"P1") => false,
-        Some(b"P4") => true,
+        Some(b"P1" | b"P2") => false,
+        Some(b"P4" | b"P5") => true,
         _ => return Err(PbmError::Magic),
     };
+    let grey = matches!(bytes.get(1), Some(b'2' | b'5'));
     let mut cursor = Cursor { bytes, at: 2 };
     let columns = cursor.side("width")?;
     let rows = cursor.side("height")?;
     let mut imprint = Imprint::empty(columns, rows);
-    let end = if raw {
+    let end = if grey {
+        pgm::shades(&mut cursor, raw, &mut imprint)?
+    } else if raw {
         cursor.bits(&mut imprint)?
     } else {
         cursor.digits(&mut imprint)?
@@ -124,14 +170,14 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, PbmError> {
 }
 
 /// Where reading has come to.
-struct Cursor<'a> {
-    bytes: &'a [u8],
-    at: usize,
+pub(super) struct Cursor<'a> {
+    pub(super) bytes: &'a [u8],
+    pub(super) at: usize,
 }
 
 impl Cursor<'_> {
     /// Line and column of what comes next.
-    fn place(&self) -> (usize, usize) {
+    pub(super) fn place(&self) -> (usize, usize) {
         let before = &self.bytes[..self.at];
         let start = before.iter().rposition(|&byte| byte == b'\n');
         let line = before.split(|&byte| byte == b'\n').count();
@@ -139,7 +185,7 @@ impl Cursor<'_> {
     }
 
     /// The next byte that is neither space nor comment.
-    fn next(&mut self) -> Option<u8> {
+    pub(super) fn next(&mut self) -> Option<u8> {
         loop {
             match *self.bytes.get(self.at)? {
                 b'#' => {
@@ -154,24 +200,30 @@ impl Cursor<'_> {
     }
 
     fn side(&mut self, what: &'static str) -> Result<u8, PbmError> {
-        // A number stands apart from what is before it.
+        let (side, (line, column)) = self.number();
+        let side = side.and_then(|side| u8::try_from(side).ok());
+        let side = side.filter(|side| (1..=MAX_SIDE).contains(side));
+        side.ok_or(PbmError::Side { line, column, what })
+    }
+
+    /// A number that stands apart from what is before and after it, and its line and column.
+    pub(super) fn number(&mut self) -> (Option<u32>, (usize, usize)) {
         let start = self.at;
         let _ = self.next();
-        let (line, column) = self.place();
+        let place = self.place();
         let digits = self.bytes[self.at..]
             .iter()
             .take_while(|byte| byte.is_ascii_digit())
             .count();
         let text = str::from_utf8(&self.bytes[self.at..self.at + digits]).ok();
-        let side = text.and_then(|text| text.parse().ok());
+        let number = text.and_then(|text| text.parse().ok());
         let stands_apart = self.at > start;
         self.at += digits;
         let ends = match self.bytes.get(self.at) {
             Some(byte) => byte.is_ascii_whitespace() || *byte == b'#',
             None => true,
         };
-        let side = side.filter(|side| (1..=MAX_SIDE).contains(side) && stands_apart && ends);
-        side.ok_or(PbmError::Side { line, column, what })
+        (number.filter(|_| stands_apart && ends), place)
     }
 
     /// Digits, until all taxels have one; gives the place after the last.
@@ -261,8 +313,11 @@ mod tests {
     fn what_is_wrong_is_told_with_its_place() {
         let told = |bytes: &[u8]| read(bytes).map_err(|error| error.to_string());
         let wrong = |bytes: &[u8], message: &str| assert_eq!(told(bytes), Err(message.to_owned()));
-        wrong(b"", "expected P1 or P4 at the start");
-        wrong(b"P5\n1 1\n255\n\0", "expected P1 or P4 at the start");
+        wrong(b"", "expected P1, P4, P2 or P5 at the start");
+        wrong(
+            b"P6\n1 1\n255\n\0\0\0",
+            "expected P1, P4, P2 or P5 at the start",
+        );
         wrong(b"P1", "line 1, column 3: expected the width, 1 to 64");
         // Not "P1" and 11 columns, but a number that does not stand apart.
         wrong(b"P111 1 1", "line 1, column 3: expected the width, 1 to 64");
@@ -298,11 +353,11 @@ mod tests {
         wrong(b"P4\n9 2", "found 0 bytes of taxels, expected 4");
         wrong(
             b"P4\n8 1\n\xffP4",
-            "found 2 bytes after the bitmap, expected one bitmap and no more",
+            "found 2 bytes after the image, expected one image and no more",
         );
         wrong(
             b"P1\n1 1\n1 # one\n1",
-            "found 1 bytes after the bitmap, expected one bitmap and no more",
+            "found 1 bytes after the image, expected one image and no more",
         );
     }
 

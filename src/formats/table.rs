@@ -1,12 +1,14 @@
 //! An imprint as a table of numbers (CSV): a line a row, 1 for an active taxel, 0 for an inactive one.
 //!
-//! Written with commas and without a heading. Read as other programs write such a table: parted by commas, semicolons
-//! or tabs, with or without quotes, as `1`, `1.0`, `1.000e+00` or `true`. Lines and columns of errors count from 1; a
-//! column is one of the table.
+//! Written with commas and without a heading. Read as other programs write such a table: parted by commas, semicolons,
+//! tabs or spaces, with or without quotes, as `1`, `1.0`, `1.000e+00` or `true`; any one value may stand for active
+//! taxels beside 0. Around the values may be what these programs add: a line `sep=;`, lines of comments that begin with
+//! `#`, a row of names, a first column of row numbers or names (with the name of that column empty, or missing), and a
+//! separator after the last value of every row. Lines and columns of errors count from 1; a column is one of the table.
 
 use std::fmt;
 
-use crate::formats::text::lines;
+use crate::formats::mask::Mask;
 use crate::imprint::Imprint;
 use crate::quote::shortened;
 use crate::sensor::MAX_SIDE;
@@ -20,7 +22,7 @@ pub enum TableError {
         /// Which line.
         line: usize,
     },
-    /// Something else than 0 or 1.
+    /// No number.
     Value {
         /// Which line.
         line: usize,
@@ -29,14 +31,32 @@ pub enum TableError {
         /// What stands there.
         found: String,
     },
+    /// A number beside 0 and another one.
+    Third {
+        /// Which line.
+        line: usize,
+        /// Which value of it.
+        column: usize,
+        /// What stands there.
+        found: String,
+        /// The number that active taxels have.
+        active: String,
+    },
+    /// One number everywhere that is neither 0 nor 1 nor 255.
+    Unclear {
+        /// That number.
+        found: String,
+    },
     /// A line of another length than the first.
     Ragged {
         /// Which line.
         line: usize,
         /// Its length.
         found: usize,
+        /// The first line's number.
+        first: usize,
         /// The first line's length.
-        expected: u8,
+        expected: usize,
     },
     /// A line with too many values.
     Columns {
@@ -64,14 +84,31 @@ impl fmt::Display for TableError {
                 f,
                 "line {line}, column {column}: found {found:?}, expected 0 or 1"
             ),
+            Self::Third {
+                line,
+                column,
+                found,
+                active,
+            } => write!(
+                f,
+                "line {line}, column {column}: found {found:?}, expected 0 or {active} as before"
+            ),
+            Self::Unclear { found } => write!(
+                f,
+                "{found:?} everywhere, expected 0, 1 or 255, or two values of which one is 0"
+            ),
             Self::Ragged {
                 line,
                 found,
+                first,
                 expected,
-            } => write!(
-                f,
-                "line {line}: found {found} values, expected {expected} as in line 1"
-            ),
+            } => {
+                let noun = if *found == 1 { "value" } else { "values" };
+                write!(
+                    f,
+                    "line {line}: found {found} {noun}, expected {expected} as in line {first}"
+                )
+            }
             Self::Columns { line, found } => {
                 write!(f, "line {line}: found {found} values, expected 1 to 64")
             }
@@ -92,6 +129,8 @@ impl std::error::Error for TableError {}
 /// let cup = read(b"1;0;1\r\n\"1\";1.0;true\r\n")?;
 /// assert_eq!(cup.to_string(), "#.#\n###");
 /// assert_eq!(write(&cup), "1,0,1\n1,1,1\n");
+/// // A mask as pandas writes it: names of columns, numbers of rows.
+/// assert_eq!(read(b",a,b,c\n0,255,0,255\n1,255,255,255\n")?, cup);
 /// # Ok::<(), taxel::formats::table::TableError>(())
 /// ```
 pub fn read(bytes: &[u8]) -> Result<Imprint, TableError> {
@@ -101,55 +140,236 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, TableError> {
         let line = valid.split(|&byte| byte == b'\n').count();
         TableError::Text { line }
     })?;
-    let lines = lines(text);
-    let height = u8::try_from(lines.len()).ok();
-    let height = height.filter(|rows| (1..=MAX_SIDE).contains(rows));
-    let found = lines.len();
-    let rows = height.ok_or(TableError::Lines { found })?;
-    // The first line tells what parts its values; one without any is a single column.
-    let mark = lines[0]
-        .chars()
-        .find(|mark| matches!(mark, ',' | ';' | '\t'));
-    let mark = mark.unwrap_or(',');
-    let mut imprint: Option<Imprint> = None;
-    for ((line, text), row) in (1..).zip(&lines).zip(0..rows) {
-        let found = text.split(mark).count();
-        let columns = u8::try_from(found).ok();
-        let columns = columns.filter(|columns| *columns <= MAX_SIDE);
-        let columns = columns.ok_or(TableError::Columns { line, found })?;
-        let imprint = imprint.get_or_insert_with(|| Imprint::empty(columns, rows));
-        if columns != imprint.columns() {
-            let expected = imprint.columns();
-            return Err(TableError::Ragged {
+    let table = Table::of(text)?;
+    let rows = u8::try_from(table.rows.len()).unwrap_or(MAX_SIDE);
+    let columns = table.rows.first().map_or(0, |row| row.fields.len());
+    let columns = u8::try_from(columns).unwrap_or(MAX_SIDE);
+    let mut imprint = Imprint::empty(columns, rows);
+    let mut mask = Mask::new();
+    for (row, cells) in (0..rows).zip(&table.rows) {
+        for (column, field) in (0..columns).zip(&cells.fields) {
+            let (line, place) = (cells.line, table.skipped + usize::from(column) + 1);
+            let found = || shortened(field);
+            let value = table.value(field).ok_or_else(|| TableError::Value {
                 line,
-                found,
-                expected,
-            });
-        }
-        for (column, field) in (0..columns).zip(text.split(mark)) {
-            let active = value(field).ok_or_else(|| TableError::Value {
+                column: place,
+                found: found(),
+            })?;
+            let active = mask.take((value != 0.0).then_some(value));
+            let active = active.map_err(|active| TableError::Third {
                 line,
-                column: usize::from(column) + 1,
-                found: shortened(field),
+                column: place,
+                found: found(),
+                active: active.to_string(),
             })?;
             imprint.set(column, row, active);
         }
     }
-    imprint.ok_or(TableError::Lines { found })
+    match mask.unclear(&[1.0, 255.0]) {
+        None => Ok(imprint),
+        Some(value) => Err(TableError::Unclear {
+            found: value.to_string(),
+        }),
+    }
 }
 
-/// Whether a field stands for an active taxel; none of what is neither 0 nor 1.
-fn value(field: &str) -> Option<bool> {
+/// A line's fields, without spaces and quotes around them.
+struct Row<'a> {
+    /// Its number in the file, from 1.
+    line: usize,
+    fields: Vec<&'a str>,
+}
+
+/// What is left of a file without comments, names and numbers of rows: 1 to 64 rows of as many fields each.
+struct Table<'a> {
+    /// What parts the fields of a line; none where spaces do.
+    mark: Option<char>,
+    rows: Vec<Row<'a>>,
+    /// How many columns before the first were taken away.
+    skipped: usize,
+}
+
+/// Names, row numbers and a separator at the end add one each.
+const MOST: usize = MAX_SIDE as usize + 2;
+
+impl<'a> Table<'a> {
+    fn of(text: &'a str) -> Result<Self, TableError> {
+        // Without the blank lines at the end; the last line may end in a separator.
+        let end = text.trim_end().len();
+        let end = text[end..].find('\n').map_or(text.len(), |rest| end + rest);
+        let lines = (1..).zip(text[..end].split('\n'));
+        let lines = lines.filter(|(_, line)| !line.trim_start().starts_with('#'));
+        let lines = lines.skip_while(|(_, line)| line.trim().is_empty());
+        let found = lines.clone().count();
+        // One more, which may name the separator.
+        let mut lines: Vec<(usize, &str)> = lines.take(MOST + 1).collect();
+        let given = lines.first().and_then(|(_, line)| separator(line));
+        if given.is_some() {
+            lines.remove(0);
+        }
+        let found = found - usize::from(given.is_some());
+        let Some((_, last)) = lines.last().filter(|_| found <= MOST) else {
+            return Err(TableError::Lines { found });
+        };
+        // The last line is one of numbers: names may hold any character.
+        let in_last = |mark: &char| last.contains(*mark);
+        let in_any = |mark: &char| lines.iter().any(|(_, line)| line.contains(*mark));
+        let marks = ['\t', ';', ','].into_iter();
+        let mark = given.or(marks
+            .clone()
+            .find(in_last)
+            .or_else(|| marks.clone().find(in_any)));
+        let mut table = Self {
+            mark,
+            rows: Vec::with_capacity(found),
+            skipped: 0,
+        };
+        for (line, text) in lines {
+            let found = split(text, mark).count();
+            if found > MOST {
+                return Err(TableError::Columns { line, found });
+            }
+            let fields = split(text, mark).map(bare).collect();
+            table.rows.push(Row { line, fields });
+        }
+        table.drop_names();
+        table.check()?;
+        Ok(table)
+    }
+
+    /// Takes away the row of names, the column of row numbers, and what follows the separator at the end of every row.
+    fn drop_names(&mut self) {
+        let Some(first) = self.rows.first() else {
+            return;
+        };
+        let named = self.rows.len() > 1 && (self.are_names(&first.fields) || counts(&first.fields));
+        let names = named.then(|| self.rows.remove(0));
+        if self
+            .rows
+            .iter()
+            .all(|row| row.fields.len() > 1 && row.fields.last() == Some(&""))
+        {
+            for row in &mut self.rows {
+                row.fields.pop();
+            }
+        }
+        let values = self.rows.first().map_or(0, |row| row.fields.len());
+        let numbered = names.is_some_and(|names| {
+            names.fields.len() + 1 == values || names.fields.first() == Some(&"")
+        });
+        let first_column = self.rows.iter().map(|row| row.fields.first().copied());
+        let first_column: Option<Vec<&str>> = first_column.collect();
+        let numbered = numbered || first_column.is_some_and(|column| counts(&column));
+        if numbered && self.rows.iter().all(|row| row.fields.len() > 1) {
+            for row in &mut self.rows {
+                row.fields.remove(0);
+            }
+            self.skipped = 1;
+        }
+    }
+
+    /// Whether the fields of the first row are names: none of them is a number, or they count from 0 after an empty one.
+    fn are_names(&self, fields: &[&str]) -> bool {
+        let words = fields
+            .iter()
+            .all(|field| self.value(field).is_none() && !is_number(field));
+        let words = words && fields.iter().any(|field| !field.is_empty());
+        let numbered = match fields {
+            ["", numbers @ ..] => !numbers.is_empty() && counts_from(numbers, 0),
+            _ => false,
+        };
+        words || numbered
+    }
+
+    /// Whether there are as many rows and columns as an imprint has, the same number of columns in each row.
+    fn check(&self) -> Result<(), TableError> {
+        let most = usize::from(MAX_SIDE);
+        let found = self.rows.len();
+        let first = self.rows.first().filter(|_| found <= most);
+        let first = first.ok_or(TableError::Lines { found })?;
+        let expected = first.fields.len();
+        for row in &self.rows {
+            let (line, found) = (row.line, row.fields.len());
+            if found > most {
+                return Err(TableError::Columns { line, found });
+            }
+            if found != expected {
+                return Err(TableError::Ragged {
+                    line,
+                    found,
+                    first: first.line,
+                    expected,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// The number in a field; None if it is none, or not finite.
+    fn value(&self, field: &str) -> Option<f64> {
+        if field.eq_ignore_ascii_case("true") {
+            return Some(1.0);
+        }
+        if field.eq_ignore_ascii_case("false") {
+            return Some(0.0);
+        }
+        let number: Option<f64> = field.parse().ok();
+        // Where a comma parts nothing, it is the decimal sign.
+        let decimal = || field.replacen(',', ".", 1).parse().ok();
+        let number = if self.mark == Some(',') {
+            number
+        } else {
+            number.or_else(decimal)
+        };
+        number.filter(|number| number.is_finite())
+    }
+}
+
+/// The separator that a first line `sep=;` names, as spreadsheet programs write it.
+fn separator(line: &str) -> Option<char> {
+    let line = bare(line);
+    let (key, mark) = line.split_at_checked(4)?;
+    let mut marks = mark.chars();
+    let mark = marks.next().filter(|_| key.eq_ignore_ascii_case("sep="))?;
+    let usual = matches!(mark, ',' | ';' | '\t' | '|');
+    (usual && marks.all(|rest| rest == mark)).then_some(mark)
+}
+
+/// The fields of a line; those between spaces where no mark parts them.
+fn split(line: &str, mark: Option<char>) -> impl Iterator<Item = &str> {
+    let marked = mark.map(|mark| line.split(mark));
+    let spaced = mark.is_none().then(|| line.split_whitespace());
+    // A blank line has one field, an empty one, as it has with a mark.
+    let blank = (mark.is_none() && line.trim().is_empty()).then_some("");
+    marked
+        .into_iter()
+        .flatten()
+        .chain(spaced.into_iter().flatten())
+        .chain(blank)
+}
+
+/// A field without the spaces and the quotes around it.
+fn bare(field: &str) -> &str {
     let field = field.trim();
-    let bare = field
+    let inner = field
         .strip_prefix('"')
         .and_then(|field| field.strip_suffix('"'));
-    let bare = bare.unwrap_or(field).trim();
-    if bare.eq_ignore_ascii_case("true") || bare.eq_ignore_ascii_case("false") {
-        return Some(bare.len() == "true".len());
-    }
-    let number: f64 = bare.parse().ok()?;
-    (number == 0.0 || number == 1.0).then_some(number == 1.0)
+    inner.unwrap_or(field).trim()
+}
+
+/// Whether a field is a number of any kind, also one that is not finite.
+fn is_number(field: &str) -> bool {
+    field.parse::<f64>().is_ok()
+}
+
+/// Whether fields count on, from 0 or 1: at least three of them, for 0 and 1 may be values.
+fn counts(fields: &[&str]) -> bool {
+    fields.len() > 2 && (counts_from(fields, 0) || counts_from(fields, 1))
+}
+
+fn counts_from(fields: &[&str], start: usize) -> bool {
+    let mut numbered = (start..).zip(fields);
+    numbered.all(|(number, field)| field.parse() == Ok(number))
 }
 
 /// The table, with a line end after each row.
@@ -180,6 +400,30 @@ mod tests {
             "True,False,True\nTRUE,true,True",
             "\u{feff}1\t0\t1\r\n1\t1\t1\r\n\r\n",
             " 1 ; 0 ; 1 \n1;1;1",
+            // numpy.savetxt by itself, and with a header.
+            "1.000e+00 0.000e+00 1.000e+00\n1.000e+00 1.000e+00 1.000e+00\n",
+            "# a cup\n# of six\n1 0 1\n1 1 1\n# end\n",
+            // pandas, with row numbers and without, with names and without.
+            ",0,1,2\n0,1,0,1\n1,1,1,1\n",
+            "0,1,2\n1,0,1\n1,1,1\n",
+            ",x,y,z\ntop,True,False,True\nbottom,True,True,True\n",
+            "x,y,z\n1,0,1\n1,1,1\n",
+            // R: one name less than there are columns.
+            "\"V1\" \"V2\" \"V3\"\n\"1\" 1 0 1\n\"2\" 1 1 1\n",
+            "\"\",\"V1\",\"V2\",\"V3\"\n\"1\",1,0,1\n\"2\",1,1,1\n",
+            // Spreadsheets.
+            "sep=;\r\n1;0;1\r\n1;1;1\r\n",
+            "SEP=|\n1|0|1\n1|1|1",
+            "1,0;0,0;1,0\n1,0;1,0;1,0\n",
+            "1,0,1,\n1,1,1,\n",
+            "1;0;1;\n1;1;1;\n",
+            "a;b;c;\n1;0;1;\n1;1;1;\n",
+            "a;b;c\n1;0;1;\n1;1;1;\n",
+            // Masks.
+            "255,0,255\n255,255,255\n",
+            "0.5\t0\t0.5\n0.5\t0.5\t0.5\n",
+            "-1 0 -1\n-1 -1 -1",
+            "\n\n1,0,1\n1,1,1\n",
         ] {
             assert_eq!(
                 read(text.as_bytes()).map(|cup| cup.to_string()),
@@ -191,6 +435,17 @@ mod tests {
             read(b"1\n0\n").map(|bar| bar.to_string()),
             Ok("#\n.".to_owned())
         );
+        // The first column counts on, so it is no mask.
+        let bars = read(b"0,1,0\n1,0,1\n2,1,0\n").map(|bars| bars.to_string());
+        assert_eq!(bars, Ok("#.\n.#\n#.".to_owned()));
+        // 0 and 1 are values wherever they can be.
+        let step = read(b"0,1\n1,1\n").map(|step| step.to_string());
+        assert_eq!(step, Ok(".#\n##".to_owned()));
+        let full = |text: &[u8]| read(text).map(|full| full.count());
+        assert_eq!(
+            (full(b"255 255"), full(b"1"), full(b"0 0")),
+            (Ok(2), Ok(1), Ok(0))
+        );
     }
 
     #[test]
@@ -200,24 +455,44 @@ mod tests {
             assert_eq!(told, Err(message.to_owned()));
         };
         wrong(b"", "found 0 lines, expected 1 to 64");
+        wrong(b"# only\n", "found 0 lines, expected 1 to 64");
         wrong(&b"1\n".repeat(65), "found 65 lines, expected 1 to 64");
+        wrong(&b"1\n".repeat(9999), "found 9999 lines, expected 1 to 64");
         wrong(
-            &b"1,".repeat(64),
+            &b"1,".repeat(65),
             "line 1: found 65 values, expected 1 to 64",
         );
-        wrong(b"1,0\n1", "line 2: found 1 values, expected 2 as in line 1");
+        wrong(
+            &b"1,".repeat(999),
+            "line 1: found 1000 values, expected 1 to 64",
+        );
+        wrong(b"1,0\n1", "line 2: found 1 value, expected 2 as in line 1");
         wrong(
             b"1,0\n1,2",
-            "line 2, column 2: found \"2\", expected 0 or 1",
+            "line 2, column 2: found \"2\", expected 0 or 1 as before",
+        );
+        wrong(
+            b",a,b\n0,7,0\n1,8,7\n",
+            "line 3, column 2: found \"8\", expected 0 or 7 as before",
         );
         wrong(b"1,NaN", "line 1, column 2: found \"NaN\", expected 0 or 1");
+        wrong(b"1,inf", "line 1, column 2: found \"inf\", expected 0 or 1");
         wrong(
-            b"a,b\n1,0",
-            "line 1, column 1: found \"a\", expected 0 or 1",
+            b"1,a\n1,0",
+            "line 1, column 2: found \"a\", expected 0 or 1",
+        );
+        wrong(b"a,b", "line 1, column 1: found \"a\", expected 0 or 1");
+        wrong(
+            b"a,b\n1,c",
+            "line 2, column 2: found \"c\", expected 0 or 1",
         );
         wrong(
             b"1,0\n\n1,0",
-            "line 2: found 1 values, expected 2 as in line 1",
+            "line 2: found 1 value, expected 2 as in line 1",
+        );
+        wrong(
+            b"7 7\n7 7",
+            "\"7\" everywhere, expected 0, 1 or 255, or two values of which one is 0",
         );
         wrong(b"1\n\xff", "line 2: not UTF-8, expected numbers 0 and 1");
     }

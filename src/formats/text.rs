@@ -1,6 +1,6 @@
 //! An imprint as a text of its own: a line a row, `#` for an active taxel, `.` for an inactive one.
 //!
-//! Lines may end in CRLF, and blank ones may follow the last row. Lines and columns of errors count from 1.
+//! Lines may end in blanks and CRLF, and blank ones may follow the last row. Lines and columns of errors count from 1.
 
 use std::fmt;
 
@@ -101,7 +101,7 @@ impl std::error::Error for TextError {}
 ///
 /// ```
 /// use taxel::formats::text::{read, write};
-/// let ring = read(b".##.\r\n#..#\r\n.##.\r\n\r\n")?;
+/// let ring = read(b".##.\r\n#..# \r\n.##.\r\n\r\n")?;
 /// assert_eq!(write(&ring), ".##.\n#..#\n.##.\n");
 /// assert_eq!(
 ///     read(b"##\n#x").map_err(|error| error.to_string()),
@@ -115,7 +115,10 @@ impl std::error::Error for TextError {}
 /// ```
 pub fn read(bytes: &[u8]) -> Result<Imprint, TextError> {
     let text = str::from_utf8(bytes).map_err(|error| no_text(bytes, error.valid_up_to()))?;
-    let rows = lines(text);
+    let mut rows = lines(text);
+    for row in &mut rows {
+        *row = row.trim_end_matches([' ', '\t']);
+    }
     Imprint::from_rows(rows.iter().copied()).map_err(|error| match error {
         ImprintError::Rows => TextError::Lines { found: rows.len() },
         ImprintError::Columns { row, found } => TextError::Columns {
@@ -144,7 +147,7 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, TextError> {
 /// What is wrong first in bytes that are UTF-8 only up to an end.
 fn no_text(bytes: &[u8], end: usize) -> TextError {
     let valid = String::from_utf8_lossy(&bytes[..end]);
-    let is_stray = |found: &(usize, char)| !matches!(found.1, '#' | '.' | '\r' | '\n');
+    let is_stray = |found: &(usize, char)| !matches!(found.1, '#' | '.' | ' ' | '\t' | '\r' | '\n');
     let stray = valid.char_indices().find(is_stray);
     let before = &valid[..stray.map_or(valid.len(), |(at, _)| at)];
     let line = before.split('\n').count();

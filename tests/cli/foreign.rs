@@ -83,12 +83,27 @@ np.save('int.npy', a.astype('>i4'))
 np.save('fortran.npy', np.asfortranarray(a.astype('<f8')))
 np.savetxt('default.csv', a, delimiter=',')
 np.savetxt('short.csv', a, delimiter=';', fmt='%d')
+np.savetxt('spaces.dat', a)
+np.savetxt('headed.csv', a, delimiter=',', fmt='%g', header='sixteen columns')
+np.savetxt('named.csv', a, delimiter=',', fmt='%g', header=','.join(f'c{i}' for i in range(16)), comments='')
+np.save('half.npy', a.astype('<f2'))
+np.save('mask.npy', a.astype('u1') * 255)
 for row in a:
     print(''.join('#' if cell else '.' for cell in row))
 ";
     let said = others(folder.path(), python, &["-c", script]);
     assert_eq!(said.as_ref(), Some(&text));
-    for name in ["int.npy", "fortran.npy", "default.csv", "short.csv"] {
+    for name in [
+        "int.npy",
+        "fortran.npy",
+        "half.npy",
+        "mask.npy",
+        "default.csv",
+        "short.csv",
+        "spaces.dat",
+        "headed.csv",
+        "named.csv",
+    ] {
         export(folder.path(), &format!("{name} back.txt --force"));
         let back = std::fs::read_to_string(folder.path().join("back.txt"));
         assert_eq!(back.expect("written"), text, "{name}");
@@ -108,6 +123,7 @@ a, b = Image.open('a.pbm'), Image.open('plain.pbm')
 assert a.mode == b.mode == '1' and a.size == (16, 16)
 assert a.tobytes() == b.tobytes()
 a.save('pillow.pbm')
+Image.frombytes('L', a.size, bytes(0 if p else 255 for p in a.convert('L').tobytes())).save('mask.pgm')
 page = Image.open('a.png')
 page.load()
 assert page.mode == 'L' and round(page.info['dpi'][0]) == 288, (page.mode, page.info)
@@ -116,9 +132,11 @@ for y in range(16):
 ";
     let said = others(folder.path(), python, &["-c", script]);
     assert_eq!(said.as_ref(), Some(&text));
-    export(folder.path(), "pillow.pbm back.txt");
-    let back = std::fs::read_to_string(folder.path().join("back.txt"));
-    assert_eq!(back.expect("written"), text);
+    for name in ["pillow.pbm", "mask.pgm"] {
+        export(folder.path(), &format!("{name} back.txt --force"));
+        let back = std::fs::read_to_string(folder.path().join("back.txt"));
+        assert_eq!(back.expect("written"), text, "{name}");
+    }
 }
 
 #[test]

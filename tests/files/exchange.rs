@@ -54,13 +54,109 @@ proptest! {
 
     #[test]
     fn any_bytes_are_an_imprint_or_an_error(
-        start in proptest::sample::select(&["", "P1", "P4 ", "\u{93}NUMPY", "0,", "\"", "#", "\u{feff}1"][..]),
+        start in proptest::sample::select(
+            &[
+                "", "P1", "P4 ", "P2 2 1 9 ", "P5 2 1 300 ", "\u{93}NUMPY", "0,", "\"", "#", "\u{feff}1", ",0,1\n0,",
+                "sep=;\n", "# a\n1 0", "a b\n",
+            ][..]
+        ),
         rest in vec(any::<u8>(), 0..200)
     ) {
         let bytes = [start.as_bytes(), &rest].concat();
         if let Err(error) = read_imprint(&bytes) {
             prop_assert!(error.to_string().len() < 300, "{}", error);
         }
+    }
+}
+
+/// A table of an imprint as some program writes it: what stands for an active taxel, what parts values, what is around.
+fn decorated(imprint: &Imprint, style: [usize; 5]) -> String {
+    let active = ["1", "255", "1.000000e+00", "True", "\"1\"", "7"][style[0]];
+    let zero = ["0", "0", "0.000000e+00", "False", "\"0\"", "0"][style[0]];
+    let mark = [",", ";", "\t", " "][style[1]];
+    let end = ["\n", "\r\n"][style[2]];
+    let index = style[3] == 1;
+    let named = style[3] > 0;
+    let trailing = if style[4] == 1 && mark != " " {
+        mark
+    } else {
+        ""
+    };
+    let mut text = String::new();
+    if style[4] == 2 && mark == ";" {
+        text += "sep=;";
+        text += end;
+    }
+    if style[4] == 3 {
+        text += "# written by a test";
+        text += end;
+    }
+    if named {
+        // A column without a name cannot be seen between spaces.
+        let empty = if mark == " " { "\"\"" } else { "" };
+        let first = index.then(|| empty.to_owned());
+        let names = (0..imprint.columns()).map(|column| format!("c{column}"));
+        text += &first
+            .into_iter()
+            .chain(names)
+            .collect::<Vec<_>>()
+            .join(mark);
+        text += end;
+    }
+    for row in 0..imprint.rows() {
+        let first = index.then(|| row.to_string());
+        let value = |column| {
+            if imprint.get(column, row) {
+                active
+            } else {
+                zero
+            }
+            .to_owned()
+        };
+        let values = first.into_iter().chain((0..imprint.columns()).map(value));
+        text += &values.collect::<Vec<_>>().join(mark);
+        text += trailing;
+        text += end;
+    }
+    text
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    #[test]
+    fn tables_are_read_whatever_is_around_them(
+        imprint in imprints(),
+        style in (0..6_usize, 0..4_usize, 0..2_usize, 0..3_usize, 0..4_usize),
+    ) {
+        let style = [style.0, style.1, style.2, style.3, style.4];
+        // What is 7 everywhere is no mask.
+        prop_assume!(style[0] != 5 || imprint.count() < u32::from(imprint.columns()) * u32::from(imprint.rows()));
+        let text = decorated(&imprint, style);
+        prop_assert_eq!(read_imprint(text.as_bytes()), Ok(imprint), "{}", text);
+    }
+
+    #[test]
+    fn greymaps_of_two_shades_are_read(imprint in imprints(), low in 0..60_u16, step in 1..60_u16, wide: bool) {
+        let brightest = if wide { 1000 } else { low + step };
+        let (columns, rows) = (imprint.columns(), imprint.rows());
+        let mut shades = Vec::new();
+        for row in 0..rows {
+            for column in 0..columns {
+                shades.push(if imprint.get(column, row) { low + step } else { low });
+            }
+        }
+        // One shade says which it is only where it is black or the brightest.
+        prop_assume!(shades.contains(&low) && shades.contains(&(low + step)));
+        let head = |kind| format!("{kind} {columns} {rows} {brightest}\n");
+        let plain = shades.iter().map(|shade| format!("{shade}\n")).collect::<String>();
+        prop_assert_eq!(read_imprint((head("P2") + &plain).as_bytes()), Ok(imprint));
+        let raw = shades.iter().flat_map(|shade| {
+            let bytes = shade.to_be_bytes();
+            bytes[usize::from(brightest <= 255)..].to_vec()
+        });
+        let raw: Vec<u8> = head("P5").into_bytes().into_iter().chain(raw).collect();
+        prop_assert_eq!(read_imprint(&raw), Ok(imprint));
     }
 }
 
@@ -76,6 +172,18 @@ fn each_form_is_told_by_its_first_bytes() {
         b"\xef\xbb\xbf1;0;1\r\n1;1;1\r\n",
         b"+1\t-0\t1\n1\t1\t1",
         b"True,False,True\nTrue,True,True",
+        b"True False True\nTrue True True",
+        // Whatever the extension: numpy.savetxt, a heading, a mask, an old line end, blanks.
+        b"# cup\n1.0e+00 0.0e+00 1.0e+00\n1.0e+00 1.0e+00 1.0e+00\n",
+        b"left middle right\n255 0 255\n255 255 255",
+        b"P1,P2,P3\n1,0,1\n1,1,1",
+        b"sep=;\r\n1;0;1\r\n1;1;1\r\n",
+        b"1,0,1\r1,1,1\r",
+        b"#.#\r###\r",
+        b"#.#  \n###\t\n",
+        b"\xef\xbb\xbf#.#\r\n###\r\n",
+        b"P2 3 2 255 255 0 255 255 255 255",
+        b"P5 3 2 255\n\xff\0\xff\xff\xff\xff",
     ] {
         assert_eq!(read_imprint(bytes), Ok(cup), "{bytes:?}");
     }
@@ -91,10 +199,10 @@ fn errors_name_the_form_and_the_place() {
     for (bytes, message) in [
         (&b""[..], "found 0 lines, expected 1 to 64"),
         (b"#x", "line 1, column 2: found 'x', expected '#' or '.'"),
-        (b"P3\n", "PBM: expected P1 or P4 at the start"),
+        (b"P9\n", "PBM: expected P1, P4, P2 or P5 at the start"),
         (
             b"1,7",
-            "CSV: line 1, column 2: found \"7\", expected 0 or 1",
+            "CSV: line 1, column 2: found \"7\", expected 0 or 1 as before",
         ),
         (
             b"\x93NUMPY\x01",
@@ -102,6 +210,32 @@ fn errors_name_the_form_and_the_place() {
         ),
     ] {
         assert_eq!(told(bytes), Err(message.to_owned()));
+    }
+}
+
+/// Of what is not read the name, and what is read instead.
+#[test]
+fn files_of_other_kinds_are_refused_by_name() {
+    for (bytes, kind) in [
+        (&b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"[..], "a PNG image"),
+        (b"BM\x46\0\0\0\0\0\0\0\x36\0\0\0", "a BMP image"),
+        (b"II*\0\x08\0\0\0", "a TIFF image"),
+        (b"MM\0*\0\0\0\x08", "a TIFF image"),
+        (b"GIF89a\x03\0\x02\0", "a GIF image"),
+        (b"\xff\xd8\xff\xe0\0\x10JFIF", "a JPEG image"),
+        (b"#define cup_width 3\n", "an XBM image"),
+        (b"P3\n1 1\n255\n0 0 0\n", "a PPM image"),
+        (b"P6\n1 1\n255\n\0\0\0", "a PPM image"),
+        (b"P7\nWIDTH 1\n", "a PAM image"),
+        (
+            b"PK\x03\x04\x14\0",
+            "an archive, perhaps NPZ or a spreadsheet",
+        ),
+        (b"\xff\xfe1\0,\x000\0", "text in UTF-16"),
+    ] {
+        let told = read_imprint(bytes).map_err(|error| error.to_string());
+        let read = "expected rows of '#' and '.', a table (CSV), PBM, PGM of two shades or NPY";
+        assert_eq!(told, Err(format!("{kind}, {read}")));
     }
 }
 

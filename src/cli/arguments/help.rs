@@ -53,9 +53,11 @@ Examples:
 /// `taxel describe`: the forms that can be read.
 pub(crate) const DESCRIBE_EXAMPLES: &str = "\
 An imprint is text, a line a row, '#' for an active taxel and '.' for an
-inactive one; or a bitmap (PBM), a table of 0 and 1 (CSV) or an array of numpy
-(NPY); at most 64 x 64. A stored shape is a JSON file. A name of the library
-goes before a file of the same name.
+inactive one; or a table of numbers (CSV), a bitmap (PBM), a grey image of two
+shades (PGM) or an array of numpy (NPY); at most 64 x 64. Masks are read, too: 0
+and one other value, such as 255. The content decides, not the extension. A
+stored shape is a JSON file. A name of the library goes before a file of the
+same name.
 
 Examples:
   taxel describe washer

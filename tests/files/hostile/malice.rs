@@ -142,7 +142,7 @@ const IMPRINTS: [Malice; 4] = [
     ("long rows", || filled("", &("#".repeat(16_000) + "\n"), "")),
 ];
 
-const EXCHANGES: [Malice; 9] = [
+const EXCHANGES: [Malice; 16] = [
     ("a comment", || filled("P1", "#", "\n1 1 1")),
     ("comments", || filled("P1", "# a\n", "1 1 1")),
     ("a long width", || filled("P1 ", "9", " 1 1")),
@@ -151,6 +151,13 @@ const EXCHANGES: [Malice; 9] = [
     ("many rows of numbers", || filled("", "1\n", "")),
     ("a long number", || filled("0.", "0", "")),
     ("a quote", || filled("\"", "1", "")),
+    ("comments of a table", || filled("", "# a\n", "1")),
+    ("blank lines before a table", || filled("", "\n", "1")),
+    ("a wide gap", || filled("1", " ", "1")),
+    ("many names", || filled("", "a,", "a\n1")),
+    ("old line ends", || filled("", "1\r", "")),
+    ("many shades", || filled("P2 64 64 255 ", "7 ", "")),
+    ("a long shade", || filled("P2 1 1 9 ", "9", "")),
     ("a long shape", || {
         let mut bytes = filled(
             "0123456789ab{'descr': '|b1', 'fortran_order': False, 'shape': (",
