@@ -31,8 +31,6 @@ pub mod text;
 
 pub mod pbm;
 
-mod pgm;
-
 pub mod table;
 
 pub mod array;

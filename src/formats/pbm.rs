@@ -6,9 +6,10 @@
 //!
 //! Read are grey images of two shades, too (`P2`, `P5`): [`read`] says which shade is an active taxel.
 
+mod pgm;
+
 use std::fmt;
 
-use crate::formats::pgm;
 use crate::imprint::Imprint;
 use crate::sensor::MAX_SIDE;
 
