@@ -10,7 +10,7 @@ use crate::cli::output::charset::Charset;
 use crate::formats::ArchiveError;
 use crate::pose::GridError;
 use crate::quote::legible;
-use crate::storage::{FileError, LibraryError, SweepFileError};
+use crate::storage::{ArchiveFileError, FileError, LibraryError};
 use crate::sweep::MergeError;
 use crate::tui::script::runner;
 
@@ -136,7 +136,7 @@ pub(crate) enum CliError {
     },
     /// An atlas, or the file of all poses, cannot be written.
     #[error(transparent)]
-    SweepFile(SweepFileError),
+    SweepFile(ArchiveFileError),
     /// The shards are not those of one grid, or some are missing or given twice.
     #[error(transparent)]
     Merge(#[from] MergeError),
@@ -166,8 +166,8 @@ impl From<FileError> for CliError {
     }
 }
 
-impl From<SweepFileError> for CliError {
-    fn from(error: SweepFileError) -> Self {
+impl From<ArchiveFileError> for CliError {
+    fn from(error: ArchiveFileError) -> Self {
         if error.exists() {
             Self::Taken { name: error.name }
         } else {

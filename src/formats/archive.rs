@@ -11,12 +11,10 @@ use std::io::{Read, Seek, Write};
 
 use serde::{Deserialize, Serialize};
 use zip::result::ZipError;
-use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
 use crate::atlas::{Atlas, ImprintSummary, feature_values, features};
-use crate::formats::npy;
 use crate::formats::npy::Dtype;
+use crate::formats::npz::{ArrayReader, ArrayWriter, HEADER, little_endian};
 use crate::formats::record::{Record, RecordError, Values};
 use crate::pose::{Anchor, Axis, GridError, PoseGrid, RangeError, Ranges};
 use crate::quote::shortened;
@@ -25,12 +23,6 @@ use crate::sweep::{Parts, PartsError, Shard, ShardError, SweepResult};
 
 /// What the header must say first.
 pub const FORMAT: &str = "taxel-atlas/1";
-
-/// No array of an archive may be larger; what is larger is not read.
-const MAX_BYTES: u64 = 1 << 34;
-
-/// No header is larger: a source of 64 × 64 taxels takes some thousand bytes.
-const MAX_HEADER: u64 = 1 << 20;
 
 /// What was swept: written from a source and a sensor, read as the records that they are checked from.
 #[derive(Serialize, Deserialize)]
@@ -55,15 +47,20 @@ struct ArchiveHeader<Shape, Size> {
 /// # Errors
 /// Those of the writer.
 pub fn write(result: &SweepResult, output: impl Write + Seek) -> Result<(), ArchiveError> {
-    let mut archive = Arrays(ZipWriter::new(output));
+    let mut archive = ArrayWriter::new(output);
     let (grid, parts) = (&result.grid, result.parts());
     let header = header(result, &parts)?;
-    archive.add("header", Dtype::U8, &[header.len() as u64], &header)?;
+    archive.add(HEADER, Dtype::U8, &[header.len() as u64], &header)?;
     let count = parts.counts.len() as u64;
     let height = u64::from(grid.sensor().rows());
-    archive.add("rows", Dtype::U64, &[count, height], &bytes(&parts.rows))?;
-    archive.add("count", Dtype::U64, &[count], &bytes(&parts.counts))?;
-    let first_poses = bytes(&parts.first_poses);
+    archive.add(
+        "rows",
+        Dtype::U64,
+        &[count, height],
+        &little_endian(&parts.rows),
+    )?;
+    archive.add("count", Dtype::U64, &[count], &little_endian(&parts.counts))?;
+    let first_poses = little_endian(&parts.first_poses);
     archive.add("first_pose", Dtype::U64, &[count], &first_poses)?;
     let axes: Vec<_> = grid.axes().collect();
     let mut first = Vec::new();
@@ -81,9 +78,13 @@ pub fn write(result: &SweepResult, output: impl Write + Seek) -> Result<(), Arch
         archive.add(&feature.key, Dtype::F64, &[count], &column)?;
     }
     let length = parts.spread.len() as u64;
-    archive.add("spread", Dtype::U64, &[length], &bytes(&parts.spread))?;
-    archive.0.finish()?.flush()?;
-    Ok(())
+    archive.add(
+        "spread",
+        Dtype::U64,
+        &[length],
+        &little_endian(&parts.spread),
+    )?;
+    archive.finish()
 }
 
 /// The header as JSON: what was swept, over which ranges, and the counts of the whole result.
@@ -104,11 +105,6 @@ fn header(result: &SweepResult, parts: &Parts) -> Result<Vec<u8>, ArchiveError> 
         partly_off: parts.partly_off,
     })
     .map_err(|error| ArchiveError::Io(error.into()))
-}
-
-/// Words as the bytes of an array.
-fn bytes(words: &[u64]) -> Vec<u8> {
-    words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
 
 /// The number of pieces, or of holes, of each imprint, as the bytes of an array.
@@ -134,90 +130,63 @@ fn feature_columns(atlas: &Atlas) -> Vec<Vec<u8>> {
     columns
 }
 
-/// The archive being written, an array at a time.
-struct Arrays<W: Write + Seek>(ZipWriter<W>);
-
-impl<W: Write + Seek> Arrays<W> {
-    fn add<const N: usize>(
-        &mut self,
-        name: &str,
-        kind: Dtype,
-        shape: &[u64; N],
-        numbers: &[u8],
-    ) -> Result<(), ArchiveError> {
-        let options = SimpleFileOptions::default()
-            .compression_method(CompressionMethod::Stored)
-            .last_modified_time(DateTime::default())
-            .large_file(numbers.len() >= 1 << 31);
-        self.0.start_file(format!("{name}.npy"), options)?;
-        self.0.write_all(&npy::header(kind, shape))?;
-        self.0.write_all(numbers)?;
-        Ok(())
-    }
-}
-
 /// Reads an archive.
 ///
 /// # Errors
 /// What is wrong with it; any bytes are taken.
 pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
-    let mut archive = ZipArchive::new(input)?;
-    let mut array = |name: &'static str| {
-        let file = archive.by_name(&format!("{name}.npy"));
-        let mut file = match file {
-            Err(ZipError::FileNotFound) => return Err(ArchiveError::Array(name)),
-            file => file?,
-        };
-        let most = if name == "header" {
-            MAX_HEADER
-        } else {
-            MAX_BYTES
-        };
-        if file.size() > most {
-            return Err(ArchiveError::Array(name));
-        }
-        let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes)?;
-        Ok(bytes)
-    };
-    let header = array("header")?;
-    let header = npy::content(&header, Dtype::U8).ok_or(ArchiveError::Array("header"))?;
-    let header: ArchiveHeader<Record<'_>, Values> = serde_json::from_slice(header)
+    let mut archive = ArrayReader::new(input)?;
+    let header = archive.header()?;
+    let header: ArchiveHeader<Record<'_>, Values> = serde_json::from_slice(&header)
         .map_err(|error| ArchiveError::Header(crate::formats::json::message(&error)))?;
     if header.format != FORMAT {
-        return Err(ArchiveError::Format(shortened(&header.format)));
+        return Err(ArchiveError::Format {
+            found: shortened(&header.format),
+            expected: FORMAT,
+        });
     }
     let sensor = header.sensor.sensor(Sensor::default())?;
     let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
     let source = header.source.source(&sensor, &no_name)?;
-    let anchor = Anchor::from_name(&header.anchor).ok_or_else(|| {
-        ArchiveError::Header(format!(
-            "anchor {:?} is unknown, expected {}",
-            shortened(&header.anchor),
-            Anchor::NAMES.join(" or ")
-        ))
-    })?;
-    let ranges = Ranges::default()
-        .with(Axis::X0, header.x0.parse()?)
-        .with(Axis::Y0, header.y0.parse()?)
-        .with(Axis::Angle, header.angle.parse()?)
-        .with(Axis::ZoomX, header.zoom_x.parse()?)
-        .with(Axis::ZoomY, header.zoom_y.parse()?);
+    let anchor = anchor(&header.anchor)?;
+    let ranges = ranges([
+        &header.x0,
+        &header.y0,
+        &header.angle,
+        &header.zoom_x,
+        &header.zoom_y,
+    ])?;
     let shard: Shard = header.shard.parse()?;
     let grid = PoseGrid::new(source, sensor, anchor, ranges)?;
-    let mut words = |name: &'static str| {
-        let array = array(name)?;
-        npy::words(&array).ok_or(ArchiveError::Array(name))
-    };
     let parts = Parts {
         poses: header.poses,
         partly_off: header.partly_off,
-        rows: words("rows")?,
-        counts: words("count")?,
-        first_poses: words("first_pose")?,
-        spread: words("spread")?,
+        rows: archive.words("rows")?,
+        counts: archive.words("count")?,
+        first_poses: archive.words("first_pose")?,
+        spread: archive.words("spread")?,
     };
     Ok(SweepResult::from_parts(grid, shard, &parts)?)
+}
+
+/// The anchor of that name.
+pub(super) fn anchor(name: &str) -> Result<Anchor, ArchiveError> {
+    Anchor::from_name(name).ok_or_else(|| {
+        ArchiveError::Header(format!(
+            "anchor {:?} is unknown, expected {}",
+            shortened(name),
+            Anchor::NAMES.join(" or ")
+        ))
+    })
+}
+
+/// The ranges that texts stand for, in the order of [`Axis::ALL`].
+pub(super) fn ranges(texts: [&str; 5]) -> Result<Ranges, ArchiveError> {
+    let mut ranges = Ranges::default();
+    for (axis, text) in Axis::ALL.into_iter().zip(texts) {
+        ranges[axis] = text.parse()?;
+    }
+    Ok(ranges)
 }
 
 /// Why an archive cannot be written or read.
@@ -234,8 +203,13 @@ pub enum ArchiveError {
     #[error("array {0:?} is not as taxel writes it")]
     Array(&'static str),
     /// Another format, or a newer one.
-    #[error("format: {0:?} is not known here, expected \"{FORMAT}\"")]
-    Format(String),
+    #[error("format: {found:?} is not known here, expected {expected:?}")]
+    Format {
+        /// What it says it is.
+        found: String,
+        /// What can be read here.
+        expected: &'static str,
+    },
     /// A header that is none.
     #[error("header: {0}")]
     Header(String),
@@ -254,4 +228,8 @@ pub enum ArchiveError {
     /// Numbers that contradict each other.
     #[error("{0}")]
     Parts(#[from] PartsError),
+    /// Shapes or numbers that make no model.
+    #[cfg(feature = "recognition")]
+    #[error("{0}")]
+    Model(#[from] crate::recognition::ModelError),
 }

@@ -50,6 +50,15 @@ pub mod atlas;
 #[cfg(feature = "sweep")]
 pub mod archive;
 
+#[cfg(feature = "sweep")]
+mod npz;
+
+#[cfg(feature = "recognition")]
+mod model;
+
+#[cfg(feature = "recognition")]
+mod named_shape;
+
 pub use described::DescribedImprint;
 pub use drawing::Drawing;
 pub use imprint_file::{ImprintFormat, ImprintFormatError, read as read_imprint};
@@ -66,3 +75,12 @@ pub use shape::{ShapeError, StoredShape};
 
 #[cfg(feature = "sweep")]
 pub use archive::ArchiveError;
+
+#[cfg(feature = "sweep")]
+pub use npz::format_of as archive_format;
+
+#[cfg(feature = "recognition")]
+pub use model::{FORMAT as MODEL_FORMAT, read as read_model, write as write_model};
+
+#[cfg(feature = "recognition")]
+pub use named_shape::{NamedShapeError, ShapeLookup, named_shape, named_shape_of_words};

@@ -28,6 +28,16 @@ pub enum Dtype {
 }
 
 impl Dtype {
+    /// Returns the number of bytes of one.
+    pub const fn width(self) -> usize {
+        match self {
+            Self::Bool | Self::U8 => 1,
+            Self::U16 => 2,
+            Self::U32 => 4,
+            Self::U64 | Self::F64 => 8,
+        }
+    }
+
     fn code(self) -> &'static str {
         match self {
             Self::Bool => "|b1",

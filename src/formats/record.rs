@@ -80,6 +80,14 @@ impl Values {
         self.0[Self::index(parameter)?]
     }
 
+    /// Gives a parameter a value.
+    #[cfg(feature = "recognition")]
+    pub(crate) fn set(&mut self, parameter: Parameter, value: f64) {
+        if let Some(index) = Self::index(parameter) {
+            self.0[index] = Some(value);
+        }
+    }
+
     /// Refuses the first value that is not of the parameters expected.
     pub(crate) fn only(
         &self,
@@ -241,27 +249,36 @@ impl<'de> Visitor<'de> for RecordVisitor {
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
         let mut record = Record::default();
         while let Some(Text(key)) = map.next_key()? {
-            match key.as_ref() {
-                "figure" => once(
-                    "figure",
-                    &mut record.figure,
-                    map.next_value::<Text<'_>>()?.0,
-                )?,
-                "picture" => once("picture", &mut record.picture, map.next_value()?)?,
-                "imprint" => once("imprint", &mut record.imprint, map.next_value()?)?,
-                "sensor" => once("sensor", &mut record.sensor, map.next_value()?)?,
-                other => record.values.take(
-                    other,
-                    &mut map,
-                    "figure, picture, imprint, sensor or a parameter",
-                )?,
-            }
+            let expected = "figure, picture, imprint, sensor or a parameter";
+            record.take(&key, &mut map, expected)?;
         }
         Ok(record)
     }
 }
 
-fn once<T, E: Error>(key: &'static str, slot: &mut Option<T>, value: T) -> Result<(), E> {
+impl<'a> Record<'a> {
+    /// Takes the value of a key; `expected` says which keys are known.
+    pub(crate) fn take<'de: 'a, A: MapAccess<'de>>(
+        &mut self,
+        key: &str,
+        map: &mut A,
+        expected: &str,
+    ) -> Result<(), A::Error> {
+        match key {
+            "figure" => once("figure", &mut self.figure, map.next_value::<Text<'_>>()?.0),
+            "picture" => once("picture", &mut self.picture, map.next_value()?),
+            "imprint" => once("imprint", &mut self.imprint, map.next_value()?),
+            "sensor" => once("sensor", &mut self.sensor, map.next_value()?),
+            other => self.values.take(other, map, expected),
+        }
+    }
+}
+
+pub(crate) fn once<T, E: Error>(
+    key: &'static str,
+    slot: &mut Option<T>,
+    value: T,
+) -> Result<(), E> {
     if slot.replace(value).is_some() {
         Err(E::duplicate_field(key))
     } else {
@@ -314,7 +331,7 @@ impl<'de> Deserialize<'de> for Values {
 }
 
 /// A text, borrowed where JSON needs no unescaping.
-struct Text<'a>(Cow<'a, str>);
+pub(crate) struct Text<'a>(pub(crate) Cow<'a, str>);
 
 impl<'de> Deserialize<'de> for Text<'de> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {

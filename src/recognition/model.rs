@@ -50,7 +50,8 @@ pub struct ShapeCount {
 }
 
 impl ShapeCount {
-    pub(super) fn new(shape: u16, poses: u64) -> Self {
+    /// That many poses of the shape of that number.
+    pub fn new(shape: u16, poses: u64) -> Self {
         Self { shape, poses }
     }
 }

@@ -45,6 +45,7 @@ impl fmt::Debug for Training<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Training")
             .field("shapes", &self.shapes)
+            .field("allow_cut", &self.allow_cut)
             .field("shard", &self.shard)
             .finish_non_exhaustive()
     }

@@ -47,6 +47,9 @@ mod first_error;
 #[cfg(feature = "sweep")]
 mod sweep_file;
 
+#[cfg(all(feature = "recognition", feature = "library"))]
+mod models;
+
 pub use atomic_file::{Existing, FinishedFile, UnfinishedFile};
 pub use error::FileError;
 
@@ -63,4 +66,7 @@ pub use library::{Expected, Library, LibraryEntry, LoadedShape, ShapeOrigin};
 pub use trash::TRASH_KEPT;
 
 #[cfg(feature = "sweep")]
-pub use sweep_file::{AtlasFile, PoseFile, SweepFileError, is_poses};
+pub use sweep_file::{ArchiveFileError, AtlasFile, PoseFile, is_poses};
+
+#[cfg(all(feature = "recognition", feature = "library"))]
+pub use models::{ModelCache, ModelFolder, load_model, model_hash, save_model};

@@ -20,22 +20,23 @@ use crate::sweep::SweepResult;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 #[error("{name}: {error}")]
-pub struct SweepFileError {
+pub struct ArchiveFileError {
     /// The file's name.
     pub name: String,
     /// What went wrong.
     pub error: ArchiveError,
 }
 
-impl From<FileError> for SweepFileError {
+impl From<FileError> for ArchiveFileError {
     fn from(error: FileError) -> Self {
         let path = error.path.clone();
         Self::new(&path, error.into_io())
     }
 }
 
-impl SweepFileError {
-    fn new(path: &Path, error: impl Into<ArchiveError>) -> Self {
+impl ArchiveFileError {
+    /// An error about a file.
+    pub(crate) fn new(path: &Path, error: impl Into<ArchiveError>) -> Self {
         Self {
             name: path.to_string_lossy().into_owned(),
             error: error.into(),
@@ -84,7 +85,7 @@ impl AtlasFile {
     ///
     /// # Errors
     /// Those of the system, with the file's name; where one is there and is to be kept.
-    pub fn check(&self, existing: Existing) -> Result<(), SweepFileError> {
+    pub fn check(&self, existing: Existing) -> Result<(), ArchiveFileError> {
         UnfinishedFile::new(&self.path, existing)?;
         Ok(())
     }
@@ -98,7 +99,7 @@ impl AtlasFile {
         result: &SweepResult,
         existing: Existing,
         stopped: &AtomicBool,
-    ) -> Result<(), SweepFileError> {
+    ) -> Result<(), ArchiveFileError> {
         Ok(self.prepare(result, existing, stopped)?.persist()?)
     }
 
@@ -111,7 +112,7 @@ impl AtlasFile {
         result: &SweepResult,
         existing: Existing,
         stopped: &AtomicBool,
-    ) -> Result<FinishedFile, SweepFileError> {
+    ) -> Result<FinishedFile, ArchiveFileError> {
         let mut file = UnfinishedFile::new(&self.path, existing)?;
         let mut output = FirstErrorWriter::new(&mut file.output, stopped);
         let written = match self.format {
@@ -123,7 +124,7 @@ impl AtlasFile {
             Some(error) => Err(error.into()),
             None => written,
         };
-        written.map_err(|error| SweepFileError::new(&self.path, error))?;
+        written.map_err(|error| ArchiveFileError::new(&self.path, error))?;
         Ok(file.finish()?)
     }
 }
@@ -154,7 +155,7 @@ impl PoseFile {
         path: impl Into<PathBuf>,
         grid: &PoseGrid,
         existing: Existing,
-    ) -> Result<Self, SweepFileError> {
+    ) -> Result<Self, ArchiveFileError> {
         let mut file = UnfinishedFile::new(&path.into(), existing)?;
         let mut shape = grid.counts().into_array();
         shape.reverse();
@@ -195,9 +196,9 @@ impl PoseFile {
     ///
     /// # Errors
     /// What went wrong first, with the file's name.
-    pub fn finish(self) -> Result<FinishedFile, SweepFileError> {
+    pub fn finish(self) -> Result<FinishedFile, ArchiveFileError> {
         match self.error {
-            Some(error) => Err(SweepFileError::new(self.file.path(), error)),
+            Some(error) => Err(ArchiveFileError::new(self.file.path(), error)),
             None => Ok(self.file.finish()?),
         }
     }

@@ -25,7 +25,7 @@ use crate::formats::{ArchiveError, archive};
 use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, Ranges, common_ranges, default_ranges};
 use crate::sensor::Sensor;
 use crate::source::Source;
-use crate::storage::{AtlasFile, Existing, FinishedFile, PoseFile, SweepFileError};
+use crate::storage::{ArchiveFileError, AtlasFile, Existing, FinishedFile, PoseFile};
 use crate::sweep::{Shard, Sweep, SweepResult};
 
 /// What a sweep or a merge is to write and print.
@@ -190,7 +190,7 @@ fn leave(
     };
     // Both files are complete; renaming them hardly ever fails.
     for file in atlas.into_iter().chain(poses) {
-        file.persist().map_err(SweepFileError::from)?;
+        file.persist().map_err(ArchiveFileError::from)?;
     }
     let summary = SweepSummary::new(result, start.elapsed());
     Ok(if wanted.json {

@@ -11,7 +11,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crate::pose::PoseGrid;
-use crate::storage::{AtlasFile, Existing, PoseFile, SweepFileError};
+use crate::storage::{ArchiveFileError, AtlasFile, Existing, PoseFile};
 use crate::sweep::{Sweep, SweepResult, TimingSample};
 use crate::tui::explore::export::is_poses;
 use crate::tui::explore::message::{Findings, SweepProgress, WorkerEvent};
@@ -244,7 +244,7 @@ fn write_poses(
     existing: Existing,
     stop: &AtomicBool,
     clock: Option<&ProgressReporter<'_>>,
-) -> Result<bool, SweepFileError> {
+) -> Result<bool, ArchiveFileError> {
     let mut file = PoseFile::new(name, &result.grid, existing)?;
     // A full disk ends the work, too, but is reported as an error.
     let full = AtomicBool::new(false);

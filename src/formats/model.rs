@@ -1,0 +1,226 @@
+//! A model of shapes as an archive of numpy arrays, which can be read back and merged.
+//!
+//! Per key, in order of height, width and taxels: `height` and `width` of its box, and `rows` (a word per row, bit `i` for
+//! column `i`; keys × rows of the highest, in the smallest unsigned type that holds the widest). Per shape and key that it
+//! leaves, key after key: `key` (its number), `shape` (its number in the header) and `count` (in how many poses). Before
+//! them `header`, JSON as bytes: format, shapes, sensor, anchor, ranges, shard, poses of each shape, and how many of them
+//! are cut off. Equal models are equal files.
+
+use std::io::{Read, Seek, Write};
+
+use serde::{Deserialize, Serialize};
+
+use crate::formats::archive::{ArchiveError, anchor, ranges};
+use crate::formats::npy::Dtype;
+use crate::formats::npz::{ArrayReader, ArrayWriter, HEADER, little_endian};
+use crate::formats::record::{Record, Values};
+use crate::imprint::Imprint;
+use crate::pose::Axis;
+use crate::quote::shortened;
+use crate::recognition::{Model, ModelParts, NamedShape, ShapeCount};
+use crate::sensor::Sensor;
+
+/// What the header must say first.
+pub const FORMAT: &str = "taxel-model/1";
+
+/// What was trained: written from sources and a sensor, read as the records that they are checked from.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ModelHeader<Shape, Size> {
+    format: String,
+    shapes: Vec<ShapeHeader<Shape>>,
+    sensor: Size,
+    anchor: String,
+    x0: String,
+    y0: String,
+    angle: String,
+    zoom_x: String,
+    zoom_y: String,
+    shard: String,
+    poses: u64,
+}
+
+/// A shape of the set.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ShapeHeader<Shape> {
+    name: String,
+    weight: u32,
+    cut: u64,
+    source: Shape,
+}
+
+/// Writes a model.
+///
+/// # Errors
+/// Those of the writer.
+pub fn write(model: &Model, output: impl Write + Seek) -> Result<(), ArchiveError> {
+    let mut archive = ArrayWriter::new(output);
+    let header = header(model)?;
+    archive.add(HEADER, Dtype::U8, &[header.len() as u64], &header)?;
+    let keys = model.keys();
+    let imprints = || (0..keys.len()).map(|key| keys.imprint(key));
+    let side = |of: fn(&Imprint) -> u8| {
+        let sides = imprints().map(move |imprint| imprint.as_ref().map_or(0, of));
+        sides.collect::<Vec<u8>>()
+    };
+    let (heights, widths) = (side(Imprint::rows), side(Imprint::columns));
+    let count = keys.len() as u64;
+    archive.add("height", Dtype::U8, &[count], &heights)?;
+    archive.add("width", Dtype::U8, &[count], &widths)?;
+    let highest = heights.iter().copied().max().unwrap_or_default();
+    let kind = row_type(widths.iter().copied().max().unwrap_or_default());
+    let mut rows = Vec::with_capacity(keys.len() * usize::from(highest) * kind.width());
+    for imprint in imprints() {
+        let words = imprint.as_ref().map_or(&[][..], Imprint::words);
+        let words = words.iter().chain(std::iter::repeat(&0));
+        for word in words.take(highest.into()) {
+            rows.extend_from_slice(&word.to_le_bytes()[..kind.width()]);
+        }
+    }
+    archive.add("rows", kind, &[count, highest.into()], &rows)?;
+    let entries =
+        || (0..keys.len()).flat_map(|key| model.counts(key).iter().map(move |c| (key, c)));
+    let numbers: Vec<u64> = entries().map(|(key, _)| key as u64).collect();
+    let length = [numbers.len() as u64];
+    archive.add("key", Dtype::U64, &length, &little_endian(&numbers))?;
+    let shapes: Vec<u8> = entries()
+        .flat_map(|(_, count)| count.shape.to_le_bytes())
+        .collect();
+    archive.add("shape", Dtype::U16, &length, &shapes)?;
+    let counts: Vec<u64> = entries().map(|(_, count)| count.poses).collect();
+    archive.add("count", Dtype::U64, &length, &little_endian(&counts))?;
+    archive.finish()
+}
+
+/// The smallest type for rows of that many columns.
+fn row_type(columns: u8) -> Dtype {
+    match columns {
+        0..=8 => Dtype::U8,
+        9..=16 => Dtype::U16,
+        17..=32 => Dtype::U32,
+        _ => Dtype::U64,
+    }
+}
+
+fn header(model: &Model) -> Result<Vec<u8>, ArchiveError> {
+    let ranges = model.ranges();
+    let shapes = model.shapes().iter().zip(model.cut());
+    serde_json::to_vec(&ModelHeader {
+        format: FORMAT.to_owned(),
+        shapes: shapes
+            .map(|(shape, &cut)| ShapeHeader {
+                name: shape.name.clone(),
+                weight: shape.weight,
+                cut,
+                source: &shape.source,
+            })
+            .collect(),
+        sensor: model.sensor(),
+        anchor: model.anchor().name().to_owned(),
+        x0: ranges[Axis::X0].to_string(),
+        y0: ranges[Axis::Y0].to_string(),
+        angle: ranges[Axis::Angle].to_string(),
+        zoom_x: ranges[Axis::ZoomX].to_string(),
+        zoom_y: ranges[Axis::ZoomY].to_string(),
+        shard: model.shard().to_string(),
+        poses: model.poses(),
+    })
+    .map_err(|error| ArchiveError::Io(error.into()))
+}
+
+/// Reads a model.
+///
+/// # Errors
+/// What is wrong with it; any bytes are taken.
+pub fn read(input: impl Read + Seek) -> Result<Model, ArchiveError> {
+    let mut archive = ArrayReader::new(input)?;
+    let header = archive.header()?;
+    let header: ModelHeader<Record<'_>, Values> = serde_json::from_slice(&header)
+        .map_err(|error| ArchiveError::Header(crate::formats::json::message(&error)))?;
+    if header.format != FORMAT {
+        return Err(ArchiveError::Format {
+            found: shortened(&header.format),
+            expected: FORMAT,
+        });
+    }
+    let sensor = header.sensor.sensor(Sensor::default())?;
+    let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
+    let mut shapes = Vec::with_capacity(header.shapes.len());
+    for shape in &header.shapes {
+        shape.source.no_sensor("shape")?;
+        let source = shape.source.source(&Sensor::LARGEST, &no_name)?;
+        shapes.push(NamedShape::new(shape.name.clone(), source).weighted(shape.weight));
+    }
+    let texts = [
+        &header.x0,
+        &header.y0,
+        &header.angle,
+        &header.zoom_x,
+        &header.zoom_y,
+    ];
+    let poses = (anchor(&header.anchor)?, ranges(texts.map(String::as_str))?);
+    let part = (header.shard.parse()?, header.poses);
+    let mut parts = ModelParts::new(shapes, sensor, poses, part);
+    parts.cut = header.shapes.iter().map(|shape| shape.cut).collect();
+    parts.keys = keys(&mut archive)?;
+    Ok(Model::from_parts(parts)?)
+}
+
+type Keys = Vec<(Option<Imprint>, Vec<ShapeCount>)>;
+
+/// The keys with their counts.
+fn keys<R: Read + Seek>(archive: &mut ArrayReader<R>) -> Result<Keys, ArchiveError> {
+    let heights = archive.bytes("height", Dtype::U8)?;
+    let widths = archive.bytes("width", Dtype::U8)?;
+    let highest = usize::from(heights.iter().copied().max().unwrap_or_default());
+    let kind = row_type(widths.iter().copied().max().unwrap_or_default());
+    let rows = archive.bytes("rows", kind)?;
+    let stride = highest * kind.width();
+    if heights.len() != widths.len() || rows.len() != heights.len() * stride {
+        return Err(ArchiveError::Array("rows"));
+    }
+    let mut keys: Keys = Vec::with_capacity(heights.len());
+    for (index, (&height, &width)) in heights.iter().zip(&widths).enumerate() {
+        let rows = &rows[index * stride..][..stride];
+        let imprint = imprint(rows, kind, (width, height)).ok_or(ArchiveError::Array("rows"))?;
+        keys.push((imprint, Vec::new()));
+    }
+    let (numbers, counts) = (archive.words("key")?, archive.words("count")?);
+    let shapes = archive.bytes("shape", Dtype::U16)?;
+    if numbers.len() != counts.len() || shapes.len() != 2 * counts.len() {
+        return Err(ArchiveError::Array("count"));
+    }
+    let shapes = shapes.chunks_exact(2);
+    for ((number, poses), shape) in numbers.into_iter().zip(counts).zip(shapes) {
+        let key = keys.get_mut(crate::index::index(number));
+        let (_, counts) = key.ok_or(ArchiveError::Array("key"))?;
+        counts.push(ShapeCount::new(
+            u16::from_le_bytes([shape[0], shape[1]]),
+            poses,
+        ));
+    }
+    Ok(keys)
+}
+
+/// The imprint of a key; inner None of the empty one, outer None of what is not cut to its box.
+fn imprint(rows: &[u8], kind: Dtype, (width, height): (u8, u8)) -> Option<Option<Imprint>> {
+    if (width, height) == (0, 0) {
+        return rows.iter().all(|&byte| byte == 0).then_some(None);
+    }
+    if width == 0 || height == 0 || width > 64 || height > 64 {
+        return None;
+    }
+    let mut imprint = Imprint::empty(width, height);
+    for (row, bytes) in rows.chunks_exact(kind.width()).enumerate() {
+        let mut word = [0; 8];
+        word[..kind.width()].copy_from_slice(bytes);
+        let word = u64::from_le_bytes(word);
+        if word & !imprint.mask() != 0 || row >= height.into() && word != 0 {
+            return None;
+        }
+        imprint.set_word(row, word);
+    }
+    let bounds = imprint.bounds()?;
+    (bounds.columns() == (0..width) && bounds.rows() == (0..height)).then_some(Some(imprint))
+}

@@ -1,0 +1,189 @@
+//! The shapes of a set: a JSON object each, or a line of words on the command line.
+//!
+//! ```text
+//! {"name":"disc","figure":"ellipse","radius_x":3.09,"radius_y":3.09}
+//! {"name":"washer","picture":"washer","weight":2}
+//! {"name":"corner","imprint":["##","#."]}
+//! disc=ellipse radius_x=3.09 radius_y=3.09
+//! washer=picture washer
+//! ```
+
+use std::borrow::Cow;
+use std::fmt;
+
+use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
+
+use crate::figure::FigureKind;
+use crate::formats::json::message;
+use crate::formats::record::{Record, RecordError, RowsOrName, Text, once};
+use crate::imprint::Imprint;
+use crate::parameter::{PARAMETERS, number};
+use crate::picture::Picture;
+use crate::pose::Axis;
+use crate::quote::shortened;
+use crate::recognition::NamedShape;
+use crate::sensor::Sensor;
+use crate::source::Source;
+
+/// Why an object or a text is not a shape with a name.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NamedShapeError {
+    /// Not JSON, or not an object with known keys.
+    #[error("column {column}: {message}")]
+    Json {
+        /// Where, counted from 1.
+        column: usize,
+        /// What is wrong.
+        message: String,
+    },
+    /// No name.
+    #[error("name: missing; every shape of a set needs one")]
+    Name,
+    /// A value that has no meaning.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// Words that are not a shape.
+    #[error("{found:?}: expected NAME=KIND KEY=NUMBER … or NAME=picture SHAPE")]
+    Words {
+        /// What was given.
+        found: String,
+    },
+    /// A word of a figure that is not a value.
+    #[error("{found:?}: expected KEY=NUMBER, such as radius_x=3")]
+    Word {
+        /// What was given.
+        found: String,
+    },
+}
+
+/// Finds the imprint of a stored shape.
+pub type ShapeLookup<'a> = dyn Fn(&str) -> Result<Imprint, String> + 'a;
+
+/// Reads a shape of a set from a JSON object. A position or an angle may be there and does not matter; a sensor may not.
+///
+/// # Errors
+/// What is wrong with it, in one sentence.
+///
+/// ```
+/// use taxel::formats::named_shape;
+/// let line = br#"{"name":"disc","figure":"ellipse","radius_x":3.09,"radius_y":3.09}"#;
+/// let disc = named_shape(line, &|name| Err(format!("no shape {name}"))).unwrap();
+/// assert_eq!((disc.name.as_str(), disc.weight), ("disc", 1));
+/// ```
+pub fn named_shape(line: &[u8], lookup: &ShapeLookup<'_>) -> Result<NamedShape, NamedShapeError> {
+    let line: Line<'_> = serde_json::from_slice(line).map_err(|error| NamedShapeError::Json {
+        column: error.column().max(1),
+        message: message(&error),
+    })?;
+    let name = line.name.ok_or(NamedShapeError::Name)?;
+    line.record.no_sensor("shape")?;
+    let source = source(line.record, lookup)?;
+    let weight = line.weight.unwrap_or(1);
+    Ok(NamedShape::new(name, source).weighted(weight))
+}
+
+/// Reads a shape of a set from words, `disc=ellipse radius_x=3 radius_y=3` or `ring=picture washer`.
+///
+/// # Errors
+/// What is wrong with it, in one sentence.
+///
+/// ```
+/// use taxel::formats::named_shape_of_words;
+/// let no_shapes = |name: &str| Err(format!("no shape {name}"));
+/// let disc = named_shape_of_words("disc=ellipse radius_x=3 radius_y=3", &no_shapes).unwrap();
+/// assert_eq!(disc.name, "disc");
+/// let error = named_shape_of_words("disc=ellipse radius_x", &no_shapes).unwrap_err();
+/// assert_eq!(error.to_string(), r#""radius_x": expected KEY=NUMBER, such as radius_x=3"#);
+/// ```
+pub fn named_shape_of_words(
+    text: &str,
+    lookup: &ShapeLookup<'_>,
+) -> Result<NamedShape, NamedShapeError> {
+    let error = || NamedShapeError::Words {
+        found: shortened(text),
+    };
+    let (name, rest) = text.split_once('=').ok_or_else(error)?;
+    let rest = rest.trim();
+    let (kind, values) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
+    if name.trim().is_empty() || kind.is_empty() {
+        return Err(error());
+    }
+    let mut record = Record::default();
+    if kind == "picture" {
+        record.picture = Some(RowsOrName::Name(Cow::Borrowed(values.trim())));
+    } else {
+        record.figure = Some(Cow::Borrowed(kind));
+        for word in values.split_whitespace() {
+            let error = || NamedShapeError::Word {
+                found: shortened(word),
+            };
+            let (key, value) = word.split_once('=').ok_or_else(error)?;
+            let row = PARAMETERS.iter().find(|row| row.key == key);
+            let value = number::read(value).ok_or_else(error)?;
+            record.values.set(row.ok_or_else(error)?.parameter, value);
+        }
+    }
+    Ok(NamedShape::new(name.trim(), source(record, lookup)?))
+}
+
+/// The shape of a record, at the origin where it says nothing of its position.
+fn source(mut record: Record<'_>, lookup: &ShapeLookup<'_>) -> Result<Source, RecordError> {
+    if let Record {
+        figure: None,
+        picture: None,
+        imprint: Some(rows),
+        values,
+        ..
+    } = &record
+    {
+        values.only("imprint", &[])?;
+        let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
+        return Ok(Picture::at_home(rows.imprint("imprint", &no_name)?).into());
+    }
+    let kind = record.figure.as_deref().and_then(FigureKind::from_name);
+    for axis in Axis::ALL {
+        if kind.is_some() && axis.is_zoom() || record.values.get(axis.parameter()).is_some() {
+            continue;
+        }
+        let neutral = if axis.is_zoom() { 1.0 } else { 0.0 };
+        record.values.set(axis.parameter(), neutral);
+    }
+    record.source(&Sensor::LARGEST, lookup)
+}
+
+/// A line with its name.
+#[derive(Default)]
+struct Line<'a> {
+    name: Option<String>,
+    weight: Option<u32>,
+    record: Record<'a>,
+}
+
+impl<'de: 'a, 'a> Deserialize<'de> for Line<'a> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct LineVisitor;
+        impl<'de> Visitor<'de> for LineVisitor {
+            type Value = Line<'de>;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("an object with a name and a figure, a picture or an imprint")
+            }
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+                let mut line = Line::default();
+                while let Some(Text(key)) = map.next_key()? {
+                    match key.as_ref() {
+                        "name" => once("name", &mut line.name, map.next_value()?)?,
+                        "weight" => once("weight", &mut line.weight, map.next_value()?)?,
+                        _ => line.record.take(
+                            &key,
+                            &mut map,
+                            "name, weight, figure, picture, imprint or a parameter",
+                        )?,
+                    }
+                }
+                Ok(line)
+            }
+        }
+        deserializer.deserialize_map(LineVisitor)
+    }
+}

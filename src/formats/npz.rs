@@ -1,0 +1,126 @@
+//! Archives of numpy arrays (`numpy.load`): a zip without compression and without dates, so that equal contents are equal
+//! files.
+
+use std::io::{Read, Seek, Write};
+
+use zip::result::ZipError;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
+
+use crate::formats::archive::ArchiveError;
+use crate::formats::npy;
+use crate::formats::npy::Dtype;
+
+/// The array that says what an archive holds: JSON as bytes.
+pub(crate) const HEADER: &str = "header";
+
+/// No header is larger: a shape of 64 × 64 taxels takes some thousand bytes.
+const MAX_HEADER: u64 = 1 << 26;
+
+/// No array of an archive may be larger; what is larger is not read.
+const MAX_BYTES: u64 = 1 << 34;
+
+/// Writes arrays one after the other.
+pub(crate) struct ArrayWriter<W: Write + Seek>(ZipWriter<W>);
+
+impl<W: Write + Seek> ArrayWriter<W> {
+    pub(crate) fn new(output: W) -> Self {
+        Self(ZipWriter::new(output))
+    }
+
+    /// Writes an array of that shape; its numbers are given as bytes, the last axis fastest.
+    pub(crate) fn add<const N: usize>(
+        &mut self,
+        name: &str,
+        kind: Dtype,
+        shape: &[u64; N],
+        numbers: &[u8],
+    ) -> Result<(), ArchiveError> {
+        let options = SimpleFileOptions::default()
+            .compression_method(CompressionMethod::Stored)
+            .last_modified_time(DateTime::default())
+            .large_file(numbers.len() >= 1 << 31);
+        self.0.start_file(format!("{name}.npy"), options)?;
+        self.0.write_all(&npy::header(kind, shape))?;
+        self.0.write_all(numbers)?;
+        Ok(())
+    }
+
+    /// Writes the directory of the archive.
+    pub(crate) fn finish(self) -> Result<(), ArchiveError> {
+        self.0.finish()?.flush()?;
+        Ok(())
+    }
+}
+
+/// Reads arrays by name.
+pub(crate) struct ArrayReader<R>(ZipArchive<R>);
+
+impl<R: Read + Seek> ArrayReader<R> {
+    pub(crate) fn new(input: R) -> Result<Self, ArchiveError> {
+        Ok(Self(ZipArchive::new(input)?))
+    }
+
+    /// Returns the file of an array.
+    fn file(&mut self, name: &'static str) -> Result<Vec<u8>, ArchiveError> {
+        let mut file = match self.0.by_name(&format!("{name}.npy")) {
+            Err(ZipError::FileNotFound) => return Err(ArchiveError::Array(name)),
+            file => file?,
+        };
+        let most = if name == HEADER {
+            MAX_HEADER
+        } else {
+            MAX_BYTES
+        };
+        if file.size() > most {
+            return Err(ArchiveError::Array(name));
+        }
+        let mut bytes = Vec::new();
+        // The size that the archive states may be wrong.
+        file.by_ref().take(most).read_to_end(&mut bytes)?;
+        Ok(bytes)
+    }
+
+    /// Returns the numbers of an array as bytes, little-endian.
+    pub(crate) fn bytes(
+        &mut self,
+        name: &'static str,
+        kind: Dtype,
+    ) -> Result<Vec<u8>, ArchiveError> {
+        let mut file = self.file(name)?;
+        let numbers = npy::content(&file, kind).ok_or(ArchiveError::Array(name))?;
+        let start = file.len() - numbers.len();
+        file.drain(..start);
+        Ok(file)
+    }
+
+    /// Returns an array of whole numbers.
+    pub(crate) fn words(&mut self, name: &'static str) -> Result<Vec<u64>, ArchiveError> {
+        npy::words(&self.file(name)?).ok_or(ArchiveError::Array(name))
+    }
+
+    /// Returns the JSON that says what the archive holds.
+    pub(crate) fn header(&mut self) -> Result<Vec<u8>, ArchiveError> {
+        self.bytes(HEADER, Dtype::U8)
+    }
+}
+
+/// Whole numbers as bytes.
+pub(crate) fn little_endian(words: &[u64]) -> Vec<u8> {
+    words.iter().flat_map(|word| word.to_le_bytes()).collect()
+}
+
+/// Returns the value of the key `format` in the header of an archive: what kind of file it is.
+///
+/// # Errors
+/// If it is not an archive with a header.
+pub fn format_of(input: impl Read + Seek) -> Result<String, ArchiveError> {
+    #[derive(serde::Deserialize)]
+    struct Format {
+        format: String,
+    }
+    let header = ArrayReader::new(input)?.header()?;
+    let format: Format = serde_json::from_slice(&header)
+        .map_err(|error| ArchiveError::Header(crate::formats::json::message(&error)))?;
+    Ok(format.format)
+}

@@ -1,0 +1,255 @@
+//! Models of shapes as files: the user's own, by name in a folder beside the library, and a cache of those that can be
+//! trained again.
+//!
+//! ```text
+//! taxel/library/washer.json      the library
+//! taxel/models/parts.npz         a model
+//! ```
+
+use std::fs::{self, File};
+use std::io::{BufReader, ErrorKind};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use xxhash_rust::xxh3::xxh3_128;
+
+use crate::formats::{Name, read_model, write_model};
+use crate::recognition::{Model, Training};
+use crate::storage::atomic_file::{Existing, UnfinishedFile};
+use crate::storage::first_error::FirstErrorWriter;
+use crate::storage::sweep_file::ArchiveFileError;
+
+/// The ending of a model's file.
+const ENDING: &str = "npz";
+
+/// No cached model takes more bytes.
+const MAX_CACHED: u64 = 64 << 20;
+
+/// Reads a model from a file.
+///
+/// # Errors
+/// What is wrong with it, with the file's name.
+pub fn load_model(path: &Path) -> Result<Model, ArchiveFileError> {
+    let file = File::open(path).map_err(|error| ArchiveFileError::new(path, error))?;
+    read_model(BufReader::new(file)).map_err(|error| ArchiveFileError::new(path, error))
+}
+
+/// Writes a model to a file: all of it or nothing; nothing either if `stopped` becomes true on the way.
+///
+/// # Errors
+/// Those of the system, with the file's name; if a file is there and is to be kept.
+pub fn save_model(
+    model: &Model,
+    path: &Path,
+    existing: Existing,
+    stopped: &AtomicBool,
+) -> Result<(), ArchiveFileError> {
+    let mut file = UnfinishedFile::new(path, existing)?;
+    let mut output = FirstErrorWriter::new(&mut file.output, stopped);
+    let written = write_model(model, &mut output);
+    let written = match output.error {
+        Some(error) => Err(error.into()),
+        None => written,
+    };
+    written.map_err(|error| ArchiveFileError::new(path, error))?;
+    Ok(file.finish()?.persist()?)
+}
+
+/// The folder of the user's models.
+#[derive(Clone, Debug)]
+pub struct ModelFolder(PathBuf);
+
+impl ModelFolder {
+    /// The folder `models` beside the folder of a library.
+    pub fn beside(library: &Path) -> Self {
+        Self(library.with_file_name("models"))
+    }
+
+    /// Returns its path; it may not exist yet.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// Returns the file of a model.
+    pub fn file(&self, name: &Name) -> PathBuf {
+        self.0.join(format!("{name}.{ENDING}"))
+    }
+
+    /// Returns the names of all models, sorted; files that do not look like models are left out.
+    ///
+    /// # Errors
+    /// Those of the system, but for a folder that does not exist.
+    pub fn names(&self) -> Result<Vec<Name>, ArchiveFileError> {
+        let refused = |error| ArchiveFileError::new(&self.0, error);
+        let entries = match fs::read_dir(&self.0) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+            entries => entries.map_err(refused)?,
+        };
+        let mut names = Vec::new();
+        for entry in entries {
+            let path = entry.map_err(refused)?.path();
+            let stem = path.file_stem().and_then(|stem| stem.to_str());
+            if path.extension().is_some_and(|ending| ending == ENDING)
+                && let Some(name) = stem.and_then(|stem| Name::new(stem).ok())
+            {
+                names.push(name);
+            }
+        }
+        names.sort_by(|one, other| one.as_str().cmp(other.as_str()));
+        Ok(names)
+    }
+
+    /// Writes a model under a name, and makes the folder for it.
+    ///
+    /// # Errors
+    /// Those of [`save_model`].
+    pub fn save(
+        &self,
+        model: &Model,
+        name: &Name,
+        existing: Existing,
+        stopped: &AtomicBool,
+    ) -> Result<PathBuf, ArchiveFileError> {
+        fs::create_dir_all(&self.0).map_err(|error| ArchiveFileError::new(&self.0, error))?;
+        let path = self.file(name);
+        save_model(model, &path, existing, stopped)?;
+        Ok(path)
+    }
+
+    /// Removes a model for good.
+    ///
+    /// # Errors
+    /// Those of the system, with the file's name.
+    pub fn delete(&self, name: &Name) -> Result<(), ArchiveFileError> {
+        let path = self.file(name);
+        fs::remove_file(&path).map_err(|error| ArchiveFileError::new(&path, error))
+    }
+}
+
+/// The folder of models that are made again when they are missing.
+///
+/// A file's name is a hash of what was trained, so another set or grid is another file. A damaged file, one of an older
+/// version or one of something else is not used.
+#[derive(Clone, Debug)]
+pub struct ModelCache(PathBuf);
+
+impl ModelCache {
+    /// The user's cache folder; None if the user has no home.
+    pub fn of_user() -> Option<Self> {
+        let own = directories::ProjectDirs::from("", "", "taxel")?;
+        Some(Self(own.cache_dir().join("models")))
+    }
+
+    /// A cache in any folder.
+    pub fn in_folder(folder: impl Into<PathBuf>) -> Self {
+        Self(folder.into())
+    }
+
+    /// Returns the file that holds the model of a training.
+    pub fn file(&self, training: &Training<'_>) -> PathBuf {
+        // All that the model depends on, and the version of the program, in a text that differs where these do.
+        let mut text = format!("{} {:?}", env!("CARGO_PKG_VERSION"), training);
+        for grid in training.grids() {
+            text.push_str(&format!("{grid:?}"));
+        }
+        self.0
+            .join(format!("{:032x}.{ENDING}", xxh3_128(text.as_bytes())))
+    }
+
+    /// Returns the model of a training if it is there and whole.
+    pub fn load(&self, training: &Training<'_>) -> Option<Model> {
+        let model = load_model(&self.file(training)).ok()?;
+        let same = training.grids().iter().zip(model.shapes());
+        let mut same = same.map(|(grid, shape)| {
+            grid.sensor() == model.sensor()
+                && grid.ranges() == model.ranges()
+                && grid.source().kind() == shape.source.kind()
+        });
+        (training.grids().len() == model.shapes().len() && same.all(|same| same)).then_some(model)
+    }
+
+    /// Keeps a model. A cache that cannot be written to is not an error: the model is trained again next time. One that
+    /// takes more than 64 MB is not kept.
+    pub fn keep(&self, path: &Path, model: &Model) {
+        let going = AtomicBool::new(false);
+        if fs::create_dir_all(&self.0).is_err()
+            || save_model(model, path, Existing::Replaced, &going).is_err()
+        {
+            return;
+        }
+        if fs::metadata(path).is_ok_and(|file| file.len() > MAX_CACHED) {
+            let _ = fs::remove_file(path);
+        }
+    }
+}
+
+/// A short text that differs between models with other contents: 32 hexadecimal digits.
+///
+/// # Errors
+/// Never in practice: a model is written to memory.
+pub fn model_hash(model: &Model) -> Result<String, ArchiveFileError> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    write_model(model, &mut bytes)
+        .map_err(|error| ArchiveFileError::new(Path::new("memory"), error))?;
+    Ok(format!("{:032x}", xxh3_128(bytes.get_ref())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::Figure;
+    use crate::pose::{Anchor, Axis, Ranges};
+    use crate::recognition::{Evaluation, NamedShape};
+    use crate::sensor::Sensor;
+
+    fn training(side: f64) -> Training<'static> {
+        let sensor = Sensor::default();
+        let square = Figure::rectangle(side, side).on(&sensor).expect("in range");
+        let disc = Figure::ellipse(2.0, 2.0).on(&sensor).expect("in range");
+        let shapes = [
+            NamedShape::new("square", square),
+            NamedShape::new("disc", disc).weighted(2),
+        ];
+        let ranges = Ranges::default().with(Axis::Angle, "0:80:10".parse().expect("a range"));
+        Training::new(shapes, sensor, Anchor::Centre, ranges).expect("a set")
+    }
+
+    #[test]
+    fn a_model_comes_back_from_its_file_as_it_was() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let models = ModelFolder::beside(&folder.path().join("library"));
+        assert_eq!(models.path(), folder.path().join("models"));
+        assert_eq!(models.names().expect("none").len(), 0);
+        let model = training(4.0).run().expect("not stopped");
+        let name = Name::new("set").expect("a name");
+        let going = AtomicBool::new(false);
+        let path = models.save(&model, &name, Existing::Kept, &going);
+        let path = path.expect("written");
+        assert!(models.save(&model, &name, Existing::Kept, &going).is_err());
+        let again = load_model(&path).expect("read");
+        assert_eq!(Evaluation::of(&again), Evaluation::of(&model));
+        assert_eq!(again.shapes(), model.shapes());
+        assert_eq!(model_hash(&again).ok(), model_hash(&model).ok());
+        assert_eq!(models.names().expect("one").len(), 1);
+        models.delete(&name).expect("it is there");
+        assert!(models.delete(&name).is_err());
+    }
+
+    #[test]
+    fn a_cache_gives_what_was_trained_and_nothing_else() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let cache = ModelCache::in_folder(folder.path().join("cache"));
+        assert!(cache.load(&training(4.0)).is_none());
+        let model = training(4.0).run().expect("not stopped");
+        let path = cache.file(&training(4.0));
+        cache.keep(&path, &model);
+        let cached = cache.load(&training(4.0)).expect("it is there");
+        assert_eq!(Evaluation::of(&cached), Evaluation::of(&model));
+        assert!(cache.load(&training(4.1)).is_none());
+        // A damaged one is trained again.
+        let mut bytes = fs::read(&path).expect("it is there");
+        bytes.truncate(bytes.len() / 2);
+        fs::write(&path, bytes).expect("written");
+        assert!(cache.load(&training(4.0)).is_none());
+    }
+}
