@@ -6,7 +6,7 @@
 //! `I` exceeds `1 − t`: again one rising and one falling passage. What remains is where the cell reaches the
 //! hole already and the outside still; there `O` rises from its value at the first touch of the hole and `I` to
 //! its value at the last touch of the outside, and as a rule the difference of the two stays above `t`. Whenever
-//! something of this does not hold the band is settled from nothing ([`crate::sweep::isolate`]).
+//! one of these conditions does not hold, the band is computed from scratch ([`crate::sweep::isolate`]).
 
 use crate::geometry::{Ellipse, Side};
 use crate::sensor::MAX_SIDE;
@@ -26,7 +26,7 @@ pub(crate) struct Elliptic {
 }
 
 impl Elliptic {
-    /// None where the ellipses are not one with at most one hole.
+    /// None unless it is one ellipse with at most one hole.
     pub(crate) fn new(ellipses: &[(Ellipse<f64>, Side)]) -> Option<Self> {
         let (outer, inner) = match ellipses {
             [(outer, Side::Inside)] => (outer, None),
@@ -59,10 +59,10 @@ impl Elliptic {
             inner.cut(top);
         }
         let Some(tracks) = self.tracks.get_mut(row) else {
-            return self.ring.settle_all(spans);
+            return self.ring.isolate_all(spans);
         };
         let Some(found) = follow(&self.ring, tracks) else {
-            self.ring.settle_all(spans);
+            self.ring.isolate_all(spans);
             return learn(spans, tracks);
         };
         spans.turn(found.from, Level::Above);
@@ -74,14 +74,14 @@ impl Elliptic {
     }
 }
 
-/// A span, and the gap in it.
+/// A span of activity, and the gap in it that the hole makes.
 struct Passages {
     from: f64,
     to: f64,
     hole: Option<(f64, f64)>,
 }
 
-/// What the passages of the rows before lead to; none where not all is certain.
+/// Follows the passages from those of the rows before; None if something is not certain.
 fn follow(ring: &Ring, tracks: &mut Tracks) -> Option<Passages> {
     let [from, to, hole, end] = tracks;
     let (outer, threshold) = (&ring.outer, ring.threshold);

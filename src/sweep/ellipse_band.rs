@@ -44,13 +44,13 @@ struct EllipseStretch {
     round: f64,
 }
 
-/// What there is at a place: the height of the section, the area on the left, and half of the ellipse's own section.
+/// The section at a place: its height, the area on the left of it, and half of the ellipse's own section.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Section {
     pub(crate) height: f64,
     area: f64,
     half: f64,
-    /// Which stretch it lies in; none outside of the ellipse.
+    /// The stretch that it lies in; None outside the ellipse.
     stretch: Option<usize>,
 }
 
@@ -88,7 +88,7 @@ impl EllipseBand {
         0.5 * (d * half + reach * reach * angle(d / reach, half / reach))
     }
 
-    /// Prepares the band from `top` to `top + 1`; false where the ellipse does not reach it.
+    /// Prepares the band from `top` to `top + 1`. Returns false if the ellipse does not reach it.
     pub(crate) fn cut(&mut self, top: f64) -> bool {
         let (top, bottom) = (top - self.y, top - self.y + 1.0);
         (self.top, self.count, self.total, self.highest) = (top, 0, 0.0, -1.0);
@@ -295,7 +295,7 @@ impl EllipseBand {
         self.highest
     }
 
-    /// Places between which the cell is full; none where no cell is.
+    /// The places between which a cell is full; None if no cell is.
     pub(crate) fn full(&self) -> Option<(f64, f64)> {
         let full =
             |stretch: &&EllipseStretch| stretch.round == 0.0 && stretch.right - stretch.left > 1.0;
@@ -305,7 +305,7 @@ impl EllipseBand {
 }
 
 impl EllipseStretch {
-    /// `W` but for its constant.
+    /// `W` without its constant.
     fn grown(&self, d: f64, round: f64) -> f64 {
         (self.linear + self.square * d) * d + self.round * round
     }

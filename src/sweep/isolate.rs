@@ -1,18 +1,18 @@
-//! Spans of an ellipse, solid or with one ellipse as its hole, from nothing: what need not be fast, but always right.
+//! The spans of an ellipse, solid or with an elliptic hole, without an earlier row to start from: slow, but always correct.
 //!
 //! **Method.** As for polygons the coverage at place `u` is `C(u) = W(u + 1) − W(u)`, with `W` the integral of the
 //! height `w` of the section inside the band. It is no polynomial, so its passages through the threshold are
 //! isolated first: on an interval the section of a convex set is concave in `x`, which bounds `w` there by its ends and
 //! its greatest value, and so bounds the slope of `C`. An interval on which the slope keeps its sign holds at most one
 //! passage; one on which `C` cannot reach the threshold holds none; any other is halved. Nothing is missed,
-//! whatever the wall.
+//! however thin the wall is.
 //!
 //! **Error.** Below 1e-11: closed forms of numbers below 10^4. Frame: the anchor at the origin; cell sides.
 
 use crate::sweep::ellipse_band::EllipseBand;
 use crate::sweep::span::{DOUBT, Level, NEAR, Spans};
 
-/// An interval that cannot be settled is not halved below this width: what lies in it is decided with more digits.
+/// Intervals are not halved below this width, in cells. What lies in a narrower one is decided with more digits.
 const NARROW: f64 = 1e-6;
 
 /// An ellipse and perhaps a hole, both cut to the band.
@@ -23,19 +23,19 @@ pub(crate) struct Ring {
     pub(crate) inner: Option<EllipseBand>,
 }
 
-/// A place and what the coverage has above the threshold there.
+/// A place, and the coverage there minus the threshold.
 type Mark = (f64, f64);
 
 impl Ring {
     /// Notes the levels of the whole band.
-    pub(crate) fn settle_all(&self, spans: &mut Spans) {
+    pub(crate) fn isolate_all(&self, spans: &mut Spans) {
         let (left, right) = self.outer.reach();
         let ends = ((left - 1.0, -self.threshold), (right, -self.threshold));
-        self.settle(ends.0, ends.1, spans);
+        self.isolate(ends.0, ends.1, spans);
         spans.turn(right, Level::Below);
     }
 
-    /// What the coverage at a place has above the threshold.
+    /// The coverage at a place, minus the threshold.
     fn excess(&self, u: f64) -> f64 {
         let covered = |oval: &EllipseBand| oval.coverage(&oval.at(u), &oval.at(u + 1.0));
         let outer = covered(&self.outer);
@@ -61,7 +61,7 @@ impl Ring {
     }
 
     /// Notes the levels between two places.
-    fn settle(&self, from: Mark, to: Mark, spans: &mut Spans) {
+    fn isolate(&self, from: Mark, to: Mark, spans: &mut Spans) {
         let (before, after) = (Level::of(from.1), Level::of(to.1));
         let (least, most) = self.slopes(from.0, to.0);
         let width = to.0 - from.0;
@@ -87,8 +87,8 @@ impl Ring {
         }
         let middle = from.0 + width / 2.0;
         let middle = (middle, self.excess(middle));
-        self.settle(from, middle, spans);
-        self.settle(middle, to, spans);
+        self.isolate(from, middle, spans);
+        self.isolate(middle, to, spans);
     }
 
     /// Notes the levels between two places where the slope keeps its sign.

@@ -1,19 +1,24 @@
 //! Every pose of a grid: runs of equal imprints, an atlas of the distinct ones, statistics of their descriptors.
 //!
-//! What the paper wanted and could only sample: "almost all possible imprints" of a shape. A sweep does not touch
-//! pose by pose; it finds where along a range of positions the imprint changes, and is identical to touching all
-//! the same. No I/O, no panics.
+//! The paper wanted "almost all possible imprints" of a shape and could only sample them. A sweep finds all of them. It does
+//! not touch pose by pose, but finds where along a range of positions the imprint changes; the result is identical to
+//! touching every pose. No I/O, no panics.
 //!
-//! **The way of a row** (all x0 at one y0 and one angle). For each row of the sensor, the places at which a taxel is
-//! active are spans along x: of shapes of straight edges, convex or not, so pictures too, in `polygon`; of ellipses in
-//! `ellipse`, with `settle` for what it is not sure of. From the spans follow the steps at which taxels turn over
-//! (`mark`, `events`), and so the runs of one imprint each (`runs`). What `f64` can't decide is decided with 32 digits
-//! (`exact`). Each imprint is counted once per run (`counter`) and described once per sweep (`atlas`).
+//! **The way of a row** (all x0 at one y0 and one angle):
+//! ```text
+//! polygon | ellipse   for each row of the sensor: the spans of x at which a taxel is active
+//!   isolate           the spans of an ellipse, slow but always right, if `ellipse` (which uses `track`) is not certain
+//! -> flips            the steps of x0 at which taxels become active or inactive
+//!   exact             decides with 32 digits where f64 cannot
+//! -> events -> runs   the runs of poses with the same imprint
+//! -> atlas            each imprint counted once per run, and described once per sweep
+//! ```
 //!
-//! **What is not gone through.** Angles at which the shape looks the same (`symmetry`); and, where a half turn of the
-//! plane maps the poses of one angle onto each other, one half of their rows (`half_turn`, `images`). Both by exact decimals.
+//! **What is skipped.** Of the angles at which the shape looks the same, all but one ([`crate::pose`]). And if a half turn
+//! of the plane maps the poses of an angle onto each other, half of their rows (`point_symmetry`, `reflected_rows`). Both are
+//! decided on exact decimals.
 //!
-//! Sums are whole numbers (`sums`), so no thread, shard or symmetry changes a digit of the statistics.
+//! Sums are whole numbers, so the statistics are the same to the last digit for any number of threads and shards.
 
 mod point_symmetry;
 

@@ -1,7 +1,7 @@
 //! How a grid is cut up: shards for several machines, and tasks for the threads of one.
 //!
-//! A shard is a piece of the list of rows, in their order. A task is a piece of one turn; turns whose figure looks the
-//! same share it (`symmetry`). Nothing of a result depends on how the tasks are cut.
+//! A shard is a piece of the list of rows, in their order. A task is a piece of one orientation (an angle and a pair of
+//! zooms); orientations at which the shape looks the same share it. The result does not depend on how tasks are cut.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -34,7 +34,7 @@ impl Shard {
     /// Piece `number` of `of`, counted from 1.
     ///
     /// # Errors
-    /// Where `number` is not from 1 to `of`.
+    /// If `number` is not from 1 to `of`.
     pub fn new(number: u32, of: u32) -> Result<Self, ShardError> {
         if (1..=of).contains(&number) {
             Ok(Self { number, of })
@@ -45,17 +45,17 @@ impl Shard {
         }
     }
 
-    /// Which one, from 1.
+    /// The number of the shard, from 1.
     pub fn number(&self) -> u32 {
         self.number
     }
 
-    /// Out of so many.
+    /// The number of shards.
     pub fn of(&self) -> u32 {
         self.of
     }
 
-    /// Its rows, out of so many.
+    /// The rows of this shard, of a grid with `rows` rows. The shards of a grid differ by one row at most.
     pub fn rows(&self, rows: u64) -> Range<u64> {
         let cut = |piece: u32| {
             // rows · piece / of, rounded down, without a product beyond 64 bits.
@@ -85,33 +85,33 @@ impl fmt::Display for Shard {
     }
 }
 
-/// A text that is no shard.
+/// The error for text that is not a shard.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("\"{text}\" is no shard, expected K/N with K from 1 to N")]
 #[non_exhaustive]
 pub struct ShardError {
-    /// What was given.
+    /// The text, shortened.
     pub text: String,
 }
 
-/// Some rows of a turn, and of all turns that look the same.
+/// Some rows of an orientation, and of all orientations with the same imprints.
 #[derive(Clone, Debug)]
 pub(crate) struct Task {
-    /// The turns, the first of which is gone through.
+    /// The orientations. The first of them is swept for all.
     pub(crate) turns: Arc<[u64]>,
-    /// Numbers of its values of y0.
+    /// The indices of the values of y0.
     pub(crate) rows: Range<u64>,
 }
 
-/// About so many poses make a task: enough to pay for its start, few enough to share out.
+/// The usual number of poses in a task: enough to outweigh its start, few enough to share the work among threads.
 const TASK_POSES: u64 = 20_000;
-/// And so many at most where rows are images of each other.
+/// The most poses in a task with rows that are images of each other. Both rows of a pair must be in the same task.
 const HALVED_TASK_POSES: u64 = 1_000_000;
-/// A piece of work is cut into at least so many tasks, where it has as many rows.
+/// A block is cut into at least this many tasks, if it has as many rows.
 const TASKS: u64 = 16;
 
-/// The tasks of one block of turns (all angles at one pair of zooms) inside of the rows of a shard, in the order in
-/// which they meet a new imprint first. Made one by one as they are asked for: a large grid has millions.
+/// The tasks of one block (all angles at one pair of zooms) within the rows of a shard, in the order in which they meet new
+/// imprints. They are made one at a time, because a large grid has millions.
 pub(crate) fn tasks(
     grid: &PoseGrid,
     shard: &Range<u64>,
@@ -177,7 +177,7 @@ fn pieces(grid: &PoseGrid, rows: Range<u64>) -> Vec<Piece> {
 /// How many rows make a task of a block with `count` pieces.
 fn task_rows(grid: &PoseGrid, count: u64) -> u64 {
     let (width, height) = (grid.row_length(), grid.rows_per_orientation());
-    // Only inside of one task can rows be images of each other.
+    // Rows can be images of each other only within a task.
     let halved = width * height <= HALVED_TASK_POSES && PointSymmetry::of(grid).is_some();
     let most = if halved {
         HALVED_TASK_POSES

@@ -1,9 +1,9 @@
 //! Poses that follow from others by a half turn of the plane.
 //!
-//! A half turn about a point whose coordinates are whole or half cells maps taxels onto taxels. A shape that looks the
-//! same after a half turn of its own is mapped onto itself, but for its place: its centre goes from `c` to `m − c`, with
-//! `m` any whole number. Where the ranges of x0 and y0 cover whole cells, and hold with every centre its image up to
-//! whole cells, each row of a turn is the image of another one, and only half of them need be gone through.
+//! A half turn about a point whose coordinates are whole or half cells maps taxels onto taxels. It maps a shape with point
+//! symmetry onto the same shape elsewhere: its centre goes from `c` to `m − c`, with `m` a whole number. If the ranges
+//! of x0 and y0 cover whole cells, and contain with every centre its image up to whole cells, then each row of an orientation
+//! is the image of another one, and only half of the rows need to be swept.
 //!
 //! **Exactly.** Positions are compared as decimals, so what is mapped is equal in real arithmetic, ties included. Twice
 //! the distance from anchor to centre must be a decimal for that: it is 0 with the anchor at the centre, and the sides
@@ -14,7 +14,7 @@ use crate::figure::FigureKind;
 use crate::pose::{Anchor, Axis, DecimalRange, PoseGrid, period};
 use crate::source::Source;
 
-/// How the poses of a turn are mapped onto each other.
+/// How the poses of an orientation are mapped onto each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PointSymmetry {
     pub(crate) x: IndexReflection,
@@ -22,8 +22,8 @@ pub(crate) struct PointSymmetry {
 }
 
 impl PointSymmetry {
-    /// None where the shape or the ranges are not mapped onto themselves. Whether the shape lies inside of the sensor is
-    /// for the caller to see.
+    /// None if the shape or the ranges are not mapped onto themselves. The caller must check that the shape lies inside
+    /// the sensor in every pose.
     pub(crate) fn of(grid: &PoseGrid) -> Option<Self> {
         if period(grid.source()).is_some_and(|period| 180 % period != 0) {
             return None;
@@ -36,7 +36,7 @@ impl PointSymmetry {
     }
 }
 
-/// Twice the way from the anchor to the centre, along x and y; none where it is no decimal. Cells.
+/// Twice the distance from the anchor to the centre along x and along y, in cells; None if it is not a decimal.
 fn twice_to_centre(grid: &PoseGrid) -> Option<[f64; 2]> {
     if grid.anchor() == Anchor::Centre {
         return Some([0.0; 2]);
@@ -69,8 +69,8 @@ fn twice_to_centre(grid: &PoseGrid) -> Option<[f64; 2]> {
     }
 }
 
-/// How the values of a range are mapped onto each other: value `i` to value `last − i`, or to `last − i + count` where
-/// that would be negative.
+/// How the values of a range are mapped onto each other: value `i` to value `last − i`, or to `last − i + count` if
+/// that would be negative, so that it wraps around.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct IndexReflection {
     pub(crate) count: u64,
@@ -109,7 +109,7 @@ impl IndexReflection {
         })
     }
 
-    /// The value that one is the image of, and whether it comes after `last`.
+    /// The value whose image this one is, and whether this one comes after `last`.
     pub(crate) fn image(&self, index: u64) -> (u64, bool) {
         if index <= self.last {
             (self.last - index, false)

@@ -4,8 +4,8 @@
 //! (positive where the material is on its right). The height `w(x)` of the shape's section inside the band is the sum
 //! of what the pieces left of `x` have climbed: piecewise linear, with a corner at each piece's ends. Its integral
 //! `W` is piecewise quadratic, and the coverage at place `u` is `C(u) = W(u + 1) − W(u)`, with slope
-//! `w(u + 1) − w(u)`. Two fingers go through the corners of `w`, one a cell ahead of the other; between two stops `C` is
-//! one quadratic, whose passages through the threshold are solved for.
+//! `w(u + 1) − w(u)`. Two pointers walk the corners of `w`, one cell apart. Between two stops `C` is one quadratic, which is
+//! solved for its crossings of the threshold.
 //!
 //! **Error.** `w` at a corner is a sum of shares of rises, each in [0, 1] of them, and `W` is summed up by
 //! trapezoids: nothing is extrapolated, so steep pieces do no harm. Below 1e-11.
@@ -205,7 +205,7 @@ impl Polygonal {
         let Some(first) = self.stretches.get(1) else {
             return;
         };
-        // The finger at u lies before everything, the one at u + 1 at the first corner. Each has a height and an area.
+        // The pointer at u starts left of everything, the one at u + 1 at the first corner. Each has a height and an area.
         let (mut near, mut far) = (0, 1);
         let (mut behind, mut ahead) = (&self.stretches[near], &self.stretches[far]);
         let (mut low, mut left) = (0.0, 0.0);
@@ -254,10 +254,10 @@ fn sort(list: &mut [f64]) {
     }
 }
 
-/// Notes the levels that a quadratic goes through between two places, each given with its value and slope there.
+/// Notes the levels that a quadratic takes between two places. Each is given with its value and slope.
 fn quadratic(from: (f64, f64, f64), to: (f64, f64, f64), spans: &mut Spans) {
     let ((start, first, slope), (end, last, final_slope)) = (from, to);
-    // Nearly all: on one side of the threshold all along, since nowhere steeper than one.
+    // The usual case: on one side of the threshold throughout, because the slope is at most 1.
     if first.abs().min(last.abs()) > end - start + DOUBT && first * last > 0.0 {
         return spans.turn(start, Level::of(first));
     }
@@ -271,7 +271,7 @@ fn quadratic(from: (f64, f64, f64), to: (f64, f64, f64), spans: &mut Spans) {
     }
 }
 
-/// The same, where the slope does not change its sign.
+/// The same for a quadratic whose slope does not change sign.
 fn monotone(from: (f64, f64, f64), to: (f64, f64, f64), spans: &mut Spans) {
     let ((start, first, slope), (end, last, final_slope)) = (from, to);
     let (before, after) = (Level::of(first), Level::of(last));
@@ -295,7 +295,7 @@ fn monotone(from: (f64, f64, f64), to: (f64, f64, f64), spans: &mut Spans) {
             return spans.turn(at, after);
         }
     }
-    // Through the doubt: in at one height, out at another.
+    // Through the doubtful levels: entered at one height, left at another.
     if before != Level::Doubtful {
         spans.turn(passage(-sense * DOUBT).0, Level::Doubtful);
     }

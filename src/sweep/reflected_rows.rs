@@ -1,14 +1,14 @@
-//! Rows that are images of rows gone through before ([`crate::sweep::point_symmetry`]): their runs, read backwards.
+//! Rows that are images of rows swept before ([`crate::sweep::point_symmetry`]): their runs, read backwards.
 //!
-//! The image of a row has the same runs in the opposite order, cut in two where the range of x0 comes round; the imprint
-//! of each is the half-turned one, moved by whole cells. What is counted, and in which order, is the same as if
-//! the row had been gone through itself.
+//! The image of a row has the same runs in reverse order, cut in two where the range of x0 wraps around. The imprint of each
+//! run is turned by 180° and shifted by whole cells. What is counted, and in which order, is the same as if the row had been
+//! swept itself.
 
 use crate::atlas::{ImprintCounter, Layout};
 use crate::index::{narrow, wide};
 use crate::sweep::point_symmetry::PointSymmetry;
 
-/// The runs of several rows: index in a counter, and length.
+/// The runs of several rows. A run is the index of its imprint in a counter, and its length.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Runs {
     list: Vec<(u32, u32)>,
@@ -17,7 +17,7 @@ pub(crate) struct Runs {
 }
 
 impl Runs {
-    /// The runs that follow are those of the next row.
+    /// Begins the next row.
     pub(crate) fn begin(&mut self) {
         self.starts.push(self.list.len());
     }
@@ -26,7 +26,7 @@ impl Runs {
         self.list.push((narrow(index), narrow(length)));
     }
 
-    /// Those of a row, counted from 0; none of a row that is not there.
+    /// The runs of a row, counted from 0; empty for a row that does not exist.
     pub(crate) fn row(&self, row: usize) -> &[(u32, u32)] {
         let start = self.starts.get(row).copied().unwrap_or(self.list.len());
         let end = self.starts.get(row + 1).copied();
@@ -39,10 +39,10 @@ impl Runs {
 pub(crate) struct ReflectedRows<'a> {
     layout: &'a Layout,
     half_turn: PointSymmetry,
-    /// By index in the counter: those of its images, by whether x0 comes round, and y0.
+    /// For each index in the counter: the indices of its images, by whether x0 and y0 wrap around.
     known: Vec<[Option<u32>; 4]>,
     key: Vec<u64>,
-    /// The runs of the row under way, which can't be added to those that it is made from before it is done.
+    /// The runs of the row being made. They are added when it is complete, because it is made from the others.
     row: Vec<(usize, u64)>,
 }
 
@@ -57,7 +57,7 @@ impl<'a> ReflectedRows<'a> {
         }
     }
 
-    /// The row that a value of y0 is the image of, and whether y0 comes round on the way.
+    /// The row whose image this one is, and whether y0 wraps around on the way.
     pub(crate) fn source(&self, y: u64) -> (u64, bool) {
         self.half_turn.y.image(y)
     }
@@ -94,7 +94,7 @@ impl<'a> ReflectedRows<'a> {
         }
     }
 
-    /// The index of an imprint's image, which is first seen at pose `first` unless it is known.
+    /// The index of an imprint's image. If it is new, pose `first` is its first one.
     fn image(
         &mut self,
         counter: &mut ImprintCounter,

@@ -11,7 +11,7 @@ use crate::sweep::ideal::Ideal;
 use crate::sweep::plan::{Shard, Task};
 use crate::sweep::runs;
 
-/// All that a sweep found.
+/// Everything that a sweep found.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -32,21 +32,21 @@ use crate::sweep::runs;
 pub struct SweepResult {
     /// The grid.
     pub grid: PoseGrid,
-    /// Which part of it was to be gone through; [`Shard::WHOLE`] after a merge of all.
+    /// The part of the grid that was to be swept; [`Shard::WHOLE`] after a merge.
     pub shard: Shard,
-    /// Poses gone through: fewer than there are where the sweep was stopped.
+    /// The number of poses swept. If the sweep was stopped, it is less than the number of poses of the shard.
     pub poses: u64,
     /// Poses that reach beyond the sensor.
     pub partly_off: u64,
     /// The distinct imprints.
     pub atlas: Atlas,
-    /// Of each feature of [`crate::atlas::features`].
+    /// The statistics of each feature, in the order of [`crate::atlas::features`].
     pub statistics: Vec<Statistic>,
     pub(crate) spread: VarianceParts,
 }
 
 impl SweepResult {
-    /// Whether nothing of the shard is missing.
+    /// Whether every pose of the shard was swept.
     pub fn complete(&self) -> bool {
         let rows = self.shard.rows(self.grid.rows());
         self.poses == (rows.end - rows.start) * self.grid.row_length()
@@ -74,10 +74,10 @@ impl SweepResult {
         }
     }
 
-    /// All shards of one grid as one result, the same as that of the whole grid.
+    /// Merges all shards of a grid into one result, the same as that of one sweep of the whole grid.
     ///
     /// # Errors
-    /// Where a shard is missing, there twice, incomplete, or of another grid.
+    /// If a shard is missing, given twice, incomplete, or of another grid.
     pub fn merge(results: impl IntoIterator<Item = Self>) -> Result<Self, MergeError> {
         let mut results: Vec<Self> = results.into_iter().collect();
         results.sort_by_key(|result| result.shard.number());
@@ -119,9 +119,11 @@ impl SweepResult {
         Ok(Self::new(grid, Shard::WHOLE, poses, atlas, &table, spread))
     }
 
-    /// The atlas numbers of the poses that lie at those x0 and y0, row after row, at the angle and the zooms of `turn`
-    /// (its own x0 and y0 do not matter). None of a pose whose imprint the atlas does not have, because the sweep was
-    /// stopped before. Empty where a range leaves the grid. It takes as long as sweeping these poses does.
+    /// The atlas numbers of the poses with these indices of x0 and y0, row after row, at the angle and the zooms of
+    /// `orientation` (its x0 and y0 do not matter).
+    ///
+    /// A number is None if the atlas does not have the imprint, because the sweep was stopped before. The result is empty if
+    /// a range leaves the grid. It takes as long as sweeping these poses.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -244,7 +246,7 @@ impl SweepResult {
 /// The numbers of a result.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Parts {
-    /// Poses gone through.
+    /// The number of poses swept.
     pub(crate) poses: u64,
     /// Poses that reach beyond the sensor.
     pub(crate) partly_off: u64,
@@ -254,46 +256,46 @@ pub(crate) struct Parts {
     pub(crate) counts: Vec<u64>,
     /// The number of the first pose of each.
     pub(crate) first_poses: Vec<u64>,
-    /// Sums about the turns; their meaning is a matter of this version of the program.
+    /// Sums about the orientations, in a form that may change between versions.
     pub(crate) spread: Vec<u64>,
 }
 
-/// Why numbers make no result.
+/// The error for numbers that are not those of a result.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct PartsError(&'static str);
 
-/// Why results cannot be put together.
+/// The error of a merge.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MergeError {
     /// There are none.
     #[error("no shards to merge")]
     Nothing,
-    /// Of another grid than the first one, or cut in another number of pieces.
+    /// A shard of another grid than the first one, or of another number of shards.
     #[error("shard {shard} is of another grid than the first one")]
     Foreign {
-        /// Which one.
+        /// The shard.
         shard: Shard,
     },
-    /// There twice, or after one that is missing.
+    /// A shard that is given twice, or follows on a missing one.
     #[error("shard {shard} comes out of turn: another one is missing or there twice")]
     Count {
-        /// Which one.
+        /// The shard.
         shard: Shard,
     },
-    /// Stopped early.
+    /// A shard whose sweep was stopped early.
     #[error("shard {shard} was stopped early, run it again")]
     Incomplete {
-        /// Which one.
+        /// The shard.
         shard: Shard,
     },
-    /// The last ones are not there.
+    /// The last shards are missing.
     #[error("shard {number}/{of} is missing")]
     Missing {
         /// The first of them.
         number: u32,
-        /// Out of so many.
+        /// The number of shards.
         of: u32,
     },
 }
@@ -368,7 +370,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_not_gone_through_has_no_number() {
+    fn what_was_not_swept_has_no_number() {
         let source = Source::Figure(Figure::default_of(
             FigureKind::Rectangle,
             &Sensor::default(),

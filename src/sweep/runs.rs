@@ -1,8 +1,8 @@
-//! The imprints of the rows of one turn, run by run instead of pose by pose.
+//! The imprints of the rows of one orientation, run by run instead of pose by pose.
 //!
 //! From the spans of a band ([`crate::sweep::span`]) [`crate::sweep::flips`] makes events; between two of them the imprint is the
-//! same: one *run*. Rows that are images of rows gone through before ([`crate::sweep::point_symmetry`]) are not gone through
-//! themselves.
+//! same: one *run*. Rows that are images of rows swept before ([`crate::sweep::point_symmetry`]) follow
+//! from those.
 
 use crate::atlas::{ImprintCounter, Layout};
 use crate::geometry::Extent;
@@ -20,23 +20,24 @@ use crate::sweep::reflected_rows::{ReflectedRows, Runs};
 use crate::sweep::span::Spans;
 use crate::touch::DOUBTFUL;
 
-/// What a task gave.
+/// The result of a task.
 #[derive(Debug)]
 pub(crate) struct Found {
-    /// Its imprints, counted once per pose of one of its turns.
+    /// Its imprints, counted once per pose of one of its orientations.
     pub(crate) counter: ImprintCounter,
-    /// Poses of one turn that reach beyond the sensor.
+    /// The number of poses of one orientation that reach beyond the sensor.
     pub(crate) partly_off: u64,
-    /// The runs of each row; only where asked for.
+    /// The runs of each row, if they are wanted.
     pub(crate) runs: Runs,
 }
 
-/// After about so many poses of a turn the progress is told, where the shape has few edges.
+/// The number of poses between two reports of progress, for a shape with few edges.
 const TOLD: u64 = 4_000;
-/// So many edges more take about as long again: a picture may have thousands, and be stopped all the same.
+/// This many more edges double the time per pose. A picture may have thousands, and must report as often.
 const EDGES: usize = 64;
 
-/// Goes through the rows of a task. `progress` is told of poses of one turn; where it answers `false` there is no result.
+/// Sweeps the rows of a task. `progress` receives the number of poses of one orientation done since the last call; if it
+/// returns `false`, the sweep stops and the result is None.
 pub(crate) fn go(
     grid: &PoseGrid,
     layout: &Layout,
@@ -57,7 +58,7 @@ pub(crate) fn go(
     let mut untold = 0;
     for y in task.rows.clone() {
         let first = (turn * height + y) * width;
-        // The row of this task that it is the image of.
+        // The row of this task whose image this one is.
         let known = images.as_mut().and_then(|images| {
             let (source, round) = images.source(y);
             let row = usize::try_from(source.checked_sub(task.rows.start)?).ok()?;
@@ -87,7 +88,7 @@ pub(crate) fn go(
     progress(untold).then_some(found)
 }
 
-/// Either kind of shape.
+/// A shape prepared for sweeping, by kind.
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "one per task")]
 enum Shape {
@@ -115,12 +116,12 @@ struct Sweeper<'a> {
     grid: &'a PoseGrid,
     turn: u64,
     shape: Shape,
-    /// How many poses may go by untold.
+    /// The number of poses between two reports of progress.
     told: u64,
-    /// Of the shape at the origin; none of one without a boundary.
+    /// The extent of the shape at the origin; None if it has no boundary.
     extent: Option<Extent>,
     steps: Steps,
-    /// How many x0 of a row put the shape partly beyond the left or the right side.
+    /// The number of values of x0 for which the shape reaches beyond the left or right side.
     beyond: u64,
     /// The values of y0, by number, that put it beyond neither the upper nor the lower side.
     rows_inside: std::ops::Range<u64>,
@@ -153,7 +154,7 @@ impl<'a> Sweeper<'a> {
             extent,
             steps: Steps {
                 first,
-                // Of a range of one value, anything will do.
+                // Any value will do for a range of one value.
                 per_cell: if count > 1 {
                     f64::from(count - 1) / (last - first)
                 } else {
@@ -167,7 +168,7 @@ impl<'a> Sweeper<'a> {
         }
     }
 
-    /// Whether the shape lies inside of the sensor in every pose of the turn, and does not even touch its rim.
+    /// Whether the shape lies inside the sensor in every pose of the orientation, without touching its rim.
     fn lies_inside(&self) -> bool {
         let Some(extent) = &self.extent else {
             return false;
@@ -186,7 +187,7 @@ impl<'a> Sweeper<'a> {
         !off
     }
 
-    /// How many poses of a row reach beyond the sensor.
+    /// The number of poses of a row that reach beyond the sensor.
     fn beyond(&self, y: u64) -> u64 {
         match &self.extent {
             Some(_) if !self.rows_inside.contains(&y) => self.grid.row_length(),

@@ -1,13 +1,13 @@
-//! A small part of a grid that tells by its time how long the whole will take.
+//! A small part of a grid: the time it takes gives an estimate for the whole grid.
 
 use std::collections::HashSet;
 
 use crate::pose::{Axis, PoseGrid, PoseIndex, period};
 
-/// About so many poses are enough to measure by.
+/// The number of poses that are enough to measure.
 const POSES: u64 = 20_000;
 
-/// A part of a grid, and how many times its work the whole is.
+/// A part of a grid, and the work of the whole grid as a multiple of the part's.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct TimingSample {
@@ -36,7 +36,7 @@ impl TimingSample {
     }
 }
 
-/// How many angles are gone through: of those that look the same, one.
+/// The number of angles that are swept: of those at which the shape looks the same, only one is.
 fn distinct_angles(grid: &PoseGrid) -> u64 {
     let angle = grid.ranges()[Axis::Angle];
     let Some(period) = period(grid.source()) else {

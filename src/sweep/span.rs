@@ -17,7 +17,7 @@ pub(crate) const NEAR: f64 = 1e-8;
 /// See [`NEAR`]; the factor of two leaves room for the curvature.
 pub(crate) const STEEP: f64 = 2.0 * DOUBT / NEAR;
 
-/// What is known of the coverage at some place.
+/// What is known about the coverage at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Level {
     /// Short of the threshold.
@@ -29,7 +29,7 @@ pub(crate) enum Level {
 }
 
 impl Level {
-    /// Of a coverage less the threshold.
+    /// The level of a coverage; `excess` is the coverage minus the threshold.
     pub(crate) fn of(excess: f64) -> Self {
         if excess > DOUBT {
             Self::Above
@@ -46,8 +46,8 @@ impl Level {
 pub(crate) struct Span {
     pub(crate) from: f64,
     pub(crate) to: f64,
-    /// Active inside, and not outside, but within [`NEAR`] of the ends, where nothing is known. Otherwise nothing is
-    /// known inside and within [`NEAR`] of it.
+    /// If true, the taxel is active inside and inactive outside, except within [`NEAR`] of the ends, where it may be
+    /// either. If false, it may be either inside, and within [`NEAR`] of it.
     pub(crate) sharp: bool,
 }
 
@@ -74,7 +74,7 @@ impl Spans {
                 return;
             }
             let doubtful = old == Level::Doubtful;
-            // A doubt on the way from one side to the other that is hardly wider than nothing is no doubt.
+            // A doubtful interval narrower than `NEAR` between Below and Above, or the reverse, is one crossing.
             let passing = doubtful
                 && at - from <= NEAR
                 && level != Level::Doubtful
@@ -119,7 +119,7 @@ impl Spans {
             span.sharp = false;
         }
         if let Some(last) = self.list.last() {
-            // A gap that hardly is one.
+            // A gap too narrow to be certain.
             if span.from > last.to && span.from - last.to <= 4.0 * NEAR {
                 let gap = Span {
                     from: last.to,

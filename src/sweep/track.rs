@@ -1,8 +1,8 @@
 //! The passages of an ellipse's coverage through a level, followed from one row of the grid to the next.
 //!
 //! The area of a convex set in a moving cell rises to a plateau and falls again: its root is concave where it is not
-//! 0 (Brunn and Minkowski). So the coverage passes a level at most twice, once on either side, and whoever holds one
-//! rising and one falling passage holds all. From one row to the next a passage moves smoothly: three former ones tell
+//! 0 (Brunn and Minkowski). So the coverage passes a level at most twice, once on either side, so one
+//! rising and one falling passage are all there are. From one row to the next a passage moves smoothly: three former ones tell
 //! where to look, and one step of Newton's method usually ends there.
 //!
 //! **Certainty.** At a place the excess over the level is `e` and the slope `m`; within `e/m` and a little the
@@ -20,7 +20,7 @@ pub(crate) struct Track {
 }
 
 impl Track {
-    /// Where it is to be expected next; none of a new one.
+    /// Where to expect it next, by extrapolation; None for a new one.
     fn expected(&self) -> Option<f64> {
         let [last, before, first] = self.places;
         match self.known {
@@ -40,7 +40,7 @@ impl Track {
         self.known = 0;
     }
 
-    /// The passage through a level in the present band, rising or falling; none where it cannot be told for certain.
+    /// The passage through a level in the present band, rising or falling; None if it is not certain.
     pub(crate) fn follow(&mut self, oval: &EllipseBand, level: f64, rising: bool) -> Option<f64> {
         let mut u = self.expected()?;
         for _ in 0..4 {
