@@ -14,7 +14,9 @@ use crate::tui::widget::write;
 /// The list of the keys of a place.
 #[derive(Clone, Debug)]
 pub struct Help {
+    /// The place whose keys are listed.
     context: Context,
+    /// The index of the first visible line.
     top: usize,
 }
 
@@ -111,6 +113,7 @@ impl Page for Help {
 /// The column where the meaning of the keys begins: to the right of the keys, or near the left edge, under them, on a
 /// narrow screen.
 fn indent(columns: usize) -> usize {
+    /// The column of the meaning where there is room beside the keys.
     const BESIDE: usize = 26;
     if columns >= BESIDE + 20 { BESIDE } else { 4 }
 }

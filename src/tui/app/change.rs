@@ -78,6 +78,7 @@ pub(in crate::tui) fn replace(app: &mut App, document: Document) {
     }
 }
 
+/// Says that there is nothing to move, and how to get something.
 fn refuse_to_move(app: &mut App) {
     let (figure, picture) = (app.key_of(&action::FIGURE), app.key_of(&action::PICTURE));
     refuse(
@@ -150,6 +151,7 @@ fn tidy(value: f64) -> f64 {
     (value * 1e6).round() / 1e6 + 0.0
 }
 
+/// Gives the source new values and touches the matrix anew. A value out of range is refused, and nothing changes.
 fn set(app: &mut App, source: Source, values: &[(Parameter, f64)]) {
     let sensor = app.history.present().sensor;
     let moved = values

@@ -153,6 +153,7 @@ impl Reading {
 /// A document with its reading: the only place where the screen keeps one.
 #[derive(Clone, Debug)]
 pub struct ReadDocument {
+    /// What was read.
     document: Document,
     reading: Reading,
 }
@@ -201,16 +202,22 @@ pub struct StoredName {
 /// A document and the number of its origin.
 #[derive(Clone, Debug, PartialEq)]
 struct Revision {
+    /// The state itself.
     document: Document,
+    /// The index of its origin in the list of the history.
     origin: usize,
 }
 
 /// A document with all its earlier and, after undoing, later states. Going back to one brings back its name too.
 #[derive(Clone, Debug)]
 pub struct History {
+    /// Earlier states, the oldest first.
     past: Vec<Revision>,
+    /// The state now.
     present: Revision,
+    /// States that were undone, the next one last.
     future: Vec<Revision>,
+    /// All origins; revisions refer to them by index.
     origins: Vec<DocumentOrigin>,
 }
 
@@ -306,6 +313,7 @@ impl History {
         self.past.pop_if(|past| *past == *present);
     }
 
+    /// Makes a state the present one and the former one the last of the past.
     fn replace(&mut self, state: Revision) {
         self.drop_empty_step();
         self.past.push(std::mem::replace(&mut self.present, state));

@@ -89,6 +89,7 @@ fn paint(app: &mut App, active: bool, from: (u8, u8), to: (u8, u8)) {
     settle(app);
 }
 
+/// The message of a turn of the wheel, None where there is nothing to scroll.
 fn scroll(app: &App, lines: i16) -> Option<Message> {
     let top = app.dialogs.last().map(Dialog::page);
     let scrolls = top.is_some_and(Page::scrolls);

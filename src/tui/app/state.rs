@@ -122,17 +122,25 @@ pub enum Notice {
 /// The state of the program.
 #[derive(Clone, Debug)]
 pub struct App {
+    /// The document and its earlier states.
     pub(in crate::tui) history: History,
     /// The document that the matrix shows, as it was read last.
     shown: ReadDocument,
+    /// The taxel under the cursor: column, row.
     pub(in crate::tui) cursor: (u8, u8),
     /// The region chosen with Tab; none: the main one.
     pub(in crate::tui) chosen: Option<usize>,
+    /// What the arrows do.
     pub(in crate::tui) mode: Mode,
+    /// How taxels are shown.
     pub(in crate::tui) display: Display,
+    /// What a narrow screen shows.
     pub(in crate::tui) page: NarrowPage,
+    /// How far a key moves or zooms the shape.
     pub(in crate::tui) step: NudgeStep,
+    /// The pages over the matrix; the last one is on top.
     pub(in crate::tui) dialogs: Vec<Dialog>,
+    /// What the line of notices says.
     pub(in crate::tui) notice: Option<Notice>,
     /// The shape that was removed last, until something else is done: undo brings it back.
     pub(in crate::tui) removed: Option<String>,
@@ -148,8 +156,11 @@ pub struct App {
     pub(in crate::tui) paint: Option<(bool, (u8, u8))>,
     /// Columns and rows of the screen.
     pub(in crate::tui) screen: (u16, u16),
+    /// Colours and characters.
     pub(in crate::tui) theme: Theme,
+    /// What each key does.
     pub(in crate::tui) keymap: Keymap,
+    /// Whether the program runs.
     pub(in crate::tui) run_state: RunState,
 }
 
@@ -256,6 +267,7 @@ impl App {
         }
     }
 
+    /// The document of the topmost form, or the present one.
     fn on_matrix(&self) -> &Document {
         let form = self.dialogs.iter().rev().find_map(|dialog| match dialog {
             Dialog::Form(form) => Some(form.shown()),

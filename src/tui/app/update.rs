@@ -16,6 +16,7 @@ pub fn update(app: &mut App, message: Message) -> Option<Effect> {
     effect
 }
 
+/// Handles a message, without reading the document anew.
 fn handle(app: &mut App, message: Message) -> Option<Effect> {
     match message {
         Message::Redraw => return Some(Effect::Terminal(TerminalEffect::Redraw)),
@@ -71,6 +72,7 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
     }
 }
 
+/// Handles a message in help, which stays open.
 fn in_help(app: &mut App, mut help: Help, message: &Message) -> Option<Effect> {
     if let Message::Scroll(lines) = message {
         let room = app
@@ -82,6 +84,7 @@ fn in_help(app: &mut App, mut help: Help, message: &Message) -> Option<Effect> {
     None
 }
 
+/// Handles the answer to a question. Without an answer the question stays.
 fn at_question(app: &mut App, question: Question, message: &Message) -> Option<Effect> {
     match (message, question.no) {
         (Message::Accept, _) => matrix::update::act(app, question.yes),

@@ -201,6 +201,7 @@ fn heading(theme: &Theme, results: &Results, list: &ImprintList) -> String {
     text
 }
 
+/// The text of a row, without the sign of the selected one.
 fn row_text(theme: &Theme, results: &Results, list: &ImprintList, entry: &AtlasEntry) -> String {
     let (id, poses) = (list.id, list.poses);
     let mut text = format!(

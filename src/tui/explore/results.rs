@@ -13,17 +13,23 @@ use crate::tui::widget::number::around;
 /// The results, as they are looked at.
 #[derive(Clone, Debug)]
 pub struct Results {
+    /// What was found. Workers that write it share it.
     findings: Arc<Findings>,
+    /// The page that is shown.
     page: ExplorePage,
     /// The number of the chosen descriptor, and its value of each imprint.
     feature: usize,
+    /// Its value for each imprint.
     values: Vec<Option<f64>>,
+    /// What rows are sorted by, and whether the largest comes first.
     sort: (SortKey, bool),
     /// The imprints' numbers, sorted.
     rows: Vec<u32>,
+    /// The index of the selected row.
     selected: usize,
     /// The first column of statistics that is shown.
     column: usize,
+    /// Where the cursor of the map is.
     place: PoseIndex,
 }
 

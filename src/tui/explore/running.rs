@@ -101,6 +101,7 @@ impl Page for Running {
     }
 }
 
+/// Draws title, gauge, speed and what stopping does, a line each.
 fn draw(theme: &Theme, running: &Running, buffer: &mut Buffer, area: Rect) {
     write::clear(buffer, area);
     let inner = write::right_of(area, area.x.saturating_add(2));

@@ -77,6 +77,7 @@ fn measure(form: &mut RangesForm) -> Option<Effect> {
     Some(Effect::Work(Work::Measure(Box::new(grid))))
 }
 
+/// Begins a sweep.
 fn start(app: &mut App, grid: PoseGrid) -> Effect {
     let number = begin(app, WorkKind::Sweep(Box::new(grid.clone())));
     Effect::Work(Work::Sweep(number, Box::new(grid)))

@@ -11,12 +11,16 @@ const LONGEST: usize = 24;
 /// A text field of one parameter.
 #[derive(Clone, Debug)]
 pub struct ParameterField {
+    /// The parameter that it sets.
     parameter: Parameter,
+    /// Whether it may be empty.
     optional: bool,
+    /// The text.
     input: TextField,
     /// What stood there at first, which is always taken: a shape that was moved or loaded may have more decimals
     /// than the form's own.
     initial: Option<f64>,
+    /// That value as text.
     initial_text: String,
 }
 
@@ -81,6 +85,8 @@ impl ParameterField {
         }
     }
 
+    /// Adds one unit of the last decimal, or subtracts it. An empty field starts with the default; a text that is no
+    /// number stays.
     fn step(&mut self, direction: i8, sensor: &Sensor) {
         let value = match self.value(sensor) {
             Ok(Some(value)) => sensor.step(self.parameter, value, i32::from(direction)),
@@ -98,8 +104,11 @@ impl ParameterField {
 /// Fields, one of which has the focus; or none, where something beside the form has it.
 #[derive(Clone, Debug)]
 pub struct ParameterForm {
+    /// The fields, from the top.
     fields: Vec<ParameterField>,
+    /// The index of the field that has the focus.
     focus: Option<usize>,
+    /// The sensor, which bounds the values.
     sensor: Sensor,
 }
 
@@ -156,6 +165,7 @@ impl ParameterForm {
         fields.find_map(|(index, field)| Some((index, field.value(&self.sensor).err()?)))
     }
 
+    /// The field that has the focus.
     fn focused(&mut self) -> Option<&mut ParameterField> {
         self.fields.get_mut(self.focus?)
     }

@@ -10,10 +10,13 @@ use crate::tui::widget::number::narrow;
 pub struct FormRows {
     /// The line of the kind, where there is one.
     pub kind: Option<u16>,
+    /// Lines above the fields.
     head: u16,
     /// Lines a field has: two where there is room for an error under it.
     pub spacing: u16,
+    /// The index of the first visible field.
     first: usize,
+    /// How many fields there is room for.
     visible: usize,
 }
 

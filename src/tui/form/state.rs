@@ -27,12 +27,15 @@ pub enum FormSubject {
 /// A form with what it would make of the matrix.
 #[derive(Clone, Debug)]
 pub struct FormDialog {
+    /// What the form is about.
     subject: FormSubject,
+    /// The fields of the subject.
     form: ParameterForm,
     /// Fields of other kinds of figure, kept as they were typed.
     hidden: Vec<ParameterField>,
     /// What is on the matrix without the form.
     before: Document,
+    /// Its imprint.
     before_imprint: Imprint,
     /// What the fields make of it, while all of them are right.
     shown: Document,
@@ -71,6 +74,7 @@ impl FormDialog {
         dialog
     }
 
+    /// A form that shows a document; no field has the focus.
     fn new(subject: FormSubject, before: &Document, shown: Document) -> Self {
         let form = ParameterForm::new(Vec::new(), before.sensor);
         let mut dialog = Self {
@@ -127,6 +131,7 @@ impl FormDialog {
         (lost > 0).then(|| format!("{taxels} will be cut"))
     }
 
+    /// The parameters of the subject, in the order of their fields.
     fn parameters(&self) -> Vec<Parameter> {
         match self.subject {
             FormSubject::Figure(kind) => kind.parameters().to_vec(),
@@ -158,6 +163,7 @@ impl FormDialog {
         self.form.set_focus(focus);
     }
 
+    /// A field with the value that the matrix shows now, or the default.
     fn new_field(&self, parameter: Parameter, sensor: &Sensor) -> ParameterField {
         let of_source = |source: &Source| source.get(parameter);
         let own = self.shown.source.as_ref().and_then(of_source);

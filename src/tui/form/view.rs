@@ -17,7 +17,9 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
+/// Columns of a label.
 const LABEL: usize = 10;
+/// Columns of the text of a field.
 const INPUT: usize = 9;
 
 /// A pane from this width on has room for the range beside the field.

@@ -61,7 +61,9 @@ macro_rules! contexts {
     };
 }
 
+/// The outer place of most places.
 const EVERYWHERE: Option<Context> = Some(Context::Everywhere);
+/// The outer place of the pages of Explore.
 const EXPLORE: Option<Context> = Some(Context::Explore);
 
 contexts! {

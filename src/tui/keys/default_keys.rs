@@ -17,9 +17,13 @@ use Key::{
     ShiftArrow, Tab,
 };
 
+/// The left arrow, as most rows have it.
 const LEFT: Key = Key::Arrow(Left);
+/// The right arrow.
 const RIGHT: Key = Key::Arrow(Right);
+/// The arrow up.
 const UP: Key = Key::Arrow(Up);
+/// The arrow down.
 const DOWN: Key = Key::Arrow(Down);
 
 /// Rows by place: `[key => ACTION, ...] hint help`. A macro, so that a row stays a line where the formatter would make

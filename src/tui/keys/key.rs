@@ -196,6 +196,7 @@ pub fn parse(text: &str) -> Result<Vec<Key>, KeyError> {
     Ok(keys)
 }
 
+/// The key of a name between angle brackets, without them.
 fn named(name: &str) -> Option<Key> {
     let ctrl = || {
         let letter = name

@@ -53,6 +53,7 @@ pub enum KeymapError {
 /// What each key does in each place.
 #[derive(Clone, Debug)]
 pub struct Keymap {
+    /// A row for each row of the default keys, in the same order.
     rows: Vec<Binding>,
 }
 

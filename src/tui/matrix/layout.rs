@@ -44,6 +44,7 @@ impl AxisWindow {
         (0..self.count).map(|index| (u16::from(index), self.first + index))
     }
 
+    /// The cell at a place counted from the first visible one.
     fn at(self, place: u16) -> Option<u8> {
         (place < u16::from(self.count)).then(|| self.first + taxels(place))
     }

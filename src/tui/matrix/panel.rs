@@ -12,6 +12,7 @@ use crate::tui::widget::write;
 
 /// Columns of the symbols and of the values.
 const SYMBOL: usize = 7;
+/// Columns of the values.
 const VALUE: usize = 17;
 
 /// Draws the panel. Where it has fewer lines than there are descriptors, they stand in several columns.

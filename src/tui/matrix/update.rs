@@ -194,11 +194,13 @@ fn copy(app: &mut App, what: Copied) -> Option<Effect> {
     Some(Effect::Terminal(TerminalEffect::Copy(text)))
 }
 
+/// Opens a form; a shape that is held is let go.
 fn open_form(app: &mut App, form: FormDialog) {
     app.mode = Mode::Draw;
     app.dialogs.push(Dialog::Form(Box::new(form)));
 }
 
+/// Opens the list of shapes, empty until the library answers.
 fn open_list(app: &mut App, purpose: Purpose) -> Effect {
     app.mode = Mode::Draw;
     app.dialogs
@@ -206,6 +208,7 @@ fn open_list(app: &mut App, purpose: Purpose) -> Effect {
     Effect::Library(LibraryRequest::List)
 }
 
+/// The first or the last index of a number of columns or rows.
 fn at_end(end: Endpoint, count: u8) -> u8 {
     match end {
         Endpoint::First => 0,
@@ -213,6 +216,7 @@ fn at_end(end: Endpoint, count: u8) -> u8 {
     }
 }
 
+/// Moves the cursor by one taxel; at the edge it stays.
 fn move_cursor(app: &mut App, arrow: Arrow) {
     let sensor = app.history.present().sensor;
     let (dx, dy) = arrow.step();

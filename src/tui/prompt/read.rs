@@ -125,6 +125,7 @@ fn unexpected(command: &PromptCommand, rest: &str) -> String {
     format!("{} takes {taken}{found}", command.name)
 }
 
+/// A valid name of a shape.
 fn name_of(text: &str) -> Result<Name, String> {
     Name::new(text).map_err(|error| error.to_string())
 }
@@ -151,6 +152,8 @@ fn numbers(pairs: &[&str], sensor: &Sensor) -> Result<Vec<(Parameter, f64)>, Str
     Ok(numbers)
 }
 
+/// `figure KIND --side 3 …`. Parameters that are not given have their defaults; one that the figure does not have is an
+/// error.
 fn figure(kind: &str, pairs: &[&str], app: &App) -> Result<Message, String> {
     let sensor = app.shown().sensor;
     let kind = FigureKind::from_name(kind).ok_or_else(|| {
@@ -182,6 +185,7 @@ fn figure(kind: &str, pairs: &[&str], app: &App) -> Result<Message, String> {
     ))))
 }
 
+/// `sensor --columns 32 …`. Parameters that are not given keep their values.
 fn sensor(pairs: &[&str], app: &App) -> Result<Message, String> {
     let document = app.shown();
     let values = numbers(pairs, &Sensor::LARGEST)?;

@@ -97,6 +97,7 @@ impl CommandDialog {
         }
     }
 
+    /// Shows an earlier line, or what was being typed.
     fn show(&mut self, recalled: Option<usize>, lines: &[String]) {
         self.recalled = recalled;
         self.candidates.clear();

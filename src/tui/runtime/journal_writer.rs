@@ -17,13 +17,19 @@ const GATHER: Duration = Duration::from_millis(400);
 /// The program's end of the channel to the thread.
 #[derive(Debug)]
 pub(in crate::tui) struct JournalWriter {
+    /// The requests. None for a writer that writes nothing, and while it is dropped.
     notes: Option<Sender<JournalRequest>>,
+    /// The thread, until it is joined.
     thread: Option<JoinHandle<()>>,
+    /// The work that was noted last.
     last: Option<StoredShape>,
 }
 
+/// A request to the thread.
 enum JournalRequest {
+    /// Keep this unsaved work.
     Keep(Box<StoredShape>),
+    /// There is no unsaved work any more.
     Clear,
     /// Write now; the answer is whether everything is written.
     Flush(Sender<bool>),
@@ -32,6 +38,7 @@ enum JournalRequest {
 }
 
 impl JournalWriter {
+    /// Starts a thread that writes to a journal.
     pub(in crate::tui) fn new(journal: Journal) -> Self {
         let (notes, inbox) = channel();
         let writer = JournalThread {
@@ -76,11 +83,13 @@ impl JournalWriter {
         }
     }
 
+    /// Keeps unsaved work, even if it was noted before.
     pub(in crate::tui) fn keep(&mut self, shape: StoredShape) {
         self.last = Some(shape.clone());
         self.send(JournalRequest::Keep(Box::new(shape)));
     }
 
+    /// Sends a request to the thread, if there is one.
     fn send(&self, note: JournalRequest) {
         if let Some(notes) = &self.notes {
             // The thread ends only after this end of the channel.
@@ -110,6 +119,7 @@ impl Drop for JournalWriter {
 
 /// Work that is not in the journal yet.
 enum Pending {
+    /// Everything is written.
     Nothing,
     /// Waiting for further changes since then.
     Since(Box<StoredShape>, Instant),
@@ -120,14 +130,18 @@ enum Pending {
 
 /// The thread's end: gathers changes for a moment, then writes the latest.
 struct JournalThread {
+    /// Where it writes to.
     journal: Journal,
+    /// What is still to be written.
     pending: Pending,
+    /// Where errors are reported.
     post: Option<EventSink>,
     /// Whether the present error has been reported: once is enough.
     reported: bool,
 }
 
 impl JournalThread {
+    /// Serves requests until the program drops its end of the channel.
     fn run(mut self, inbox: &Receiver<JournalRequest>) {
         loop {
             let note = match &self.pending {

@@ -17,14 +17,18 @@ use crate::tui::app::message::Message;
 /// The sending end; each worker has a clone.
 #[derive(Clone, Debug)]
 pub struct Sender {
+    /// The queue.
     messages: mpsc::Sender<Message>,
+    /// One byte in it wakes the loop.
     wakeup: Arc<UnixStream>,
 }
 
 /// The receiving end of the event loop.
 #[derive(Debug)]
 pub struct Mailbox {
+    /// The queue.
     messages: mpsc::Receiver<Message>,
+    /// Readable after a message was sent.
     wakeup: UnixStream,
 }
 

@@ -36,10 +36,13 @@ use crate::tui::runtime::effect::{Effect, LibraryRequest, TerminalEffect};
 /// The outside world: a library, unsaved work that crashed programs left in it, this program's journal, and workers.
 #[derive(Debug)]
 pub struct World {
+    /// The folder of stored shapes.
     library: Library,
     /// The unsaved work that is offered, and how many there are in all.
     orphan: Option<(Orphan, usize)>,
+    /// Where unsaved work is kept.
     journal: JournalWriter,
+    /// Sweeps and exports in progress.
     workers: Workers,
     /// The folder of a temporary library. The last field: it is dropped after the journal has been written.
     _scratch: Option<TempDir>,
@@ -126,6 +129,7 @@ impl World {
         Some(Message::Library(LibraryEvent::Found(self.left()?)))
     }
 
+    /// The offer of unsaved work, None if there is none.
     fn left(&self) -> Option<Leftover> {
         let (orphan, waiting) = self.orphan.as_ref()?;
         let taxels = counted(orphan.shape.imprint.count().into(), "taxel");
@@ -161,6 +165,7 @@ impl World {
         self.journal.flush();
     }
 
+    /// Performs a request to the library; the answer is a message.
     fn perform(&mut self, request: LibraryRequest) -> Message {
         let answer = match request {
             LibraryRequest::List => {
@@ -233,6 +238,7 @@ impl World {
     }
 }
 
+/// The event of a request that names a shape.
 fn done(result: Result<String, LibraryError>, answer: fn(String) -> LibraryEvent) -> LibraryEvent {
     result.map_or_else(|error| LibraryEvent::Failed(error.to_string()), answer)
 }

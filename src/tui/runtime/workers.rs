@@ -31,7 +31,9 @@ const MEASURED: Duration = Duration::from_millis(30);
 pub(in crate::tui) struct Workers {
     /// None: work is done at once.
     post: Option<EventSink>,
+    /// Tells the work in progress to stop.
     stop: Arc<AtomicBool>,
+    /// Tells an estimate in progress to go on; false makes it stop.
     measuring: Arc<AtomicBool>,
     /// The thread that writes a file.
     writing: Option<JoinHandle<()>>,
@@ -123,14 +125,20 @@ impl Drop for Workers {
 
 /// Counts poses of several threads and sends progress events.
 struct ProgressReporter<'a> {
+    /// The number of the work, which its events carry.
     number: u64,
+    /// Where events are sent.
     post: &'a EventSink,
+    /// When the work began.
     start: Instant,
+    /// Poses done.
     poses: AtomicU64,
+    /// When progress was sent last.
     last: Mutex<Instant>,
 }
 
 impl<'a> ProgressReporter<'a> {
+    /// Progress of work that begins now.
     fn new(number: u64, post: &'a EventSink) -> Self {
         let start = Instant::now();
         Self {
@@ -182,6 +190,7 @@ fn measure(grid: &PoseGrid, stop: &AtomicBool) -> Option<Duration> {
     Duration::try_from_secs_f64(best * sample.times).ok()
 }
 
+/// Sweeps a grid and sends what was found, also after a stop.
 fn sweep(
     number: u64,
     grid: &PoseGrid,
@@ -208,6 +217,7 @@ fn proceed(poses: u64, stop: &AtomicBool, clock: Option<&ProgressReporter<'_>>) 
     !stop.load(Ordering::Relaxed)
 }
 
+/// Writes the results to a file and sends whether that worked.
 fn write(
     number: u64,
     findings: &Findings,

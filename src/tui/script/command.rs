@@ -84,6 +84,7 @@ pub struct ScriptError {
     pub message: String,
 }
 
+/// How messages name a line of a script.
 fn line_name(line: usize) -> String {
     if line == 0 {
         "-k: ".to_owned()
@@ -229,6 +230,7 @@ pub(crate) fn size(text: &str) -> Result<(u16, u16), String> {
         })
 }
 
+/// `12,5`: column and row of the screen.
 fn place(text: &str) -> Result<ScreenPosition, String> {
     let numbers = text
         .split_once(',')

@@ -16,7 +16,9 @@ use crate::tui::widget::write;
 
 /// A character's field.
 const WIDTH: u32 = 9;
+/// Pixels of a line.
 const HEIGHT: u32 = 18;
+/// Size of the font in pixels.
 const FONT: u32 = 15;
 /// From the top of the field to the base line.
 const BASE: u32 = 14;
@@ -26,9 +28,13 @@ const MARGIN: u32 = 12;
 /// How a run of characters looks.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct TextStyle {
+    /// The colour of the text.
     ink: [u8; 3],
+    /// The colour behind it.
     paper: [u8; 3],
+    /// Whether it is bold.
     bold: bool,
+    /// Whether it is dim.
     dim: bool,
 }
 
@@ -82,6 +88,7 @@ pub(in crate::tui) fn svg(buffer: &Buffer, theme: Theme, title: &str) -> String 
 }
 
 impl TextStyle {
+    /// The style of a cell; reversed cells change their colours here.
     fn of(cell: &ratatui::buffer::Cell, ink: [u8; 3], paper: [u8; 3]) -> Self {
         let color = |color: Color, other: [u8; 3]| match color {
             Color::Rgb(red, green, blue) => [red, green, blue],
@@ -192,6 +199,7 @@ fn block(symbol: &str) -> Option<(u32, u32, u8)> {
     }
 }
 
+/// A filled rectangle.
 fn rectangle(
     svg: &mut String,
     (x, y): (u32, u32),
@@ -213,6 +221,7 @@ fn rectangle(
     );
 }
 
+/// A colour as `#rrggbb`.
 fn hex([red, green, blue]: [u8; 3]) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }

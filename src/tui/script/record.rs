@@ -61,6 +61,7 @@ impl Recorder {
         lines
     }
 
+    /// The command for what the mouse did. Presses and drags are held back until the button is released.
     fn mouse(&mut self, Mouse { kind, column, row }: Mouse) -> String {
         let here = (column, row);
         match kind {
@@ -82,6 +83,7 @@ impl Recorder {
         }
     }
 
+    /// The command for what was held back.
     fn let_go(&mut self) -> String {
         let way = std::mem::take(&mut self.held);
         let places: Vec<String> = way

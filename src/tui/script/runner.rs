@@ -282,6 +282,7 @@ fn expect(session: &Session, command: &ScriptCommand) -> Option<Result<(), Strin
     Some(failure.map_or(Ok(()), Err))
 }
 
+/// Shows the screen: as itself, then as text.
 fn show_screen(
     session: &Session,
     name: &str,
@@ -292,6 +293,7 @@ fn show_screen(
     printed(show(ScriptOutput::Text(&screen(session, name, settings))))
 }
 
+/// An error if the reader of the output wants no more.
 fn printed(flow: ControlFlow<()>) -> Result<(), ScriptFailure> {
     match flow {
         ControlFlow::Continue(()) => Ok(()),
@@ -299,10 +301,12 @@ fn printed(flow: ControlFlow<()>) -> Result<(), ScriptFailure> {
     }
 }
 
+/// The error of a line that cannot be carried out.
 fn wrong(line: usize, message: String) -> ScriptFailure {
     ScriptError { line, message }.into()
 }
 
+/// The failure of an expectation, with the screen as it was.
 fn fails(session: &Session, line: usize, message: String) -> ScriptFailure {
     let screen = session
         .screen()
@@ -316,10 +320,12 @@ fn fails(session: &Session, line: usize, message: String) -> ScriptFailure {
     }
 }
 
+/// Sends what the mouse did at a position.
 fn mouse(session: &mut Session, kind: MouseKind, (column, row): ScreenPosition) {
     session.send(Message::Mouse(Mouse { kind, column, row }));
 }
 
+/// Presses and releases the button at a position.
 fn click(session: &mut Session, place: ScreenPosition) {
     mouse(session, MouseKind::Press, place);
     mouse(session, MouseKind::Release, place);
@@ -343,6 +349,7 @@ fn character_at(line: &str, column: u16) -> usize {
     before.count() + column.saturating_sub(write::width(line))
 }
 
+/// A row of a screen; empty below the last one.
 fn line_of(grid: &str, row: u16) -> &str {
     grid.lines().nth(row.into()).unwrap_or("")
 }

@@ -28,8 +28,11 @@ use crate::tui::widget::write;
 /// A running program on a screen of its own.
 #[derive(Debug)]
 pub struct Session {
+    /// The state of the program.
     app: App,
+    /// Library, journal and workers.
     world: World,
+    /// A screen in memory.
     terminal: Terminal<TestBackend>,
 }
 
@@ -89,6 +92,7 @@ impl Session {
         self.send(Message::Resized(width, height));
     }
 
+    /// Draws the state onto the screen.
     fn draw(&mut self) {
         let Ok(_) = self.terminal.draw(|frame| view(&self.app, frame));
     }
@@ -125,6 +129,7 @@ impl Session {
         drawing::svg(self.terminal.backend().buffer(), *self.app.theme(), title)
     }
 
+    /// The rows of the screen, each cell shown by a function.
     fn rows(&self, show: impl Fn(&ratatui::buffer::Cell) -> String) -> String {
         let buffer = self.terminal.backend().buffer();
         let width = usize::from(buffer.area.width).max(1);

@@ -42,6 +42,7 @@ pub enum ScriptSetting {
     Leftover(Box<StoredShape>),
 }
 
+/// The words for on and off.
 const SWITCH: [(&str, bool); 2] = [("on", true), ("off", false)];
 
 /// What follows `Set`.
@@ -77,6 +78,7 @@ pub fn read(text: &str) -> Result<ScriptSetting, String> {
     }
 }
 
+/// One of several words, with what it stands for.
 fn chosen<T: Copy>(name: &str, value: &str, choices: &[(&str, T)]) -> Result<T, String> {
     let choice = choices.iter().find(|(choice, _)| *choice == value);
     choice.map(|(_, meaning)| *meaning).ok_or_else(|| {
@@ -89,11 +91,13 @@ fn chosen<T: Copy>(name: &str, value: &str, choices: &[(&str, T)]) -> Result<T, 
     })
 }
 
+/// A value of a parameter of the sensor.
 fn number(parameter: Parameter, value: &str) -> Result<ScriptSetting, ParameterError> {
     let value = Sensor::LARGEST.read(parameter, value)?;
     Ok(ScriptSetting::Sensor(parameter, value))
 }
 
+/// A stored shape as JSON.
 fn shape(name: &str, value: &str) -> Result<Box<StoredShape>, String> {
     StoredShape::read(value.as_bytes())
         .map(Box::new)
@@ -120,6 +124,7 @@ impl fmt::Display for ScriptSetting {
     }
 }
 
+/// The word for a value.
 fn name_of<T: Copy + PartialEq>(value: T, choices: &[(&'static str, T)]) -> &'static str {
     let choice = choices.iter().find(|(_, meaning)| *meaning == value);
     choice.map_or("", |(name, _)| name)

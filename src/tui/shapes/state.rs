@@ -13,12 +13,17 @@ const AHEAD: usize = 64;
 /// The list.
 #[derive(Clone, Debug)]
 pub struct ListDialog {
+    /// What a shape is chosen for.
     purpose: Purpose,
+    /// All shapes of the list.
     entries: Vec<LibraryEntry>,
+    /// What was typed.
     filter: TextField,
     /// The entries that the filter leaves, by their place in `entries`.
     matching: Vec<usize>,
+    /// The index of the selected row among them.
     selected: usize,
+    /// The content of shapes that were read, by index in `entries`.
     read: HashMap<usize, Result<LoadedShape, String>>,
 }
 
@@ -91,6 +96,7 @@ impl ListDialog {
         }
     }
 
+    /// Applies the filter; the best match is selected.
     fn sift(&mut self) {
         let wanted = folded(self.filter());
         // The name itself, names that begin with what was typed, names that have it somewhere.

@@ -206,6 +206,7 @@ fn choose(app: &mut App, list: ListDialog) -> Option<Effect> {
     None
 }
 
+/// Opens the form that places an imprint as a picture.
 fn open_picture(app: &mut App, imprint: &Imprint, name: String) {
     let picture = Picture::at_home(*imprint).named(&name);
     let form = FormDialog::picture(app.history.present(), picture, name);

@@ -118,6 +118,7 @@ fn draw(
     Position::new(end.min(area.right().saturating_sub(1)), area.y)
 }
 
+/// Draws a row: a sign, the name, the size, where the shape comes from.
 fn draw_row(
     theme: &Theme,
     entry: &LibraryEntry,
@@ -158,6 +159,7 @@ fn draw_row(
     write::line(buffer, row, theme, pieces);
 }
 
+/// Draws the preview: the name, a few facts, what made the shape, and its imprint.
 fn draw_preview(
     theme: &Theme,
     entry: &LibraryEntry,

@@ -20,7 +20,9 @@ const LARGEST: (u16, u16) = (1000, 500);
 /// Where bytes come from and go to.
 #[derive(Debug)]
 pub(in crate::tui) struct Device {
+    /// Where keys come from.
     input: OwnedFd,
+    /// Where the screen goes.
     output: OwnedFd,
 }
 
@@ -102,6 +104,7 @@ impl Device {
         self.write_waiting(bytes, wait)
     }
 
+    /// Writes bytes; waits while the terminal takes none, as long as `wait` allows.
     fn write_waiting(
         &self,
         bytes: &[u8],
@@ -144,6 +147,7 @@ impl Device {
     }
 }
 
+/// Opens the controlling terminal.
 fn controlling(access: OFlags) -> io::Result<OwnedFd> {
     let none = "there is no terminal here; 'taxel figure' and the other commands need none, \
                 'taxel script' drives the screen without one";

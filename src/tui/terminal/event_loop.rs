@@ -75,37 +75,53 @@ fn leave_on_panic() {
     }));
 }
 
+/// The loop between the terminal and the program.
 struct EventLoop<'a> {
-    /// Is told of all that comes in.
+    /// Called with each input, to record it.
     watch: &'a mut dyn FnMut(&Input),
+    /// The state of the program.
     app: App,
+    /// Library, journal and workers.
     world: World,
+    /// What the terminal can do.
     settings: TerminalSettings,
+    /// The terminal.
     device: Device,
+    /// Signals that arrived.
     signals: SignalReceiver,
+    /// Messages of the workers.
     mailbox: Mailbox,
+    /// Makes keys of bytes.
     reader: InputReader,
+    /// The screen.
     screen: Terminal<Screen>,
+    /// Whether the mouse is reported now.
     mouse: bool,
+    /// How the program ended, once it has.
     outcome: Option<Outcome>,
 }
 
-/// What there is to do.
+/// What the loop was woken for.
 #[derive(Default)]
 #[expect(
     clippy::struct_excessive_bools,
     reason = "any of them may be so at the same time"
 )]
 struct Ready {
+    /// There are bytes to read.
     input: bool,
     /// Nothing came in time.
     late: bool,
+    /// A signal arrived.
     signals: bool,
+    /// A worker sent a message.
     mail: bool,
+    /// The terminal is gone.
     gone: bool,
 }
 
 impl<'a> EventLoop<'a> {
+    /// Starts the program on a device that is set up.
     fn new(
         watch: &'a mut dyn FnMut(&Input),
         app: App,
@@ -134,6 +150,7 @@ impl<'a> EventLoop<'a> {
         }
     }
 
+    /// Runs until the program ends.
     fn run(&mut self) -> io::Result<Outcome> {
         session::enter(&self.device, &self.settings, self.mouse)?;
         self.tell_size();
@@ -189,6 +206,7 @@ impl<'a> EventLoop<'a> {
         })
     }
 
+    /// Handles the signals that arrived.
     fn on_signals(&mut self) -> io::Result<()> {
         for said in self.signals.received() {
             match said {
@@ -204,6 +222,7 @@ impl<'a> EventLoop<'a> {
         Ok(())
     }
 
+    /// Handles the messages that workers have sent.
     fn collect(&mut self) -> io::Result<()> {
         let mut messages = self.mailbox.collect().into_iter();
         messages.try_for_each(|message| self.update(message))
@@ -242,6 +261,7 @@ impl<'a> EventLoop<'a> {
         Ok(())
     }
 
+    /// Handles a message, then its effect on the terminal.
     fn update(&mut self, message: Message) -> io::Result<()> {
         match self.world.handle(&mut self.app, message) {
             None => {}
@@ -295,6 +315,7 @@ impl<'a> EventLoop<'a> {
         let Ok(()) = self.screen.clear();
     }
 
+    /// Asks the terminal for its size and tells the program if it has changed.
     fn measure(&mut self) {
         let size = size(&self.device, &self.settings);
         let screen = self.screen.backend_mut();
@@ -361,6 +382,7 @@ impl<'a> EventLoop<'a> {
     }
 }
 
+/// The size of the terminal.
 fn size(device: &Device, settings: &TerminalSettings) -> Size {
     let (width, height) = settings
         .size

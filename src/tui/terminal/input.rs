@@ -37,13 +37,17 @@ const LONGEST: usize = 64;
 /// Nor more pasted text than this; the rest is dropped.
 const LONGEST_PASTE: usize = 1 << 20;
 
+/// Begins a sequence, and is the byte of a key.
 const ESC: u8 = 0x1b;
+/// Ends an answer.
 const BEL: u8 = 0x07;
+/// Ends pasted text.
 const PASTE_END: &[u8] = b"\x1b[201~";
 
 /// Where the reader is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum InputState {
+    /// Between keys.
     Ground,
     /// After ESC.
     Escape,
@@ -66,8 +70,11 @@ enum InputState {
 /// Reads bytes as they come.
 #[derive(Debug)]
 pub struct InputReader {
+    /// Where in a sequence it is.
     state: InputState,
+    /// The bytes of the sequence so far.
     held: Vec<u8>,
+    /// What was read and is not taken yet.
     found: Vec<Input>,
 }
 
@@ -110,15 +117,18 @@ impl InputReader {
         std::mem::take(&mut self.found)
     }
 
+    /// Notes a key.
     fn key(&mut self, key: Key) {
         self.found.push(Input::Key(key));
     }
 
+    /// Forgets the sequence.
     fn ground(&mut self) {
         self.state = InputState::Ground;
         self.held.clear();
     }
 
+    /// Reads one byte.
     fn step(&mut self, byte: u8) {
         match self.state {
             InputState::Ground => self.plain(byte),
@@ -214,6 +224,7 @@ impl InputReader {
         }
     }
 
+    /// A byte between sequences.
     fn plain(&mut self, byte: u8) {
         match byte {
             ESC => self.state = InputState::Escape,
@@ -235,6 +246,7 @@ impl InputReader {
         }
     }
 
+    /// The byte after ESC. One that begins no sequence is a key of its own, after Esc.
     fn after_escape(&mut self, byte: u8) {
         self.ground();
         match byte {
@@ -295,6 +307,7 @@ impl InputReader {
         }
     }
 
+    /// A key that ends in a letter.
     fn letter(&mut self, letter: u8, shifted: bool) {
         let arrow = match letter {
             b'A' => Arrow::Up,
@@ -331,6 +344,7 @@ impl InputReader {
         }));
     }
 
+    /// A byte of pasted text.
     fn in_paste(&mut self, byte: u8) {
         self.held.push(byte);
         if self.held.ends_with(PASTE_END) {
@@ -342,6 +356,7 @@ impl InputReader {
         }
     }
 
+    /// Notes the first bytes of the pasted text, with line ends as `\n`.
     fn paste(&mut self, length: usize) {
         let text = String::from_utf8_lossy(&self.held[..length.min(LONGEST_PASTE)]);
         let text = text.replace("\r\n", "\n").replace('\r', "\n");

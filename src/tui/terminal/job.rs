@@ -38,8 +38,11 @@ pub(in crate::tui) fn stop() -> rustix::io::Result<()> {
 /// Of a process: its parent's number, its group's, and its controlling terminal's device number.
 #[derive(Debug, PartialEq)]
 struct Process {
+    /// The parent of the process.
     parent: u32,
+    /// The process group.
     group: u32,
+    /// The device number of its controlling terminal.
     terminal: i32,
 }
 

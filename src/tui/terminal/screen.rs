@@ -37,15 +37,21 @@ use crate::tui::terminal::style::{CellStyle, PLAIN};
 /// synchronized frame.
 const SMALL_FRAME: usize = 256;
 
+/// The terminal shows nothing until the end of the frame (mode 2026).
 const BEGIN_SYNCHRONIZED: &[u8] = b"\x1b[?2026h";
+/// The terminal shows the frame.
 const END_SYNCHRONIZED: &[u8] = b"\x1b[?2026l";
+/// Hides the cursor (mode 25).
 const HIDE_CURSOR: &[u8] = b"\x1b[?25l";
+/// Shows it.
 const SHOW_CURSOR: &[u8] = b"\x1b[?25h";
+/// Erases from the cursor to the end of the line.
 const ERASE_TO_END: &[u8] = b"\x1b[K";
 
 /// A terminal's screen behind ratatui, which finds out what has changed.
 #[derive(Debug)]
 pub struct Screen {
+    /// Columns and rows.
     size: Size,
     /// What the screen shows once no cell is stale.
     cells: Vec<Cell>,
@@ -54,6 +60,7 @@ pub struct Screen {
     /// The terminal's cursor; None if it is not certain. A column beyond the last one means the last one, after a character
     /// was written there.
     at: Option<Position>,
+    /// The style that is switched on.
     style: CellStyle,
     /// Whether the terminal shows its cursor.
     visible: bool,
@@ -61,7 +68,9 @@ pub struct Screen {
     wanted: Option<Position>,
     /// The position that ratatui set last and reads back.
     asked: Position,
+    /// What the terminal understands.
     abilities: Abilities,
+    /// The bytes of the frame so far.
     out: Vec<u8>,
 }
 
@@ -128,10 +137,12 @@ impl Screen {
         out
     }
 
+    /// The index of a cell.
     fn index(&self, x: u16, y: u16) -> usize {
         usize::from(y) * usize::from(self.size.width) + usize::from(x)
     }
 
+    /// The indices of the cells of a row.
     fn row(&self, y: u16) -> Range<usize> {
         self.index(0, y)..self.index(self.size.width, y)
     }
@@ -166,6 +177,7 @@ impl Screen {
         runs
     }
 
+    /// Writes changed cells that stand side by side.
     fn write_run(&mut self, run: &Run) {
         let row = self.row(run.y);
         let ink = self.cells[row.clone()]
@@ -205,6 +217,7 @@ impl Screen {
         }
     }
 
+    /// Erases with a sequence; erased cells are blank and have no style.
     fn erase(&mut self, how: &[u8]) {
         if !self.style.leaves_blanks_plain() {
             self.change_style(PLAIN);
@@ -212,6 +225,7 @@ impl Screen {
         self.out.extend(how);
     }
 
+    /// Switches to a style, if it is another one.
     fn change_style(&mut self, style: CellStyle) {
         if self.abilities.styles {
             style.change(self.style, &mut self.out);
@@ -376,7 +390,9 @@ impl Backend for Screen {
 /// A stretch of stale cells in a row.
 #[derive(Debug)]
 struct Run {
+    /// The row.
     y: u16,
+    /// The columns.
     columns: Range<u16>,
 }
 

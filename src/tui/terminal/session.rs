@@ -15,12 +15,15 @@ use crate::tui::terminal::settings::TerminalSettings;
 
 /// Buttons only, places as numbers. Crossterm's own command also has every motion reported, a flood on a slow line.
 const MOUSE_ON: &str = "\x1b[?1000h\x1b[?1006h";
+/// Ends the reports of the mouse.
 const MOUSE_OFF: &str = "\x1b[?1006l\x1b[?1000l";
 /// Shows what a frame that was cut off has held back.
 const SHOW_FRAME: &str = "\x1b[?2026l";
 /// Marks pasted text.
 const PASTE_ON: &str = "\x1b[?2004h";
+/// Ends the marks around pasted text.
 const PASTE_OFF: &str = "\x1b[?2004l";
+/// Ends all styles.
 const PLAIN: &str = "\x1b[m";
 /// Below whatever is on the screen: the first row that there is not is the last one.
 const BELOW: &str = "\x1b[999;1H\r\n";
@@ -28,16 +31,22 @@ const BELOW: &str = "\x1b[999;1H\r\n";
 /// What has to be put back.
 #[derive(Debug)]
 struct SavedTerminal {
+    /// The terminal.
     device: Device,
+    /// Its attributes before the program changed them.
     attributes: Termios,
+    /// What it can do.
     settings: TerminalSettings,
+    /// Whether the mouse was reported.
     mouse: bool,
     /// What is to be said on standard error when the terminal is the shell's again.
     later: String,
 }
 
+/// The terminal as it was found. Static, because the panic hook restores it, too.
 static SAVED: Mutex<Option<SavedTerminal>> = Mutex::new(None);
 
+/// The terminal as it was found; a panic while it was locked does not matter.
 fn found() -> MutexGuard<'static, Option<SavedTerminal>> {
     SAVED.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -122,6 +131,7 @@ pub(in crate::tui) fn tell_later(text: &str) -> bool {
     ours.is_some()
 }
 
+/// Prints to standard error; if that fails there is nobody left to tell.
 fn eprint(text: &str) {
     // Where standard error is gone, nobody is there to be told.
     let _ = io::stderr().write_all(text.as_bytes());
@@ -142,6 +152,7 @@ pub(in crate::tui) fn copied(text: &str) -> String {
 
 /// RFC 4648, section 4.
 fn base64(bytes: &[u8]) -> String {
+    /// The digits, by value.
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::new();
     for group in bytes.chunks(3) {
@@ -168,6 +179,7 @@ fn set(device: &Device, attributes: &Termios) -> io::Result<()> {
     }
 }
 
+/// Appends a command as the terminal reads it.
 fn push(text: &mut String, command: impl Command) {
     // A string takes everything.
     let _ = command.write_ansi(text);

@@ -21,6 +21,7 @@ pub enum TerminalKind {
 }
 
 impl TerminalKind {
+    /// The kind of terminal that the variable `TERM` names.
     fn of(term: &str) -> Self {
         let begins = |starts: &[&str]| starts.iter().any(|start| term.starts_with(start));
         match term {

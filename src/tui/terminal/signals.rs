@@ -25,6 +25,7 @@ pub(in crate::tui) enum SignalEvent {
 /// Listens from its making on.
 #[derive(Debug)]
 pub(in crate::tui) struct SignalReceiver {
+    /// Delivers signals through a socket, which the loop waits for.
     delivery: SignalDelivery<UnixStream, SignalOnly>,
 }
 

@@ -6,11 +6,15 @@ use ratatui::style::{Color, Modifier};
 /// How characters are written: colours and attributes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::tui) struct CellStyle {
+    /// The colour of the text.
     pub(in crate::tui) fore: Color,
+    /// The colour behind it.
     pub(in crate::tui) back: Color,
+    /// Bold, dim, underlined, reversed.
     pub(in crate::tui) attributes: Modifier,
 }
 
+/// No colours and no attributes.
 pub(in crate::tui) const PLAIN: CellStyle = CellStyle {
     fore: Color::Reset,
     back: Color::Reset,
@@ -30,6 +34,7 @@ const ATTRIBUTES: [(Modifier, u8, u8); 7] = [
 ];
 
 impl CellStyle {
+    /// The style of a cell.
     pub(in crate::tui) fn of(cell: &Cell) -> Self {
         Self {
             fore: cell.fg,
@@ -58,6 +63,7 @@ impl CellStyle {
         });
     }
 
+    /// The parameters that change one style into another, after a reset or without.
     fn steps(self, before: Self, reset: bool) -> Vec<String> {
         let mut steps = Vec::new();
         let mut held = before.attributes;
@@ -87,6 +93,7 @@ impl CellStyle {
     }
 }
 
+/// The sequence of some parameters.
 fn sgr(steps: &[String]) -> Vec<u8> {
     format!("\x1b[{}m", steps.join(";")).into_bytes()
 }

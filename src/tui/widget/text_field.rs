@@ -8,7 +8,9 @@ use crate::tui::keys::key::Arrow;
 /// A line of text with a cursor in it.
 #[derive(Clone, Debug)]
 pub struct TextField {
+    /// The text and the cursor.
     input: Input,
+    /// The most characters that can be typed.
     longest: usize,
     /// The field was just entered: what is typed replaces everything.
     fresh: bool,
@@ -65,6 +67,7 @@ impl TextField {
         taken
     }
 
+    /// Does what a message means in a line of text. Returns whether it means anything there.
     fn does(&mut self, message: &Message) -> bool {
         let request = match message {
             Message::Type(character) => {
@@ -97,6 +100,7 @@ impl TextField {
         }
     }
 
+    /// Performs a request of the crate below.
     fn edit(&mut self, request: InputRequest) {
         // What the library answers is only whether anything changed, which the view sees by itself.
         let _ = self.input.handle(request);

@@ -136,6 +136,7 @@ const DARK_TINTS: [Tone; 6] = [
     (Color::Magenta, 176, [215, 135, 215]),
     (Color::Red, 203, [255, 95, 95]),
 ];
+/// The same on a light background.
 const LIGHT_TINTS: [Tone; 6] = [
     (Color::Cyan, 31, [0, 135, 175]),
     (Color::Magenta, 130, [175, 95, 0]),
@@ -169,6 +170,7 @@ impl Theme {
         }
     }
 
+    /// A style with a colour, as far as the terminal has colours.
     fn coloured(self, style: Style, (named, index, [red, green, blue]): Tone) -> Style {
         match self.depth {
             ColorDepth::Never => style,

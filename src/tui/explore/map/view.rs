@@ -61,6 +61,7 @@ fn heading(results: &Results) -> String {
     parts.collect::<Vec<_>>().join("  ")
 }
 
+/// Draws the letters of the visible poses. Returns where the cursor is, None if there is no room for any cell.
 fn draw_cells(
     theme: &Theme,
     results: &Results,

@@ -10,9 +10,11 @@ use crate::tui::widget::number::narrow;
 pub struct RangeRows {
     /// Lines a row has: two where there is room for an error under it.
     pub spacing: u16,
+    /// The index of the first visible row.
     first: usize,
     /// How many rows are visible, the anchor among them.
     pub visible: usize,
+    /// How many rows there are, the anchor among them.
     rows: usize,
 }
 

@@ -24,7 +24,9 @@ const LONGEST: usize = 40;
 /// The text field of one range.
 #[derive(Clone, Debug)]
 pub struct RangeField {
+    /// The axis that it is a range of.
     axis: Axis,
+    /// The text.
     input: TextField,
 }
 
@@ -68,12 +70,17 @@ pub fn explored(document: &Document) -> Option<Source> {
 /// The form.
 #[derive(Clone, Debug)]
 pub struct RangesForm {
+    /// What is swept.
     source: Source,
+    /// The sensor, which bounds the values.
     sensor: Sensor,
+    /// What x0 and y0 place.
     anchor: Anchor,
+    /// A field for each axis of the source.
     fields: Vec<RangeField>,
     /// A field; none: the anchor, below the fields.
     focus: Option<usize>,
+    /// How many taxels were set by hand, which the sweep does not know.
     by_hand: u32,
     /// The grid that was asked about last, and how long it takes.
     measured: Option<(PoseGrid, Option<Duration>)>,
@@ -236,6 +243,7 @@ impl RangesForm {
         self.set_focus((next < count).then_some(next));
     }
 
+    /// The field that has the focus, None while the anchor has it.
     fn focused(&mut self) -> Option<&mut RangeField> {
         self.fields.get_mut(self.focus?)
     }

@@ -18,7 +18,9 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
+/// Columns of a label.
 const LABEL: usize = 8;
+/// Columns of the text of a field.
 const INPUT: usize = 14;
 
 /// A pane from this width on has room for what is allowed beside the field.
