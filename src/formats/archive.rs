@@ -10,16 +10,15 @@
 use std::io::{Read, Seek, Write};
 
 use serde::{Deserialize, Serialize};
-use zip::result::ZipError;
 
 use crate::atlas::{Atlas, ImprintSummary, feature_values, features};
 use crate::formats::npy::Dtype;
-use crate::formats::npz::{ArrayReader, ArrayWriter, HEADER, little_endian};
-use crate::formats::record::{Record, RecordError, Values};
-use crate::pose::{Anchor, Axis, GridError, PoseGrid, RangeError, Ranges};
+use crate::formats::npz::{ArchiveError, ArrayReader, ArrayWriter, HEADER, little_endian};
+use crate::formats::record::{Record, Values};
+use crate::pose::{Anchor, Axis, PoseGrid, Ranges};
 use crate::quote::shortened;
 use crate::sensor::Sensor;
-use crate::sweep::{Parts, PartsError, Shard, ShardError, SweepResult};
+use crate::sweep::{Parts, Shard, SweepResult};
 
 /// What the header must say first.
 pub const FORMAT: &str = "taxel-atlas/1";
@@ -187,49 +186,4 @@ pub(super) fn ranges(texts: [&str; 5]) -> Result<Ranges, ArchiveError> {
         ranges[axis] = text.parse()?;
     }
     Ok(ranges)
-}
-
-/// Why an archive cannot be written or read.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ArchiveError {
-    /// The system's word.
-    #[error(transparent)]
-    Io(#[from] std::io::Error),
-    /// No zip, or a broken one.
-    #[error("no archive of arrays: {0}")]
-    Zip(#[from] ZipError),
-    /// An array that is not what it should be.
-    #[error("array {0:?} is not as taxel writes it")]
-    Array(&'static str),
-    /// Another format, or a newer one.
-    #[error("format: {found:?} is not known here, expected {expected:?}")]
-    Format {
-        /// What it says it is.
-        found: String,
-        /// What can be read here.
-        expected: &'static str,
-    },
-    /// A header that is none.
-    #[error("header: {0}")]
-    Header(String),
-    /// A source or a sensor that is none.
-    #[error("header: {0}")]
-    Record(#[from] RecordError),
-    /// A range that is none.
-    #[error("header: {0}")]
-    Range(#[from] RangeError),
-    /// A shard that is none.
-    #[error("header: {0}")]
-    Shard(#[from] ShardError),
-    /// A grid that is none.
-    #[error("header: {0}")]
-    Grid(#[from] GridError),
-    /// Numbers that contradict each other.
-    #[error("{0}")]
-    Parts(#[from] PartsError),
-    /// Shapes or numbers that make no model.
-    #[cfg(feature = "recognition")]
-    #[error("{0}")]
-    Model(#[from] crate::recognition::ModelError),
 }

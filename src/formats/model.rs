@@ -10,9 +10,9 @@ use std::io::{Read, Seek, Write};
 
 use serde::{Deserialize, Serialize};
 
-use crate::formats::archive::{ArchiveError, anchor, ranges};
+use crate::formats::archive::{anchor, ranges};
 use crate::formats::npy::Dtype;
-use crate::formats::npz::{ArrayReader, ArrayWriter, HEADER, little_endian};
+use crate::formats::npz::{ArchiveError, ArrayReader, ArrayWriter, HEADER, little_endian};
 use crate::formats::record::{Record, Values};
 use crate::imprint::Imprint;
 use crate::pose::Axis;

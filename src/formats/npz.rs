@@ -7,9 +7,11 @@ use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
-use crate::formats::archive::ArchiveError;
 use crate::formats::npy;
 use crate::formats::npy::Dtype;
+use crate::formats::record::RecordError;
+use crate::pose::{GridError, RangeError};
+use crate::sweep::{PartsError, ShardError};
 
 /// The array that says what an archive holds: JSON as bytes.
 pub(crate) const HEADER: &str = "header";
@@ -123,4 +125,49 @@ pub fn format_of(input: impl Read + Seek) -> Result<String, ArchiveError> {
     let format: Format = serde_json::from_slice(&header)
         .map_err(|error| ArchiveError::Header(crate::formats::json::message(&error)))?;
     Ok(format.format)
+}
+
+/// Why an archive cannot be written or read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ArchiveError {
+    /// The system's word.
+    #[error(transparent)]
+    Io(#[from] std::io::Error),
+    /// No zip, or a broken one.
+    #[error("no archive of arrays: {0}")]
+    Zip(#[from] ZipError),
+    /// An array that is not what it should be.
+    #[error("array {0:?} is not as taxel writes it")]
+    Array(&'static str),
+    /// Another format, or a newer one.
+    #[error("format: {found:?} is not known here, expected {expected:?}")]
+    Format {
+        /// What it says it is.
+        found: String,
+        /// What can be read here.
+        expected: &'static str,
+    },
+    /// A header that is none.
+    #[error("header: {0}")]
+    Header(String),
+    /// A source or a sensor that is none.
+    #[error("header: {0}")]
+    Record(#[from] RecordError),
+    /// A range that is none.
+    #[error("header: {0}")]
+    Range(#[from] RangeError),
+    /// A shard that is none.
+    #[error("header: {0}")]
+    Shard(#[from] ShardError),
+    /// A grid that is none.
+    #[error("header: {0}")]
+    Grid(#[from] GridError),
+    /// Numbers that contradict each other.
+    #[error("{0}")]
+    Parts(#[from] PartsError),
+    /// Shapes or numbers that make no model.
+    #[cfg(feature = "recognition")]
+    #[error("{0}")]
+    Model(#[from] crate::recognition::ModelError),
 }
