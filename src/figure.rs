@@ -149,8 +149,8 @@ impl FigureBuilder {
         })
     }
 
-    /// Gives the figure a wall of this thickness around one concentric hole; cell sides. It stays solid where there is no
-    /// room for a hole.
+    /// Gives the figure a wall of this thickness around one concentric hole; cell sides. It stays solid where there is
+    /// no room for a hole.
     pub fn thickness(self, wall: f64) -> Self {
         Self(Figure {
             thickness: Some(wall),

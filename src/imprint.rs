@@ -48,7 +48,7 @@ impl Imprint {
         &self.words[..usize::from(self.rows)]
     }
 
-    /// The same, to be changed; whoever does so leaves bits beyond the last column at 0.
+    /// The rows, to be changed. The caller must leave the bits beyond the last column at 0.
     pub(crate) fn words_mut(&mut self) -> &mut [u64] {
         &mut self.words[..usize::from(self.rows)]
     }
@@ -75,7 +75,7 @@ impl Imprint {
         u64::MAX >> (MAX_SIDE - self.columns)
     }
 
-    /// Whether a taxel is active; none beyond the matrix is.
+    /// Whether a taxel is active; false beyond the matrix.
     pub fn get(&self, column: u8, row: u8) -> bool {
         column < self.columns && row < self.rows && self.words[usize::from(row)] >> column & 1 == 1
     }
@@ -88,7 +88,7 @@ impl Imprint {
         }
     }
 
-    /// Turns a taxel over.
+    /// Toggles a taxel; does nothing beyond the matrix.
     pub fn toggle(&mut self, column: u8, row: u8) {
         self.set(column, row, !self.get(column, row));
     }
@@ -103,7 +103,7 @@ impl Imprint {
         self.words().iter().all(|&word| word == 0)
     }
 
-    /// The smallest rectangle of whole taxels around the active ones; none of an empty imprint.
+    /// The smallest rectangle of whole taxels around the active ones; None for an empty imprint.
     pub fn bounds(&self) -> Option<Bounds> {
         let (mut across, mut down) = (0, 0_u64);
         for (row, &word) in self.words().iter().enumerate() {
@@ -223,7 +223,7 @@ impl Imprint {
     /// The imprint in rows of `#` and `.`, at most 64 × 64, all of one length.
     ///
     /// # Errors
-    /// Where a row is of another length than the first, a character is another one, or a side is not 1 to 64.
+    /// If a row differs in length from the first, there is another character, or a side is not 1 to 64.
     pub fn from_rows<'a>(rows: impl IntoIterator<Item = &'a str>) -> Result<Self, ImprintError> {
         let mut imprint: Option<Self> = None;
         let mut count = 0;
@@ -275,7 +275,7 @@ impl std::str::FromStr for Imprint {
     }
 }
 
-/// Why rows of text are no imprint. Rows and columns count from 1.
+/// The error for rows of text that are not an imprint. Rows and columns count from 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ImprintError {

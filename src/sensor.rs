@@ -68,8 +68,8 @@ impl Sensor {
             .with(Parameter::Rows, rows.into())
     }
 
-    /// Creates a sensor of `columns × rows` taxels, like [`Self::new`]; a number outside of 1 to [`MAX_SIDE`] becomes the
-    /// nearest in it. So every imprint is the whole matrix of some sensor.
+    /// Creates a sensor of `columns × rows` taxels, like [`Self::new`]; a number outside of 1 to [`MAX_SIDE`] becomes
+    /// the nearest in it. So every imprint is the whole matrix of some sensor.
     pub fn clamped(columns: u8, rows: u8) -> Self {
         Self {
             columns: columns.clamp(1, MAX_SIDE),
@@ -154,7 +154,8 @@ impl Sensor {
         parameter.row().form_range(self.side())
     }
 
-    /// Returns the value in a new form: the parameter's default, or the larger side of a sensor that is too small for it.
+    /// Returns the value in a new form: the parameter's default, or the larger side of a sensor that is too small for
+    /// it.
     pub fn default_value(&self, parameter: Parameter) -> f64 {
         let default = parameter.row().default;
         if self.range(parameter).contains(default) {
@@ -232,8 +233,8 @@ impl Sensor {
         // From ten up the steps are tenths, from ten down hundredths.
         let towards = if direction < 0 { value - 0.01 } else { value };
         let scale = 10_f64.powi(parameter.decimals_at(towards).into());
-        // A number with more decimals lies between two that a form accepts; one that it accepts may be off by a rounding
-        // when it is counted in its last decimals.
+        // A number with more decimals lies between two that a form accepts; one that it accepts may be off by a
+        // rounding when it is counted in its last decimals.
         let places = value * scale;
         let stepped = match direction {
             1.. => (places + 1e-6).floor() + 1.0,

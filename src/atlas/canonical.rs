@@ -1,8 +1,8 @@
 //! Imprints that differ by a shift, a quarter turn or a mirror image only, brought to one form.
 //!
-//! A matrix is moved to the top left corner first. Of the eight images of a rectangle's symmetries those that are not
-//! higher than wide are kept, which are four unless it is a square; the one whose rows come first in order stands
-//! for all. Rows are compared as whole numbers, from the top.
+//! First the active taxels are moved to the top left corner. Of the eight images under quarter turns and mirrors only
+//! those that are not higher than wide are considered: four, or eight if the bounds are a square. The one whose rows
+//! come first in order is the canonical form. Rows are compared as whole numbers, from the top.
 
 use crate::atlas::counter::ImprintCounter;
 use crate::atlas::packing::Layout;
@@ -40,7 +40,7 @@ impl Classes {
         }
     }
 
-    /// Number of imprints seen up to shifts, and up to shifts, quarter turns and mirror images.
+    /// The number of imprints added, up to shifts, and up to shifts, quarter turns and mirror images.
     pub(crate) fn counts(&self) -> (usize, usize) {
         (self.shifts.len(), self.symmetry.len())
     }

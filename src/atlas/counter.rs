@@ -1,11 +1,11 @@
-//! Keys counted: each distinct one once, in order of first occurrence, with how often and where it came first.
+//! Counts keys: keeps each distinct key once, in order of first occurrence, with its count and its first pose.
 //!
 //! An open hash table of indices beside the keys themselves. A slot holds the upper half of a hash and an index, so
-//! nearly all comparisons end there; a key counts as found only where all of its words agree.
+//! nearly all comparisons end there; a key is found only if all of its words are equal.
 
 use crate::index::index;
 
-/// How often a key occurred, and the number of the pose where it did so first.
+/// How often a key occurred, and the number of the first pose with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Tally {
     pub(crate) count: u64,
@@ -55,7 +55,7 @@ impl ImprintCounter {
         &self.tallies
     }
 
-    /// Counts a key `count` times more, first seen at pose `first` unless it is known. Its index, from 0.
+    /// Adds `count` to the count of a key, and returns its index, from 0. If the key is new, `first` is its first pose.
     #[inline]
     pub(crate) fn add(&mut self, key: &[u64], hash: u64, count: u64, first: u64) -> usize {
         let mask = self.slots.len() - 1;
@@ -76,12 +76,12 @@ impl ImprintCounter {
         }
     }
 
-    /// Counts a known key more.
+    /// Adds to the count of a known key.
     pub(crate) fn count(&mut self, index: usize, count: u64) {
         self.tallies[index].count += count;
     }
 
-    /// The index of a key.
+    /// The index of a key; None if it was never added.
     pub(crate) fn find(&self, key: &[u64], hash: u64) -> Option<usize> {
         let mask = self.slots.len() - 1;
         let mut slot = index(hash & mask as u64);

@@ -17,17 +17,17 @@ pub struct Atlas {
     summaries: Vec<ImprintSummary>,
 }
 
-/// A row of an atlas.
+/// An imprint of an atlas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct AtlasEntry {
-    /// From 0, in order of first occurrence.
+    /// Its number, from 0, in order of first occurrence.
     pub id: u32,
-    /// Which taxels are active.
+    /// The imprint.
     pub imprint: Imprint,
-    /// In how many poses.
+    /// The number of poses that leave it.
     pub count: u64,
-    /// The number of the first of these in the grid.
+    /// The number of the first of these poses in the grid.
     pub first_pose: u64,
     /// Pieces, holes and the description of its main region.
     pub summary: ImprintSummary,
@@ -47,7 +47,7 @@ impl Atlas {
         &self.layout
     }
 
-    /// Counts all of another counter, each count so many times. The numbers here of its keys.
+    /// Adds the imprints of a counter, with their counts times `times`. Returns the number that each of them has here.
     pub(crate) fn add(&mut self, other: &ImprintCounter, times: u64) -> Vec<u32> {
         let tallies = other.tallies().iter().enumerate();
         tallies
@@ -82,7 +82,7 @@ impl Atlas {
         );
     }
 
-    /// What is known of the imprints, in their order.
+    /// The summaries of the imprints, in their order.
     pub(crate) fn summaries(&self) -> &[ImprintSummary] {
         &self.summaries
     }
@@ -97,7 +97,7 @@ impl Atlas {
         self.summaries.len()
     }
 
-    /// Whether there is none, because no pose was gone through.
+    /// Whether it has no imprints, because no pose was swept.
     pub fn is_empty(&self) -> bool {
         self.summaries.is_empty()
     }
@@ -121,7 +121,7 @@ impl Atlas {
         (0..narrow(self.len())).filter_map(|id| self.entry(id))
     }
 
-    /// The number of an imprint; none where it does not occur.
+    /// The number of an imprint; None if no pose leaves it.
     pub fn find(&self, imprint: &Imprint) -> Option<u32> {
         if (imprint.columns(), imprint.rows()) != (self.layout.columns(), self.layout.rows()) {
             return None;
@@ -136,8 +136,8 @@ impl Atlas {
         u32::try_from(index).ok()
     }
 
-    /// A number of [`features`](crate::atlas::feature::features) of every imprint, in their order; none where it does not
-    /// exist.
+    /// The value of a feature for every imprint, in their order; None where it does not exist. `feature` is its index
+    /// in [`features`](crate::atlas::feature::features).
     pub fn values(&self, feature: usize) -> Vec<Option<f64>> {
         let value = |summary: &ImprintSummary| {
             let mut found = None;
@@ -155,7 +155,7 @@ impl Atlas {
             .collect()
     }
 
-    /// How many poses leave no imprint.
+    /// The number of poses in which no taxel is active.
     pub fn empty_poses(&self) -> u64 {
         let described = self
             .summaries
@@ -167,8 +167,7 @@ impl Atlas {
         empty.map(|(_, count)| count).sum()
     }
 
-    /// How many imprints are distinct up to whole-cell shifts, and how many up to shifts, quarter turns and mirror
-    /// images.
+    /// The number of distinct imprints up to whole-cell shifts, and up to shifts, quarter turns and mirror images.
     pub fn distinct_classes(&self) -> (usize, usize) {
         let mut classes = Classes::new(self.layout.columns(), self.layout.rows());
         for index in 0..self.len() {

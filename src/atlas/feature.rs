@@ -17,7 +17,7 @@ use crate::imprint::Imprint;
 pub struct Feature {
     /// Its name in JSON and CSV.
     pub key: String,
-    /// What it is a part of.
+    /// The descriptor that it is a part of.
     pub descriptor: &'static Descriptor,
     /// A direction that goes all around, in degrees: its mean and its deviation are circular ones.
     pub circular: bool,
@@ -61,7 +61,7 @@ fn all() -> Vec<Feature> {
     all
 }
 
-/// Gives the value of each feature that has one, with the feature's number in [`features`].
+/// Calls `take` with the index in [`features`] and the value of each feature that has one.
 pub fn feature_values(description: &Description, mut take: impl FnMut(usize, f64)) {
     let mut index = 0;
     for descriptor in DESCRIPTORS {
@@ -83,7 +83,7 @@ pub fn feature_values(description: &Description, mut take: impl FnMut(usize, f64
     }
 }
 
-/// What an atlas says of an imprint beside where it occurs.
+/// The regions of an imprint and the description of its main region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ImprintSummary {
@@ -91,7 +91,7 @@ pub struct ImprintSummary {
     pub pieces: u16,
     /// Number of its holes.
     pub holes: u16,
-    /// Of the main region; none of an empty imprint.
+    /// The description of the main region; None for an empty imprint.
     pub description: Option<Description>,
 }
 

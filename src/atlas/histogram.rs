@@ -1,4 +1,4 @@
-//! How often which values of a feature occur, over all poses.
+//! How often the values of a feature occur, over all poses.
 
 use crate::atlas::distinct::Atlas;
 use crate::atlas::feature::Feature;
@@ -8,14 +8,14 @@ use crate::description::Dimension;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Histogram {
-    /// Where the first interval begins, in the feature's own unit.
+    /// The lower end of the first interval, in the feature's own unit.
     pub start: f64,
-    /// How wide they are: 1, 2 or 5 times a power of ten, so that all ends are short decimals; a divisor of 360 for
-    /// directions that go all around.
+    /// The width of an interval: 1, 2 or 5 times a power of ten, so that all ends are short decimals; a divisor of 360
+    /// for circular directions.
     pub width: f64,
-    /// How many poses have a value in each; empty where no pose has one.
+    /// The number of poses with a value in each interval; empty if no pose has a value.
     pub poses: Vec<u64>,
-    /// How many poses have none.
+    /// The number of poses without a value.
     pub without: u64,
 }
 
@@ -81,7 +81,7 @@ impl Histogram {
         self.start + self.width * bin as f64
     }
 
-    /// How many decimals the ends of the intervals have, at most 12.
+    /// The number of decimals that the ends of the intervals need, at most 12.
     pub fn decimals(&self) -> usize {
         let short = |decimals: &u8| {
             let scaled = self.width * 10_f64.powi(i32::from(*decimals));
@@ -91,7 +91,8 @@ impl Histogram {
     }
 }
 
-/// In which interval a distance from the start lies. A value that should be the end of one, but for roundings, is.
+/// The index of the interval at a distance from the start. A value that equals an end except for rounding counts as
+/// equal.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -101,14 +102,14 @@ fn place(way: f64, width: f64) -> usize {
     (way / width + 1e-9).floor().max(0.0) as usize
 }
 
-/// Intervals of a direction: all around, from −180.
+/// The intervals of a direction: all around, from −180.
 fn around(most: usize) -> (f64, f64, usize) {
     let fits = |width: &&f64| place(360.0, **width) <= most;
     let width = ARCS.iter().find(fits).copied().unwrap_or(360.0);
     (-180.0, width, place(360.0, width))
 }
 
-/// Intervals from a multiple of their width on, as narrow as is allowed.
+/// The intervals from a multiple of their width on, as narrow as `most` allows.
 fn straight(low: f64, high: f64, least: f64, most: usize) -> (f64, f64, usize) {
     // Zero is an end of every width: one interval cannot have both sides of it.
     let most = most.max(if low < 0.0 && high >= 0.0 { 2 } else { 1 });

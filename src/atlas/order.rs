@@ -11,7 +11,7 @@ use crate::index::narrow;
 pub enum SortKey {
     /// The number of the first pose, which orders the imprints' own numbers too.
     FirstPose,
-    /// In how many poses an imprint occurs.
+    /// The number of poses that leave an imprint.
     Poses,
     /// Number of pieces.
     Pieces,
@@ -21,9 +21,10 @@ pub enum SortKey {
     Value,
 }
 
-/// The numbers of all imprints, from the smallest key to the largest or the other way. Equal ones stay in the order of
-/// their first poses, and those without a value come last, either way. `values` are those of
-/// [`SortKey::Value`], one per imprint ([`Atlas::values`]); imprints beyond their end have none.
+/// Returns the numbers of all imprints, sorted by a key, ascending or `descending`.
+///
+/// Equal ones stay in the order of their first poses, and those without a value come last, in both directions. `values`
+/// is for [`SortKey::Value`]: one per imprint ([`Atlas::values`]); imprints beyond its end have none.
 pub fn sorted(atlas: &Atlas, values: &[Option<f64>], by: SortKey, descending: bool) -> Vec<u32> {
     let count = narrow(atlas.len());
     let summaries = |of: fn(&crate::atlas::feature::ImprintSummary) -> u16| {

@@ -2,7 +2,7 @@
 //!
 //! Each row takes 8, 16, 32 or 64 bits, whichever is the first to hold the sensor's columns. A key's hash is the
 //! exclusive or of one random number per active taxel (A. L. Zobrist, *A new hashing method with application for game
-//! playing*, 1970), so turning a taxel over changes it in one step. Keys are compared in full all the same.
+//! playing*, 1970), so toggling a taxel changes it in one step. Keys with equal hashes are still compared in full.
 
 use crate::imprint::Imprint;
 use crate::index::from_first;
@@ -81,8 +81,8 @@ impl Layout {
         (key, hash)
     }
 
-    /// The key of an imprint after a half turn, and its hash: the coordinates of a taxel's centre and those of its image
-    /// sum up to `across` and `down`, which must keep all of it on the matrix.
+    /// Writes the key of an imprint after a half turn, and returns its hash. The coordinates of a taxel's centre and of
+    /// its image sum up to `across` and `down`, which must keep all active taxels on the matrix.
     pub(crate) fn half_turned(
         &self,
         key: &[u64],

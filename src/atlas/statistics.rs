@@ -1,4 +1,4 @@
-//! Statistics of every feature over all poses that have one, and how much of them comes from where.
+//! Statistics of every feature over all poses that have one, and how much of the variance comes from the position.
 //!
 //! Mean, standard deviation (of the population) and coefficient of variation are weighted by how often each imprint
 //! occurs. The variance of a feature is the mean of its variances at a fixed turn (one angle, one pair of zooms), plus
@@ -8,8 +8,8 @@
 //!
 //! **Directions** that go all around have a circular mean, that of the unit vectors; with `R` the length of the mean
 //! vector the deviation is `√(−2 ln R)` (K. V. Mardia, *Statistics of Directional Data*, 1972), in degrees. In place of
-//! the variances stand `R`'s logarithms: `sd_position` is made from the mean over the turns of their own `R`, `sd_angle`
-//! from what `R` falls short of that, and the squares add up as above. A smallest and a largest direction do
+//! the variances stand `R`'s logarithms: `sd_position` is made from the mean over the turns of their own `R`,
+//! `sd_angle` from what `R` falls short of that, and the squares add up as above. A smallest and a largest direction do
 //! not exist, nor does a coefficient of variation.
 //!
 //! All sums are whole numbers of 2⁻⁴⁰: the result does not depend on threads, shards or symmetries.
@@ -21,25 +21,25 @@ use crate::atlas::sums::{Wide, fixed, mean, signed_mean};
 use crate::atlas::values::{Table, places};
 use crate::atlas::variance::{Sum, VarianceParts};
 
-/// What is known of one feature over all poses that have it. None where no pose has it.
+/// The statistics of a feature over all poses that have it. Values are None if no pose has it.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Statistic {
-    /// Which one.
+    /// The feature.
     pub feature: &'static Feature,
     /// Number of poses that have it.
     pub poses: u64,
-    /// Smallest; none of a direction.
+    /// The smallest value; None for a direction.
     pub min: Option<f64>,
-    /// Mean; of a direction the circular one, none where the directions cancel.
+    /// The mean. For a direction it is the circular one, which is None if the directions cancel.
     pub mean: Option<f64>,
-    /// Largest; none of a direction.
+    /// The largest value; None for a direction.
     pub max: Option<f64>,
     /// Standard deviation of the population.
     pub sd: Option<f64>,
-    /// Standard deviation over the mean; none of a direction, and where the mean is 0.
+    /// The standard deviation over the mean; None for a direction, or if the mean is 0.
     pub cv: Option<f64>,
-    /// The value of the continuous figure, where it has one.
+    /// The value for the continuous figure, if there is one.
     pub ideal: Option<f64>,
     /// The part of the deviation that comes from the position at a fixed angle.
     pub sd_position: Option<f64>,
@@ -55,7 +55,7 @@ pub struct StatisticColumn {
     pub key: &'static str,
     /// Its heading.
     pub title: &'static str,
-    /// What stands in it.
+    /// Its value for a feature.
     pub value: fn(&Statistic) -> Option<f64>,
 }
 

@@ -75,7 +75,7 @@ impl Wide {
         }
     }
 
-    /// This, so many times; what goes beyond 2¹⁹² is lost.
+    /// This number times another one, modulo 2¹⁹².
     pub(crate) fn times(self, times: u64) -> Self {
         let low = Self::product(self.low, times);
         Self {
@@ -144,7 +144,7 @@ impl AddAssign for Wide {
 
 impl Sub for Wide {
     type Output = Self;
-    /// The difference, 0 where it is negative: of two numbers that are equal but for what was rounded down.
+    /// The difference, or 0 if it is negative: the numbers may then only differ by what was rounded down.
     fn sub(self, other: Self) -> Self {
         let (low, borrow) = self.low.overflowing_sub(other.low);
         let high = i128::from(self.high) - i128::from(other.high) - i128::from(borrow);

@@ -1,6 +1,7 @@
-//! Sums turn by turn: what tells how much of a variance comes from the position and how much from the angle.
+//! Sums per orientation, from which follows how much of a variance comes from the position and how much from the angle.
 //!
-//! A turn is closed once all of its poses are in; only those that are not are kept one by one.
+//! Once all poses of an orientation are added, only its contribution is kept; incomplete orientations are kept one by
+//! one.
 
 use std::collections::BTreeMap;
 
@@ -41,7 +42,8 @@ impl Sum {
         self.y += other.y;
     }
 
-    /// The sum of values that are not directions. They are not negative; a damaged file may say otherwise, and counts as 0.
+    /// The sum of values that are not directions. They are not negative; a damaged file may say otherwise, and counts
+    /// as 0.
     pub(crate) fn total(&self) -> u128 {
         self.x.max(0).cast_unsigned()
     }
@@ -53,18 +55,18 @@ impl Sum {
     }
 }
 
-/// The sums of one turn.
+/// The sums of one orientation.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct OrientationSums {
-    /// Poses gone through, whether or not they have a value.
+    /// The number of poses, with or without a value.
     poses: u64,
-    /// How many turns look like this one, with itself.
+    /// The number of orientations with the same imprints, including this one.
     times: u64,
     sums: Vec<Sum>,
 }
 
 impl OrientationSums {
-    /// Of imprints with how many poses of one turn show each.
+    /// The sums over imprints, given with the number of poses of one orientation that leave each.
     pub(crate) fn of(table: &Table, times: u64, counted: impl Iterator<Item = (u32, u64)>) -> Self {
         let mut sums = vec![Sum::default(); features().len()];
         let places = places();
@@ -79,7 +81,8 @@ impl OrientationSums {
         Self { poses, times, sums }
     }
 
-    /// Whether so many poses can give such sums; others would overflow later, or take for ever.
+    /// Whether these sums are possible for an orientation of `full` poses. Others, from a damaged file, could overflow
+    /// later.
     fn is_sound(&self, full: u64) -> bool {
         let sound = |sum: &Sum| {
             let most = u128::from(sum.poses) << 58;
@@ -89,19 +92,19 @@ impl OrientationSums {
     }
 }
 
-/// What the turns tell about where the variance comes from.
+/// The parts of each feature's variance that come from the position and from the orientation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct VarianceParts {
-    /// Poses of a turn of the grid.
+    /// The number of poses of an orientation of the grid.
     full: u64,
-    /// Of each feature, over the turns that are complete: the sum of (sum² / poses), or of the vectors' lengths.
+    /// For each feature, over the complete orientations: the sum of (sum² / poses), or of the vectors' lengths.
     between: Vec<Wide>,
-    /// Turns of which something is missing still.
+    /// The incomplete orientations, by number.
     open: BTreeMap<u64, OrientationSums>,
 }
 
 impl VarianceParts {
-    /// Of turns of so many poses.
+    /// For orientations of `full` poses, without any of them yet.
     pub(crate) fn new(full: u64) -> Self {
         Self {
             full,
@@ -110,7 +113,7 @@ impl VarianceParts {
         }
     }
 
-    /// Adds a part of a turn. Parts of the same turn stand for as many turns.
+    /// Adds a part of an orientation. All parts of it must have the same `times`.
     pub(crate) fn add(&mut self, turn: u64, part: OrientationSums) {
         let sums = match self.open.remove(&turn) {
             Some(mut sums) => {
@@ -139,7 +142,7 @@ impl VarianceParts {
         }
     }
 
-    /// As words: three per feature, then each open turn.
+    /// As words: three per feature, then each incomplete orientation.
     pub(crate) fn words(&self) -> Vec<u64> {
         let halves = |sum: i128| {
             let bits = sum.cast_unsigned();
@@ -157,7 +160,7 @@ impl VarianceParts {
         words
     }
 
-    /// From words; none where these are not as many as they must be.
+    /// From words; None if their number is wrong.
     pub(crate) fn from_words(full: u64, words: &[u64]) -> Option<Self> {
         let count = features().len();
         let (between, open) = words.split_at_checked(3 * count)?;
@@ -188,7 +191,7 @@ impl VarianceParts {
         })
     }
 
-    /// The same with all turns taken as complete.
+    /// The same, with every orientation taken as complete.
     pub(crate) fn closed(&self) -> Vec<Wide> {
         let mut between = self.between.clone();
         for sums in self.open.values() {

@@ -21,8 +21,8 @@
 //! | 3 | the program ended before its script did |
 //! | 128 + n | signal n ended the command |
 //!
-//! A closed pipe, as in `taxel batch | head -1`, is not an error: the program stops and returns 0. Only the screen writes
-//! escape codes, and the progress bar of a sweep, if standard error is a terminal.
+//! A closed pipe, as in `taxel batch | head -1`, is not an error: the program stops and returns 0. Only the screen
+//! writes escape codes, and the progress bar of a sweep, if standard error is a terminal.
 
 mod error;
 

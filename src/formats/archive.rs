@@ -1,10 +1,10 @@
 //! An atlas as an archive of numpy arrays (`numpy.load`), which can be read back and merged.
 //!
 //! Per imprint, in order: `rows` (a word per row of the sensor, bit `i` for column `i`; shaped imprints × rows),
-//! `count`, `first_pose` (its number in the grid), `first` (its values; imprints × parameters), `pieces`, `holes` and an
-//! array for each feature, NaN where it does not exist, since arrays have no other word for that. Before them `header`,
-//! JSON as bytes: format, source, sensor, anchor, ranges, shard and how many poses there were; and `spread`, the sums
-//! that shards are merged by. The archive is a zip without compression and without dates: equal atlases are
+//! `count`, `first_pose` (its number in the grid), `first` (its values; imprints × parameters), `pieces`, `holes` and
+//! an array for each feature, NaN where it does not exist, since arrays have no other word for that. Before them
+//! `header`, JSON as bytes: format, source, sensor, anchor, ranges, shard and how many poses there were; and `spread`,
+//! the sums that shards are merged by. The archive is a zip without compression and without dates: equal atlases are
 //! equal files.
 
 use std::io::{Read, Seek, Write};
@@ -20,7 +20,7 @@ use crate::quote::shortened;
 use crate::sensor::Sensor;
 use crate::sweep::{Parts, Shard, SweepResult};
 
-/// What the header must say first.
+/// The format that the header must name.
 pub const FORMAT: &str = "taxel-atlas/1";
 
 /// What was swept: written from a source and a sensor, read as the records that they are checked from.
@@ -132,7 +132,7 @@ fn feature_columns(atlas: &Atlas) -> Vec<Vec<u8>> {
 /// Reads an archive.
 ///
 /// # Errors
-/// What is wrong with it; any bytes are taken.
+/// If it is not an atlas; the input may be any bytes.
 pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
     let mut archive = ArrayReader::new(input)?;
     let header = archive.header()?;

@@ -1,7 +1,8 @@
 //! An imprint as an array of numpy (`numpy.load`): rows × columns, true for an active taxel.
 //!
-//! Written is `bool`. Read are two-dimensional arrays of `bool`, whole numbers or floats (of 16 bits, too) of either byte
-//! order, in C or Fortran order, whose values are 0 and one other, of the format's versions 1 to 3. Source: that of [`crate::formats::npy`].
+//! Written is `bool`. Read are two-dimensional arrays of `bool`, whole numbers or floats (of 16 bits, too) of either
+//! byte order, in C or Fortran order, whose values are 0 and one other, of the format's versions 1 to 3. Source: that
+//! of [`crate::formats::npy`].
 
 use std::fmt;
 
@@ -12,7 +13,7 @@ use crate::imprint::Imprint;
 use crate::quote::shortened;
 use crate::sensor::MAX_SIDE;
 
-/// Why bytes are no array of an imprint.
+/// The error for bytes that are not an imprint as an array.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ArrayError {
@@ -141,10 +142,10 @@ impl Type {
     }
 }
 
-/// Reads any bytes.
+/// Reads an imprint.
 ///
 /// # Errors
-/// What is wrong first, and where.
+/// The first thing that is wrong, and where; the input may be any bytes.
 ///
 /// ```
 /// use taxel::formats::array::{read, write};
@@ -202,7 +203,7 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ArrayError> {
     Ok(imprint)
 }
 
-/// The file.
+/// The content of a file.
 pub fn write(imprint: &Imprint) -> Vec<u8> {
     let shape = [imprint.rows(), imprint.columns()].map(u64::from);
     let mut file = npy::header(Dtype::Bool, &shape);

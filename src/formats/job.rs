@@ -17,7 +17,7 @@ pub enum Job {
     Describe(Imprint),
 }
 
-/// Why a line has no answer.
+/// The error for a line without an answer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum JobError {
@@ -29,20 +29,20 @@ pub enum JobError {
         /// What is wrong.
         message: String,
     },
-    /// No meaning.
+    /// A value without a meaning.
     #[error(transparent)]
     Record(#[from] RecordError),
-    /// A sensor that is none.
+    /// An invalid sensor.
     #[error("sensor: {0}")]
     Sensor(RecordError),
 }
 
 impl Job {
-    /// Reads a line; the sensor is `sensor` but for what the line says of its own; pictures by name are looked up. A
-    /// whole matrix is not touched, and has no sensor.
+    /// Reads a line. The sensor is `sensor`, changed as the line says; `lookup` finds pictures given by name. A whole
+    /// matrix is not touched, and has no sensor.
     ///
     /// # Errors
-    /// What is wrong with the line, in one sentence.
+    /// If the line has no answer; the message is one sentence.
     pub fn read(
         line: &[u8],
         sensor: Sensor,
@@ -73,7 +73,7 @@ impl Job {
         }
     }
 
-    /// The imprint that is to be described. `plane` is used again where it has the right sensor.
+    /// The imprint to describe. `plane` is reused if it has the right sensor.
     pub fn imprint(&self, plane: &mut Plane) -> Imprint {
         match self {
             Self::Describe(imprint) => *imprint,

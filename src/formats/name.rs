@@ -13,21 +13,21 @@ const MOST_BYTES: usize = 200;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Name(String);
 
-/// Why a text is no name.
+/// The error for text that is not a name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum NameError {
-    /// Nothing there.
+    /// It is empty.
     Empty,
-    /// Too long.
+    /// It is too long.
     Long(usize),
-    /// Too long as a file's name, which is counted in bytes.
+    /// It is too long for a file name, which is counted in bytes.
     Bytes(usize),
-    /// A character that not every file system takes.
+    /// A character that some file systems do not allow.
     Character(char),
-    /// A hidden file.
+    /// It starts with a dot, which would make a hidden file.
     Start(char),
-    /// An invisible difference.
+    /// It starts or ends with a space, which cannot be seen.
     End,
 }
 
@@ -56,7 +56,7 @@ impl fmt::Display for NameError {
 impl std::error::Error for NameError {}
 
 impl Name {
-    /// The name in a text.
+    /// Checks a name.
     ///
     /// # Errors
     /// The first rule that it breaks.
@@ -93,7 +93,7 @@ impl Name {
     }
 }
 
-/// A text without the difference of upper and lower case; two texts with one folded form are the same name.
+/// The case-folded form of a text. Names with the same folded form are the same name.
 ///
 /// By way of upper case, since some letters have two lower ones (`Σ` has `σ` and `ς`), and a character at a time, since
 /// lower case of a whole text chooses between these by the letters around. `ß` is `ss`.

@@ -2,7 +2,7 @@
 
 use crate::description::{Dimension, Value};
 
-/// The text of a value; none where the value does not exist.
+/// The text of a value; None if the value does not exist.
 ///
 /// ```
 /// use taxel::description::{Dimension, Value};
@@ -19,7 +19,7 @@ pub fn text(value: Value, unit: Dimension) -> Option<String> {
     }
 }
 
-/// The text of a length in mm or an area in mm²; none of anything else, or where the value does not exist.
+/// The text of a length in mm or an area in mm²; None for any other dimension, or if the value does not exist.
 pub fn in_millimetres(value: Value, unit: Dimension, pitch_mm: f64) -> Option<String> {
     match unit {
         Dimension::Length => times(value, pitch_mm, 4).map(|text| format!("{text} mm")),
@@ -28,7 +28,7 @@ pub fn in_millimetres(value: Value, unit: Dimension, pitch_mm: f64) -> Option<St
     }
 }
 
-/// The numbers of a value times a factor, with at most so many decimals; none where the value does not exist.
+/// The numbers of a value times a factor, with at most `decimals` decimals; None if the value does not exist.
 pub fn times(value: Value, factor: f64, decimals: usize) -> Option<String> {
     let number = |number: f64| decimal(number * factor, decimals);
     match value {
@@ -83,7 +83,7 @@ pub fn grouped(count: u64) -> String {
     text
 }
 
-/// A count of something: one of it, or so many.
+/// A count with its noun, in the singular or the plural.
 ///
 /// ```
 /// use taxel::formats::value::counted;
@@ -94,7 +94,7 @@ pub fn counted(count: u64, noun: &str) -> String {
     format!("{} {noun}{plural}", grouped(count))
 }
 
-/// With at most so many decimals, no zeros at their end, and no minus before a zero.
+/// A number with at most `decimals` decimals, without trailing zeros, and without a minus before a zero.
 pub(crate) fn decimal(number: f64, decimals: usize) -> String {
     let text = format!("{number:.decimals$}");
     let text = if text.contains('.') {

@@ -48,7 +48,7 @@ impl<T: Real> Boundary<T> {
         Point::new(sum.x / count, sum.y / count)
     }
 
-    /// The middle of the bounding rectangle of the edges; the origin where there are none.
+    /// The middle of the bounding rectangle of the edges; the origin if there are none.
     pub(crate) fn middle(&self) -> Point<T> {
         let Some(&(first, _)) = self.edges.first() else {
             return Point::new(T::ZERO, T::ZERO);
@@ -63,7 +63,7 @@ impl<T: Real> Boundary<T> {
 }
 
 impl Boundary<f64> {
-    /// How far it reaches; none of a shape without a boundary.
+    /// Its extent; None for a shape without a boundary.
     pub(crate) fn extent(&self) -> Option<Extent> {
         Extent::drawn(|pen| self.draw(Point::new(0.0, 0.0), pen))
     }

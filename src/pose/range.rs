@@ -1,4 +1,4 @@
-//! Exact ranges of decimals, `start:end:step` with the end included: what a sweep goes through in one parameter.
+//! Exact ranges of decimals, `start:end:step` with the end included: the values of one axis of a sweep.
 //!
 //! The numbers are integers scaled by a power of ten, so `5:5.99:0.01` is one hundred hundredths and nothing is
 //! accumulated: value `i` is the `f64` nearest to the exact decimal `start + i·step`. Where the step does not
@@ -14,7 +14,7 @@ use crate::quote::shortened;
 /// The most values that one range may have.
 pub const MAX_VALUES: u64 = 1_000_000;
 
-/// More decimals are not taken: in units of them, [`MAX_UNITS`] is just below 1000.
+/// The most decimals of a number. In units of the last of them, [`MAX_UNITS`] is just below 1000.
 const MAX_PLACES: usize = 12;
 
 /// The largest number of units of the last place: every decimal of 15 digits has an `f64` of its own, which is written
@@ -95,7 +95,7 @@ impl DecimalRange {
         scaled(self.step, self.places)
     }
 
-    /// Some neighbouring values of it as a range of their own; none where there are none, or fewer than that.
+    /// The values with these indices as a range of their own; None if `indices` is empty or leaves the range.
     ///
     /// ```
     /// use taxel::pose::DecimalRange;
@@ -185,13 +185,13 @@ impl FromStr for DecimalRange {
     }
 }
 
-/// How many decimals a number is written with, but for zeros at the end.
+/// The number of decimals that a number is written with, without trailing zeros.
 fn places(text: &str) -> usize {
     let fraction = text.split_once('.').map_or("", |(_, after)| after);
     fraction.trim_end_matches('0').len()
 }
 
-/// A decimal in units of `10^-places`; none of anything that is no plain decimal, or too long to be exact.
+/// A decimal in units of `10^-places`; None if the text is not a plain decimal, or too long to be exact.
 fn units(text: &str, places: usize) -> Option<i64> {
     let (negative, digits) = match text.strip_prefix('-') {
         Some(digits) => (true, digits),
@@ -216,7 +216,7 @@ fn units(text: &str, places: usize) -> Option<i64> {
 }
 
 impl fmt::Display for DecimalRange {
-    /// The form that is read.
+    /// Writes the form that is read.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         // The shortest decimal that reads back as the nearest `f64` is the exact decimal itself.
         write!(f, "{}", self.value(0))?;
@@ -227,14 +227,14 @@ impl fmt::Display for DecimalRange {
     }
 }
 
-/// Why a text is no range.
+/// The error for text that is not a range.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RangeError {
     /// Neither one number nor three.
     #[error("\"{text}\" is no range, expected a number or start:end:step")]
     Form {
-        /// What was given.
+        /// The text, shortened.
         text: String,
     },
     /// Not a plain decimal, or with more digits than are exact.
@@ -242,35 +242,35 @@ pub enum RangeError {
         "\"{text}\" is not a decimal number of at most 15 digits, {MAX_PLACES} of them behind the point"
     )]
     Number {
-        /// What was given.
+        /// The text, shortened.
         text: String,
     },
     /// A step of 0, or backwards.
     #[error("step {step} leads nowhere, expected one above 0")]
     Step {
-        /// As given.
+        /// As given, shortened.
         step: String,
     },
     /// An end before the start.
     #[error("{start}:{end}:{step} ends before it starts, expected an end from {start} on")]
     Backwards {
-        /// As given.
+        /// As given, shortened.
         start: String,
-        /// As given.
+        /// As given, shortened.
         end: String,
-        /// As given.
+        /// As given, shortened.
         step: String,
     },
     /// Too many values.
     #[error("{count} values, expected at most {MAX_VALUES}")]
     Many {
-        /// How many it would be.
+        /// The number of values.
         count: u64,
     },
 }
 
 impl RangeError {
-    /// What was expected, for a place that shows the text beside it.
+    /// What was expected, for a place that shows the text itself.
     pub fn expected(&self) -> String {
         match self {
             Self::Form { .. } => "expected a number or start:end:step".to_owned(),

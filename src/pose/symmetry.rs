@@ -1,15 +1,15 @@
-//! Which angles show a shape alike.
+//! The angles at which a shape looks the same.
 //!
 //! (x0, y0) places the corner of the figure *before* it is turned, so the centre stays where it is, and two angles give
-//! the same shape when they differ by a symmetry of the figure: 180° for rectangles and ellipses, 90° for squares, 360°/n
-//! for regular polygons where that is a whole number of degrees (not the heptagon's), and any angle for circles. A
-//! picture that a half turn maps onto itself has 180°. Angles are compared as exact decimals.
+//! the same shape when they differ by a symmetry of the figure: 180° for rectangles and ellipses, 90° for squares,
+//! 360°/n for regular polygons where that is a whole number of degrees (not the heptagon's), and any angle for circles.
+//! A picture that a half turn maps onto itself has 180°. Angles are compared as exact decimals.
 
 use crate::figure::FigureKind;
 use crate::parameter::Parameter;
 use crate::source::Source;
 
-/// After how many degrees a shape looks the same again; none where any angle will do.
+/// The rotation, in degrees, after which a shape looks the same; None if it looks the same at every angle.
 pub(crate) fn period(source: &Source) -> Option<u32> {
     let figure = match source {
         Source::Figure(figure) => figure,

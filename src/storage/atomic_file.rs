@@ -100,7 +100,7 @@ impl UnfinishedFile {
             .metadata()
             .map_err(refuse("write into its folder"))?;
         let file = create().map_err(refuse("write into its folder"))?;
-        // Whoever may not read the old file may not read the new one.
+        // The new file keeps the permissions of the old one: it must not become readable for others.
         if let Some(old) = old {
             file.as_file()
                 .set_permissions(old.permissions())

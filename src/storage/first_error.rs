@@ -1,4 +1,4 @@
-//! A writer that keeps quiet about errors until it is asked.
+//! A writer that stores the first error instead of returning it.
 
 use std::io::{self, Seek, SeekFrom, Write};
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,7 +1,8 @@
 //! Unsaved work: kept in a file while the program runs, offered back after it died.
 //!
 //! Each running program holds the lock of a file of its own in the folder's `.journal`. A journal whose lock is free
-//! was left by a program that died; whoever takes its lock offers it, so several programs do not take each other's.
+//! was left by a program that died; the program that takes its lock offers it, so several programs do not take each
+//! other's.
 
 use std::fs;
 use std::io::{self, ErrorKind};
@@ -18,7 +19,7 @@ use crate::storage::lock::{Lock, LockAttempt};
 pub const UNNAMED: &str = "unsaved";
 
 /// The journal of a running program. Nothing is written before there is something to keep, and what is kept stays
-/// until it is cleared: a program that ends without doing so, whyever, has lost nothing.
+/// until it is cleared: a program that ends without doing so, for whatever reason, has lost nothing.
 #[derive(Debug)]
 pub struct Journal {
     folder: PathBuf,

@@ -1,12 +1,12 @@
 //! Spans of ellipses, solid or with one ellipse as their hole, row by row of the grid.
 //!
-//! **Method.** With `O` and `I` the areas of the outer and the inner ellipse in the cell, a taxel is active where
-//! `O − I` reaches the threshold `t`. `O` does so between one rising and one falling passage ([`crate::sweep::track`]), and
+//! **Method.** With `O` and `I` the areas of the outer and the inner ellipse in the cell, a taxel is active where `O −
+//! I` reaches the threshold `t`. `O` does so between one rising and one falling passage ([`crate::sweep::track`]), and
 //! outside of these nothing is active. Where the cell lies inside of the outer ellipse (`O = 1`), what matters is where
-//! `I` exceeds `1 − t`: again one rising and one falling passage. What remains is where the cell reaches the
-//! hole already and the outside still; there `O` rises from its value at the first touch of the hole and `I` to
-//! its value at the last touch of the outside, and as a rule the difference of the two stays above `t`. Whenever
-//! one of these conditions does not hold, the band is computed from scratch ([`crate::sweep::isolate`]).
+//! `I` exceeds `1 − t`: again one rising and one falling passage. What remains is where the cell reaches the hole
+//! already and the outside still; there `O` rises from its value at the first touch of the hole and `I` to its value at
+//! the last touch of the outside, and as a rule the difference of the two stays above `t`. Whenever one of these
+//! conditions does not hold, the band is computed from scratch ([`crate::sweep::isolate`]).
 
 use crate::geometry::{Ellipse, Side};
 use crate::sensor::MAX_SIDE;

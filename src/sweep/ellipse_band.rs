@@ -245,9 +245,9 @@ impl EllipseBand {
 
     /// How much `w` may change within `way` of a place.
     ///
-    /// Half of the ellipse's own section is `√((R − d)(R + d))`, with slope `d / half`; within `way` of `d` it stays above
-    /// 0.7 of itself where `half² ≥ 4·R·way`. Near an end of the ellipse it changes by the root of `2·R·way` at most.
-    /// Clipping by the band's lines makes a change smaller only.
+    /// Half of the ellipse's own section is `√((R − d)(R + d))`, with slope `d / half`; within `way` of `d` it stays
+    /// above 0.7 of itself where `half² ≥ 4·R·way`. Near an end of the ellipse it changes by the root of `2·R·way` at
+    /// most. Clipping by the band's lines makes a change smaller only.
     pub(crate) fn change(&self, place: &Section, way: f64) -> f64 {
         let reach = self.reach_x;
         let half = if place.half * place.half >= 4.0 * reach * way {

@@ -1,7 +1,7 @@
 //! From the spans of a band to the events of a row of the grid.
 //!
-//! A taxel in column `i` inside of a span from `a` to `b` is active while `i − b ≤ x0 ≤ i − a`. Where a value of x0 lies
-//! within [`NEAR`] of the end of a span, or in a span that is in doubt, [`Exact`] decides for that taxel and pose.
+//! A taxel in column `i` inside of a span from `a` to `b` is active while `i − b ≤ x0 ≤ i − a`. Where a value of x0
+//! lies within [`NEAR`] of the end of a span, or in a span that is in doubt, [`Exact`] decides for that taxel and pose.
 
 use crate::geometry::Real;
 use crate::index::from_first;

@@ -1,4 +1,5 @@
-//! The spans of an ellipse, solid or with an elliptic hole, without an earlier row to start from: slow, but always correct.
+//! The spans of an ellipse, solid or with an elliptic hole, without an earlier row to start from: slow, but always
+//! correct.
 //!
 //! **Method.** As for polygons the coverage at place `u` is `C(u) = W(u + 1) − W(u)`, with `W` the integral of the
 //! height `w` of the section inside the band. It is no polynomial, so its passages through the threshold are

@@ -1,8 +1,8 @@
 //! Every pose of a grid: runs of equal imprints, an atlas of the distinct ones, statistics of their descriptors.
 //!
-//! The paper wanted "almost all possible imprints" of a shape and could only sample them. A sweep finds all of them. It does
-//! not touch pose by pose, but finds where along a range of positions the imprint changes; the result is identical to
-//! touching every pose. No I/O, no panics.
+//! The paper wanted "almost all possible imprints" of a shape and could only sample them. A sweep finds all of them. It
+//! does not touch pose by pose, but finds where along a range of positions the imprint changes; the result is identical
+//! to touching every pose. No I/O, no panics.
 //!
 //! **The way of a row** (all x0 at one y0 and one angle):
 //! ```text
@@ -14,9 +14,9 @@
 //! -> atlas            each imprint counted once per run, and described once per sweep
 //! ```
 //!
-//! **What is skipped.** Of the angles at which the shape looks the same, all but one ([`crate::pose`]). And if a half turn
-//! of the plane maps the poses of an angle onto each other, half of their rows (`point_symmetry`, `reflected_rows`). Both are
-//! decided on exact decimals.
+//! **What is skipped.** Of the angles at which the shape looks the same, all but one ([`crate::pose`]). And if a half
+//! turn of the plane maps the poses of an angle onto each other, half of their rows (`point_symmetry`,
+//! `reflected_rows`). Both are decided on exact decimals.
 //!
 //! Sums are whole numbers, so the statistics are the same to the last digit for any number of threads and shards.
 

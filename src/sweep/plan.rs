@@ -110,8 +110,8 @@ const HALVED_TASK_POSES: u64 = 1_000_000;
 /// A block is cut into at least this many tasks, if it has as many rows.
 const TASKS: u64 = 16;
 
-/// The tasks of one block (all angles at one pair of zooms) within the rows of a shard, in the order in which they meet new
-/// imprints. They are made one at a time, because a large grid has millions.
+/// The tasks of one block (all angles at one pair of zooms) within the rows of a shard, in the order in which they meet
+/// new imprints. They are made one at a time, because a large grid has millions.
 pub(crate) fn tasks(
     grid: &PoseGrid,
     shard: &Range<u64>,
@@ -139,8 +139,8 @@ pub(crate) fn tasks(
 /// Angles whose imprints are the same, and the values of y0 to sweep for the first of them.
 type Piece = (Vec<u64>, Range<u64>);
 
-/// The angles of a block, gathered by a period of the shape; `rows` are those of the block that a shard holds. Angles that it
-/// holds only a part of are pieces of their own.
+/// The angles of a block, gathered by a period of the shape; `rows` are those of the block that a shard holds. Angles
+/// that it holds only a part of are pieces of their own.
 fn pieces(grid: &PoseGrid, rows: Range<u64>) -> Vec<Piece> {
     let height = grid.rows_per_orientation();
     let full = rows.start.div_ceil(height)..rows.end / height;

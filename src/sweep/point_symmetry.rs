@@ -1,9 +1,9 @@
 //! Poses that follow from others by a half turn of the plane.
 //!
-//! A half turn about a point whose coordinates are whole or half cells maps taxels onto taxels. It maps a shape with point
-//! symmetry onto the same shape elsewhere: its centre goes from `c` to `m − c`, with `m` a whole number. If the ranges
-//! of x0 and y0 cover whole cells, and contain with every centre its image up to whole cells, then each row of an orientation
-//! is the image of another one, and only half of the rows need to be swept.
+//! A half turn about a point whose coordinates are whole or half cells maps taxels onto taxels. It maps a shape with
+//! point symmetry onto the same shape elsewhere: its centre goes from `c` to `m − c`, with `m` a whole number. If the
+//! ranges of x0 and y0 cover whole cells, and contain with every centre its image up to whole cells, then each row of
+//! an orientation is the image of another one, and only half of the rows need to be swept.
 //!
 //! **Exactly.** Positions are compared as decimals, so what is mapped is equal in real arithmetic, ties included. Twice
 //! the distance from anchor to centre must be a decimal for that: it is 0 with the anchor at the centre, and the sides

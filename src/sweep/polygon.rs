@@ -1,11 +1,11 @@
 //! Spans of shapes bounded by straight edges, convex or not: figures with corners, and pictures.
 //!
-//! **Method.** Cut to a band one cell high, each edge is a piece from `left` to `right` that climbs by `rise`
-//! (positive where the material is on its right). The height `w(x)` of the shape's section inside the band is the sum
-//! of what the pieces left of `x` have climbed: piecewise linear, with a corner at each piece's ends. Its integral
-//! `W` is piecewise quadratic, and the coverage at place `u` is `C(u) = W(u + 1) − W(u)`, with slope
-//! `w(u + 1) − w(u)`. Two pointers walk the corners of `w`, one cell apart. Between two stops `C` is one quadratic, which is
-//! solved for its crossings of the threshold.
+//! **Method.** Cut to a band one cell high, each edge is a piece from `left` to `right` that climbs by `rise` (positive
+//! where the material is on its right). The height `w(x)` of the shape's section inside the band is the sum of what the
+//! pieces left of `x` have climbed: piecewise linear, with a corner at each piece's ends. Its integral `W` is piecewise
+//! quadratic, and the coverage at place `u` is `C(u) = W(u + 1) − W(u)`, with slope `w(u + 1) − w(u)`. Two pointers
+//! walk the corners of `w`, one cell apart. Between two stops `C` is one quadratic, which is solved for its crossings
+//! of the threshold.
 //!
 //! **Error.** `w` at a corner is a sum of shares of rises, each in [0, 1] of them, and `W` is summed up by
 //! trapezoids: nothing is extrapolated, so steep pieces do no harm. Below 1e-11.
@@ -205,7 +205,8 @@ impl Polygonal {
         let Some(first) = self.stretches.get(1) else {
             return;
         };
-        // The pointer at u starts left of everything, the one at u + 1 at the first corner. Each has a height and an area.
+        // The pointer at u starts left of everything, the one at u + 1 at the first corner. Each has a height and an
+        // area.
         let (mut near, mut far) = (0, 1);
         let (mut behind, mut ahead) = (&self.stretches[near], &self.stretches[far]);
         let (mut low, mut left) = (0.0, 0.0);

@@ -1,4 +1,5 @@
-//! What a sweep found: the atlas of distinct imprints, the statistics of their features, and what shards are merged from.
+//! What a sweep found: the atlas of distinct imprints, the statistics of their features, and what shards are merged
+//! from.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -122,8 +123,8 @@ impl SweepResult {
     /// The atlas numbers of the poses with these indices of x0 and y0, row after row, at the angle and the zooms of
     /// `orientation` (its x0 and y0 do not matter).
     ///
-    /// A number is None if the atlas does not have the imprint, because the sweep was stopped before. The result is empty if
-    /// a range leaves the grid. It takes as long as sweeping these poses.
+    /// A number is None if the atlas does not have the imprint, because the sweep was stopped before. The result is
+    /// empty if a range leaves the grid. It takes as long as sweeping these poses.
     ///
     /// ```
     /// use taxel::prelude::*;

@@ -1,7 +1,7 @@
 //! The imprints of the rows of one orientation, run by run instead of pose by pose.
 //!
-//! From the spans of a band ([`crate::sweep::span`]) [`crate::sweep::flips`] makes events; between two of them the imprint is the
-//! same: one *run*. Rows that are images of rows swept before ([`crate::sweep::point_symmetry`]) follow
+//! From the spans of a band ([`crate::sweep::span`]) [`crate::sweep::flips`] makes events; between two of them the
+//! imprint is the same: one *run*. Rows that are images of rows swept before ([`crate::sweep::point_symmetry`]) follow
 //! from those.
 
 use crate::atlas::{ImprintCounter, Layout};
@@ -36,8 +36,8 @@ const TOLD: u64 = 4_000;
 /// This many more edges double the time per pose. A picture may have thousands, and must report as often.
 const EDGES: usize = 64;
 
-/// Sweeps the rows of a task. `progress` receives the number of poses of one orientation done since the last call; if it
-/// returns `false`, the sweep stops and the result is None.
+/// Sweeps the rows of a task. `progress` receives the number of poses of one orientation done since the last call; if
+/// it returns `false`, the sweep stops and the result is None.
 pub(crate) fn go(
     grid: &PoseGrid,
     layout: &Layout,

@@ -1,12 +1,12 @@
 //! The passages of an ellipse's coverage through a level, followed from one row of the grid to the next.
 //!
-//! The area of a convex set in a moving cell rises to a plateau and falls again: its root is concave where it is not
-//! 0 (Brunn and Minkowski). So the coverage passes a level at most twice, once on either side, so one
-//! rising and one falling passage are all there are. From one row to the next a passage moves smoothly: three former ones tell
-//! where to look, and one step of Newton's method usually ends there.
+//! The area of a convex set in a moving cell rises to a plateau and falls again: its root is concave where it is not 0
+//! (Brunn and Minkowski). So the coverage passes a level at most twice, once on either side, so one rising and one
+//! falling passage are all there are. From one row to the next a passage moves smoothly: three former ones tell where
+//! to look, and one step of Newton's method usually ends there.
 //!
-//! **Certainty.** At a place the excess over the level is `e` and the slope `m`; within `e/m` and a little the
-//! slope cannot change by more than `c` ([`EllipseBand::change`]). Then the passage lies between `e/(m + c)` and `e/(m − c)`
+//! **Certainty.** At a place the excess over the level is `e` and the slope `m`; within `e/m` and a little the slope
+//! cannot change by more than `c` ([`EllipseBand::change`]). Then the passage lies between `e/(m + c)` and `e/(m − c)`
 //! away. It is taken for known once that is narrower than [`NEAR`] asks for.
 
 use crate::sweep::ellipse_band::EllipseBand;

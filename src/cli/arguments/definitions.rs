@@ -1,8 +1,9 @@
 //! The commands and their flags, for clap, with the short texts of their help.
 //!
 //! A function per command, in the order of the help, then the flags that several of them share. Flags of parameters are
-//! made from the table of parameters ([`parameters`]), so their ranges and defaults are written nowhere else. Values are parsed
-//! here into their types: a file name that is not an atlas, or a range that goes backwards, is a usage error.
+//! made from the table of parameters ([`parameters`]), so their ranges and defaults are written nowhere else. Values
+//! are parsed here into their types: a file name that is not an atlas, or a range that goes backwards, is a usage
+//! error.
 
 use std::ffi::OsString;
 use std::path::PathBuf;

@@ -1,7 +1,8 @@
 //! The longer texts of the help, which follow the flags of a command: what to know about it, and examples.
 //!
-//! A text may begin with some lines of explanation; then comes `Examples:` with one command per line, indented. Man pages are
-//! made from the same texts. No line is wider than 80 columns. A test runs every example (`tests/cli/shell.rs`).
+//! A text may begin with some lines of explanation; then comes `Examples:` with one command per line, indented. Man
+//! pages are made from the same texts. No line is wider than 80 columns. A test runs every example
+//! (`tests/cli/shell.rs`).
 
 /// What the program is for: the first lines of `taxel --help`.
 pub(crate) const ABOUT: &str = "\

@@ -1,8 +1,8 @@
 //! Flags made from the table of parameters, and the values given by them.
 //!
-//! A row of the table gives a flag its name, value name and help with range and default. clap only checks that a value is a
-//! number; whether it is in range depends on the sensor, which may be changed by other flags, so [`Given`] collects the
-//! numbers and they are checked when a sensor, figure or picture is made from them.
+//! A row of the table gives a flag its name, value name and help with range and default. clap only checks that a value
+//! is a number; whether it is in range depends on the sensor, which may be changed by other flags, so [`Given`]
+//! collects the numbers and they are checked when a sensor, figure or picture is made from them.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgMatches};

@@ -1,5 +1,5 @@
-//! The commands and flags about the program itself: the look of its screen, scripts, settings, shell completions and manual
-//! pages.
+//! The commands and flags about the program itself: the look of its screen, scripts, settings, shell completions and
+//! manual pages.
 
 use std::path::PathBuf;
 
@@ -199,8 +199,8 @@ fn parse_size(text: &str) -> Result<(u16, u16), String> {
     command::size(text)
 }
 
-/// `--ascii`. [`Charset`](crate::cli::output::charset::Charset) has looked for it before clap does, because messages about
-/// wrong arguments need it; this declares it for the help and for the screen.
+/// `--ascii`. [`Charset`](crate::cli::output::charset::Charset) has looked for it before clap does, because messages
+/// about wrong arguments need it; this declares it for the help and for the screen.
 pub(crate) fn ascii() -> Arg {
     Arg::new("ascii")
         .long("ascii")

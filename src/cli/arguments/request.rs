@@ -1,4 +1,5 @@
-//! From what clap has read to a [`Request`]: plain values, in their types and checked. Nothing below this module knows clap.
+//! From what clap has read to a [`Request`]: plain values, in their types and checked. Nothing below this module knows
+//! clap.
 //!
 //! Settings are resolved on the way, since they decide about defaults: the sensor of a figure, the pitch of a table.
 
@@ -146,8 +147,8 @@ pub(crate) enum Form {
 /// Reads the arguments, of which the first is the program's own name, and the settings that they name.
 ///
 /// # Errors
-/// [`CliError::Usage`] with clap's message; [`CliError::Settings`] for the settings file; [`CliError::Range`] for values out of
-/// range.
+/// [`CliError::Usage`] with clap's message; [`CliError::Settings`] for the settings file; [`CliError::Range`] for
+/// values out of range.
 pub(crate) fn read(arguments: Vec<OsString>) -> Result<Asked, CliError> {
     let mut command = definitions::all();
     let matches = match command.try_get_matches_from_mut(arguments) {

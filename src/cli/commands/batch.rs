@@ -3,9 +3,9 @@
 //! {"imprint":["##","#."]}   ->   {"imprint":["##","#."],"na":3,"regions":[…]}
 //! {"figure":"hexagonal"}    ->   {"error":"line 2: …"}
 //! ```
-//! Memory does not grow with the number of lines: only one line and its answer are held at a time. Answers are buffered, but
-//! all of them are written out before any read that may have to wait for more input: so a program that sends a line and waits
-//! for its answer gets it. Blank lines are skipped, but count in line numbers.
+//! Memory does not grow with the number of lines: only one line and its answer are held at a time. Answers are
+//! buffered, but all of them are written out before any read that may have to wait for more input: so a program that
+//! sends a line and waits for its answer gets it. Blank lines are skipped, but count in line numbers.
 
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 

@@ -5,8 +5,8 @@ use crate::cli::input::content::Content;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::report;
 
-/// Returns the answer: one line of JSON, or the matrix and a table of its regions. For a stored shape the table is preceded
-/// by its name, what made it, and its sensor.
+/// Returns the answer: one line of JSON, or the matrix and a table of its regions. For a stored shape the table is
+/// preceded by its name, what made it, and its sensor.
 pub(crate) fn content(content: &Content, form: Form, charset: Charset) -> String {
     let imprint = match content {
         Content::Imprint(imprint) => imprint,

@@ -1,7 +1,7 @@
 //! `taxel export`, and `--export` of a touch: writes an imprint in a form for other programs, or draws it.
 //!
-//! A file is complete or not there at all: it is written under another name in the same folder and renamed. Standard output,
-//! given as `-`, gets the same bytes.
+//! A file is complete or not there at all: it is written under another name in the same folder and renamed. Standard
+//! output, given as `-`, gets the same bytes.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};

@@ -193,8 +193,8 @@ pub(crate) fn restore(shelf: &Shelf, name: &str) -> Result<String, CliError> {
     Ok(format!("restored {name}\n"))
 }
 
-/// Reads every shape, and looks for other files in the folder. Returns the report, the number of damaged shapes, and the
-/// number of all shapes.
+/// Reads every shape, and looks for other files in the folder. Returns the report, the number of damaged shapes, and
+/// the number of all shapes.
 pub(crate) fn check(shelf: &Shelf, charset: Charset) -> Result<(String, usize, usize), CliError> {
     let library = shelf.library()?;
     let lines = lines(&library)?;

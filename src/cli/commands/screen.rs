@@ -1,7 +1,8 @@
 //! `taxel` without a command: opens the screen, and with `--record` writes what is typed as a script.
 //!
-//! A record is a script that does the same again (`taxel script`): first the sensor, the look and the user's shapes, then every
-//! key with the screen's size. It is written as it happens, so that it survives a crash, and never replaces a file.
+//! A record is a script that does the same again (`taxel script`): first the sensor, the look and the user's shapes,
+//! then every key with the screen's size. It is written as it happens, so that it survives a crash, and never replaces
+//! a file.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};

@@ -1,8 +1,8 @@
 //! `taxel script`: runs the screen without a terminal, driven by a script.
 //!
-//! The program under test is the same as on a terminal, except that keys come from the script, nothing is drawn but what it
-//! asks for, and the library is an empty one of its own unless `--library` names one. So scripts are tests (those in
-//! `tests/scripts`), demonstrations, and records of `taxel --record`.
+//! The program under test is the same as on a terminal, except that keys come from the script, nothing is drawn but
+//! what it asks for, and the library is an empty one of its own unless `--library` names one. So scripts are tests
+//! (those in `tests/scripts`), demonstrations, and records of `taxel --record`.
 
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
@@ -131,8 +131,8 @@ fn write(
 struct Names(Vec<String>);
 
 impl Names {
-    /// The file name, without ending, for a screen of this name. Characters that a name cannot have become `-`, a screen
-    /// without a name gets its number, and a name that is taken gets a number behind it.
+    /// The file name, without ending, for a screen of this name. Characters that a name cannot have become `-`, a
+    /// screen without a name gets its number, and a name that is taken gets a number behind it.
     fn next(&mut self, name: &str) -> String {
         let fits = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
         let name: String = name

@@ -1,11 +1,12 @@
-//! `taxel sweep` and `taxel merge`: sweeps a grid of poses or puts shards together, writes the atlas, prints statistics.
+//! `taxel sweep` and `taxel merge`: sweeps a grid of poses or puts shards together, writes the atlas, prints
+//! statistics.
 //!
-//! Files are written under another name in the same folder and renamed when all of them are complete. A file that exists is
-//! replaced only with `--force`; this is checked before the work begins.
+//! Files are written under another name in the same folder and renamed when all of them are complete. A file that
+//! exists is replaced only with `--force`; this is checked before the work begins.
 //!
 //! SIGINT, SIGTERM and, on a terminal, SIGHUP stop a sweep within a few thousand poses and a file at its next block.
-//! Incomplete files are removed, and the exit status is 128 and the number of the signal. A second signal ends the program at
-//! once.
+//! Incomplete files are removed, and the exit status is 128 and the number of the signal. A second signal ends the
+//! program at once.
 
 use std::fs::File;
 use std::io::{self, IsTerminal};

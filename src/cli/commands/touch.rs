@@ -1,5 +1,5 @@
-//! `taxel figure` and `taxel picture`: touches a shape once, prints the imprint and its descriptors, and with `--save` and
-//! `--export` stores or writes it too.
+//! `taxel figure` and `taxel picture`: touches a shape once, prints the imprint and its descriptors, and with `--save`
+//! and `--export` stores or writes it too.
 
 use std::ffi::OsStr;
 
@@ -85,7 +85,8 @@ pub(crate) fn touch(
 
 /// Looks up a shape and returns it as a picture, moved as given, with its sensor.
 ///
-/// The sensor is that of the stored shape. An imprint alone lies on the default sensor, or on a larger one if it needs that.
+/// The sensor is that of the stored shape. An imprint alone lies on the default sensor, or on a larger one if it needs
+/// that.
 ///
 /// # Errors
 /// If the shape cannot be read, or a value is out of range.

@@ -109,8 +109,8 @@ impl Shelf {
             return Ok(*imprint);
         }
         let shape = self.library()?.load(name)?.shape;
-        // Only shapes that exist are kept, each under its stored name and not as it was spelled in the input: so the map
-        // never outgrows the library, whatever the input asks for.
+        // Only shapes that exist are kept, each under its stored name and not as it was spelled in the input: so the
+        // map never outgrows the library, whatever the input asks for.
         let mut found = self.found.borrow_mut();
         Ok(*found.entry(shape.name.to_string()).or_insert(shape.imprint))
     }

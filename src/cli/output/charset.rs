@@ -1,8 +1,8 @@
 //! The characters that may be written, and how text is converted to them.
 //!
-//! In a locale that is not UTF-8, or with `--ascii`, all output is ASCII: known signs get a spelling (`°` becomes
-//! ` deg`), everything else a Rust escape (`\u{e9}`). In either character set control characters are escaped, because text
-//! from files and arguments must not be able to control the terminal.
+//! In a locale that is not UTF-8, or with `--ascii`, all output is ASCII: known signs get a spelling (`°` becomes `
+//! deg`), everything else a Rust escape (`\u{e9}`). In either character set control characters are escaped, because
+//! text from files and arguments must not be able to control the terminal.
 
 use std::borrow::Cow;
 use std::ffi::OsString;

@@ -1,7 +1,8 @@
 //! The progress of a sweep, on standard error.
 //!
-//! On a terminal it is a bar; otherwise, as in the log of a job, a line every ten seconds; with `--quiet` nothing. This is
-//! the only place of the command line that writes escape codes, and only to a terminal. A line in a log looks like this:
+//! On a terminal it is a bar; otherwise, as in the log of a job, a line every ten seconds; with `--quiet` nothing. This
+//! is the only place of the command line that writes escape codes, and only to a terminal. A line in a log looks like
+//! this:
 //! ```text
 //! 250 of 1000 poses, 25 %, 30 s left
 //! ```

@@ -36,8 +36,8 @@ pub(crate) fn json(imprint: &Imprint) -> String {
     line
 }
 
-/// JSON with everything but ASCII escaped: the same bytes in every locale, and safe to print even if it quotes text from
-/// files.
+/// JSON with everything but ASCII escaped: the same bytes in every locale, and safe to print even if it quotes text
+/// from files.
 pub(crate) fn ascii_json(json: &str) -> String {
     let mut ascii = String::with_capacity(json.len());
     for unit in json.encode_utf16() {
@@ -70,8 +70,8 @@ pub(crate) fn size(imprint: &Imprint, sensor: Option<&Sensor>, pitch: Option<f64
     format!("{columns} × {rows} taxels{cells}{threshold}, NA {na} in all")
 }
 
-/// The whole report: the matrix, the lines `made` that say where it comes from, and the table of its regions. With `pitch`,
-/// the side of a cell in mm, lengths and areas are given in mm and mm² too.
+/// The whole report: the matrix, the lines `made` that say where it comes from, and the table of its regions. With
+/// `pitch`, the side of a cell in mm, lengths and areas are given in mm and mm² too.
 pub(crate) fn table(
     imprint: &Imprint,
     made: &[String],
@@ -125,8 +125,8 @@ fn line(text: &mut String, line: &str) {
     text.push('\n');
 }
 
-/// A line of the table: a descriptor, the factor from its values to those shown (the pitch, or 100 for percent), and the
-/// label on the left.
+/// A line of the table: a descriptor, the factor from its values to those shown (the pitch, or 100 for percent), and
+/// the label on the left.
 struct TableRow {
     descriptor: &'static Descriptor,
     factor: f64,
@@ -209,7 +209,8 @@ fn columns(descriptions: &[Description], pitch: Option<f64>, charset: Charset) -
     descriptions.iter().map(column).collect()
 }
 
-/// Puts columns side by side, as many as fit into [`WIDTH`], and the rest into further blocks below, each with the labels.
+/// Puts columns side by side, as many as fit into [`WIDTH`], and the rest into further blocks below, each with the
+/// labels.
 fn blocks(labels: &[String], mut columns: &[Vec<String>]) -> String {
     let width = |column: &[String]| column.first().map_or(0, |cell| cell.chars().count());
     let mut text = String::new();

@@ -1,6 +1,7 @@
 //! The summary of a sweep: as text, and as one line of JSON.
 //!
-//! The text gives the counts, then a line per feature and a column per statistic. `–` marks a value that does not exist:
+//! The text gives the counts, then a line per feature and a column per statistic. `–` marks a value that does not
+//! exist:
 //! ```text
 //! 10000 poses: x0 5:5.99:0.01, y0 5:5.99:0.01
 //! 393 distinct imprints, 376 up to shifts, 58 up to quarter turns and mirror images too

@@ -1,7 +1,7 @@
 //! The settings file: TOML text in, checked values out.
 //!
-//! Every entry is optional. An unknown entry or a wrong value is an error with its line and column, so a misspelled key is
-//! never silently ignored:
+//! Every entry is optional. An unknown entry or a wrong value is an error with its line and column, so a misspelled key
+//! is never silently ignored:
 //! ```
 //! use taxel::cli::settings::file::Config;
 //! let config = Config::read("theme = 'light'\n[sensor]\ncolumns = 32\n[keys.matrix]\nx = 'toggle'\n").unwrap();

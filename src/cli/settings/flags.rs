@@ -1,4 +1,5 @@
-//! The flags that override settings: `--theme`, `--color`, `--ascii`, `--no-mouse`, `--library` and those of the sensor.
+//! The flags that override settings: `--theme`, `--color`, `--ascii`, `--no-mouse`, `--library` and those of the
+//! sensor.
 
 use std::path::PathBuf;
 

@@ -12,8 +12,8 @@ pub(crate) struct Pitch {
 }
 
 impl Pitch {
-    /// The pitch in effect, in mm: that of the flag, else of a stored shape's sensor, else of the settings; None if none of
-    /// them sets one.
+    /// The pitch in effect, in mm: that of the flag, else of a stored shape's sensor, else of the settings; None if
+    /// none of them sets one.
     ///
     /// A sensor with the default pitch counts as unset: a shape stored without a pitch has it too.
     pub(crate) fn of(self, sensor: Option<&Sensor>) -> Option<f64> {

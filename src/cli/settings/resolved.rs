@@ -119,7 +119,8 @@ struct Settled<T> {
     origin: SettingOrigin,
 }
 
-/// Picks the value of a setting: that of the flag, else of the environment variable, else of the file, else the default.
+/// Picks the value of a setting: that of the flag, else of the environment variable, else of the file, else the
+/// default.
 fn settled<T: Clone>(
     flag: Option<(T, &str)>,
     variable: Option<(T, &'static str)>,

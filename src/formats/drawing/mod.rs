@@ -1,6 +1,6 @@
 //! A drawing of a touch for papers and reports: the matrix, the true outline, the circumscribed rectangle, CG and CD.
 //!
-//! All of it is black, white and grey, and nothing is told by a shade alone, so it survives any printer. Both axes are
+//! It is black, white and grey, and no information depends on a shade alone, so it survives any printer. Both axes are
 //! labelled, in cell sides, or in mm where a pitch is given; a legend tells the values. Coordinates on the page are
 //! points of 1/72 inch; a matrix is at most four inches wide. As SVG, text stays text; as PNG the page has 288 dots an
 //! inch.
@@ -81,8 +81,8 @@ impl Drawing {
         self
     }
 
-    /// With axes and values in mm for cells of this side; unchanged by one that is no sensor's pitch, and by one below a
-    /// picometre (1e-9 mm), whose axis could not be labelled.
+    /// With axes and values in mm for cells of this side; unchanged by one that is no sensor's pitch, and by one below
+    /// a picometre (1e-9 mm), whose axis could not be labelled.
     #[must_use]
     pub fn with_pitch(mut self, mm: f64) -> Self {
         if let Ok(mm) = Sensor::LARGEST.check(Parameter::Pitch, mm)
@@ -100,7 +100,7 @@ impl Drawing {
         self
     }
 
-    /// With another region described, by its place among [`regions`]; unchanged where there are not so many.
+    /// Describes another region, given by its index in [`regions`]; an index beyond them changes nothing.
     #[must_use]
     pub fn with_region(mut self, index: usize) -> Self {
         if index < self.regions.len() {
