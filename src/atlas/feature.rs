@@ -8,7 +8,7 @@
 use std::sync::LazyLock;
 
 use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension, Value};
-use crate::description::{RegionKind, each_region};
+use crate::description::{RegionKind, each_region, is_main};
 use crate::imprint::Imprint;
 
 /// A number that describes an imprint's main region.
@@ -109,9 +109,8 @@ impl ImprintSummary {
                 return;
             }
             summary.pieces = summary.pieces.saturating_add(1);
-            // The main region: the piece with the largest filled area, the first of equals.
-            let best = summary.description.as_ref();
-            if best.is_none_or(|best| region.filled().count() > best.nae) {
+            let best = summary.description.as_ref().map(|best| best.nae);
+            if is_main(region.filled().count(), best) {
                 summary.description = Some(Description::of(region));
             }
         });

@@ -13,4 +13,6 @@ pub use chain::ChainSteps;
 pub use descriptor::{
     ChangesUnder, DESCRIPTORS, Description, Descriptor, Dimension, ExactValue, Value,
 };
+#[cfg(feature = "sweep")]
+pub(crate) use region::is_main;
 pub use region::{Region, RegionKind, each_region, main_region, regions};

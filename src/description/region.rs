@@ -154,8 +154,8 @@ pub fn each_region(imprint: &Imprint, mut visit: impl FnMut(&Region)) {
     }
 }
 
-/// Which region is selected at the start and described by sweeps: the exterior with the largest filled area, the
-/// first of equals. None of an empty list.
+/// The index of the main region, which is selected at the start and described by sweeps: the exterior with the largest
+/// filled area, the first of equals. None if there are no exteriors.
 pub fn main_region(regions: &[Region]) -> Option<usize> {
     let exteriors = regions
         .iter()
@@ -163,13 +163,19 @@ pub fn main_region(regions: &[Region]) -> Option<usize> {
         .filter(|(_, region)| region.kind == RegionKind::Exterior);
     let largest = |best: Option<(usize, u32)>, (index, region): (usize, &Region)| {
         let area = region.filled.count();
-        if best.is_some_and(|(_, most)| most >= area) {
-            best
-        } else {
+        if is_main(area, best.map(|(_, area)| area)) {
             Some((index, area))
+        } else {
+            best
         }
     };
     exteriors.fold(None, largest).map(|(index, _)| index)
+}
+
+/// The rule of the main region, for exteriors one after another: whether one with this filled area takes the place of
+/// the best so far. The first of equals stays.
+pub(crate) fn is_main(area: u32, best: Option<u32>) -> bool {
+    best.is_none_or(|best| area > best)
 }
 
 /// Whether every row within the bounds is one run that meets the next row's: then it is one piece without holes.
