@@ -1,4 +1,7 @@
-//! Changes of the document: touching, moving, turning, zooming, and going back through them.
+//! Changes of the document: touching, moving, turning, zooming, undo and redo.
+//!
+//! Each change goes through `change`, `begin` or `travel`, which bring everything that depends on the document
+//! back into range: the cursor, the chosen region, the mode.
 
 use crate::formats::value::counted;
 use crate::parameter::Parameter;

@@ -1,4 +1,8 @@
-//! What is on the matrix, what can be seen of it, and every earlier state of it.
+//! What is on the matrix, what can be read off it, and its history.
+//!
+//! A [`Document`] is a sensor, what touched it, and the taxels set by hand since then. Everything else follows from it
+//! and is a [`Reading`]. The [`History`] is a list of documents; it also knows where each came from, so that going back
+//! restores the name, too.
 
 use crate::description::{Description, Region, main_region, regions};
 use crate::formats::name::folded;

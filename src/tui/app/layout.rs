@@ -1,4 +1,7 @@
 //! The panes of the screen, for drawing and for finding what the mouse points at.
+//!
+//! The panel stands beside the matrix where both fit; otherwise each is a page of its own. Taxels are enlarged only
+//! where the panel keeps all its room. See [`crate::tui::app::view`] for a picture.
 
 use ratatui::layout::Rect;
 

@@ -1,4 +1,10 @@
-//! The first line: the paper's seven options, and help.
+//! The menu in the first line: the paper's seven options, and Help.
+//!
+//! ```text
+//! n New   l Load   f Figure   p Picture   s Save   d Delete   q Quit   ? Help      from 70 columns on
+//! New  Load  Figure  Picture  Save  Delete  Quit  ? Help                           the key is the bold letter
+//! ```
+//! Names and keys are those of the table of keys as they are now. Options that do not fit are left out.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;

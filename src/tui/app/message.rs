@@ -1,4 +1,7 @@
-//! What a key means: the only things that change the program.
+//! Messages: the only things that change the state.
+//!
+//! A key becomes a message by the table of keys, a `:` command by its text, a click by what it points at. Effects
+//! answer with messages, too. A script sends the same ones.
 
 use crate::formats::StoredShape;
 use crate::storage::{Expected, LibraryEntry, LoadedShape};

@@ -1,4 +1,7 @@
-//! What the mouse does: it points at what keys do elsewhere, and paints taxels.
+//! What the mouse does: it paints taxels, and otherwise does what a key would.
+//!
+//! A press on a taxel switches it, and a drag from there gives all taxels on its way the same state, as one change. On
+//! a page, the page itself says what a click means ([`crate::tui::app::page::Page::click`]).
 
 use ratatui::layout::{Position, Rect};
 

@@ -1,4 +1,13 @@
-//! The lines at the foot: what made the imprint, the taxel under the cursor, notices and questions, hints.
+//! The lines at the foot of the screen.
+//!
+//! ```text
+//! washer*: ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0° + 1 by hand     name, whether it is changed, what made the imprint
+//! column  8, row  8  covered 1.000000    active  NA 52 in all        the taxel under the cursor
+//! saved as washer                                                    a notice, a question, or a prompt
+//! Space toggle  u undo  ? help                                       keys that mean something now
+//! ```
+//! On a low screen the taxel shares its line with notices, and on a lower one the first line goes. A notice that needs
+//! several lines grows upwards.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};

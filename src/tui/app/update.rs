@@ -1,4 +1,7 @@
-//! The only writer of the state: a message goes in, and perhaps a wish for the world outside comes out.
+//! The only writer of the state: a message goes in, and perhaps an effect for the runtime comes out.
+//!
+//! The top page receives the message, or the matrix if there is none. A notice stays until the next message from the
+//! user.
 
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::Message;

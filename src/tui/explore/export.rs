@@ -1,4 +1,4 @@
-//! The field for the name of a file that what was found is written to.
+//! The prompt for the name of the file that results are exported to. The ending decides the format.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};

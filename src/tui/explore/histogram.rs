@@ -1,4 +1,13 @@
-//! The histogram page: how often each value of the chosen descriptor occurs, a bar for each interval.
+//! The histogram page: how often each value of the chosen descriptor occurs.
+//!
+//! ```text
+//! na: active taxels, cells                             the descriptor and its unit
+//! mean 52.3  sd 1.2  min 49  max 56  no value: 0 poses
+//! 49 |██                      1,204   0.12 %           an interval, a bar, poses, their share
+//! 50 |█████▌                  3,611   0.36 %
+//! ```
+//! Counts with few values have a bar for each value, everything else one for an interval of round width. A value that
+//! occurs at all has at least half a character.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};

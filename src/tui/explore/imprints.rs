@@ -1,4 +1,13 @@
-//! The imprints page: a row for each distinct imprint, thumbnails from the selected one on, and a line about it.
+//! The imprints page.
+//!
+//! ```text
+//!    #  ↓poses      %   x0   y0  p  h       na   >7      #12     headings, an arrow at what rows are sorted by
+//! >  7     366   0.47 5.00 5.00  1  0       36   ·▄▄·    ▄██▄    the selected row, thumbnails from it on
+//!   12     360   0.46 5.05 5.00  1  1       34   ·▀▀·    ·▀▀·
+//! imprint 7 at x0 5.00, y0 5.00; 1 piece, 0 holes, na 36         everything about the selected one
+//! ```
+//! A row has the number of the imprint, how many poses leave it and their share, its first pose, pieces and holes, and
+//! the value of the chosen descriptor. The first pose gives way first where there is little room, then the thumbnails.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};

@@ -1,4 +1,4 @@
-//! What is asked of a sweep on the screen, and what comes of it.
+//! Messages about sweeps: what a key or a command asks for, and what workers answer.
 
 use std::sync::Arc;
 use std::time::Duration;

@@ -1,4 +1,7 @@
-//! What a sweep found, and what of it is looked at: a page, a descriptor, an order, a row, a place of the map.
+//! What a sweep found, and which part of it is looked at: page, descriptor, order, row, cursor of the map.
+//!
+//! What was found never changes and is shared with workers that write it to files. All pages look at the same
+//! descriptor, and the list and the map lead to each other.
 
 use std::sync::Arc;
 

@@ -1,4 +1,13 @@
-//! The statistics page: a row for each descriptor, and how many poses and imprints there are.
+//! The statistics page.
+//!
+//! ```text
+//! distinct up to shifts: 175  and up to turns and mirrors: 105
+//! poses partly off the sensor: 316  without imprint: 32
+//! 1 of 23              min   mean    max     sd        which descriptor is chosen, and columns
+//! > na                   1 22.405     29 7.3052        a row for each descriptor
+//! ```
+//! The columns are those of [`STATISTIC_COLUMNS`]; those that do not fit scroll to the side. The chosen descriptor is
+//! also that of the histogram and of the list of imprints.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};

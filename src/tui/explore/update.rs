@@ -1,4 +1,7 @@
-//! What keys do with what was found: pages, rows, the map, a shape back onto the matrix, a file.
+//! What messages do over the results of a sweep, and in the prompt for the name of an export.
+//!
+//! Messages that mean the same on all pages are handled here: the page, the descriptor, the order, the map's angle and
+//! zoom. Scrolling and selecting are left to the page's own row in [`crate::tui::explore::pages`].
 
 use ratatui::layout::Rect;
 

@@ -1,4 +1,11 @@
-//! The results of a sweep: the tabs of the pages, a summary, and the page.
+//! The results of a sweep.
+//!
+//! ```text
+//!  1 imprints   2 statistics   3 histogram   4 map     a tab for each page; titles only where all of them fit
+//! hexagon: 1,000 poses, 87 distinct imprints           what was swept, and how much was found
+//!                                                      the page, see the table in `pages`
+//! ```
+//! Results of a sweep that was stopped say which part they are of.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};

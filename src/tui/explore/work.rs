@@ -1,4 +1,10 @@
-//! The way to results: the form of ranges, sweeps and exports in progress, and the events of their workers.
+//! The way to results: the form of ranges, a sweep or an export in progress, and the events of its worker.
+//!
+//! ```text
+//! Open -> form of ranges -> Start -> Running -> Swept -> results        Stop: the results so far
+//! results -> name of a file -> Running -> Written                       Stop: no file
+//! ```
+//! Each piece of work has a number, and its events carry it. Events of work that is no longer waited for are dropped.
 
 use std::sync::Arc;
 

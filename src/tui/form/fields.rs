@@ -1,4 +1,9 @@
-//! A form: a text field a parameter. It knows the table of parameters and no shapes.
+//! Fields of parameters. They know the table of parameters but no shapes.
+//!
+//! A [`ParameterField`] is the text of one parameter; a [`ParameterForm`] is a list of them, one of which may have the
+//! focus. A field converts its text when it is asked for its value, and never keeps a value beside the text, so what
+//! one sees is what counts. The exception is the value that a field starts with: it may have more decimals than the
+//! form shows, and stays exact as long as its text is not changed.
 
 use crate::parameter::{Parameter, ParameterError};
 use crate::sensor::Sensor;

@@ -1,4 +1,7 @@
 //! The lines of a form in its pane.
+//!
+//! With enough room each field has two lines, the second for errors; otherwise one. The field that has the focus is
+//! always visible: fields above it scroll out of a low pane.
 
 use ratatui::layout::Rect;
 

@@ -1,4 +1,9 @@
-//! The forms of Figure, Picture and the sensor, which the matrix follows live.
+//! The state of the forms of Figure, Picture and the sensor.
+//!
+//! A form keeps three documents: the one before it was opened, which Cancel goes back to; the one that its fields make,
+//! which the matrix shows while all fields are valid; and the last one before the present field was edited, which the
+//! matrix shows while that field is invalid. The third one matters because a text that becomes invalid may have been
+//! valid on the way, like the 1 on the way to 17.
 
 use crate::figure::{Figure, FigureKind};
 use crate::formats::value::counted;

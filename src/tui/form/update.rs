@@ -1,4 +1,7 @@
 //! What messages do in a form.
+//!
+//! Accept puts the form's document onto the matrix if all fields are valid; otherwise it moves the focus to the first
+//! one that is not, and says what is wrong. Everything else edits the fields, and the matrix follows.
 
 use crate::tui::app::change::{refuse, replace};
 use crate::tui::app::dialog::Dialog;

@@ -1,4 +1,17 @@
-//! A form: the kind of a figure, then a line a field with its range and unit, errors under the field.
+//! The forms of a figure, a picture and the sensor.
+//!
+//! ```text
+//! Figure                                              title
+//! Kind      < ellipse   > e r t p h o                 kind, and the letters that choose one (figures only)
+//! Radius x  4.00      above 0, up to 16 cells         label, text, what the field takes
+//!   ! expected a number                               what is wrong with it
+//! Thickness           above 0, up to 16 cells
+//!   empty: solid                                      a remark on a field that may be empty
+//! ! 3 active taxels will be cut                       what would be lost (sensor only)
+//! ```
+//! In a narrow pane what a field takes stands under it, and an error takes that place. In a low pane every field has
+//! one line, and an error stands in place of what the field takes. The matrix beside the form shows what its fields
+//! make.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};

@@ -1,4 +1,7 @@
 //! Where the taxels are on the screen.
+//!
+//! A taxel is two characters wide, so that it looks square; one where the matrix fits only so; or a multiple of two
+//! where all taxels fit enlarged. Drawing and the mouse share this layout.
 
 use ratatui::layout::Rect;
 

@@ -1,4 +1,12 @@
-//! The descriptors of the region that is chosen, a line each, from the table of descriptors.
+//! The panel: the descriptors of the chosen region.
+//!
+//! ```text
+//! Region 1 of 2: exterior
+//! NA     36                                    symbol, value, and a remark if there is room for all of it:
+//! P      16.97            8.49 mm              the value in millimetres if a pitch is set,
+//! xg     5.5              centroid, x          otherwise the name of the descriptor
+//! ```
+//! The rows are those of [`DESCRIPTORS`]. A low pane shows them in several columns.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;

@@ -1,4 +1,7 @@
-//! What messages do while nothing lies over the matrix.
+//! What messages do while no page lies over the matrix, and those that a question or a command leads to.
+//!
+//! What concerns the library, a worker or the terminal is returned as an effect; everything else changes the state at
+//! once.
 
 use crate::description::{DESCRIPTORS, Descriptor};
 use crate::formats::value;

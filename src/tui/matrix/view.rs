@@ -1,4 +1,14 @@
-//! The matrix with its rulers. A matrix that is larger than its pane scrolls with the cursor.
+//! The matrix with its rulers.
+//!
+//! ```text
+//!    0   2   4   6           column ruler
+//!  0 · · · · · · · ·         row ruler, then two characters for each taxel
+//!  1 · · ████████· ·
+//!  2 · · ██[ ████· ·         the cursor is the first character of its taxel; the second still shows its state
+//! ```
+//! A taxel of the described region, another active taxel, one of a described hole and an inactive one differ in their
+//! characters, not only in colour. A matrix that is larger than its pane scrolls with the cursor; one that is much
+//! smaller is drawn larger, a whole number of times. Coverage is shown in five shades or as two digits of percent.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};

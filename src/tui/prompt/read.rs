@@ -1,7 +1,14 @@
-//! Reads a line of the `:` prompt: an action by its name, or a command with its arguments.
+//! Reads a line of the `:` prompt: the name of an action, or a command with arguments.
 //!
-//! Names and flags are those of the program's own command line: `figure hexagon --side 3 --angle 17`,
-//! `load washer`, `sensor --columns 32 --rows 32`. A parameter that is not given keeps its value, or has its default.
+//! ```text
+//! figure hexagon --side 3 --angle 17     a kind, then flags as on the command line
+//! sensor --columns 32 --rows 32          only what changes
+//! explore --x0 5:5.99:0.01 --anchor centre
+//! load my shape                          names may contain spaces, and are never quoted
+//! cursor 3 4      move 0.5 -1      turn 15
+//! ```
+//! Names, flags and ranges are those of the program's own command line. Parameters of a figure that are not given have
+//! their defaults; those of the sensor keep their values.
 
 use crate::figure::{Figure, FigureKind};
 use crate::formats::Name;

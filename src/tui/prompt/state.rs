@@ -1,4 +1,7 @@
-//! The state of the prompts: the name to save under, checked while typing, and the `:` prompt with its history.
+//! The state of the prompts: the name to save under, and a `:` command with those before it.
+//!
+//! The history is that of the running program. The arrows walk through it, and what was being typed comes back after
+//! the last line.
 
 use crate::formats::name::LONGEST;
 use crate::formats::{Name, NameError};

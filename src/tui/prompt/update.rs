@@ -1,4 +1,7 @@
 //! What messages do in the prompts.
+//!
+//! A prompt stays open until what was typed is valid. Completion asks the library for names where a command takes one;
+//! the answer completes the word when it arrives.
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::dialog::Dialog;

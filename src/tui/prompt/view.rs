@@ -1,4 +1,10 @@
-//! The prompts: one line each, in the line of notices.
+//! The prompts in the line of notices.
+//!
+//! ```text
+//! Save as: my shape█                                  the name to save under; a broken rule stands above
+//! :figure hex█   hexagon heptagon … 2 more            a command, and what the last word could become
+//! ```
+//! A text that is too long scrolls with its cursor. Candidates that do not fit are counted.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};

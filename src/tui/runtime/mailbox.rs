@@ -3,7 +3,7 @@
 //! A queue, and a socket pair that the loop waits for together with the terminal and the signals. The queue is not
 //! bounded: workers send at most ten events a second and must never wait for a slow terminal. A source of frames, which
 //! sends a hundred or more a second, must not use the queue: its place is a slot of its own beside `messages`, one
-//! `Mutex<Option<Frame>>` that a newer frame overwrites, behind the same socket. [`Mailbox::collect`] then returns the
+//! `Mutex<Option<Frame>>` that a newer frame overwrites, behind the same socket. `Mailbox::collect` then returns the
 //! queue and after it the latest frame. So the latest frame wins, and nothing else is ever dropped.
 
 use std::io::{self, Read, Write};

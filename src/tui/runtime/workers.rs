@@ -31,9 +31,9 @@ const MEASURED: Duration = Duration::from_millis(30);
 pub(in crate::tui) struct Workers {
     /// None: work is done at once.
     post: Option<EventSink>,
-    /// Tells the work in progress to stop.
+    /// Set to stop the work in progress.
     stop: Arc<AtomicBool>,
-    /// Tells an estimate in progress to go on; false makes it stop.
+    /// Set to stop the estimate in progress.
     measuring: Arc<AtomicBool>,
     /// The thread that writes a file.
     writing: Option<JoinHandle<()>>,

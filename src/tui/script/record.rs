@@ -1,4 +1,7 @@
-//! Writes what comes in as a script: a bug report becomes a test.
+//! Records what a user does as a script that does it again, so that a bug report becomes a test.
+//!
+//! Keys are collected into lines of notation, a press and a release at the same place become a click, a press with
+//! drags becomes a drag.
 
 use std::fmt::Write;
 

@@ -1,4 +1,6 @@
-//! The list of shapes and, beside it, the preview of the selected one.
+//! The areas of the list of shapes and of the preview beside it.
+//!
+//! The selected row stays as near to the middle of the list as its ends allow.
 
 use ratatui::layout::{Position, Rect};
 

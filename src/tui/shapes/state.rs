@@ -1,4 +1,7 @@
-//! The list of shapes: filtered as one types, its shapes read as they come into sight.
+//! The state of the list of shapes: what it is for, the filter, the selected row, and the shapes that were read.
+//!
+//! Matches come in this order: the name itself, names that begin with the filter, names that contain it; each in the
+//! order of the library. Shapes are read as they come into sight, so a large library opens at once.
 
 use std::collections::HashMap;
 

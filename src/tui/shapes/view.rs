@@ -1,4 +1,14 @@
-//! The list of shapes with its filter, and a preview of the selected one.
+//! The list of stored shapes, with a filter and a preview.
+//!
+//! ```text
+//! Load  filter: le   4 of 28                   clover               what for, filter, how many match | name
+//!   0 above, 1 below                           NA 97, pieces 1, …   rows out of sight                | facts
+//!   letter A                 16 x 16 shipped   drawn by hand        sign, name, size, origin         | source
+//! > letter B                 16 x 16 shipped
+//!   my letter                16 x 16           ··██··               the selected row is reversed     | imprint
+//! ```
+//! Below 66 columns there is no preview. A row shows the size once its shape has been read; one that cannot be read is
+//! `broken`, and the preview says why.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};

@@ -1,4 +1,11 @@
-//! Texts in the columns of a terminal, where a character may have two, or none.
+//! Widths of texts in the columns of a terminal, where a character may have two, or none.
+//!
+//! ```
+//! use taxel::tui::widget::columns::{broken, width, window};
+//! assert_eq!(width("字a"), 3);
+//! assert_eq!(window("a long text", 11, 5), ("text", 4));
+//! assert_eq!(broken("breaks at spaces", 9), ["breaks at", "spaces"]);
+//! ```
 
 use ratatui::text::Span;
 

@@ -1,4 +1,7 @@
-//! A line of text that is typed and edited: the same in a form, a list, a name and the command line.
+//! A line of text that is typed and edited, the same in forms, lists and prompts.
+//!
+//! A field that was just entered is replaced by what is typed next, as in most programs with forms; to move the cursor
+//! first keeps the text.
 
 use tui_input::{Input, InputRequest};
 

@@ -1,7 +1,7 @@
-//! How things look: a style a role, and the characters of the matrix.
+//! How things look: a style for each role, and the characters of taxels, bars and signs.
 //!
-//! Nothing is told by colour alone: what a colour says, a character or a word says too. The characters of the
-//! Unicode set are those that the fonts of text consoles have (code page 437).
+//! Nothing is expressed by colour alone: a character or a word says the same. The characters of the Unicode set are
+//! those that the fonts of text consoles have (code page 437).
 
 use std::borrow::Cow;
 

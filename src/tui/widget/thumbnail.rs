@@ -1,4 +1,5 @@
-//! An imprint in little: two rows in a line by half blocks; in ASCII a row a line.
+//! A small picture of an imprint: a column for each taxel, two rows in a line by half blocks, or a row in a line in
+//! ASCII.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;

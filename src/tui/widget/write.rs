@@ -1,4 +1,8 @@
-//! Writing text into the screen's buffer: by role, cut at the edge, in the characters that the terminal has.
+//! Writing text into the screen's buffer.
+//!
+//! Text has a [`Role`], and the theme decides its style and characters. It is cut at the edge of its area, with an
+//! ellipsis so that one sees that something is missing. All functions accept any area, also an empty one or one beyond
+//! the buffer.
 
 use std::borrow::Cow;
 

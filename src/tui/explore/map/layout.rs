@@ -1,4 +1,6 @@
-//! The map: its cells, the rulers, and the pose at its cursor.
+//! Where the map's cells, its rulers and the pose at its cursor are.
+//!
+//! A map that is larger than its page scrolls with its cursor. A pose is two columns wide if the whole map fits so.
 
 use ratatui::layout::{Position, Rect};
 

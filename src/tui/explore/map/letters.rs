@@ -1,4 +1,8 @@
-//! Letters for the imprints of a map: the same one wherever an imprint occurs, another one for each neighbour.
+//! Letters for the imprints of a map: the same one wherever an imprint occurs, different ones for neighbours.
+//!
+//! This is a colouring of the graph of imprints that touch each other on the map, also across corners. There are 62
+//! letters. The imprints with most neighbours choose first: a letter that nobody uses yet, otherwise one that no
+//! neighbour has. An imprint with more than 61 neighbours may have to share a letter with one of them.
 
 use std::collections::{BTreeMap, BTreeSet};
 

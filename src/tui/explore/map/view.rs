@@ -1,5 +1,14 @@
-//! The map: which imprint each x0 and y0 leaves at one angle. Every imprint has a letter, and neighbours have different
-//! ones; colours only help the eye. Where there is no letter, the sweep was stopped before.
+//! The map page: which imprint each x0 and y0 leaves, at one angle and zoom.
+//!
+//! ```text
+//! angle 0° 1/36  zoom x 1.00 1/3           imprint 0       what is fixed, and how many others there are
+//! y0   x0 5.00                5.90         366 poses       rulers
+//! 5.00 aaaaaaaabbcccccc                                    a letter for each imprint
+//! 5.05 aaaaaaaaddcccccc                    ··▄▄··          the imprint at the cursor
+//! imprint 0 at x0 5.00, y0 5.00; 366 poses                 and its pose
+//! ```
+//! Neighbouring imprints have different letters, so that borders are visible without colours; the same letter elsewhere
+//! may be another imprint. A pose that the stopped sweep did not reach is blank.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};

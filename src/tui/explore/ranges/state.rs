@@ -1,7 +1,7 @@
-//! The form of ranges that are swept: a text field a parameter, and which point of the shape they place.
+//! The state of the form of ranges: a field for each axis of the shape, and the anchor.
 //!
-//! Fields come from the table of parameters and start with the command line's defaults. A range is
-//! `start:end:step` or a single number, as on the command line.
+//! A range is `start:end:step` or a single number, as on the command line, with the same defaults. Each valid grid is
+//! sent to a worker once, which measures how long its sweep would take; an estimate for another grid is ignored.
 
 use std::time::Duration;
 

@@ -1,5 +1,14 @@
-//! The form of ranges: a line a field with what it may hold, errors under or beside it, how many poses there are and how
-//! long they take.
+//! The form of ranges, beside the matrix.
+//!
+//! ```text
+//! Explore: hexagon                          what is swept
+//! x0      5:5.99:0.01    -16 to 16 cells    label, range, what it may contain
+//! y0      5:5.99:0.01    -16 to 16 cells
+//! Anchor  < corner >     top left, unturned
+//! 3,600,000 poses, about 20 seconds         how many poses, and how long a sweep takes
+//! without 1 taxel set by hand               what the sweep does not know
+//! ```
+//! An error stands under its field, or in place of what it may contain where there is too little room.
 
 use std::time::Duration;
 
