@@ -11,12 +11,12 @@ use crate::tui::app::state::{App, Mode, Notice};
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
 
-/// Says something.
+/// Shows a notice.
 pub(in crate::tui) fn inform(app: &mut App, text: impl Into<String>) {
     app.notice = Some(Notice::Info(text.into()));
 }
 
-/// Says why something was not done.
+/// Shows why something was not done.
 pub(in crate::tui) fn refuse(app: &mut App, text: impl Into<String>) {
     app.notice = Some(Notice::Refusal(text.into()));
 }
@@ -62,7 +62,7 @@ pub(in crate::tui) fn travel(
     }
 }
 
-/// A document from a form: a new touch, or another sensor. What was done by hand and goes is said.
+/// A document from a form or a command. A notice says how many taxels set by hand were dropped.
 pub(in crate::tui) fn replace(app: &mut App, document: Document) {
     let present = app.history.present();
     if *present == document {
@@ -92,7 +92,7 @@ fn refuse_to_move(app: &mut App) {
     );
 }
 
-/// What can be moved; where there is nothing, that is said.
+/// The source on the matrix. If there is none, a notice says so.
 pub(in crate::tui) fn movable(app: &mut App) -> Option<Source> {
     let source = app.history.present().source.clone();
     if source.is_none() {
@@ -108,7 +108,7 @@ pub(in crate::tui) fn nudge(app: &mut App, arrow: Arrow) {
     shift(app, f64::from(dx) * length, f64::from(dy) * length);
 }
 
-/// Moves the shape by so many cells.
+/// Moves the shape by a distance in cells along x and y.
 pub(in crate::tui) fn shift(app: &mut App, dx: f64, dy: f64) {
     let Some(source) = movable(app) else { return };
     let ways = [(Parameter::X0, dx), (Parameter::Y0, dy)];
@@ -149,7 +149,7 @@ pub(in crate::tui) fn zoom(app: &mut App, direction: i8) {
     );
 }
 
-/// Steps of a hundredth shall lead from decimal to decimal, not drift by roundings; nor to a zero with a minus.
+/// Rounds to 6 decimals, so that steps of a hundredth do not drift; -0 becomes 0.
 fn tidy(value: f64) -> f64 {
     (value * 1e6).round() / 1e6 + 0.0
 }

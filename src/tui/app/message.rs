@@ -9,7 +9,7 @@ use crate::tui::app::document::Document;
 use crate::tui::explore::message::{ExploreMessage, WorkerEvent};
 use crate::tui::keys::key::Arrow;
 
-/// A request, whoever makes it: a key, a script, a paste.
+/// A message, from a key, a click, a command, a script, or as the answer to an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Message {
     /// Empty the matrix.
@@ -40,31 +40,31 @@ pub enum Message {
     ToRow(Endpoint),
     /// Move the cursor to a taxel: column, row.
     PointAt(u8, u8),
-    /// Turn the taxel under the cursor over.
+    /// Switch the taxel under the cursor on or off.
     Toggle,
-    /// Take the last change back.
+    /// Undo the last change.
     Undo,
-    /// Make it again.
+    /// Redo the change that was undone last.
     Redo,
-    /// Select another region, so many further on.
+    /// Select the region this many further on; negative goes back. The first follows the last.
     Region(i8),
     /// Show the matrix in the next way: imprint, shades, percent.
     Display,
     /// Change between the matrix and the descriptors where there is no room for both.
     SwitchPage,
-    /// Take hold of the shape, or let it go.
+    /// Hold the shape, so that the arrows move it, or let it go.
     Grab,
     /// Move the shape by a step.
     Nudge(Arrow),
-    /// Move the shape by so many cells along x and along y.
+    /// Move the shape by a distance in cells along x and y.
     Move(f64, f64),
     /// Turn the shape clockwise as seen, by whole degrees.
     Turn(i16),
     /// Another step of nudging, larger or smaller.
     NudgeStep(i8),
-    /// Go to another field of a form, so many further on.
+    /// Go to the field of a form this many further on; negative goes back.
     Field(i8),
-    /// Go to the field of that number; none: to the kind of a form, or what follows the fields of ranges.
+    /// Go to the field of this index. None is the kind in a form of a figure, and the anchor in the form of ranges.
     ToField(Option<usize>),
     /// An arrow in a form: moves within a field, or chooses.
     Choose(Arrow),
@@ -78,9 +78,9 @@ pub enum Message {
     ToEdge(Endpoint),
     /// Text that was pasted.
     Paste(String),
-    /// Take what the dialog says, or answer yes.
+    /// Accept what the page says, or answer yes.
     Accept,
-    /// Leave the dialog and everything as it was.
+    /// Close the page and change nothing.
     Cancel,
     /// No to a question.
     Decline,
@@ -102,11 +102,11 @@ pub enum Message {
     Replace(Box<StoredShape>, u64),
     /// Remove the shape of that name.
     Remove(String),
-    /// Bring back work that a program left when it died.
+    /// Recover the unsaved work of a program that crashed.
     Recover,
-    /// Throw such work away.
+    /// Move such work to the trash.
     GiveUp,
-    /// What the library answers.
+    /// An answer of the library.
     Library(LibraryEvent),
     /// Ask whether the shape of that name shall be removed.
     AskRemove(String),
@@ -122,15 +122,15 @@ pub enum Message {
     Command,
     /// Put something into the clipboard of the user's terminal.
     Copy(Copied),
-    /// Have the mouse reported, or leave it to the terminal.
+    /// Switch the mouse: it sets taxels, or the terminal selects text with it.
     MouseOnOff,
     /// Something about the imprints of all poses.
     Explore(ExploreMessage),
-    /// What a worker tells.
+    /// An event of a worker.
     Worker(WorkerEvent),
-    /// Draw everything anew.
+    /// Redraw the whole screen.
     Redraw,
-    /// Give the terminal back to the shell until it calls again.
+    /// Suspend the program, as Ctrl-Z does, until the shell continues it.
     Suspend,
 }
 
@@ -154,7 +154,7 @@ pub enum Copied {
     Descriptors,
 }
 
-/// What the library answers to a request. Errors are sentences.
+/// An answer of the library to a request. Errors are sentences.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LibraryEvent {
     /// Its list.
@@ -167,30 +167,30 @@ pub enum LibraryEvent {
     Named(Purpose, Result<Box<LoadedShape>, String>),
     /// A shape was stored under this name, and this is what its file holds.
     Stored(String, u64),
-    /// It was not: the file holds something else, which is to be asked about.
+    /// It was not stored, because the file holds something else; the question whether to replace it.
     Differs(Box<StoredShape>, u64, String),
     /// It was removed.
     Removed(String),
     /// It was brought back.
     Restored(String),
-    /// Work that a program left when it died.
+    /// Unsaved work of a program that crashed was recovered.
     Recovered(Box<StoredShape>),
-    /// A program left work when it died.
+    /// There is unsaved work of a program that crashed.
     Found(Leftover),
-    /// Such work was thrown into the trash, under this name; and what is left then.
+    /// Such work was moved to the trash under this name; and the next offer, if there is one.
     GivenUp(String, Option<Leftover>),
-    /// It was not, and why.
+    /// It could not be moved to the trash, and why.
     NotGivenUp(String),
-    /// Nothing came of it.
+    /// The request failed, and why.
     Failed(String),
 }
 
-/// Work that programs left when they died.
+/// An offer of unsaved work of programs that crashed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Leftover {
-    /// What the one that is offered is, in a few words.
+    /// What is offered, in a few words.
     pub what: String,
-    /// How many there are with it.
+    /// How many offers there are, this one included.
     pub waiting: usize,
 }
 

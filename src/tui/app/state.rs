@@ -23,7 +23,7 @@ pub struct Options {
     pub sensor: Sensor,
     /// How it looks.
     pub theme: Theme,
-    /// Whether the terminal tells of its mouse, until the user says otherwise.
+    /// Whether the mouse sets taxels at the start.
     pub mouse: bool,
 }
 
@@ -110,7 +110,7 @@ pub enum RunState {
     Terminated,
 }
 
-/// Something said to the user until the next key.
+/// A notice, shown until the next key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Notice {
     /// For information.
@@ -144,15 +144,15 @@ pub struct App {
     pub(in crate::tui) notice: Option<Notice>,
     /// The shape that was removed last, until something else is done: undo brings it back.
     pub(in crate::tui) removed: Option<String>,
-    /// What the last sweep found, while it is not looked at.
+    /// The results of the last sweep, while they are closed.
     pub(in crate::tui) results: Option<Box<Results>>,
-    /// How many pieces of work were begun.
+    /// How many sweeps and exports were begun; the number of the last one.
     pub(in crate::tui) works: u64,
     /// The commands that were given, the last one last.
     pub(in crate::tui) commands: Vec<String>,
     /// Whether the mouse is wanted.
     pub(in crate::tui) mouse: bool,
-    /// What a drag of the mouse sets taxels to, and the taxel that it was on last.
+    /// During a drag of the mouse: the state that it gives taxels, and the last taxel on its way.
     pub(in crate::tui) paint: Option<(bool, (u8, u8))>,
     /// Columns and rows of the screen.
     pub(in crate::tui) screen: (u16, u16),
@@ -240,7 +240,7 @@ impl App {
         Panes::of(Rect::new(0, 0, columns, rows), &self.reading().imprint)
     }
 
-    /// What a sweep found, where that is looked at: under whatever lies over it.
+    /// The results that are open, perhaps under other pages.
     pub(in crate::tui) fn results_below(&self) -> Option<&Results> {
         self.dialogs.iter().rev().find_map(|dialog| match dialog {
             Dialog::Results(results) => Some(&**results),

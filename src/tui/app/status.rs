@@ -23,10 +23,10 @@ use crate::tui::keys::binding::Binding;
 use crate::tui::widget::theme::Role;
 use crate::tui::widget::write;
 
-/// What is said where the shape is not wholly on the sensor. It stays where what is before it has to be shortened.
+/// Appended if the shape is not wholly on the sensor. It is never shortened; what stands before it is.
 const BEYOND: &str = "; reaches beyond the sensor";
 
-/// Draws all of them; answers where the cursor is, where a name or a command is typed.
+/// Draws all of them. Returns where the cursor of a prompt is, None if there is no prompt.
 pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
     let (theme, seen) = (app.theme(), app.reading());
     if app.pane().map(Page::slot) != Some(Slot::Screen) {
@@ -49,7 +49,7 @@ pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
     let prompt = prompt.filter(|page| page.slot() == Slot::Prompt);
     let cursor = prompt.and_then(|page| page.draw(theme, app.keymap(), buffer, panes.notice));
     if let Some((text, role)) = notice(app, panes) {
-        // What is typed keeps its line, and what is said about it stands above.
+        // The prompt keeps its line, and the notice stands above it.
         let last = Rect {
             y: panes.notice.y - u16::from(cursor.is_some()),
             ..panes.notice

@@ -58,42 +58,42 @@ pub enum Zoom {
     Y,
 }
 
-/// What a key or a command asks for.
+/// What a key or a command asks for on the pages of Explore.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExploreMessage {
     /// The last result, or a form for the first.
     Open,
     /// The form of ranges.
     Ranges,
-    /// To go through a grid.
+    /// Sweep a grid.
     Start(Box<PoseGrid>),
-    /// To stop what is under way, and keep what is complete.
+    /// Stop the work in progress. A sweep keeps what is complete.
     Stop,
     /// A page.
     Page(ExplorePage),
-    /// Another page, so many further on.
+    /// The page this many further on; negative goes back.
     NextPage(i8),
-    /// Another descriptor, so many further on.
+    /// The descriptor this many further on; negative goes back.
     Feature(i8),
-    /// Other columns of a table, so many further on.
+    /// Scroll the columns of the statistics by this many.
     Columns(i8),
-    /// To sort the imprints; by what they are sorted by already, the other way.
+    /// Sort the imprints by a key; again by the same key, reversed.
     Sort(SortKey),
-    /// To go to the imprint that is on the matrix.
+    /// Select the imprint that is on the matrix.
     Find,
-    /// From an imprint of the list to the map, and back.
+    /// Go from an imprint of the list to the map, or back.
     Follow,
-    /// To select a row of the page.
+    /// Select a row of the page.
     Select(usize),
-    /// To put the map's cursor at an x0 and a y0.
+    /// Put the cursor of the map at an x0 and a y0, by index.
     Point(u64, u64),
-    /// Another angle of the map, so many further on.
+    /// The angle of the map this many further on; negative goes back.
     Angle(i16),
-    /// Another zoom of the map, so many further on.
+    /// The zoom of the map this many further on; negative goes back.
     Zoomed(Zoom, i8),
-    /// To ask for the name of a file.
+    /// Ask for the name of a file to export to.
     Export,
-    /// To write a file.
+    /// Write the results to a file.
     Write(String, Existing),
 }
 
@@ -102,11 +102,11 @@ pub enum ExploreMessage {
 pub struct SweepProgress {
     /// Poses done.
     pub poses: u64,
-    /// In this time.
+    /// Time since the work began.
     pub elapsed: Duration,
 }
 
-/// What a worker tells. Each piece of work has a number; what comes from an earlier one is not heard.
+/// An event of a worker. It carries the number of its work; events of work that is no longer waited for are dropped.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WorkerEvent {
     /// How far it is.
@@ -117,9 +117,9 @@ pub enum WorkerEvent {
     Swept(u64, Arc<Findings>),
     /// A file was written.
     Written(u64, String),
-    /// It was not, because a file of that name is there.
+    /// It was not written, because a file of that name exists.
     Exists(u64, String),
-    /// Nothing came of it, and why.
+    /// The work failed, and why.
     Failed(u64, String),
     /// Something that belongs to no piece of work cannot be done, and why.
     Refused(String),

@@ -27,9 +27,9 @@ use crate::tui::widget::write;
 /// What is done.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WorkKind {
-    /// A grid is gone through.
+    /// A sweep of a grid.
     Sweep(Box<PoseGrid>),
-    /// A file of this name is written; of so many poses, where it holds all of them.
+    /// An export to a file of this name; the number of poses if it has a record for each.
     Write(String, Option<u64>),
 }
 
@@ -40,9 +40,9 @@ pub struct Running {
     pub number: u64,
     /// What it is.
     pub job: WorkKind,
-    /// How far it is; none before the first word of it.
+    /// How far it is; None before the first progress message.
     pub progress: Option<SweepProgress>,
-    /// Whether it was told to stop.
+    /// Whether it is being stopped.
     pub stopping: bool,
 }
 
@@ -65,7 +65,7 @@ impl Running {
         }
     }
 
-    /// Poses a second; none before that can be told.
+    /// Poses a second; None before the first progress message.
     #[expect(clippy::cast_precision_loss, reason = "for reading")]
     pub fn rate(&self) -> Option<f64> {
         let SweepProgress { poses, elapsed } = self.progress?;
@@ -151,7 +151,7 @@ fn gauge(theme: &Theme, done: u64, all: u64, buffer: &mut Buffer, row: Rect) {
     write::line(buffer, row, theme, pieces);
 }
 
-/// Poses a second, and the time that is left; nothing before that can be told.
+/// Poses a second and the time left; empty before the first progress message.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

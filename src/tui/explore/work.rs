@@ -22,7 +22,7 @@ use crate::tui::explore::results::Results;
 use crate::tui::explore::running::{Running, WorkKind};
 use crate::tui::runtime::effect::{Effect, Work};
 
-/// What is asked for over the matrix or at a question.
+/// Handles what a key, a command or an answered question asks for.
 pub(crate) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
     match asked {
         ExploreMessage::Open => open(app),
@@ -38,7 +38,7 @@ pub(crate) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
     }
 }
 
-/// The last results where they are those of the shape on the matrix, else a form.
+/// Opens the last results if they are of the shape on the matrix, otherwise the form.
 fn open(app: &mut App) -> Option<Effect> {
     app.mode = Mode::Draw;
     match app.results.take() {
@@ -77,7 +77,7 @@ fn open_ranges(app: &mut App) -> Option<Effect> {
     effect
 }
 
-/// Asks how long the grid of a form takes, once for each.
+/// The effect that estimates how long the grid of a form takes, once for each grid.
 fn measure(form: &mut RangesForm) -> Option<Effect> {
     let grid = form.unmeasured()?;
     Some(Effect::Work(Work::Measure(Box::new(grid))))
@@ -134,7 +134,7 @@ pub(crate) fn in_running(app: &mut App, mut running: Running, message: &Message)
     stops.then_some(Effect::Work(Work::Stop))
 }
 
-/// Takes what a worker tells.
+/// Handles an event of a worker.
 pub(crate) fn on_worker(app: &mut App, told: WorkerEvent) -> Option<Effect> {
     match told {
         WorkerEvent::Progress(number, progress) => {
@@ -183,7 +183,7 @@ pub(crate) fn on_worker(app: &mut App, told: WorkerEvent) -> Option<Effect> {
     None
 }
 
-/// Asks for something in the place of the work that wants to know it; help that lies over that is closed.
+/// Opens a page in place of the work that asks for it; help over the work is closed.
 fn ask(app: &mut App, place: usize, dialog: Dialog) {
     app.dialogs.truncate(place);
     app.dialogs.push(dialog);
@@ -198,7 +198,7 @@ fn running(app: &mut App, number: u64) -> Option<&mut Running> {
     })
 }
 
-/// Takes the work of that number away; answers where it lay.
+/// Closes the work of a number. Returns its index among the pages, None if nobody waits for it.
 fn finish(app: &mut App, number: u64) -> Option<usize> {
     let own =
         |dialog: &Dialog| matches!(dialog, Dialog::Running(running) if running.number == number);

@@ -42,7 +42,7 @@ pub struct FormDialog {
     before: Document,
     /// Its imprint.
     before_imprint: Imprint,
-    /// What the fields make of it, while all of them are right.
+    /// The document that the fields make, while all of them are valid.
     shown: Document,
     /// What they made of it before the field that has the focus was typed in. A field that becomes wrong may have been
     /// right on the way, "1" on the way to "17": the matrix does not stay there.

@@ -156,7 +156,7 @@ fn draw_kind(theme: &Theme, kind: FigureKind, focused: bool, buffer: &mut Buffer
     write::line(buffer, row, theme, pieces);
 }
 
-/// Label and text; answers where the text cursor would be.
+/// Draws label and text. Returns where the text cursor would be.
 fn draw_field(
     theme: &Theme,
     field: &ParameterField,

@@ -11,7 +11,7 @@ use crate::tui::widget::number::taxels;
 /// Columns of the row ruler.
 pub const RULER: u16 = 3;
 
-/// How many times as large as usual taxels can be so that all of them fit: 1 where they do not fit even so.
+/// How many times taxels can be enlarged so that all of them fit; 1 if they do not fit even unenlarged.
 pub(in crate::tui) fn scale(imprint: &Imprint, width: u16, height: u16) -> u16 {
     let across = width.saturating_sub(RULER) / (2 * u16::from(imprint.columns()));
     let down = height.saturating_sub(1) / u16::from(imprint.rows());

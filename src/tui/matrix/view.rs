@@ -113,7 +113,7 @@ impl<'a> MatrixView<'a> {
             Display::Percent => percent(theme, coverage(seen, column, row)),
         };
         let here = (column, row) == self.cursor;
-        // Numbers side by side are told apart by their weight.
+        // Every other number is bold, so that neighbours can be told from each other.
         let heavy = self.display == Display::Percent && column % 2 == 1 && first.is_ascii_digit();
         let style = theme.style(role);
         let weight = (style.add_modifier - Modifier::DIM) | Modifier::BOLD;

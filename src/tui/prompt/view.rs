@@ -84,7 +84,7 @@ impl Page for CommandDialog {
     }
 }
 
-/// Words after a gap, and how many more there are where not all of them fit.
+/// Words after a gap, and the number of those that do not fit.
 fn as_many_as_fit(words: &[String], room: usize) -> String {
     let mut text = String::new();
     for (index, word) in words.iter().enumerate() {

@@ -10,7 +10,7 @@
 //! Signal HUP          Wait                Quit
 //! ```
 //! Places are column,row of the screen, from 0. `#` begins a comment line. `Quit` holds where the program has ended.
-//! A drag goes through its places and no others, as a terminal tells them.
+//! A drag visits its places and no others, as a terminal reports them.
 
 use regex_lite::{Regex, RegexBuilder};
 
@@ -41,7 +41,7 @@ pub enum ScriptCommand {
     ClickText(String),
     /// The left button, held from one place to others.
     Drag(Vec<ScreenPosition>),
-    /// The wheel at a place: so many turns, up where negative.
+    /// The wheel at a place: a number of turns, up if negative.
     Scroll(ScreenPosition, i16),
     /// Print the screen, under a name.
     Screen(String),

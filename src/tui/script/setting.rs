@@ -22,7 +22,7 @@ use crate::tui::widget::theme::{ColorDepth, Palette};
 /// One line of it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ScriptSetting {
-    /// A screen of so many columns and rows.
+    /// A screen with this many columns and rows.
     Size(u16, u16),
     /// ASCII characters only, or not.
     Ascii(bool),
@@ -30,7 +30,7 @@ pub enum ScriptSetting {
     Color(ColorDepth),
     /// Which ones.
     Theme(Palette),
-    /// Whether the terminal tells of its mouse.
+    /// Whether the mouse sets taxels.
     Mouse(bool),
     /// A quantity of the sensor.
     Sensor(Parameter, f64),
@@ -38,7 +38,7 @@ pub enum ScriptSetting {
     Library(PathBuf),
     /// A shape of the user's.
     Shape(Box<StoredShape>),
-    /// Unsaved work that waits.
+    /// Unsaved work of a program that crashed.
     Leftover(Box<StoredShape>),
 }
 

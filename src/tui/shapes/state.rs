@@ -10,7 +10,7 @@ use crate::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
 use crate::tui::app::message::{Message, Purpose};
 use crate::tui::widget::text_field::TextField;
 
-/// So many shapes around the selected one are read at once: more than any screen shows.
+/// The number of shapes that are read at once before and after the selected one: more than any screen shows.
 const AHEAD: usize = 64;
 
 /// The list.
@@ -82,7 +82,7 @@ impl ListDialog {
         self.rows().nth(self.selected)
     }
 
-    /// Selects another row, so many further on.
+    /// Selects the row this many further on; negative goes back.
     pub fn go(&mut self, lines: i16) {
         self.select(self.selected.saturating_add_signed(isize::from(lines)));
     }

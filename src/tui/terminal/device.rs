@@ -8,7 +8,7 @@ use rustix::fs::{Mode, OFlags, open};
 use rustix::io::{Errno, read, write};
 use rustix::termios::{isatty, tcgetwinsize};
 
-/// A write that the terminal does not take is given up after this time when nobody waits for it any more.
+/// The last write of the program is given up after this time if the terminal does not take it.
 const LAST_WRITE: Timespec = Timespec {
     tv_sec: 0,
     tv_nsec: 100_000_000,

@@ -61,7 +61,7 @@ pub(in crate::tui) fn run(
 }
 
 /// A panic here puts the terminal right before it is reported. One of a worker does not end the loop, and must not
-/// write over the screen: it is told when the terminal is the shell's again.
+/// write over the screen: it is printed when the shell has the terminal again.
 fn leave_on_panic() {
     let (hook, own) = (std::panic::take_hook(), std::thread::current().id());
     std::panic::set_hook(Box::new(move |info| {
@@ -373,7 +373,7 @@ impl<'a> EventLoop<'a> {
         Ok(())
     }
 
-    /// The terminal was somebody else's for a while.
+    /// Takes the terminal back after another program had it.
     fn resume(&mut self) -> io::Result<()> {
         session::enter(&self.device, &self.settings, self.mouse)?;
         self.measure();

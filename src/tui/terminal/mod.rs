@@ -50,7 +50,7 @@ use crate::tui::runtime::World;
 use input::Input;
 
 /// Runs the program until it ends. The terminal is left as it was, after an error, a signal and a panic too, and
-/// unsaved work is in the journal wherever the program may not come back. `watch` is told of all that comes in.
+/// unsaved work is in the journal wherever the program may not come back. `watch` is called with each input.
 ///
 /// # Errors
 /// Where there is no terminal, or it cannot be read or written.

@@ -25,7 +25,7 @@ const PASTE_ON: &str = "\x1b[?2004h";
 const PASTE_OFF: &str = "\x1b[?2004l";
 /// Ends all styles.
 const PLAIN: &str = "\x1b[m";
-/// Below whatever is on the screen: the first row that there is not is the last one.
+/// Moves to the last row: terminals clamp 999 to it.
 const BELOW: &str = "\x1b[999;1H\r\n";
 
 /// What has to be put back.
@@ -39,7 +39,7 @@ struct SavedTerminal {
     settings: TerminalSettings,
     /// Whether the mouse was reported.
     mouse: bool,
-    /// What is to be said on standard error when the terminal is the shell's again.
+    /// What is printed to standard error when the shell has the terminal again.
     later: String,
 }
 
@@ -131,9 +131,8 @@ pub(in crate::tui) fn tell_later(text: &str) -> bool {
     ours.is_some()
 }
 
-/// Prints to standard error; if that fails there is nobody left to tell.
+/// Prints to standard error, and ignores a failure: there is no other place to report it.
 fn eprint(text: &str) {
-    // Where standard error is gone, nobody is there to be told.
     let _ = io::stderr().write_all(text.as_bytes());
 }
 

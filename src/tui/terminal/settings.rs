@@ -76,7 +76,7 @@ pub struct Abilities {
 pub struct TerminalSettings {
     /// What it is.
     pub kind: TerminalKind,
-    /// Columns and rows, whatever the terminal says.
+    /// Columns and rows that override what the terminal reports.
     pub size: Option<(u16, u16)>,
     /// Columns and rows where the terminal does not know them, as serial lines do not.
     pub fallback: (u16, u16),

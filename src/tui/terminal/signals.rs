@@ -40,12 +40,12 @@ impl SignalReceiver {
         Ok(Self { delivery })
     }
 
-    /// Readable when there is something to hear.
+    /// Readable after a signal has arrived.
     pub(in crate::tui) fn fd(&self) -> BorrowedFd<'_> {
         self.delivery.get_read().as_fd()
     }
 
-    /// What was said since the last time; what ends the program comes first.
+    /// The signals since the last call; those that end the program come first.
     pub(in crate::tui) fn received(&mut self) -> Vec<SignalEvent> {
         let mut heard: Vec<SignalEvent> = self
             .delivery

@@ -1,4 +1,4 @@
-//! Styles, told by their difference.
+//! Styles of cells, sent as the difference from the style before.
 
 use ratatui::buffer::Cell;
 use ratatui::style::{Color, Modifier};

@@ -14,7 +14,7 @@ pub fn width(text: &str) -> usize {
     Span::raw(text).width()
 }
 
-/// As much of the beginning of a text as fits into so many columns.
+/// As much of the beginning of a text as fits into a number of columns.
 pub(in crate::tui) fn head(text: &str, room: usize) -> &str {
     let mut ends = text
         .char_indices()
@@ -40,7 +40,7 @@ pub fn window(text: &str, cursor: usize, room: usize) -> (&str, usize) {
     (shown, column)
 }
 
-/// A text in lines of at most so many columns, broken at spaces, and inside words that are longer: paths have no spaces.
+/// Breaks a text into lines of at most `room` columns: at spaces, or inside words that are longer, as paths are.
 pub fn broken(text: &str, room: usize) -> Vec<&str> {
     let mut lines = Vec::new();
     let mut rest = text.trim();

@@ -56,7 +56,7 @@ impl TextField {
         self.fresh = false;
     }
 
-    /// Does what a message means in a line of text; answers whether it means anything there.
+    /// Does what a message means in a line of text. Returns whether it means anything there.
     pub fn take(&mut self, message: &Message) -> bool {
         let replaces = matches!(
             message,
@@ -105,7 +105,7 @@ impl TextField {
 
     /// Performs a request of the crate below.
     fn edit(&mut self, request: InputRequest) {
-        // What the library answers is only whether anything changed, which the view sees by itself.
+        // The result only says whether anything changed.
         let _ = self.input.handle(request);
     }
 }

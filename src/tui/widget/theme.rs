@@ -7,7 +7,7 @@ use std::borrow::Cow;
 
 use ratatui::style::{Color, Modifier, Style};
 
-/// What a piece of screen is.
+/// What a piece of text on the screen is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// Ordinary text.
@@ -53,7 +53,7 @@ pub fn letter(style: &Style) -> char {
 pub enum ColorDepth {
     /// None, or none are wanted.
     Never,
-    /// The eight and their bright ones, in whatever tones the user gave them.
+    /// The eight colours and their bright variants, in the tones that the user chose for the terminal.
     Sixteen,
     /// The table of 256.
     TwoFiftySix,
@@ -68,7 +68,7 @@ pub enum Palette {
     Dark,
     /// A light background.
     Light,
-    /// No colours, whatever the terminal has.
+    /// No colours, even if the terminal has them.
     Mono,
 }
 

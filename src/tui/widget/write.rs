@@ -39,7 +39,8 @@ pub fn line<'a>(
     x
 }
 
-/// A text in so many columns: as it is where it fits, but for spaces at its end, else shortened with an ellipsis.
+/// A text in a number of columns: as it is if it fits, not counting spaces at its end, otherwise shortened with an
+/// ellipsis.
 pub fn fitted<'a>(text: &'a str, room: usize, theme: &Theme) -> Cow<'a, str> {
     if width(text) <= room {
         return Cow::Borrowed(text);
@@ -58,7 +59,7 @@ pub fn fitted<'a>(text: &'a str, room: usize, theme: &Theme) -> Cow<'a, str> {
     Cow::Owned(format!("{}{ellipsis}", kept.trim_end()))
 }
 
-/// The first of several texts that fits into so many columns; the last one where none does.
+/// The first of several texts that fits into a number of columns, or the last one if none does.
 pub fn first_fitting<'a>(texts: &[&'a str], room: usize) -> &'a str {
     let fitting = texts.iter().find(|text| width(text) <= room);
     fitting.or(texts.last()).copied().unwrap_or("")
@@ -75,7 +76,7 @@ pub fn row(area: Rect, index: usize) -> Rect {
     }
 }
 
-/// The first of so many rows, of which some are visible, the selected one as near to the middle as the ends allow.
+/// The index of the first visible row, with the selected one as near to the middle as the ends allow.
 pub(in crate::tui) fn first_of(visible: u16, rows: usize, selected: usize) -> usize {
     let visible = usize::from(visible);
     selected
@@ -83,7 +84,7 @@ pub(in crate::tui) fn first_of(visible: u16, rows: usize, selected: usize) -> us
         .min(rows.saturating_sub(visible))
 }
 
-/// The part of an area that begins so many lines below its top.
+/// The part of an area that begins a number of lines below its top.
 pub fn below(area: Rect, lines: u16) -> Rect {
     let lines = lines.min(area.height);
     Rect {

@@ -47,12 +47,12 @@ impl RangeField {
     }
 }
 
-/// What is wrong, and in which field; of none, where it is wrong with all of them together.
+/// What is wrong with the ranges.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RangesError {
-    /// The field's number.
+    /// The index of the field; None if all fields together are wrong, as with too many poses.
     pub field: Option<usize>,
-    /// For a place that shows the field beside it; in lines, where it is wrong with all of them.
+    /// The message beside its field; it may have several lines if it is about all fields.
     pub brief: String,
     /// With the field's name.
     pub full: String,
@@ -147,7 +147,7 @@ impl RangesForm {
         time.filter(|_| self.grid().ok().as_ref() == Some(grid))
     }
 
-    /// The grid of the fields, where nobody was asked yet how long it takes; from now on it counts as asked about.
+    /// The grid of the fields if it was not measured before. From now on it counts as measured.
     pub fn unmeasured(&mut self) -> Option<PoseGrid> {
         let grid = self.grid().ok()?;
         let known = self.measured.as_ref().map(|(known, _)| known);
@@ -158,7 +158,7 @@ impl RangesForm {
         Some(grid)
     }
 
-    /// Takes note of how long a grid will take; of one that is no longer asked about, nothing.
+    /// Notes how long a grid takes. An estimate for another grid is ignored.
     pub fn take_estimate(&mut self, grid: &PoseGrid, time: Duration) {
         if let Some((known, estimate)) = &mut self.measured
             && known == grid

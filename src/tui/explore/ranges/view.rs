@@ -100,7 +100,7 @@ fn draw(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rect) -> Op
     cursor
 }
 
-/// Label and text; answers where the text cursor would be.
+/// Draws label and text. Returns where the text cursor would be.
 fn draw_field(
     theme: &Theme,
     field: &RangeField,
