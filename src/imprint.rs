@@ -313,16 +313,28 @@ impl fmt::Display for ImprintError {
         match self {
             Self::Rows => f.write_str("expected 1 to 64 rows"),
             Self::Columns { row, found } => {
-                write!(f, "row {row} has {found} characters, expected 1 to 64")
+                let noun = if *found == 1 {
+                    "character"
+                } else {
+                    "characters"
+                };
+                write!(f, "row {row} has {found} {noun}, expected 1 to 64")
             }
             Self::Ragged {
                 row,
                 found,
                 expected,
-            } => write!(
-                f,
-                "row {row} has {found} characters, expected {expected} as in the first row"
-            ),
+            } => {
+                let noun = if *found == 1 {
+                    "character"
+                } else {
+                    "characters"
+                };
+                write!(
+                    f,
+                    "row {row} has {found} {noun}, expected {expected} as in the first row"
+                )
+            }
             Self::Character { row, column, found } => write!(
                 f,
                 "row {row}, column {column}: found {found:?}, expected '#' or '.'"

@@ -312,6 +312,21 @@ impl Descriptor {
         }
     }
 
+    /// Returns what it is of a region of that kind, in a few words. The taxels of a hole are inactive.
+    ///
+    /// ```
+    /// use taxel::description::{Descriptor, RegionKind};
+    /// let na = Descriptor::from_key("na").expect("in the table");
+    /// assert_eq!(na.name_of(RegionKind::Exterior), "active taxels");
+    /// assert_eq!(na.name_of(RegionKind::Hole), "inactive taxels");
+    /// ```
+    pub fn name_of(&self, kind: RegionKind) -> &'static str {
+        match kind {
+            RegionKind::Hole if self.key == "na" => "inactive taxels",
+            _ => self.name,
+        }
+    }
+
     /// Returns the descriptor with that key, such as `"na"`.
     ///
     /// ```

@@ -22,14 +22,178 @@ fn failure(error: &serde_json::Error) -> String {
     format!("{{\"error\":{:?}}}", error.to_string())
 }
 
-/// A JSON error's text without its position.
+/// What is wrong with a JSON text, in words that do not suppose that one knows its parser; without the position, which
+/// callers report.
 pub(crate) fn message(error: &serde_json::Error) -> String {
-    legible(without_position(&error.to_string()))
+    legible(&plain(&error.to_string()))
 }
 
-/// An error's text without the position at its end.
-pub(crate) fn without_position(text: &str) -> &str {
-    text.rfind(" at line ").map_or(text, |end| &text[..end])
+/// A message of the parser in our words. Messages that are ours already come back as they are.
+pub(crate) fn plain(text: &str) -> String {
+    let text = text.rfind(" at line ").map_or(text, |end| &text[..end]);
+    let known = PARSER.iter().find(|(theirs, _)| *theirs == text);
+    if let Some((_, ours)) = known {
+        return (*ours).to_owned();
+    }
+    let quoted = |start: &str| text.strip_prefix(start)?.strip_suffix('`');
+    if let Some(key) = quoted("duplicate field `") {
+        return format!("{key}: given twice");
+    }
+    if let Some(key) = quoted("missing field `") {
+        return format!("{key}: missing");
+    }
+    let types = ["invalid type: ", "invalid value: "];
+    let mismatch = types.into_iter().find_map(|start| text.strip_prefix(start));
+    match mismatch.and_then(|rest| rest.rsplit_once(", expected ")) {
+        Some((found, expected)) => {
+            format!("found {}, expected {}", noun(found), kind(expected))
+        }
+        None => text.to_owned(),
+    }
+}
+
+/// What the parser says of a text that is no JSON, and what we do.
+const PARSER: [(&str, &str); 20] = [
+    ("expected ident", VALUE),
+    ("expected value", VALUE),
+    ("EOF while parsing a value", "the end, expected a value"),
+    (
+        "EOF while parsing a string",
+        "the end inside a text, expected a closing quote",
+    ),
+    (
+        "EOF while parsing an object",
+        "the end inside an object, expected '}'",
+    ),
+    (
+        "EOF while parsing a list",
+        "the end inside a list, expected ']'",
+    ),
+    ("expected `:`", "expected ':' after a key"),
+    ("expected `,` or `}`", "expected ',' or '}'"),
+    ("expected `,` or `]`", "expected ',' or ']'"),
+    ("expected `\"`", "expected a text in double quotes"),
+    ("expected double quote", "expected a text in double quotes"),
+    ("key must be a string", "expected a key in double quotes"),
+    (
+        "trailing comma",
+        "a comma too many, expected another value after it or none",
+    ),
+    (
+        "trailing characters",
+        "more text after the end, expected one object",
+    ),
+    ("invalid number", "expected a number such as 3, 0.5 or 1e-3"),
+    ("number out of range", "a number too large"),
+    (
+        "invalid escape",
+        "an escape that JSON does not have, expected one such as \\n or \\u00e9",
+    ),
+    (
+        "invalid unicode code point",
+        "not UTF-8, or an escape of no character",
+    ),
+    (
+        "control character (\\u0000-\\u001F) found while parsing a string",
+        "a control character in a text, expected an escape such as \\n",
+    ),
+    (
+        "recursion limit exceeded",
+        "lists or objects nested too deeply",
+    ),
+];
+
+/// What may stand where a value must.
+const VALUE: &str = "expected a value: a text in double quotes, a number, a list or an object";
+
+/// What was found, as people call it: `string "3"` is the text "3".
+fn noun(found: &str) -> String {
+    let value = |start: &str| found.strip_prefix(start)?.strip_suffix('`');
+    let number = value("integer `").or_else(|| value("floating point `"));
+    if let Some(number) = number {
+        return format!("the number {number}");
+    }
+    if let Some(truth) = value("boolean `") {
+        return truth.to_owned();
+    }
+    match found {
+        "map" => "an object".to_owned(),
+        "sequence" => "a list".to_owned(),
+        "unit value" => "null".to_owned(),
+        _ => match found.strip_prefix("string ") {
+            Some(text) => format!("the text {text}"),
+            None => found.to_owned(),
+        },
+    }
+}
+
+/// What was expected: a type has a name of its own for people, the others have one already.
+fn kind(expected: &str) -> &str {
+    match expected {
+        "f64" | "f32" => "a number",
+        "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number from 0 up",
+        "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number",
+        "a string" | "a borrowed string" => "a text",
+        "a boolean" => "true or false",
+        "a sequence" => "a list",
+        "a map" => "an object",
+        other => other,
+    }
+}
+
+#[cfg(test)]
+mod parser_tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn messages_are_in_our_words() {
+        let object = |text: &str| {
+            let read = serde_json::from_str::<BTreeMap<String, f64>>(text);
+            message(&read.expect_err("no object of numbers"))
+        };
+        for (text, expected) in [
+            ("", "the end, expected a value"),
+            ("nonsense", VALUE),
+            ("{\"a\":nonsense}", VALUE),
+            ("{\"a\":x}", VALUE),
+            ("{", "the end inside an object, expected '}'"),
+            ("{\"a", "the end inside a text, expected a closing quote"),
+            ("{\"a\" 1}", "expected ':' after a key"),
+            ("{\"a\":1 2}", "expected ',' or '}'"),
+            ("{1:2}", "expected a key in double quotes"),
+            (
+                "{\"a\":1,}",
+                "a comma too many, expected another value after it or none",
+            ),
+            ("{} {}", "more text after the end, expected one object"),
+            ("{\"a\":1.}", "expected a number such as 3, 0.5 or 1e-3"),
+            ("{\"a\":1e999}", "a number too large"),
+            ("{\"a\":\"3\"}", "found the text \"3\", expected a number"),
+            ("{\"a\":null}", "found null, expected a number"),
+            ("{\"a\":true}", "found true, expected a number"),
+            ("{\"a\":[1]}", "found a list, expected a number"),
+            ("{\"a\":{}}", "found an object, expected a number"),
+            ("3", "found the number 3, expected an object"),
+            ("-3.5", "found the number -3.5, expected an object"),
+            (
+                "{\"a\n\":1}",
+                "a control character in a text, expected an escape such as \\n",
+            ),
+            (
+                "{\"a\\q\":1}",
+                "an escape that JSON does not have, expected one such as \\n or \\u00e9",
+            ),
+        ] {
+            assert_eq!(object(text), expected, "{text}");
+        }
+        let list = serde_json::from_str::<Vec<u8>>("[1").expect_err("no list");
+        assert_eq!(message(&list), "the end inside a list, expected ']'");
+        assert_eq!(
+            plain("side: 99 is out of range"),
+            "side: 99 is out of range"
+        );
+    }
 }
 
 #[cfg(all(test, feature = "tui"))]

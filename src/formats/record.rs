@@ -11,7 +11,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::figure::{Figure, FigureKind};
 use crate::formats::described::Rows;
-use crate::formats::json::without_position;
+use crate::formats::json::plain;
 use crate::imprint::{Imprint, ImprintError};
 use crate::parameter::{PARAMETERS, Parameter, ParameterError};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
@@ -280,7 +280,7 @@ pub(crate) fn once<T, E: Error>(
     value: T,
 ) -> Result<(), E> {
     if slot.replace(value).is_some() {
-        Err(E::duplicate_field(key))
+        Err(E::custom(format_args!("{key}: given twice")))
     } else {
         Ok(())
     }
@@ -301,10 +301,7 @@ impl Values {
             )));
         };
         let number = map.next_value::<f64>().map_err(|error| {
-            A::Error::custom(format_args!(
-                "{key}: {}",
-                without_position(&error.to_string())
-            ))
+            A::Error::custom(format_args!("{key}: {}", plain(&error.to_string())))
         })?;
         once(PARAMETERS[index].key, &mut self.0[index], number)
     }

@@ -75,10 +75,13 @@ impl fmt::Display for TextError {
                 column,
                 found,
                 expected,
-            } => write!(
-                f,
-                "line {line}, column {column}: found {found} taxels, expected {expected} as in line 1"
-            ),
+            } => {
+                let noun = if *found == 1 { "taxel" } else { "taxels" };
+                write!(
+                    f,
+                    "line {line}, column {column}: found {found} {noun}, expected {expected} as in line 1"
+                )
+            }
             Self::Columns {
                 line,
                 column,

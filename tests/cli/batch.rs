@@ -40,7 +40,7 @@ fn bad_lines_are_answered_in_their_places() {
         b"",
         b"{\"figure\":\"\\u001b\xc3\xa9\"}",
         b"{\"picture\":[\"#\"],\"x0\":0,\"y0\":0,\"angle\":0,\"zoom_x\":1,\"zoom_y\":1,\"sensor\":{\"columns\":1,\"rows\":1}}\r",
-        b"{\"imprint\":[\"#\",\"\"]}",
+        b"{\"imprint\":[\"##\",\"#\"]}",
         b"{\"imprint\":[\"#\"],\"imprint\":[\"#\"]}",
         b"{\"figure\":\"hexagon\",\"side\":1e300,\"x0\":2,\"y0\":2,\"angle\":0}",
         POINT.as_bytes(),
@@ -49,17 +49,21 @@ fn bad_lines_are_answered_in_their_places() {
     let error = |message: &str| format!("{{\"error\":\"line {message}\"}}\n");
     let expected = [
         POINT_ANSWER.to_owned(),
-        error("2: column 2: expected ident"),
+        error(
+            "2: column 2: expected a value: a text in double quotes, a number, a list or an object",
+        ),
         error("4: side: 99 is out of range, expected above 0, up to 16"),
         error("5: picture: no shape is called \\\"gasket\\\""),
-        error("6: column 12: invalid unicode code point"),
-        error("7: column 1: expected value"),
+        error("6: column 12: not UTF-8, or an escape of no character"),
+        error(
+            "7: column 1: expected a value: a text in double quotes, a number, a list or an object",
+        ),
         error(
             "9: figure: \\\"\\\\u{1b}\\u00e9\\\" is unknown, expected one of ellipse, rectangle, triangle, pentagon, hexagon, heptagon, octagon",
         ),
         POINT_ANSWER.to_owned(),
-        error("11: imprint: row 2 has 0 characters, expected 1 to 64"),
-        error("12: column 33: duplicate field `imprint`"),
+        error("11: imprint: row 2 has 1 character, expected 2 as in the first row"),
+        error("12: column 33: imprint: given twice"),
         error("13: side: 1e300 is out of range, expected above 0, up to 16"),
         POINT_ANSWER.to_owned(),
     ];

@@ -112,7 +112,7 @@ fn a_batch_tells_of_names_that_lead_nowhere() {
         answers[2]
     );
     assert!(
-        answers[3].contains("bad.json: line 1, column 1: EOF"),
+        answers[3].contains("bad.json: line 1, column 1: the end"),
         "{}",
         answers[3]
     );

@@ -60,3 +60,19 @@ fn a_script_may_be_long() {
     let run = taxel("script -", &script);
     assert_eq!((run.status, run.stdout.as_str()), (Some(0), "0\n"));
 }
+
+/// `~/` is the home in the name of a file, and what was written is named with its whole path.
+#[test]
+fn a_file_may_be_named_below_the_home() {
+    let home = tempfile::tempdir().expect("there is a folder for temporary files");
+    let keys = "fh<Enter>:explore --x0 5 --y0 5 --angle 0:59:1<Enter>x~/in-home.csv<Enter>";
+    let mut command = super::program(&["script", "-k", keys], "C.UTF-8");
+    command.env("HOME", home.path());
+    let run = super::finish(command.spawn().expect("the program starts"), b"");
+    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""), "{run:?}");
+    let file = home.path().join("in-home.csv");
+    let screen: String = run.stdout.split_whitespace().collect();
+    let said = format!("written:{}", file.display());
+    assert!(screen.contains(&said), "{said}: {}", run.stdout);
+    assert!(file.exists());
+}

@@ -201,6 +201,15 @@ fn shells_take_the_completions() {
         assert!(output.status.success(), "{shell}: {output:?}");
     }
     misused("completions", "the following required arguments");
+    // A library means nothing to these.
+    for line in [
+        "merge --library x a.npz --atlas b.csv",
+        "--library x merge a.npz --atlas b.csv",
+        "completions bash --library x",
+        "man --library x",
+    ] {
+        misused(line, "'--library' does not belong to '");
+    }
     misused("completions csh", "invalid value 'csh'");
 }
 

@@ -33,7 +33,7 @@ use crate::sweep::{Shard, ShardError};
 
 /// The program with all its commands.
 pub(crate) fn all() -> Command {
-    Command::new("taxel")
+    let program = Command::new("taxel")
         .version(env!("TAXEL_VERSION"))
         .about(ABOUT)
         .after_help(EXAMPLES)
@@ -52,7 +52,11 @@ pub(crate) fn all() -> Command {
         .subcommand(script())
         .subcommand(config().args(sensor()))
         .subcommand(completions())
-        .subcommand(man())
+        .subcommand(man());
+    // Their own argument, which is not shown, stands in place of the one that every command has.
+    WITHOUT_LIBRARY.into_iter().fold(program, |program, name| {
+        program.mut_subcommand(name, |command| command.arg(folder().hide(true)))
+    })
 }
 
 /// `taxel figure KIND`: a flag for each parameter that some kind has; [`Given::foreign`](parameters::Given::foreign)
@@ -375,7 +379,10 @@ fn force() -> Arg {
         .help("Replace a shape that has the name already")
 }
 
-/// `--library`, which every command takes.
+/// The commands that use no library.
+pub(crate) const WITHOUT_LIBRARY: [&str; 3] = ["merge", "completions", "man"];
+
+/// `--library`, which every command takes but those of [`WITHOUT_LIBRARY`].
 fn folder() -> Arg {
     Arg::new("library")
         .long("library")

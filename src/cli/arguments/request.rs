@@ -181,6 +181,11 @@ pub(crate) fn read(arguments: Vec<OsString>) -> Result<Asked, CliError> {
         );
         return Err(command.error(ErrorKind::ArgumentConflict, message).into());
     }
+    if definitions::WITHOUT_LIBRARY.contains(&name) && (library_named || own.contains_id("library"))
+    {
+        let message = format!("'--library' does not belong to '{name}', which uses no library");
+        return Err(misused(&mut command, name, &message));
+    }
     let loaded = match (name, asked()) {
         // The output of these does not depend on settings.
         ("completions" | "man", _) | ("script", None) => Loaded::default(),

@@ -91,7 +91,7 @@ pub(crate) fn table(
         return text;
     }
     text + &blocks(
-        &labels(pitch, charset),
+        &labels(&descriptions, pitch, charset),
         &columns(&descriptions, pitch, charset),
     )
 }
@@ -133,8 +133,8 @@ struct TableRow {
     label: String,
 }
 
-/// The lines of the table. With a pitch, each length is followed by the same in mm and each area by the same in mm².
-fn table_rows(pitch: Option<f64>) -> Vec<TableRow> {
+/// The lines of the table; `holes`: whether a region is one, whose taxels are not the active ones. With a pitch, each length is followed by the same in mm and each area by the same in mm².
+fn table_rows(pitch: Option<f64>, holes: bool) -> Vec<TableRow> {
     let mut all = Vec::new();
     for descriptor in DESCRIPTORS {
         let (factor, unit) = match descriptor.dimension {
@@ -144,10 +144,15 @@ fn table_rows(pitch: Option<f64>) -> Vec<TableRow> {
             Dimension::Direction => (1.0, ", deg"),
             Dimension::Share => (100.0, ", %"),
         };
+        let name = if holes && descriptor.key == "na" {
+            "taxels"
+        } else {
+            descriptor.name
+        };
         all.push(TableRow {
             descriptor,
             factor,
-            label: format!("{:<5}  {}{unit}", descriptor.symbol, descriptor.name),
+            label: format!("{:<5}  {name}{unit}", descriptor.symbol),
         });
         let metric = match (descriptor.dimension, pitch) {
             (Dimension::Length, Some(pitch)) => Some((pitch, "mm")),
@@ -164,10 +169,11 @@ fn table_rows(pitch: Option<f64>) -> Vec<TableRow> {
 }
 
 /// The left column of the table, padded to one width; the first cell, above the labels, is empty.
-fn labels(pitch: Option<f64>, charset: Charset) -> Vec<String> {
+fn labels(descriptions: &[Description], pitch: Option<f64>, charset: Charset) -> Vec<String> {
+    let holes = descriptions.iter().any(|it| it.kind == RegionKind::Hole);
     let mut labels = vec![String::new()];
     labels.extend(
-        table_rows(pitch)
+        table_rows(pitch, holes)
             .iter()
             .map(|row| charset.line(&row.label).into_owned()),
     );
@@ -186,7 +192,7 @@ fn widest(cells: &[String]) -> usize {
 
 /// A column for each region, with its heading, such as `hole 2`, in the first cell; each padded to its own width.
 fn columns(descriptions: &[Description], pitch: Option<f64>, charset: Charset) -> Vec<Vec<String>> {
-    let rows = table_rows(pitch);
+    let rows = table_rows(pitch, false);
     let (mut exteriors, mut holes) = (0, 0);
     let column = |description: &Description| {
         let number = match description.kind {

@@ -83,15 +83,18 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
 fn bars(theme: &Theme, histogram: &Histogram, unit: Dimension, buffer: &mut Buffer, area: Rect) {
     let decimals = histogram.decimals();
     let single = unit == Dimension::Count && histogram.width == 1.0;
+    let bins = histogram.poses.len();
+    // Counts are whole: an interval says its last one. Of the others the upper end is that of the next, but for the last.
     let label = |bin: usize| {
         let (from, to) = (histogram.from(bin), histogram.from(bin + 1));
-        if single {
-            format!("{from:.0}")
-        } else {
-            format!("{from:.decimals$} to {to:.decimals$}")
+        match unit {
+            _ if single => format!("{from:.0}"),
+            Dimension::Count if bin + 1 < bins => format!("{from:.0} to {:.0}", to - 1.0),
+            _ if bin + 1 < bins => format!("{from:.decimals$} to <{to:.decimals$}"),
+            _ => format!("{from:.decimals$} to  {to:.decimals$}"),
         }
     };
-    let labels: Vec<String> = (0..histogram.poses.len()).map(label).collect();
+    let labels: Vec<String> = (0..bins).map(label).collect();
     let longest = labels.iter().map(String::len).fold(0, usize::max);
     let most = histogram.poses.iter().copied().fold(1, u64::max);
     let count = grouped(most).len();

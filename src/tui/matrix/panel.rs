@@ -77,7 +77,10 @@ fn draw_descriptor(
     let symbol = format!("{:SYMBOL$}", descriptor.symbol);
     let value = format!("{text:VALUE$}");
     // A word that is cut tells nothing.
-    let remark = scaled.as_deref().unwrap_or(descriptor.name);
+    let name = description.map_or(descriptor.name, |described| {
+        descriptor.name_of(described.kind)
+    });
+    let remark = scaled.as_deref().unwrap_or(name);
     let room = usize::from(row.width).saturating_sub(SYMBOL + VALUE);
     let remark = if remark.chars().count() <= room {
         remark

@@ -5,13 +5,14 @@
 //! first, so that no partial file stays.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crate::pose::PoseGrid;
-use crate::storage::{ArchiveFileError, AtlasFile, Existing, PoseFile};
+use crate::storage::{ArchiveFileError, AtlasFile, Existing, PoseFile, location};
 use crate::sweep::{Sweep, SweepResult, TimingSample};
 use crate::tui::explore::export::is_poses;
 use crate::tui::explore::message::{Findings, SweepProgress, WorkerEvent};
@@ -227,16 +228,26 @@ fn write(
     clock: Option<&ProgressReporter<'_>>,
 ) -> WorkerEvent {
     let result = &findings.sweep;
+    let Some(path) = location::below_home(name) else {
+        return WorkerEvent::Failed(
+            number,
+            format!("{name}: there is no home, expected a path without ~"),
+        );
+    };
     let written = if is_poses(name) {
-        write_poses(result, name, existing, stop, clock)
+        write_poses(result, &path, existing, stop, clock)
     } else {
-        match AtlasFile::new(name) {
+        match AtlasFile::new(&path) {
             Ok(file) => file.write(result, existing, stop).map(|()| true),
             Err(expected) => return WorkerEvent::Failed(number, format!("{name}: {expected}")),
         }
     };
     match written {
-        Ok(true) => WorkerEvent::Written(number, name.to_owned()),
+        Ok(true) => {
+            // Where that is not known, the path as it was given.
+            let whole = std::path::absolute(&path).unwrap_or(path);
+            WorkerEvent::Written(number, whole.to_string_lossy().into_owned())
+        }
         Err(error) if error.exists() && existing == Existing::Kept => {
             WorkerEvent::Exists(number, name.to_owned())
         }
@@ -250,12 +261,12 @@ fn write(
 /// Sweeps the grid again, because the numbers of its poses are not kept. Returns whether it was completed.
 fn write_poses(
     result: &SweepResult,
-    name: &str,
+    path: &Path,
     existing: Existing,
     stop: &AtomicBool,
     clock: Option<&ProgressReporter<'_>>,
 ) -> Result<bool, ArchiveFileError> {
-    let mut file = PoseFile::new(name, &result.grid, existing)?;
+    let mut file = PoseFile::new(path, &result.grid, existing)?;
     // A full disk ends the work, too, but is reported as an error.
     let full = AtomicBool::new(false);
     let progress = |poses: u64| proceed(poses, stop, clock) && !full.load(Ordering::Relaxed);

@@ -164,9 +164,9 @@ fn broken_files_are_listed_told_and_harm_nothing() {
         (
             "cut",
             &good[..good.len() / 2],
-            "line 15, column 20: EOF while parsing a string",
+            "line 15, column 20: the end inside a text, expected a closing quote",
         ),
-        ("empty", "", "line 1, column 1: EOF while parsing a value"),
+        ("empty", "", "line 1, column 1: the end, expected a value"),
         (
             "newer",
             &good.replace("shape/1", "shape/2"),
