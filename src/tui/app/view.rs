@@ -1,20 +1,22 @@
-//! The view: reads the state and draws it, one pane per file.
+//! The view: reads the state and draws it.
 //!
 //! ```text
 //! +--------------------------------------------------+
-//! | menu: the paper's seven options                   |
-//! | column ruler                |                     |
-//! | row   matrix                | descriptor panel,   |
-//! | ruler                       | or a form           |
-//! |                             |                     |
-//! | what made the imprint                             |
-//! | the taxel under the cursor                        |
-//! | notice, or a question                             |
-//! | hints: keys that mean something now               |
+//! | menu: the paper's seven options                  |
+//! | column ruler                |                    |
+//! | row   matrix                | descriptor panel,  |   or a page over the whole width
+//! | ruler                       | or a form          |
+//! |                             |                    |
+//! | what made the imprint                            |
+//! | the taxel under the cursor                       |
+//! | notice, question or prompt                       |
+//! | hints: keys that mean something now              |
 //! +--------------------------------------------------+
 //! ```
-//! On a narrow screen matrix and panel are two pages; on a low one the lines below the matrix give way first. What
-//! does not fit at all is said. Every pane takes any rectangle, an empty one too.
+//! On a narrow screen matrix and panel are two pages; on a low one the lines below the matrix give way first. A screen
+//! that is too small for anything says so. Every pane accepts any rectangle, also an empty one.
+//!
+//! Views borrow what they draw, `&Theme` and `&Keymap`. Only this file and the lines at the foot see the whole state.
 
 use ratatui::Frame;
 use ratatui::buffer::Buffer;

@@ -1,4 +1,7 @@
 //! What the results of a sweep know of a page of theirs.
+//!
+//! A page has no state of its own: [`Results`] holds the chosen descriptor, row and pose, so that all pages agree on
+//! them.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};

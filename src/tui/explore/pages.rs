@@ -1,4 +1,5 @@
-//! The table of pages of the results, in the order of their tabs.
+//! The table of pages of the results, in the order of their tabs. A new page is a row here and a variant of
+//! [`ExplorePage`].
 
 use crate::tui::explore::message::ExplorePage;
 use crate::tui::explore::page::ResultsPage;

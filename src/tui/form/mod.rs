@@ -1,4 +1,10 @@
 //! The forms of Figure, Picture and the sensor.
+//!
+//! ```text
+//! fields   text fields of parameters                       layout   which line a field has
+//! state    a form, and the document that it makes          update   keys
+//! view     impl Page for FormDialog
+//! ```
 
 pub mod fields;
 

@@ -1,9 +1,14 @@
-//! The table of actions: all that a user can ask for by a key or after `:`.
+//! The table of actions: everything that a user can ask for by a key or after `:`.
 //!
-//! A row has the action's name, its other spellings after `:`, and its message; a row of a command with arguments says
-//! what these are. Everything else refers to the rows: [`crate::tui::keys::default_keys`] gives them keys, with a hint and a
-//! line of help for each place; a settings file gives them other keys, by name; and
-//! [`crate::tui::prompt::commands`] makes the `:` commands of them.
+//! ```text
+//! alone            CURSOR_LEFT "cursor-left" ["cursor left"] Message::Cursor(Arrow::Left);
+//!                  constant    name          spellings       message
+//! with arguments   "load" Arguments::Shape(Purpose::Load);
+//!                  name   what follows the name
+//! ```
+//! Everything else refers to the rows. [`crate::tui::keys::default_keys`] gives them keys, with a hint and a line of
+//! help for each place; a settings file gives them other keys, by name; and [`crate::tui::prompt::commands`] makes the
+//! `:` commands of them.
 
 use crate::atlas::SortKey;
 use crate::tui::app::message::Purpose;

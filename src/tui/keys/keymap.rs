@@ -3,6 +3,20 @@
 //! A change gives a key of a place to one of the actions of that place, or to none. Changes that would surprise are
 //! refused: the same key twice, taking away the last key of an action without giving it a new one, a letter where text
 //! is typed, and any change of Ctrl-C, which always closes what is open.
+//!
+//! ```
+//! use taxel::tui::app::message::Message;
+//! use taxel::tui::keys::action;
+//! use taxel::tui::keys::binding::Context;
+//! use taxel::tui::keys::key::Key;
+//! use taxel::tui::keys::keymap::{Change, Keymap};
+//!
+//! let change = Change { context: Context::Matrix, key: Key::Char('x'), action: Some(&action::TOGGLE) };
+//! let keymap = Keymap::with(&[change]).expect("x is free on the matrix");
+//! assert_eq!(keymap.lookup(Context::Matrix, Key::Char('x')), Some(Message::Toggle));
+//! // In a form the same key is typed.
+//! assert_eq!(keymap.lookup(Context::Form, Key::Char('x')), Some(Message::Type('x')));
+//! ```
 
 use crate::tui::app::message::Message;
 use crate::tui::keys::action::Action;

@@ -1,4 +1,10 @@
-//! Keys: their notation, what each means where, and what a user has changed of it.
+//! Keys: their notation, what each does in each place, and what a user has changed of it.
+//!
+//! ```text
+//! key            keys and their notation        action         the table of actions
+//! binding        the table of places            default_keys   the keys of the actions in each place
+//! keymap         default keys with a user's changes; help
+//! ```
 
 pub mod key;
 

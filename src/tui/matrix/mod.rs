@@ -1,4 +1,9 @@
 //! The matrix and the descriptors beside it.
+//!
+//! ```text
+//! layout   where the taxels are        view     draws them
+//! update   keys without a page         panel    draws the descriptors
+//! ```
 
 pub mod layout;
 

@@ -1,8 +1,17 @@
 //! The `:` commands, made from the table of actions: their names, the words and arguments that may follow, and their
 //! completion.
 //!
-//! A command is the first word of a spelling of some action ("cursor" of "cursor left"), or the name of an action that
+//! A command is the first word of a spelling of an action ("cursor" of "cursor left"), or the name of an action that
 //! has no other spelling. The full name of an action works as well.
+//!
+//! ```
+//! use taxel::tui::prompt::commands::complete;
+//! let (line, candidates) = complete("fi", &[]);
+//! assert_eq!((line.as_str(), candidates.len()), ("figure ", 1));
+//! // Two kinds begin with h; both with "he".
+//! let (line, candidates) = complete("figure h", &[]);
+//! assert_eq!((line.as_str(), candidates.len()), ("figure he", 2));
+//! ```
 
 use crate::figure::FigureKind;
 use crate::parameter::Parameter;

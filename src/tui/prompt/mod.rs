@@ -1,4 +1,10 @@
 //! What is typed in one line at the foot of the screen: a name to save under, and `:` commands.
+//!
+//! ```text
+//! commands   the table of commands, and completion     view     impl Page for both prompts
+//! read       a line becomes a message                  update   keys
+//! state      the fields, and earlier commands
+//! ```
 
 pub mod commands;
 

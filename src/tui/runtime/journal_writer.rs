@@ -1,5 +1,14 @@
-//! Writes unsaved work to the journal on a thread of its own, so that no key waits for a disk. The thread sleeps while
-//! there is nothing to write.
+//! Writes unsaved work to the journal on a thread of its own, so that no key waits for a disk.
+//!
+//! ```text
+//!             Keep                   400 ms, or Flush
+//! Nothing ------------> Since(shape) -----------------> written: Nothing
+//!    ^                       ^                          error:   Failed(shape), reported once
+//!    |  Clear                |  Keep                       |
+//!    +---- any               +-----------------------------+  tried again with the next change
+//! ```
+//! Changes within the interval are written together, the last one only. The thread sleeps while there is nothing to
+//! write.
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;

@@ -1,8 +1,13 @@
-//! Long work: sweeps and the files made of them. On threads of their own if there is someone to send events to;
-//! otherwise at once, before the next message.
+//! Long work: sweeps and exports. On threads of their own if there is a receiver for their events, otherwise at once,
+//! before the next message, as scripts want it.
 //!
-//! A worker ends when it is done or stopped. When the program ends, a running sweep ends with it; an export is stopped
-//! first, so that no partial file stays.
+//! ```text
+//! Measure(grid)        -> Estimate         best of several short runs, stopped by the next piece of work
+//! Sweep(number, grid)  -> Progress …, then Swept, also after Stop, with what is complete
+//! Write(number, …)     -> Progress …, then Written, Exists or Failed; after Stop no file stays
+//! ```
+//! When the program ends, a running sweep ends with it; an export is stopped first, so that no partial file stays. A
+//! panic of a worker becomes an event, too.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;

@@ -1,8 +1,9 @@
 //! The screen as SVG, for pages and papers: the same bytes on every machine.
 //!
-//! A character is 9 × 18 units. Block characters are drawn as rectangles, so that taxels join up in any font; all else is
-//! text, a run of one style in one element that is stretched to its columns. Colours are those of a theme with
-//! [`ColorDepth::True`]; without them the text is black, or light on the dark palette.
+//! A character is 9 × 18 units. Block characters are drawn as rectangles, so that taxels join in any font. Everything
+//! else is text: a run of one style is one element that is stretched to its columns, so that columns stay aligned in
+//! any font, too. Colours are those of a theme with [`ColorDepth::True`]; without colours the text is black, or light
+//! on the dark palette.
 
 use std::fmt::Write as _;
 

@@ -1,5 +1,11 @@
 //! The program without a terminal, driven by a script: keys in as text, screens out as text, the same bytes on every
 //! machine.
+//!
+//! ```text
+//! command   the lines of a script              runner    carries them out
+//! setting   those before the first screen      record    writes a script while a user works
+//! session   the program on a screen in memory  drawing   that screen as SVG
+//! ```
 
 mod drawing;
 

@@ -1,4 +1,16 @@
-//! Runs a script: does its commands one by one, prints what they ask for, and stops where an expectation fails.
+//! Runs a script: carries out its commands one by one, prints what they ask for, and stops at the first expectation
+//! that does not hold.
+//!
+//! ```text
+//! Size 80x24            before the first command that needs a screen: settings
+//! Keys f<Enter>         changes the program
+//! Expect /ellipse/      looks at it; a failure shows the line, the reason and the screen
+//! Screen start          prints the screen
+//! --- screen start 80x24 cursor 8,9 ---
+//! n New   l Load   …
+//! ```
+//! A script is read as a whole first: one with a malformed line does nothing at all. Long work is done before the next
+//! command, so that a script prints the same each time.
 
 use std::ops::ControlFlow;
 

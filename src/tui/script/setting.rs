@@ -1,13 +1,13 @@
-//! What a script says before it begins: how the program is started, and what it finds.
+//! Settings of a script, before its first command: how the program starts, and what it finds.
 //!
 //! ```text
-//! Size 80x24         Set ascii on        Set theme light    Set color 256
-//! Set columns 8      Set rows 8          Set threshold 0.6  Set pitch 0.5
+//! Size 80x24          Set ascii on        Set theme light    Set color 256
+//! Set columns 8       Set rows 8          Set threshold 0.6  Set pitch 0.5
 //! Set mouse off
-//! Set library "DIR"  Set shape {...}     Set leftover {...}
+//! Set library "DIR"   Set shape {...}     Set leftover {...}
 //! ```
-//! Shapes are those of the user's library, one a line, as the content of their files; leftover is what a program left
-//! when it died. Without a library that is named a script has one of its own, which goes with it.
+//! `shape` puts a shape into the user's library, given as the content of its file in one line; `leftover` is unsaved
+//! work of a program that crashed. Without `Set library` a script has a library of its own, which is removed after it.
 
 use std::fmt;
 use std::path::PathBuf;

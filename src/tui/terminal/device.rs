@@ -1,4 +1,7 @@
-//! The terminal's two files: the standard ones where these are terminals, else the controlling terminal.
+//! The terminal's two files: standard input and output if these are terminals, otherwise the controlling terminal.
+//!
+//! Reading never blocks. Writing waits while the terminal takes nothing, but a signal or, at the end of the program, a
+//! time limit ends the wait: a line that hangs must not keep the program from ending.
 
 use std::io::{self, stdin, stdout};
 use std::os::fd::{AsFd, AsRawFd, BorrowedFd, OwnedFd};

@@ -1,4 +1,15 @@
-//! The loop: sleeps until there is a key, a signal or a worker's message, updates the state, draws.
+//! The event loop: sleeps until there is a key, a signal or an event of a worker, then updates the state and draws.
+//!
+//! ```text
+//! poll(terminal, signals, mailbox) -> Ready
+//!   signals   end, stop, continue, a new size
+//!   mail      messages of workers           -> update
+//!   input     bytes -> keys, pastes, mouse  -> update
+//!   nothing   in time: half a sequence is what it is
+//! draw        what has changed, in one write
+//! ```
+//! It sleeps without a time limit while nothing is pending, so an idle program uses no processor time. A terminal that
+//! takes no output does not block signals: writing stops for them, and the next frame repairs the screen.
 
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};

@@ -1,13 +1,28 @@
-//! Bytes from the terminal become keys, pasted text and the mouse.
+//! Bytes from the terminal become keys, pasted text and mouse events.
 //!
-//! Sequences may come in pieces, over a slow line in single bytes. Few things wait for a moment: an ESC by
-//! itself, which may be a key or the beginning of one, an answer of the terminal to a program before us, which would
-//! otherwise be read as keys, and the rest of a pasted text. Everything that is not known is swallowed whole.
+//! ```text
+//! a  é  字                           characters, in UTF-8
+//! CR  TAB  DEL or Ctrl-H            Enter, Tab, Backspace
+//! 1 to 26                           Ctrl with a letter
+//! ESC [ A   ESC O A                 arrows, Home, End, F1; ESC [ 1 ; 2 A with Shift, ESC [ a in rxvt
+//! ESC [ 3 ~                         Delete, Page Up, Page Down, Home, End, F1 by number
+//! ESC [ Z                           Shift-Tab
+//! ESC [ 27 u                        Esc, Enter, Tab and Backspace by their code
+//! ESC [ [ A                         F1 on the Linux console
+//! ESC O M                           Enter of the number pad
+//! ESC [ < 0 ; x ; y M               mouse, as it is asked for; m at the end when the button is released
+//! ESC [ M button x y                mouse in the old form, which some terminals send all the same
+//! ESC [ 200 ~ … ESC [ 201 ~         pasted text
+//! ESC ] … BEL   ESC P … ESC \       an answer of the terminal, skipped
+//! ```
+//! Sequences may come in pieces, over a slow line in single bytes. Only a few things have a time limit: an ESC by
+//! itself, which may be a key or the beginning of a sequence; an answer of the terminal to an earlier program, which
+//! would otherwise be read as keys; and the rest of a pasted text. Unknown sequences are skipped as a whole.
 //!
-//! ESC before a character is the key Esc, then the character: nothing here is bound to Alt, and a quick Esc over a
-//! slow line arrives together with the next key. ESC ESC is Alt-Esc, one Esc.
+//! ESC before a character is the key Esc, then the character: nothing here is bound to Alt, and a quick Esc over a slow
+//! line arrives together with the next key. ESC ESC is Alt-Esc, one Esc.
 //!
-//! Sequences: xterm's ctlseqs, ECMA-48.
+//! The sequences are those of xterm's ctlseqs and of ECMA-48.
 
 use std::time::Duration;
 

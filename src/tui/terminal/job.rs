@@ -1,4 +1,7 @@
-//! Being stopped and continued by a shell.
+//! Job control: being stopped and continued by a shell.
+//!
+//! A program that stops itself without a shell that could continue it would never come back, so the parents of the
+//! process are looked at first.
 
 use std::fs;
 

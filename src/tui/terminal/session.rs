@@ -1,6 +1,11 @@
-//! One way into the terminal's modes and one way out, which may be taken twice.
+//! Entering and leaving the terminal's modes. Leaving twice does no harm.
 //!
-//! What was found is kept in one place for the whole process, so that a panic anywhere can put it right.
+//! ```text
+//! enter    raw mode, second screen, pasted text marked, mouse reported if it is wanted
+//! leave    the same in reverse, then what was to be printed to standard error
+//! ```
+//! The state in which the terminal was found is kept in one place for the whole process, so that a panic on any thread
+//! can restore it.
 
 use std::io::{self, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};

@@ -1,4 +1,11 @@
 //! Styles of cells, sent as the difference from the style before.
+//!
+//! ```text
+//! plain -> bold red            ESC [ 1 ; 31 m
+//! bold red -> red              ESC [ 22 m
+//! red -> plain                 ESC [ m
+//! ```
+//! A reset followed by the new style is sent instead where that is shorter.
 
 use ratatui::buffer::Cell;
 use ratatui::style::{Color, Modifier};

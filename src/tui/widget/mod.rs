@@ -1,4 +1,10 @@
-//! What the panes are made of: text fields, styles by role, text cut to columns.
+//! What views are made of.
+//!
+//! ```text
+//! text_field   a line of text that is edited         theme       styles and characters
+//! number       numbers of columns, lines, taxels     write       text into the buffer
+//! columns      widths and word wrap                  thumbnail   a small imprint
+//! ```
 
 pub mod text_field;
 

@@ -2,6 +2,19 @@
 //!
 //! A field that was just entered is replaced by what is typed next, as in most programs with forms; to move the cursor
 //! first keeps the text.
+//!
+//! ```
+//! use taxel::tui::app::message::{Endpoint, Message};
+//! use taxel::tui::widget::text_field::TextField;
+//!
+//! let mut field = TextField::new("4.00", 10);
+//! field.enter();
+//! field.take(&Message::Type('7'));
+//! assert_eq!(field.text(), "7");
+//! field.take(&Message::ToEdge(Endpoint::First));
+//! field.take(&Message::Type('1'));
+//! assert_eq!(field.text(), "17");
+//! ```
 
 use tui_input::{Input, InputRequest};
 

@@ -3,6 +3,13 @@
 //! Text has a [`Role`], and the theme decides its style and characters. It is cut at the edge of its area, with an
 //! ellipsis so that one sees that something is missing. All functions accept any area, also an empty one or one beyond
 //! the buffer.
+//!
+//! ```
+//! use taxel::tui::widget::theme::Theme;
+//! use taxel::tui::widget::write::{first_fitting, fitted};
+//! assert_eq!(fitted("washer", 5, &Theme::plain(false)), "wash…");
+//! assert_eq!(first_fitting(&["3.00 to 4.00 cells", "3.00 to 4.00"], 12), "3.00 to 4.00");
+//! ```
 
 use std::borrow::Cow;
 

@@ -1,4 +1,10 @@
 //! The map page: which imprint each x0 and y0 leaves at one angle.
+//!
+//! ```text
+//! letters   a letter for each imprint, different ones for neighbours
+//! layout    cells, rulers, the pose at the cursor
+//! view      draws them
+//! ```
 
 pub mod letters;
 

@@ -1,4 +1,7 @@
-//! The form of ranges: its rows in its pane.
+//! The rows of the form of ranges in its pane.
+//!
+//! With enough room each row has two lines, the second for errors; otherwise one. The row that has the focus is always
+//! visible.
 
 use ratatui::layout::Rect;
 
