@@ -23,6 +23,10 @@ mod model;
 
 mod training;
 
+mod sets;
+
+mod pose_estimate;
+
 mod evaluation;
 
 mod given;
@@ -40,4 +44,6 @@ pub use key::{ImprintKey, KeyTable};
 pub use model::{Model, ModelError, ModelParts, NamedShape, ShapeCount};
 pub use nearest::Nearest;
 pub use peers::{Peer, PeerEvaluation, PeerSettings};
+pub use pose_estimate::{AngleEstimate, PoseEstimate};
+pub use sets::{GridSteps, default_figures, equal_figures};
 pub use training::{Training, TrainingError};

@@ -82,6 +82,9 @@ pub enum TrainingError {
         /// Out of so many.
         poses: u64,
     },
+    /// Shapes that no sensor holds in every angle.
+    #[error("the shapes do not fit on 64 x 64 taxels in every angle")]
+    Large,
     /// It was stopped.
     #[error("stopped before the end")]
     Stopped,

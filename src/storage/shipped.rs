@@ -66,3 +66,11 @@ pub(crate) fn load(name: &Name) -> Option<Result<(StoredShape, u64), LibraryErro
             .map_err(broken),
     )
 }
+
+/// All of them, by name.
+pub fn all() -> impl Iterator<Item = StoredShape> {
+    names().filter_map(|name| {
+        let (shape, _) = load(&Name::new(name).ok()?)?.ok()?;
+        Some(shape)
+    })
+}

@@ -1,0 +1,261 @@
+//! Where a shape lay and how it was turned, given the imprint that it left.
+
+use crate::imprint::Imprint;
+use crate::pose::{Axis, PoseGrid, period};
+use crate::recognition::key::ImprintKey;
+use crate::recognition::model::{Model, share};
+use crate::sweep::Sweep;
+use crate::touch::Plane;
+
+/// The poses of a shape that leave an imprint, in short.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct PoseEstimate {
+    /// How many poses of the model leave it.
+    pub poses: u64,
+    /// Mean position x, y of the model's anchor (the centre, unless a model was trained with corners), in cells on the
+    /// matrix of the imprint.
+    pub position: [f64; 2],
+    /// Standard deviation of each.
+    pub spread: [f64; 2],
+    /// The angle; None if any angle looks the same, as of a disc.
+    pub angle: Option<AngleEstimate>,
+}
+
+/// The angles in which a shape leaves an imprint, up to its symmetry.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct AngleEstimate {
+    /// After so many degrees the shape looks the same again.
+    pub period: u32,
+    /// Circular mean in degrees, from 0 to below the period. None if the angles point in all directions alike.
+    pub mean: Option<f64>,
+    /// Circular standard deviation in degrees. None where the mean is none.
+    pub spread: Option<f64>,
+    /// The fewest neighbouring whole degrees that hold 95 % of the poses: the first of them, and how many.
+    pub most: (u32, u32),
+}
+
+impl Model {
+    /// Returns in which poses a shape leaves an imprint, by touching with it in every pose of the model. `progress` is
+    /// called as by [`Sweep::progress`]. None if there is no such shape, if it does not leave the imprint, if the
+    /// imprint is empty, or if it was stopped.
+    ///
+    /// ```
+    /// use taxel::prelude::*;
+    /// use taxel::recognition::{NamedShape, Training};
+    ///
+    /// let sensor = Sensor::default();
+    /// let bar = NamedShape::new("bar", Figure::rectangle(6.0, 2.0).on(&sensor)?);
+    /// let ranges = Ranges::default().with(Axis::Angle, "0:350:10".parse()?);
+    /// let model = Training::new([bar], sensor, Anchor::Centre, ranges)?.run()?;
+    /// let touch = "........\n.######.\n.######.\n........".parse()?;
+    /// let pose = model.pose_of(0, &touch, &|_| true).expect("the bar leaves it");
+    /// let angle = pose.angle.expect("a bar has one");
+    /// assert_eq!(angle.period, 180);
+    /// assert!(angle.spread.is_some_and(|spread| spread < 10.0));
+    /// assert!((pose.position[0] - 4.0).abs() < 0.02 && (pose.position[1] - 2.0).abs() < 0.02);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn pose_of(
+        &self,
+        shape: usize,
+        imprint: &Imprint,
+        progress: &(dyn Fn(u64) -> bool + Sync),
+    ) -> Option<PoseEstimate> {
+        let bounds = imprint.bounds()?;
+        let key = ImprintKey::of(imprint);
+        let source = self.shapes().get(shape)?.source.clone();
+        let period = period(&source);
+        let grid = PoseGrid::new(source, *self.sensor(), self.anchor(), *self.ranges()).ok()?;
+        let wanted = |other: &Imprint| ImprintKey::of(other) == key;
+        let runs = Sweep::new(&grid).progress(progress).poses_where(&wanted)?;
+        let mut plane = Plane::new(*grid.sensor());
+        let mut sums = Sums::default();
+        let mut degrees = vec![0; period.unwrap_or(1) as usize];
+        for run in runs {
+            let first = grid.pose(run.first);
+            // All poses of a run leave one imprint, in one place.
+            let there = plane.touch(&grid.placed(first)).bounds()?;
+            let by = [
+                f64::from(bounds.left) - f64::from(there.left),
+                f64::from(bounds.top) - f64::from(there.top),
+            ];
+            let last = grid.pose(run.first + run.poses - 1)[Axis::X0];
+            let weight = run.poses * run.orientations;
+            let y = first[Axis::Y0] + by[1];
+            sums.add(
+                weight,
+                (first[Axis::X0] + by[0], last + by[0]),
+                run.poses,
+                y,
+            );
+            if let Some(period) = period {
+                let angle = first[Axis::Angle].rem_euclid(f64::from(period));
+                sums.turn(weight, angle / f64::from(period));
+                degrees[whole(angle, period)] += weight;
+            }
+        }
+        sums.finish(period.map(|period| (period, degrees)))
+    }
+}
+
+/// The whole degree that an angle from 0 to below a period lies in.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "0 to 359"
+)]
+fn whole(angle: f64, period: u32) -> usize {
+    (angle as usize).min(period as usize - 1)
+}
+
+/// Sums over poses.
+#[derive(Debug, Default)]
+struct Sums {
+    poses: u64,
+    position: [f64; 2],
+    squares: [f64; 2],
+    cosine: f64,
+    sine: f64,
+}
+
+impl Sums {
+    /// Adds neighbours on a row from one x to another: `count` of them, which count as `weight` poses.
+    fn add(&mut self, weight: u64, (from, to): (f64, f64), count: u64, y: f64) {
+        let (poses, number) = (real(weight), real(count));
+        let middle = f64::midpoint(from, to);
+        // The variance of equal steps between two ends.
+        let own = if count > 1 {
+            (to - from).powi(2) * (number + 1.0) / (12.0 * (number - 1.0))
+        } else {
+            0.0
+        };
+        self.poses += weight;
+        self.position[0] += poses * middle;
+        self.position[1] += poses * y;
+        self.squares[0] += poses * (middle * middle + own);
+        self.squares[1] += poses * y * y;
+    }
+
+    /// Adds an angle as a part of a full turn.
+    fn turn(&mut self, weight: u64, part: f64) {
+        let (sine, cosine) = (part * std::f64::consts::TAU).sin_cos();
+        self.cosine += real(weight) * cosine;
+        self.sine += real(weight) * sine;
+    }
+
+    fn finish(self, angles: Option<(u32, Vec<u64>)>) -> Option<PoseEstimate> {
+        if self.poses == 0 {
+            return None;
+        }
+        let all = real(self.poses);
+        let position = self.position.map(|sum| sum / all);
+        let mut spread = [0.0; 2];
+        for (axis, spread) in spread.iter_mut().enumerate() {
+            let variance = self.squares[axis] / all - position[axis] * position[axis];
+            *spread = variance.max(0.0).sqrt();
+        }
+        let angle = angles.map(|(period, degrees)| {
+            let turn = f64::from(period);
+            let length = self.cosine.hypot(self.sine) / all;
+            let directed = length > 1e-9;
+            let mean = self.sine.atan2(self.cosine) / std::f64::consts::TAU;
+            let spread = (-2.0 * length.min(1.0).ln()).max(0.0).sqrt() / std::f64::consts::TAU;
+            AngleEstimate {
+                period,
+                mean: directed.then(|| (mean * turn).rem_euclid(turn)),
+                spread: directed.then_some(spread * turn),
+                most: fewest(&degrees, self.poses),
+            }
+        });
+        Some(PoseEstimate {
+            poses: self.poses,
+            position,
+            spread,
+            angle,
+        })
+    }
+}
+
+fn real(count: u64) -> f64 {
+    share(count.into(), 1)
+}
+
+/// The fewest neighbours on a circle that hold 95 % of all: the first, and how many. The first of equals.
+fn fewest(degrees: &[u64], all: u64) -> (u32, u32) {
+    let count = degrees.len();
+    let needed = u128::from(all) * 95;
+    let (mut best, mut end, mut held) = ((0, count), 0, 0_u128);
+    for start in 0..count {
+        while held * 100 < needed && end < start + count {
+            held += u128::from(degrees[end % count]);
+            end += 1;
+        }
+        if held * 100 >= needed && end - start < best.1 {
+            best = (start, end - start);
+        }
+        held -= u128::from(degrees[start]);
+    }
+    let number = |index: usize| u32::try_from(index).expect("at most 360 degrees");
+    (number(best.0), number(best.1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recognition::sets::{GridSteps, equal_figures};
+    use crate::recognition::training::Training;
+
+    #[test]
+    fn the_poses_of_an_imprint_agree_with_its_count_and_with_a_sum_by_hand() {
+        let steps = GridSteps {
+            positions: 10,
+            degrees: 5,
+        };
+        let training = Training::fitting(equal_figures(), steps).expect("they fit");
+        let grids = training.grids().to_vec();
+        let model = training.run().expect("not stopped");
+        for shape in [0, 1, 2, 5] {
+            let grid = &grids[shape];
+            let mut plane = Plane::new(*grid.sensor());
+            let imprint = plane.touch(&grid.placed(grid.pose(4321)));
+            let key = ImprintKey::of(&imprint);
+            let estimate = model.pose_of(shape, &imprint, &|_| true).expect("it does");
+            let bounds = imprint.bounds().expect("not empty");
+            let (mut poses, mut x, mut square) = (0_u32, 0.0, 0.0);
+            for number in 0..grid.poses() {
+                let pose = grid.pose(number);
+                let other = plane.touch(&grid.placed(pose));
+                if ImprintKey::of(&other) == key {
+                    let there = other.bounds().expect("not empty");
+                    let at = pose[Axis::X0] + f64::from(bounds.left) - f64::from(there.left);
+                    poses += 1;
+                    x += at;
+                    square += at * at;
+                }
+            }
+            let mean = x / f64::from(poses);
+            let spread = (square / f64::from(poses) - mean * mean).max(0.0).sqrt();
+            assert_eq!(estimate.poses, u64::from(poses));
+            let own = model.counts_of(&imprint).iter();
+            let own = own.filter(|count| usize::from(count.shape) == shape);
+            assert_eq!(own.map(|count| count.poses).sum::<u64>(), estimate.poses);
+            assert!((estimate.position[0] - mean).abs() < 1e-9);
+            assert!((estimate.spread[0] - spread).abs() < 1e-6);
+            assert_eq!(
+                estimate.angle.is_none(),
+                shape == 0,
+                "only a disc has no angle"
+            );
+        }
+        assert_eq!(model.pose_of(7, &Imprint::empty(4, 4), &|_| true), None);
+    }
+
+    #[test]
+    fn the_fewest_degrees_may_lie_over_the_end() {
+        assert_eq!(fewest(&[10, 0, 0, 0, 0, 9, 1], 20), (5, 3));
+        assert_eq!(fewest(&[0, 0, 4], 4), (2, 1));
+        assert_eq!(fewest(&[1, 1, 1, 1], 4), (0, 4));
+    }
+}
