@@ -26,7 +26,7 @@ const SHARED_NAMES: &str = "";
 
 /// The number of lines in `src` where an impossible case becomes a value (`unwrap_or(0)` and the like) is at most this.
 /// It only goes down.
-const MOST_FALLBACKS: usize = 61;
+const MOST_FALLBACKS: usize = 30;
 
 /// What breaks the law, as `file:line: what; law: which`.
 fn violations(files: &[(String, String)]) -> Vec<String> {

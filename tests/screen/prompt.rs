@@ -170,7 +170,7 @@ fn help_is_everywhere() {
             "f<Tab>2?",
             "rx 2.00",
             "In a form",
-            "take it; refused while a field is wrong",
+            "accept; refused while a field is invalid",
             "Saving",
         ),
         (
@@ -184,12 +184,12 @@ fn help_is_everywhere() {
             "<Space>s<F1>",
             "Save as:",
             "Saving",
-            "store under this name",
+            "save under this name",
             "On the matrix",
         ),
         (
             ":<F1>",
-            "Enter do it",
+            "Enter run",
             "In the command line",
             "complete the word",
             "On the matrix",
@@ -250,7 +250,7 @@ fn a_long_help_says_that_there_is_more() {
 #[test]
 fn commands_do_what_keys_do() {
     let mut session = session(":");
-    shows(&session, &["Enter do it"]);
+    shows(&session, &["Enter run"]);
     then(
         &mut session,
         "figure hexagon --side 3 --x0 2.1 --angle 17 --thickness 1<Enter>",

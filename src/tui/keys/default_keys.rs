@@ -92,8 +92,8 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Backspace => ERASE_BEFORE, Delete => ERASE_UNDER] "" "delete a character";
         [Ctrl('u') => ERASE_ALL] "clear" "clear the field";
         [Home => TO_START, End => TO_END] "" "to the start, the end of the field";
-        [Enter => ACCEPT] "take it" "take it; refused while a field is wrong";
-        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "leave everything as it was";
+        [Enter => ACCEPT] "accept" "accept; refused while a field is invalid";
+        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "close it and change nothing";
         [Char('?') => HELP] "help" "these keys";
     }
 
@@ -108,32 +108,32 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "choose" "previous, next shape";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten shapes back, on";
         [Home => FIRST, End => LAST] "" "first, last shape";
-        [Enter => ACCEPT] "take it" "take the shape";
+        [Enter => ACCEPT] "accept" "accept the selected shape";
         [Backspace => ERASE_BEFORE] "" "delete a character of the filter";
         [Ctrl('u') => ERASE_ALL] "clear" "clear the filter";
-        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "leave everything as it was";
+        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "close it and change nothing";
         [Char('?') => HELP] "help" "these keys";
     }
 
     Name {
-        [Enter => ACCEPT] "save" "store under this name";
+        [Enter => ACCEPT] "save" "save under this name";
         [LEFT => LEFT, RIGHT => RIGHT] "" "move in the name";
         [Home => TO_START, End => TO_END] "" "to its start, its end";
         [Backspace => ERASE_BEFORE, Delete => ERASE_UNDER] "" "delete a character";
         [Ctrl('u') => ERASE_ALL] "clear" "clear the name";
-        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "do not store";
+        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "do not save";
         [F1 => HELP] "help" "these keys";
     }
 
     Command {
-        [Enter => ACCEPT] "do it" "do it";
+        [Enter => ACCEPT] "run" "run the command";
         [Tab => NEXT] "complete" "complete the word";
         [UP => UP, DOWN => DOWN] "earlier" "earlier, later commands";
         [LEFT => LEFT, RIGHT => RIGHT] "" "move in the line";
         [Home => TO_START, End => TO_END] "" "to its start, its end";
         [Backspace => ERASE_BEFORE, Delete => ERASE_UNDER] "" "delete a character";
         [Ctrl('u') => ERASE_ALL] "" "clear the line";
-        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "do nothing";
+        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "run nothing";
         [F1 => HELP] "help" "these keys";
     }
 
@@ -144,8 +144,8 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Backspace => ERASE_BEFORE, Delete => ERASE_UNDER] "" "delete a character";
         [Ctrl('u') => ERASE_ALL] "clear" "clear the field";
         [Home => TO_START, End => TO_END] "" "to the start, the end of the field";
-        [Enter => ACCEPT] "start" "sweep all poses; refused while a range is wrong";
-        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "leave everything as it was";
+        [Enter => ACCEPT] "start" "sweep all poses; refused while a range is invalid";
+        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "close it and change nothing";
         [Char('?') => HELP] "help" "these keys";
     }
 
