@@ -10,6 +10,7 @@ use crate::cli::output::charset::Charset;
 use crate::formats::ArchiveError;
 use crate::pose::GridError;
 use crate::quote::legible;
+use crate::recognition::TrainingError;
 use crate::storage::{ArchiveFileError, FileError, LibraryError};
 use crate::sweep::MergeError;
 use crate::tui::script::runner;
@@ -59,6 +60,29 @@ pub(crate) enum CliError {
     #[error("no shape is called {name:?}, and no file either")]
     Nowhere {
         /// The argument.
+        name: String,
+    },
+    /// A shape of a set that cannot be read.
+    #[error("{place}: {error}")]
+    Set {
+        /// The file and the line, or the flag.
+        place: String,
+        /// What is wrong.
+        error: String,
+    },
+    /// A training that is refused.
+    #[error(transparent)]
+    Training(#[from] TrainingError),
+    /// The argument is neither the name of a model nor a file.
+    #[error("no model is called {name:?}, and no file either; 'taxel model list' shows all")]
+    NoModel {
+        /// The argument.
+        name: String,
+    },
+    /// A name that no shape of the model has.
+    #[error("--expect {name:?}: the model has no such shape")]
+    NotInModel {
+        /// The name.
         name: String,
     },
     /// There is a shape or a file of that name already.

@@ -26,6 +26,8 @@
 
 mod error;
 
+mod signals;
+
 mod output;
 
 mod input;
@@ -40,10 +42,14 @@ use std::ffi::OsString;
 use std::io::{self, Write};
 
 use arguments::definitions;
+use arguments::recognition::ModelRequest;
 use arguments::request::{self, Asked, Chore, Request, Swept};
 use commands::export::Exported;
 use commands::touch::Touched;
-use commands::{batch, completions, describe, export, library, man, screen, script, sweep, touch};
+use commands::{
+    batch, completions, describe, export, library, man, model, recognise, screen, script, sweep,
+    touch,
+};
 use error::CliError;
 use input::shapes::Shelf;
 use output::charset::Charset;
@@ -126,9 +132,25 @@ fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, Cli
         Request::Man(None) => write(&man::main_page()?)?,
         Request::Man(Some(folder)) => man::write(&folder)?,
         Request::Merge(files, wanted) => print(&sweep::merge(&files, &wanted, charset)?)?,
+        Request::Model(request) => run_model(request, &shelf, charset)?,
+        Request::Recognise(asked) => {
+            return recognise::recognise(&asked, &shelf, charset, &mut io::stdout().lock());
+        }
         Request::Library(chore) => self::chore(chore, &shelf, charset)?,
     }
     Ok(0)
+}
+
+/// Runs a subcommand of `taxel model`.
+fn run_model(request: ModelRequest, shelf: &Shelf, charset: Charset) -> Result<(), CliError> {
+    let text = match request {
+        ModelRequest::Train(asked) => model::train(&asked, shelf, charset)?,
+        ModelRequest::Show(which, json) => model::show(&which, json, shelf, charset)?,
+        ModelRequest::List(json) => model::list(json, shelf, charset)?,
+        ModelRequest::Delete(name) => charset.lines(&model::delete(&name, shelf)?),
+        ModelRequest::Confusion(asked) => model::confusion(&asked, shelf, charset)?,
+    };
+    print(&text)
 }
 
 /// Runs a subcommand of `taxel library`.

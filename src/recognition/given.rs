@@ -135,6 +135,12 @@ impl GivenDescriptors {
         }
     }
 
+    /// The same, some of them rounded.
+    #[must_use]
+    pub fn rounded(self, roundings: Vec<Rounding>) -> Self {
+        Self { roundings, ..self }
+    }
+
     /// Returns the descriptors.
     pub fn descriptors(&self) -> &[ShapeDescriptor] {
         &self.descriptors

@@ -43,6 +43,11 @@ impl ArchiveFileError {
         }
     }
 
+    /// Whether there is no such file.
+    pub fn is_missing(&self) -> bool {
+        matches!(&self.error, ArchiveError::Io(error) if error.kind() == io::ErrorKind::NotFound)
+    }
+
     /// Whether a file of that name is there already, and was to be kept.
     pub fn exists(&self) -> bool {
         matches!(&self.error, ArchiveError::Io(error) if error.kind() == io::ErrorKind::AlreadyExists)
@@ -79,6 +84,11 @@ impl AtlasFile {
             _ => return Err("expected a name that ends in .csv, .jsonl or .npz"),
         };
         Ok(Self { path, format })
+    }
+
+    /// Returns its path.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// Whether a file can be begun there: said before the work rather than after it.

@@ -21,6 +21,7 @@ use crate::cli::arguments::parameters;
 use crate::cli::arguments::program::{
     ascii, completions, config, config_file, look, man, record, script, size,
 };
+use crate::cli::arguments::recognition;
 use crate::cli::commands::export;
 use crate::figure::FigureKind;
 use crate::formats::{Name, NameError};
@@ -48,6 +49,8 @@ pub(crate) fn all() -> Command {
         .subcommand(batch())
         .subcommand(sweep())
         .subcommand(merge())
+        .subcommand(recognition::model())
+        .subcommand(recognition::recognise())
         .subcommand(library())
         .subcommand(script())
         .subcommand(config().args(sensor()))
@@ -175,51 +178,36 @@ fn sweep() -> Command {
         .help("Sweep a stored shape instead");
     let sizes = parameters::figure_parameters()
         .filter(|&parameter| Axis::ALL.iter().all(|axis| axis.parameter() != parameter));
-    let anchor = Arg::new("anchor")
-        .long("anchor")
-        .value_name("POINT")
-        .value_parser(parameters::one_of(Anchor::NAMES, Anchor::from_name))
-        .hide_possible_values(true)
-        .help_heading("Grid")
-        .help("What x0 and y0 place: corner or centre");
     let poses = Arg::new("poses")
         .long("poses")
         .value_name("FILE.npy")
         .value_parser(parse_poses)
         .conflicts_with("shard")
         .help("Write the number of each pose's imprint");
-    let jobs = Arg::new("jobs")
-        .long("jobs")
-        .value_name("N")
-        .value_parser(value_parser!(u16).range(1..=1024))
-        .help("Threads; default all cores");
-    let shard = Arg::new("shard")
-        .long("shard")
-        .value_name("K/N")
-        .value_parser(parse_shard)
-        .help("Sweep this piece of the grid only");
     Command::new("sweep")
         .about("Find every imprint that a shape can leave")
         .after_help(SWEEP_EXAMPLES)
         .arg(kind)
         .arg(picture)
         .args(sizes.map(|parameter| parameters::arg(parameter).help_heading("Figure")))
-        .args(Axis::ALL.map(range))
-        .arg(anchor)
+        .args(Axis::ALL.map(|axis| match axis {
+            Axis::X0 | Axis::Y0 => range(axis, "one cell that suits the shape"),
+            _ => range(axis, ""),
+        }))
+        .arg(anchor())
         .args(sensor_of_imprints())
-        .args([atlas(), poses, replace(), jobs, shard, json(), quiet()])
+        .args([atlas(), poses, replace(), jobs(), shard(), json(), quiet()])
 }
 
-/// The flag of an axis of the grid, which takes a range.
-fn range(axis: Axis) -> Arg {
+/// The flag of an axis of the grid, which takes a range. `default` says what is taken without it; empty for the range of
+/// the paper.
+pub(super) fn range(axis: Axis, default: &str) -> Arg {
     let (row, flag) = (axis.parameter().row(), axis.parameter().flag());
-    let default = match axis {
-        Axis::X0 | Axis::Y0 => "one cell that suits the shape".to_owned(),
-        _ => Ranges::default()[axis].to_string(),
-    };
+    let paper = Ranges::default()[axis].to_string();
     let help = format!(
-        "{}; default {default}",
-        parameters::capitalised(row.meaning)
+        "{}; default {}",
+        parameters::capitalised(row.meaning),
+        if default.is_empty() { &paper } else { default }
     );
     Arg::new(format!("range_{}", row.key))
         .long(flag)
@@ -230,6 +218,35 @@ fn range(axis: Axis) -> Arg {
         .help(parameters::wrapped(&help, 46))
 }
 
+/// `--anchor`, the point of a shape that the ranges of x0 and y0 place.
+pub(super) fn anchor() -> Arg {
+    Arg::new("anchor")
+        .long("anchor")
+        .value_name("POINT")
+        .value_parser(parameters::one_of(Anchor::NAMES, Anchor::from_name))
+        .hide_possible_values(true)
+        .help_heading("Grid")
+        .help("What x0 and y0 place: corner or centre")
+}
+
+/// `--jobs`, the number of threads.
+pub(super) fn jobs() -> Arg {
+    Arg::new("jobs")
+        .long("jobs")
+        .value_name("N")
+        .value_parser(value_parser!(u16).range(1..=1024))
+        .help("Threads; default all cores")
+}
+
+/// `--shard`, for work that several machines share.
+pub(super) fn shard() -> Arg {
+    Arg::new("shard")
+        .long("shard")
+        .value_name("K/N")
+        .value_parser(parse_shard)
+        .help("Do this piece of the grid only")
+}
+
 /// `taxel merge FILE.npz…`.
 fn merge() -> Command {
     let files = Arg::new("files")
@@ -237,11 +254,17 @@ fn merge() -> Command {
         .required(true)
         .num_args(1..)
         .value_parser(value_parser!(PathBuf))
-        .help("Atlases of all shards, in any order");
+        .help("Atlases or models of all shards, in any order");
     Command::new("merge")
-        .about("Put the shards of a sweep together")
+        .about("Put the shards of a sweep or a training together")
         .after_help(MERGE_EXAMPLES)
-        .args([files, atlas().required(true), replace(), json(), quiet()])
+        .args([
+            files,
+            atlas().alias("out").required(true),
+            replace(),
+            json(),
+            quiet(),
+        ])
 }
 
 /// `--atlas`, the file that a sweep or a merge writes.
@@ -254,12 +277,12 @@ fn atlas() -> Arg {
 }
 
 /// `--force`, for commands that write a file.
-fn replace() -> Arg {
+pub(super) fn replace() -> Arg {
     force().help("Replace a file that is there already")
 }
 
 /// `--quiet`.
-fn quiet() -> Arg {
+pub(super) fn quiet() -> Arg {
     Arg::new("quiet")
         .long("quiet")
         .action(ArgAction::SetTrue)
@@ -326,7 +349,7 @@ fn sensor() -> Vec<Arg> {
 }
 
 /// The flags of the sensor without `--pitch`, for commands that show no lengths.
-fn sensor_of_imprints() -> Vec<Arg> {
+pub(super) fn sensor_of_imprints() -> Vec<Arg> {
     let own = SENSOR_PARAMETERS.into_iter();
     let own = own.filter(|&parameter| parameter != Parameter::Pitch);
     of_sensor(&own.collect::<Vec<_>>())
@@ -402,12 +425,12 @@ fn name(help: &'static str) -> Arg {
 }
 
 /// The name of a shape; see [`Name`] for which are allowed.
-fn parse_name(text: &str) -> Result<Name, NameError> {
+pub(super) fn parse_name(text: &str) -> Result<Name, NameError> {
     Name::new(text)
 }
 
 /// A positional argument that is a name or a file; [`Shelf::find`](crate::cli::input::shapes::Shelf::find) tells which.
-fn what(help: &'static str) -> Arg {
+pub(super) fn what(help: &'static str) -> Arg {
     Arg::new("what")
         .value_name("NAME|FILE")
         .required(true)
@@ -416,7 +439,7 @@ fn what(help: &'static str) -> Arg {
 }
 
 /// `--json`.
-fn json() -> Arg {
+pub(super) fn json() -> Arg {
     Arg::new("json")
         .long("json")
         .action(ArgAction::SetTrue)

@@ -190,11 +190,96 @@ Examples:
 
 /// `taxel merge`.
 pub(crate) const MERGE_EXAMPLES: &str = "\
-All shards together give the same atlas as one sweep of the whole grid.
+All shards together give the same atlas as one sweep of the whole grid, or the
+same model as one training. The files say themselves which of both they are.
 
 Examples:
   taxel merge hexagon-*.npz --atlas hexagon.npz
-  taxel merge a.npz b.npz --atlas both.csv --json";
+  taxel merge a.npz b.npz --atlas both.csv --json
+  taxel merge part-*.npz --out parts.npz";
+
+/// `taxel model`: what a model is.
+pub(crate) const MODEL_EXAMPLES: &str = "\
+A model holds every imprint that some shapes can leave, and in how many poses
+each shape leaves it. So the best possible answer to one touch is counted, and
+the share of touches that it gets wrong is a limit that no method can pass.
+MODEL is the name of a model beside the library, or a file.
+
+Examples:
+  taxel model train parts.jsonl --name parts
+  taxel model confusion parts
+  taxel recognise imprint.txt --model parts";
+
+/// `taxel model train`: how shapes are given, and on which grid they are touched.
+pub(crate) const MODEL_TRAIN_EXAMPLES: &str = "\
+A line of JSON is a shape with a name, as for 'taxel batch' without a pose:
+  {\"name\":\"disc\",\"figure\":\"ellipse\",\"radius_x\":3,\"radius_y\":3}
+  {\"name\":\"ring\",\"picture\":\"washer\"}
+Without ranges, every shape is touched at 100 x 100 positions inside one cell
+and at every whole degree, on the smallest sensor that holds all of them: at
+least 16 x 16, and printed. Poses that the sensor cuts off are refused, since a
+cut imprint tells of the rim. Shards are put together by 'taxel merge'.
+
+Examples:
+  taxel model train parts.jsonl --name parts
+  taxel model train washer key gear --out shipped.npz
+  taxel model train --shape 'bar=rectangle length=6 width=3' \\
+      --shape 'disc=ellipse radius_x=2.4 radius_y=2.4' --out two.npz
+  taxel model train parts.jsonl --shard 1/4 --out part-1.npz";
+
+/// `taxel model show`: what a card says.
+pub(crate) const MODEL_SHOW_EXAMPLES: &str = "\
+The card says what was trained and how well one touch tells the shapes apart.
+
+Examples:
+  taxel model show parts
+  taxel model show ./parts.npz --json";
+
+/// `taxel model list`.
+pub(crate) const MODEL_LIST_EXAMPLES: &str = "\
+Models are files in the folder 'models' beside the library.
+
+Examples:
+  taxel model list --json";
+
+/// `taxel model delete`.
+pub(crate) const MODEL_DELETE_EXAMPLES: &str = "\
+The file is removed for good; it can be trained again.
+
+Examples:
+  taxel model delete parts";
+
+/// `taxel model confusion`: what the numbers mean.
+pub(crate) const MODEL_CONFUSION_EXAMPLES: &str = "\
+A row is a true shape, a column the name that the best classifier gives it; the
+numbers are touches, all of them counted. 'certain' are touches that only one
+shape can leave. Descriptors are those that do not say where the imprint lies:
+na, nae, ce, p, f, roundness, area, diagonals, side_ratio, filling, cg_cd,
+cg_cd_direction. CG-CD at full precision is more of a fingerprint than a
+measurement: --round cg_cd=0.01 says what it is worth when measured.
+
+Examples:
+  taxel model confusion parts
+  taxel model confusion parts --given na,p --json
+  taxel model confusion parts --greedy --round cg_cd=0.01
+  taxel model confusion parts --classifier all
+  taxel model confusion parts --export parts.csv";
+
+/// `taxel recognise`: input and answers.
+pub(crate) const RECOGNISE_EXAMPLES: &str = "\
+Reads an imprint in any form that 'taxel describe' reads, or lines of JSON, each
+{\"imprint\":[\"..##\",...]} or, for several touches of one shape,
+{\"touches\":[[...],[...]]}. Lines are answered in lines; other keys are ignored,
+but for frame, label, time and channel, which are copied. An imprint at the rim
+may be cut off and is never 'certain'.
+Exit status 3: --expect was given, and the answer is another one, tied, rejected
+or unknown.
+
+Examples:
+  taxel recognise imprint.txt
+  taxel recognise washer --model shipped.npz --top 3
+  taxel batch < poses.jsonl | taxel recognise - --model parts
+  taxel recognise imprint.txt --model parts --expect disc --reject 0.9";
 
 /// `taxel library`: what a library is, and which folder it is.
 pub(crate) const LIBRARY_EXAMPLES: &str = "\

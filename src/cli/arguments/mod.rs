@@ -5,6 +5,7 @@
 //! | `definitions` | the commands and their flags, for clap |
 //! | `program` | the same for `script`, `config`, `completions`, `man` and the screen's own flags |
 //! | `parameters` | flags made from the table of parameters, and their values |
+//! | `recognition` | the same for `model` and `recognise` |
 //! | `help` | the longer texts of the help |
 //! | `request` | from what clap has read to a `Request` |
 //!
@@ -19,3 +20,5 @@ pub(super) mod program;
 pub(super) mod definitions;
 
 pub(super) mod request;
+
+pub(super) mod recognition;

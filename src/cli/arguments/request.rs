@@ -14,6 +14,7 @@ use crate::cli::arguments::definitions;
 use crate::cli::arguments::parameters;
 use crate::cli::arguments::parameters::Given;
 use crate::cli::arguments::program::Script;
+use crate::cli::arguments::recognition::{self, ModelRequest, RecogniseArguments};
 use crate::cli::commands::completions::Shell;
 use crate::cli::commands::export::Export;
 use crate::cli::commands::sweep::Wanted;
@@ -63,6 +64,10 @@ pub(crate) enum Request {
     Sweep(Box<SweepArguments>),
     /// Merge the shards in these files.
     Merge(Vec<PathBuf>, Wanted),
+    /// A subcommand of `taxel model`.
+    Model(ModelRequest),
+    /// Name the shape that left an imprint.
+    Recognise(RecogniseArguments),
     /// A subcommand of `taxel library`.
     Library(Chore),
     /// Print the settings.
@@ -246,6 +251,8 @@ fn request(
             let files = own.get_many::<PathBuf>("files").into_iter().flatten();
             Request::Merge(files.cloned().collect(), wanted(own))
         }
+        "model" => Request::Model(recognition::model_request(own)?),
+        "recognise" => Request::Recognise(recognition::recognise_arguments(own)),
         _ => Request::Batch(settings.sensor()),
     })
 }

@@ -1,8 +1,8 @@
 //! The commands, one file each.
 //!
 //! A command takes its checked arguments and returns its answer as text or bytes, which [`crate::cli::run`] prints;
-//! only `batch` and `script`, whose answers come one by one, write to standard output themselves. Files that a command
-//! writes are complete or not there at all: they get their names last.
+//! only `batch`, `recognise` and `script`, whose answers come one by one, write to standard output themselves. Files that
+//! a command writes are complete or not there at all: they get their names last.
 
 pub(super) mod export;
 
@@ -15,6 +15,10 @@ pub(super) mod library;
 pub(super) mod batch;
 
 pub(super) mod sweep;
+
+pub(super) mod model;
+
+pub(super) mod recognise;
 
 pub(super) mod screen;
 

@@ -9,24 +9,26 @@
 //! program at once.
 
 use std::fs::File;
-use std::io::{self, IsTerminal};
+use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::Instant;
-
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-use signal_hook::flag;
 
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
+use crate::cli::output::evaluation::{self, EvaluationJson};
 use crate::cli::output::progress::Progress;
+use crate::cli::output::report;
 use crate::cli::output::sweep_summary::SweepSummary;
-use crate::formats::{ArchiveError, archive};
+use crate::cli::signals::Signals;
+use crate::formats::{ArchiveError, MODEL_FORMAT, archive, archive_format, json};
 use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, Ranges, common_ranges, default_ranges};
+use crate::recognition::{Evaluation, Model, TrainingError};
 use crate::sensor::Sensor;
 use crate::source::Source;
-use crate::storage::{ArchiveFileError, AtlasFile, Existing, FinishedFile, PoseFile};
+use crate::storage::{
+    ArchiveFileError, AtlasFile, Existing, FinishedFile, PoseFile, load_model, save_model,
+};
 use crate::sweep::{Shard, Sweep, SweepResult};
 
 /// What a sweep or a merge is to write and print.
@@ -158,16 +160,53 @@ pub(crate) fn merge(
     if let Some(file) = &wanted.atlas {
         file.check(wanted.existing)?;
     }
+    if let Some(path) = files.first()
+        && archive_format(open(path)?).map_err(|error| refused(path, error))? == MODEL_FORMAT
+    {
+        return merge_models(files, wanted, charset);
+    }
     let mut results = Vec::with_capacity(files.len());
     for path in files {
-        let file = File::open(path).map_err(|error| refused(path, error))?;
-        let result = archive::read(io::BufReader::new(file));
+        let result = archive::read(open(path)?);
         results.push(result.map_err(|error| refused(path, error))?);
     }
     let result = SweepResult::merge(results)?;
     // Until here nothing is written, so a signal may simply end the program.
     let signals = Signals::heard().map_err(CliError::System)?;
     leave(&result, start, wanted, None, charset, &signals)
+}
+
+/// Opens the file of a shard.
+fn open(path: &Path) -> Result<io::BufReader<File>, CliError> {
+    let file = File::open(path).map_err(|error| refused(path, error))?;
+    Ok(io::BufReader::new(file))
+}
+
+/// Merges the shards of a training, and returns what is printed.
+fn merge_models(files: &[PathBuf], wanted: &Wanted, charset: Charset) -> Result<String, CliError> {
+    let mut shards = Vec::with_capacity(files.len());
+    for path in files {
+        shards.push(load_model(path)?);
+    }
+    let model = Model::merge(shards).map_err(TrainingError::from)?;
+    let signals = Signals::heard().map_err(CliError::System)?;
+    if let Some(file) = &wanted.atlas {
+        let saved = save_model(&model, file.path(), wanted.existing, &signals.stopped);
+        if signals.stopped.load(Ordering::Relaxed) {
+            return Err(signals.failure());
+        }
+        saved?;
+    }
+    let limit = Evaluation::of(&model);
+    Ok(if wanted.json {
+        let line = json::text(&EvaluationJson {
+            evaluation: &limit,
+            peer: None,
+        });
+        report::ascii_json(&line) + "\n"
+    } else {
+        evaluation::summary(&limit, charset)
+    })
 }
 
 /// Writes the atlas, gives the files their names, and returns the summary to print.
@@ -199,41 +238,4 @@ fn leave(
     } else {
         summary.text(charset)
     })
-}
-
-/// Signals that stop the work, each with the exit status that a shell reports for it: 128 and its number.
-const STOPPING: [(i32, u8); 3] = [(SIGINT, 130), (SIGTERM, 143), (SIGHUP, 129)];
-
-/// Whether the work is to stop. A second signal ends the program at once, as if none were caught.
-struct Signals {
-    stopped: Arc<AtomicBool>,
-    /// The index in [`STOPPING`] of the signal that came last.
-    last: Arc<AtomicUsize>,
-}
-
-impl Signals {
-    /// Catches the signals from now on.
-    ///
-    /// # Errors
-    /// If the system does not allow it.
-    fn heard() -> io::Result<Self> {
-        let (stopped, last) = (Arc::default(), Arc::default());
-        let terminal = io::stderr().is_terminal();
-        for (index, &(signal, status)) in STOPPING.iter().enumerate() {
-            // Without a terminal SIGHUP keeps its meaning: `nohup` may have told the program to ignore it.
-            if signal == SIGHUP && !terminal {
-                continue;
-            }
-            flag::register_conditional_shutdown(signal, status.into(), Arc::clone(&stopped))?;
-            flag::register_usize(signal, Arc::clone(&last), index)?;
-            flag::register(signal, Arc::clone(&stopped))?;
-        }
-        Ok(Self { stopped, last })
-    }
-
-    /// The error of a command that the last signal stopped.
-    fn failure(&self) -> CliError {
-        let (_, status) = STOPPING[self.last.load(Ordering::Relaxed)];
-        CliError::Stopped { status }
-    }
 }

@@ -3,7 +3,6 @@
 //! The form is recognised from the content, never from the file's name: `{` begins a stored shape, anything else is an
 //! imprint as text, PBM, CSV or NPY ([`imprint_file`]). At most [`MAX_BYTES`] are read.
 
-use std::fs::File;
 use std::io::{self, Read};
 use std::path::PathBuf;
 
@@ -58,15 +57,12 @@ pub(crate) enum InputError {
     Shape(#[from] ShapeError),
 }
 
-/// Reads a source. If the first character is `{` it is a stored shape, otherwise an imprint.
+/// Reads an open source. If the first character is `{` it is a stored shape, otherwise an imprint.
 ///
 /// # Errors
 /// [`InputError`], without the name of the source.
-pub(crate) fn read(source: &InputSource) -> Result<Content, InputError> {
-    let bytes = match source {
-        InputSource::File(path) => bytes(File::open(path)?)?,
-        InputSource::Standard => bytes(io::stdin().lock())?,
-    };
+pub(crate) fn read_from(source: impl Read) -> Result<Content, InputError> {
+    let bytes = bytes(source)?;
     // Some editors begin every text with a byte order mark.
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
     if bytes.trim_ascii_start().starts_with(b"{") {

@@ -1,7 +1,10 @@
 //! What commands read: imprints and stored shapes, from files, standard input and the library.
 //!
-//! `shapes` decides what a `NAME|FILE` argument means; `content` reads a file and recognises its form.
+//! `shapes` decides what a `NAME|FILE` argument means; `content` reads a file and recognises its form;
+//! `lines` answers lines one by one.
 
 pub(super) mod content;
+
+pub(super) mod lines;
 
 pub(super) mod shapes;

@@ -6,12 +6,13 @@
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::ffi::OsStr;
-use std::io::ErrorKind;
+use std::fs::File;
+use std::io::{self, ErrorKind};
 use std::path::PathBuf;
 
 use crate::cli::error::CliError;
 use crate::cli::input::content;
-use crate::cli::input::content::{Content, InputError, InputSource};
+use crate::cli::input::content::{Content, InputSource};
 use crate::formats::StoredShape;
 use crate::imprint::Imprint;
 use crate::storage::{Expected, Library, LibraryError};
@@ -25,6 +26,18 @@ pub(crate) struct Shelf {
     library: RefCell<Option<Library>>,
     /// What [`Shelf::imprint`] has found. A batch keeps using a shape as it was when it was first looked up.
     found: RefCell<HashMap<String, Imprint>>,
+}
+
+/// What a `NAME|FILE` argument means.
+#[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
+pub(crate) enum Located {
+    /// A shape of the library.
+    Shape(StoredShape),
+    /// A file, opened.
+    File(PathBuf, File),
+    /// Standard input.
+    Standard,
 }
 
 impl Shelf {
@@ -55,48 +68,49 @@ impl Shelf {
         self.asked.then(|| self.library()).transpose()
     }
 
+    /// Looks up a `NAME|FILE` argument and reads it.
+    ///
+    /// # Errors
+    /// Those of [`Self::locate`]; otherwise what is wrong with the file.
+    pub(crate) fn find(&self, what: &OsStr) -> Result<Content, CliError> {
+        let (name, content) = match self.locate(what)? {
+            Located::Shape(shape) => return Ok(Content::Shape(shape)),
+            Located::Standard => (
+                InputSource::Standard.name(),
+                content::read_from(io::stdin().lock()),
+            ),
+            Located::File(path, file) => (InputSource::File(path).name(), content::read_from(file)),
+        };
+        content.map_err(|error| CliError::Input { name, error })
+    }
+
     /// Looks up a `NAME|FILE` argument: `-`, then a name, then a file.
     ///
     /// # Errors
-    /// [`CliError::Nowhere`] if it is neither; otherwise what is wrong with the shape or the file.
-    pub(crate) fn find(&self, what: &OsStr) -> Result<Content, CliError> {
-        let read = |source: &InputSource| {
-            content::read(source).map_err(|error| CliError::Input {
-                name: source.name(),
-                error,
-            })
-        };
+    /// [`CliError::Nowhere`] if it is neither; otherwise what is wrong with the shape, or why the file cannot be opened.
+    pub(crate) fn locate(&self, what: &OsStr) -> Result<Located, CliError> {
         if what == "-" {
-            return read(&InputSource::Standard);
+            return Ok(Located::Standard);
         }
         let named = what
             .to_str()
             .map(|name| self.library().and_then(|library| library.load(name)));
         let nowhere = match named {
-            Some(Ok(loaded)) => return Ok(Content::Shape(loaded.shape)),
-            Some(Err(LibraryError::Unknown { name })) => Some(name),
+            Some(Ok(loaded)) => return Ok(Located::Shape(loaded.shape)),
+            Some(Err(LibraryError::Unknown { name })) => Some(CliError::Nowhere { name }),
             // What cannot be a name may be a path, and paths do not need a library.
             Some(Err(LibraryError::Name(_) | LibraryError::NoPlace)) | None => None,
             // An error of the library is reported only if there is no such file.
-            Some(Err(error)) => {
-                return match read(&InputSource::File(what.into())) {
-                    Err(CliError::Input {
-                        error: InputError::Read(missing),
-                        ..
-                    }) if missing.kind() == ErrorKind::NotFound => Err(error.into()),
-                    content => content,
-                };
-            }
+            Some(Err(error)) => Some(error.into()),
         };
-        match (read(&InputSource::File(what.into())), nowhere) {
-            (
-                Err(CliError::Input {
-                    error: InputError::Read(error),
-                    ..
-                }),
-                Some(name),
-            ) if error.kind() == ErrorKind::NotFound => Err(CliError::Nowhere { name }),
-            (result, _) => result,
+        let path = PathBuf::from(what);
+        match (File::open(&path), nowhere) {
+            (Ok(file), _) => Ok(Located::File(path, file)),
+            (Err(error), Some(nowhere)) if error.kind() == ErrorKind::NotFound => Err(nowhere),
+            (Err(error), _) => Err(CliError::Input {
+                name: InputSource::File(path).name(),
+                error: error.into(),
+            }),
         }
     }
 

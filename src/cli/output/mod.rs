@@ -9,3 +9,7 @@ pub(super) mod report;
 pub(super) mod sweep_summary;
 
 pub(super) mod progress;
+
+pub(super) mod evaluation;
+
+pub(super) mod answer;

@@ -1,0 +1,590 @@
+//! `taxel model`: trains, shows, lists, deletes and evaluates models of shapes.
+
+use std::ffi::OsStr;
+use std::fs::File;
+use std::io::{self, BufReader, Read};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+
+use serde_json::json;
+
+use crate::cli::arguments::recognition::{
+    ConfusionArguments, DEFAULT_MODEL, Evaluated, EvaluationForm, ModelTarget, TrainArguments,
+};
+use crate::cli::error::CliError;
+use crate::cli::input::shapes::Shelf;
+use crate::cli::output::charset::Charset;
+use crate::cli::output::evaluation::{self, EvaluationJson};
+use crate::cli::output::progress::Progress;
+use crate::cli::output::report;
+use crate::cli::signals::Signals;
+use crate::figure::{Figure, FigureKind};
+use crate::formats::{Name, json, named_shape, named_shape_of_words};
+use crate::picture::Picture;
+use crate::pose::{Anchor, Axis, GivenRanges, GridError, Ranges, common_ranges, smallest_sensor};
+use crate::recognition::{Evaluation, Model, NamedShape, Peer, Training, TrainingError, greedy};
+use crate::sensor::Sensor;
+use crate::storage::{
+    Existing, ModelCache, ModelFolder, UnfinishedFile, load_model, model_hash, save_model,
+};
+
+/// The smallest side of a sensor that training chooses.
+const LEAST_SIDE: u8 = 16;
+
+/// The largest file of shapes.
+const MAX_SET: u64 = 64 << 20;
+
+/// Trains a model and writes it. Returns what is printed.
+pub(crate) fn train(
+    asked: &TrainArguments,
+    shelf: &Shelf,
+    charset: Charset,
+) -> Result<String, CliError> {
+    let path = match &asked.to {
+        ModelTarget::File(path) => path.clone(),
+        ModelTarget::Named(name) => {
+            let models = folder(shelf)?;
+            std::fs::create_dir_all(models.path()).map_err(|error| CliError::File {
+                name: models.path().to_string_lossy().into_owned(),
+                error,
+            })?;
+            models.file(name)
+        }
+    };
+    let shapes = shapes(asked, shelf)?;
+    let (sensor, anchor, ranges) = grid(asked, &shapes)?;
+    let signals = Signals::heard().map_err(CliError::System)?;
+    // Whether a file can be begun there is found out before the work rather than after it.
+    drop(UnfinishedFile::new(&path, asked.existing)?);
+    let stopped = &signals.stopped;
+    let training = Training::new(shapes, sensor, anchor, ranges)?
+        .shard(asked.shard)
+        .allow_cut(asked.allow_cut);
+    if !asked.quiet {
+        crate::cli::note(&grid_text(&sensor, anchor, &ranges), charset);
+    }
+    let progress = Progress::new(training.poses(), asked.quiet, charset);
+    let tell = |poses: u64| {
+        progress.add(poses);
+        !stopped.load(Ordering::Relaxed)
+    };
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(asked.jobs)
+        .build();
+    let pool = pool.map_err(|error| CliError::System(io::Error::other(error)))?;
+    let model = pool.install(|| training.progress(&tell).run());
+    progress.finish();
+    let model = model.map_err(|error| match error {
+        TrainingError::Stopped => signals.failure(),
+        error => error.into(),
+    })?;
+    let saved = save_model(&model, &path, asked.existing, stopped);
+    if stopped.load(Ordering::Relaxed) {
+        return Err(signals.failure());
+    }
+    saved?;
+    let limit = Evaluation::of(&model);
+    let name = path.to_string_lossy();
+    Ok(if asked.json {
+        let mut text = card_json(&model, &limit)?;
+        text.insert("file".to_owned(), json!(name));
+        json::text(&text) + "\n"
+    } else {
+        let summary = evaluation::summary(&limit, charset);
+        charset.lines(&format!("written: {name}\n")) + &summary
+    })
+}
+
+/// What was chosen for a training, in a line.
+fn grid_text(sensor: &Sensor, anchor: Anchor, ranges: &Ranges) -> String {
+    let axes = Axis::ALL.into_iter().filter(|axis| !axis.is_zoom());
+    let axes = axes.map(|axis| format!("{} {}", axis.name(), ranges[axis]));
+    format!(
+        "{} x {} sensor, threshold {}, {} at {}",
+        sensor.columns(),
+        sensor.rows(),
+        sensor.threshold(),
+        anchor.name(),
+        axes.collect::<Vec<_>>().join(", ")
+    )
+}
+
+/// The sensor and the poses of a training: the given ones, otherwise those on which no shape is cut off.
+fn grid(
+    asked: &TrainArguments,
+    shapes: &[NamedShape],
+) -> Result<(Sensor, Anchor, Ranges), CliError> {
+    let placed = asked.ranges[Axis::X0].is_some() || asked.ranges[Axis::Y0].is_some();
+    let usual = if placed {
+        Anchor::Corner
+    } else {
+        Anchor::Centre
+    };
+    let anchor = asked.anchor.unwrap_or(usual);
+    let (sensor, ranges) = fitting(shapes, asked.sensor, anchor, &asked.ranges)?;
+    let sensor = match asked.sensor {
+        Some(sensor) => sensor,
+        None => {
+            let (columns, rows) = (sensor.columns(), sensor.rows());
+            asked
+                .given
+                .sensor(Sensor::new(columns, rows).map_err(GridError::from)?)?
+        }
+    };
+    Ok((sensor, anchor, ranges))
+}
+
+/// The given sensor, or the smallest, and the ranges in which it cuts no shape off, as far as that can be.
+fn fitting(
+    shapes: &[NamedShape],
+    sensor: Option<Sensor>,
+    anchor: Anchor,
+    given: &GivenRanges,
+) -> Result<(Sensor, Ranges), CliError> {
+    let sources = || shapes.iter().map(|shape| &shape.source);
+    if sensor.is_none()
+        && let Some(fitting) = smallest_sensor(sources(), anchor, given, LEAST_SIDE)?
+    {
+        return Ok(fitting);
+    }
+    let sensor = sensor.unwrap_or(Sensor::LARGEST);
+    Ok((sensor, common_ranges(sources(), &sensor, anchor, given)?))
+}
+
+/// The shapes of a set, in the order of the arguments.
+fn shapes(asked: &TrainArguments, shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
+    let lookup = |name: &str| shelf.imprint(name).map_err(|error| error.to_string());
+    let mut shapes = Vec::new();
+    for what in &asked.what {
+        if what == "-" {
+            lines(
+                &mut io::stdin().lock(),
+                "standard input",
+                &lookup,
+                &mut shapes,
+            )?;
+        } else if let Some(path) = file_of_lines(what, shelf) {
+            let name = path.to_string_lossy().into_owned();
+            let mut file = File::open(&path).map_err(|error| CliError::File {
+                name: name.clone(),
+                error,
+            })?;
+            lines(&mut file, &name, &lookup, &mut shapes)?;
+        } else {
+            let name = what.to_string_lossy();
+            let imprint = shelf.imprint(&name)?;
+            shapes.push(NamedShape::new(name, Picture::at_home(imprint)));
+        }
+    }
+    for words in &asked.shapes {
+        let shape = named_shape_of_words(words, &lookup);
+        shapes.push(shape.map_err(|error| CliError::Set {
+            place: "--shape".to_owned(),
+            error: error.to_string(),
+        })?);
+    }
+    if asked.library_all {
+        shapes.extend(library_shapes(shelf)?);
+    }
+    Ok(shapes)
+}
+
+/// All shapes of the library, in its order.
+pub(crate) fn library_shapes(shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
+    let library = shelf.library()?;
+    let mut shapes = Vec::new();
+    for entry in library.list()? {
+        let name = entry.name.to_string();
+        let imprint = library.load(&name)?.shape.imprint;
+        shapes.push(NamedShape::new(name, Picture::at_home(imprint)));
+    }
+    Ok(shapes)
+}
+
+/// The file that an argument names; None if it is the name of a shape.
+fn file_of_lines(what: &OsStr, shelf: &Shelf) -> Option<PathBuf> {
+    let path = Path::new(what);
+    let ending = path
+        .extension()
+        .is_some_and(|ending| ending == "jsonl" || ending == "json");
+    let known = || {
+        what.to_str()
+            .is_some_and(|name| shelf.imprint(name).is_ok())
+    };
+    (ending || path.components().count() > 1 || path.is_file() && !known()).then(|| path.to_owned())
+}
+
+/// Reads a set of shapes, a line of JSON each. Blank lines are skipped.
+fn lines(
+    input: &mut dyn Read,
+    name: &str,
+    lookup: &dyn Fn(&str) -> Result<crate::imprint::Imprint, String>,
+    shapes: &mut Vec<NamedShape>,
+) -> Result<(), CliError> {
+    let mut text = Vec::new();
+    let read = BufReader::new(input)
+        .take(MAX_SET + 1)
+        .read_to_end(&mut text);
+    let refused = |place: String, error: String| CliError::Set { place, error };
+    read.map_err(|error| refused(name.to_owned(), format!("cannot read: {error}")))?;
+    if text.len() as u64 > MAX_SET {
+        let error = "larger than 64 MiB, which no set of shapes is";
+        return Err(refused(name.to_owned(), error.to_owned()));
+    }
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
+    for (index, line) in text.split(|&byte| byte == b'\n').enumerate() {
+        if line.trim_ascii().is_empty() {
+            continue;
+        }
+        let shape = named_shape(line, lookup);
+        let place = || format!("{name}, line {}", index + 1);
+        shapes.push(shape.map_err(|error| refused(place(), error.to_string()))?);
+    }
+    Ok(())
+}
+
+/// The folder of the models beside the library.
+fn folder(shelf: &Shelf) -> Result<ModelFolder, CliError> {
+    Ok(ModelFolder::beside(shelf.library()?.folder()))
+}
+
+/// Finds a model: one beside the library, then a file, then the seven figures if they are asked for.
+pub(crate) fn find(which: &OsStr, shelf: &Shelf) -> Result<Model, CliError> {
+    let own = which
+        .to_str()
+        .and_then(|name| Name::new(name).ok())
+        .and_then(|name| folder(shelf).ok().map(|models| models.file(&name)));
+    if let Some(path) = own.filter(|path| path.exists()) {
+        return Ok(load_model(&path)?);
+    }
+    if !Path::new(which).exists() && which == DEFAULT_MODEL {
+        return figures();
+    }
+    match load_model(Path::new(which)) {
+        Err(error) if error.is_missing() => Err(CliError::NoModel {
+            name: which.to_string_lossy().into_owned(),
+        }),
+        loaded => Ok(loaded?),
+    }
+}
+
+/// The model of the seven figures at their default sizes, from the cache or trained now.
+pub(crate) fn figures() -> Result<Model, CliError> {
+    let shape = |kind: FigureKind| {
+        let figure = Figure::default_of(kind, &Sensor::default());
+        NamedShape::new(kind.name(), figure)
+    };
+    let shapes = FigureKind::ALL.map(shape);
+    let (sensor, ranges) = fitting(&shapes, None, Anchor::Centre, &GivenRanges::default())?;
+    let training = || Training::new(shapes.clone(), sensor, Anchor::Centre, ranges);
+    let cache = ModelCache::of_user();
+    if let Some(model) = cache
+        .as_ref()
+        .and_then(|cache| cache.load(&training().ok()?))
+    {
+        return Ok(model);
+    }
+    let path = match &cache {
+        Some(cache) => Some(cache.file(&training()?)),
+        None => None,
+    };
+    let model = training()?.run()?;
+    if let (Some(cache), Some(path)) = (cache, path) {
+        cache.keep(&path, &model);
+    }
+    Ok(model)
+}
+
+/// Shows the card of a model.
+pub(crate) fn show(
+    which: &OsStr,
+    json: bool,
+    shelf: &Shelf,
+    charset: Charset,
+) -> Result<String, CliError> {
+    let model = find(which, shelf)?;
+    let limit = Evaluation::of(&model);
+    if json {
+        return Ok(report::ascii_json(&json::text(&card_json(&model, &limit)?)) + "\n");
+    }
+    let mut text = format!(
+        "{}\n",
+        grid_text(model.sensor(), model.anchor(), model.ranges())
+    );
+    for (index, shape) in model.shapes().iter().enumerate() {
+        let weight = match shape.weight {
+            1 => String::new(),
+            weight => format!(", weight {weight}"),
+        };
+        text += &format!(
+            "  {}: {}{weight}, recognised in {}\n",
+            shape.name,
+            described(shape),
+            evaluation::percent(limit.recall(index))
+        );
+    }
+    text += &format!("{} poses each", model.poses());
+    if model.shard() != crate::sweep::Shard::WHOLE {
+        text += &format!(", shard {}", model.shard());
+    }
+    let cut: u64 = model.cut().iter().sum();
+    if cut > 0 {
+        text += &format!(", {cut} of all cut off by the sensor");
+    }
+    text.push('\n');
+    text += &evaluation::summary(&limit, charset);
+    let never = model.never_certain();
+    if !never.is_empty() {
+        let names = never
+            .iter()
+            .map(|&shape| model.shapes()[shape].name.clone());
+        let names: Vec<_> = names.collect();
+        text += &format!("never certain: {}\n", names.join(", "));
+    }
+    text += &format!(
+        "hash {}, taxel {}\n",
+        model_hash(&model)?,
+        env!("CARGO_PKG_VERSION")
+    );
+    Ok(charset.lines(&text))
+}
+
+/// What a shape of a set is, in a few words.
+fn described(shape: &NamedShape) -> String {
+    match (&shape.source.kind(), &shape.source) {
+        (Some(kind), source) => {
+            let sizes = kind
+                .parameters()
+                .iter()
+                .filter(|parameter| Axis::ALL.iter().all(|axis| axis.parameter() != **parameter));
+            let sizes = sizes.filter_map(|&parameter| {
+                let value = source.get(parameter)?;
+                Some(format!(
+                    "{} {}",
+                    parameter.row().key,
+                    parameter.format(value)
+                ))
+            });
+            format!("{} {}", kind.name(), sizes.collect::<Vec<_>>().join(", "))
+        }
+        (None, crate::source::Source::Picture(picture)) => {
+            format!("picture of {} taxels", picture.imprint().count())
+        }
+        (None, _) => shape.source.noun().to_owned(),
+    }
+}
+
+/// The card of a model as JSON: what was trained, and its evaluation.
+fn card_json(
+    model: &Model,
+    limit: &Evaluation,
+) -> Result<serde_json::Map<String, serde_json::Value>, CliError> {
+    let mut card = serde_json::Map::new();
+    let shapes = model.shapes().iter().enumerate().map(|(index, shape)| {
+        json!({
+            "name": shape.name,
+            "source": shape.source,
+            "weight": shape.weight,
+            "cut": model.cut()[index],
+            "recall": limit.recall(index),
+            "precision": limit.precision(index),
+        })
+    });
+    let ranges: serde_json::Map<_, _> = Axis::ALL
+        .into_iter()
+        .map(|axis| {
+            (
+                axis.name().to_owned(),
+                json!(model.ranges()[axis].to_string()),
+            )
+        })
+        .collect();
+    let never = model.never_certain();
+    let never = never
+        .iter()
+        .map(|&shape| model.shapes()[shape].name.as_str());
+    card.insert("shapes".into(), shapes.collect());
+    card.insert("sensor".into(), json!(model.sensor()));
+    card.insert("anchor".into(), json!(model.anchor().name()));
+    card.insert("ranges".into(), ranges.into());
+    card.insert("shard".into(), json!(model.shard().to_string()));
+    card.insert("poses".into(), json!(model.poses()));
+    card.insert("keys".into(), json!(limit.keys));
+    card.insert("touches".into(), number(limit.touches));
+    card.insert("right".into(), number(limit.right));
+    card.insert("error".into(), json!(limit.error()));
+    card.insert("certain".into(), number(limit.certain));
+    card.insert("information_bits".into(), json!(limit.information_bits));
+    card.insert("never_certain".into(), never.collect());
+    card.insert("hash".into(), json!(model_hash(model)?));
+    card.insert("version".into(), json!(env!("CARGO_PKG_VERSION")));
+    Ok(card)
+}
+
+/// A count as JSON; counts beyond 64 bits do not fit in memory anyway, but a weight may make one.
+fn number(count: u128) -> serde_json::Value {
+    match u64::try_from(count) {
+        Ok(count) => json!(count),
+        Err(_) => json!(count.to_string()),
+    }
+}
+
+/// Lists the models beside the library.
+pub(crate) fn list(json: bool, shelf: &Shelf, charset: Charset) -> Result<String, CliError> {
+    let models = folder(shelf)?;
+    let mut text = String::new();
+    for name in models.names()? {
+        let path = models.file(&name);
+        let model = load_model(&path);
+        if json {
+            let line = match &model {
+                Ok(model) => json!({
+                    "name": name.as_str(),
+                    "file": path.to_string_lossy(),
+                    "shapes": model.shapes().iter().map(|shape| &shape.name).collect::<Vec<_>>(),
+                    "keys": model.keys().len(),
+                }),
+                Err(error) => json!({"name": name.as_str(), "error": error.to_string()}),
+            };
+            text += &report::ascii_json(&line.to_string());
+            text.push('\n');
+            continue;
+        }
+        let said = match &model {
+            Ok(model) => format!(
+                "{} shapes, {} keys, error {}",
+                model.shapes().len(),
+                model.keys().len(),
+                evaluation::percent(Evaluation::of(model).error())
+            ),
+            Err(error) => error.to_string(),
+        };
+        text += &charset.lines(&format!("{name}: {said}\n"));
+    }
+    Ok(text)
+}
+
+/// Deletes a model.
+pub(crate) fn delete(name: &Name, shelf: &Shelf) -> Result<String, CliError> {
+    match folder(shelf)?.delete(name) {
+        Err(error) if error.is_missing() => Err(CliError::NoModel {
+            name: name.to_string(),
+        }),
+        deleted => {
+            deleted?;
+            Ok(format!("deleted: {name}\n"))
+        }
+    }
+}
+
+/// Evaluates a model.
+pub(crate) fn confusion(
+    asked: &ConfusionArguments,
+    shelf: &Shelf,
+    charset: Charset,
+) -> Result<String, CliError> {
+    let model = find(&asked.model, shelf)?;
+    let text = match &asked.of {
+        Evaluated::Imprints => shown(asked, &Evaluation::of(&model), charset)?,
+        Evaluated::Given(given) => {
+            let given = given.clone().rounded(asked.roundings.clone());
+            shown(asked, &given.evaluate(&model), charset)?
+        }
+        Evaluated::Greedy => {
+            let (chosen, limit) = (greedy(&model, &asked.roundings), Evaluation::of(&model));
+            match asked.form {
+                EvaluationForm::Json => {
+                    let steps = chosen.iter().map(|(descriptor, evaluation)| {
+                        json!({
+                            "descriptor": descriptor.key(),
+                            "right": number(evaluation.right),
+                            "error": evaluation.error(),
+                            "values": evaluation.keys,
+                        })
+                    });
+                    let steps: Vec<_> = steps.collect();
+                    json!({"chosen": steps, "limit": limit.error()}).to_string() + "\n"
+                }
+                _ => evaluation::greedy(&chosen, &limit, charset),
+            }
+        }
+        Evaluated::Pairs => {
+            let errors = model.pair_errors();
+            let names = model.shapes().iter().map(|shape| shape.name.clone());
+            let labels: Vec<String> = names.collect();
+            match asked.form {
+                EvaluationForm::Json => {
+                    let line = json!({"labels": labels, "errors": errors}).to_string();
+                    report::ascii_json(&line) + "\n"
+                }
+                _ => evaluation::pairs(&labels, &errors, charset),
+            }
+        }
+        Evaluated::Peer(peer) => {
+            let reached = peer.evaluate(&model, &asked.peers);
+            match asked.form {
+                EvaluationForm::Json => {
+                    let line = json::text(&EvaluationJson {
+                        evaluation: &reached.evaluation,
+                        peer: Some(&reached),
+                    });
+                    report::ascii_json(&line) + "\n"
+                }
+                _ => {
+                    let text = shown(asked, &reached.evaluation, charset)?;
+                    text + &charset.lines(&evaluation::features(Some(&reached)))
+                }
+            }
+        }
+        Evaluated::AllPeers => {
+            let all = Peer::ALL.map(|peer| peer.evaluate(&model, &asked.peers));
+            let limit = Evaluation::of(&model);
+            match asked.form {
+                EvaluationForm::Json => {
+                    let mut table = serde_json::Map::new();
+                    for reached in &all {
+                        let error = json!(reached.evaluation.error());
+                        table.insert(reached.peer.name().to_owned(), error);
+                    }
+                    table.insert("limit".to_owned(), json!(limit.error()));
+                    json::text(&table) + "\n"
+                }
+                _ => evaluation::peers(&all, &limit, charset),
+            }
+        }
+    };
+    Ok(text)
+}
+
+/// One evaluation, in the form that is asked for.
+fn shown(
+    asked: &ConfusionArguments,
+    own: &Evaluation,
+    charset: Charset,
+) -> Result<String, CliError> {
+    if let Some(path) = &asked.export {
+        write(path, evaluation::csv(own).as_bytes(), asked.existing)?;
+    }
+    Ok(match asked.form {
+        EvaluationForm::Json => {
+            let line = json::text(&EvaluationJson {
+                evaluation: own,
+                peer: None,
+            });
+            report::ascii_json(&line) + "\n"
+        }
+        EvaluationForm::Csv => evaluation::csv(own),
+        EvaluationForm::Text => {
+            let matrix = evaluation::matrix(own, charset);
+            let worst = evaluation::worst_pairs(own, charset);
+            format!("{}\n{matrix}{worst}", evaluation::summary(own, charset))
+        }
+    })
+}
+
+/// Writes a file, whole or not at all.
+fn write(path: &Path, bytes: &[u8], existing: Existing) -> Result<(), CliError> {
+    let mut file = UnfinishedFile::new(path, existing)?;
+    file.write(bytes)?;
+    Ok(file.finish()?.persist()?)
+}

@@ -1,0 +1,276 @@
+//! `taxel recognise`: names the shape that left an imprint, or each of many.
+
+use std::ffi::OsStr;
+use std::io::{self, BufRead, BufReader, Cursor, Read, Write};
+
+use serde::Deserialize;
+use serde_json::value::RawValue;
+
+use crate::cli::arguments::recognition::RecogniseArguments;
+use crate::cli::commands::model;
+use crate::cli::error::CliError;
+use crate::cli::input::content::{self, Content};
+use crate::cli::input::lines::{self, MAX_LINE};
+use crate::cli::input::shapes::{Located, Shelf};
+use crate::cli::output::answer::{self, AnswerJson};
+use crate::cli::output::charset::Charset;
+use crate::cli::output::report;
+use crate::formats::json;
+use crate::imprint::Imprint;
+use crate::quote::legible;
+use crate::recognition::{Answer, AnswerState, Evidence, Model};
+
+/// The exit status if the answer is not the expected one.
+const UNEXPECTED: u8 = 3;
+
+/// Answers what is asked, on `output`, and returns the exit status.
+pub(crate) fn recognise(
+    asked: &RecogniseArguments,
+    shelf: &Shelf,
+    charset: Charset,
+    output: &mut dyn Write,
+) -> Result<u8, CliError> {
+    let recogniser = Recogniser {
+        asked,
+        model: model::find(&asked.model, shelf)?,
+    };
+    if let Some(name) = &asked.expect
+        && recogniser
+            .model
+            .shapes()
+            .iter()
+            .all(|shape| shape.name != *name)
+    {
+        return Err(CliError::NotInModel { name: name.clone() });
+    }
+    match input(&asked.what, shelf)? {
+        Asked::Imprint(imprint) => {
+            let touches = [imprint];
+            let answer = recogniser.answer(&touches);
+            let text = if asked.json {
+                let line = json::text(&recogniser.json(&touches, &answer, None));
+                report::ascii_json(&line) + "\n"
+            } else {
+                answer::text(&recogniser.model, &touches[0], &answer, asked.top, charset)
+            };
+            output.write_all(text.as_bytes()).map_err(CliError::Write)?;
+            output.flush().map_err(CliError::Write)?;
+            Ok(if recogniser.expected(&answer) {
+                0
+            } else {
+                UNEXPECTED
+            })
+        }
+        Asked::Lines(input) => {
+            let mut expected = true;
+            lines::answer_each(input, output, "touch", |line, text| {
+                let line = Line::read(line)?;
+                let answer = recogniser.answer(&line.touches);
+                expected &= recogniser.expected(&answer);
+                let own = json::text(&recogniser.json(&line.touches, &answer, Some(&line)));
+                text.extend(report::ascii_json(&own).bytes());
+                Ok(())
+            })?;
+            Ok(if expected { 0 } else { UNEXPECTED })
+        }
+    }
+}
+
+/// A model, and how it is asked.
+struct Recogniser<'a> {
+    asked: &'a RecogniseArguments,
+    model: Model,
+}
+
+impl Recogniser<'_> {
+    fn answer(&self, touches: &[Imprint]) -> Answer {
+        let evidence = Evidence::of(touches);
+        self.model.recognise(match self.asked.reject {
+            Some(least) => evidence.reject_below(least),
+            None => evidence,
+        })
+    }
+
+    fn json<'a>(
+        &'a self,
+        touches: &[Imprint],
+        answer: &'a Answer,
+        line: Option<&'a Line>,
+    ) -> AnswerJson<'a> {
+        AnswerJson {
+            model: &self.model,
+            answer,
+            nearest: self.model.nearest_of(Evidence::of(touches)),
+            top: self.asked.top,
+            copied: line.map(Line::copied).unwrap_or_default(),
+        }
+    }
+
+    /// Whether the answer is the expected one; yes if none is.
+    fn expected(&self, answer: &Answer) -> bool {
+        let Some(expected) = &self.asked.expect else {
+            return true;
+        };
+        let named = answer.shape.map(|shape| &self.model.shapes()[shape].name);
+        answer.state != AnswerState::Tied && named == Some(expected)
+    }
+}
+
+/// What is to be recognised.
+#[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
+enum Asked {
+    Imprint(Imprint),
+    Lines(Box<dyn Read>),
+}
+
+/// Finds out what the argument means: a shape of the library, a file or standard input; and whether that holds lines.
+fn input(what: &OsStr, shelf: &Shelf) -> Result<Asked, CliError> {
+    let (name, input): (String, Box<dyn Read>) = match shelf.locate(what)? {
+        Located::Shape(shape) => return Ok(Asked::Imprint(shape.imprint)),
+        Located::File(path, file) => (path.to_string_lossy().into_owned(), Box::new(file)),
+        Located::Standard => ("standard input".to_owned(), Box::new(io::stdin())),
+    };
+    // The first line tells: of lines of JSON it is a whole object, and not one of a stored shape.
+    let mut input = BufReader::new(input);
+    let mut start = Vec::new();
+    let refused = |error: content::InputError| CliError::Input {
+        name: name.clone(),
+        error,
+    };
+    loop {
+        let length = start.len();
+        let mut line = (&mut input).take(MAX_LINE as u64);
+        line.read_until(b'\n', &mut start)
+            .map_err(|error| refused(error.into()))?;
+        if start.len() == length || !start[length..].trim_ascii().is_empty() {
+            break;
+        }
+    }
+    if is_line(&start) {
+        return Ok(Asked::Lines(Box::new(Cursor::new(start).chain(input))));
+    }
+    match content::read_from(Cursor::new(start).chain(input)).map_err(refused)? {
+        Content::Imprint(imprint) => Ok(Asked::Imprint(imprint)),
+        Content::Shape(shape) => Ok(Asked::Imprint(shape.imprint)),
+    }
+}
+
+/// Whether a text is a whole object of JSON that is not a stored shape, or would be if its one line were not wrong.
+fn is_line(text: &[u8]) -> bool {
+    #[derive(Deserialize)]
+    struct Keys {
+        format: Option<serde::de::IgnoredAny>,
+    }
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    if !text.trim_ascii_start().starts_with(b"{") {
+        return false;
+    }
+    match serde_json::from_slice::<Keys>(text) {
+        Ok(keys) => keys.format.is_none(),
+        // An object that goes on in the next line is a stored shape.
+        Err(error) => !error.is_eof(),
+    }
+}
+
+/// A line: one touch or several, and what is copied into its answer.
+#[derive(Deserialize)]
+struct Keys<'a> {
+    #[serde(borrow)]
+    imprint: Option<Vec<std::borrow::Cow<'a, str>>>,
+    #[serde(borrow)]
+    touches: Option<Vec<Vec<std::borrow::Cow<'a, str>>>>,
+    frame: Option<Box<RawValue>>,
+    label: Option<Box<RawValue>>,
+    time: Option<Box<RawValue>>,
+    channel: Option<Box<RawValue>>,
+}
+
+struct Line {
+    touches: Vec<Imprint>,
+    /// Keys and values that the answer repeats.
+    copied: Vec<(&'static str, Box<RawValue>)>,
+}
+
+impl Line {
+    fn read(line: &[u8]) -> Result<Self, String> {
+        let keys: Keys<'_> = serde_json::from_slice(line).map_err(|error| {
+            format!(
+                "column {}: {}",
+                error.column().max(1),
+                json::message(&error)
+            )
+        })?;
+        let imprint = |key: &str, rows: &[std::borrow::Cow<'_, str>]| {
+            Imprint::from_rows(rows.iter().map(AsRef::as_ref))
+                .map_err(|error| legible(&format!("{key}: {error}")))
+        };
+        let touches = match (&keys.imprint, &keys.touches) {
+            (Some(rows), None) => vec![imprint("imprint", rows)?],
+            (None, Some(touches)) if !touches.is_empty() => {
+                let numbered = touches.iter().enumerate();
+                numbered
+                    .map(|(index, rows)| imprint(&format!("touches, number {}", index + 1), rows))
+                    .collect::<Result<_, _>>()?
+            }
+            (None, Some(_)) => return Err("touches: empty, expected at least one".to_owned()),
+            _ => return Err("expected exactly one of the keys imprint, touches".to_owned()),
+        };
+        let copied = [
+            ("frame", keys.frame),
+            ("label", keys.label),
+            ("time", keys.time),
+            ("channel", keys.channel),
+        ];
+        let copied = copied.into_iter();
+        Ok(Self {
+            touches,
+            copied: copied
+                .filter_map(|(key, value)| Some((key, value?)))
+                .collect(),
+        })
+    }
+
+    fn copied(&self) -> Vec<(&'static str, &RawValue)> {
+        self.copied
+            .iter()
+            .map(|(key, value)| (*key, &**value))
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write as _;
+
+    use super::*;
+
+    #[test]
+    fn lines_are_told_from_stored_shapes() {
+        assert!(is_line(b"{\"imprint\":[\"##\"]}\n"));
+        assert!(is_line(b"{\"imprint\":}\n"));
+        assert!(!is_line(b"{\"format\":\"taxel-shape/1\"}\n"));
+        assert!(!is_line(b"{\n"));
+        assert!(!is_line(b"##..\n"));
+    }
+
+    #[test]
+    fn a_line_says_what_is_wrong_with_it() {
+        let error = |line: &str| Line::read(line.as_bytes()).err().unwrap_or_default();
+        let mut text = String::new();
+        for line in [
+            "{}",
+            "{\"imprint\":[\"##\",\"#\"]}",
+            "{\"touches\":[[\"##\"],[\"x\"]]}",
+            "{\"touches\":[]}",
+        ] {
+            let _ = writeln!(text, "{}", error(line));
+        }
+        assert_eq!(
+            text,
+            "expected exactly one of the keys imprint, touches\n\
+             imprint: row 2 has 1 character, expected 2 as in the first row\n\
+             touches, number 2: row 1, column 1: found 'x', expected '#' or '.'\n\
+             touches: empty, expected at least one\n"
+        );
+    }
+}

@@ -1,0 +1,151 @@
+//! Answers to touches: for people, and as JSON.
+
+use std::fmt::Write;
+
+use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde_json::json;
+use serde_json::value::RawValue;
+
+use crate::cli::output::charset::Charset;
+use crate::cli::output::evaluation::percent;
+use crate::imprint::Imprint;
+use crate::recognition::{Answer, AnswerState, Evidence, Model, Nearest};
+
+/// How many shapes a text shows, unless another number is asked for.
+const SHOWN: usize = 8;
+
+/// Characters of the longest bar.
+const BAR: usize = 30;
+
+/// An answer as an object of JSON, its keys in the order of the documentation.
+pub(crate) struct AnswerJson<'a> {
+    pub(crate) model: &'a Model,
+    pub(crate) answer: &'a Answer,
+    pub(crate) nearest: Option<Nearest>,
+    pub(crate) top: Option<usize>,
+    /// Keys of the question that come first.
+    pub(crate) copied: Vec<(&'static str, &'a RawValue)>,
+}
+
+impl Serialize for AnswerJson<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let name = |shape: usize| self.model.shapes()[shape].name.as_str();
+        let answer = self.answer;
+        let mut map = serializer.serialize_map(None)?;
+        for (key, value) in &self.copied {
+            map.serialize_entry(key, value)?;
+        }
+        map.serialize_entry("answer", &answer.shape.map(name))?;
+        map.serialize_entry("state", answer.state.name())?;
+        if answer.state == AnswerState::Tied {
+            let tied: Vec<&str> = answer.tied.iter().map(|&shape| name(shape)).collect();
+            map.serialize_entry("tied", &tied)?;
+        }
+        map.serialize_entry("method", "exact")?;
+        map.serialize_entry("noise", &None::<f64>)?;
+        map.serialize_entry("at_rim", &answer.at_rim)?;
+        let ranking = answer.ranking.iter().take(self.top.unwrap_or(usize::MAX));
+        let ranking = ranking
+            .map(|&(shape, probability)| json!({"name": name(shape), "probability": probability}));
+        map.serialize_entry("ranking", &ranking.collect::<Vec<_>>())?;
+        let nearest = self.nearest.as_ref().map(|nearest| {
+            json!({
+                "name": name(nearest.shape),
+                "distance": nearest.distance,
+                "imprint": nearest.imprint.lines().collect::<Vec<_>>(),
+            })
+        });
+        map.serialize_entry("nearest", &nearest)?;
+        map.end()
+    }
+}
+
+/// An answer for people: the name and how far it can be trusted, bars, and the nearest imprint.
+pub(crate) fn text(
+    model: &Model,
+    touch: &Imprint,
+    answer: &Answer,
+    top: Option<usize>,
+    charset: Charset,
+) -> String {
+    let name = |shape: usize| model.shapes()[shape].name.as_str();
+    let mut text = match (answer.state, answer.shape) {
+        (AnswerState::Tied, _) => {
+            let tied: Vec<&str> = answer.tied.iter().map(|&shape| name(shape)).collect();
+            format!("{}: tied\n", tied.join(" or "))
+        }
+        (AnswerState::Rejected, _) => "rejected: no shape is as probable as asked for\n".to_owned(),
+        (state, Some(shape)) => format!("{}: {}\n", name(shape), state.name()),
+        (_, None) => "unknown: no shape of the model leaves this imprint\n".to_owned(),
+    };
+    if answer.at_rim {
+        text += "the imprint reaches the rim of the matrix: it may be cut off\n";
+    }
+    let shown = answer.ranking.iter().take(top.unwrap_or(SHOWN));
+    let width = shown.clone().map(|&(shape, _)| name(shape).chars().count());
+    let width = width.max().unwrap_or_default();
+    for &(shape, probability) in shown {
+        let _ = writeln!(
+            text,
+            "  {:<width$}  {:<BAR$}  {:>7}",
+            name(shape),
+            bar(probability, charset),
+            percent(probability)
+        );
+    }
+    let rest = answer.ranking.len().saturating_sub(top.unwrap_or(SHOWN));
+    if rest > 0 {
+        let _ = writeln!(text, "  and {rest} more");
+    }
+    let touches = [*touch];
+    if let Some(nearest) = model.nearest_of(Evidence::of(&touches))
+        && nearest.distance > 0
+    {
+        let noun = if nearest.distance == 1 {
+            "taxel differs"
+        } else {
+            "taxels differ"
+        };
+        let _ = writeln!(
+            text,
+            "nearest: {}, {} {noun}",
+            name(nearest.shape),
+            nearest.distance
+        );
+        text += &differences(touch, &nearest.imprint);
+        text += "  # both   + only in the touch   - only in the nearest imprint\n";
+    }
+    charset.lines(&text)
+}
+
+/// A bar of a share's length.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a share is from 0 to 1"
+)]
+fn bar(share: f64, charset: Charset) -> String {
+    let full = match charset {
+        Charset::Ascii => "#",
+        Charset::Unicode => "█",
+    };
+    full.repeat((share * BAR as f64).round() as usize)
+}
+
+/// Two imprints of one size in one matrix.
+fn differences(touch: &Imprint, nearest: &Imprint) -> String {
+    let mut text = String::new();
+    for row in 0..touch.rows() {
+        text.push_str("  ");
+        for column in 0..touch.columns() {
+            text.push(match (touch.get(column, row), nearest.get(column, row)) {
+                (true, true) => '#',
+                (true, false) => '+',
+                (false, true) => '-',
+                (false, false) => '.',
+            });
+        }
+        text.push('\n');
+    }
+    text
+}

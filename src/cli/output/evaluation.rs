@@ -1,0 +1,294 @@
+//! Evaluations of models: as a table for people, as commas, as one line of JSON.
+
+use std::fmt::Write;
+
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+use crate::cli::output::charset::Charset;
+use crate::recognition::{Evaluation, Peer, PeerEvaluation, ShapeDescriptor};
+
+/// An evaluation as an object of JSON, its keys in the order of the documentation.
+pub(crate) struct EvaluationJson<'a> {
+    pub(crate) evaluation: &'a Evaluation,
+    /// Of a peer: `certain` is null, since it does not know when it is, and so is `keys_of_one_shape`.
+    pub(crate) peer: Option<&'a PeerEvaluation>,
+}
+
+impl Serialize for EvaluationJson<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let own = self.evaluation;
+        let known = |number: u128| self.peer.is_none().then_some(number);
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("labels", &own.labels)?;
+        map.serialize_entry("touches", &own.touches)?;
+        map.serialize_entry("right", &own.right)?;
+        map.serialize_entry("accuracy", &own.accuracy())?;
+        map.serialize_entry("error", &own.error())?;
+        map.serialize_entry("certain", &known(own.certain))?;
+        map.serialize_entry("tied", &own.tied)?;
+        map.serialize_entry("right_in_top_two", &own.right_in_top_two)?;
+        map.serialize_entry("information_bits", &own.information_bits)?;
+        map.serialize_entry("prior_bits", &own.prior_bits)?;
+        map.serialize_entry("keys", &own.keys)?;
+        map.serialize_entry("keys_of_one_shape", &known(own.keys_of_one_shape as u128))?;
+        map.serialize_entry("confusion", &own.confusion)?;
+        if let Some(peer) = self.peer {
+            map.serialize_entry("classifier", peer.peer.name())?;
+            map.serialize_entry("features", &peer.features)?;
+            let dropped = peer
+                .dropped
+                .iter()
+                .map(|(name, reason)| (name.as_str(), *reason));
+            map.serialize_entry("dropped", &dropped.collect::<Vec<_>>())?;
+        }
+        map.end()
+    }
+}
+
+/// A number with a narrow space between its thousands; a plain one in ASCII.
+fn grouped(number: u128, charset: Charset) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) && digits.len() > 4 {
+            text.push(match charset {
+                Charset::Ascii => ',',
+                Charset::Unicode => '\u{202f}',
+            });
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A share as percent.
+pub(crate) fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}
+
+/// What an evaluation says, in lines: touches, error, certain, top two, information.
+pub(crate) fn summary(evaluation: &Evaluation, charset: Charset) -> String {
+    let number = |number| grouped(number, charset);
+    let share = |part: u128| percent(ratio(part, evaluation.touches));
+    let Evaluation {
+        touches,
+        right,
+        certain,
+        tied,
+        right_in_top_two,
+        ..
+    } = evaluation;
+    let mut text = format!(
+        "{} touches of {} shapes, {} distinct\n",
+        number(*touches),
+        evaluation.labels.len(),
+        number(evaluation.keys as u128)
+    );
+    let mut line = |name: &str, value: u128, note: &str| {
+        // Cannot fail: the text is kept in memory.
+        let _ = writeln!(
+            text,
+            "{name:<12} {:>16}  {:>7}{note}",
+            number(value),
+            share(value)
+        );
+    };
+    line("right", *right, "");
+    line("wrong", touches - right, "  the limit: no method errs less");
+    line("certain", *certain, "  only one shape can leave them");
+    line("tied", *tied, "  named by the order of the set");
+    line("in top two", *right_in_top_two, "");
+    let _ = writeln!(
+        text,
+        "information  {:.4} of {:.4} bits",
+        evaluation.information_bits, evaluation.prior_bits
+    );
+    text
+}
+
+/// A part of a whole; 0 of nothing.
+#[expect(clippy::cast_precision_loss, reason = "a share has no more digits")]
+fn ratio(part: u128, whole: u128) -> f64 {
+    if whole == 0 {
+        0.0
+    } else {
+        part as f64 / whole as f64
+    }
+}
+
+/// The matrix: a row per true shape, a column per name; the diagonal in brackets, zero as a dot. Columns are numbered if
+/// their names do not fit; recall on the right, precision below.
+pub(crate) fn matrix(evaluation: &Evaluation, charset: Charset) -> String {
+    let labels = &evaluation.labels;
+    let dot = match charset {
+        Charset::Ascii => ".",
+        Charset::Unicode => "·",
+    };
+    let cell = |row: usize, column: usize| {
+        let touches = evaluation.confusion[row][column];
+        match (touches, row == column) {
+            (touches, true) => format!("[{touches}]"),
+            (0, false) => format!("{dot} "),
+            (touches, false) => format!("{touches} "),
+        }
+    };
+    let shapes = labels.len();
+    let numbers = (shapes - 1).to_string().len();
+    let name = labels
+        .iter()
+        .map(|label| label.chars().count())
+        .max()
+        .unwrap_or_default();
+    let mut widths = Vec::new();
+    for column in 0..shapes {
+        let cells = (0..shapes).map(|row| cell(row, column).chars().count());
+        widths.push(cells.max().unwrap_or_default().max(numbers + 1));
+    }
+    let mut text = format!("{:1$}", "", name + numbers + 1);
+    for (column, width) in widths.iter().enumerate() {
+        let _ = write!(text, " {:>1$} ", column + 1, width - 1);
+    }
+    text += "   recall\n";
+    for (row, label) in labels.iter().enumerate() {
+        let _ = write!(text, "{:>numbers$} {label:<name$}", row + 1);
+        for (column, width) in widths.iter().enumerate() {
+            let _ = write!(text, " {:>width$}", cell(row, column));
+        }
+        let _ = writeln!(text, "  {:>7}", percent(evaluation.recall(row)));
+    }
+    let _ = write!(text, "{:1$}", "", numbers + 1);
+    let _ = write!(text, "{:<1$}", "precision", name.max(9));
+    let mut first = name.max(9) - name;
+    for (column, width) in widths.iter().enumerate() {
+        let precision = match evaluation.precision(column) {
+            Some(share) => format!("{:.0}%", 100.0 * share),
+            None => "-".to_owned(),
+        };
+        let width = (width - 1).saturating_sub(std::mem::take(&mut first));
+        let _ = write!(text, " {precision:>width$} ");
+    }
+    text.truncate(text.trim_end().len());
+    text.push('\n');
+    charset.lines(&text)
+}
+
+/// The worst pairs, in a sentence; empty if no shape is taken for another.
+pub(crate) fn worst_pairs(evaluation: &Evaluation, charset: Charset) -> String {
+    let pairs = evaluation.worst_pairs();
+    let said = pairs.iter().take(3).map(|&(one, other, touches)| {
+        format!(
+            "{} and {} ({})",
+            evaluation.labels[one],
+            evaluation.labels[other],
+            percent(ratio(touches, evaluation.touches))
+        )
+    });
+    match said.collect::<Vec<_>>().join(", ") {
+        said if said.is_empty() => String::new(),
+        said => charset.lines(&format!("most confused: {said}\n")),
+    }
+}
+
+/// The matrix as commas: a heading row of names, then a row per true shape.
+pub(crate) fn csv(evaluation: &Evaluation) -> String {
+    let quoted = |label: &String| {
+        if label.contains([',', '"', '\n', '\r']) {
+            format!("\"{}\"", label.replace('"', "\"\""))
+        } else {
+            label.clone()
+        }
+    };
+    let names: Vec<String> = evaluation.labels.iter().map(quoted).collect();
+    let mut text = format!("true,{}\n", names.join(","));
+    for (name, row) in names.iter().zip(&evaluation.confusion) {
+        let cells: Vec<String> = row.iter().map(ToString::to_string).collect();
+        let _ = writeln!(text, "{name},{}", cells.join(","));
+    }
+    text
+}
+
+/// Descriptors chosen one after the other, and the limit in the last row.
+pub(crate) fn greedy(
+    chosen: &[(ShapeDescriptor, Evaluation)],
+    limit: &Evaluation,
+    charset: Charset,
+) -> String {
+    let mut text = String::from("descriptors chosen one by one    error   values\n");
+    for (descriptor, evaluation) in chosen {
+        let _ = writeln!(
+            text,
+            "+ {:<24} {:>11}  {:>7}",
+            descriptor.key(),
+            percent(evaluation.error()),
+            evaluation.keys
+        );
+    }
+    let _ = writeln!(
+        text,
+        "{:<26} {:>11}  {:>7}",
+        "limit: the whole imprint",
+        percent(limit.error()),
+        limit.keys
+    );
+    charset.lines(&text)
+}
+
+/// Peers in a table, and the limit in the last row.
+pub(crate) fn peers(reached: &[PeerEvaluation], limit: &Evaluation, charset: Charset) -> String {
+    let mut text = String::from("classifier             error  top two  information\n");
+    let mut line = |name: &str, evaluation: &Evaluation| {
+        let _ = writeln!(
+            text,
+            "{name:<18} {:>9}  {:>7}  {:>6.3} bits",
+            percent(evaluation.error()),
+            percent(ratio(evaluation.right_in_top_two, evaluation.touches)),
+            evaluation.information_bits
+        );
+    };
+    for peer in reached {
+        line(peer.peer.name(), &peer.evaluation);
+    }
+    line("limit of one touch", limit);
+    charset.lines(&(text + &features(reached.first())))
+}
+
+/// The features that a peer used, and those that it left out.
+pub(crate) fn features(peer: Option<&PeerEvaluation>) -> String {
+    let Some(peer) = peer.filter(|peer| peer.peer != Peer::Template) else {
+        return String::new();
+    };
+    let mut text = format!("features: {}\n", peer.features.join(", "));
+    for (name, reason) in &peer.dropped {
+        let _ = writeln!(text, "left out: {name}, {reason}");
+    }
+    text
+}
+
+/// The errors of pairs, in percent; the worst is said below.
+pub(crate) fn pairs(labels: &[String], errors: &[Vec<f64>], charset: Charset) -> String {
+    let name = labels
+        .iter()
+        .map(|label| label.chars().count())
+        .max()
+        .unwrap_or_default();
+    let numbers = labels.len().to_string().len();
+    let mut text = format!("{:1$}", "", name + numbers + 1);
+    for column in 1..=labels.len() {
+        let _ = write!(text, " {column:>6}");
+    }
+    text.push('\n');
+    for (row, (label, errors)) in labels.iter().zip(errors).enumerate() {
+        let _ = write!(text, "{:>numbers$} {label:<name$}", row + 1);
+        for (column, error) in errors.iter().enumerate() {
+            let cell = if row == column {
+                String::from("-")
+            } else {
+                format!("{:.2}", 100.0 * error)
+            };
+            let _ = write!(text, " {cell:>6}");
+        }
+        text.push('\n');
+    }
+    text += "errors in percent, for each pair alone\n";
+    charset.lines(&text)
+}

@@ -1,0 +1,48 @@
+//! Signals that stop a long command: a sweep, a merge, a training.
+
+use std::io::{self, IsTerminal};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::flag;
+
+use crate::cli::error::CliError;
+
+/// Signals that stop the work, each with the exit status that a shell reports for it: 128 and its number.
+const STOPPING: [(i32, u8); 3] = [(SIGINT, 130), (SIGTERM, 143), (SIGHUP, 129)];
+
+/// Whether the work is to stop. A second signal ends the program at once, as if none were caught.
+pub(crate) struct Signals {
+    /// Whether one came.
+    pub(crate) stopped: Arc<AtomicBool>,
+    /// The index in [`STOPPING`] of the signal that came last.
+    last: Arc<AtomicUsize>,
+}
+
+impl Signals {
+    /// Catches the signals from now on.
+    ///
+    /// # Errors
+    /// If the system does not allow it.
+    pub(crate) fn heard() -> io::Result<Self> {
+        let (stopped, last) = (Arc::default(), Arc::default());
+        let terminal = io::stderr().is_terminal();
+        for (index, &(signal, status)) in STOPPING.iter().enumerate() {
+            // Without a terminal SIGHUP keeps its meaning: `nohup` may have told the program to ignore it.
+            if signal == SIGHUP && !terminal {
+                continue;
+            }
+            flag::register_conditional_shutdown(signal, status.into(), Arc::clone(&stopped))?;
+            flag::register_usize(signal, Arc::clone(&last), index)?;
+            flag::register(signal, Arc::clone(&stopped))?;
+        }
+        Ok(Self { stopped, last })
+    }
+
+    /// The error of a command that the last signal stopped.
+    pub(crate) fn failure(&self) -> CliError {
+        let (_, status) = STOPPING[self.last.load(Ordering::Relaxed)];
+        CliError::Stopped { status }
+    }
+}
