@@ -36,6 +36,7 @@ fn every_size_of_every_screen_is_drawn() {
                 sensor,
                 theme: Theme {
                     ascii: false,
+                    console: false,
                     depth: ColorDepth::TwoFiftySix,
                     palette: Palette::Dark,
                 },

@@ -50,6 +50,8 @@ pub enum Message {
     Region(i8),
     /// Show the matrix in the next way: imprint, shades, percent.
     Display,
+    /// Show a layer over the taxels, or hide it.
+    Layer(Layer),
     /// Change between the matrix and the descriptors where there is no room for both.
     SwitchPage,
     /// Hold the shape, so that the arrows move it, or let it go.
@@ -132,6 +134,15 @@ pub enum Message {
     Redraw,
     /// Suspend the program, as Ctrl-Z does, until the shell continues it.
     Suspend,
+}
+
+/// A layer over the taxels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layer {
+    /// The true outline of what touches.
+    Outline,
+    /// The circumscribed rectangle, CG and CD.
+    Rectangle,
 }
 
 /// What a shape is chosen for.

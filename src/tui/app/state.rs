@@ -14,6 +14,7 @@ use crate::tui::explore::results::Results;
 use crate::tui::keys::action::{self, Action};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
+use crate::tui::matrix::layers::Layers;
 use crate::tui::widget::theme::Theme;
 
 /// How the program starts.
@@ -134,6 +135,8 @@ pub struct App {
     pub(in crate::tui) mode: Mode,
     /// How taxels are shown.
     pub(in crate::tui) display: Display,
+    /// What is shown over the taxels.
+    pub(in crate::tui) layers: Layers,
     /// What a narrow screen shows.
     pub(in crate::tui) page: NarrowPage,
     /// How far a key moves or zooms the shape.
@@ -175,6 +178,7 @@ impl App {
             chosen: None,
             mode: Mode::Draw,
             display: Display::Imprint,
+            layers: Layers::default(),
             page: NarrowPage::Matrix,
             step: NudgeStep::Hundredth,
             dialogs: Vec::new(),

@@ -12,7 +12,7 @@
 
 use crate::atlas::SortKey;
 use crate::tui::app::message::Purpose;
-use crate::tui::app::message::{Copied, Endpoint, Erase, Message};
+use crate::tui::app::message::{Copied, Endpoint, Erase, Layer, Message};
 use crate::tui::explore::message::{ExploreMessage, ExplorePage, Zoom};
 use crate::tui::keys::key::Arrow;
 
@@ -157,6 +157,8 @@ actions! {
         REGION "region" ["region next"] Message::Region(1);
         PREVIOUS_REGION "previous-region" ["region previous"] Message::Region(-1);
         COVERAGE "coverage" [] Message::Display;
+        OUTLINE "outline" [] Message::Layer(Layer::Outline);
+        RECTANGLE "rectangle" [] Message::Layer(Layer::Rectangle);
         GRAB "grab" [] Message::Grab;
         NUDGE_LEFT "nudge-left" ["nudge left"] Message::Nudge(Arrow::Left);
         NUDGE_RIGHT "nudge-right" ["nudge right"] Message::Nudge(Arrow::Right);

@@ -56,6 +56,8 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Tab => REGION, BackTab => PREVIOUS_REGION]
             "region" "describe the next, the previous piece or hole";
         [Char('c') => COVERAGE] "coverage" "coverage in shades, in percent, the imprint again";
+        [Char('o') => OUTLINE, Char('b') => RECTANGLE]
+            "outline" "the true outline; the rectangle with CG (G), CD (D)";
         [Char('g') => GRAB] "grab" "hold the shape, to move it with the arrows";
         [Char('e') => EXPLORE] "explore" "Explore: all imprints of the shape, over all poses";
         [ShiftArrow(Left) => NUDGE_LEFT, ShiftArrow(Right) => NUDGE_RIGHT,

@@ -7,6 +7,8 @@
 
 pub mod layout;
 
+pub mod layers;
+
 pub mod view;
 
 pub mod panel;

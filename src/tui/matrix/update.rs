@@ -11,13 +11,15 @@ use crate::tui::app::change::{
 };
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::{Document, History};
-use crate::tui::app::message::{Copied, Endpoint, Message, Purpose};
+use crate::tui::app::message::{Copied, Endpoint, Layer, Message, Purpose};
 use crate::tui::app::state::{App, Display, Mode, NarrowPage, RunState};
 use crate::tui::explore;
 use crate::tui::form::state::FormDialog;
 use crate::tui::help::Help;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
+use crate::tui::matrix::layers::Layers;
+use crate::tui::matrix::layout::TaxelGrid;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::runtime::effect::{Effect, LibraryRequest, TerminalEffect};
 use crate::tui::shapes::state::ListDialog;
@@ -151,6 +153,7 @@ fn edit(app: &mut App, message: &Message) {
                 Display::Percent => Display::Imprint,
             };
         }
+        Message::Layer(layer) => switch_layer(app, layer),
         Message::SwitchPage if app.panes().is_some_and(|panes| panes.panel.is_some()) => {
             inform(app, "matrix and descriptors are both in sight");
         }
@@ -209,6 +212,36 @@ fn open_list(app: &mut App, purpose: Purpose) -> Effect {
     app.dialogs
         .push(Dialog::List(ListDialog::new(purpose, Vec::new())));
     Effect::Library(LibraryRequest::List)
+}
+
+/// Shows a layer or hides it; says which, and why there is nothing to see of it.
+fn switch_layer(app: &mut App, layer: Layer) {
+    let Some(panes) = app.panes() else { return };
+    let grid = TaxelGrid::of(panes.matrix, &app.reading().imprint, app.cursor());
+    let (name, now, missing) = match layer {
+        Layer::Outline => (
+            "the outline",
+            app.layers.outline,
+            app.shown().source.is_none(),
+        ),
+        Layer::Rectangle => (
+            "rectangle, CG (G) and CD (D)",
+            app.layers.rectangle,
+            app.reading().regions.is_empty(),
+        ),
+    };
+    let show = !Layers::shown(now, &grid);
+    match layer {
+        Layer::Outline => app.layers.outline = Some(show),
+        Layer::Rectangle => app.layers.rectangle = Some(show),
+    }
+    let text = match (show, missing, layer) {
+        (false, ..) => format!("without {name}"),
+        (true, false, _) => format!("with {name}"),
+        (true, true, Layer::Outline) => "no outline: nothing touches the matrix".to_owned(),
+        (true, true, Layer::Rectangle) => NO_REGION.to_owned(),
+    };
+    inform(app, text);
 }
 
 /// The first or the last index of a number of columns or rows.

@@ -15,8 +15,10 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::{Modifier, Style};
 
 use crate::description::{Region, RegionKind};
+use crate::source::Source;
 use crate::tui::app::document::Reading;
 use crate::tui::app::state::{App, Display};
+use crate::tui::matrix::layers::{Layers, Overlay};
 use crate::tui::matrix::layout::TaxelGrid;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
@@ -34,6 +36,10 @@ pub struct MatrixView<'a> {
     pub chosen: Option<usize>,
     /// How taxels are shown.
     pub display: Display,
+    /// What touches, where something does.
+    pub source: Option<&'a Source>,
+    /// What is shown over the taxels.
+    pub layers: Layers,
 }
 
 impl<'a> MatrixView<'a> {
@@ -45,6 +51,8 @@ impl<'a> MatrixView<'a> {
             cursor: app.cursor(),
             chosen: app.chosen(),
             display: app.display,
+            source: app.shown().source.as_ref(),
+            layers: app.layers,
         }
     }
 
@@ -60,7 +68,8 @@ impl<'a> MatrixView<'a> {
             _ => 1,
         };
         for (index, column) in columns.visible().filter(|(_, column)| column % every == 0) {
-            let place = write::right_of(write::row(area, 0), grid.x + index * cell);
+            let middle = (cell.max(2) - 2) / 2;
+            let place = write::right_of(write::row(area, 0), grid.x + index * cell + middle);
             write::line(
                 buffer,
                 place,
@@ -71,7 +80,9 @@ impl<'a> MatrixView<'a> {
         let chosen = seen.region(self.chosen).map(|(_, region)| region);
         let mut cursor = None;
         for (index, row) in rows.visible() {
-            let line = write::row(area, usize::from(index * grid.lines) + 1);
+            let top = index * grid.lines;
+            let middle = top + (grid.lines - 1) / 2;
+            let line = write::row(area, usize::from(middle) + 1);
             write::line(
                 buffer,
                 line,
@@ -81,7 +92,7 @@ impl<'a> MatrixView<'a> {
             for (index, column) in columns.visible() {
                 let place = Rect {
                     x: grid.x + index * cell,
-                    y: line.y,
+                    y: grid.y + top,
                     width: cell,
                     height: grid.lines,
                 };
@@ -89,15 +100,35 @@ impl<'a> MatrixView<'a> {
                 let role = role(seen, chosen, column, row);
                 self.draw_taxel(theme, role, (column, row), buffer, place);
                 if here {
-                    cursor = Some(Position::new(place.x, place.y));
+                    cursor = Some(Position::new(place.x, grid.y + middle));
                 }
             }
         }
+        self.draw_layers(theme, &grid, buffer, cursor);
         cursor
     }
 
-    /// A taxel: two characters, or more of the same where it is drawn larger. The first one is the cursor's, where that is
-    /// here; the second one still tells the state: a blank is an inactive taxel.
+    /// The layers that are shown, the cursor's character free.
+    fn draw_layers(
+        &self,
+        theme: &Theme,
+        grid: &TaxelGrid,
+        buffer: &mut Buffer,
+        cursor: Option<Position>,
+    ) {
+        let active = |column, row| self.reading.imprint.get(column, row);
+        let overlay = Overlay {
+            outline: self
+                .source
+                .filter(|_| Layers::shown(self.layers.outline, grid)),
+            region: (self.reading.description(self.chosen))
+                .filter(|_| Layers::shown(self.layers.rectangle, grid)),
+        };
+        overlay.draw(grid, theme, buffer, active, cursor);
+    }
+
+    /// A taxel: two characters, or more of the same where it is drawn larger. The cursor stands on its left, on a large one
+    /// on its right, too; what is between still tells the state: a blank is an inactive taxel.
     fn draw_taxel(
         &self,
         theme: &Theme,
@@ -125,21 +156,25 @@ impl<'a> MatrixView<'a> {
         } else {
             style
         };
-        // Full cells are filled, a sign or a number stands in the corner.
+        // Full cells are filled, a sign or a number stands in the middle.
         let fill = if first == second && !first.is_ascii_digit() {
             first
         } else {
             ' '
         };
+        let sign = ((place.width.max(2) - 2) / 2, (place.height.max(1) - 1) / 2);
         for position in place.intersection(*buffer.area()).positions() {
-            let top = position.y == place.y;
-            let (character, style) = match (position.x - place.x, top) {
-                (0, true) if here => (
-                    if place.width > 1 { '[' } else { first },
-                    theme.style(Role::Cursor),
-                ),
-                (0, true) => (first, style),
-                (1, true) => (second, style),
+            let (x, y) = (position.x - place.x, position.y - place.y);
+            let last = place.width - 1;
+            let (character, style) = match x {
+                0 if here && y == sign.1 && last == 0 => (first, theme.style(Role::Cursor)),
+                0 if here && y == sign.1 => ('[', theme.style(Role::Cursor)),
+                // Of two columns the second one still tells the state.
+                _ if here && y == sign.1 && x == last && last > 1 => {
+                    (']', theme.style(Role::Cursor))
+                }
+                _ if (x, y) == sign => (first, style),
+                _ if (x, y) == (sign.0 + 1, sign.1) => (second, style),
                 _ => (fill, style),
             };
             buffer[position].set_char(character).set_style(style);

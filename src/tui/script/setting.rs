@@ -164,6 +164,7 @@ mod tests {
             sensor: Sensor::default(),
             theme: Theme {
                 ascii: false,
+                console: false,
                 depth: ColorDepth::TwoFiftySix,
                 palette: Palette::Light,
             },

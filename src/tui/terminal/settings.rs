@@ -138,6 +138,7 @@ impl TerminalSettings {
     pub fn theme(&self) -> Theme {
         Theme {
             ascii: self.ascii,
+            console: self.kind < TerminalKind::Window,
             depth: self.color,
             palette: self.palette,
         }

@@ -103,6 +103,8 @@ impl Palette {
 pub struct Theme {
     /// ASCII characters only.
     pub ascii: bool,
+    /// A text console, whose font has no Braille.
+    pub console: bool,
     /// How many colours.
     pub depth: ColorDepth,
     /// Which ones.
@@ -158,6 +160,7 @@ impl Theme {
     pub const fn plain(ascii: bool) -> Self {
         Self {
             ascii,
+            console: false,
             depth: ColorDepth::Never,
             palette: Palette::Mono,
         }

@@ -1,0 +1,196 @@
+//! Layers over the taxels: the true outline of what touches, and the circumscribed rectangle with CG and CD.
+//!
+//! A line is drawn in dots finer than characters. Over an active taxel it is reversed, so the taxel stays told apart
+//! from an inactive one without any colour.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+use ratatui::style::Modifier;
+
+use crate::description::Description;
+use crate::geometry::{Ellipse, Pen, Point, Side, Solid};
+use crate::source::Source;
+use crate::tui::matrix::layout::TaxelGrid;
+use crate::tui::widget::dots::{DOTS, DotCanvas, Place, glyph};
+use crate::tui::widget::theme::{Role, Theme};
+
+/// Straight pieces of an ellipse: on the largest matrix none strays by a dot.
+const PIECES: u16 = 256;
+
+/// Lines between two cells are drawn this far on the side of the material, in dots.
+const INSIDE: f64 = 0.25;
+
+/// Which layers are shown. None for what suits the room: shown where taxels are large.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Layers {
+    /// The true outline.
+    pub outline: Option<bool>,
+    /// The circumscribed rectangle, CG and CD.
+    pub rectangle: Option<bool>,
+}
+
+impl Layers {
+    /// Whether a layer is shown on a grid.
+    pub fn shown(layer: Option<bool>, grid: &TaxelGrid) -> bool {
+        layer.unwrap_or(grid.cell >= 3 && grid.lines >= 2)
+    }
+}
+
+/// Where the dots of the grid are.
+struct DotGrid<'a> {
+    grid: &'a TaxelGrid,
+    canvas: DotCanvas,
+}
+
+impl<'a> DotGrid<'a> {
+    fn new(grid: &'a TaxelGrid) -> Self {
+        let (columns, rows) = (u16::from(grid.columns.count), u16::from(grid.rows.count));
+        Self {
+            grid,
+            canvas: DotCanvas::new(columns * grid.cell, rows * grid.lines),
+        }
+    }
+
+    /// A place on the plane, in cell sides, among the dots.
+    fn place(&self, x: f64, y: f64) -> Place {
+        let (cell, lines) = (self.grid.cell * DOTS.0, self.grid.lines * DOTS.1);
+        let (left, top) = (self.grid.columns.first, self.grid.rows.first);
+        (
+            (x - f64::from(left)) * f64::from(cell),
+            (y - f64::from(top)) * f64::from(lines),
+        )
+    }
+}
+
+impl Pen<f64> for DotGrid<'_> {
+    fn edge(&mut self, from: Point<f64>, to: Point<f64>) {
+        let (from, to) = (self.place(from.x, from.y), self.place(to.x, to.y));
+        let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+        let length = dx.hypot(dy);
+        if length > 0.0 {
+            let aside = (-dy / length * INSIDE, dx / length * INSIDE);
+            let moved = |place: Place| (place.0 + aside.0, place.1 + aside.1);
+            self.canvas.line(moved(from), moved(to));
+        }
+    }
+
+    fn ellipse(&mut self, ellipse: &Ellipse<f64>, material: Side) {
+        let reach = ellipse.reach();
+        let dots = reach.x.max(reach.y) * f64::from(self.grid.cell * DOTS.0);
+        let scale = match material {
+            Side::Inside => 1.0 - INSIDE / dots.max(1.0),
+            Side::Outside => 1.0 + INSIDE / dots.max(1.0),
+        };
+        let at = |piece: u16| {
+            let (sin, cos) =
+                (std::f64::consts::TAU * f64::from(piece) / f64::from(PIECES)).sin_cos();
+            let along = |centre: f64, a: f64, b: f64| centre + scale * (a * cos + b * sin);
+            self.place(
+                along(ellipse.centre.x, ellipse.across.x, ellipse.along.x),
+                along(ellipse.centre.y, ellipse.across.y, ellipse.along.y),
+            )
+        };
+        let places: Vec<Place> = (0..=PIECES).map(at).collect();
+        for pair in places.windows(2) {
+            self.canvas.line(pair[0], pair[1]);
+        }
+    }
+}
+
+/// What is drawn over the taxels of a grid.
+pub(in crate::tui) struct Overlay<'a> {
+    /// What touches, to draw its outline.
+    pub outline: Option<&'a Source>,
+    /// The region whose rectangle, CG and CD are drawn.
+    pub region: Option<Description>,
+}
+
+impl Overlay<'_> {
+    /// Draws it. The characters beside the cursor's taxel, whose place is given, stay as they are.
+    pub(in crate::tui) fn draw(
+        &self,
+        grid: &TaxelGrid,
+        theme: &Theme,
+        buffer: &mut Buffer,
+        active: impl Fn(u8, u8) -> bool,
+        cursor: Option<Position>,
+    ) {
+        let mark = |place: Position, cursor: Position| {
+            let right = cursor.x + grid.cell - 1;
+            place == cursor || grid.cell > 2 && place == Position::new(right, cursor.y)
+        };
+        let free = |place: &Position| cursor.is_none_or(|cursor| !mark(*place, cursor));
+        let mut dots = DotGrid::new(grid);
+        if let Some(region) = &self.region {
+            draw_rectangle(&mut dots, region);
+        }
+        if let Some(source) = self.outline {
+            source.draw(&mut dots);
+        }
+        for (column, row, shape) in dots.canvas.characters() {
+            let place = Position::new(grid.x + column, grid.y + row);
+            let Some(cell) = Some(place).filter(free).and_then(|at| buffer.cell_mut(at)) else {
+                continue;
+            };
+            let on = grid
+                .taxel(place.x, place.y)
+                .is_some_and(|(x, y)| active(x, y));
+            let style = if on {
+                theme.style(Role::Chosen).add_modifier(Modifier::REVERSED)
+            } else {
+                theme.style(Role::Text)
+            };
+            cell.reset();
+            cell.set_char(glyph(theme, shape)).set_style(style);
+        }
+        for (place, letter) in self.centres(&dots, *buffer.area()) {
+            if let Some(cell) = Some(place).filter(free).and_then(|at| buffer.cell_mut(at)) {
+                cell.reset();
+                cell.set_char(letter).set_style(theme.style(Role::Focus));
+            }
+        }
+    }
+
+    /// The letters of CG and CD, side by side where both are in one character.
+    fn centres(&self, dots: &DotGrid<'_>, screen: Rect) -> impl Iterator<Item = (Position, char)> {
+        let at = |x: f64, y: f64| character_at(dots, (x, y), screen);
+        let cg = self.region.map(|region| region.cg());
+        let cd = self.region.map(|region| region.cd());
+        let cg = cg.and_then(|cg| at(cg.x, cg.y));
+        let cd = cd.and_then(|cd| at(cd.x, cd.y));
+        let aside = u16::from(cg == cd);
+        let cd = cd.map(|place| (Position::new(place.x + aside, place.y), 'D'));
+        cd.into_iter().chain(cg.map(|place| (place, 'G')))
+    }
+}
+
+/// The circumscribed rectangle of a region, in dashes.
+fn draw_rectangle(dots: &mut DotGrid<'_>, region: &Description) {
+    let rect = region.rect;
+    let (left, top) = dots.place(rect.left.into(), rect.top.into());
+    let (right, bottom) = dots.place(rect.right.into(), rect.bottom.into());
+    let (right, bottom) = (right - INSIDE, bottom - INSIDE);
+    let shown = |step: u32| step % 4 < 2;
+    for y in [top, bottom] {
+        dots.canvas.dashed((left, y), (right, y), shown);
+    }
+    for x in [left, right] {
+        dots.canvas.dashed((x, top), (x, bottom), shown);
+    }
+}
+
+/// The character of the screen at a place on the plane; None where that is not visible.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "within the screen"
+)]
+fn character_at(dots: &DotGrid<'_>, (x, y): Place, screen: Rect) -> Option<Position> {
+    let ((x, y), (width, height)) = (dots.place(x, y), dots.canvas.size());
+    let visible = x >= 0.0 && y >= 0.0 && x < width && y < height;
+    let place = visible.then(|| {
+        let (x, y) = (x as u16 / DOTS.0, y as u16 / DOTS.1);
+        Position::new(dots.grid.x + x, dots.grid.y + y)
+    });
+    place.filter(|&place| screen.contains(place))
+}

@@ -1,0 +1,184 @@
+//! Lines finer than characters: eight dots a character, two across and four down, shown as Braille. Where the terminal
+//! has no Braille, the nearest stroke in ASCII stands for the dots of a character.
+
+use crate::tui::widget::number::narrow;
+use crate::tui::widget::theme::Theme;
+
+/// Dots of a character: across and down.
+pub const DOTS: (u16, u16) = (2, 4);
+
+/// The bit of each dot in a Braille character, by row and column.
+const BITS: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
+
+/// A place among the dots, from the top left corner; dot (i, j) covers `[i, i+1] × [j, j+1]`.
+pub type Place = (f64, f64);
+
+/// A field of dots, as large as some characters of the screen.
+#[derive(Clone, Debug)]
+pub struct DotCanvas {
+    columns: u16,
+    rows: u16,
+    characters: Vec<u8>,
+}
+
+impl DotCanvas {
+    /// An empty field of this many characters.
+    pub fn new(columns: u16, rows: u16) -> Self {
+        let count = usize::from(columns) * usize::from(rows);
+        Self {
+            columns,
+            rows,
+            characters: vec![0; count],
+        }
+    }
+
+    /// The number of dots across and down.
+    pub fn size(&self) -> Place {
+        let (across, down) = DOTS;
+        (
+            f64::from(self.columns) * f64::from(across),
+            f64::from(self.rows) * f64::from(down),
+        )
+    }
+
+    /// Sets the dot at a place; none outside of the field.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "within the field"
+    )]
+    pub fn set(&mut self, (x, y): Place) {
+        let (width, height) = self.size();
+        if !(x >= 0.0 && y >= 0.0 && x < width && y < height) {
+            return;
+        }
+        let (x, y) = (x as usize, y as usize);
+        let (across, down) = (usize::from(DOTS.0), usize::from(DOTS.1));
+        let index = y / down * usize::from(self.columns) + x / across;
+        if let Some(character) = self.characters.get_mut(index) {
+            *character |= BITS[y % down][x % across];
+        }
+    }
+
+    /// Sets the dots of a straight line, but for what lies outside.
+    pub fn line(&mut self, from: Place, to: Place) {
+        self.dashed(from, to, |_| true);
+    }
+
+    /// The same, of its dots those that `shown` keeps; they are counted from the start of the visible part.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "no longer than the field"
+    )]
+    pub fn dashed(&mut self, from: Place, to: Place, shown: impl Fn(u32) -> bool) {
+        let Some((from, to)) = clipped(from, to, self.size()) else {
+            return;
+        };
+        let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+        let steps = dx.abs().max(dy.abs()).ceil().max(1.0) as u32;
+        for step in (0..=steps).filter(|&step| shown(step)) {
+            let share = f64::from(step) / f64::from(steps);
+            self.set((from.0 + dx * share, from.1 + dy * share));
+        }
+    }
+
+    /// The characters that have dots: column, row, and the dots as bits of Braille.
+    pub fn characters(&self) -> impl Iterator<Item = (u16, u16, u8)> {
+        let columns = usize::from(self.columns.max(1));
+        let all = self.characters.iter().enumerate();
+        all.filter(|(_, dots)| **dots != 0)
+            .map(move |(index, &dots)| (narrow(index % columns), narrow(index / columns), dots))
+    }
+}
+
+/// The part of a line within `[0, width] × [0, height]`; None where there is none, or a coordinate is no number.
+fn clipped(from: Place, to: Place, (width, height): Place) -> Option<(Place, Place)> {
+    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+    let (mut start, mut end) = (0.0_f64, 1.0_f64);
+    // Each border as how fast the line leaves through it, and how far inside it starts.
+    for (speed, inside) in [
+        (-dx, from.0),
+        (dx, width - from.0),
+        (-dy, from.1),
+        (dy, height - from.1),
+    ] {
+        if speed == 0.0 && inside >= 0.0 {
+            continue;
+        }
+        let at = inside / speed;
+        if speed < 0.0 {
+            start = start.max(at);
+        } else if speed > 0.0 {
+            end = end.min(at);
+        } else {
+            return None;
+        }
+    }
+    let at = |share: f64| (from.0 + dx * share, from.1 + dy * share);
+    (start <= end).then(|| (at(start), at(end)))
+}
+
+/// The character for some dots: Braille, or where the terminal has none a stroke that lies like them.
+pub fn glyph(theme: &Theme, dots: u8) -> char {
+    if !theme.ascii && !theme.console {
+        return char::from_u32(0x2800 + u32::from(dots)).unwrap_or(' ');
+    }
+    let rows =
+        |column: usize| (0..4_u8).filter(move |&row| dots & BITS[usize::from(row)][column] != 0);
+    let mean = |column: usize| {
+        let count = rows(column).count();
+        (count > 0).then(|| rows(column).map(f64::from).sum::<f64>() / f64::from(narrow(count)))
+    };
+    let lowest = rows(0).chain(rows(1)).min();
+    let highest = rows(0).chain(rows(1)).max();
+    match (mean(0), mean(1)) {
+        (None, None) => ' ',
+        (Some(row), None) | (None, Some(row)) => match (lowest == highest, row < 2.0) {
+            (true, true) => '\'',
+            (true, false) => '.',
+            (false, _) => '|',
+        },
+        (Some(left), Some(right)) if left > right => '/',
+        (Some(left), Some(right)) if left < right => '\\',
+        (Some(row), Some(_)) if row > 2.5 => '_',
+        (Some(_), Some(_)) if rows(0).count() > 2 => '#',
+        (Some(_), Some(_)) => '-',
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn drawn(ascii: bool, from: Place, to: Place) -> String {
+        let mut canvas = DotCanvas::new(3, 2);
+        canvas.line(from, to);
+        let mut text = vec![vec![' '; 3]; 2];
+        for (column, row, dots) in canvas.characters() {
+            text[usize::from(row)][usize::from(column)] = glyph(&Theme::plain(ascii), dots);
+        }
+        let rows = text.iter().map(|row| row.iter().collect::<String>());
+        rows.collect::<Vec<_>>().join("\n")
+    }
+
+    #[test]
+    fn lines_are_dots_and_strokes() {
+        assert_eq!(drawn(false, (0.0, 0.5), (5.9, 0.5)), "⠉⠉⠉\n   ");
+        assert_eq!(drawn(true, (0.0, 1.5), (5.9, 1.5)), "---\n   ");
+        assert_eq!(drawn(true, (0.0, 3.5), (5.9, 3.5)), "___\n   ");
+        assert_eq!(drawn(false, (2.5, 0.0), (2.5, 7.9)), " ⡇ \n ⡇ ");
+        assert_eq!(drawn(true, (2.5, 0.0), (2.5, 7.9)), " | \n | ");
+        assert_eq!(drawn(true, (0.0, 3.9), (1.9, 0.0)), "/  \n   ");
+        assert_eq!(drawn(true, (0.0, 0.0), (1.9, 3.9)), "\\  \n   ");
+    }
+
+    #[test]
+    fn what_is_outside_or_no_number_sets_nothing() {
+        let beyond = drawn(false, (-1e300, 0.5), (1e300, 0.5));
+        assert_eq!(beyond, "⠉⠉⠉\n   ", "the visible part of a long line");
+        for far in [f64::NAN, f64::INFINITY, -1e9] {
+            assert_eq!(drawn(false, (far, far), (far, 1.0)).trim(), "", "{far}");
+        }
+    }
+}
