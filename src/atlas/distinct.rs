@@ -130,6 +130,52 @@ impl Atlas {
         self.number(&key, hash)
     }
 
+    /// The number of the nearest imprint that is the same but for a shift by whole taxels, and how many columns to the right
+    /// and rows down of it the given one lies. None if there is none.
+    ///
+    /// ```
+    /// use taxel::prelude::*;
+    ///
+    /// let sensor = Sensor::default();
+    /// let bar = Source::from(Figure::rectangle(3.0, 1.0).on(&sensor)?);
+    /// let ranges = Ranges::new(["2:2.9:0.1", "2", "0", "1", "1"].map(|range| range.parse().expect("a range")));
+    /// let grid = PoseGrid::new(bar, sensor, Anchor::Corner, ranges)?;
+    /// let atlas = Sweep::new(&grid).run().atlas;
+    /// let moved = Figure::rectangle(3.0, 1.0).at(7.0, 1.0).on(&sensor)?;
+    /// let imprint = Plane::new(sensor).touch(&moved);
+    /// assert_eq!(atlas.find(&imprint), None);
+    /// // Up to 2.4 the bar covers columns 2 to 4, from 2.6 on columns 3 to 5, which are nearer.
+    /// assert_eq!(atlas.find_shifted(&imprint), Some((2, 4, -1)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn find_shifted(&self, imprint: &Imprint) -> Option<(u32, i8, i8)> {
+        let (columns, rows) = (self.layout.columns(), self.layout.rows());
+        let bounds = imprint.bounds()?;
+        let (wide, high) = (bounds.columns().len(), bounds.rows().len());
+        let mut nearest: Option<(u32, i8, i8)> = None;
+        for top in 0..=rows.checked_sub(u8::try_from(high).ok()?)? {
+            for left in 0..=columns.checked_sub(u8::try_from(wide).ok()?)? {
+                // At most 64 each.
+                let right = bounds.left.cast_signed() - left.cast_signed();
+                let down = bounds.top.cast_signed() - top.cast_signed();
+                let far =
+                    |(_, right, down): (u32, i8, i8)| right.unsigned_abs() + down.unsigned_abs();
+                if nearest.is_some_and(|known| far(known) <= far((0, right, down))) {
+                    continue;
+                }
+                let mut moved = Imprint::empty(columns, rows);
+                for (row, from) in (usize::from(top)..).zip(bounds.rows()) {
+                    let word = imprint.words()[usize::from(from)] >> bounds.left;
+                    moved.set_word(row, word << left);
+                }
+                if let Some(id) = self.find(&moved) {
+                    nearest = Some((id, right, down));
+                }
+            }
+        }
+        nearest
+    }
+
     /// The number of the imprint that has a key.
     pub(crate) fn number(&self, key: &[u64], hash: u64) -> Option<u32> {
         let index = self.counter.find(key, hash)?;

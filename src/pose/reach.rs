@@ -178,6 +178,7 @@ pub fn default_ranges(
     anchor: Anchor,
     given: &GivenRanges,
 ) -> Result<Ranges, GridError> {
+    check(given, sensor)?;
     let reach = Reach::of(source, anchor, given)?;
     let (x, y) = own_position(source, anchor);
     let axes = [
@@ -220,6 +221,7 @@ pub fn common_ranges<'a>(
     anchor: Anchor,
     given: &GivenRanges,
 ) -> Result<Ranges, GridError> {
+    check(given, sensor)?;
     Ok(Reach::of_all(sources, anchor, given)?.ranges(sensor, given))
 }
 
@@ -289,6 +291,17 @@ pub fn smallest_sensor<'a>(
         }
     }
     Ok(None)
+}
+
+/// Whether given ranges lie in those of their parameters.
+fn check(given: &GivenRanges, sensor: &Sensor) -> Result<(), GridError> {
+    for (axis, range) in given.iter() {
+        if let Some(range) = range {
+            sensor.check(axis.parameter(), range.value(0))?;
+            sensor.check(axis.parameter(), range.last())?;
+        }
+    }
+    Ok(())
 }
 
 /// How far shapes reach from their anchor, for each pair of zooms: positions of a picture are zoomed with it.

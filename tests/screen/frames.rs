@@ -15,6 +15,9 @@ use taxel::tui::terminal::settings::Abilities;
 
 use crate::session::session;
 
+/// Results of the paper's grid.
+const SWEPT: &str = "f<CR>:explore --x0 5:5.99:0.01 --y0 5:5.99:0.01<CR>";
+
 /// A name, the keys before the frame, its own keys (none: the first frame), and the most bytes that it may have.
 const SCENES: [(&str, &str, &str, usize); 9] = [
     ("first frame", "", "", 2200),
@@ -29,8 +32,8 @@ const SCENES: [(&str, &str, &str, usize); 9] = [
     ),
     ("a form opens", "f<CR>", "f", 650),
     ("a field is edited", "f<CR>f<Tab>", "3", 140),
-    ("a page of Explore", "f<CR>e<CR>", "2", 1700),
-    ("a row of Explore", "f<CR>e<CR>", "<Down>", 360),
+    ("a page of Explore", SWEPT, "2", 1700),
+    ("a row of Explore", SWEPT, "<Down>", 360),
 ];
 
 /// The bytes of the frame after `keys`, by the program's own writer.

@@ -114,7 +114,8 @@ impl Results {
         self.sort
     }
 
-    /// Sorts by something, the largest first but for the first poses; again, the other way. The first row is selected.
+    /// Sorts by something, the largest first but for the first poses; again, the other way. The imprint that is selected
+    /// stays selected.
     pub fn sort(&mut self, by: SortKey) {
         self.sort = if self.sort.0 == by {
             (by, !self.sort.1)
@@ -122,7 +123,6 @@ impl Results {
             (by, by != SortKey::FirstPose)
         };
         self.arrange();
-        self.selected = 0;
     }
 
     /// Sorts, and keeps the selected imprint selected.

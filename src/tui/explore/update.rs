@@ -5,7 +5,7 @@
 
 use ratatui::layout::Rect;
 
-use crate::formats::value::grouped;
+use crate::formats::value::{counted, grouped};
 use crate::storage::Existing;
 use crate::touch::Plane;
 use crate::tui::app::change::{change, inform, refuse};
@@ -68,17 +68,42 @@ fn look(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
         ExploreMessage::NextPage(by) => results.next_page(by),
         ExploreMessage::Feature(by) => results.next_feature(by),
         ExploreMessage::Sort(by) => results.sort(by),
-        ExploreMessage::Find => match results.id(&app.reading().imprint) {
-            Some(id) => {
-                results.find(id);
-            }
-            None => refuse(app, "the imprint on the matrix is not among these"),
-        },
+        ExploreMessage::Find => find(app, results),
         ExploreMessage::Follow => follow(app, results),
         ExploreMessage::Point(x0, y0) => results.point(x0, y0),
         ExploreMessage::Angle(by) => results.turn(by),
         ExploreMessage::Zoomed(zoom, by) => results.zoom(zoom, by),
         _ => {}
+    }
+}
+
+/// Selects the imprint on the matrix, or the same one at another place.
+fn find(app: &mut App, results: &mut Results) {
+    let imprint = app.reading().imprint;
+    if let Some(id) = results.id(&imprint) {
+        results.find(id);
+        return;
+    }
+    match results.sweep().atlas.find_shifted(&imprint) {
+        Some((id, right, down)) => {
+            results.find(id);
+            let way = |by: i8, noun: &str, [less, more]: [&str; 2]| {
+                let count = counted(by.unsigned_abs().into(), noun);
+                let towards = if by < 0 { less } else { more };
+                (by != 0).then(|| format!("{count} {towards}"))
+            };
+            let ways = [
+                way(right, "column", ["to the left", "to the right"]),
+                way(down, "row", ["up", "down"]),
+            ];
+            let ways: Vec<String> = ways.into_iter().flatten().collect();
+            let ways = ways.join(" and ");
+            inform(
+                app,
+                format!("the same imprint; on the matrix it lies {ways}"),
+            );
+        }
+        None => refuse(app, "the imprint on the matrix is not among these"),
     }
 }
 

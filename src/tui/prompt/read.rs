@@ -13,7 +13,7 @@
 use crate::figure::{Figure, FigureKind};
 use crate::formats::Name;
 use crate::parameter::Parameter;
-use crate::pose::{Anchor, Axis, PoseGrid, RangeError, Ranges};
+use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, RangeError, default_ranges};
 use crate::quote::shortened;
 use crate::sensor::Sensor;
 use crate::source::Source;
@@ -213,7 +213,7 @@ fn sensor(pairs: &[&str], app: &App) -> Result<Message, String> {
 fn explore(words: &[&str], app: &App) -> Result<Message, String> {
     let document = app.shown();
     let source = explored(document).ok_or_else(|| app.nothing_to_explore())?;
-    let (mut ranges, mut anchor) = (Ranges::default(), Anchor::default());
+    let (mut ranges, mut anchor) = (GivenRanges::default(), Anchor::default());
     let mut given: Vec<&str> = Vec::new();
     for pair in words.chunks(2) {
         let flag = pair[0];
@@ -242,10 +242,11 @@ fn explore(words: &[&str], app: &App) -> Result<Message, String> {
                 shortened(flag)
             )
         })?;
-        ranges[axis] = text
-            .parse()
-            .map_err(|error: RangeError| format!("{flag}: {error}"))?;
+        let range = text.parse();
+        ranges[axis] = Some(range.map_err(|error: RangeError| format!("{flag}: {error}"))?);
     }
+    let ranges = default_ranges(&source, &document.sensor, anchor, &ranges);
+    let ranges = ranges.map_err(|error| error.to_string())?;
     let grid = PoseGrid::new(source, document.sensor, anchor, ranges);
     let grid = grid.map_err(|error| error.to_string())?;
     Ok(Message::Explore(ExploreMessage::Start(Box::new(grid))))

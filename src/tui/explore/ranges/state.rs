@@ -1,14 +1,18 @@
 //! The state of the form of ranges: a field for each axis of the shape, and the anchor.
 //!
-//! A range is `start:end:step` or a single number, as on the command line, with the same defaults. Each valid grid is
-//! sent to a worker once, which measures how long its sweep would take; an estimate for another grid is ignored.
+//! A range is `start:end:step` or a single number, as on the command line. The ranges of x0 and y0 are proposed: the cell
+//! that the shape lies in if nothing is cut off there in any of the angles, otherwise one around the middle. They follow
+//! the other fields until they are edited. Each valid grid is sent to a worker once, which measures how long its sweep
+//! would take; an estimate for another grid is ignored.
 
 use std::time::Duration;
 
 use crate::formats::value::{counted, grouped};
 use crate::parameter::{Parameter, Range};
 use crate::picture::Picture;
-use crate::pose::{Anchor, Axis, DecimalRange, GridError, MAX_POSES, PoseGrid, Ranges};
+use crate::pose::{
+    Anchor, Axis, DecimalRange, GivenRanges, GridError, MAX_POSES, PoseGrid, Ranges, default_ranges,
+};
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::tui::app::document::Document;
@@ -21,6 +25,9 @@ use crate::tui::widget::text_field::TextField;
 /// No field takes more characters.
 const LONGEST: usize = 40;
 
+/// Of more orientations the ranges are not proposed and the poses that are cut off are not counted while one types.
+const MOST_ORIENTATIONS: u64 = 20_000;
+
 /// The text field of one range.
 #[derive(Clone, Debug)]
 pub struct RangeField {
@@ -28,6 +35,8 @@ pub struct RangeField {
     axis: Axis,
     /// The text.
     input: TextField,
+    /// The text that was proposed, until another one is typed.
+    proposed: Option<String>,
 }
 
 impl RangeField {
@@ -82,8 +91,19 @@ pub struct RangesForm {
     focus: Option<usize>,
     /// How many taxels were set by hand, which the sweep does not know.
     by_hand: u32,
-    /// The grid that was asked about last, and how long it takes.
-    measured: Option<(PoseGrid, Option<Duration>)>,
+    /// The grid that was asked about last, how many of its poses are cut off, and how long it takes.
+    measured: Option<Measured>,
+}
+
+/// What is known of a grid before its sweep.
+#[derive(Clone, Debug)]
+struct Measured {
+    /// The grid.
+    grid: PoseGrid,
+    /// How many of its poses the sensor cuts off; None if it has too many orientations to count.
+    cut_off: Option<u64>,
+    /// How long its sweep takes; None until a worker has told.
+    time: Option<Duration>,
 }
 
 impl RangesForm {
@@ -97,6 +117,7 @@ impl RangesForm {
         let fields = Axis::of(&source).map(|axis| RangeField {
             axis,
             input: TextField::new(ranges[axis].to_string(), LONGEST),
+            proposed: None,
         });
         let mut form = Self {
             fields: fields.collect(),
@@ -107,8 +128,50 @@ impl RangesForm {
             by_hand,
             measured: None,
         };
+        if earlier.is_none() {
+            for field in &mut form.fields {
+                let place = matches!(field.axis, Axis::X0 | Axis::Y0);
+                field.proposed = place.then(|| field.input.text().to_owned());
+            }
+            form.propose();
+        }
         form.set_focus(Some(0));
         form
+    }
+
+    /// Proposes ranges for x0 and y0 that suit the shape in the angles and zooms of the other fields, where no others were
+    /// typed. Does nothing while those are wrong.
+    fn propose(&mut self) {
+        let mut given = GivenRanges::default();
+        let mut orientations = 1;
+        for field in &mut self.fields {
+            field.proposed = field
+                .proposed
+                .take()
+                .filter(|text| text == field.input.text());
+            if field.proposed.is_some() {
+                continue;
+            }
+            let Ok(range) = field.input.text().parse::<DecimalRange>() else {
+                return;
+            };
+            if !matches!(field.axis, Axis::X0 | Axis::Y0) {
+                orientations *= range.count();
+            }
+            given[field.axis] = Some(range);
+        }
+        if orientations > MOST_ORIENTATIONS {
+            return;
+        }
+        let ranges = default_ranges(&self.source, &self.sensor, self.anchor, &given);
+        let Ok(ranges) = ranges else { return };
+        for field in &mut self.fields {
+            let text = ranges[field.axis].to_string();
+            if field.proposed.as_ref().is_some_and(|old| *old != text) {
+                field.input = TextField::new(text.clone(), LONGEST);
+                field.proposed = Some(text);
+            }
+        }
     }
 
     /// What is swept, in a word or two.
@@ -143,27 +206,45 @@ impl RangesForm {
 
     /// How long the grid of the fields will take, about, where that is known.
     pub fn estimate(&self) -> Option<Duration> {
-        let (grid, time) = self.measured.as_ref()?;
-        time.filter(|_| self.grid().ok().as_ref() == Some(grid))
+        self.known()?.time
+    }
+
+    /// How many poses of the grid of the fields the sensor cuts off, where that is known.
+    pub fn cut_off(&self) -> Option<u64> {
+        self.known()?.cut_off
+    }
+
+    /// What is known of the grid of the fields.
+    fn known(&self) -> Option<&Measured> {
+        let measured = self.measured.as_ref();
+        measured.filter(|known| self.grid().as_ref() == Ok(&known.grid))
     }
 
     /// The grid of the fields if it was not measured before. From now on it counts as measured.
     pub fn unmeasured(&mut self) -> Option<PoseGrid> {
         let grid = self.grid().ok()?;
-        let known = self.measured.as_ref().map(|(known, _)| known);
-        if known == Some(&grid) {
+        if self
+            .measured
+            .as_ref()
+            .is_some_and(|known| known.grid == grid)
+        {
             return None;
         }
-        self.measured = Some((grid.clone(), None));
+        let orientations = grid.rows() / grid.rows_per_orientation();
+        let countable = orientations <= MOST_ORIENTATIONS;
+        self.measured = Some(Measured {
+            cut_off: countable.then(|| grid.poses_beyond_sensor()),
+            time: None,
+            grid: grid.clone(),
+        });
         Some(grid)
     }
 
     /// Notes how long a grid takes. An estimate for another grid is ignored.
     pub fn take_estimate(&mut self, grid: &PoseGrid, time: Duration) {
-        if let Some((known, estimate)) = &mut self.measured
-            && known == grid
-        {
-            *estimate = Some(time);
+        let known = self.measured.as_mut().filter(|known| known.grid == *grid);
+        if let Some(known) = known {
+            known.time = Some(time);
         }
     }
 
@@ -266,6 +347,7 @@ impl RangesForm {
                 None => {}
             },
         }
+        self.propose();
     }
 
     /// The other anchor.

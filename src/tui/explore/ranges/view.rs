@@ -6,6 +6,7 @@
 //! y0      5:5.99:0.01    -16 to 16 cells
 //! Anchor  < corner >     top left, unturned
 //! 3,600,000 poses, about 20 seconds         how many poses, and how long a sweep takes
+//! ! 1,200 poses are cut off                 in how many of them the shape reaches beyond the sensor
 //! without 1 taxel set by hand               what the sweep does not know
 //! ```
 //! An error stands under its field, or in place of what it may contain where there is too little room.
@@ -162,10 +163,22 @@ fn draw_summary(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rec
         }
     };
     write::line(buffer, write::row(area, 0), theme, [(text.as_str(), role)]);
+    let mut line = 1;
+    if let Some(cut_off) = form.cut_off().filter(|&poses| poses > 0) {
+        let all = form.grid().is_ok_and(|grid| grid.poses() == cut_off);
+        let text = match cut_off {
+            _ if all => "! the sensor cuts off every pose".to_owned(),
+            1 => "! the sensor cuts off 1 pose".to_owned(),
+            _ => format!("! the sensor cuts off {}", counted(cut_off, "pose")),
+        };
+        let row = write::row(area, line);
+        write::line(buffer, row, theme, [(text.as_str(), Role::Error)]);
+        line += 1;
+    }
     if form.by_hand() > 0 {
         let taxels = counted(form.by_hand().into(), "taxel");
         let text = format!("without {taxels} set by hand");
-        let row = write::row(area, 1);
+        let row = write::row(area, line);
         write::line(buffer, row, theme, [(text.as_str(), Role::Quiet)]);
     }
 }
