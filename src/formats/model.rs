@@ -68,8 +68,8 @@ pub fn write(model: &Model, output: impl Write + Seek) -> Result<(), ArchiveErro
     let count = keys.len() as u64;
     archive.add("height", Dtype::U8, &[count], &heights)?;
     archive.add("width", Dtype::U8, &[count], &widths)?;
-    let highest = heights.iter().copied().max().unwrap_or_default();
-    let kind = row_type(widths.iter().copied().max().unwrap_or_default());
+    let highest = largest(&heights);
+    let kind = row_type(largest(&widths));
     let mut rows = Vec::with_capacity(keys.len() * usize::from(highest) * kind.width());
     for imprint in imprints() {
         let words = imprint.as_ref().map_or(&[][..], Imprint::words);
@@ -91,6 +91,11 @@ pub fn write(model: &Model, output: impl Write + Seek) -> Result<(), ArchiveErro
     let counts: Vec<u64> = entries().map(|(_, count)| count.poses).collect();
     archive.add("count", Dtype::U64, &length, &little_endian(&counts))?;
     archive.finish()
+}
+
+/// The largest of some sides; 0 of none.
+fn largest(sides: &[u8]) -> u8 {
+    sides.iter().fold(0, |largest, &side| largest.max(side))
 }
 
 /// The smallest type for rows of that many columns.
@@ -173,8 +178,8 @@ type Keys = Vec<(Option<Imprint>, Vec<ShapeCount>)>;
 fn keys<R: Read + Seek>(archive: &mut ArrayReader<R>) -> Result<Keys, ArchiveError> {
     let heights = archive.bytes("height", Dtype::U8)?;
     let widths = archive.bytes("width", Dtype::U8)?;
-    let highest = usize::from(heights.iter().copied().max().unwrap_or_default());
-    let kind = row_type(widths.iter().copied().max().unwrap_or_default());
+    let highest = usize::from(largest(&heights));
+    let kind = row_type(largest(&widths));
     let rows = archive.bytes("rows", kind)?;
     let stride = highest * kind.width();
     if heights.len() != widths.len() || rows.len() != heights.len() * stride {

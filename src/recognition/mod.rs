@@ -35,6 +35,8 @@ mod nearest;
 
 mod answer;
 
+mod noise;
+
 mod peers;
 
 pub use answer::{Answer, AnswerState, Evidence};
@@ -43,6 +45,7 @@ pub use given::{GivenDescriptors, GivenError, GivenTable, Rounding, ShapeDescrip
 pub use key::{ImprintKey, KeyTable};
 pub use model::{Model, ModelError, ModelParts, NamedShape, ShapeCount};
 pub use nearest::Nearest;
+pub use noise::{Distances, Method, Noise, NoiseError, Scanner};
 pub use peers::{Peer, PeerEvaluation, PeerSettings};
 pub use pose_estimate::{AngleEstimate, PoseEstimate};
 pub use sets::{GridSteps, default_figures, equal_figures};

@@ -604,7 +604,7 @@ mod tests {
     fn distances_take_the_best_shift() {
         let read = |text: &str| text.parse::<Imprint>().expect("an imprint");
         assert_eq!(distance(&read("##.#"), &read("#.#")), 1);
-        assert_eq!(distance(&read("#.\n##"), &read("##\n.#\n.#")), 2);
+        assert_eq!(distance(&read("#.\n##"), &read("##\n.#\n.#")), 3);
         assert_eq!(distance(&read("#"), &read("###\n###")), 5);
         assert_eq!(distance(&read("#..\n...\n..#"), &read("#..\n...\n..#")), 0);
     }

@@ -9,8 +9,12 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
-use clap::{Arg, ArgAction, ArgGroup, Command, value_parser};
+use clap::{Arg, ArgGroup, Command, value_parser};
 
+use crate::cli::arguments::flags::{
+    anchor, force, jobs, json, name, of_sensor, parse_name, quiet, range, replace, sensor,
+    sensor_of_imprints, shard, what,
+};
 use crate::cli::arguments::help::{
     ABOUT, BATCH_EXAMPLES, CHECK_EXAMPLES, DELETE_EXAMPLES, DESCRIBE_EXAMPLES, EXAMPLES,
     EXPORT_EXAMPLES, FIGURE_EXAMPLES, LIBRARY_EXAMPLES, LIST_EXAMPLES, MERGE_EXAMPLES,
@@ -24,13 +28,11 @@ use crate::cli::arguments::program::{
 use crate::cli::arguments::recognition;
 use crate::cli::commands::export;
 use crate::figure::FigureKind;
-use crate::formats::{Name, NameError};
 use crate::parameter::Parameter;
 use crate::picture::PICTURE_PARAMETERS;
-use crate::pose::{Anchor, Axis, DecimalRange, RangeError, Ranges};
+use crate::pose::Axis;
 use crate::sensor::SENSOR_PARAMETERS;
 use crate::storage::{AtlasFile, is_poses};
-use crate::sweep::{Shard, ShardError};
 
 /// The program with all its commands.
 pub(crate) fn all() -> Command {
@@ -199,54 +201,6 @@ fn sweep() -> Command {
         .args([atlas(), poses, replace(), jobs(), shard(), json(), quiet()])
 }
 
-/// The flag of an axis of the grid, which takes a range. `default` says what is taken without it; empty for the range of
-/// the paper.
-pub(super) fn range(axis: Axis, default: &str) -> Arg {
-    let (row, flag) = (axis.parameter().row(), axis.parameter().flag());
-    let paper = Ranges::default()[axis].to_string();
-    let help = format!(
-        "{}; default {}",
-        parameters::capitalised(row.meaning),
-        if default.is_empty() { &paper } else { default }
-    );
-    Arg::new(format!("range_{}", row.key))
-        .long(flag)
-        .value_name("START:END:STEP")
-        .allow_hyphen_values(true)
-        .value_parser(parse_range)
-        .help_heading("Grid")
-        .help(parameters::wrapped(&help, 46))
-}
-
-/// `--anchor`, the point of a shape that the ranges of x0 and y0 place.
-pub(super) fn anchor() -> Arg {
-    Arg::new("anchor")
-        .long("anchor")
-        .value_name("POINT")
-        .value_parser(parameters::one_of(Anchor::NAMES, Anchor::from_name))
-        .hide_possible_values(true)
-        .help_heading("Grid")
-        .help("What x0 and y0 place: corner or centre")
-}
-
-/// `--jobs`, the number of threads.
-pub(super) fn jobs() -> Arg {
-    Arg::new("jobs")
-        .long("jobs")
-        .value_name("N")
-        .value_parser(value_parser!(u16).range(1..=1024))
-        .help("Threads; default all cores")
-}
-
-/// `--shard`, for work that several machines share.
-pub(super) fn shard() -> Arg {
-    Arg::new("shard")
-        .long("shard")
-        .value_name("K/N")
-        .value_parser(parse_shard)
-        .help("Do this piece of the grid only")
-}
-
 /// `taxel merge FILE.npz…`.
 fn merge() -> Command {
     let files = Arg::new("files")
@@ -276,19 +230,6 @@ fn atlas() -> Arg {
         .help("Write the atlas, as .csv, .jsonl or .npz")
 }
 
-/// `--force`, for commands that write a file.
-pub(super) fn replace() -> Arg {
-    force().help("Replace a file that is there already")
-}
-
-/// `--quiet`.
-pub(super) fn quiet() -> Arg {
-    Arg::new("quiet")
-        .long("quiet")
-        .action(ArgAction::SetTrue)
-        .help("Show no progress")
-}
-
 /// The file of an atlas; its ending must be that of one of the forms.
 fn parse_atlas(text: &str) -> Result<AtlasFile, &'static str> {
     AtlasFile::new(text)
@@ -300,16 +241,6 @@ fn parse_poses(text: &str) -> Result<PathBuf, &'static str> {
     let fits = is_poses(&path);
     fits.then_some(path)
         .ok_or("expected a name that ends in .npy")
-}
-
-/// A range of the grid, such as `5:5.99:0.01`.
-fn parse_range(text: &str) -> Result<DecimalRange, RangeError> {
-    text.parse()
-}
-
-/// A piece of the grid, such as `3/40`.
-fn parse_shard(text: &str) -> Result<Shard, ShardError> {
-    text.parse()
 }
 
 /// `taxel library` with its own subcommands.
@@ -341,24 +272,6 @@ fn library() -> Command {
         .subcommand(restore.arg(name("Which shape")))
         .subcommand(command("path", "Print the library's folder", PATH_EXAMPLES))
         .subcommand(command("check", "Check every file", CHECK_EXAMPLES))
-}
-
-/// All flags of the sensor.
-fn sensor() -> Vec<Arg> {
-    of_sensor(&SENSOR_PARAMETERS)
-}
-
-/// The flags of the sensor without `--pitch`, for commands that show no lengths.
-pub(super) fn sensor_of_imprints() -> Vec<Arg> {
-    let own = SENSOR_PARAMETERS.into_iter();
-    let own = own.filter(|&parameter| parameter != Parameter::Pitch);
-    of_sensor(&own.collect::<Vec<_>>())
-}
-
-/// The flags of some parameters of the sensor.
-fn of_sensor(parameters: &[Parameter]) -> Vec<Arg> {
-    let flag = |&parameter: &Parameter| parameters::arg(parameter).help_heading("Sensor");
-    parameters.iter().map(flag).collect()
 }
 
 /// `--save` and `--export`: at least one of them must be given for `--force` to make sense.
@@ -394,14 +307,6 @@ fn keeping() -> [Arg; 4] {
     ]
 }
 
-/// `--force`, for commands that store a shape.
-fn force() -> Arg {
-    Arg::new("force")
-        .long("force")
-        .action(ArgAction::SetTrue)
-        .help("Replace a shape that has the name already")
-}
-
 /// The commands that use no library.
 pub(crate) const WITHOUT_LIBRARY: [&str; 3] = ["merge", "completions", "man"];
 
@@ -413,37 +318,6 @@ fn folder() -> Arg {
         .value_parser(value_parser!(PathBuf))
         .help_heading("Library")
         .help("The library's folder")
-}
-
-/// A positional argument that is the name of a stored shape.
-fn name(help: &'static str) -> Arg {
-    Arg::new("name")
-        .value_name("NAME")
-        .required(true)
-        .value_parser(parse_name)
-        .help(help)
-}
-
-/// The name of a shape; see [`Name`] for which are allowed.
-pub(super) fn parse_name(text: &str) -> Result<Name, NameError> {
-    Name::new(text)
-}
-
-/// A positional argument that is a name or a file; [`Shelf::find`](crate::cli::input::shapes::Shelf::find) tells which.
-pub(super) fn what(help: &'static str) -> Arg {
-    Arg::new("what")
-        .value_name("NAME|FILE")
-        .required(true)
-        .value_parser(value_parser!(OsString))
-        .help(help)
-}
-
-/// `--json`.
-pub(super) fn json() -> Arg {
-    Arg::new("json")
-        .long("json")
-        .action(ArgAction::SetTrue)
-        .help("Answer in one line of JSON")
 }
 
 /// Joins names as in a sentence: `a, b or c`, with `word` before the last.

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `definitions` | the commands and their flags, for clap |
 //! | `program` | the same for `script`, `config`, `completions`, `man` and the screen's own flags |
+//! | `flags` | flags that several commands have |
 //! | `parameters` | flags made from the table of parameters, and their values |
 //! | `recognition` | the same for `model` and `recognise` |
 //! | `help` | the longer texts of the help |
@@ -16,6 +17,8 @@ pub(super) mod help;
 pub(super) mod parameters;
 
 pub(super) mod program;
+
+pub(super) mod flags;
 
 pub(super) mod definitions;
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
 
-use crate::cli::arguments::definitions::{
+use crate::cli::arguments::flags::{
     anchor, jobs, json, parse_name, quiet, range, replace, sensor_of_imprints, shard, what,
 };
 use crate::cli::arguments::help::{
