@@ -144,14 +144,9 @@ impl Sensor {
 
 /// The values that a sensor allows.
 impl Sensor {
-    /// Returns what files and flags may set a parameter to.
+    /// Returns what a parameter may be set to, in forms, files, flags and commands alike.
     pub fn range(&self, parameter: Parameter) -> Range {
         parameter.row().range(self.side())
-    }
-
-    /// Returns what forms may set a parameter to; never more than [`Self::range`].
-    pub fn form_range(&self, parameter: Parameter) -> Range {
-        parameter.row().form_range(self.side())
     }
 
     /// Returns the value in a new form: the parameter's default, or the larger side of a sensor that is too small for
@@ -165,7 +160,7 @@ impl Sensor {
         }
     }
 
-    /// Returns `value` if files and flags may set the parameter to it.
+    /// Returns `value` if the parameter may be set to it.
     ///
     /// # Errors
     /// [`ParameterError::Range`], also for NaN and the infinities.
@@ -183,7 +178,7 @@ impl Sensor {
         }
     }
 
-    /// Reads a value from the text of a flag.
+    /// Reads a value from a text: of a flag, a command or the field of a form.
     ///
     /// # Errors
     /// [`ParameterError::Number`] or [`ParameterError::Range`].
@@ -192,46 +187,15 @@ impl Sensor {
         self.check(parameter, value)
     }
 
-    /// Reads a value from the text of a form's field, with the paper's decimals.
-    ///
-    /// # Errors
-    /// [`ParameterError::Number`], [`ParameterError::Range`] or [`ParameterError::Decimals`].
-    pub fn read_form(&self, parameter: Parameter, text: &str) -> Result<f64, ParameterError> {
-        let text = text.trim();
-        // No exponents, no plus: a field shows its number as it was typed.
-        let plain = text
-            .bytes()
-            .all(|byte| byte.is_ascii_digit() || matches!(byte, b'.' | b'-'));
-        let value = number::read(text)
-            .filter(|_| plain)
-            .ok_or_else(|| not_a_number(parameter, text))?;
-        let range = self.form_range(parameter);
-        if !range.contains(value) {
-            return Err(ParameterError::Range {
-                parameter,
-                value,
-                range,
-            });
-        }
-        let given = text
-            .split_once('.')
-            .map_or(0, |(_, fraction)| fraction.trim_end_matches('0').len());
-        let allowed = parameter.decimals_at(value);
-        if given > usize::from(allowed) {
-            return Err(ParameterError::Decimals {
-                parameter,
-                value,
-                allowed,
-            });
-        }
-        Ok(value)
-    }
-
-    /// Returns the next value that a form accepts, `direction` last decimals away. Angles wrap around, other parameters
-    /// stop at the ends of their range.
+    /// Returns the next value in steps of the paper's last decimal, `direction` of them away: hundredths below ten, tenths
+    /// from ten on, whole degrees. Angles wrap around, other parameters stop at the ends of their range.
     pub fn step(&self, parameter: Parameter, value: f64, direction: i32) -> f64 {
-        // From ten up the steps are tenths, from ten down hundredths.
-        let towards = if direction < 0 { value - 0.01 } else { value };
+        // From ten up the steps are tenths, from ten down hundredths; below zero likewise, the other way.
+        let towards = match direction {
+            1.. if value < 0.0 => value + 0.01,
+            ..=-1 if value > 0.0 => value - 0.01,
+            _ => value,
+        };
         let scale = 10_f64.powi(parameter.decimals_at(towards).into());
         // A number with more decimals lies between two that a form accepts; one that it accepts may be off by a
         // rounding when it is counted in its last decimals.
@@ -244,7 +208,7 @@ impl Sensor {
         if parameter == Parameter::Angle {
             return stepped.rem_euclid(360.0);
         }
-        self.form_range(parameter).nearest(stepped, 1.0 / scale)
+        self.range(parameter).nearest(stepped, 1.0 / scale)
     }
 }
 
@@ -260,7 +224,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn steps_lead_to_the_next_number_that_a_form_accepts() {
+    fn steps_lead_to_the_next_number_of_the_paper_s_decimals() {
         let sensor = Sensor::default();
         for (parameter, value, up, down) in [
             (Parameter::X0, 1.236, 1.24, 1.23),
@@ -271,6 +235,11 @@ mod tests {
             (Parameter::X0, 10.0, 10.1, 9.99),
             (Parameter::X0, 10.05, 10.1, 10.0),
             (Parameter::X0, 16.0, 16.0, 15.9),
+            (Parameter::X0, 0.0, 0.01, -0.01),
+            (Parameter::X0, -1.99, -1.98, -2.0),
+            (Parameter::X0, -9.99, -9.98, -10.0),
+            (Parameter::X0, -10.0, -9.99, -10.1),
+            (Parameter::X0, -16.0, -15.9, -16.0),
             (Parameter::Side, 0.004, 0.01, 0.01),
             (Parameter::Angle, 17.5, 18.0, 17.0),
             (Parameter::Angle, 359.5, 0.0, 359.0),

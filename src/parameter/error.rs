@@ -26,15 +26,6 @@ pub enum ParameterError {
         /// What is allowed.
         range: Range,
     },
-    /// The number has more decimals than a form accepts.
-    Decimals {
-        /// Which parameter.
-        parameter: Parameter,
-        /// The number.
-        value: f64,
-        /// How many decimals are allowed at this value.
-        allowed: u8,
-    },
     /// A required value is missing.
     Missing {
         /// Which parameter.
@@ -68,7 +59,6 @@ impl ParameterError {
         match self {
             Self::Number { parameter, .. }
             | Self::Range { parameter, .. }
-            | Self::Decimals { parameter, .. }
             | Self::Missing { parameter, .. }
             | Self::Foreign { parameter, .. } => *parameter,
         }
@@ -97,10 +87,6 @@ impl ParameterError {
                 let (value, whole) = (short(*value), whole(*parameter));
                 format!("{name}: {value} is out of range, expected {range}{whole}")
             }
-            Self::Decimals { value, allowed, .. } => {
-                let (value, decimals) = (short(*value), decimals(*allowed));
-                format!("{name}: {value} has too many decimals, expected {decimals}")
-            }
             Self::Missing { range, .. } => format!("{name}: missing, expected a number {range}"),
             Self::Foreign {
                 owner, expected, ..
@@ -119,7 +105,6 @@ impl ParameterError {
                 parameter, range, ..
             } => format!("expected {range}{}", whole(*parameter)),
             Self::Missing { range, .. } => format!("missing, expected {range}"),
-            Self::Decimals { allowed, .. } => format!("expected {}", decimals(*allowed)),
             Self::Foreign { expected, .. } => format!("expected {}", keys(expected)),
         }
     }
@@ -130,14 +115,6 @@ fn whole(parameter: Parameter) -> &'static str {
         ", a whole number"
     } else {
         ""
-    }
-}
-
-fn decimals(allowed: u8) -> String {
-    match allowed {
-        0 => "a whole number".to_owned(),
-        1 => "one decimal from 10 on".to_owned(),
-        count => format!("at most {count} decimals"),
     }
 }
 

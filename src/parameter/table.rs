@@ -77,7 +77,7 @@ impl Parameter {
         if exact { usual } else { number::short(value) }
     }
 
-    /// Returns how many decimals a form shows and accepts at this value.
+    /// Returns how many decimals a form shows of such a value, if these are enough, and steps by.
     pub(crate) fn decimals_at(self, value: f64) -> u8 {
         match self.row().decimals {
             Decimals::Paper if value.abs() < 10.0 => 2,
@@ -116,7 +116,7 @@ impl Unit {
     }
 }
 
-/// How many decimals a form accepts.
+/// How many decimals a form shows and steps by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Decimals {
     /// Two below ten, one from ten on.
@@ -144,21 +144,13 @@ pub struct ParameterRow {
     pub meaning: &'static str,
     pub(super) low: Bound,
     pub(super) high: Bound,
-    /// The bounds in forms, where they differ.
-    pub(super) form: Option<(Bound, Bound)>,
     pub(super) decimals: Decimals,
 }
 
 impl ParameterRow {
-    /// Returns what files and flags allow on a sensor with this larger side.
+    /// Returns what is allowed on a sensor with this larger side, wherever the value comes from.
     pub(crate) fn range(&self, side: u8) -> Range {
         Range::new(self.low, self.high, side)
-    }
-
-    /// Returns what forms allow on a sensor with this larger side; never more than [`Self::range`].
-    pub(crate) fn form_range(&self, side: u8) -> Range {
-        let (low, high) = self.form.unwrap_or((self.low, self.high));
-        Range::new(low, high, side)
     }
 }
 
@@ -173,15 +165,13 @@ const LENGTH: ParameterRow = ParameterRow {
     meaning: "side of the regular polygon",
     low: Bound::Beyond(0.0),
     high: Bound::Side(1.0),
-    form: None,
     decimals: Decimals::Paper,
 };
 
-/// A position; files also allow positions left of and above the sensor.
+/// A position, perhaps left of or above the sensor.
 const POSITION: ParameterRow = ParameterRow {
     default: 4.0,
     low: Bound::Side(-1.0),
-    form: Some((Bound::At(0.0), Bound::Side(1.0))),
     ..LENGTH
 };
 
@@ -266,7 +256,6 @@ pub const PARAMETERS: &[ParameterRow] = &[
         meaning: "a figure turns clockwise about its centre, a picture counter-clockwise",
         low: Bound::At(0.0),
         high: Bound::Beyond(360.0),
-        form: Some((Bound::At(0.0), Bound::At(359.0))),
         decimals: Decimals::Fixed(0),
     },
     ParameterRow {

@@ -78,7 +78,7 @@ fn the_matrix_does_not_stay_at_the_beginning_of_a_wrong_number() {
     );
     shows("f<Tab>2,<BS>.5", &["ellipse rx 2.50 ry 4.00"]);
     // What was reached by a step, or before the field was left, stays.
-    shows("f<Tab>++x", &["ellipse rx 4.02 ry 4.00"]);
+    shows("f<Tab><PageUp><PageUp>x", &["ellipse rx 4.02 ry 4.00"]);
     shows("f<Tab>2<Tab>3<S-Tab>x", &["ellipse rx 2.00 ry 3.00"]);
     shows(
         "f<Tab>2<S-Tab>r<Tab>x",
@@ -134,20 +134,56 @@ fn kinds_are_chosen_by_arrow_and_by_letter() {
 
 #[test]
 fn fields_are_edited_and_stepped() {
-    shows("f<Tab>+", &["rx 4.01"]);
-    shows("f<Tab>--", &["rx 3.98"]);
-    shows("f<Tab>9.99+", &["rx 10.0"]);
-    shows("f<Tab>9.99++", &["rx 10.1"]);
-    shows("f<Tab>10.0-", &["rx 9.99"]);
-    shows("f<Tab>0.01-", &["rx 0.01"]);
-    shows("f<Tab>16+", &["rx 16.0"]);
-    shows("f<4x:Tab><Tab>-", &["359°"]);
-    shows("f<4x:Tab><Tab>359+", &["at 4.00, 4.00, 0°"]);
-    shows("f<6x:Tab>+", &["wall 1.00"]);
+    shows("f<Tab><PageUp>", &["rx 4.01"]);
+    shows("f<Tab><PageDown><PageDown>", &["rx 3.98"]);
+    shows("f<Tab>9.99<PageUp>", &["rx 10.0"]);
+    shows("f<Tab>9.99<PageUp><PageUp>", &["rx 10.1"]);
+    shows("f<Tab>10.0<PageDown>", &["rx 9.99"]);
+    shows("f<Tab>0.01<PageDown>", &["rx 0.01"]);
+    shows("f<Tab>16<PageUp>", &["rx 16.0"]);
+    shows("f<4x:Tab><Tab><PageDown>", &["359°"]);
+    shows("f<4x:Tab><Tab>359<PageUp>", &["at 4.00, 4.00, 0°"]);
+    shows("f<6x:Tab><PageUp>", &["wall 1.00"]);
     shows("f<Tab><Left><BS>5", &["rx 4.50"]);
     shows("f<Tab><Home><Del>5", &["rx 5.00"]);
     shows("f<Tab>12.5<BS><BS><BS><BS>3", &["rx 3.00"]);
     shows("fr<Tab><Up>t", &["< triangle "]);
+}
+
+/// A form takes what files, flags and commands take, and a minus is a character like others.
+#[test]
+fn a_form_takes_the_values_that_a_command_takes() {
+    let typed = |x0: &str, angle: &str| {
+        session(&format!("fh<Tab><Tab>{x0}<Tab><Tab>{angle}<Enter>")).screen()
+    };
+    let commanded = |x0: &str, angle: &str| {
+        session(&format!(":figure hexagon --x0 {x0} --angle {angle}<Enter>")).screen()
+    };
+    for (x0, angle) in [
+        ("-2", "0"),
+        ("-16", "30.5"),
+        ("1.005", "359.999"),
+        ("16", "0.25"),
+    ] {
+        let (typed, commanded) = (typed(x0, angle), commanded(x0, angle));
+        let line = |screen: &str| {
+            let line = screen.lines().find(|line| line.starts_with("hexagon"));
+            line.expect("the shape is on the matrix")
+                .trim_end()
+                .to_owned()
+        };
+        assert_eq!(line(&typed), line(&commanded), "{x0} {angle}");
+    }
+    shows("fh<Tab><Tab>-17", &["! expected -16 to 16"]);
+    shows("fh<4x:Tab>-1", &["! expected 0 to below 360"]);
+    shows("fh<4x:Tab>360", &["! expected 0 to below 360"]);
+    shows("S<Tab><Tab>0.3333", &["0.3333"]);
+    // What was moved beyond the sensor stands in its field, and steps go on from there.
+    shows(
+        "fr<Enter><C-u>:move -8 0<Enter>f<3x:Tab>",
+        &["-4.00", "-16 to 16", "PageUp/Down step"],
+    );
+    shows("fr<Enter>:move -8 0<Enter>f<3x:Tab><PageDown>", &["-4.01"]);
 }
 
 #[test]

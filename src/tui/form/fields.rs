@@ -2,8 +2,8 @@
 //!
 //! A [`ParameterField`] is the text of one parameter; a [`ParameterForm`] is a list of them, one of which may have the
 //! focus. A field converts its text when it is asked for its value, and never keeps a value beside the text, so what
-//! one sees is what counts. The exception is the value that a field starts with: it may have more decimals than the
-//! form shows, and stays exact as long as its text is not changed.
+//! one sees is what counts. The exception is the value that a field starts with, which stays exact as long as its text
+//! is not changed. What a field allows is what files, flags and commands allow.
 
 use crate::parameter::{Parameter, ParameterError};
 use crate::sensor::Sensor;
@@ -80,13 +80,13 @@ impl ParameterField {
         match (self.text().trim(), self.optional) {
             ("", true) => Ok(None),
             ("", false) => {
-                let range = sensor.form_range(self.parameter);
+                let range = sensor.range(self.parameter);
                 Err(ParameterError::Missing {
                     parameter: self.parameter,
                     range,
                 })
             }
-            (text, _) => sensor.read_form(self.parameter, text).map(Some),
+            (text, _) => sensor.read(self.parameter, text).map(Some),
         }
     }
 
@@ -96,7 +96,7 @@ impl ParameterField {
         let value = match self.value(sensor) {
             Ok(Some(value)) => sensor.step(self.parameter, value, i32::from(direction)),
             Ok(None) => sensor.default_value(self.parameter),
-            Err(ParameterError::Range { value, .. } | ParameterError::Decimals { value, .. }) => {
+            Err(ParameterError::Range { value, .. }) => {
                 sensor.step(self.parameter, value, i32::from(direction))
             }
             Err(_) => return,

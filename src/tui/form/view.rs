@@ -203,7 +203,7 @@ fn draw_range(
     area: Rect,
     under: Option<Rect>,
 ) {
-    let bare = sensor.form_range(field.parameter()).to_string();
+    let bare = sensor.range(field.parameter()).to_string();
     let unit = field.parameter().row().unit.symbol();
     let range = format!("{bare} {unit}").trim_end().to_owned();
     let mut write = |area: Rect, texts: &[&str]| {

@@ -193,8 +193,10 @@ impl Binding {
         let opposite = self.keys.iter().find(|(_, other)| other != action);
         let opposite = opposite.map(|(key, _)| key.label());
         let first = first.label();
-        match opposite {
+        match opposite.as_deref() {
             Some(second) if first.len() + second.len() <= 9 => format!("{first} {second}"),
+            // Two long names with one beginning.
+            Some("PageDown") if first == "PageUp" => "PageUp/Down".to_owned(),
             _ => first,
         }
     }

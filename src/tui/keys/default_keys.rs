@@ -89,7 +89,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Tab => NEXT, BackTab => PREVIOUS] "field" "next, previous field";
         [LEFT => LEFT, RIGHT => RIGHT, UP => UP, DOWN => DOWN]
             "" "choose the kind (or by its letter); move, change field";
-        [Char('+') => INCREASE, Char('=') => INCREASE, Char('-') => DECREASE]
+        [PageUp => INCREASE, PageDown => DECREASE]
             "step" "change the number by its last decimal";
         [Backspace => ERASE_BEFORE, Delete => ERASE_UNDER] "" "delete a character";
         [Ctrl('u') => ERASE_ALL] "clear" "clear the field";
