@@ -23,6 +23,8 @@ pub mod app;
 
 pub mod help;
 
+pub mod history;
+
 pub mod matrix;
 
 pub mod form;

@@ -6,8 +6,9 @@
 use crate::formats::value::counted;
 use crate::parameter::Parameter;
 use crate::source::Source;
-use crate::tui::app::document::{Document, DocumentOrigin, History, StoredName};
-use crate::tui::app::state::{App, Mode, Notice};
+use crate::tui::app::document::Document;
+use crate::tui::app::history::{DocumentOrigin, History, StoredName};
+use crate::tui::app::state::{App, Mode, MoveKind, Notice};
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
 
@@ -30,7 +31,14 @@ pub(in crate::tui) fn change(app: &mut App, document: Document) {
 /// A document that comes from somewhere else, with the name that it is stored under, if it is.
 pub(in crate::tui) fn begin(app: &mut App, document: Document, name: Option<StoredName>) {
     let saved = document.clone();
-    app.history.begin(document, DocumentOrigin { name, saved });
+    app.history.begin(
+        document,
+        DocumentOrigin {
+            loaded: name.as_ref().map(|stored| stored.name.clone()),
+            name,
+            saved,
+        },
+    );
     app.mode = Mode::Draw;
     settle(app);
 }
@@ -38,6 +46,7 @@ pub(in crate::tui) fn begin(app: &mut App, document: Document, name: Option<Stor
 /// Brings back into range what depends on the document.
 pub(in crate::tui) fn settle(app: &mut App) {
     app.removed = None;
+    app.moves = None;
     let present = app.history.present();
     app.cursor.0 = app.cursor.0.min(present.sensor.columns() - 1);
     app.cursor.1 = app.cursor.1.min(present.sensor.rows() - 1);
@@ -49,17 +58,54 @@ pub(in crate::tui) fn settle(app: &mut App) {
     app.chosen = app.chosen.filter(|&index| index < regions);
 }
 
-/// Back or forth by one change.
+/// Back or forth by one change, which a notice names: `done` is "undone" or "redone".
 pub(in crate::tui) fn travel(
     app: &mut App,
-    step: impl FnOnce(&mut History) -> bool,
+    step: impl FnOnce(&mut History) -> Option<String>,
+    done: &str,
     otherwise: &str,
 ) {
-    if step(&mut app.history) {
+    match step(&mut app.history) {
+        Some(what) => {
+            settle(app);
+            inform(app, format!("{done}: {what}"));
+        }
+        None => inform(app, otherwise),
+    }
+}
+
+/// Takes hold of the shape.
+pub(in crate::tui) fn hold(app: &mut App) {
+    if movable(app).is_some() {
+        app.mode = Mode::Grab;
+        app.held = Some(Box::new(app.history.present().clone()));
+    }
+}
+
+/// Lets the shape go where it is.
+pub(in crate::tui) fn let_go(app: &mut App) {
+    app.mode = Mode::Draw;
+    app.held = None;
+}
+
+/// Puts the shape back to where it was taken, and lets it go.
+pub(in crate::tui) fn put_back(app: &mut App) {
+    if app.mode != Mode::Grab {
+        return refuse(app, "nothing is held");
+    }
+    let before = app.held.take();
+    app.mode = Mode::Draw;
+    let Some(before) = before.filter(|before| **before != *app.history.present()) else {
+        return;
+    };
+    // Moves alone leave no trace; what else was done meanwhile can still be undone.
+    if app.moves.take() == Some(MoveKind::Held) {
+        app.history.amend(*before);
         settle(app);
     } else {
-        inform(app, otherwise);
+        change(app, *before);
     }
+    inform(app, "put back");
 }
 
 /// A document from a form or a command. A notice says how many taxels set by hand were dropped.
@@ -70,6 +116,11 @@ pub(in crate::tui) fn replace(app: &mut App, document: Document) {
     }
     let dropped = present.edits.count().saturating_sub(document.edits.count());
     change(app, document);
+    say_dropped(app, dropped);
+}
+
+/// Says how many taxels set by hand were dropped, if any.
+fn say_dropped(app: &mut App, dropped: u32) {
     if dropped > 0 {
         let taxels = counted(dropped.into(), "taxel");
         let them = if dropped == 1 { "it" } else { "them" };
@@ -117,7 +168,7 @@ pub(in crate::tui) fn shift(app: &mut App, dx: f64, dy: f64) {
         .filter(|(_, by)| *by != 0.0)
         .filter_map(|(parameter, by)| Some((parameter, tidy(source.get(parameter)? + by))))
         .collect();
-    set(app, source, &moved);
+    set(app, source, MoveKind::Along, &moved);
 }
 
 /// Turns the shape, as seen.
@@ -126,7 +177,7 @@ pub(in crate::tui) fn turn(app: &mut App, clockwise: i16) {
     if let Some(angle) = source.get(Parameter::Angle) {
         let turned = tidy(angle + f64::from(clockwise) * source.sense());
         let angle = turned.rem_euclid(360.0);
-        set(app, source, &[(Parameter::Angle, angle)]);
+        set(app, source, MoveKind::Turn, &[(Parameter::Angle, angle)]);
     }
 }
 
@@ -142,6 +193,7 @@ pub(in crate::tui) fn zoom(app: &mut App, direction: i8) {
     set(
         app,
         source,
+        MoveKind::Zoom,
         &[
             (Parameter::ZoomX, tidy(x + by)),
             (Parameter::ZoomY, tidy(y + by)),
@@ -154,8 +206,9 @@ fn tidy(value: f64) -> f64 {
     (value * 1e6).round() / 1e6 + 0.0
 }
 
-/// Gives the source new values and touches the matrix anew. A value out of range is refused, and nothing changes.
-fn set(app: &mut App, source: Source, values: &[(Parameter, f64)]) {
+/// Gives the source new values and touches the matrix anew, in the step of the history that the last message began if
+/// that moved in the same way. A value out of range is refused, and nothing changes.
+fn set(app: &mut App, source: Source, way: MoveKind, values: &[(Parameter, f64)]) {
     let sensor = app.history.present().sensor;
     let moved = values
         .iter()
@@ -165,7 +218,21 @@ fn set(app: &mut App, source: Source, values: &[(Parameter, f64)]) {
     match moved {
         // What was set by hand stays where nothing moves.
         Ok(source) if app.history.present().source.as_ref() == Some(&source) => {}
-        Ok(source) => replace(app, Document::touched(sensor, source)),
+        Ok(source) => {
+            let document = Document::touched(sensor, source);
+            let way = if app.mode == Mode::Grab {
+                MoveKind::Held
+            } else {
+                way
+            };
+            if app.moves == Some(way) {
+                app.history.amend(document);
+                settle(app);
+            } else {
+                replace(app, document);
+            }
+            app.moves = Some(way);
+        }
         Err(error) => refuse(app, error.labelled()),
     }
 }

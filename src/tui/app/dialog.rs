@@ -14,6 +14,7 @@ use crate::tui::explore::results::Results;
 use crate::tui::explore::running::Running;
 use crate::tui::form::state::FormDialog;
 use crate::tui::help::Help;
+use crate::tui::history::HistoryDialog;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
@@ -36,6 +37,8 @@ pub enum Dialog {
     Question(Question),
     /// The list of keys.
     Help(Help),
+    /// The steps of the history.
+    History(HistoryDialog),
     /// The ranges of a sweep.
     Ranges(Box<RangesForm>),
     /// A sweep or an export in progress.
@@ -56,6 +59,7 @@ impl Dialog {
             Self::Command(page) => page,
             Self::Question(page) => page,
             Self::Help(page) => page,
+            Self::History(page) => page,
             Self::Ranges(page) => &**page,
             Self::Running(page) => page,
             Self::Results(page) => &**page,

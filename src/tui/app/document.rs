@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use taxel::prelude::*;
-//! use taxel::tui::app::document::{Document, History, Reading};
+//! use taxel::tui::app::document::{Document, Reading};
 //!
 //! let mut history = History::new(Document::empty(Sensor::default()));
 //! let mut drawn = history.present().clone();
@@ -18,12 +18,10 @@
 //! ```
 
 use crate::description::{Description, Region, main_region, regions};
-use crate::formats::name::folded;
 use crate::formats::{Name, StoredShape};
 use crate::imprint::Imprint;
 use crate::sensor::Sensor;
 use crate::source::Source;
-use crate::storage::ShapeOrigin;
 use crate::touch::{Plane, reaches_beyond};
 
 /// What is on the matrix. Plain and small, so that a list of earlier documents is the undo history.
@@ -192,202 +190,5 @@ impl ReadDocument {
     /// Its reading.
     pub fn reading(&self) -> &Reading {
         &self.reading
-    }
-}
-
-/// Where documents come from: New, a loaded shape, a form. All states between two of these belong together, and know
-/// under which name they are stored.
-#[derive(Clone, Debug)]
-pub struct DocumentOrigin {
-    /// The name that the document was loaded from or stored under.
-    pub name: Option<StoredName>,
-    /// What would be found again: work that differs from it is unsaved.
-    pub saved: Document,
-}
-
-/// Where a document is stored.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct StoredName {
-    /// The shape's name.
-    pub name: String,
-    /// What its file held when it was read or written last.
-    pub stamp: u64,
-    /// Whether the file is the user's.
-    pub owner: ShapeOrigin,
-}
-
-/// A document and the number of its origin.
-#[derive(Clone, Debug, PartialEq)]
-struct Revision {
-    /// The state itself.
-    document: Document,
-    /// The index of its origin in the list of the history.
-    origin: usize,
-}
-
-/// A document with all its earlier and, after undoing, later states. Going back to one brings back its name too.
-#[derive(Clone, Debug)]
-pub struct History {
-    /// Earlier states, the oldest first.
-    past: Vec<Revision>,
-    /// The state now.
-    present: Revision,
-    /// States that were undone, the next one last.
-    future: Vec<Revision>,
-    /// All origins; revisions refer to them by index.
-    origins: Vec<DocumentOrigin>,
-}
-
-impl History {
-    /// Begins with a document that there is nothing to save of.
-    pub fn new(document: Document) -> Self {
-        let origins = vec![DocumentOrigin {
-            name: None,
-            saved: document.clone(),
-        }];
-        Self {
-            past: Vec::new(),
-            present: Revision {
-                document,
-                origin: 0,
-            },
-            future: Vec::new(),
-            origins,
-        }
-    }
-
-    /// The document as it is now.
-    pub fn present(&self) -> &Document {
-        &self.present.document
-    }
-
-    /// Where it comes from.
-    pub fn origin(&self) -> &DocumentOrigin {
-        // The number is that of one in the list: only `begin` makes numbers.
-        self.origins
-            .get(self.present.origin)
-            .unwrap_or(&self.origins[0])
-    }
-
-    /// A change. One that changes nothing leaves no trace.
-    pub fn push(&mut self, document: Document) {
-        if document != self.present.document {
-            let origin = self.present.origin;
-            self.replace(Revision { document, origin });
-        }
-    }
-
-    /// A document that comes from somewhere else.
-    pub fn begin(&mut self, document: Document, origin: DocumentOrigin) {
-        self.origins.push(origin);
-        self.replace(Revision {
-            document,
-            origin: self.origins.len() - 1,
-        });
-    }
-
-    /// The present document is stored now; so it is found again.
-    pub fn stored(&mut self, name: StoredName) {
-        let saved = self.present.document.clone();
-        if let Some(origin) = self.origins.get_mut(self.present.origin) {
-            *origin = DocumentOrigin {
-                name: Some(name),
-                saved,
-            };
-        }
-    }
-
-    /// The stored shape of that name is gone: nothing would be found again of what came from it.
-    pub fn removed(&mut self, name: &str) {
-        let gone = folded(name);
-        for origin in &mut self.origins {
-            let own = origin.name.as_ref();
-            let own = own.filter(|stored| stored.owner == ShapeOrigin::Own);
-            if own.is_some_and(|stored| folded(&stored.name) == gone) {
-                *origin = DocumentOrigin {
-                    name: None,
-                    saved: Document::empty(origin.saved.sensor),
-                };
-            }
-        }
-    }
-
-    /// Whether something was drawn and left for a document from elsewhere without being saved: only undoing would bring
-    /// it back. Of an empty matrix there is nothing to save.
-    pub fn left_unsaved(&self) -> bool {
-        let states = || self.past.iter().chain([&self.present]);
-        states().zip(states().skip(1)).any(|(state, next)| {
-            state.origin != next.origin
-                && state.document != Document::empty(state.document.sensor)
-                && (self.origins.get(state.origin))
-                    .is_some_and(|origin| origin.saved != state.document)
-        })
-    }
-
-    /// Amended until it was as before, a change is none, and leaves no trace either.
-    fn drop_empty_step(&mut self) {
-        let present = &self.present;
-        self.past.pop_if(|past| *past == *present);
-    }
-
-    /// Makes a state the present one and the former one the last of the past.
-    fn replace(&mut self, state: Revision) {
-        self.drop_empty_step();
-        self.past.push(std::mem::replace(&mut self.present, state));
-        self.future.clear();
-    }
-
-    /// Goes on with the last change, which stays one change.
-    pub fn amend(&mut self, document: Document) {
-        self.present.document = document;
-        self.future.clear();
-    }
-
-    /// Back by one change; false where there is none.
-    pub fn undo(&mut self) -> bool {
-        self.drop_empty_step();
-        let Some(earlier) = self.past.pop() else {
-            return false;
-        };
-        self.future
-            .push(std::mem::replace(&mut self.present, earlier));
-        true
-    }
-
-    /// Forth again by one change; false where there is none.
-    pub fn redo(&mut self) -> bool {
-        let Some(later) = self.future.pop() else {
-            return false;
-        };
-        self.past.push(std::mem::replace(&mut self.present, later));
-        true
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_change_that_is_amended_away_is_none() {
-        let empty = Document::empty(Sensor::default());
-        let mut drawn = empty.clone();
-        drawn.edits.toggle(3, 4);
-        let mut history = History::new(empty.clone());
-        history.push(drawn.clone());
-        history.amend(empty.clone());
-        assert!(!history.undo(), "there is nothing to take back");
-        // Nor does it stand between others, though the change may go on first.
-        history.push(drawn.clone());
-        history.amend(empty.clone());
-        history.amend(drawn.clone());
-        drawn.edits.toggle(5, 6);
-        history.push(drawn.clone());
-        history.amend(empty.clone());
-        history.push(drawn);
-        assert!(history.undo() && history.present() == &empty);
-        assert!(history.undo() && history.present().edits.count() == 1);
-        assert!(history.undo() && history.present() == &empty);
-        assert!(!history.undo());
     }
 }

@@ -56,6 +56,10 @@ pub enum Message {
     SwitchPage,
     /// Hold the shape, so that the arrows move it, or let it go.
     Grab,
+    /// Put the held shape back to where it was taken.
+    PutBack,
+    /// Show all steps of the history.
+    History,
     /// Move the shape by a step.
     Nudge(Arrow),
     /// Move the shape by a distance in cells along x and y.
@@ -134,6 +138,17 @@ pub enum Message {
     Redraw,
     /// Suspend the program, as Ctrl-Z does, until the shell continues it.
     Suspend,
+}
+
+impl Message {
+    /// Whether it moves the shape, or sets how far it moves.
+    pub(in crate::tui) fn moves_shape(&self) -> bool {
+        use Message::{Move, Nudge, NudgeStep, PutBack, Turn, Zoom};
+        matches!(
+            self,
+            Nudge(_) | Move(..) | Turn(_) | Zoom(_) | NudgeStep(_) | PutBack
+        )
+    }
 }
 
 /// A layer over the taxels.

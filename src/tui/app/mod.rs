@@ -1,10 +1,11 @@
 //! The state of the program, what changes it, and the screen as a whole.
 //!
 //! ```text
-//! document   what is on the matrix, its reading and its history
+//! document   what is on the matrix, and its reading      history: all its states
 //! message    what a key means
 //! page       what the screen knows of a page            dialog: the table of pages
 //! state      App                                        update: the only writer of it
+//! steps      what a step of the history did, in words
 //! layout     the panes of the screen                    view: draws them
 //! ```
 
@@ -19,6 +20,10 @@ pub mod layout;
 pub mod dialog;
 
 pub mod state;
+
+pub mod steps;
+
+pub mod history;
 
 pub mod change;
 

@@ -6,7 +6,8 @@ use crate::formats::{Name, StoredShape};
 use crate::sensor::Sensor;
 use crate::storage::{Expected, ShapeOrigin, UNNAMED};
 use crate::tui::app::dialog::Dialog;
-use crate::tui::app::document::{Document, History, ReadDocument, Reading, StoredName};
+use crate::tui::app::document::{Document, ReadDocument, Reading};
+use crate::tui::app::history::{History, StoredName};
 use crate::tui::app::layout::Panes;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Page;
@@ -46,6 +47,20 @@ pub enum Mode {
     Draw,
     /// They move the shape.
     Grab,
+}
+
+/// A way of moving the shape. Moves of the same kind, one after the other, are one step of the history; so are all moves
+/// while the shape is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MoveKind {
+    /// Any, while the shape is held.
+    Held,
+    /// Along x and y.
+    Along,
+    /// About its centre.
+    Turn,
+    /// Larger or smaller.
+    Zoom,
 }
 
 /// How taxels are shown.
@@ -155,6 +170,10 @@ pub struct App {
     pub(in crate::tui) commands: Vec<String>,
     /// Whether the mouse is wanted.
     pub(in crate::tui) mouse: bool,
+    /// What was on the matrix when the shape was taken hold of.
+    pub(in crate::tui) held: Option<Box<Document>>,
+    /// How the last message moved the shape, if it did: the next move of that kind is the same step of the history.
+    pub(in crate::tui) moves: Option<MoveKind>,
     /// During a drag of the mouse: the state that it gives taxels, and the last taxel on its way.
     pub(in crate::tui) paint: Option<(bool, (u8, u8))>,
     /// Columns and rows of the screen.
@@ -188,6 +207,8 @@ impl App {
             works: 0,
             commands: Vec::new(),
             mouse: options.mouse,
+            held: None,
+            moves: None,
             paint: None,
             screen: (80, 24),
             theme: options.theme,

@@ -3,11 +3,13 @@
 //! The top page receives the message, or the matrix if there is none. A notice stays until the next message from the
 //! user.
 
+use crate::tui::app::change::settle;
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::Message;
 use crate::tui::app::mouse;
 use crate::tui::app::state::{App, RunState};
 use crate::tui::help::Help;
+use crate::tui::history::HistoryDialog;
 
 use crate::tui::runtime::effect::{Effect, TerminalEffect};
 use crate::tui::{explore, form, matrix, prompt, shapes};
@@ -43,6 +45,9 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
     app.notice = None;
     // A key between press and release: what is dragged on would change another document than the press did.
     app.paint = None;
+    if !message.moves_shape() {
+        app.moves = None;
+    }
     match app.dialogs.pop() {
         Some(dialog) => in_dialog(app, dialog, message),
         None => matrix::update::act(app, message),
@@ -68,6 +73,7 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
         Dialog::Command(command) => prompt::update::in_command(app, command, message),
         Dialog::Question(question) => at_question(app, question, &message),
         Dialog::Help(help) => in_help(app, help, &message),
+        Dialog::History(list) => in_history(app, list, &message),
         Dialog::Ranges(form) => explore::work::in_ranges(app, form, message),
         Dialog::Running(running) => explore::work::in_running(app, running, &message),
         Dialog::Results(results) => explore::update::in_results(app, results, message),
@@ -88,6 +94,22 @@ fn in_help(app: &mut App, mut help: Help, message: &Message) -> Option<Effect> {
 }
 
 /// Handles the answer to a question. Without an answer the question stays.
+/// Moves in the list of steps, or goes to the state after the selected one.
+fn in_history(app: &mut App, mut list: HistoryDialog, message: &Message) -> Option<Effect> {
+    match *message {
+        Message::Scroll(lines) => list.scroll(lines),
+        Message::ScrollTo(end) => list.scroll_to(end),
+        Message::Accept => {
+            app.history.go_to(list.selected());
+            settle(app);
+            return None;
+        }
+        _ => {}
+    }
+    app.dialogs.push(Dialog::History(list));
+    None
+}
+
 fn at_question(app: &mut App, question: Question, message: &Message) -> Option<Effect> {
     match (message, question.no) {
         (Message::Accept, _) => matrix::update::act(app, question.yes),

@@ -160,6 +160,8 @@ actions! {
         OUTLINE "outline" [] Message::Layer(Layer::Outline);
         RECTANGLE "rectangle" [] Message::Layer(Layer::Rectangle);
         GRAB "grab" [] Message::Grab;
+        PUT_BACK "put-back" [] Message::PutBack;
+        HISTORY "history" [] Message::History;
         NUDGE_LEFT "nudge-left" ["nudge left"] Message::Nudge(Arrow::Left);
         NUDGE_RIGHT "nudge-right" ["nudge right"] Message::Nudge(Arrow::Right);
         NUDGE_UP "nudge-up" ["nudge up"] Message::Nudge(Arrow::Up);

@@ -75,6 +75,8 @@ contexts! {
     Form "form" "In a form" Typed, EVERYWHERE;
     /// In the list of shapes.
     List "list" "In the list of shapes" Typed, EVERYWHERE;
+    /// In the list of steps.
+    History "history" "In the history" Ignored, EVERYWHERE;
     /// In the field for a name.
     Name "name" "Saving" Typed, EVERYWHERE;
     /// In the `:` prompt.

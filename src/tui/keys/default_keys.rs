@@ -53,6 +53,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char(' ') => TOGGLE] "toggle" "turn the taxel under the cursor on or off";
         [Char('u') => UNDO] "undo" "undo the last change, then those before";
         [Char('U') => REDO, Ctrl('r') => REDO] "redo" "redo what was undone";
+        [Char('H') => HISTORY] "" "History: all steps, to go back to any of them";
         [Tab => REGION, BackTab => PREVIOUS_REGION]
             "region" "describe the next, the previous piece or hole";
         [Char('c') => COVERAGE] "coverage" "coverage in shades, in percent, the imprint again";
@@ -82,7 +83,8 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "move" "move the shape by a step";
         [Char('+') => LARGER_STEP, Char('=') => LARGER_STEP, Char('-') => SMALLER_STEP]
             "step" "a larger, a smaller step: 0.01, 0.1, 1";
-        [Char('g') => GRAB, Enter => GRAB, Esc => GRAB] "let go" "let the shape go";
+        [Char('g') => GRAB, Enter => GRAB] "let go" "let the shape go where it is";
+        [Esc => PUT_BACK] "put back" "put it back to where it was taken, and let go";
     }
 
     Form {
@@ -114,6 +116,16 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Backspace => ERASE_BEFORE] "" "delete a character of the filter";
         [Ctrl('u') => ERASE_ALL] "clear" "clear the filter";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "close it and change nothing";
+        [Char('?') => HELP] "help" "these keys";
+    }
+
+    History {
+        [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "choose" "earlier, later step";
+        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten steps back, on";
+        [Home => FIRST, End => LAST] "" "the start, the latest step";
+        [Enter => ACCEPT] "go there" "go to the state after this step";
+        [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL, Char('H') => CANCEL]
+            "close" "leave everything as it is";
         [Char('?') => HELP] "help" "these keys";
     }
 

@@ -7,15 +7,18 @@ use crate::description::{DESCRIPTORS, Descriptor};
 use crate::formats::value;
 use crate::storage::{Expected, ShapeOrigin};
 use crate::tui::app::change::{
-    begin, change, inform, movable, nudge, refuse, replace, shift, travel, turn, zoom,
+    begin, change, hold, inform, let_go, nudge, put_back, refuse, replace, shift, travel, turn,
+    zoom,
 };
 use crate::tui::app::dialog::{Dialog, Question};
-use crate::tui::app::document::{Document, History};
+use crate::tui::app::document::Document;
+use crate::tui::app::history::History;
 use crate::tui::app::message::{Copied, Endpoint, Layer, Message, Purpose};
 use crate::tui::app::state::{App, Display, Mode, NarrowPage, RunState};
 use crate::tui::explore;
 use crate::tui::form::state::FormDialog;
 use crate::tui::help::Help;
+use crate::tui::history::HistoryDialog;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
 use crate::tui::matrix::layers::Layers;
@@ -44,6 +47,11 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::Sensor => open_form(app, FormDialog::sensor(app.history.present())),
         Message::Save => save(app),
         Message::Command => app.dialogs.push(Dialog::Command(CommandDialog::default())),
+        Message::History => {
+            let (steps, present) = app.history.steps();
+            app.dialogs
+                .push(Dialog::History(HistoryDialog::new(steps, present)));
+        }
         Message::Help => {
             let help = Help::new(app.context());
             app.dialogs.push(Dialog::Help(help));
@@ -143,8 +151,8 @@ fn edit(app: &mut App, message: &Message) {
             document.edits.toggle(app.cursor.0, app.cursor.1);
             change(app, document);
         }
-        Message::Undo => travel(app, History::undo, "nothing to undo"),
-        Message::Redo => travel(app, History::redo, "nothing to redo"),
+        Message::Undo => travel(app, History::undo, "undone", "nothing to undo"),
+        Message::Redo => travel(app, History::redo, "redone", "nothing to redo"),
         Message::Region(by) => choose_region(app, by),
         Message::Display => {
             app.display = match app.display {
@@ -163,8 +171,9 @@ fn edit(app: &mut App, message: &Message) {
                 NarrowPage::Panel => NarrowPage::Matrix,
             };
         }
-        Message::Grab if app.mode == Mode::Grab => app.mode = Mode::Draw,
-        Message::Grab if movable(app).is_some() => app.mode = Mode::Grab,
+        Message::Grab if app.mode == Mode::Grab => let_go(app),
+        Message::Grab => hold(app),
+        Message::PutBack => put_back(app),
         Message::Nudge(arrow) => nudge(app, arrow),
         Message::Move(dx, dy) => shift(app, dx, dy),
         Message::Turn(degrees) => turn(app, degrees),

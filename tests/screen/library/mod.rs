@@ -164,7 +164,7 @@ fn a_picture_starts_where_it_is_and_follows() {
     );
     then(
         &mut session,
-        "uu>",
+        "u>",
         &["picture of pair at 2.00, 8.00, 359°"],
     );
     then(

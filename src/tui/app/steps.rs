@@ -1,0 +1,87 @@
+//! What a step of the history did, in words. The words follow from the documents before and after it and are stored
+//! nowhere.
+
+use crate::formats::value::counted;
+use crate::parameter::Parameter;
+use crate::sensor::{SENSOR_PARAMETERS, Sensor};
+use crate::source::Source;
+use crate::tui::app::document::Document;
+
+/// What leads from one document to another, for example "x0 4.00 → 4.31, angle 0 → 15"; empty where they are alike.
+pub fn difference(from: &Document, to: &Document) -> String {
+    let sensor = of_sensor(&from.sensor, &to.sensor);
+    let mut parts = vec![sensor, of_source(from.source.as_ref(), to.source.as_ref())];
+    let fits = from.edits.columns() == to.edits.columns() && from.edits.rows() == to.edits.rows();
+    // With a new source the matrix starts without edits: that goes without saying.
+    if fits && parts.iter().all(String::is_empty) {
+        parts.push(of_edits(from, to));
+    }
+    if parts.iter().all(String::is_empty) && from != to && to.edits.is_empty() {
+        parts.push("emptied".to_owned());
+    }
+    parts.retain(|part| !part.is_empty());
+    parts.join(", ")
+}
+
+fn of_sensor(from: &Sensor, to: &Sensor) -> String {
+    let value = |sensor: &Sensor, parameter| sensor.get(parameter);
+    values(&SENSOR_PARAMETERS, |p| value(from, p), |p| value(to, p))
+}
+
+fn of_source(from: Option<&Source>, to: Option<&Source>) -> String {
+    match (from, to) {
+        (_, None) => String::new(),
+        (Some(from), Some(to)) if alike(from, to) => {
+            values(to.parameters(), |p| from.get(p), |p| to.get(p))
+        }
+        (_, Some(to)) => to.to_string(),
+    }
+}
+
+/// Whether two sources differ by their values only.
+fn alike(from: &Source, to: &Source) -> bool {
+    match (from, to) {
+        (Source::Figure(from), Source::Figure(to)) => from.kind() == to.kind(),
+        (Source::Picture(from), Source::Picture(to)) => from.imprint() == to.imprint(),
+        _ => false,
+    }
+}
+
+/// The parameters that differ, each as "label before → after".
+fn values(
+    parameters: &[Parameter],
+    from: impl Fn(Parameter) -> Option<f64>,
+    to: impl Fn(Parameter) -> Option<f64>,
+) -> String {
+    let text = |parameter: Parameter, value: Option<f64>| {
+        value.map_or("none".to_owned(), |value| parameter.format(value))
+    };
+    let changed = parameters.iter().filter(|&&p| from(p) != to(p));
+    let changed = changed.map(|&parameter| {
+        let (before, after) = (from(parameter), to(parameter));
+        let label = parameter.row().label;
+        format!(
+            "{label} {} → {}",
+            text(parameter, before),
+            text(parameter, after)
+        )
+    });
+    changed.collect::<Vec<_>>().join(", ")
+}
+
+fn of_edits(from: &Document, to: &Document) -> String {
+    let switched = from.edits.differing(&to.edits);
+    match (switched.count(), switched.active().next()) {
+        (0, _) | (_, None) => String::new(),
+        (1, Some((column, row))) => {
+            // Without a source an edited taxel is an active one.
+            let state = match (&to.source, to.edits.get(column, row)) {
+                (Some(_), _) => "switched",
+                (None, true) => "on",
+                (None, false) => "off",
+            };
+            format!("taxel {column}, {row} {state}")
+        }
+        (count, _) => format!("{} switched", counted(count.into(), "taxel")),
+    }
+}
