@@ -39,6 +39,8 @@ mod noise;
 
 mod peers;
 
+mod simulation;
+
 pub use answer::{Answer, AnswerState, Evidence};
 pub use evaluation::Evaluation;
 pub use given::{GivenDescriptors, GivenError, GivenTable, Rounding, ShapeDescriptor, greedy};
@@ -49,4 +51,5 @@ pub use noise::{Distances, Method, Noise, NoiseError, Scanner};
 pub use peers::{Peer, PeerEvaluation, PeerSettings};
 pub use pose_estimate::{AngleEstimate, PoseEstimate};
 pub use sets::{GridSteps, default_figures, equal_figures};
+pub use simulation::{MOST_TOUCHES, RecognitionRate, TouchesUntil};
 pub use training::{Training, TrainingError};

@@ -9,7 +9,7 @@
 //! Source: R. O. Duda, P. E. Hart and D. G. Stork, *Pattern Classification*, 2001, chapters 2 to 4.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
-use rand_core::{Rng, SeedableRng};
+use rand_core::SeedableRng;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
@@ -19,6 +19,7 @@ use crate::imprint::Imprint;
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::given::{GivenTable, ShapeDescriptor};
 use crate::recognition::model::{Model, share};
+use crate::recognition::simulation::Draw;
 
 /// A classifier that is not the best one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -464,25 +465,12 @@ struct Sample {
 impl Sample {
     fn new(model: &Model, settings: &PeerSettings) -> Self {
         let shapes = model.shapes().len();
-        // For each shape its keys, and the number of poses up to and with each.
-        let mut sums: Vec<Vec<(u64, usize)>> = vec![Vec::new(); shapes];
-        for key in 0..model.keys().len() {
-            for count in model.counts(key) {
-                let sums = &mut sums[usize::from(count.shape)];
-                let before = sums.last().map_or(0, |&(sum, _)| sum);
-                sums.push((before + count.poses, key));
-            }
-        }
         let mut random = Pcg64::seed_from_u64(settings.seed);
         let mut sample = Vec::new();
-        for (shape, sums) in sums.iter().enumerate() {
-            for _ in 0..settings.sample {
-                let pose = below(&mut random, model.poses());
-                let index = sums.partition_point(|&(sum, _)| sum <= pose);
-                if let Some(&(_, key)) = sums.get(index) {
-                    sample.push((key, shape));
-                }
-            }
+        for shape in 0..shapes {
+            let draw = Draw::new(model, shape, |_| 1);
+            let keys = (0..settings.sample).filter_map(|_| draw.key(&mut random));
+            sample.extend(keys.map(|key| (key, shape)));
         }
         // Touches with the same key stand side by side and are compared with once.
         sample.sort_unstable();
@@ -522,12 +510,6 @@ impl Sample {
         }
         scores
     }
-}
-
-/// A number from 0 to below `end`, each as likely as any other to within 2⁻⁶⁴.
-fn below(random: &mut Pcg64, end: u64) -> u64 {
-    let product = u128::from(random.next_u64()) * u128::from(end);
-    u64::try_from(product >> 64).expect("below `end`")
 }
 
 /// The most frequent imprints of each shape.

@@ -24,6 +24,9 @@ mod properties;
 #[cfg(feature = "recognition")]
 mod recognition;
 
+#[cfg(feature = "recognition")]
+mod noise;
+
 #[cfg(feature = "json")]
 mod reference;
 

@@ -9,7 +9,7 @@ use taxel::recognition::{
 };
 use taxel::sweep::Shard;
 
-fn sensor(side: u8) -> Sensor {
+pub(crate) fn sensor(side: u8) -> Sensor {
     let sensor = Sensor::default();
     [Parameter::Columns, Parameter::Rows]
         .into_iter()
@@ -19,7 +19,7 @@ fn sensor(side: u8) -> Sensor {
         .expect("in range")
 }
 
-fn ranges(x0: &str, y0: &str, angle: &str) -> Ranges {
+pub(crate) fn ranges(x0: &str, y0: &str, angle: &str) -> Ranges {
     Ranges::default()
         .with(Axis::X0, x0.parse().expect("a range"))
         .with(Axis::Y0, y0.parse().expect("a range"))
@@ -27,12 +27,12 @@ fn ranges(x0: &str, y0: &str, angle: &str) -> Ranges {
 }
 
 /// The grid of the published figures.
-fn published() -> Ranges {
+pub(crate) fn published() -> Ranges {
     ranges("10:10.99:0.01", "10:10.99:0.01", "0:359:1")
 }
 
 /// Seven figures of about 30 cells.
-fn s1() -> Vec<NamedShape> {
+pub(crate) fn s1() -> Vec<NamedShape> {
     let sensor = sensor(32);
     let shape = |name: &str, figure: taxel::figure::FigureBuilder| {
         NamedShape::new(name, figure.on(&sensor).expect("in range"))
@@ -49,7 +49,7 @@ fn s1() -> Vec<NamedShape> {
 }
 
 /// Four rectangles that are hard to tell apart.
-fn s4() -> Vec<NamedShape> {
+pub(crate) fn s4() -> Vec<NamedShape> {
     let sensor = sensor(32);
     let sides = [(6.0, 3.0), (6.0, 3.2), (6.2, 3.0), (4.2, 4.2)];
     let shape = |(width, height): (f64, f64)| {
@@ -59,7 +59,7 @@ fn s4() -> Vec<NamedShape> {
     sides.map(shape).to_vec()
 }
 
-fn train(shapes: Vec<NamedShape>, side: u8, ranges: Ranges) -> Model {
+pub(crate) fn train(shapes: Vec<NamedShape>, side: u8, ranges: Ranges) -> Model {
     let training = Training::new(shapes, sensor(side), Anchor::Corner, ranges).expect("a set");
     training.run().expect("no pose is cut off")
 }

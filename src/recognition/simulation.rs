@@ -1,0 +1,343 @@
+//! What cannot be counted is simulated: how often noisy touches are named right, and how many touches it takes.
+//!
+//! Touches are drawn with a seed, the same for one seed on every machine and for any number of threads, and every mean has
+//! its standard error.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg64;
+use rayon::prelude::*;
+
+use crate::imprint::Imprint;
+use crate::recognition::key::ImprintKey;
+use crate::recognition::model::{Model, share};
+use crate::recognition::noise::{Noise, Scanner};
+
+/// How often noisy touches are named right.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct RecognitionRate {
+    /// Touches that were drawn.
+    pub touches: u64,
+    /// Touches that were named right.
+    pub right: u64,
+    /// Touches that left an imprint that some shape leaves without noise, too.
+    pub held: u64,
+    /// The sum of the probabilities that the names were given.
+    claimed: f64,
+}
+
+impl RecognitionRate {
+    /// Returns the share of touches that were named right.
+    pub fn accuracy(&self) -> f64 {
+        share(self.right.into(), u128::from(self.touches.max(1)))
+    }
+
+    /// Returns the standard error of [`Self::accuracy`].
+    pub fn standard_error(&self) -> f64 {
+        let share = self.accuracy();
+        (share * (1.0 - share) / count(self.touches.max(1))).sqrt()
+    }
+
+    /// Returns the mean probability that the names were given: the accuracy, if the noise is as told.
+    pub fn claimed(&self) -> f64 {
+        self.claimed / count(self.touches.max(1))
+    }
+
+    /// Returns the share of touches whose imprint the model holds.
+    pub fn held_share(&self) -> f64 {
+        share(self.held.into(), u128::from(self.touches.max(1)))
+    }
+}
+
+/// How many touches of a shape it takes until it, or another one, is as probable as wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct TouchesUntil {
+    /// The mean, over the runs that reached it.
+    pub mean: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+    /// Runs that reached it within [`MOST_TOUCHES`].
+    pub reached: u64,
+    /// Runs in all.
+    pub runs: u64,
+    /// Runs that ended with the right shape.
+    pub right: u64,
+}
+
+/// A run that takes more touches is given up: shapes that leave the same imprints are never told apart.
+pub const MOST_TOUCHES: u32 = 10_000;
+
+/// A generator for one of many tasks, so that no task waits for another.
+fn generator(seed: u64, task: u64) -> Pcg64 {
+    Pcg64::seed_from_u64(seed ^ task.wrapping_mul(0x9e37_79b9_7f4a_7c15))
+}
+
+/// A number from 0 to below `end`, each as likely as any other to within 2⁻⁶⁴.
+pub(super) fn below(random: &mut Pcg64, end: u64) -> u64 {
+    let product = u128::from(random.next_u64()) * u128::from(end);
+    u64::try_from(product >> 64).expect("below `end`")
+}
+
+/// A number from 0 to below 1, in steps of 2⁻⁵³.
+fn unit(random: &mut Pcg64) -> f64 {
+    count(random.next_u64() >> 11) / count(1 << 53)
+}
+
+/// A count as a number to compute with.
+#[expect(clippy::cast_precision_loss, reason = "a mean has no more digits")]
+fn count(count: u64) -> f64 {
+    count as f64
+}
+
+/// Draws touches of one shape.
+pub(super) struct Draw {
+    /// Up to and with each key: how many touches, and the number of the key.
+    sums: Vec<(u64, usize)>,
+}
+
+impl Draw {
+    /// Touches of a shape, each key as often as `times` says.
+    pub(super) fn new(model: &Model, shape: usize, times: impl Fn(usize) -> u64) -> Self {
+        let (mut sums, mut sum) = (Vec::new(), 0);
+        for key in 0..model.keys().len() {
+            let own = model.counts(key).iter();
+            for count in own.filter(|count| usize::from(count.shape) == shape) {
+                sum += count.poses * times(key);
+                sums.push((sum, key));
+            }
+        }
+        Self { sums }
+    }
+
+    /// Draws the number of a key; None if there is no touch.
+    pub(super) fn key(&self, random: &mut Pcg64) -> Option<usize> {
+        let &(end, _) = self.sums.last().filter(|(sum, _)| *sum > 0)?;
+        let touch = below(random, end);
+        let index = self.sums.partition_point(|&(sum, _)| sum <= touch);
+        self.sums.get(index).map(|&(_, key)| key)
+    }
+}
+
+impl Model {
+    /// Draws touches of each shape on a matrix of that many columns and rows, flips taxels as `noise` says, names the
+    /// shape as `told` says, and counts. Dead taxels of `noise` always read as inactive; those of `told` are left out.
+    ///
+    /// `per_shape` touches are drawn of each shape. `progress` is called with the number of touches done since the last
+    /// call, and stops it by returning `false`; then there is no result.
+    pub fn recognition_rate(
+        &self,
+        (columns, rows): (u8, u8),
+        noise: &Noise,
+        told: &Noise,
+        per_shape: u64,
+        seed: u64,
+        progress: &(dyn Fn(u64) -> bool + Sync),
+    ) -> Option<RecognitionRate> {
+        const CHUNK: u64 = 50;
+        let scanner = Scanner::new(self, columns, rows);
+        let places = |key: usize| {
+            let key = self.keys().get(key);
+            let fits =
+                |side: u8, of: u8| u64::from(of.checked_sub(side).map_or(0, |rest| rest + 1));
+            fits(key.width, columns) * fits(key.height, rows)
+        };
+        let draws: Vec<Draw> = (0..self.shapes().len())
+            .map(|shape| Draw::new(self, shape, places))
+            .collect();
+        let chunks = per_shape.div_ceil(CHUNK);
+        let tasks = (0..draws.len()).flat_map(|shape| (0..chunks).map(move |chunk| (shape, chunk)));
+        let stopped = AtomicBool::new(false);
+        let rates: Vec<RecognitionRate> = tasks
+            .collect::<Vec<_>>()
+            .into_par_iter()
+            .map(|(shape, chunk)| {
+                let number = crate::index::index(chunk) * draws.len() + shape;
+                let mut random = generator(seed, number as u64);
+                let mut rate = RecognitionRate {
+                    touches: 0,
+                    right: 0,
+                    held: 0,
+                    claimed: 0.0,
+                };
+                for _ in 0..CHUNK.min(per_shape - chunk * CHUNK) {
+                    if stopped.load(Ordering::Relaxed) {
+                        break;
+                    }
+                    let Some(key) = draws[shape].key(&mut random) else {
+                        break;
+                    };
+                    let touch = self.touch_of(key, (columns, rows), noise, &mut random);
+                    rate.add(self, &scanner, told, shape, &touch);
+                    if !progress(1) {
+                        stopped.store(true, Ordering::Relaxed);
+                    }
+                }
+                rate
+            })
+            .collect();
+        let sum = rates.into_iter().reduce(|one, other| RecognitionRate {
+            touches: one.touches + other.touches,
+            right: one.right + other.right,
+            held: one.held + other.held,
+            claimed: one.claimed + other.claimed,
+        });
+        sum.filter(|_| !stopped.into_inner())
+    }
+
+    /// A key in a random place, with random flips.
+    fn touch_of(
+        &self,
+        key: usize,
+        (columns, rows): (u8, u8),
+        noise: &Noise,
+        random: &mut Pcg64,
+    ) -> Imprint {
+        let key = self.keys().get(key);
+        let mut touch = Imprint::empty(columns, rows);
+        let column = below(random, u64::from(columns - key.width) + 1);
+        let row = crate::index::index(below(random, u64::from(rows - key.height) + 1));
+        for (index, word) in key.rows().enumerate() {
+            touch.set_word(row + index, word << column);
+        }
+        if noise.flip() > 0.0 {
+            for row in 0..rows {
+                for column in 0..columns {
+                    if unit(random) < noise.flip() {
+                        touch.toggle(column, row);
+                    }
+                }
+            }
+        }
+        if let Some(dead) = noise.dead() {
+            for (column, row) in dead.active() {
+                touch.set(column, row, false);
+            }
+        }
+        touch
+    }
+
+    /// Draws touches of each shape until some shape is as probable as `until`, `runs` times, and gives the number of touches
+    /// for each shape, in the order of the set. None if `progress` stopped it.
+    pub fn touches_until(
+        &self,
+        until: f64,
+        runs: u64,
+        seed: u64,
+        progress: &(dyn Fn(u64) -> bool + Sync),
+    ) -> Option<Vec<TouchesUntil>> {
+        let stopped = AtomicBool::new(false);
+        let shapes = 0..self.shapes().len();
+        let results: Vec<TouchesUntil> = shapes
+            .map(|shape| {
+                let draw = Draw::new(self, shape, |_| 1);
+                let lengths: Vec<Option<(u32, bool)>> = (0..runs)
+                    .into_par_iter()
+                    .map(|run| {
+                        if stopped.load(Ordering::Relaxed) {
+                            return None;
+                        }
+                        let mut random =
+                            generator(seed, run * self.shapes().len() as u64 + shape as u64);
+                        let length = self.run_until(until, &draw, shape, &mut random);
+                        if !progress(1) {
+                            stopped.store(true, Ordering::Relaxed);
+                        }
+                        length
+                    })
+                    .collect();
+                summary(runs, &lengths)
+            })
+            .collect();
+        (!stopped.into_inner()).then_some(results)
+    }
+
+    /// The number of touches of one run, and whether it ended with the right shape. None if it was given up.
+    fn run_until(
+        &self,
+        until: f64,
+        draw: &Draw,
+        shape: usize,
+        random: &mut Pcg64,
+    ) -> Option<(u32, bool)> {
+        // ln(w Π n), −∞ of shapes that do not leave one of the keys.
+        let weights = self
+            .shapes()
+            .iter()
+            .map(|shape| f64::from(shape.weight).ln());
+        let mut logarithms: Vec<f64> = weights.collect();
+        for touches in 1..=MOST_TOUCHES {
+            let counts = self.counts(draw.key(random)?);
+            let mut own = counts.iter().peekable();
+            for (index, logarithm) in logarithms.iter_mut().enumerate() {
+                match own.next_if(|count| usize::from(count.shape) == index) {
+                    Some(found) => *logarithm += count(found.poses).ln(),
+                    None => *logarithm = f64::NEG_INFINITY,
+                }
+            }
+            let (best, most) = logarithms
+                .iter()
+                .copied()
+                .enumerate()
+                .max_by(|(_, one), (_, other)| one.total_cmp(other))?;
+            let sum: f64 = logarithms.iter().map(|own| (own - most).exp()).sum();
+            if 1.0 / sum >= until {
+                return Some((touches, best == shape));
+            }
+        }
+        None
+    }
+}
+
+impl RecognitionRate {
+    /// Names one touch.
+    fn add(
+        &mut self,
+        model: &Model,
+        scanner: &Scanner<'_>,
+        told: &Noise,
+        shape: usize,
+        touch: &Imprint,
+    ) {
+        self.touches += 1;
+        self.held += u64::from(model.keys().find(&ImprintKey::of(touch)).is_some());
+        let Some(posterior) = scanner.posterior(touch, told) else {
+            return;
+        };
+        // The first of equals, as everywhere.
+        let best = posterior
+            .iter()
+            .enumerate()
+            .rev()
+            .max_by(|one, other| one.1.total_cmp(other.1));
+        if let Some((named, &probability)) = best {
+            self.right += u64::from(named == shape);
+            self.claimed += probability;
+        }
+    }
+}
+
+/// Mean and standard error of runs.
+fn summary(runs: u64, lengths: &[Option<(u32, bool)>]) -> TouchesUntil {
+    let own: Vec<f64> = lengths
+        .iter()
+        .flatten()
+        .map(|(length, _)| f64::from(*length))
+        .collect();
+    let reached = own.len() as u64;
+    let mean = own.iter().sum::<f64>() / count(reached.max(1));
+    let squares: f64 = own
+        .iter()
+        .map(|length| (length - mean) * (length - mean))
+        .sum();
+    let variance = squares / count(reached.saturating_sub(1).max(1));
+    TouchesUntil {
+        mean,
+        standard_error: (variance / count(reached.max(1))).sqrt(),
+        reached,
+        runs,
+        right: lengths.iter().flatten().filter(|(_, right)| *right).count() as u64,
+    }
+}

@@ -1,0 +1,247 @@
+//! Recognition where taxels fail: against the sum over all flips, independent figures, and its own calibration.
+
+use std::path::PathBuf;
+
+use serde_json::Value;
+use taxel::prelude::*;
+use taxel::recognition::{Method, Model, NamedShape, Noise, Scanner};
+
+use crate::recognition::{published, ranges, s1, s4, sensor, train};
+
+/// Shapes that fit a matrix of 5 × 5, with few keys.
+fn tiny() -> Model {
+    let sensor = sensor(16);
+    let bar = Figure::rectangle(2.0, 1.0).on(&sensor).expect("in range");
+    let square = Figure::rectangle(1.6, 1.6).on(&sensor).expect("in range");
+    let shapes = vec![
+        NamedShape::new("bar", bar),
+        NamedShape::new("square", square).weighted(2),
+    ];
+    train(shapes, 16, ranges("5:5.8:0.2", "5:5.8:0.2", "0:330:30"))
+}
+
+/// The probability of an imprint for each shape, from the definition: over all keys and their places.
+fn by_definition(model: &Model, imprint: &Imprint, flip: f64, dead: &Imprint) -> Vec<f64> {
+    let shapes = model.shapes().len();
+    let (mut sums, mut totals) = (vec![0.0; shapes], vec![0.0; shapes]);
+    for key in 0..model.keys().len() {
+        let own = model.keys().imprint(key).expect("none is empty");
+        if own.columns() > imprint.columns() || own.rows() > imprint.rows() {
+            continue;
+        }
+        for down in 0..=usize::from(imprint.rows() - own.rows()) {
+            for across in 0..=imprint.columns() - own.columns() {
+                let mut moved = Imprint::empty(imprint.columns(), imprint.rows());
+                for (row, &word) in own.words().iter().enumerate() {
+                    moved.set_word(row + down, word << across);
+                }
+                let cells = (0..imprint.rows())
+                    .flat_map(|row| (0..imprint.columns()).map(move |column| (column, row)));
+                let living = cells.filter(|&(column, row)| !dead.get(column, row));
+                let probability: f64 = living
+                    .map(|(column, row)| {
+                        let same = moved.get(column, row) == imprint.get(column, row);
+                        if same { 1.0 - flip } else { flip }
+                    })
+                    .product();
+                for count in model.counts(key) {
+                    sums[usize::from(count.shape)] += count.poses as f64 * probability;
+                    totals[usize::from(count.shape)] += count.poses as f64;
+                }
+            }
+        }
+    }
+    let weights = model.shapes().iter().map(|shape| f64::from(shape.weight));
+    let likelihoods: Vec<f64> = sums
+        .iter()
+        .zip(&totals)
+        .zip(weights)
+        .map(|((sum, total), weight)| weight * sum / total)
+        .collect();
+    let all: f64 = likelihoods.iter().sum();
+    likelihoods.into_iter().map(|own| own / all).collect()
+}
+
+/// Some hundred imprints of 5 × 5, few and many taxels.
+fn imprints() -> impl Iterator<Item = Imprint> {
+    (0_u64..200).map(|seed| {
+        let mut imprint = Imprint::empty(5, 5);
+        let bits = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 20;
+        let thinned = if seed % 2 == 0 {
+            bits & bits >> 7
+        } else {
+            bits
+        };
+        for row in 0..5 {
+            imprint.set_word(row, thinned >> (5 * row));
+        }
+        imprint
+    })
+}
+
+#[test]
+fn posteriors_are_those_of_the_definition() {
+    let model = tiny();
+    let scanner = Scanner::new(&model, 5, 5);
+    let mut dead = Imprint::empty(5, 5);
+    dead.set(2, 2, true);
+    dead.set(0, 4, true);
+    for flip in [1e-11, 1e-6, 0.001, 0.01, 0.2, 0.45] {
+        let noise = Noise::new(flip).expect("in range");
+        for imprint in imprints() {
+            for (noise, dead) in [(noise, Imprint::empty(5, 5)), (noise.without(dead), dead)] {
+                let expected = by_definition(&model, &imprint, flip, &dead);
+                let found = scanner.posterior(&imprint, &noise).expect("keys fit");
+                for (found, expected) in found.iter().zip(&expected) {
+                    assert!(
+                        (found - expected).abs() < 2e-9,
+                        "{flip}: {found} {expected}\n{imprint}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn probabilities_of_all_imprints_sum_up_to_one() {
+    // On 3 × 3: Σ over all 512 imprints of P(imprint | s) is 1 if the likelihoods are what they say.
+    let model = tiny();
+    let scanner = Scanner::new(&model, 3, 3);
+    let noise = Noise::new(0.2).expect("in range");
+    let mut mean = [0.0; 2];
+    for bits in 0_u64..512 {
+        let mut imprint = Imprint::empty(3, 3);
+        for row in 0..3 {
+            imprint.set_word(row, bits >> (3 * row));
+        }
+        let posterior = scanner.posterior(&imprint, &noise).expect("keys fit");
+        let expected = by_definition(&model, &imprint, 0.2, &Imprint::empty(3, 3));
+        for shape in 0..2 {
+            assert!((posterior[shape] - expected[shape]).abs() < 2e-9);
+            mean[shape] += posterior[shape];
+        }
+    }
+    assert!((mean[0] + mean[1] - 512.0).abs() < 1e-6);
+}
+
+#[test]
+fn small_noise_is_looked_up_and_larger_noise_scanned() {
+    let model = tiny();
+    let scanner = Scanner::new(&model, 5, 5);
+    let touch: Imprint = ".....\n.##..\n.....\n.....\n....."
+        .parse()
+        .expect("an imprint");
+    let noise = |flip| Noise::new(flip).expect("in range");
+    let method = |flip| {
+        scanner
+            .distances(&touch, &noise(flip))
+            .expect("keys fit")
+            .method
+    };
+    assert_eq!(method(0.0), Method::Exact);
+    assert_eq!(method(1e-11), Method::OneFlip);
+    assert_eq!(method(0.01), Method::Scan);
+    let nothing: Imprint = "#...#\n.....\n.....\n.....\n#...#"
+        .parse()
+        .expect("an imprint");
+    assert_eq!(scanner.posterior(&nothing, &noise(0.0)), None);
+    assert!(scanner.posterior(&nothing, &noise(0.01)).is_some());
+    for wrong in [-0.1, 0.5, 1.0, f64::NAN, f64::INFINITY] {
+        assert!(Noise::new(wrong).is_err(), "{wrong}");
+    }
+}
+
+#[test]
+fn answers_do_not_depend_on_threads() {
+    let model = train(s4(), 32, ranges("10:10.9:0.1", "10:10.9:0.1", "0:350:10"));
+    let scanner = Scanner::new(&model, 16, 16);
+    let mut touch = Imprint::empty(16, 16);
+    for row in 3..7 {
+        touch.set_word(row, 0b1111_1000);
+    }
+    touch.toggle(12, 12);
+    let noise = Noise::new(0.03).expect("in range");
+    let with = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.expect("threads")
+            .install(|| scanner.distances(&touch, &noise))
+    };
+    assert_eq!(with(1), with(2));
+    assert!(with(1).is_some());
+}
+
+#[test]
+fn independent_posteriors_agree() {
+    let path = std::env::var_os("TAXEL_REFERENCE_NOISE").map_or_else(
+        || {
+            PathBuf::from(concat!(
+                env!("CARGO_MANIFEST_DIR"),
+                "/../shared/reference/noise.jsonl"
+            ))
+        },
+        PathBuf::from,
+    );
+    let Ok(text) = std::fs::read_to_string(&path) else {
+        eprintln!("SKIPPED: no reference posteriors at {}", path.display());
+        return;
+    };
+    let model = train(s4(), 32, published());
+    let scanner = Scanner::new(&model, 16, 16);
+    assert!(text.lines().count() >= 7, "the file is cut short");
+    for line in text.lines() {
+        let case: Value = serde_json::from_str(line).expect("a line of JSON");
+        let rows = case["imprint"].as_array().expect("rows");
+        let rows = rows.iter().map(|row| row.as_str().expect("a row"));
+        let imprint = Imprint::from_rows(rows).expect("an imprint");
+        let noise = Noise::new(case["noise"].as_f64().expect("a number")).expect("in range");
+        let posterior = scanner.posterior(&imprint, &noise).expect("keys fit");
+        for (shape, found) in model.shapes().iter().zip(posterior) {
+            let expected = case["posterior"][&shape.name].as_f64().expect("a number");
+            assert!(
+                (found - expected).abs() < 1e-6,
+                "{}: {found} {expected}",
+                shape.name
+            );
+        }
+    }
+}
+
+#[test]
+fn names_are_right_as_often_as_published_and_as_claimed() {
+    // S1 at one flipped taxel in a hundred on 16 × 16: 0.654, from 7,000 touches.
+    let model = train(s1(), 32, published());
+    let noise = Noise::new(0.01).expect("in range");
+    let rate = model.recognition_rate((16, 16), &noise, &noise, 1000, 7, &|_| true);
+    let rate = rate.expect("not stopped");
+    let apart = |found: f64, expected: f64, error: f64| (found - expected).abs() / error;
+    println!("{rate:?}");
+    let error = rate
+        .standard_error()
+        .hypot((0.654_f64 * 0.346 / 7000.0).sqrt());
+    assert!(
+        apart(rate.accuracy(), 0.654, error) < 3.0,
+        "{}",
+        rate.accuracy()
+    );
+    // What it claims on average is what it reaches.
+    assert!(apart(rate.claimed(), rate.accuracy(), rate.standard_error()) < 3.0);
+}
+
+#[test]
+fn touches_until_certain_are_as_published() {
+    // Expected number of touches until one shape has a posterior of 0.99: 6.68 for S1, 4.96 for S4.
+    for (set, expected) in [(s1(), 6.68), (s4(), 4.96)] {
+        let model = train(set, 32, published());
+        let touches = model
+            .touches_until(0.99, 4000, 3, &|_| true)
+            .expect("not stopped");
+        let mean = touches.iter().map(|own| own.mean).sum::<f64>() / touches.len() as f64;
+        println!("{mean} {expected}");
+        assert!(
+            (mean / expected - 1.0).abs() < 0.02,
+            "{mean}, expected {expected}"
+        );
+        assert!(touches.iter().all(|own| own.reached == 4000));
+    }
+}
