@@ -8,6 +8,7 @@ use std::io;
 use crate::cli::input::content::InputError;
 use crate::cli::output::charset::Charset;
 use crate::formats::ArchiveError;
+use crate::formats::recording::RecordingError;
 use crate::pose::GridError;
 use crate::quote::legible;
 use crate::recognition::TrainingError;
@@ -150,6 +151,22 @@ pub(crate) enum CliError {
     /// The ranges do not make a grid for the shape.
     #[error(transparent)]
     Grid(#[from] GridError),
+    /// A recording is damaged, or no recording.
+    #[error("{name}: {}", legible(&.error.to_string()))]
+    Recording {
+        /// Its name.
+        name: String,
+        /// What is wrong with it, and where.
+        error: RecordingError,
+    },
+    /// A recording does not have what is asked for.
+    #[error("{name}: {}", legible(.message))]
+    Frames {
+        /// Its name.
+        name: String,
+        /// What is wrong, and what would be right.
+        message: String,
+    },
     /// An atlas cannot be read.
     #[error("{name}: {error}")]
     Atlas {

@@ -39,16 +39,17 @@ pub mod settings;
 mod commands;
 
 use std::ffi::OsString;
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 
 use arguments::definitions;
 use arguments::recognition::ModelRequest;
 use arguments::request::{self, Asked, Chore, Request, Swept};
 use commands::export::Exported;
+use commands::frames::FramesOutput;
 use commands::touch::Touched;
 use commands::{
-    batch, completions, describe, export, library, man, model, recognise, screen, script, sweep,
-    touch,
+    batch, completions, describe, export, frames, library, man, model, recognise, screen, script,
+    sweep, touch,
 };
 use error::CliError;
 use input::shapes::Shelf;
@@ -135,6 +136,20 @@ fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, Cli
         Request::Model(request) => run_model(request, &shelf, charset)?,
         Request::Recognise(asked) => {
             return recognise::recognise(&asked, &shelf, charset, &mut io::stdout().lock());
+        }
+        Request::Frames(asked, form, kept) => {
+            let mut answers = BufWriter::new(io::stdout().lock());
+            let output = FramesOutput {
+                form,
+                kept,
+                shelf: &shelf,
+                charset,
+                answers: &mut answers,
+                notes: &mut |text| note(text, charset),
+            };
+            let done = frames::frames(&asked, output);
+            answers.flush().map_err(CliError::Write)?;
+            done?;
         }
         Request::Library(chore) => self::chore(chore, &shelf, charset)?,
     }

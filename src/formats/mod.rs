@@ -40,6 +40,9 @@ pub mod imprint_file;
 #[cfg(feature = "frames")]
 pub mod recording;
 
+#[cfg(feature = "frames")]
+pub mod stream;
+
 pub(crate) mod xml;
 
 mod drawing;

@@ -13,6 +13,8 @@ mod export;
 
 mod foreign;
 
+mod frames;
+
 mod batch;
 
 mod library;

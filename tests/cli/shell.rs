@@ -9,7 +9,7 @@ use super::program;
 use super::taxel;
 
 /// Every command that has a help.
-const COMMANDS: [&str; 20] = [
+const COMMANDS: [&str; 21] = [
     "",
     "figure",
     "picture",
@@ -18,6 +18,7 @@ const COMMANDS: [&str; 20] = [
     "batch",
     "sweep",
     "merge",
+    "frames",
     "library",
     "library list",
     "library show",
@@ -55,10 +56,20 @@ fn help(command: &str) -> String {
 fn every_command_is_in_the_list_of_this_test() {
     for command in COMMANDS {
         let help = help(command);
-        let Some((_, below)) = help.split_once("\nCommands:\n") else {
+        let commands = match command {
+            // The program's own are in groups.
+            "" => help
+                .split_once("\nTouch:\n")
+                .and_then(|(_, below)| below.split_once("\nOptions:")),
+            _ => help
+                .split_once("\nCommands:\n")
+                .and_then(|(_, below)| below.split_once("\n\n")),
+        };
+        let Some((commands, _)) = commands else {
+            assert_ne!(command, "", "the program has commands: {help}");
             continue;
         };
-        for line in below.lines().take_while(|line| !line.is_empty()) {
+        for line in commands.lines().filter(|line| line.starts_with("  ")) {
             let name = line.split_whitespace().next().expect("a name");
             let path = format!("{command} {name}");
             assert!(
@@ -99,6 +110,18 @@ fn furnished(folder: &Path) {
     write("imprint.txt", ".##.\n#..#\n.##.\n");
     write("washer.json", super::describe::SHAPE);
     write("poses.jsonl", "{\"imprint\":[\"##\",\"#.\"]}\n");
+    for (name, text) in [
+        (
+            "recording.csv",
+            include_str!("../files/frames/samples/tekscan.asf"),
+        ),
+        (
+            "plain.csv",
+            include_str!("../files/frames/samples/plain.csv"),
+        ),
+    ] {
+        write(name, text);
+    }
     write("test.taxel", "Keys f<Enter>\nExpect /ellipse/\n");
     for folder_of in [
         "shapes",

@@ -1,5 +1,8 @@
 //! What is written and read: files of other programs, drawings, the stored shapes, and hostile bytes.
 
+#[path = "../common/mod.rs"]
+mod common;
+
 mod drawing;
 
 mod exchange;

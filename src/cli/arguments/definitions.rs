@@ -15,6 +15,7 @@ use crate::cli::arguments::flags::{
     anchor, force, jobs, json, name, of_sensor, parse_name, quiet, range, replace, sensor,
     sensor_of_imprints, shard, what,
 };
+use crate::cli::arguments::frames;
 use crate::cli::arguments::help::{
     ABOUT, BATCH_EXAMPLES, CHECK_EXAMPLES, DELETE_EXAMPLES, DESCRIBE_EXAMPLES, EXAMPLES,
     EXPORT_EXAMPLES, FIGURE_EXAMPLES, LIBRARY_EXAMPLES, LIST_EXAMPLES, MERGE_EXAMPLES,
@@ -53,6 +54,7 @@ pub(crate) fn all() -> Command {
         .subcommand(merge())
         .subcommand(recognition::model())
         .subcommand(recognition::recognise())
+        .subcommand(frames())
         .subcommand(library())
         .subcommand(script())
         .subcommand(config().args(sensor()))
@@ -241,6 +243,23 @@ fn parse_poses(text: &str) -> Result<PathBuf, &'static str> {
     let fits = is_poses(&path);
     fits.then_some(path)
         .ok_or("expected a name that ends in .npy")
+}
+
+/// `taxel frames FILE`.
+fn frames() -> Command {
+    let keeping = keeping().map(|arg| match arg.get_id().as_str() {
+        "save" => arg.requires("choice").conflicts_with("all"),
+        "export" => arg.requires("choice").help(parameters::wrapped(
+            "Write the imprint, or a drawing of it, with the frame's number in the name",
+            52,
+        )),
+        _ => arg,
+    });
+    frames::command()
+        .args(of_sensor(&[Parameter::Pitch]))
+        .args(keeping)
+        .group(kept())
+        .args([json().conflicts_with("heat"), frames::heat()])
 }
 
 /// `taxel library` with its own subcommands.

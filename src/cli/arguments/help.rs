@@ -350,3 +350,21 @@ where a shape is broken.
 Examples:
   taxel library check
   taxel library check --library ./shapes";
+
+pub(crate) const FRAMES_EXAMPLES: &str = "\
+A recording is a file of Tekscan, XSENSOR, emed or zebris, PoPu, MCAP, NPY, NPZ,
+JSON lines, what 'ros2 topic echo' prints, or a table of numbers; its content
+tells which. Without a choice of frames its channels are listed. Frames are
+cropped, flipped, turned and masked, then tared, then multiplied by the gain;
+then the threshold makes the imprint. Values are in the recording's own unit.
+
+Whole frames before a damage are answered, then the damage is reported with its
+place, and the exit status is 1.
+
+Examples:
+  taxel frames recording.csv
+  taxel frames recording.csv --peak --at-least 10
+  taxel frames recording.csv --all --percent 25 --tare 2 --json
+  taxel frames recording.csv --frame 2 --low 5 --high 20 --heat --ascii
+  taxel frames recording.csv --peak --at-least 10 --heat --export touch.svg
+  taxel frames plain.csv --rows 4 --columns 5 --crop 1,0,3x3 --json";

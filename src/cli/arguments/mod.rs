@@ -20,6 +20,10 @@ pub(super) mod program;
 
 pub(super) mod flags;
 
+pub(super) mod frames;
+
+pub(super) mod groups;
+
 pub(super) mod definitions;
 
 pub(super) mod request;

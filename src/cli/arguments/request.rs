@@ -11,6 +11,8 @@ use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 
 use crate::cli::arguments::definitions;
+use crate::cli::arguments::frames::FramesArguments;
+use crate::cli::arguments::groups;
 use crate::cli::arguments::parameters;
 use crate::cli::arguments::parameters::Given;
 use crate::cli::arguments::program::Script;
@@ -68,6 +70,8 @@ pub(crate) enum Request {
     Model(ModelRequest),
     /// Name the shape that left an imprint.
     Recognise(RecogniseArguments),
+    /// List a recording, or describe its frames.
+    Frames(Box<FramesArguments>, Form, Kept),
     /// A subcommand of `taxel library`.
     Library(Chore),
     /// Print the settings.
@@ -155,7 +159,7 @@ pub(crate) enum Form {
 /// [`CliError::Usage`] with clap's message; [`CliError::Settings`] for the settings file; [`CliError::Range`] for
 /// values out of range.
 pub(crate) fn read(arguments: Vec<OsString>) -> Result<Asked, CliError> {
-    let mut command = definitions::all();
+    let mut command = groups::grouped(definitions::all());
     let matches = match command.try_get_matches_from_mut(arguments) {
         Ok(matches) => matches,
         Err(error) if error.use_stderr() => return Err(error.into()),
@@ -241,6 +245,12 @@ fn request(
             let to = required::<PathBuf>(own, "to")?;
             let export = export(own, &to, command, "export")?;
             Request::Export(what(own)?, export, pitch)
+        }
+        "frames" => {
+            let file = required::<PathBuf>(own, "file")?;
+            let kept = kept(own, command, "frames")?;
+            let asked = FramesArguments::of(own, file)?;
+            Request::Frames(Box::new(asked), form(own, settings)?, kept)
         }
         "library" => Request::Library(chore(own, settings)?),
         "script" => Request::Script(Script::of(own)),

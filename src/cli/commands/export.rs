@@ -12,6 +12,7 @@ use crate::cli::input::shapes::Shelf;
 use crate::cli::settings::pitch::Pitch;
 use crate::formats::{Drawing, ImprintFormat};
 use crate::imprint::Imprint;
+use crate::matrix::Matrix;
 use crate::source::Source;
 use crate::storage::{Existing, FileError, FinishedFile, UnfinishedFile};
 
@@ -93,6 +94,40 @@ impl Export {
         })
     }
 
+    /// The same file with the number of a frame at the end of its name, before the ending.
+    pub(crate) fn numbered(&self, number: u64) -> Self {
+        let path = self.path.as_ref().map(|path| {
+            let mut name = path.file_stem().unwrap_or_default().to_owned();
+            name.push(format!("-{number}"));
+            if let Some(ending) = path.extension() {
+                name.push(".");
+                name.push(ending);
+            }
+            path.with_file_name(name)
+        });
+        Self { path, ..*self }
+    }
+
+    /// As [`Self::begin`], of a frame: a drawing shows its values in shades, if they are given.
+    pub(crate) fn begin_frame(
+        &self,
+        imprint: &Imprint,
+        heat: Option<&Matrix<f64>>,
+        title: &str,
+        pitch: Option<f64>,
+    ) -> Result<Begun, CliError> {
+        self.begin_with(imprint, || {
+            let mut drawing = Drawing::new(imprint).with_title(title);
+            if let Some(values) = heat {
+                drawing = drawing.with_heat(values);
+            }
+            match pitch {
+                Some(pitch) => drawing.with_pitch(pitch),
+                None => drawing,
+            }
+        })
+    }
+
     /// Writes the file completely, but does not give it its name yet.
     ///
     /// A drawing shows the outline of `source` if there is one, has `title` above it, and axes in mm with a `pitch`.
@@ -103,7 +138,7 @@ impl Export {
         title: &str,
         pitch: Option<f64>,
     ) -> Result<Begun, CliError> {
-        let draw = || {
+        self.begin_with(imprint, || {
             let mut drawing = Drawing::new(imprint);
             if let Some(source) = source {
                 drawing = drawing.with_outline(source);
@@ -116,7 +151,10 @@ impl Export {
                 (None, Some(pitch)) => drawing.with_pitch(pitch).with_title(title),
                 (_, None) => drawing.with_title(title),
             }
-        };
+        })
+    }
+
+    fn begin_with(&self, imprint: &Imprint, draw: impl Fn() -> Drawing) -> Result<Begun, CliError> {
         let content = match self.format {
             Format::Imprint(format) => format.write(imprint),
             Format::Svg => draw().svg().into_bytes(),

@@ -20,6 +20,8 @@ pub(super) mod model;
 
 pub(super) mod recognise;
 
+pub(super) mod frames;
+
 pub(super) mod screen;
 
 pub(super) mod script;

@@ -7,4 +7,6 @@ pub(super) mod content;
 
 pub(super) mod lines;
 
+pub(super) mod recording;
+
 pub(super) mod shapes;

@@ -6,6 +6,10 @@ pub(super) mod charset;
 
 pub(super) mod report;
 
+pub(super) mod heat_map;
+
+pub(super) mod recording_list;
+
 pub(super) mod sweep_summary;
 
 pub(super) mod progress;

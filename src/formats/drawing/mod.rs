@@ -18,6 +18,8 @@ mod scene;
 
 mod axis;
 
+mod heat;
+
 mod page;
 
 mod outline;
@@ -36,6 +38,7 @@ mod png;
 use crate::description::{Description, Region, main_region, regions};
 use crate::geometry::Solid;
 use crate::imprint::Imprint;
+use crate::matrix::Matrix;
 use crate::parameter::Parameter;
 use crate::sensor::Sensor;
 use page::{DrawingPage, Subject};
@@ -57,6 +60,7 @@ pub struct Drawing {
     outline: Vec<Segment>,
     pitch_mm: Option<f64>,
     title: Option<String>,
+    heat: Option<Matrix<f64>>,
 }
 
 impl Drawing {
@@ -70,6 +74,7 @@ impl Drawing {
             outline: Vec::new(),
             pitch_mm: None,
             title: None,
+            heat: None,
         }
     }
 
@@ -89,6 +94,17 @@ impl Drawing {
             && mm >= LEAST_PITCH
         {
             self.pitch_mm = Some(mm);
+        }
+        self
+    }
+
+    /// With the values of all cells in shades, white for 0 and less, black for the largest, and a bold edge around active
+    /// taxels. A value that is NaN has no cell. Unchanged by values of another size.
+    #[must_use]
+    pub fn with_heat(mut self, values: &Matrix<f64>) -> Self {
+        let size = (values.columns(), values.rows());
+        if size == (self.imprint.columns(), self.imprint.rows()) {
+            self.heat = Some(values.clone());
         }
         self
     }
@@ -132,6 +148,7 @@ impl Drawing {
             outline: &self.outline,
             pitch_mm: self.pitch_mm,
             title: self.title.as_deref(),
+            heat: self.heat.as_ref(),
         })
     }
 }

@@ -2,11 +2,13 @@
 
 use crate::description::{Description, RegionKind, Value};
 use crate::formats::drawing::axis::Ticks;
+use crate::formats::drawing::heat;
 use crate::formats::drawing::scene::{
     Element, Position, Segment, Stroke, TextAnchor, circle, rectangle,
 };
 use crate::formats::value;
 use crate::imprint::Imprint;
+use crate::matrix::Matrix;
 
 /// The size of all text, in points.
 pub(super) const TEXT: f64 = 8.0;
@@ -36,6 +38,8 @@ const HATCH: Stroke = Stroke {
     dash: None,
 };
 const OUTLINE: Stroke = Stroke::black(1.3);
+/// Around active taxels where shades tell values.
+const EDGE: Stroke = Stroke::black(2.0);
 const RECTANGLE: Stroke = Stroke {
     width: 0.9,
     grey: 0,
@@ -52,6 +56,8 @@ pub(super) struct Subject<'a> {
     pub(super) outline: &'a [Segment],
     pub(super) pitch_mm: Option<f64>,
     pub(super) title: Option<&'a str>,
+    /// The values of all cells.
+    pub(super) heat: Option<&'a Matrix<f64>>,
 }
 
 /// A page: its size in points, where the plane is on it, and what it shows.
@@ -100,6 +106,7 @@ impl DrawingPage {
             layout.text(title, (corner.0, MARGIN + TEXT), TextAnchor::Start);
         }
         layout.taxels();
+        layout.cells();
         layout.axes(&across, &along, plane);
         layout.outline();
         layout.described();
@@ -155,10 +162,21 @@ impl PageLayout<'_> {
         });
     }
 
-    /// The active taxels, those described darker, and the lines between all cells.
+    /// The active taxels, those described darker; or the values of all cells, and the edge of the active ones.
     fn taxels(&mut self) {
         let subject = self.subject;
         let imprint = subject.imprint;
+        if let Some(values) = subject.heat {
+            for (grey, cells) in heat::shades(values) {
+                let cell = |(x, y): Position| (self.place((x, y)), self.place((x + 1.0, y + 1.0)));
+                let cells = cells.into_iter().map(cell).collect();
+                self.filled("heat", cells, grey);
+            }
+            let edges = heat::edges(imprint).into_iter();
+            let edges = edges.map(|step| step.map(|place| self.place(place)));
+            self.line("imprint", edges.collect(), EDGE);
+            return;
+        }
         let none = Imprint::empty(imprint.columns(), imprint.rows());
         let described = subject.described.as_ref();
         let described = described.map_or(&none, |(taxels, _)| *taxels);
@@ -183,6 +201,11 @@ impl PageLayout<'_> {
                 }
             }
         }
+    }
+
+    /// The lines between all cells.
+    fn cells(&mut self) {
+        let imprint = self.subject.imprint;
         let (columns, rows) = (f64::from(imprint.columns()), f64::from(imprint.rows()));
         let mut lines = Vec::new();
         for column in 0..=imprint.columns() {
@@ -316,6 +339,19 @@ impl PageLayout<'_> {
             ),
             None => ("no active taxels".to_owned(), 0, all),
         };
+        if let Some(values) = self.subject.heat {
+            self.legend_row(y, &heat::legend(values), |layout, place| {
+                let (low, high) = box_of(place);
+                let middle = f64::midpoint(low.0, high.0);
+                layout.filled("legend", vec![((middle, low.1), high)], 0);
+                layout.line("legend", rectangle(low, high), CELLS);
+            });
+            self.legend_row(y, &format!("active taxels: {all}"), |layout, place| {
+                let (low, high) = box_of(place);
+                layout.line("legend", rectangle(low, high), EDGE);
+            });
+            return;
+        }
         self.legend_row(y, &what, |layout, place| {
             if na > 0 {
                 layout.filled("legend", vec![box_of(place)], DESCRIBED);

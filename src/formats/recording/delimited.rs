@@ -157,7 +157,22 @@ fn layout(
         .any(|field| !separator.is_numeric(field))
         || matches!(cells(&names), Some(NamedCells::Counted(0, length)) if length == names.len());
     if is_header {
-        return with_header(&names, separator, lines.number(), options);
+        let number = lines.number();
+        let layout = with_header(&names, separator, number, options);
+        // Words above words are no table.
+        let numbers = lines.advance_to_content()? && {
+            let (mut all, mut numeric) = (0, 0);
+            for field in separator.fields(lines.line()) {
+                all += 1;
+                numeric += usize::from(separator.is_numeric(field));
+            }
+            numeric > 0 && 2 * numeric >= all
+        };
+        return if numbers {
+            layout
+        } else {
+            Err(RecordingError::Unknown)
+        };
     }
     let fields = names.len();
     let mut block = 1_u16;

@@ -6,7 +6,7 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingFormat, Sink};
 use crate::formats::recording::lines::is_blank;
 use crate::formats::recording::{
-    delimited, emed, json_lines, npz, numpy, popu, ros_text, tekscan, xsensor, zebris,
+    delimited, emed, flexitac, json_lines, npz, numpy, popu, ros_text, tekscan, xsensor, zebris,
 };
 
 /// So many bytes tell the form.
@@ -27,6 +27,7 @@ pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
     let first = trimmed.split(|&byte| byte == b'\n').next().unwrap_or(b"");
     Some(match start {
         [0x93, b'N', b'U', b'M', b'P', b'Y', ..] => RecordingFormat::Npy,
+        [0xaa, 0x55, ..] => RecordingFormat::Flexitac,
         [b'P', b'K', 3 | 5, 4 | 6, ..] => RecordingFormat::Npz,
         _ if is_blank(trimmed) || start.contains(&0) => return None,
         _ if trimmed.starts_with(b"{") => {
@@ -91,7 +92,8 @@ pub fn read(
         RecordingFormat::Popu => popu::read(input, sink),
         RecordingFormat::Ros2 => ros_text::read(input, options, sink),
         RecordingFormat::Csv => delimited::read(input, options, sink),
-        RecordingFormat::Mcap | RecordingFormat::Flexitac => Err(RecordingError::Unknown),
+        RecordingFormat::Flexitac => flexitac::read(&mut input, options, sink),
+        RecordingFormat::Mcap => Err(RecordingError::Unknown),
     }?;
     Ok(format)
 }

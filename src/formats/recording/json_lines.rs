@@ -80,6 +80,16 @@ pub(crate) enum FrameLineError {
     Shape(u64),
 }
 
+impl FrameLineError {
+    /// How many values a frame seems to have, if only its rows and columns are missing.
+    pub(crate) fn unshaped(&self) -> Option<u64> {
+        match self {
+            Self::Shape(values) => Some(*values),
+            Self::Json(..) => None,
+        }
+    }
+}
+
 impl FrameLine {
     pub(crate) fn new(asked: Option<(u16, u16)>) -> Self {
         Self {

@@ -25,7 +25,7 @@ mod error;
 
 mod event;
 
-mod number;
+pub(crate) mod number;
 
 mod lines;
 
@@ -47,14 +47,19 @@ mod numpy;
 
 mod npz;
 
-mod json_lines;
+pub(crate) mod json_lines;
 
 mod popu;
 
-mod ros_text;
+pub(crate) mod ros_text;
+
+mod flexitac;
 
 mod detect;
 
+mod answer;
+
+pub use answer::{FrameAnswer, SetRule};
 pub use detect::{read, recognised};
 pub use error::RecordingError;
 pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingFormat, RecordingNote};

@@ -48,6 +48,11 @@ impl RosMessage {
         self.any
     }
 
+    /// Whether it ends inside of an array.
+    pub(crate) fn is_open(&self) -> bool {
+        self.open && !self.values.is_empty()
+    }
+
     fn push(&mut self, field: &[u8]) -> bool {
         let field = field.trim_ascii();
         let value = match text_row::value(field) {
@@ -212,7 +217,7 @@ pub(super) fn read(
         match state {
             RosLine::More => continue,
             RosLine::Whole if ended && !message.begun() => return Ok(()),
-            RosLine::Whole if message.open && !message.values.is_empty() && ended => {
+            RosLine::Whole if message.is_open() && ended => {
                 let text = "ends inside of a message, expected '---'";
                 return Err(RecordingError::in_line(number + 1, text));
             }

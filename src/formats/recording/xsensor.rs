@@ -30,8 +30,8 @@ struct XsensorState {
     label: Option<i64>,
     date: Option<String>,
     clock: Option<String>,
-    /// The first moment, in seconds.
-    start: Option<f64>,
+    /// The first moment: day, and seconds of the day.
+    start: Option<(i32, f64)>,
     /// The sensor whose block this is; none outside of one.
     sensor: Option<String>,
     rows: Option<u16>,
@@ -180,24 +180,26 @@ impl XsensorState {
         frame.label = self.label;
         frame.time = moment
             .zip(start)
-            .map(|(moment, start)| rounded(moment - start));
+            .map(|((day, seconds), (first_day, first_seconds))| {
+                rounded(f64::from(day - first_day) * 86_400.0 + seconds - first_seconds)
+            });
         Ok(sink(RecordingEvent::Frame(frame)).is_break())
     }
 
-    /// The moment of the frame in seconds.
-    fn moment(&self) -> Option<f64> {
+    /// The moment of the frame: day, and seconds of the day.
+    fn moment(&self) -> Option<(i32, f64)> {
         let mut parts = self.clock.as_ref()?.split(':');
         let mut part = || number::read(parts.next()?.trim().as_bytes());
         let (hours, minutes, seconds) = (part()?, part()?, part()?);
         let date = self.date.as_ref();
-        let days = date.and_then(|date| days(date)).map_or(0.0, f64::from);
-        Some(days * 86_400.0 + hours * 3600.0 + minutes * 60.0 + seconds)
+        let day = date.and_then(|date| days(date)).unwrap_or(1);
+        Some((day, hours * 3600.0 + minutes * 60.0 + seconds))
     }
 }
 
 /// The difference of two clocks that tell thousandths.
 fn rounded(seconds: f64) -> f64 {
-    (seconds * 1e6).round() / 1e6
+    (seconds * 1000.0).round() / 1000.0
 }
 
 /// The number of a day such as `2022 Aug 16`, from an arbitrary one on.

@@ -2,6 +2,10 @@
 
 mod reference;
 
+mod samples;
+
+mod streams;
+
 use std::io::Cursor;
 use std::ops::ControlFlow;
 

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use serde_json::Value;
 use taxel::formats::DescribedImprint;
 use taxel::formats::recording::RecordingNote;
-use taxel::frame::{FrameError, Peak, Processing, Rule, TareFrames};
+use taxel::frame::{Crop, FrameError, Peak, Processing, Rule, TareFrames};
 use taxel::matrix::Matrix;
 
 use super::{Recorded, recorded};
@@ -274,7 +274,31 @@ fn the_same_frames_in_other_forms_give_the_same_imprints() {
             );
         }
     }
-    for name in ["matsense.csv", "ros2_echo_field.txt"] {
+    for (name, named) in [
+        ("flexitac16.ascii", None),
+        ("flexitac16.bin", Some((16, 16))),
+    ] {
+        let found = whole(&format!("data/made/{name}"), named).expect("it is there");
+        assert_eq!((found.frames.len(), found.notes.len()), (12, 0), "{name}");
+        let mut window = Processing::default();
+        window.rule = Some(Rule::at_least(10.0).expect("a number"));
+        let mut whole_frame = window.clone();
+        whole_frame.view.crop = Some(Crop {
+            left: 12,
+            top: 12,
+            columns: 16,
+            rows: 16,
+        });
+        for (index, frame) in found.frames.iter().enumerate() {
+            let own = window.run(frame).expect("it fits").imprint;
+            let theirs = whole_frame
+                .run(&iscan.frames[60 + index])
+                .expect("it fits")
+                .imprint;
+            assert_eq!(own, theirs, "{name}, frame {index}");
+        }
+    }
+    for name in ["matsense.csv", "ros2_echo_field.txt", "flexitac16.bin"] {
         let bytes = std::fs::read(folder().expect("there").join("data/made").join(name));
         let error = recorded(&bytes.expect("a file"), None)
             .error

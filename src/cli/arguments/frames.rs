@@ -1,0 +1,303 @@
+//! The arguments of `taxel frames`, and those about processing that `taxel watch` has too.
+
+use std::path::PathBuf;
+
+use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
+
+use crate::cli::arguments::help::FRAMES_EXAMPLES;
+use crate::cli::error::CliError;
+use crate::frame::{Crop, FrameError, Rule};
+use crate::parameter::number;
+
+/// Which frames are answered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FrameChoice {
+    /// That of this number, from 0.
+    Number(u64),
+    /// Those that the recording calls so.
+    Label(i64),
+    /// The one with the greatest sum.
+    Peak,
+    /// All.
+    All,
+}
+
+/// How frames become imprints.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ProcessingArguments {
+    /// Rows and columns, of what does not say them.
+    pub(crate) shape: Option<(u16, u16)>,
+    pub(crate) channel: Option<String>,
+    pub(crate) crop: Option<Crop>,
+    pub(crate) flip_x: bool,
+    pub(crate) flip_y: bool,
+    pub(crate) quarter_turns: u8,
+    pub(crate) mask: Option<PathBuf>,
+    /// Frames that the tare is made of; 0 for none.
+    pub(crate) tare: u64,
+    pub(crate) gain: Option<PathBuf>,
+    pub(crate) rule: Option<Rule>,
+    pub(crate) least: u32,
+}
+
+/// What `taxel frames` is to do.
+#[derive(Clone, Debug)]
+pub(crate) struct FramesArguments {
+    /// `-` for standard input.
+    pub(crate) file: PathBuf,
+    /// All channels are listed where there is none.
+    pub(crate) choice: Option<FrameChoice>,
+    pub(crate) processing: ProcessingArguments,
+    pub(crate) heat: bool,
+}
+
+pub(crate) fn command() -> Command {
+    let file = Arg::new("file")
+        .value_name("FILE")
+        .required(true)
+        .value_parser(value_parser!(PathBuf))
+        .help("Recording; '-' for standard input");
+    let frame = Arg::new("frame")
+        .long("frame")
+        .value_name("N")
+        .value_parser(value_parser!(u64))
+        .help("This frame of its channel, from 0");
+    let label = Arg::new("label")
+        .long("label")
+        .value_name("L")
+        .allow_hyphen_values(true)
+        .value_parser(value_parser!(i64))
+        .help("What the recording itself calls L");
+    let peak = Arg::new("peak")
+        .long("peak")
+        .action(ArgAction::SetTrue)
+        .help("The frame with the greatest sum of values");
+    let every = Arg::new("all")
+        .long("all")
+        .action(ArgAction::SetTrue)
+        .help("All frames, one after the other");
+    let choices = ["frame", "label", "peak", "all"];
+    Command::new("frames")
+        .about("List a recording of a real sensor, or describe its frames")
+        .after_help(FRAMES_EXAMPLES)
+        .arg(file)
+        .args([frame, label, peak, every].map(|arg| arg.help_heading("Frames")))
+        .group(ArgGroup::new("choice").args(choices))
+        .args(processing())
+        .args(rules())
+}
+
+/// The flag that shows values.
+pub(crate) fn heat() -> Arg {
+    Arg::new("heat")
+        .long("heat")
+        .action(ArgAction::SetTrue)
+        .requires("choice")
+        .help("Show the values in shades, in drawings too")
+}
+
+/// The flags that say how frames are looked at.
+pub(crate) fn processing() -> [Arg; 9] {
+    let side = |id: &'static str, flag: &'static str, help: &'static str| {
+        Arg::new(id)
+            .long(flag)
+            .value_name(flag.to_ascii_uppercase())
+            .value_parser(value_parser!(u16).range(1..=512))
+            .help(help)
+    };
+    let text = |flag: &'static str, value: &'static str, help: &'static str| {
+        Arg::new(flag).long(flag).value_name(value).help(help)
+    };
+    [
+        side(
+            "frame_rows",
+            "rows",
+            "Rows, where the recording does not say them",
+        )
+        .requires("frame_columns"),
+        side("frame_columns", "columns", "Columns, likewise").requires("frame_rows"),
+        text("channel", "NAME", "This channel of several"),
+        text(
+            "crop",
+            "C,R,COLSxROWS",
+            "Keep the part that begins in column C and row R",
+        )
+        .value_parser(parse_crop),
+        text("flip", "AXIS", "Reverse columns (x), rows (y) or both (xy)")
+            .value_parser(["x", "y", "xy"])
+            .hide_possible_values(true),
+        text(
+            "turn",
+            "DEGREES",
+            "Turn clockwise by 90, 180 or 270 degrees",
+        )
+        .value_parser(["90", "180", "270"])
+        .hide_possible_values(true),
+        text(
+            "mask",
+            "FILE",
+            "Imprint of the dead cells, which have no value",
+        )
+        .value_parser(value_parser!(PathBuf)),
+        text(
+            "tare",
+            "N",
+            "Take off the median of each cell over N frames",
+        )
+        .value_parser(value_parser!(u64).range(1..)),
+        text("gain", "FILE", "Table of what each cell is multiplied by")
+            .value_parser(value_parser!(PathBuf)),
+    ]
+    .map(|arg| arg.help_heading("Processing"))
+}
+
+/// The flags that say which values are active.
+pub(crate) fn rules() -> [Arg; 6] {
+    let value = |flag: &'static str, value: &'static str, help: &'static str| {
+        Arg::new(flag)
+            .long(flag)
+            .value_name(value)
+            .allow_hyphen_values(true)
+            .value_parser(parse_number)
+            .help(help)
+    };
+    let others = |own: &'static str| {
+        ["at-least", "percent", "low", "noise"]
+            .into_iter()
+            .filter(move |other| *other != own)
+    };
+    let least = Arg::new("least")
+        .long("least")
+        .alias("min-taxels")
+        .value_name("K")
+        .value_parser(value_parser!(u32).range(1..=4096))
+        .help("Drop pieces of fewer taxels");
+    [
+        value("at-least", "T", "Active from T on, in the recording's unit")
+            .conflicts_with_all(others("at-least")),
+        value(
+            "percent",
+            "P",
+            "Active from P percent of the largest value on",
+        )
+        .conflicts_with_all(others("percent")),
+        value("low", "A", "Active from A on, if joined to a taxel of HIGH")
+            .requires("high")
+            .conflicts_with_all(others("low")),
+        value("high", "B", "Active from B on").requires("low"),
+        value(
+            "noise",
+            "K",
+            "Active from K deviations of noise on; needs a tare",
+        )
+        .requires("tare")
+        .conflicts_with_all(others("noise")),
+        least,
+    ]
+    .map(|arg| arg.help_heading("Threshold"))
+}
+
+fn parse_number(text: &str) -> Result<f64, String> {
+    number::read(text).ok_or_else(|| number::complaint(text))
+}
+
+/// Reads `12,12,16x16`.
+fn parse_crop(text: &str) -> Result<Crop, &'static str> {
+    let parts = || {
+        let (left, rest) = text.split_once(',')?;
+        let (top, size) = rest.split_once(',')?;
+        let (columns, rows) = size.split_once(['x', '×'])?;
+        let number = |text: &str| text.trim().parse::<u16>().ok();
+        Some(Crop {
+            left: number(left)?,
+            top: number(top)?,
+            columns: number(columns).filter(|&columns| columns > 0)?,
+            rows: number(rows).filter(|&rows| rows > 0)?,
+        })
+    };
+    parts().ok_or("expected the first column and row, then columns x rows, as in 12,12,16x16")
+}
+
+impl FramesArguments {
+    /// What the arguments of [`command`] ask for.
+    ///
+    /// # Errors
+    /// If a threshold is out of range.
+    pub(crate) fn of(matches: &ArgMatches, file: PathBuf) -> Result<Self, CliError> {
+        let choice = match (matches.get_one("frame"), matches.get_one("label")) {
+            (Some(&number), _) => Some(FrameChoice::Number(number)),
+            (_, Some(&label)) => Some(FrameChoice::Label(label)),
+            _ if matches.get_flag("peak") => Some(FrameChoice::Peak),
+            _ if matches.get_flag("all") => Some(FrameChoice::All),
+            _ => None,
+        };
+        Ok(Self {
+            file,
+            choice,
+            processing: ProcessingArguments::of(matches)?,
+            heat: matches.get_flag("heat"),
+        })
+    }
+}
+
+impl ProcessingArguments {
+    /// What the arguments of [`processing`] and [`rules`] ask for.
+    ///
+    /// # Errors
+    /// If a threshold is out of range.
+    pub(crate) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
+        let side = |id| matches.get_one::<u16>(id).copied();
+        let flip = matches.get_one::<String>("flip");
+        let flips = |axis: char| flip.is_some_and(|flip| flip.contains(axis));
+        let turn = matches.get_one::<String>("turn").map(String::as_str);
+        let path = |id| matches.get_one::<PathBuf>(id).cloned();
+        Ok(Self {
+            shape: side("frame_rows").zip(side("frame_columns")),
+            channel: matches.get_one::<String>("channel").cloned(),
+            crop: matches.get_one::<Crop>("crop").copied(),
+            flip_x: flips('x'),
+            flip_y: flips('y'),
+            quarter_turns: match turn {
+                Some("90") => 1,
+                Some("180") => 2,
+                Some("270") => 3,
+                _ => 0,
+            },
+            mask: path("mask"),
+            tare: matches.get_one::<u64>("tare").copied().unwrap_or(0),
+            gain: path("gain"),
+            rule: rule(matches)?,
+            least: matches.get_one::<u32>("least").copied().unwrap_or(0),
+        })
+    }
+}
+
+fn rule(matches: &ArgMatches) -> Result<Option<Rule>, CliError> {
+    let value = |id: &str| matches.get_one::<f64>(id).copied();
+    let out_of_range = |flag: &str, value: f64| {
+        let (flag, text) = (flag.to_owned(), value.to_string());
+        move |error: FrameError| {
+            let expected = match error {
+                FrameError::Rule { expected, .. } => format!("expected {expected}"),
+                error => error.to_string(),
+            };
+            CliError::Range {
+                flag,
+                text,
+                expected,
+            }
+        }
+    };
+    let made = |flag: &str, make: fn(f64) -> Result<Rule, FrameError>| {
+        value(flag).map(|value| make(value).map_err(out_of_range(flag, value)))
+    };
+    if let Some((low, high)) = value("low").zip(value("high")) {
+        return Rule::hysteresis(low, high)
+            .map(Some)
+            .map_err(out_of_range("low", low));
+    }
+    made("at-least", Rule::at_least)
+        .or_else(|| made("percent", Rule::percent))
+        .or_else(|| made("noise", Rule::noise))
+        .transpose()
+}

@@ -1,0 +1,551 @@
+//! `taxel frames`: what is in a recording, and its frames as imprints.
+//!
+//! A recording is read once to list it, and again for each thing that needs all frames first: the tare, and the peak after a
+//! tare. So memory does not grow with its length.
+
+use std::io::Write;
+use std::ops::ControlFlow;
+
+use crate::cli::arguments::frames::{FrameChoice, FramesArguments, ProcessingArguments};
+use crate::cli::arguments::request::{Form, Kept, Saving};
+use crate::cli::commands::export::{Begun, Export, Exported};
+use crate::cli::error::CliError;
+use crate::cli::input::recording::{RecordingFile, dead_cells};
+use crate::cli::input::shapes::Shelf;
+use crate::cli::output::charset::Charset;
+use crate::cli::output::heat_map::heat_map;
+use crate::cli::output::recording_list::{self, ListedChannel};
+use crate::cli::output::report;
+use crate::cli::settings::pitch::Pitch;
+use crate::formats::recording::{
+    ChannelInfo, FrameAnswer, ReadOptions, RecordingError, RecordingEvent, RecordingFormat,
+    RecordingNote, SetRule,
+};
+use crate::formats::{StoredShape, json};
+use crate::frame::{Frame, FrameError, Peak, Processed, Processing, Rule, TareFrames, View};
+use crate::imprint::Imprint;
+use crate::matrix::Matrix;
+use crate::parameter::Parameter;
+use crate::parameter::number::short;
+use crate::sensor::Sensor;
+
+/// More warnings than these are only counted.
+const MOST_WARNINGS: usize = 20;
+
+/// What one reading of a recording finds.
+#[derive(Debug, Default)]
+pub(crate) struct Scan {
+    format: Option<RecordingFormat>,
+    channels: Vec<ListedChannel>,
+    notes: Vec<RecordingNote>,
+    more_notes: u64,
+    /// The damage at which it ended.
+    error: Option<RecordingError>,
+}
+
+impl Scan {
+    /// Reads a recording; sums are those of what the view shows, or of the whole frame if that is too large.
+    fn of(recording: &mut RecordingFile, view: &View) -> Self {
+        let mut scan = Self::default();
+        let mut seen = Matrix::filled(1, 1, f64::NAN);
+        let result = recording.read(&mut |event| {
+            match event {
+                RecordingEvent::Channel(info) => scan.channels.push(ListedChannel::new(info)),
+                RecordingEvent::Frame(frame) => {
+                    let values = match view.of(frame, &mut seen) {
+                        Ok(()) => seen.values(),
+                        Err(_) => frame.values(),
+                    };
+                    if let Some(channel) = scan.channels.get_mut(frame.channel) {
+                        channel.add(frame, values);
+                    }
+                }
+                RecordingEvent::Note(note) => {
+                    if scan.notes.len() < MOST_WARNINGS {
+                        scan.notes.push(note.clone());
+                    } else {
+                        scan.more_notes += 1;
+                    }
+                }
+            }
+            ControlFlow::Continue(())
+        });
+        match result {
+            Ok(format) => scan.format = Some(format),
+            Err(error) => scan.error = Some(error),
+        }
+        scan
+    }
+
+    /// What is odd in the recording, for standard error.
+    fn warnings(&self, name: &str) -> Vec<String> {
+        let lines = self.notes.iter().map(|note| format!("{name}: {note}"));
+        let mut lines: Vec<String> = lines.collect();
+        if self.more_notes > 0 {
+            lines.push(format!("{name}: {} more of these", self.more_notes));
+        }
+        lines
+    }
+
+    /// The number of the channel that is asked for.
+    fn channel(&self, recording: &RecordingFile, asked: Option<&str>) -> Result<usize, CliError> {
+        let names: Vec<&str> = self
+            .channels
+            .iter()
+            .map(|channel| channel.info.name.as_deref().unwrap_or("unnamed"))
+            .collect();
+        match (asked, &names[..]) {
+            (None, [_]) => Ok(0),
+            (None, names) => Err(recording.refused(&format!(
+                "{} channels, choose one with --channel: {}",
+                names.len(),
+                names.join(", ")
+            ))),
+            (Some(asked), names) => {
+                let found = names.iter().position(|name| *name == asked);
+                found.ok_or_else(|| {
+                    recording.refused(&format!(
+                        "no channel {asked:?}, expected one of: {}",
+                        names.join(", ")
+                    ))
+                })
+            }
+        }
+    }
+}
+
+/// Where answers and notes go.
+pub(crate) struct FramesOutput<'a> {
+    pub(crate) form: Form,
+    pub(crate) kept: Kept,
+    pub(crate) shelf: &'a Shelf,
+    pub(crate) charset: Charset,
+    pub(crate) answers: &'a mut dyn Write,
+    /// A line each.
+    pub(crate) notes: &'a mut dyn FnMut(&str),
+}
+
+/// Lists a recording, or answers the frames that are asked for.
+///
+/// # Errors
+/// If the recording is damaged, after all whole frames before the damage were answered; or if channel, frame, threshold or
+/// size do not fit.
+pub(crate) fn frames(
+    asked: &FramesArguments,
+    mut output: FramesOutput<'_>,
+) -> Result<(), CliError> {
+    let mut options = ReadOptions::default();
+    if let Some((rows, columns)) = asked.processing.shape {
+        options = options.with_shape(rows, columns);
+    }
+    let mut recording = RecordingFile::open(&asked.file, options)?;
+    let mut processing = processing(&asked.processing)?;
+    let mut scan = Scan::of(&mut recording, &processing.view);
+    for warning in scan.warnings(recording.name()) {
+        (output.notes)(&format!("warning: {warning}"));
+    }
+    let damage = scan.error.take().map(|error| recording.damaged(error));
+    if scan.channels.is_empty() {
+        return Err(damage.unwrap_or_else(|| recording.refused("no frames")));
+    }
+    let Some(choice) = asked.choice else {
+        let text = match output.form {
+            Form::Json(_) => recording_list::json(scan.format, &scan.channels),
+            Form::Table(_) => recording_list::text(scan.format, &scan.channels, output.charset),
+        };
+        output
+            .answers
+            .write_all(text.as_bytes())
+            .map_err(CliError::Write)?;
+        return damage.map_or(Ok(()), Err);
+    };
+    let channel = scan.channel(&recording, asked.processing.channel.as_deref())?;
+    let listed = &scan.channels[channel];
+    if listed.info.shape.is_none() {
+        let values = listed.values;
+        return Err(recording.damaged(RecordingError::Shape { values }));
+    }
+    let rule = rule(&recording, &asked.processing, &listed.info)?;
+    processing.rule = Some(rule.rule);
+    processing.least = rule.least;
+    if asked.processing.tare > 0 {
+        tare(
+            &mut recording,
+            channel,
+            asked.processing.tare,
+            &mut processing,
+        )?;
+    }
+    let number = match choice {
+        FrameChoice::Peak => peak(&mut recording, channel, listed, &mut processing)?,
+        FrameChoice::Number(number) => Some(number),
+        _ => None,
+    };
+    let selection = Selection {
+        choice,
+        number,
+        channel,
+        rule,
+        tare: asked.processing.tare,
+        heat: asked.heat,
+    };
+    let answered = selection.answer(&mut recording, listed, &mut processing, &mut output)?;
+    match (damage, answered) {
+        (Some(damage), _) => Err(damage),
+        (None, true) => Ok(()),
+        (None, false) => Err(recording.refused(&match choice {
+            FrameChoice::Label(label) => format!("no frame is labelled {label}"),
+            FrameChoice::Number(number) if listed.frames > 0 => {
+                format!("no frame {number}, expected 0 to {}", listed.frames - 1)
+            }
+            _ => "no frames".to_owned(),
+        })),
+    }
+}
+
+/// How frames are looked at; without tare and rule, which need the recording.
+pub(crate) fn processing(asked: &ProcessingArguments) -> Result<Processing, CliError> {
+    let mut processing = Processing::default();
+    processing.view = View {
+        crop: asked.crop,
+        flip_x: asked.flip_x,
+        flip_y: asked.flip_y,
+        quarter_turns: asked.quarter_turns,
+        mask: asked.mask.as_deref().map(dead_cells).transpose()?,
+    };
+    if let Some(path) = &asked.gain {
+        processing.gain = Some(gain(path)?);
+    }
+    Ok(processing)
+}
+
+/// A table of factors, in any form that a recording of one frame may have.
+fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
+    let mut file = RecordingFile::open(path, ReadOptions::default())?;
+    let mut gain = Matrix::filled(1, 1, 1.0);
+    let mut found = Err(FrameError::Tare {
+        frames: 0,
+        wanted: 1,
+    });
+    let read = file.read(&mut |event| {
+        if let RecordingEvent::Frame(frame) = event {
+            found = View::default().of(frame, &mut gain);
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    });
+    read.map_err(|error| file.damaged(error))?;
+    found.map_err(|error| file.refused(&error))?;
+    Ok(gain)
+}
+
+/// The rule of the flags, else that of the recording.
+fn rule(
+    recording: &RecordingFile,
+    asked: &ProcessingArguments,
+    info: &ChannelInfo,
+) -> Result<SetRule, CliError> {
+    let least = asked.least;
+    if let Some(rule) = asked.rule {
+        let from = "flag";
+        return Ok(SetRule { rule, least, from });
+    }
+    let own = info
+        .threshold
+        .and_then(|threshold| Rule::at_least(threshold).ok());
+    let rule = own.ok_or_else(|| {
+        recording.refused(
+            "the recording has no threshold of its own: set one with --at-least, --percent, \
+             --low and --high, or --noise",
+        )
+    })?;
+    let from = "file";
+    Ok(SetRule { rule, least, from })
+}
+
+/// Gathers the tare of the channel's first frames.
+fn tare(
+    recording: &mut RecordingFile,
+    channel: usize,
+    wanted: u64,
+    processing: &mut Processing,
+) -> Result<(), CliError> {
+    let mut frames = TareFrames::new(wanted);
+    let mut seen = Matrix::filled(1, 1, f64::NAN);
+    let mut failure = None;
+    let view = processing.view.clone();
+    // A damage behind the frames of the tare is none of its business.
+    let _ = recording.read(&mut |event| {
+        if let RecordingEvent::Frame(frame) = event
+            && frame.channel == channel
+        {
+            let added = view.of(frame, &mut seen).and_then(|()| frames.add(&seen));
+            failure = added.err();
+            if failure.is_some() || frames.missing() == 0 {
+                return ControlFlow::Break(());
+            }
+        }
+        ControlFlow::Continue(())
+    });
+    let tare = failure.map_or_else(|| frames.finish(), Err);
+    processing.tare = Some(tare.map_err(|error| recording.refused(&error))?);
+    Ok(())
+}
+
+/// The frame with the greatest sum of tared values.
+fn peak(
+    recording: &mut RecordingFile,
+    channel: usize,
+    listed: &ListedChannel,
+    processing: &mut Processing,
+) -> Result<Option<u64>, CliError> {
+    if processing.tare.is_none() && processing.gain.is_none() {
+        return Ok(listed.peak.number());
+    }
+    let mut peak = Peak::default();
+    let mut failure = None;
+    let _ = recording.read(&mut |event| {
+        if let RecordingEvent::Frame(frame) = event
+            && frame.channel == channel
+        {
+            match processing.run(frame) {
+                Ok(processed) => drop(peak.add(frame.number, processed.tared_sum)),
+                Err(error) => {
+                    failure = Some(error);
+                    return ControlFlow::Break(());
+                }
+            }
+        }
+        ControlFlow::Continue(())
+    });
+    match failure {
+        Some(error) => Err(recording.refused(&error)),
+        None => Ok(peak.number()),
+    }
+}
+
+/// Which frames are answered, and how.
+struct Selection {
+    choice: FrameChoice,
+    /// The only one, where its number is known.
+    number: Option<u64>,
+    channel: usize,
+    rule: SetRule,
+    tare: u64,
+    heat: bool,
+}
+
+impl Selection {
+    fn has(&self, frame: &Frame) -> bool {
+        frame.channel == self.channel
+            && match self.choice {
+                FrameChoice::All => true,
+                FrameChoice::Label(label) => frame.label == Some(label),
+                FrameChoice::Number(_) | FrameChoice::Peak => Some(frame.number) == self.number,
+            }
+    }
+
+    /// Answers the frames; true if there was one.
+    fn answer(
+        &self,
+        recording: &mut RecordingFile,
+        listed: &ListedChannel,
+        processing: &mut Processing,
+        output: &mut FramesOutput<'_>,
+    ) -> Result<bool, CliError> {
+        let (mut answered, mut failure) = (false, None);
+        let name = recording.name().to_owned();
+        // A damage was found before, and is reported afterwards.
+        let _ = recording.read(&mut |event| {
+            let RecordingEvent::Frame(frame) = event else {
+                return ControlFlow::Continue(());
+            };
+            if !self.has(frame) {
+                return ControlFlow::Continue(());
+            }
+            let result = match processing.run(frame) {
+                Ok(processed) => self.give(&name, frame, &processed, listed, answered, output),
+                Err(error) => Err(CliError::Frames {
+                    name: name.clone(),
+                    message: error.to_string(),
+                }),
+            };
+            answered = true;
+            failure = result.err();
+            if failure.is_some() || self.number.is_some() {
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
+        });
+        failure.map_or(Ok(answered), Err)
+    }
+
+    /// Answers a frame.
+    fn give(
+        &self,
+        name: &str,
+        frame: &Frame,
+        processed: &Processed<'_>,
+        listed: &ListedChannel,
+        again: bool,
+        output: &mut FramesOutput<'_>,
+    ) -> Result<(), CliError> {
+        let Some(imprint) = processed.imprint else {
+            return Ok(());
+        };
+        let (Form::Json(pitch) | Form::Table(pitch)) = output.form;
+        let (pitch, without_pitch) = cell_size(name, pitch, &listed.info)?;
+        let heat = self.heat.then_some(processed.tared);
+        let titles = self.titles(name, frame, processed, listed);
+        let mut lines = titles.clone();
+        if let Form::Table(_) = output.form {
+            lines.extend(without_pitch);
+        }
+        let instead = keep(&imprint, heat, frame, &titles[0], pitch, output, &mut lines)?;
+        let text = match (instead, output.form) {
+            (Some(content), _) => {
+                return output.answers.write_all(&content).map_err(CliError::Write);
+            }
+            (None, Form::Json(_)) => {
+                let notes = lines.split_off(titles.len());
+                for note in notes {
+                    (output.notes)(&note);
+                }
+                let answer = FrameAnswer {
+                    frame,
+                    channel: listed.info.name.as_deref(),
+                    processed: *processed,
+                    rule: Some(self.rule),
+                    tare: self.tare,
+                };
+                report::ascii_json(&json::text(&answer)) + "\n"
+            }
+            (None, Form::Table(_)) => {
+                lines.push(report::size(&imprint, None, pitch));
+                let gap = if again { "\n" } else { "" };
+                let map = heat.map(|values| {
+                    let unit = listed.info.unit.as_ref();
+                    let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
+                    heat_map(values, &output.charset.line(&unit), output.charset) + "\n"
+                });
+                let table = report::table(&imprint, &lines, pitch, output.charset);
+                [gap, map.as_deref().unwrap_or(""), &table].concat()
+            }
+        };
+        output
+            .answers
+            .write_all(text.as_bytes())
+            .map_err(CliError::Write)
+    }
+
+    /// What the frame is, in lines: `iscan.csv, frame 65 (label 66), 6.5 s`, and sum, maximum and threshold.
+    fn titles(
+        &self,
+        name: &str,
+        frame: &Frame,
+        processed: &Processed<'_>,
+        listed: &ListedChannel,
+    ) -> Vec<String> {
+        let file = name.rsplit('/').next().unwrap_or(name);
+        let mut title = format!("{file}, frame {}", frame.number);
+        if let Some(label) = frame.label {
+            title += &format!(" (label {label})");
+        }
+        if let Some(time) = frame.time {
+            title += &format!(", {} s", short(time));
+        }
+        if let Some(channel) = &listed.info.name {
+            title += &format!(", {channel}");
+        }
+        let unit = listed.info.unit.as_ref();
+        let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
+        let max = processed.max.map_or("–".to_owned(), short);
+        let mut values = format!("sum {}{unit}, max {max}{unit}", short(processed.sum));
+        if self.tare > 0 {
+            values += &format!(", tare of {} frames", self.tare);
+        }
+        vec![title, values, self.rule_text(&unit)]
+    }
+
+    fn rule_text(&self, unit: &str) -> String {
+        let mut text = match self.rule.rule {
+            Rule::AtLeast(threshold) => format!("active: {}{unit} or more", short(threshold)),
+            Rule::Percent(percent) => {
+                format!("active: {} % of the largest value or more", short(percent))
+            }
+            Rule::Hysteresis { low, high } => format!(
+                "active: {}{unit} or more, joined to {}{unit} or more",
+                short(low),
+                short(high)
+            ),
+            Rule::Noise(deviations) => {
+                format!("active: {} deviations of noise or more", short(deviations))
+            }
+        };
+        if self.rule.least > 1 {
+            text += &format!(", in pieces of {} taxels or more", self.rule.least);
+        }
+        text + &format!(" (by {})", self.rule.from)
+    }
+}
+
+/// The side of a cell in mm, and a line if the recording's cells are not square.
+fn cell_size(
+    name: &str,
+    pitch: Pitch,
+    info: &ChannelInfo,
+) -> Result<(Option<f64>, Option<String>), CliError> {
+    let Some([x, y]) = info.pitch_mm else {
+        return Ok((pitch.of(None), None));
+    };
+    if x == y {
+        return Ok((pitch.given.or(Some(x)), None));
+    }
+    let reason = format!(
+        "cells of {} × {} mm are not square, so lengths are in taxels only",
+        short(x),
+        short(y)
+    );
+    if pitch.given.is_some() {
+        return Err(CliError::Frames {
+            name: name.to_owned(),
+            message: format!("--pitch: {reason}"),
+        });
+    }
+    Ok((None, Some(reason)))
+}
+
+/// Stores and exports an imprint as wanted; what is for standard output in place of the answer. Notes go to `lines`.
+fn keep(
+    imprint: &Imprint,
+    heat: Option<&Matrix<f64>>,
+    frame: &Frame,
+    title: &str,
+    pitch: Option<f64>,
+    output: &mut FramesOutput<'_>,
+    lines: &mut Vec<String>,
+) -> Result<Option<Vec<u8>>, CliError> {
+    let export = output.kept.export.as_ref();
+    let export = export.map(|export: &Export| export.numbered(frame.number));
+    let begun = export.map(|export| export.begin_frame(imprint, heat, title, pitch));
+    let begun = begun.transpose()?;
+    if let Some(Saving { name, force }) = &output.kept.saving {
+        let sensor = Sensor::new(imprint.columns(), imprint.rows()).unwrap_or_default();
+        let with_pitch = pitch.and_then(|pitch| sensor.with(Parameter::Pitch, pitch).ok());
+        let shape = StoredShape {
+            name: name.clone(),
+            sensor: with_pitch.unwrap_or(sensor),
+            imprint: *imprint,
+            source: None,
+        };
+        lines.push(format!("saved as {}", output.shelf.save(&shape, *force)?));
+    }
+    Ok(match begun.map(Begun::end).transpose()? {
+        Some(Exported::Content(content)) => Some(content),
+        Some(Exported::Said(said)) => {
+            lines.push(said);
+            None
+        }
+        None => None,
+    })
+}

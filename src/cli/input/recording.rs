@@ -1,0 +1,115 @@
+//! Opens recordings: a file, or standard input kept in a temporary file, since a recording is read several times.
+
+use std::fs::File;
+use std::io::{self, Seek, SeekFrom};
+use std::path::Path;
+
+use crate::cli::error::CliError;
+use crate::cli::input::content;
+use crate::cli::input::content::{Content, InputError};
+use crate::formats::recording::{
+    ReadOptions, RecordingError, RecordingEvent, RecordingFormat, read,
+};
+use crate::imprint::Imprint;
+
+/// A recording that can be read again and again.
+#[derive(Debug)]
+pub(crate) struct RecordingFile {
+    name: String,
+    file: File,
+    options: ReadOptions,
+}
+
+impl RecordingFile {
+    /// Opens a file, `-` for standard input.
+    ///
+    /// # Errors
+    /// If it cannot be opened or read.
+    pub(crate) fn open(path: &Path, options: ReadOptions) -> Result<Self, CliError> {
+        let is_standard = path.as_os_str() == "-";
+        let name = if is_standard {
+            "standard input".to_owned()
+        } else {
+            path.to_string_lossy().into_owned()
+        };
+        let opened = || {
+            if is_standard {
+                return spooled(&mut io::stdin().lock());
+            }
+            let mut file = File::open(path)?;
+            // A pipe cannot be read twice.
+            if file.metadata()?.is_file() || file.metadata()?.is_dir() {
+                Ok(file)
+            } else {
+                spooled(&mut file)
+            }
+        };
+        match opened() {
+            Ok(file) => Ok(Self {
+                name,
+                file,
+                options,
+            }),
+            Err(error) => Err(CliError::Input {
+                name,
+                error: InputError::Read(error),
+            }),
+        }
+    }
+
+    /// Its name in messages.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Reads it from its beginning.
+    ///
+    /// # Errors
+    /// If it cannot be read, is no recording, or is damaged.
+    pub(crate) fn read(
+        &mut self,
+        sink: &mut dyn FnMut(RecordingEvent<'_>) -> std::ops::ControlFlow<()>,
+    ) -> Result<RecordingFormat, RecordingError> {
+        read(&mut self.file, self.options, sink)
+    }
+
+    /// The message about a damage.
+    pub(crate) fn damaged(&self, error: RecordingError) -> CliError {
+        CliError::Recording {
+            name: self.name.clone(),
+            error,
+        }
+    }
+
+    /// The message about a frame, a channel or a threshold.
+    pub(crate) fn refused(&self, message: &(impl ToString + ?Sized)) -> CliError {
+        CliError::Frames {
+            name: self.name.clone(),
+            message: message.to_string(),
+        }
+    }
+}
+
+/// Reads the imprint of a file, alone or in a stored shape.
+///
+/// # Errors
+/// As for [`content::read_from`], with the name of the file.
+pub(crate) fn dead_cells(path: &Path) -> Result<Imprint, CliError> {
+    let opened = File::open(path).map_err(InputError::Read);
+    match opened.and_then(content::read_from) {
+        Ok(Content::Imprint(imprint)) => Ok(imprint),
+        Ok(Content::Shape(shape)) => Ok(shape.imprint),
+        Err(error) => Err(CliError::Input {
+            name: path.to_string_lossy().into_owned(),
+            error,
+        }),
+    }
+}
+
+/// A copy of all that comes, which has no name.
+fn spooled(input: &mut dyn io::Read) -> io::Result<File> {
+    let mut file = tempfile::tempfile()?;
+    io::copy(input, &mut file)?;
+    file.seek(SeekFrom::Start(0))?;
+    Ok(file)
+}

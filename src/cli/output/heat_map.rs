@@ -1,0 +1,78 @@
+//! Values in shades, two characters a cell, without colours.
+
+use crate::cli::output::charset::Charset;
+use crate::formats::value::fitting;
+use crate::matrix::Matrix;
+
+/// The shades from above 0 to the largest value.
+fn shades(charset: Charset) -> &'static [char] {
+    match charset {
+        Charset::Ascii => &['.', ':', '-', '=', '+', '*', '#', '%', '@'],
+        Charset::Unicode => &['░', '▒', '▓', '█'],
+    }
+}
+
+/// The values of all cells, a line a row, with numbers of columns and rows as beside imprints, and what the shades mean.
+/// A cell of 0 or less is a dot; where there is no cell there is nothing.
+pub(crate) fn heat_map(values: &Matrix<f64>, unit: &str, charset: Charset) -> String {
+    let largest = values.values().iter().copied().fold(0.0, f64::max);
+    let shades = shades(charset);
+    let zero = match charset {
+        Charset::Ascii => ' ',
+        Charset::Unicode => '·',
+    };
+    let ruler: Vec<String> = (0..values.columns())
+        .step_by(2)
+        .map(|column| format!("{column:<4}"))
+        .collect();
+    let mut text = format!("    {}\n", ruler.concat().trim_end());
+    for row in 0..values.rows() {
+        let mut line = format!("{row:>2}  ");
+        for &value in values.row(row) {
+            let shade = if value > 0.0 {
+                shades[shade(value / largest, shades.len())]
+            } else if value.is_nan() {
+                ' '
+            } else {
+                zero
+            };
+            line.extend([shade, if shade == zero { ' ' } else { shade }]);
+        }
+        text += line.trim_end();
+        text.push('\n');
+    }
+    let scale: String = shades.iter().collect();
+    text + &format!("0 {scale} {}{unit}\n", fitting(largest, 9))
+}
+
+/// Which shade a share of the largest value has.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "a share above 0, up to 1, and few shades"
+)]
+fn shade(share: f64, shades: usize) -> usize {
+    ((share * shades as f64).ceil() as usize).clamp(1, shades) - 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shades_part_the_range_evenly() {
+        let mut values = Matrix::filled(6, 1, 0.0);
+        values
+            .values_mut()
+            .copy_from_slice(&[0.0, f64::NAN, 1.0, 25.0, 26.0, 100.0]);
+        assert_eq!(
+            heat_map(&values, " kPa", Charset::Unicode),
+            "    0   2   4\n 0  ·   ░░░░▒▒██\n0 ░▒▓█ 100 kPa\n"
+        );
+        assert_eq!(
+            heat_map(&values, "", Charset::Ascii),
+            "    0   2   4\n 0      ..----@@\n0 .:-=+*#%@ 100\n"
+        );
+    }
+}

@@ -1,0 +1,160 @@
+//! What is in a recording: its channels, each with what the recording says of it.
+
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+use crate::cli::output::charset::Charset;
+use crate::cli::output::report;
+use crate::formats::json;
+use crate::formats::recording::{ChannelInfo, RecordingFormat};
+use crate::formats::value::counted;
+use crate::frame::{Frame, Peak};
+use crate::parameter::number::short;
+
+/// A channel of a recording.
+#[derive(Debug, Default)]
+pub(crate) struct ListedChannel {
+    pub(crate) info: ChannelInfo,
+    pub(crate) frames: u64,
+    pub(crate) peak: Peak,
+    /// How many values a frame has, with those of cells that do not exist.
+    pub(crate) values: u64,
+    /// The most cells with a value that a frame has.
+    cells: usize,
+    /// The row and column of the whole sensor that frames begin at.
+    first: Option<(u32, u32)>,
+}
+
+impl ListedChannel {
+    /// Without frames.
+    pub(crate) fn new(info: &ChannelInfo) -> Self {
+        Self {
+            info: info.clone(),
+            ..Self::default()
+        }
+    }
+
+    /// Counts another frame, and compares the sum of its values.
+    pub(crate) fn add(&mut self, frame: &Frame, values: &[f64]) {
+        let present = values.iter().filter(|value| !value.is_nan());
+        self.peak.add(frame.number, present.sum());
+        self.frames += 1;
+        self.values = frame.values().len() as u64;
+        self.cells = self.cells.max(frame.cells());
+        self.first = self.first.or(frame.first);
+    }
+}
+
+impl Serialize for ListedChannel {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let info = &self.info;
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("name", &info.name)?;
+        map.serialize_entry("frames", &self.frames)?;
+        map.serialize_entry("rows", &info.shape.map(|(rows, _)| rows))?;
+        map.serialize_entry("columns", &info.shape.map(|(_, columns)| columns))?;
+        map.serialize_entry("cells", &self.cells)?;
+        map.serialize_entry("unit", &info.unit)?;
+        map.serialize_entry("start", &info.start)?;
+        map.serialize_entry("seconds_per_frame", &info.seconds_per_frame)?;
+        map.serialize_entry("pitch_mm", &info.pitch_mm)?;
+        map.serialize_entry("threshold", &info.threshold)?;
+        map.serialize_entry("peak", &self.peak.number())?;
+        if let Some((row, column)) = self.first {
+            map.serialize_entry("first_row", &row)?;
+            map.serialize_entry("first_column", &column)?;
+        }
+        map.end()
+    }
+}
+
+struct ListedRecording<'a>(Option<RecordingFormat>, &'a [ListedChannel]);
+
+impl Serialize for ListedRecording<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(2))?;
+        map.serialize_entry("format", &self.0.map(RecordingFormat::name))?;
+        map.serialize_entry("channels", self.1)?;
+        map.end()
+    }
+}
+
+/// One line of JSON.
+pub(crate) fn json(format: Option<RecordingFormat>, channels: &[ListedChannel]) -> String {
+    report::ascii_json(&json::text(&ListedRecording(format, channels))) + "\n"
+}
+
+/// A heading, then a few lines a channel.
+pub(crate) fn text(
+    format: Option<RecordingFormat>,
+    channels: &[ListedChannel],
+    charset: Charset,
+) -> String {
+    let format = format.map_or("damaged", RecordingFormat::name);
+    let count = counted(channels.len() as u64, "channel");
+    let mut lines = vec![format!("{format}, {count}")];
+    for channel in channels {
+        lines.push(String::new());
+        lines.extend(channel_lines(channel));
+    }
+    lines
+        .iter()
+        .map(|line| charset.line(line).into_owned() + "\n")
+        .collect()
+}
+
+fn channel_lines(channel: &ListedChannel) -> Vec<String> {
+    let info = &channel.info;
+    let row = |name: &str, value: Option<String>| value.map(|value| format!("{name:<10}{value}"));
+    let size = match info.shape {
+        Some((rows, columns)) => format!(
+            "{rows} rows × {columns} columns, {}",
+            counted(channel.cells as u64, "cell")
+        ),
+        None => format!(
+            "{} in rows and columns to be named with --rows and --columns",
+            counted(channel.values, "value")
+        ),
+    };
+    let pitch = info.pitch_mm.map(|[x, y]| {
+        if x == y {
+            format!("{} mm", short(x))
+        } else {
+            format!("{} mm across, {} mm down", short(x), short(y))
+        }
+    });
+    let unit = info.unit.clone();
+    let in_unit = |value: f64| match &unit {
+        Some(unit) => format!("{} {unit}", short(value)),
+        None => short(value),
+    };
+    [
+        row("channel", info.name.clone()),
+        row("frames", Some(channel.frames.to_string())),
+        row("size", Some(size)),
+        row(
+            "from",
+            channel
+                .first
+                .map(|(row, column)| format!("row {row}, column {column} of the whole sensor")),
+        ),
+        row("unit", info.unit.clone()),
+        row("start", info.start.clone()),
+        row(
+            "step",
+            info.seconds_per_frame
+                .map(|seconds| format!("{} s", short(seconds))),
+        ),
+        row("pitch", pitch),
+        row("threshold", info.threshold.map(in_unit)),
+        row(
+            "peak",
+            channel
+                .peak
+                .number()
+                .map(|number| format!("frame {number}")),
+        ),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}

@@ -1,0 +1,144 @@
+//! A frame with its imprint and descriptors as JSON: a line of `taxel frames --json` and of `taxel watch`.
+
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+use crate::description::{Description, regions};
+use crate::formats::described::{RegionRecord, Rows};
+use crate::frame::{Frame, Processed, Rule};
+
+/// A rule and who has set it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SetRule {
+    /// The rule.
+    pub rule: Rule,
+    /// Pieces of fewer taxels are dropped; 0 or 1 drops none.
+    pub least: u32,
+    /// Where it is from: `flag`, `file` or `settings`.
+    pub from: &'static str,
+}
+
+/// Serialises as `{"frame":65,"label":66,"time":6.5,"channel":null,"sum":…,"max":…,"rule":{…},"imprint":[…],"na":…,
+/// "regions":[…]}`; rule, imprint and NA are null without a rule. What a tare was made of is said where there is one.
+#[derive(Clone, Copy, Debug)]
+pub struct FrameAnswer<'a> {
+    /// The frame, for its number, label and time.
+    pub frame: &'a Frame,
+    /// The name of its channel.
+    pub channel: Option<&'a str>,
+    /// What has become of it.
+    pub processed: Processed<'a>,
+    /// The rule of its imprint.
+    pub rule: Option<SetRule>,
+    /// The number of frames that its tare was made of; 0 without one.
+    pub tare: u64,
+}
+
+impl Serialize for FrameAnswer<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("frame", &self.frame.number)?;
+        map.serialize_entry("label", &self.frame.label)?;
+        map.serialize_entry("time", &self.frame.time.map(Shortest))?;
+        map.serialize_entry("channel", &self.channel)?;
+        map.serialize_entry("sum", &Shortest(self.processed.sum))?;
+        map.serialize_entry("max", &self.processed.max.map(Shortest))?;
+        if self.tare > 0 {
+            map.serialize_entry("tare", &self.tare)?;
+        }
+        map.serialize_entry("rule", &self.rule)?;
+        let imprint = self.processed.imprint.as_ref();
+        map.serialize_entry("imprint", &imprint.map(Rows))?;
+        map.serialize_entry("na", &imprint.map(crate::imprint::Imprint::count))?;
+        let regions = imprint.map_or_else(Vec::new, regions);
+        let records = regions
+            .iter()
+            .map(|region| RegionRecord(Description::of(region)));
+        map.serialize_entry("regions", &records.collect::<Vec<_>>())?;
+        map.end()
+    }
+}
+
+impl Serialize for SetRule {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        match self.rule {
+            Rule::AtLeast(threshold) => map.serialize_entry("at_least", &Shortest(threshold))?,
+            Rule::Percent(percent) => map.serialize_entry("percent", &Shortest(percent))?,
+            Rule::Hysteresis { low, high } => {
+                map.serialize_entry("low", &Shortest(low))?;
+                map.serialize_entry("high", &Shortest(high))?;
+            }
+            Rule::Noise(deviations) => map.serialize_entry("noise", &Shortest(deviations))?,
+        }
+        if self.least > 1 {
+            map.serialize_entry("least", &self.least)?;
+        }
+        map.serialize_entry("from", self.from)?;
+        map.end()
+    }
+}
+
+/// A finite number, without a fraction where it has none.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shortest(pub(crate) f64);
+
+impl Serialize for Shortest {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[expect(clippy::cast_possible_truncation, reason = "checked")]
+        if self.0.fract() == 0.0 && self.0.abs() < 9e15 {
+            serializer.serialize_i64(self.0 as i64)
+        } else {
+            serializer.serialize_f64(self.0)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::json;
+    use crate::frame::Processing;
+
+    #[test]
+    fn without_a_rule_there_is_no_imprint() {
+        let mut frame = Frame::new(2, 1);
+        frame.values_mut().copy_from_slice(&[1.0, 2.5]);
+        let mut processing = Processing::default();
+        let answer = FrameAnswer {
+            frame: &frame,
+            channel: None,
+            processed: processing.run(&frame).expect("it fits"),
+            rule: None,
+            tare: 0,
+        };
+        assert_eq!(
+            json::text(&answer),
+            r#"{"frame":0,"label":null,"time":null,"channel":null,"sum":3.5,"max":2.5,"rule":null,"imprint":null,"na":null,"regions":[]}"#
+        );
+    }
+
+    #[test]
+    fn a_rule_says_what_and_from_where() {
+        let rule = |rule, least| {
+            json::text(&SetRule {
+                rule,
+                least,
+                from: "flag",
+            })
+        };
+        assert_eq!(
+            rule(
+                Rule::Hysteresis {
+                    low: 5.0,
+                    high: 20.5
+                },
+                3
+            ),
+            r#"{"low":5,"high":20.5,"least":3,"from":"flag"}"#
+        );
+        assert_eq!(
+            rule(Rule::Percent(25.0), 0),
+            r#"{"percent":25,"from":"flag"}"#
+        );
+    }
+}

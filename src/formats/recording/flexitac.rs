@@ -1,0 +1,57 @@
+//! The bytes of a `FlexiTac` board in a file: `AA 55`, then a byte a cell.
+
+use std::io::Read;
+use std::ops::ControlFlow;
+
+use crate::formats::recording::error::RecordingError;
+use crate::formats::recording::event::{
+    ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
+};
+use crate::formats::stream::{StreamDecoder, StreamEvent, StreamFormat, StreamOptions};
+
+/// Bytes read at a time.
+const CHUNK: usize = 1 << 16;
+
+/// Reads a recording.
+pub(super) fn read(
+    input: &mut impl Read,
+    options: ReadOptions,
+    sink: &mut Sink<'_>,
+) -> Result<(), RecordingError> {
+    let mut bytes = vec![0; CHUNK];
+    let mut length = super::numpy::fill(input, &mut bytes)?;
+    let Some((rows, columns)) = options.shape else {
+        let marker = |at: &usize| bytes[..length].get(*at..at + 2) == Some(&[0xaa, 0x55]);
+        let next = (3..length).find(marker).unwrap_or(length);
+        let values = next.saturating_sub(2) as u64;
+        return Err(RecordingError::Shape { values });
+    };
+    let info = ChannelInfo {
+        shape: options.shape,
+        ..ChannelInfo::default()
+    };
+    if sink(RecordingEvent::Channel(&info)).is_break() {
+        return Ok(());
+    }
+    let stream = StreamOptions::default()
+        .with_format(StreamFormat::Flexitac)
+        .with_shape(rows, columns)
+        .from_start();
+    let mut decoder = StreamDecoder::new(stream);
+    let mut state = ControlFlow::Continue(());
+    let mut give = |event: StreamEvent<'_>| {
+        if let (StreamEvent::Frame(frame), ControlFlow::Continue(())) = (event, state) {
+            state = sink(RecordingEvent::Frame(frame));
+        }
+    };
+    while length > 0 {
+        decoder.push(&bytes[..length], &mut give);
+        length = super::numpy::fill(input, &mut bytes)?;
+    }
+    decoder.finish(&mut give);
+    let frames = decoder.counts().dropped;
+    if state.is_continue() && frames > 0 {
+        let _ = sink(RecordingEvent::Note(&RecordingNote::Garbled { frames }));
+    }
+    Ok(())
+}

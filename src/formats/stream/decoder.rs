@@ -1,0 +1,241 @@
+//! A decoder of any stream; which form it has, it finds from the first bytes.
+
+use crate::formats::recording::ros_text;
+use crate::formats::stream::documents::{JsonDecoder, RosDecoder};
+use crate::formats::stream::event::{EventSink, StreamCounts, StreamFormat, StreamOptions};
+use crate::formats::stream::flexitac::FlexitacDecoder;
+use crate::formats::stream::lines::LinesDecoder;
+use crate::formats::stream::matsense::MatsenseDecoder;
+
+/// A line of 512 × 512 values is shorter.
+const LONGEST_LINE: usize = 8 << 20;
+
+/// Without a line's end in so many bytes a stream of text is none.
+const LOOKED_AT: usize = 1 << 16;
+
+/// Decodes a stream, piece by piece.
+#[derive(Debug)]
+pub struct StreamDecoder {
+    options: StreamOptions,
+    counts: StreamCounts,
+    state: State,
+    /// What is not decoded yet: the beginning, until the form is known, and then the line that is not ended.
+    bytes: Vec<u8>,
+    /// Inside of a line that is too long.
+    skipping: bool,
+    /// Whether the first line may lack its beginning.
+    torn: bool,
+}
+
+#[derive(Debug)]
+enum State {
+    Looking,
+    Lines(LinesDecoder),
+    Json(JsonDecoder),
+    Ros(RosDecoder),
+    Flexitac(FlexitacDecoder),
+    Matsense(MatsenseDecoder),
+    /// Bytes without rows and columns, which cannot be decoded.
+    Unshaped,
+}
+
+impl StreamDecoder {
+    /// Prepares for a stream.
+    pub fn new(options: StreamOptions) -> Self {
+        let mut decoder = Self {
+            options,
+            counts: StreamCounts::default(),
+            state: State::Looking,
+            bytes: Vec::new(),
+            skipping: false,
+            torn: !options.from_start,
+        };
+        if let Some(format) = options.format {
+            decoder.begin(format, options.from_start);
+        }
+        decoder
+    }
+
+    /// The form of the stream; None as long as it is not known.
+    pub fn format(&self) -> Option<StreamFormat> {
+        match self.state {
+            State::Looking | State::Unshaped => self.options.format,
+            State::Lines(_) => Some(StreamFormat::Lines),
+            State::Json(_) => Some(StreamFormat::JsonLines),
+            State::Ros(_) => Some(StreamFormat::Ros2),
+            State::Flexitac(_) => Some(StreamFormat::Flexitac),
+            State::Matsense(_) => Some(StreamFormat::Matsense),
+        }
+    }
+
+    /// What has come so far.
+    pub fn counts(&self) -> &StreamCounts {
+        &self.counts
+    }
+
+    /// Begins anew in the middle of the stream, as after a line was unplugged; frames are counted on.
+    pub fn restart(&mut self) {
+        let format = self.format();
+        self.bytes.clear();
+        (self.skipping, self.torn) = (false, true);
+        self.state = State::Looking;
+        self.options.from_start = false;
+        if let Some(format) = format {
+            self.begin(format, false);
+        }
+    }
+
+    fn begin(&mut self, format: StreamFormat, from_start: bool) {
+        let shape = self.options.shape;
+        self.state = match (format, shape) {
+            (StreamFormat::Lines, _) => State::Lines(LinesDecoder::new(shape, from_start)),
+            (StreamFormat::JsonLines, _) => State::Json(JsonDecoder::new(shape)),
+            (StreamFormat::Ros2, _) => State::Ros(RosDecoder::new(shape, from_start)),
+            (StreamFormat::Flexitac, Some(shape)) => State::Flexitac(FlexitacDecoder::new(shape)),
+            (StreamFormat::Matsense, Some(shape)) => {
+                State::Matsense(MatsenseDecoder::new(shape, from_start))
+            }
+            (StreamFormat::Flexitac | StreamFormat::Matsense, None) => {
+                self.counts.unshaped = self.counts.unshaped.or(Some(0));
+                State::Unshaped
+            }
+        };
+    }
+
+    /// Decodes the next bytes.
+    pub fn push(&mut self, bytes: &[u8], sink: &mut EventSink<'_>) {
+        self.counts.bytes += bytes.len() as u64;
+        match &mut self.state {
+            State::Looking => {
+                self.bytes.extend_from_slice(bytes);
+                self.look(false, sink);
+            }
+            State::Flexitac(decoder) => decoder.push(bytes, &mut self.counts, sink),
+            State::Matsense(decoder) => decoder.push(bytes, &mut self.counts, sink),
+            State::Unshaped => {}
+            State::Lines(_) | State::Json(_) | State::Ros(_) => self.text(bytes, sink),
+        }
+    }
+
+    /// The end of the input: what is whole is given, what is not is counted.
+    pub fn finish(&mut self, sink: &mut EventSink<'_>) {
+        if let State::Looking = self.state {
+            self.look(true, sink);
+        }
+        let torn = std::mem::take(&mut self.bytes);
+        match &mut self.state {
+            State::Lines(decoder) => decoder.finish(&torn, &mut self.counts, sink),
+            State::Json(decoder) => decoder.line(&torn, &mut self.counts, sink),
+            State::Ros(decoder) => {
+                decoder.line(&torn, &mut self.counts, sink);
+                decoder.finish(&mut self.counts, sink);
+            }
+            State::Flexitac(decoder) => decoder.finish(&mut self.counts, sink),
+            State::Matsense(decoder) => decoder.finish(&mut self.counts, sink),
+            State::Looking | State::Unshaped => {}
+        }
+    }
+
+    /// Decodes the lines that are ended.
+    fn text(&mut self, bytes: &[u8], sink: &mut EventSink<'_>) {
+        let mut rest = bytes;
+        while let Some(end) = rest.iter().position(|&byte| byte == b'\n') {
+            let (line, after) = (&rest[..end], &rest[end + 1..]);
+            rest = after;
+            if std::mem::take(&mut self.skipping) {
+                self.bytes.clear();
+                continue;
+            }
+            if self.bytes.is_empty() {
+                self.line(line, sink);
+            } else {
+                let mut whole = std::mem::take(&mut self.bytes);
+                whole.extend_from_slice(line);
+                self.line(&whole, sink);
+                whole.clear();
+                self.bytes = whole;
+            }
+        }
+        if self.skipping {
+            return;
+        }
+        if self.bytes.len() + rest.len() > LONGEST_LINE {
+            self.counts.drop_frames(1, rest);
+            self.bytes.clear();
+            self.skipping = true;
+        } else {
+            self.bytes.extend_from_slice(rest);
+        }
+    }
+
+    fn line(&mut self, line: &[u8], sink: &mut EventSink<'_>) {
+        if std::mem::take(&mut self.torn) {
+            return;
+        }
+        match &mut self.state {
+            State::Lines(decoder) => decoder.line(line, &mut self.counts, sink),
+            State::Json(decoder) => decoder.line(line, &mut self.counts, sink),
+            State::Ros(decoder) => decoder.line(line, &mut self.counts, sink),
+            _ => {}
+        }
+    }
+
+    /// Finds the form, and decodes what has come so far.
+    fn look(&mut self, ended: bool, sink: &mut EventSink<'_>) {
+        let Some(format) = form(&self.bytes, self.options.shape, ended) else {
+            return;
+        };
+        self.begin(format, self.options.from_start);
+        let bytes = std::mem::take(&mut self.bytes);
+        // Counted already.
+        self.counts.bytes -= bytes.len() as u64;
+        self.push(&bytes, sink);
+    }
+}
+
+/// The form of what begins with these bytes; None if more are needed.
+fn form(bytes: &[u8], shape: Option<(u16, u16)>, ended: bool) -> Option<StreamFormat> {
+    let is_binary = |byte: &u8| !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c | b' '..=b'~');
+    let enough = ended || bytes.len() >= LOOKED_AT;
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    if text.iter().any(is_binary) {
+        let cells = shape.map_or(0, |(rows, columns)| {
+            usize::from(rows) * usize::from(columns)
+        });
+        let has_marker = |at: usize| bytes.get(at..at + 2) == Some(&[0xaa, 0x55]);
+        let markers = || (0..bytes.len()).filter(|&at| has_marker(at));
+        let period = cells + 2;
+        if cells > 0 && markers().any(|at| has_marker(at + period)) {
+            return Some(StreamFormat::Flexitac);
+        }
+        // In two frames and a half a marker and the next would have been found.
+        let waited = cells == 0 || bytes.len() > 3 * period + 2;
+        let is_flexitac = cells == 0 && has_marker(0) || ended && has_marker(0);
+        return (enough || waited).then_some(if is_flexitac {
+            StreamFormat::Flexitac
+        } else {
+            StreamFormat::Matsense
+        });
+    }
+    // Of the first line the beginning may be missing.
+    if text.split(|&byte| byte == b'\n').nth(2).is_none() && !enough {
+        return None;
+    }
+    let mut lines = text
+        .split(|&byte| byte == b'\n')
+        .map(<[u8]>::trim_ascii)
+        .filter(|line| !line.is_empty());
+    let is_ros = |line: &[u8]| {
+        line == b"---"
+            || line.starts_with(b"array(")
+            || line.starts_with(b"layout:")
+            || line.starts_with(b"data:")
+            || ros_text::is_layout(line)
+    };
+    let found = lines.find_map(|line| match line {
+        [b'{', ..] => Some(StreamFormat::JsonLines),
+        line if is_ros(line) => Some(StreamFormat::Ros2),
+        _ => None,
+    });
+    Some(found.unwrap_or(StreamFormat::Lines))
+}

@@ -1,0 +1,132 @@
+//! What a stream may be, what is known of it beforehand, and what its decoder reports.
+
+use crate::frame::Frame;
+
+/// The forms of streams.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum StreamFormat {
+    /// Numbers parted by spaces, tabs or commas: a frame a line, or a row a line and an empty line between frames.
+    Lines,
+    /// A JSON object a line, as of recordings.
+    JsonLines,
+    /// What `ros2 topic echo` prints.
+    Ros2,
+    /// `AA 55`, then a byte a cell.
+    Flexitac,
+    /// A byte a cell, then `FF`; or `5B`, the bytes with escapes, `5D`.
+    Matsense,
+}
+
+impl StreamFormat {
+    /// All of them by their names in flags and files.
+    pub const NAMES: [(&'static str, Self); 5] = [
+        ("lines", Self::Lines),
+        ("jsonl", Self::JsonLines),
+        ("ros2", Self::Ros2),
+        ("flexitac", Self::Flexitac),
+        ("matsense", Self::Matsense),
+    ];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        let found = Self::NAMES.iter().find(|(_, own)| *own == self);
+        found.map_or("unknown", |(name, _)| name)
+    }
+
+    /// The one of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        let found = Self::NAMES.iter().find(|(own, _)| *own == name);
+        found.map(|(_, format)| *format)
+    }
+}
+
+/// What is known of a stream beforehand.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct StreamOptions {
+    /// Its form; found by looking where there is none.
+    pub format: Option<StreamFormat>,
+    /// Rows and columns; bytes and frames of a line each do not say them.
+    pub shape: Option<(u16, u16)>,
+    /// Whether the first byte begins a frame: of a file, but not of a line that was plugged in somewhere.
+    pub from_start: bool,
+}
+
+impl StreamOptions {
+    /// With a form.
+    #[must_use]
+    pub fn with_format(mut self, format: StreamFormat) -> Self {
+        self.format = Some(format);
+        self
+    }
+
+    /// With rows and columns.
+    #[must_use]
+    pub fn with_shape(mut self, rows: u16, columns: u16) -> Self {
+        self.shape = Some((rows, columns));
+        self
+    }
+
+    /// With a first byte that begins a frame.
+    #[must_use]
+    pub fn from_start(mut self) -> Self {
+        self.from_start = true;
+        self
+    }
+}
+
+/// What a decoder reports.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub enum StreamEvent<'a> {
+    /// A whole frame, confirmed by what follows it where its form needs that.
+    Frame(&'a Frame),
+    /// A frame whose last byte is here, though what follows it is not: to be shown, not to be kept.
+    Provisional(&'a Frame),
+    /// The provisional frame was none.
+    Withdrawn,
+}
+
+/// What has come so far.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct StreamCounts {
+    /// Bytes.
+    pub bytes: u64,
+    /// Whole frames.
+    pub frames: u64,
+    /// Torn, short, long and garbled ones.
+    pub dropped: u64,
+    /// What the last of these looked like, up to 40 characters.
+    pub sample: Option<String>,
+    /// What is missing to decode the stream at all: how many values a frame seems to have, without rows and columns.
+    pub unshaped: Option<u64>,
+    /// Whether messages were cut by `ros2 topic echo` without `--full-length`.
+    pub cut: bool,
+}
+
+/// The most bytes of a sample.
+const SAMPLE: usize = 40;
+
+impl StreamCounts {
+    /// Counts dropped frames.
+    pub(super) fn drop_frames(&mut self, frames: u64, bytes: &[u8]) {
+        self.dropped += frames;
+        let mut sample = String::new();
+        for &byte in bytes.iter().take(SAMPLE) {
+            let text = match byte {
+                b' '..=b'~' => char::from(byte).to_string(),
+                b'\t' => " ".to_owned(),
+                _ => format!("\\x{byte:02x}"),
+            };
+            if sample.len() + text.len() > SAMPLE {
+                break;
+            }
+            sample += &text;
+        }
+        self.sample = Some(sample);
+    }
+}
+
+/// Takes what a decoder reports.
+pub(super) type EventSink<'a> = dyn FnMut(StreamEvent<'_>) + 'a;

@@ -1,0 +1,157 @@
+//! `AA 55`, then a byte a cell, without a checksum: the two bytes also occur inside of frames.
+//!
+//! So a frame counts once the marker behind it has arrived, or if the input ends exactly at its last byte. Where a marker is
+//! not where it was due, the one is taken that is nearest to that place among those that the next marker confirms.
+//! Taking the first one instead would read frames from their middle.
+
+use crate::formats::stream::event::{EventSink, StreamCounts, StreamEvent};
+use crate::frame::Frame;
+
+const MARKER: [u8; 2] = [0xaa, 0x55];
+
+/// A decoder of frames behind markers.
+#[derive(Debug)]
+pub(super) struct FlexitacDecoder {
+    rows: u16,
+    columns: u16,
+    bytes: Vec<u8>,
+    /// Whether the bytes begin with a marker that is taken for one.
+    in_step: bool,
+    /// Whether the frame in the bytes was shown already.
+    shown: bool,
+    frame: Frame,
+}
+
+impl FlexitacDecoder {
+    pub(super) fn new((rows, columns): (u16, u16)) -> Self {
+        Self {
+            rows,
+            columns,
+            bytes: Vec::new(),
+            in_step: false,
+            shown: false,
+            frame: Frame::new(columns, rows),
+        }
+    }
+
+    /// Bytes from a marker to the next.
+    fn period(&self) -> usize {
+        MARKER.len() + usize::from(self.rows) * usize::from(self.columns)
+    }
+
+    fn has_marker(&self, at: usize) -> bool {
+        self.bytes.get(at..at + MARKER.len()) == Some(&MARKER[..])
+    }
+
+    /// Decodes bytes.
+    pub(super) fn push(
+        &mut self,
+        bytes: &[u8],
+        counts: &mut StreamCounts,
+        sink: &mut EventSink<'_>,
+    ) {
+        // A piece at a time, so that the buffer stays small however much comes at once.
+        for piece in bytes.chunks(self.period()) {
+            self.bytes.extend_from_slice(piece);
+            while self.step(false, counts, sink) {}
+        }
+    }
+
+    /// The end of the input.
+    pub(super) fn finish(&mut self, counts: &mut StreamCounts, sink: &mut EventSink<'_>) {
+        while self.step(true, counts, sink) {}
+        if !self.bytes.is_empty() {
+            self.withdraw(sink);
+            if self.in_step || counts.frames > 0 {
+                counts.drop_frames(1, &self.bytes);
+            }
+            self.bytes.clear();
+        }
+    }
+
+    /// Takes one frame off, or drops what is none; false if more bytes are needed.
+    fn step(&mut self, ended: bool, counts: &mut StreamCounts, sink: &mut EventSink<'_>) -> bool {
+        let period = self.period();
+        if self.in_step {
+            let whole = self.bytes.len() == period;
+            if self.has_marker(period) || whole && ended {
+                self.fill();
+                self.frame.number = counts.frames;
+                counts.frames += 1;
+                self.bytes.drain(..period);
+                self.shown = false;
+                self.in_step = !ended || !self.bytes.is_empty();
+                sink(StreamEvent::Frame(&self.frame));
+                return true;
+            }
+            let waits = whole || self.bytes.len() == period + 1 && self.bytes[period] == MARKER[0];
+            if !ended && (waits || self.bytes.len() < period) {
+                if whole && !self.shown {
+                    self.fill();
+                    self.frame.number = counts.frames;
+                    self.shown = true;
+                    sink(StreamEvent::Provisional(&self.frame));
+                }
+                return false;
+            }
+            self.withdraw(sink);
+        }
+        self.search(ended, counts)
+    }
+
+    fn withdraw(&mut self, sink: &mut EventSink<'_>) {
+        if std::mem::take(&mut self.shown) {
+            sink(StreamEvent::Withdrawn);
+        }
+    }
+
+    /// Looks for the marker that is nearest to where it was due and confirmed by the next; false if more bytes are needed.
+    fn search(&mut self, ended: bool, counts: &mut StreamCounts) -> bool {
+        let period = self.period();
+        let due = if self.in_step { period } else { 0 };
+        let reach = due + period;
+        // The last one looked at is confirmed within these.
+        let needed = reach + period + MARKER.len();
+        // Nothing is nearer than the place itself.
+        let in_place = self.has_marker(due) && self.has_marker(due + period);
+        if self.bytes.len() < needed && !ended && !in_place {
+            return false;
+        }
+        let length = self.bytes.len();
+        let first = usize::from(self.in_step);
+        let confirmed = (first..=reach.min(length)).filter(|&at| {
+            let next = at + period;
+            self.has_marker(at) && (self.has_marker(next) || ended && next == length)
+        });
+        let mut nearest = confirmed.min_by_key(|at| at.abs_diff(due));
+        // Of a frame that lacks more than half, the marker behind the next one is nearer.
+        while let Some(at) = nearest
+            && at >= first + period
+            && self.has_marker(at - period)
+        {
+            nearest = Some(at - period);
+        }
+        let (gone, found) = match nearest {
+            Some(at) => (at, true),
+            None if ended => return false,
+            // Without a marker there is nothing to be nearest to.
+            None => (reach.min(length), false),
+        };
+        if self.in_step {
+            let frames = (gone + period / 2) / period;
+            counts.drop_frames(frames.max(1) as u64, &self.bytes);
+        } else if !found && counts.frames > 0 {
+            counts.drop_frames(1, &self.bytes);
+        }
+        self.bytes.drain(..gone);
+        self.in_step = found;
+        true
+    }
+
+    fn fill(&mut self) {
+        let values = &self.bytes[MARKER.len()..];
+        for (slot, &byte) in self.frame.values_mut().iter_mut().zip(values) {
+            *slot = f64::from(byte);
+        }
+    }
+}

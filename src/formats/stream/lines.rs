@@ -1,0 +1,164 @@
+//! Lines of numbers: a frame a line, or a row a line with an empty line between frames.
+//!
+//! A line that is not ended is never read: its last number may be torn.
+
+use crate::formats::stream::event::{EventSink, StreamCounts, StreamEvent};
+use crate::formats::stream::numbers;
+use crate::frame::{Frame, MAX_FRAME_SIDE};
+
+/// The most values of a frame.
+const MOST: usize = 512 * 512;
+
+/// A decoder of lines of numbers.
+#[derive(Debug)]
+pub(super) struct LinesDecoder {
+    shape: Option<(u16, u16)>,
+    /// Whether a boundary was seen, so that a frame may begin.
+    begun: bool,
+    /// The rows of the frame so far.
+    values: Vec<f64>,
+    rows: u16,
+    /// Whether a row of it is wrong.
+    broken: bool,
+    /// What that row looks like.
+    broken_row: Vec<u8>,
+    frame: Frame,
+}
+
+impl LinesDecoder {
+    pub(super) fn new(shape: Option<(u16, u16)>, from_start: bool) -> Self {
+        Self {
+            shape,
+            begun: from_start,
+            values: Vec::new(),
+            rows: 0,
+            broken: false,
+            broken_row: Vec::new(),
+            frame: Frame::new(1, 1),
+        }
+    }
+
+    /// Decodes a line without its end.
+    pub(super) fn line(
+        &mut self,
+        line: &[u8],
+        counts: &mut StreamCounts,
+        sink: &mut EventSink<'_>,
+    ) {
+        if line.trim_ascii().is_empty() {
+            self.boundary(counts, sink);
+            return;
+        }
+        let before = self.values.len();
+        let room = MOST.saturating_sub(before);
+        let read = numbers::read(line, &mut self.values, room);
+        let count = self.values.len() - before;
+        // A line of all cells is a boundary itself.
+        let is_frame = |(rows, columns): (u16, u16)| {
+            rows > 1 && count == usize::from(rows) * usize::from(columns)
+        };
+        if read.is_some()
+            && (self.shape.is_some_and(is_frame) || self.shape == Some((1, width(count))))
+        {
+            if self.rows > 0 && self.begun {
+                counts.drop_frames(1, &self.broken_row);
+            }
+            self.values.drain(..before);
+            // The line before it was ended.
+            self.begun = true;
+            self.give(counts, sink);
+            self.clear();
+            return;
+        }
+        let expected = match self.shape {
+            Some((_, columns)) => usize::from(columns),
+            None if self.rows > 0 => before / usize::from(self.rows),
+            None => count,
+        };
+        self.rows = self.rows.saturating_add(1);
+        if self.broken || read.is_none() || count != expected || self.rows > MAX_FRAME_SIDE {
+            self.values.truncate(before);
+            if !self.broken {
+                self.broken_row.clear();
+                self.broken_row.extend(line.iter().take(64));
+            }
+            self.broken = true;
+            self.give_up(line, counts);
+        } else if self.rows == 1 {
+            self.broken_row.clear();
+            self.broken_row.extend(line.iter().take(64));
+        }
+        if self.shape.is_none() && self.rows > MAX_FRAME_SIDE {
+            counts.unshaped = Some(count as u64);
+        }
+    }
+
+    /// Counts a broken line at once where no empty line parts frames, as far as is known.
+    fn give_up(&mut self, line: &[u8], counts: &mut StreamCounts) {
+        if self.shape.is_some_and(|(rows, _)| self.rows > rows) || self.rows > MAX_FRAME_SIDE {
+            if self.begun {
+                counts.drop_frames(1, line);
+            }
+            self.clear();
+            self.begun = true;
+        }
+    }
+
+    /// An empty line.
+    fn boundary(&mut self, counts: &mut StreamCounts, sink: &mut EventSink<'_>) {
+        if !std::mem::replace(&mut self.begun, true) || self.rows == 0 {
+            self.clear();
+            return;
+        }
+        let columns = width(self.values.len() / usize::from(self.rows.max(1)));
+        let own = (self.rows, columns);
+        let fits = !self.broken && (1..=MAX_FRAME_SIDE).contains(&columns);
+        if fits && own == *self.shape.get_or_insert(own) {
+            self.give(counts, sink);
+        } else {
+            counts.drop_frames(1, &self.broken_row);
+        }
+        self.clear();
+    }
+
+    /// Gives a frame of the shape.
+    fn give(&mut self, counts: &mut StreamCounts, sink: &mut EventSink<'_>) {
+        let Some((rows, columns)) = self.shape else {
+            return;
+        };
+        self.frame.reset(columns, rows);
+        self.frame.number = counts.frames;
+        self.frame.values_mut().copy_from_slice(&self.values);
+        counts.frames += 1;
+        sink(StreamEvent::Frame(&self.frame));
+    }
+
+    fn clear(&mut self) {
+        self.values.clear();
+        self.rows = 0;
+        self.broken = false;
+    }
+
+    /// The end of the input: a frame may lack its empty line. Of one that is not ended nothing is taken.
+    pub(super) fn finish(
+        &mut self,
+        torn: &[u8],
+        counts: &mut StreamCounts,
+        sink: &mut EventSink<'_>,
+    ) {
+        if !torn.trim_ascii().is_empty() {
+            self.rows = self.rows.saturating_add(1);
+            self.broken = true;
+            self.broken_row = torn.iter().take(64).copied().collect();
+        }
+        // Lines of one frame each and nothing else.
+        if self.shape.is_none() && !self.broken && self.rows > 0 && counts.frames == 0 {
+            counts.unshaped = Some(self.values.len() as u64 / u64::from(self.rows));
+        }
+        self.boundary(counts, sink);
+    }
+}
+
+fn width(count: usize) -> u16 {
+    u16::try_from(count).unwrap_or(u16::MAX)
+}

@@ -1,0 +1,212 @@
+//! Bytes with an end: a byte a cell, then `FF`; or `5B`, the cells with escapes, `5D`.
+//!
+//! Which of the two it is, the first two frames of the right length tell. Frames of another length are dropped.
+
+use crate::formats::stream::event::{EventSink, StreamCounts, StreamEvent};
+use crate::frame::Frame;
+
+const END: u8 = 0xff;
+const OPEN: u8 = 0x5b;
+const CLOSE: u8 = 0x5d;
+const ESCAPE: u8 = 0x5c;
+
+/// So many frames of the right length tell the form.
+const SURE: usize = 2;
+
+/// How frames are parted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Framing {
+    Ended,
+    Bracketed,
+}
+
+/// Parts bytes into frames of one form.
+#[derive(Debug)]
+struct Parts {
+    framing: Framing,
+    cells: usize,
+    values: Vec<u8>,
+    /// Inside of a frame.
+    inside: bool,
+    escaped: bool,
+    broken: bool,
+    /// Frames of another length, counted as soon as the form is known.
+    dropped: u64,
+}
+
+/// What a byte makes of a frame.
+#[derive(PartialEq)]
+enum Part {
+    More,
+    Whole,
+    Dropped,
+}
+
+impl Parts {
+    fn new(framing: Framing, cells: usize, from_start: bool) -> Self {
+        Self {
+            framing,
+            cells,
+            values: Vec::new(),
+            inside: framing == Framing::Ended && from_start,
+            escaped: false,
+            broken: false,
+            dropped: 0,
+        }
+    }
+
+    fn byte(&mut self, byte: u8) -> Part {
+        match self.framing {
+            Framing::Ended if byte == END => {
+                let inside = std::mem::replace(&mut self.inside, true);
+                self.end(inside)
+            }
+            Framing::Ended => self.value(byte),
+            Framing::Bracketed => self.bracketed(byte),
+        }
+    }
+
+    fn bracketed(&mut self, byte: u8) -> Part {
+        match byte {
+            OPEN => {
+                // A frame that was not closed.
+                let torn = self.inside && !self.values.is_empty();
+                self.values.clear();
+                (self.inside, self.escaped, self.broken) = (true, false, false);
+                if torn { Part::Dropped } else { Part::More }
+            }
+            CLOSE => {
+                self.broken |= self.escaped;
+                let inside = std::mem::replace(&mut self.inside, false);
+                self.end(inside)
+            }
+            ESCAPE if self.inside && !self.escaped => {
+                self.escaped = true;
+                Part::More
+            }
+            _ if std::mem::take(&mut self.escaped) => match byte {
+                0 => self.value(ESCAPE),
+                1 => self.value(OPEN),
+                2 => self.value(CLOSE),
+                _ => {
+                    self.broken = true;
+                    Part::More
+                }
+            },
+            _ => self.value(byte),
+        }
+    }
+
+    fn value(&mut self, byte: u8) -> Part {
+        if self.inside {
+            if self.values.len() < self.cells {
+                self.values.push(byte);
+            } else {
+                self.broken = true;
+            }
+        }
+        Part::More
+    }
+
+    /// The values stay until the next byte.
+    fn end(&mut self, inside: bool) -> Part {
+        let whole = !std::mem::take(&mut self.broken) && self.values.len() == self.cells;
+        let is_empty = self.values.is_empty();
+        match (inside, whole) {
+            (true, true) => Part::Whole,
+            (true, false) if !is_empty => Part::Dropped,
+            _ => Part::More,
+        }
+    }
+}
+
+/// A decoder of frames with an end.
+#[derive(Debug)]
+pub(super) struct MatsenseDecoder {
+    /// Those that it may still be.
+    candidates: Vec<(Parts, Vec<Vec<u8>>)>,
+    frame: Frame,
+}
+
+impl MatsenseDecoder {
+    pub(super) fn new((rows, columns): (u16, u16), from_start: bool) -> Self {
+        let cells = usize::from(rows) * usize::from(columns);
+        let of = |framing| (Parts::new(framing, cells, from_start), Vec::new());
+        Self {
+            candidates: vec![of(Framing::Ended), of(Framing::Bracketed)],
+            frame: Frame::new(columns, rows),
+        }
+    }
+
+    /// Decodes bytes.
+    pub(super) fn push(
+        &mut self,
+        bytes: &[u8],
+        counts: &mut StreamCounts,
+        sink: &mut EventSink<'_>,
+    ) {
+        for &byte in bytes {
+            let undecided = self.candidates.len() > 1;
+            let mut sure = None;
+            for (index, (parts, waiting)) in self.candidates.iter_mut().enumerate() {
+                let part = parts.byte(byte);
+                if part == Part::More {
+                    continue;
+                }
+                if undecided && part == Part::Whole {
+                    waiting.push(parts.values.clone());
+                    if waiting.len() == SURE {
+                        sure = Some(index);
+                    }
+                } else if undecided {
+                    parts.dropped += u64::from(!waiting.is_empty());
+                } else if part == Part::Whole {
+                    give(&mut self.frame, &parts.values, counts, sink);
+                } else {
+                    counts.drop_frames(1, &parts.values);
+                }
+                parts.values.clear();
+            }
+            if let Some(index) = sure {
+                self.decide(index, counts, sink);
+            }
+        }
+    }
+
+    fn decide(&mut self, index: usize, counts: &mut StreamCounts, sink: &mut EventSink<'_>) {
+        let (parts, waiting) = self.candidates.swap_remove(index);
+        if parts.dropped > 0 {
+            counts.drop_frames(parts.dropped, b"");
+        }
+        for values in waiting {
+            give(&mut self.frame, &values, counts, sink);
+        }
+        self.candidates = vec![(parts, Vec::new())];
+    }
+
+    /// The end of the input: of a single frame the form is that in which it has the right length.
+    pub(super) fn finish(&mut self, counts: &mut StreamCounts, sink: &mut EventSink<'_>) {
+        if self.candidates.len() > 1 {
+            let index = self
+                .candidates
+                .iter()
+                .position(|(_, waiting)| !waiting.is_empty());
+            self.decide(index.unwrap_or(0), counts, sink);
+        }
+        for (parts, _) in &mut self.candidates {
+            if parts.inside && !parts.values.is_empty() {
+                counts.drop_frames(1, &parts.values);
+                parts.values.clear();
+            }
+        }
+    }
+}
+
+fn give(frame: &mut Frame, values: &[u8], counts: &mut StreamCounts, sink: &mut EventSink<'_>) {
+    for (slot, &value) in frame.values_mut().iter_mut().zip(values) {
+        *slot = f64::from(value);
+    }
+    frame.number = counts.frames;
+    counts.frames += 1;
+    sink(StreamEvent::Frame(frame));
+}

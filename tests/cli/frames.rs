@@ -1,0 +1,274 @@
+//! `taxel frames`: recordings listed, and their frames as imprints.
+
+use serde_json::Value;
+
+use super::{Run, misused, taxel};
+
+/// A sample of the tests of recordings.
+fn sample(name: &str) -> String {
+    format!(
+        "{}/tests/files/frames/samples/{name}",
+        env!("CARGO_MANIFEST_DIR")
+    )
+}
+
+fn frames(name: &str, flags: &str) -> Run {
+    taxel(&format!("frames {} {flags}", sample(name)), "")
+}
+
+fn answers(run: &Run) -> Vec<Value> {
+    let lines = run.stdout.lines();
+    lines
+        .map(|line| serde_json::from_str(line).expect(line))
+        .collect()
+}
+
+/// Answers without a message.
+fn answered(name: &str, flags: &str) -> Vec<Value> {
+    let run = frames(name, flags);
+    assert_eq!(
+        (run.status, run.stderr.as_str()),
+        (Some(0), ""),
+        "{name} {flags}"
+    );
+    answers(&run)
+}
+
+/// Exit status 1, and a message with this in it.
+fn refused(name: &str, flags: &str, message: &str) {
+    let run = frames(name, flags);
+    assert_eq!((run.status, run.stdout.as_str()), (Some(1), ""), "{flags}");
+    assert!(run.stderr.contains(message), "{flags}: {}", run.stderr);
+}
+
+#[test]
+fn a_list_says_what_the_recording_says() {
+    let found = answered("tekscan.asf", "--json");
+    let expected = r#"{"format":"tekscan","channels":[{"name":null,"frames":3,"rows":4,"columns":5,"cells":18,
+        "unit":"raw","start":"1/2/2024 3:04:05.06PM","seconds_per_frame":0.05,"pitch_mm":[2.5,2.5],"threshold":null,
+        "peak":1}]}"#;
+    assert_eq!(
+        found[0],
+        serde_json::from_str::<Value>(expected).expect("JSON")
+    );
+    let window = &answered("emed.lst", "--json")[0]["channels"][0];
+    assert_eq!(
+        (&window["first_row"], &window["first_column"]),
+        (&12.into(), &7.into())
+    );
+    let text = frames("xsensor.csv", "").stdout;
+    assert!(
+        text.starts_with("xsensor, 2 channels\n\nchannel   left\nframes    3\n"),
+        "{text}"
+    );
+    assert!(
+        text.contains("pitch     2.5 mm across, 3 mm down\n"),
+        "{text}"
+    );
+}
+
+#[test]
+fn frames_are_chosen_by_number_label_or_sum() {
+    let rule = "--at-least 9 --json";
+    let peak = answered("tekscan.asf", &format!("--peak {rule}"));
+    assert_eq!(peak.len(), 1);
+    let expected = r#"{"frame":1,"label":2,"time":0.05,"channel":null,"sum":67,"max":20,
+        "rule":{"at_least":9,"from":"flag"},"imprint":[".....","..#..",".###.","....."],"na":4}"#;
+    let expected: Value = serde_json::from_str(expected).expect("JSON");
+    for (key, value) in expected.as_object().expect("an object") {
+        assert_eq!(&peak[0][key], value, "{key}");
+    }
+    assert_eq!(peak[0]["regions"][0]["nae"], 4);
+    assert_eq!(answered("tekscan.asf", &format!("--frame 1 {rule}")), peak);
+    assert_eq!(answered("tekscan.asf", &format!("--label 2 {rule}")), peak);
+    let all = answered("tekscan.asf", &format!("--all {rule}"));
+    let numbers: Vec<_> = all.iter().map(|answer| answer["frame"].clone()).collect();
+    assert_eq!(numbers, [0, 1, 2]);
+    refused(
+        "tekscan.asf",
+        "--frame 3 --at-least 9",
+        "no frame 3, expected 0 to 2",
+    );
+    refused(
+        "tekscan.asf",
+        "--label 0 --at-least 9",
+        "no frame is labelled 0",
+    );
+}
+
+#[test]
+fn rules_are_those_of_flags_or_of_the_recording() {
+    let imprint =
+        |flags: &str| answered("tekscan.asf", &format!("--frame 2 --json {flags}"))[0].clone();
+    let rows = |flags: &str| imprint(flags)["imprint"].clone();
+    assert_eq!(
+        rows("--percent 50"),
+        serde_json::json!([".....", "..#..", ".##..", "....#"])
+    );
+    assert_eq!(
+        rows("--low 4 --high 13"),
+        serde_json::json!([".....", ".##..", ".###.", "....#"])
+    );
+    assert_eq!(
+        rows("--at-least 7 --min-taxels 4"),
+        serde_json::json!([".....", ".....", ".....", "....."])
+    );
+    // The median of 3, 5 and 4 is 4, of 9, 14 and 10 is 10.
+    let tared = imprint("--tare 3 --at-least 0.5");
+    assert_eq!(
+        tared["imprint"],
+        serde_json::json!([".#...", ".....", ".....", "....#"])
+    );
+    assert_eq!(
+        (&tared["sum"], &tared["max"], &tared["tare"]),
+        (&50.into(), &13.into(), &3.into())
+    );
+    refused(
+        "tekscan.asf",
+        "--peak",
+        "--at-least, --percent, --low and --high, or --noise",
+    );
+    refused(
+        "tekscan.asf",
+        "--peak --at-least 1 --tare 4",
+        "a tare of 4 frames, but there are 3",
+    );
+    let own = answered("xsensor.csv", "--channel left --frame 0 --json");
+    assert_eq!(
+        own[0]["rule"],
+        serde_json::json!({"at_least": 10, "from": "file"})
+    );
+    misused(
+        &format!("frames {} --peak --low 3", sample("u2.npy")),
+        "the following required",
+    );
+    misused(
+        &format!("frames {} --peak --noise 3", sample("u2.npy")),
+        "the following required",
+    );
+    misused(
+        &format!("frames {} --peak --all", sample("u2.npy")),
+        "the argument '--peak'",
+    );
+}
+
+#[test]
+fn of_several_channels_one_must_be_named() {
+    refused(
+        "xsensor.csv",
+        "--peak --at-least 9",
+        "2 channels, choose one with --channel: left, right",
+    );
+    refused(
+        "xsensor.csv",
+        "--peak --channel top",
+        "expected one of: left, right",
+    );
+    let right = answered("xsensor.csv", "--channel right --peak --at-least 18 --json");
+    assert_eq!(
+        (&right[0]["channel"], &right[0]["label"]),
+        (&"right".into(), &101.into())
+    );
+}
+
+#[test]
+fn what_the_recording_does_not_say_is_asked_for_and_never_cut() {
+    refused("plain.csv", "", "--rows and --columns");
+    refused(
+        "plain.csv",
+        "--rows 4 --columns 4",
+        "found 22 values, expected 16",
+    );
+    let list = &answered("plain.csv", "--rows 4 --columns 5 --json")[0]["channels"][0];
+    assert_eq!((&list["rows"], &list["columns"]), (&4.into(), &5.into()));
+    let crop = "--frame 0 --at-least 9 --json --crop 1,1,2x2 --turn 90";
+    assert_eq!(
+        answered("u2.npy", crop)[0]["imprint"],
+        serde_json::json!(["..", "##"])
+    );
+    refused(
+        "u2.npy",
+        "--frame 0 --at-least 9 --crop 3,0,3x1",
+        "the crop reaches beyond",
+    );
+}
+
+#[test]
+fn whole_frames_before_a_damage_are_answered_then_the_damage() {
+    let whole = std::fs::read_to_string(sample("tekscan.asf")).expect("a text");
+    let torn = whole.replace("0,4,10,0,0", "0,4,?,0,0");
+    let run = taxel("frames - --all --at-least 9 --json", torn);
+    assert_eq!((run.status, answers(&run).len()), (Some(1), 2));
+    assert_eq!(
+        run.stderr,
+        "error: standard input: line 32, column 3: found \"?\", expected a number\n"
+    );
+    let wrong = whole.replace("Raw Sum=,,67", "Raw Sum=,,68");
+    let run = taxel("frames - --json", wrong);
+    assert_eq!(run.status, Some(0));
+    assert_eq!(
+        run.stderr,
+        "warning: standard input: frame 1 (label 2): Raw Sum should be 68, but the values give 67\n"
+    );
+    let run = taxel("frames -", "no recording");
+    assert_eq!(run.status, Some(1));
+    assert!(
+        run.stderr
+            .starts_with("error: standard input: not a recording"),
+        "{}",
+        run.stderr
+    );
+}
+
+#[test]
+fn frames_are_exported_with_their_number_and_stored() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("touch.svg");
+    let flags = format!("--all --at-least 9 --heat --export {}", file.display());
+    let run = frames("tekscan.asf", &flags);
+    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
+    for number in 0..3 {
+        let svg = folder.path().join(format!("touch-{number}.svg"));
+        let svg = std::fs::read_to_string(svg).expect("it is written");
+        assert!(
+            svg.contains("class=\"heat\"") && svg.contains("x / mm"),
+            "{svg}"
+        );
+    }
+    assert!(run.stdout.contains("0 ░▒▓█ 20 raw\n"), "{}", run.stdout);
+    assert!(
+        run.stdout
+            .contains("tekscan.asf, frame 1 (label 2), 0.05 s\n"),
+        "{}",
+        run.stdout
+    );
+    let library = folder.path().display();
+    let line = format!(
+        "frames {} --peak --at-least 9 --save thumb --library {library}",
+        sample("tekscan.asf")
+    );
+    assert_eq!(taxel(&line, "").status, Some(0));
+    let shown = taxel(
+        &format!("library show thumb --json --library {library}"),
+        "",
+    );
+    assert_eq!(answers(&shown)[0]["na"], 4);
+}
+
+#[test]
+fn cells_that_are_not_square_have_no_lengths_in_mm() {
+    let run = frames("xsensor.csv", "--channel left --peak --at-least 9");
+    assert!(
+        run.stdout.contains("cells of 2.5 × 3 mm are not square"),
+        "{}",
+        run.stdout
+    );
+    assert!(!run.stdout.contains("in mm"), "{}", run.stdout);
+    refused(
+        "xsensor.csv",
+        "--channel left --peak --pitch 2",
+        "--pitch: cells of 2.5 × 3 mm",
+    );
+    let square = frames("tekscan.asf", "--peak --at-least 9").stdout;
+    assert!(square.contains("in mm"), "{square}");
+}

@@ -1,0 +1,245 @@
+//! The same three frames, made up, in every form of recordings.
+
+use std::path::Path;
+
+use taxel::frame::{Processing, Rule};
+
+use super::{Recorded, recorded};
+
+/// From 9 on.
+const IMPRINTS: [&str; 3] = [
+    ".....\n..#..\n..#..\n.....",
+    ".....\n..#..\n.###.\n.....",
+    ".....\n..#..\n.##..\n.....",
+];
+
+pub(crate) fn sample(name: &str) -> Vec<u8> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files/frames/samples");
+    std::fs::read(folder.join(name)).expect(name)
+}
+
+/// The imprints of a channel.
+fn imprints(found: &Recorded, channel: usize, threshold: f64) -> Vec<String> {
+    let mut processing = Processing::default();
+    processing.rule = Some(Rule::at_least(threshold).expect("a number"));
+    let frames = found.frames.iter().filter(|frame| frame.channel == channel);
+    let imprint = |frame| processing.run(frame).expect("it fits").imprint;
+    frames
+        .map(imprint)
+        .map(|imprint| imprint.expect("a rule").to_string())
+        .collect()
+}
+
+/// Name, form, what must be named, the time of the second frame.
+const SAMPLES: [(&str, &str, bool, Option<f64>); 17] = [
+    ("tekscan.asf", "tekscan", false, Some(0.05)),
+    ("tekscan_spreadsheet.csv", "tekscan", false, Some(0.05)),
+    ("emed.lst", "emed", false, Some(0.02)),
+    ("popu.json", "popu", false, None),
+    ("frames.jsonl", "jsonl", false, Some(0.25)),
+    ("named.csv", "csv", false, Some(0.25)),
+    ("semicolons.csv", "csv", false, Some(0.25)),
+    ("plain.csv", "csv", true, Some(0.25)),
+    ("rows.txt", "csv", false, None),
+    ("echo.csv", "ros2", false, None),
+    ("echo.txt", "ros2", true, None),
+    ("echo.yaml", "ros2", false, None),
+    ("u2.npy", "npy", false, None),
+    ("f8_big_fortran.npy", "npy", false, None),
+    ("records.npy", "npy", false, Some(0.25)),
+    ("touch.npz", "npz", false, Some(0.25)),
+    ("xsensor.csv", "xsensor", false, Some(0.4)),
+];
+
+#[test]
+fn every_form_gives_the_same_imprints() {
+    for (name, form, named, time) in SAMPLES {
+        let bytes = sample(name);
+        let found = recorded(&bytes, named.then_some((4, 5)));
+        assert!(found.error.is_none(), "{name}: {:?}", found.error);
+        assert_eq!(
+            (found.format, &found.notes[..]),
+            (Some(form), &[][..]),
+            "{name}"
+        );
+        assert_eq!(imprints(&found, 0, 9.0), IMPRINTS, "{name}");
+        let second = found.frames.iter().find(|frame| frame.number == 1);
+        assert_eq!(second.expect(name).time, time, "{name}");
+        if named {
+            let error = recorded(&bytes, None).error.expect(name).to_string();
+            assert!(error.contains("--rows and --columns"), "{name}: {error}");
+        }
+    }
+}
+
+#[test]
+fn sensors_are_channels_and_groups_are_none() {
+    let found = recorded(&sample("xsensor.csv"), None);
+    assert_eq!(found.channels.len(), 2);
+    assert_eq!(imprints(&found, 1, 18.0), IMPRINTS);
+    let info = &found.channels[1];
+    assert_eq!(info.name.as_deref(), Some("right"));
+    assert_eq!(
+        (info.threshold, info.pitch_mm),
+        (Some(10.0), Some([2.5, 3.0]))
+    );
+    // From 29 February, 23:59:59.4, to the next day.
+    assert_eq!(found.frames[4].time, Some(1.2));
+    assert_eq!(found.frames[4].label, Some(102));
+}
+
+#[test]
+fn the_first_rows_count_and_comments_are_no_frames() {
+    let found = recorded(&sample("tekscan.asf"), None);
+    assert_eq!(found.channels[0].shape, Some((4, 5)));
+    assert_eq!(found.channels[0].pitch_mm, Some([2.5, 2.5]));
+    assert_eq!(found.frames.len(), 3);
+    assert_eq!(found.frames[0].cells(), 18);
+}
+
+#[test]
+fn a_window_says_where_it_begins() {
+    let found = recorded(&sample("emed.lst"), None);
+    assert_eq!(found.frames[2].first, Some((12, 7)));
+    // The page that summarises is no frame.
+    assert_eq!(found.frames.len(), 3);
+}
+
+#[test]
+fn a_picture_of_lines_counted_as_x() {
+    let found = recorded(&sample("zebris.apd"), None);
+    assert_eq!(imprints(&found, 0, 9.0), IMPRINTS[..1]);
+    assert_eq!(found.channels[0].pitch_mm, Some([8.0, 8.5]));
+    assert_eq!(
+        (found.frames[0].cells(), found.frames[0].label),
+        (5, Some(1))
+    );
+}
+
+/// What comes before a damage is given, then the damage with its place.
+fn damaged(name: &str, from: &str, to: &str, frames: usize, message: &str) {
+    let text = String::from_utf8(sample(name)).expect("a text");
+    assert!(text.contains(from), "{name} has {from:?}");
+    let found = recorded(text.replacen(from, to, 1).as_bytes(), None);
+    assert_eq!(found.frames.len(), frames, "{name}: {:?}", found.error);
+    let error = found.error.map(|error| error.to_string());
+    assert_eq!(error.as_deref(), Some(message), "{name}");
+}
+
+#[test]
+fn a_damage_is_reported_with_its_place_after_the_frames_before_it() {
+    damaged(
+        "tekscan.asf",
+        "0,5,14,2,0",
+        "0,5,x,2,0",
+        1,
+        "line 26, column 3: found \"x\", expected a number",
+    );
+    damaged(
+        "tekscan.asf",
+        "0,5,14,2,0",
+        "0,5,14,2",
+        1,
+        "line 26: found 4 values, expected 5",
+    );
+    damaged(
+        "tekscan.asf",
+        "0,5,14,2,0",
+        "0,5,14,2,0,1",
+        1,
+        "line 26: found 6 values, expected 5",
+    );
+    damaged(
+        "tekscan.asf",
+        "ASCII_DATA @@",
+        "ASCII @@",
+        0,
+        "the header has no end, expected a line 'ASCII_DATA @@'",
+    );
+    damaged(
+        "xsensor.csv",
+        "0,11,20,9,0",
+        "0,11,20",
+        2,
+        "line 103: found 3 values, expected 5",
+    );
+    damaged(
+        "frames.jsonl",
+        "[0, 5, 14, 2, 0]",
+        "[0, 5, 14, 2]",
+        1,
+        "line 2, column 57: row 2 has 4 values, expected 5",
+    );
+    damaged(
+        "named.csv",
+        "8,250,",
+        "8,250,0,",
+        1,
+        "line 3: found 23 values, expected 22",
+    );
+    damaged(
+        "rows.txt",
+        "0 11 20 9 0 \r\n",
+        "",
+        1,
+        "line 9: the frame ends after 3 rows, expected 4",
+    );
+    damaged(
+        "echo.csv",
+        "0,5,14,2",
+        "0,5,'...'",
+        1,
+        "line 2: the echo leaves out values ('...'): record it with --full-length",
+    );
+}
+
+#[test]
+fn a_recording_that_is_cut_off_gives_its_whole_frames() {
+    for (name, _, named, _) in SAMPLES {
+        // An archive has its list of contents at its end; the records of taxel may end anywhere.
+        if ["touch.npz", "records.npy", "f8_big_fortran.npy"].contains(&name) {
+            continue;
+        }
+        let whole = sample(name);
+        let cut = recorded(&whole[..whole.len() - 9], named.then_some((4, 5)));
+        assert!(cut.frames.len() >= 2, "{name}: {:?}", cut.error);
+        // Not the last frame, but what follows it, was cut off.
+        let harmless = ["xsensor.csv", "emed.lst", "tekscan_spreadsheet.csv"].contains(&name);
+        assert_eq!(cut.error.is_none(), harmless, "{name}");
+    }
+}
+
+#[test]
+fn records_beyond_those_of_the_header_are_read_and_a_torn_one_is_not() {
+    let mut records = sample("records.npy");
+    assert_eq!(recorded(&records, None).frames.len(), 3);
+    records.pop();
+    let torn = recorded(&records, None);
+    assert_eq!((torn.frames.len(), torn.error.is_none()), (2, true));
+}
+
+#[test]
+fn a_table_of_words_is_no_recording() {
+    for text in [
+        "YEAR: 2023\nHOLDER: somebody",
+        "a, b\nc, d\n",
+        "",
+        "{}",
+        "[1",
+    ] {
+        assert!(recorded(text.as_bytes(), None).error.is_some(), "{text}");
+    }
+}
+
+#[test]
+fn a_counted_header_of_a_square_is_reported() {
+    let header: Vec<String> = (0..9).map(|number| number.to_string()).collect();
+    let text = format!("{}\n1,2,3,4,5,6,7,8,9\n", header.join(","));
+    let found = recorded(text.as_bytes(), None);
+    assert_eq!(found.channels[0].shape, Some((3, 3)));
+    let note = found.notes[0].to_string();
+    assert_eq!(
+        note,
+        "the header counts 9 values, taken as 3 rows of 3 columns"
+    );
+}

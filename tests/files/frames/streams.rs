@@ -1,0 +1,263 @@
+//! Streams in pieces of any size, whole and damaged: every whole frame is found, and no false one.
+
+use taxel::formats::stream::{
+    StreamCounts, StreamDecoder, StreamEvent, StreamFormat, StreamOptions,
+};
+
+use super::samples::sample;
+use crate::common::Random;
+
+/// The values of all frames, decoded in pieces of random sizes; provisional ones are not among them.
+fn decoded(
+    options: StreamOptions,
+    bytes: &[u8],
+    random: &mut Random,
+) -> (Vec<Vec<f64>>, StreamCounts) {
+    let mut decoder = StreamDecoder::new(options);
+    let mut frames = Vec::new();
+    let mut sink = |event: StreamEvent<'_>| {
+        if let StreamEvent::Frame(frame) = event {
+            assert_eq!(frame.number, frames.len() as u64);
+            frames.push(frame.values().to_vec());
+        }
+    };
+    let mut rest = bytes;
+    while !rest.is_empty() {
+        let longest = [1, 40, 2000][usize::from(random.side(0, 2))];
+        let length = usize::try_from(random.whole(1, longest))
+            .expect("above 0")
+            .min(rest.len());
+        decoder.push(&rest[..length], &mut sink);
+        rest = &rest[length..];
+    }
+    decoder.finish(&mut sink);
+    (frames, decoder.counts().clone())
+}
+
+fn options(shape: Option<(u16, u16)>) -> StreamOptions {
+    let options = StreamOptions::default().from_start();
+    shape.map_or(options, |(rows, columns)| options.with_shape(rows, columns))
+}
+
+fn text(frame: &[f64], columns: usize, separator: &str) -> String {
+    let rows = frame.chunks(columns).map(|row| {
+        let values: Vec<String> = row.iter().map(ToString::to_string).collect();
+        values.join(separator)
+    });
+    rows.collect::<Vec<_>>().join("\r\n")
+}
+
+/// Frames of bytes, some of which have a marker inside.
+fn made_up(count: usize, cells: usize, random: &mut Random) -> Vec<Vec<f64>> {
+    let mut frames = Vec::new();
+    for _ in 0..count {
+        let mut frame: Vec<f64> = (0..cells).map(|_| f64::from(random.side(0, 254))).collect();
+        let at = usize::try_from(random.whole(0, 200)).expect("above 0");
+        (frame[at], frame[at + 1]) = (170.0, 85.0);
+        frames.push(frame);
+    }
+    frames
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "bytes"
+)]
+fn bytes(frame: &[f64]) -> Vec<u8> {
+    frame.iter().map(|&value| value as u8).collect()
+}
+
+#[test]
+fn every_stream_is_recognised_and_decoded_whole() {
+    let mut random = Random::new(61);
+    let frames = made_up(9, 256, &mut random);
+    let shape = Some((16, 16));
+    let joined =
+        |of: &dyn Fn(&Vec<f64>) -> Vec<u8>| frames.iter().flat_map(of).collect::<Vec<u8>>();
+    let list = |frame: &[f64]| text(frame, 256, ", ");
+    let json = |frame: &[f64]| {
+        let rows = frame
+            .chunks(16)
+            .map(|row| format!("[{}]", text(row, 16, ",")));
+        format!("{{\"frame\":[{}]}}\n", rows.collect::<Vec<_>>().join(","))
+    };
+    let escaped = |frame: &Vec<f64>| {
+        let mut stream = vec![0x5b];
+        for byte in bytes(frame) {
+            match byte {
+                0x5c => stream.extend([0x5c, 0]),
+                0x5b => stream.extend([0x5c, 1]),
+                0x5d => stream.extend([0x5c, 2]),
+                byte => stream.push(byte),
+            }
+        }
+        stream.push(0x5d);
+        stream
+    };
+    for (what, shape, stream) in [
+        (
+            "rows",
+            None,
+            joined(&|frame| (text(frame, 16, " ") + " \r\n\r\n").into_bytes()),
+        ),
+        (
+            "rows",
+            None,
+            joined(&|frame| (text(frame, 16, "\t") + "\n\n").into_bytes()),
+        ),
+        (
+            "lines",
+            shape,
+            joined(&|frame| (text(frame, 256, ",") + "\n").into_bytes()),
+        ),
+        ("jsonl", None, joined(&|frame| json(frame).into_bytes())),
+        (
+            "ros2",
+            shape,
+            joined(&|frame| format!("array('B', [{}])\n---\n", list(frame)).into_bytes()),
+        ),
+        (
+            "flexitac",
+            shape,
+            joined(&|frame| [vec![0xaa, 0x55], bytes(frame)].concat()),
+        ),
+        (
+            "matsense",
+            shape,
+            joined(&|frame| [bytes(frame), vec![0xff]].concat()),
+        ),
+        ("brackets", shape, joined(&escaped)),
+    ] {
+        let (found, counts) = decoded(options(shape), &stream, &mut random);
+        assert_eq!(counts.dropped, 0, "{what}: {:?}", counts.sample);
+        assert!(found == frames, "{what}: {} frames", found.len());
+        assert_eq!(counts.bytes, stream.len() as u64, "{what}");
+        // What precedes the first boundary is dropped, and not counted.
+        let mut torn = options(shape);
+        torn.from_start = false;
+        let (found, counts) = decoded(torn, &stream[5..], &mut random);
+        assert!(
+            found.len() >= 8 && found == frames[9 - found.len()..],
+            "{what}: {}",
+            found.len()
+        );
+        assert!(counts.dropped <= 1, "{what}: {counts:?}");
+    }
+}
+
+/// Three of forty frames lose, gain or have wrong bytes; markers occur inside of all.
+#[test]
+fn in_a_damaged_stream_37_of_37_frames_are_found_and_no_false_one() {
+    for seed in 0..40 {
+        let mut random = Random::new(700 + seed);
+        let frames = made_up(40, 256, &mut random);
+        let (mut stream, mut whole) = (Vec::new(), Vec::new());
+        for (index, frame) in frames.iter().enumerate() {
+            let mut own = [vec![0xaa, 0x55], bytes(frame)].concat();
+            let at = 3 + usize::from(random.side(0, 200));
+            match index {
+                5 => drop(own.drain(at..at + 1 + usize::from(random.side(0, 30)))),
+                17 => drop(own.splice(at..at, vec![7; 1 + usize::from(random.side(0, 90))])),
+                29 => own.truncate(at),
+                _ => whole.push(frame.clone()),
+            }
+            stream.extend(own);
+        }
+        let given = options(Some((16, 16))).with_format(StreamFormat::Flexitac);
+        let (found, counts) = decoded(given, &stream, &mut random);
+        assert_eq!((whole.len(), found.len()), (37, 37), "seed {seed}");
+        assert!(found == whole, "seed {seed}: a false frame");
+        assert_eq!(counts.dropped, 3, "seed {seed}");
+        // The first marker of all that are confirmed reads frames from their middle: the nearest does not.
+        assert!(
+            stream
+                .windows(2)
+                .filter(|pair| *pair == [0xaa, 0x55])
+                .count()
+                > 70
+        );
+    }
+}
+
+/// A frame is shown at its last byte, and taken back if no marker follows.
+#[test]
+fn a_provisional_frame_is_confirmed_or_withdrawn() {
+    let given = options(Some((1, 3))).with_format(StreamFormat::Flexitac);
+    let mut decoder = StreamDecoder::new(given);
+    let mut said = String::new();
+    for byte in [
+        0xaa, 0x55, 1, 2, 3, 0xaa, 0x55, 4, 5, 6, 0xaa, 0x55, 7, 8, 9, 9, 0xaa, 0x55,
+    ] {
+        decoder.push(&[byte], &mut |event| match event {
+            StreamEvent::Frame(frame) => said += &format!("f{} ", frame.values()[0]),
+            StreamEvent::Provisional(frame) => said += &format!("p{} ", frame.values()[0]),
+            StreamEvent::Withdrawn => said += "w ",
+            _ => {}
+        });
+    }
+    assert_eq!(said, "f1 p4 f4 p7 w ");
+}
+
+#[test]
+fn torn_short_long_and_garbled_frames_are_counted_and_never_joined() {
+    let lines = "9 9\n9 9\n\n1 2\n3 4\n\n1 2\n3\n\n1 2\n3 x\n\n1 2\n3 4\n5 6\n\n5 6\n7 8\n\n1 2\n3";
+    let (found, counts) = decoded(options(None), lines.as_bytes(), &mut Random::new(1));
+    assert_eq!(
+        found,
+        [[9.0; 4], [1.0, 2.0, 3.0, 4.0], [5.0, 6.0, 7.0, 8.0]]
+    );
+    assert_eq!((counts.dropped, counts.sample.as_deref()), (4, Some("3")));
+    let wide = "1,2,3,4\n1,2,3\n1,2,3,4,5\n1,2,?,4\n5,6,7,8\n5,6,7,";
+    let (found, counts) = decoded(options(Some((2, 2))), wide.as_bytes(), &mut Random::new(2));
+    assert_eq!(found, [[1.0, 2.0, 3.0, 4.0], [5.0, 6.0, 7.0, 8.0]]);
+    assert!(counts.dropped >= 2, "{counts:?}");
+    let json = b"{\"frame\":[[1]]}\n{\"frame\":[[1],[2,3]]}\nnonsense\n{\"frame\":[[2]]}";
+    let (found, counts) = decoded(options(None), json, &mut Random::new(3));
+    assert_eq!((found, counts.dropped), (vec![vec![1.0], vec![2.0]], 2));
+    let ended = [
+        &[1, 2, 3, 4, 255][..],
+        &[1, 2, 3, 255],
+        &[1, 2, 3, 4, 5, 255],
+        &[5, 6, 7, 8, 255],
+    ]
+    .concat();
+    let given = options(Some((2, 2))).with_format(StreamFormat::Matsense);
+    let (found, counts) = decoded(
+        given,
+        &[&ended[..], &ended, &[9, 9, 9, 9, 255]].concat(),
+        &mut Random::new(4),
+    );
+    assert_eq!((found.len(), counts.dropped), (5, 4));
+}
+
+#[test]
+fn what_is_missing_is_named() {
+    let unshaped = |bytes: &[u8]| {
+        decoded(options(None), bytes, &mut Random::new(5))
+            .1
+            .unshaped
+    };
+    assert_eq!(unshaped(&[0xff; 200]), Some(0));
+    assert_eq!(unshaped(b"1 2 3\n4 5 6\n"), Some(3));
+    assert_eq!(unshaped(b"array('B', [1, 2])\n---\n"), Some(2));
+    let cut = decoded(
+        options(None),
+        b"array('B', [1, 2, '...'])\n---\n",
+        &mut Random::new(6),
+    )
+    .1;
+    assert!(cut.cut);
+}
+
+#[test]
+fn samples_of_boards_are_decoded() {
+    let (found, counts) = decoded(
+        options(Some((4, 5))),
+        &sample("flexitac.bin"),
+        &mut Random::new(7),
+    );
+    assert_eq!((found.len(), counts.dropped), (3, 0));
+    let (found, counts) = decoded(options(None), &sample("rows.txt"), &mut Random::new(8));
+    assert_eq!((found.len(), counts.dropped), (3, 0));
+}
