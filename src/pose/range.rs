@@ -116,6 +116,32 @@ impl DecimalRange {
         })
     }
 
+    /// Returns the values half a step beyond each of these; a single value stays as it is. None if they need more
+    /// decimals than a range can have.
+    ///
+    /// ```
+    /// use taxel::pose::DecimalRange;
+    /// let range: DecimalRange = "5:5.99:0.01".parse()?;
+    /// assert_eq!(range.half_a_step_on().map(|range| range.to_string()).as_deref(), Some("5.005:5.995:0.01"));
+    /// # Ok::<(), taxel::pose::RangeError>(())
+    /// ```
+    pub fn half_a_step_on(&self) -> Option<Self> {
+        if self.count == 1 {
+            return Some(*self);
+        }
+        let start = self
+            .start
+            .checked_mul(10)?
+            .checked_add(self.step.checked_mul(5)?)?;
+        let (step, places) = (self.step.checked_mul(10)?, self.places + 1);
+        let last = i64::try_from(self.count - 1)
+            .ok()?
+            .checked_mul(step)?
+            .checked_add(start)?;
+        let fits = places as usize <= MAX_PLACES && start.abs().max(last.abs()) <= MAX_UNITS;
+        fits.then(|| Self::shortest(start, step, places, self.count))
+    }
+
     /// All values in order.
     pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
         (0..self.count).map(|index| self.value(index))

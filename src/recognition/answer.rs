@@ -101,32 +101,8 @@ impl Model {
     /// ```
     pub fn recognise(&self, evidence: Evidence<'_>) -> Answer {
         let at_rim = evidence.touches.iter().any(Imprint::touches_rim);
-        let mut answer = Answer {
-            state: AnswerState::Unknown,
-            shape: None,
-            tied: Vec::new(),
-            at_rim,
-            ranking: self.ranking(evidence.touches),
-        };
-        let Some(&(first, most)) = answer.ranking.first() else {
-            return answer;
-        };
-        let others = answer.ranking[1..].iter();
-        let equal = others.take_while(|(_, other)| most - other <= SAME * most);
-        let equal: Vec<usize> = equal.map(|&(shape, _)| shape).collect();
-        answer.shape = Some(first);
-        answer.state = if evidence.reject_below.is_some_and(|least| most < least) {
-            answer.shape = None;
-            AnswerState::Rejected
-        } else if !equal.is_empty() {
-            answer.tied = std::iter::once(first).chain(equal).collect();
-            AnswerState::Tied
-        } else if answer.ranking.len() == 1 && !at_rim {
-            AnswerState::Certain
-        } else {
-            AnswerState::Likely
-        };
-        answer
+        let ranking = self.ranking(evidence.touches);
+        judged(ranking, at_rim, evidence.reject_below)
     }
 
     /// The shapes of positive probability, the likeliest first.
@@ -172,8 +148,42 @@ impl Model {
     }
 }
 
+/// The answer that a ranking gives.
+pub(super) fn judged(
+    ranking: Vec<(usize, f64)>,
+    at_rim: bool,
+    reject_below: Option<f64>,
+) -> Answer {
+    let mut answer = Answer {
+        state: AnswerState::Unknown,
+        shape: None,
+        tied: Vec::new(),
+        at_rim,
+        ranking,
+    };
+    let Some(&(first, most)) = answer.ranking.first() else {
+        return answer;
+    };
+    let others = answer.ranking[1..].iter();
+    let equal = others.take_while(|(_, other)| most - other <= SAME * most);
+    let equal: Vec<usize> = equal.map(|&(shape, _)| shape).collect();
+    answer.shape = Some(first);
+    answer.state = if reject_below.is_some_and(|least| most < least) {
+        answer.shape = None;
+        AnswerState::Rejected
+    } else if !equal.is_empty() {
+        answer.tied = std::iter::once(first).chain(equal).collect();
+        AnswerState::Tied
+    } else if answer.ranking.len() == 1 && !at_rim {
+        AnswerState::Certain
+    } else {
+        AnswerState::Likely
+    };
+    answer
+}
+
 /// Those of positive probability, the likeliest first, equals in their order.
-fn ranked(posterior: impl Iterator<Item = (usize, f64)>) -> Vec<(usize, f64)> {
+pub(super) fn ranked(posterior: impl Iterator<Item = (usize, f64)>) -> Vec<(usize, f64)> {
     let mut ranked: Vec<_> = posterior.filter(|&(_, share)| share > 0.0).collect();
     ranked.sort_by(|(_, one), (_, other)| other.total_cmp(one));
     ranked

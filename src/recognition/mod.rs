@@ -41,13 +41,19 @@ mod peers;
 
 mod simulation;
 
+mod half_step;
+
+mod noisy;
+
 pub use answer::{Answer, AnswerState, Evidence};
 pub use evaluation::Evaluation;
 pub use given::{GivenDescriptors, GivenError, GivenTable, Rounding, ShapeDescriptor, greedy};
+pub use half_step::HalfStep;
 pub use key::{ImprintKey, KeyTable};
 pub use model::{Model, ModelError, ModelParts, NamedShape, ShapeCount};
 pub use nearest::Nearest;
 pub use noise::{Distances, Method, Noise, NoiseError, Scanner};
+pub use noisy::NoisyRecogniser;
 pub use peers::{Peer, PeerEvaluation, PeerSettings};
 pub use pose_estimate::{AngleEstimate, PoseEstimate};
 pub use sets::{GridSteps, default_figures, equal_figures};

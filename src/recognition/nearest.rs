@@ -169,7 +169,7 @@ impl Model {
     }
 
     /// The shape that leaves a key most often, the first of equals, and how often.
-    fn most_frequent(&self, key: usize) -> (usize, u128) {
+    pub(super) fn most_frequent(&self, key: usize) -> (usize, u128) {
         let mut most = (0, 0);
         for &count in self.counts(key) {
             if self.weighted(count) > most.1 {

@@ -91,8 +91,8 @@ impl Noise {
     }
 }
 
-/// Which keys an answer needed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Which keys an answer needed, the fewest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Method {
     /// The key of the imprint itself.

@@ -85,6 +85,9 @@ pub enum TrainingError {
     /// Shapes that no sensor holds in every angle.
     #[error("the shapes do not fit on 64 x 64 taxels in every angle")]
     Large,
+    /// Half a step has too many decimals.
+    #[error("half a step of this grid has more decimals than a range can have")]
+    Steps,
     /// It was stopped.
     #[error("stopped before the end")]
     Stopped,

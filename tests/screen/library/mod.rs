@@ -162,11 +162,7 @@ fn a_picture_starts_where_it_is_and_follows() {
             "NA 0 in all",
         ],
     );
-    then(
-        &mut session,
-        "u>",
-        &["picture of pair at 2.00, 8.00, 359°"],
-    );
+    then(&mut session, "u>", &["picture of pair at 2.00, 8.00, 359°"]);
     then(
         &mut session,
         "f<Enter>z",

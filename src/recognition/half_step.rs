@@ -1,0 +1,122 @@
+//! Touches between the poses that a model was trained on: how much a grid leaves out.
+
+use std::collections::HashMap;
+
+use rayon::prelude::*;
+
+use crate::imprint::Imprint;
+use crate::pose::Axis;
+use crate::recognition::model::{Model, ShapeCount, share};
+use crate::recognition::training::{Training, TrainingError};
+use crate::sensor::MAX_SIDE;
+
+/// What becomes of touches half a step off the grid, in x0, y0 and angle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct HalfStep {
+    /// Number of touches.
+    pub touches: u128,
+    /// Touches whose imprint the model holds.
+    pub held: u128,
+    /// Touches that are named right, where those that the model does not hold count as wrong.
+    pub right: u128,
+    /// Touches that are named right, where an imprint that the model does not hold gets the name of the nearest one.
+    pub right_with_nearest: u128,
+}
+
+impl HalfStep {
+    /// Returns the share of touches whose imprint the model does not hold.
+    pub fn missing(&self) -> f64 {
+        share(self.touches - self.held, self.touches)
+    }
+
+    /// Returns the error where touches that the model does not hold count as wrong.
+    pub fn error(&self) -> f64 {
+        share(self.touches - self.right, self.touches)
+    }
+
+    /// Returns the error where an imprint that the model does not hold gets the name of the nearest one.
+    pub fn error_with_nearest(&self) -> f64 {
+        share(self.touches - self.right_with_nearest, self.touches)
+    }
+}
+
+impl Model {
+    /// Touches every shape half a step beyond each pose of the model, and names what that leaves.
+    ///
+    /// It takes about as long as the training, and more where many imprints are new.
+    ///
+    /// # Errors
+    /// [`TrainingError::Steps`] if half a step has too many decimals; [`TrainingError::Stopped`].
+    pub fn half_step(
+        &self,
+        progress: &(dyn Fn(u64) -> bool + Sync),
+    ) -> Result<HalfStep, TrainingError> {
+        let mut ranges = *self.ranges();
+        for axis in [Axis::X0, Axis::Y0, Axis::Angle] {
+            ranges[axis] = ranges[axis].half_a_step_on().ok_or(TrainingError::Steps)?;
+        }
+        let shapes = self.shapes().to_vec();
+        let training = Training::new(shapes, *self.sensor(), self.anchor(), ranges)?;
+        let between = training.allow_cut(true).progress(progress).run()?;
+        let keys = between.keys();
+        let known: Vec<Option<usize>> = (0..keys.len())
+            .map(|key| self.keys().find_ref(keys.get(key)))
+            .collect();
+        let missing: Vec<usize> = (0..keys.len())
+            .filter(|&key| known[key].is_none())
+            .collect();
+        let nearest = missing.par_iter().map(|&key| {
+            let nearest = self.nearest(&with_margin(keys.imprint(key).as_ref()))?;
+            Some((key, nearest.shape))
+        });
+        let nearest: Vec<Option<(usize, usize)>> = nearest.collect();
+        let nearest: HashMap<usize, usize> = nearest.into_iter().flatten().collect();
+        let mut result = HalfStep {
+            touches: u128::from(between.poses()) * between.weights(),
+            held: 0,
+            right: 0,
+            right_with_nearest: 0,
+        };
+        for (key, known) in known.into_iter().enumerate() {
+            let counts = between.counts(key);
+            let own = |named: usize| -> u128 {
+                let right = |count: &&ShapeCount| usize::from(count.shape) == named;
+                let right = counts.iter().filter(right);
+                right.map(|&count| between.weighted(count)).sum()
+            };
+            let all: u128 = counts.iter().map(|&count| between.weighted(count)).sum();
+            match known {
+                Some(known) => {
+                    let right = own(self.most_frequent(known).0);
+                    result.held += all;
+                    result.right += right;
+                    result.right_with_nearest += right;
+                }
+                None => {
+                    result.right_with_nearest += nearest.get(&key).map_or(0, |&named| own(named));
+                }
+            }
+        }
+        Ok(result)
+    }
+}
+
+/// An imprint with a taxel or two of room around it, in which a nearest one may lie.
+fn with_margin(imprint: Option<&Imprint>) -> Imprint {
+    const MARGIN: u8 = 2;
+    let Some(imprint) = imprint else {
+        return Imprint::empty(MARGIN, MARGIN);
+    };
+    let side = |side: u8| (side + 2 * MARGIN).min(MAX_SIDE);
+    let (columns, rows) = (side(imprint.columns()), side(imprint.rows()));
+    let mut wider = Imprint::empty(columns, rows);
+    let (left, top) = (
+        (columns - imprint.columns()) / 2,
+        usize::from((rows - imprint.rows()) / 2),
+    );
+    for (row, &word) in imprint.words().iter().enumerate() {
+        wider.set_word(row + top, word << left);
+    }
+    wider
+}
