@@ -11,7 +11,7 @@ use crate::formats::ArchiveError;
 use crate::formats::recording::RecordingError;
 use crate::pose::GridError;
 use crate::quote::legible;
-use crate::recognition::TrainingError;
+use crate::recognition::{NoiseError, TrainingError};
 use crate::storage::{ArchiveFileError, FileError, LibraryError};
 use crate::sweep::MergeError;
 use crate::tui::script::runner;
@@ -79,6 +79,17 @@ pub(crate) enum CliError {
     NoModel {
         /// The argument.
         name: String,
+    },
+    /// A noise that is none.
+    #[error(transparent)]
+    Noise(#[from] NoiseError),
+    /// A mask of another size than the imprint.
+    #[error("--mask has {} x {} taxels, the imprint {} x {}", mask.0, mask.1, imprint.0, imprint.1)]
+    Mask {
+        /// Columns and rows of the mask.
+        mask: (u8, u8),
+        /// Columns and rows of the imprint.
+        imprint: (u8, u8),
     },
     /// A name that no shape of the model has.
     #[error("--expect {name:?}: the model has no such shape")]

@@ -48,8 +48,8 @@ use commands::export::Exported;
 use commands::frames::FramesOutput;
 use commands::touch::Touched;
 use commands::{
-    batch, completions, describe, export, frames, library, man, model, recognise, screen, script,
-    sweep, touch,
+    batch, completions, describe, export, frames, library, man, model, noise, recognise, screen,
+    script, sweep, touch,
 };
 use error::CliError;
 use input::shapes::Shelf;
@@ -164,6 +164,7 @@ fn run_model(request: ModelRequest, shelf: &Shelf, charset: Charset) -> Result<(
         ModelRequest::List(json) => model::list(json, shelf, charset)?,
         ModelRequest::Delete(name) => charset.lines(&model::delete(&name, shelf)?),
         ModelRequest::Confusion(asked) => model::confusion(&asked, shelf, charset)?,
+        ModelRequest::Touches(asked) => noise::touches(&asked, shelf, charset)?,
     };
     print(&text)
 }

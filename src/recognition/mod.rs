@@ -57,5 +57,5 @@ pub use noisy::NoisyRecogniser;
 pub use peers::{Peer, PeerEvaluation, PeerSettings};
 pub use pose_estimate::{AngleEstimate, PoseEstimate};
 pub use sets::{GridSteps, default_figures, equal_figures};
-pub use simulation::{MOST_TOUCHES, RecognitionRate, TouchesUntil};
+pub use simulation::{MOST_TOUCHES, RecognitionRate, TouchesUntil, random_taxels};
 pub use training::{Training, TrainingError};

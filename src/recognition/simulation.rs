@@ -92,6 +92,20 @@ fn count(count: u64) -> f64 {
     count as f64
 }
 
+/// Returns that many different taxels of a matrix, drawn with a seed; all of them if there are no more.
+pub fn random_taxels(columns: u8, rows: u8, count: u32, seed: u64) -> Imprint {
+    let mut taxels = Imprint::empty(columns, rows);
+    let mut random = generator(seed, 0);
+    let cells = u32::from(columns) * u32::from(rows);
+    while taxels.count() < count.min(cells) {
+        let [column, row] = [columns, rows].map(|side| below(&mut random, side.into()));
+        if let (Ok(column), Ok(row)) = (u8::try_from(column), u8::try_from(row)) {
+            taxels.set(column, row, true);
+        }
+    }
+    taxels
+}
+
 /// Draws touches of one shape.
 pub(super) struct Draw {
     /// Up to and with each key: how many touches, and the number of the key.

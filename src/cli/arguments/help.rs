@@ -263,7 +263,19 @@ Examples:
   taxel model confusion parts --given na,p --json
   taxel model confusion parts --greedy --round cg_cd=0.01
   taxel model confusion parts --classifier all
+  taxel model confusion parts --noise 0:0.1:0.01 --dead 0,4 --touches 200
+  taxel model confusion parts --test half-step
   taxel model confusion parts --export parts.csv";
+
+/// `taxel model touches`: what is simulated.
+pub(crate) const MODEL_TOUCHES_EXAMPLES: &str = "\
+A shape is touched again and again in random poses, and the probabilities are
+multiplied, until one shape is as probable as wanted. The mean number of touches
+has its standard error; the same seed gives the same numbers.
+
+Examples:
+  taxel model touches parts
+  taxel model touches parts --until 0.999 --runs 200 --seed 7 --json";
 
 /// `taxel recognise`: input and answers.
 pub(crate) const RECOGNISE_EXAMPLES: &str = "\
@@ -271,7 +283,8 @@ Reads an imprint in any form that 'taxel describe' reads, or lines of JSON, each
 {\"imprint\":[\"..##\",...]} or, for several touches of one shape,
 {\"touches\":[[...],[...]]}. Lines are answered in lines; other keys are ignored,
 but for frame, label, time and channel, which are copied. An imprint at the rim
-may be cut off and is never 'certain'.
+may be cut off and is never 'certain'. With --noise an imprint that no shape
+leaves is answered too: every key in every place on the matrix is compared.
 Exit status 3: --expect was given, and the answer is another one, tied, rejected
 or unknown.
 
@@ -279,7 +292,8 @@ Examples:
   taxel recognise imprint.txt
   taxel recognise washer --model shipped.npz --top 3
   taxel batch < poses.jsonl | taxel recognise - --model parts
-  taxel recognise imprint.txt --model parts --expect disc --reject 0.9";
+  taxel recognise imprint.txt --model parts --expect disc --reject 0.9
+  taxel recognise imprint.txt --model parts --noise 0.01";
 
 /// `taxel library`: what a library is, and which folder it is.
 pub(crate) const LIBRARY_EXAMPLES: &str = "\

@@ -10,14 +10,16 @@ use crate::cli::arguments::flags::{
 };
 use crate::cli::arguments::help::{
     MODEL_CONFUSION_EXAMPLES, MODEL_DELETE_EXAMPLES, MODEL_EXAMPLES, MODEL_LIST_EXAMPLES,
-    MODEL_SHOW_EXAMPLES, MODEL_TRAIN_EXAMPLES, RECOGNISE_EXAMPLES,
+    MODEL_SHOW_EXAMPLES, MODEL_TOUCHES_EXAMPLES, MODEL_TRAIN_EXAMPLES, RECOGNISE_EXAMPLES,
 };
 use crate::cli::arguments::parameters::{self, Given};
 use crate::cli::error::CliError;
 use crate::formats::Name;
 use crate::parameter::Parameter;
-use crate::pose::{Anchor, Axis, GivenRanges};
-use crate::recognition::{GivenDescriptors, GivenError, Peer, PeerSettings, Rounding};
+use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, RangeError};
+use crate::recognition::{
+    GivenDescriptors, GivenError, Noise, NoiseError, Peer, PeerSettings, Rounding,
+};
 use crate::sensor::Sensor;
 use crate::storage::Existing;
 use crate::sweep::Shard;
@@ -38,6 +40,8 @@ pub(crate) enum ModelRequest {
     Delete(Name),
     /// To evaluate it.
     Confusion(Box<ConfusionArguments>),
+    /// To simulate how many touches it takes.
+    Touches(TouchesArguments),
 }
 
 /// A set of shapes, how to train it, and where the model goes.
@@ -86,6 +90,32 @@ pub(crate) struct ConfusionArguments {
     pub(crate) existing: Existing,
 }
 
+/// Noisy touches to simulate.
+#[derive(Clone, Debug)]
+pub(crate) struct NoiseArguments {
+    pub(crate) noise: DecimalRange,
+    /// Numbers of dead taxels.
+    pub(crate) dead: Vec<u32>,
+    /// Touches of each shape.
+    pub(crate) touches: u64,
+    pub(crate) seed: u64,
+    /// Columns and rows of the matrix; those of the model's sensor if not given.
+    pub(crate) size: Option<(u8, u8)>,
+    pub(crate) quiet: bool,
+}
+
+/// How many touches it takes until a shape is probable enough.
+#[derive(Clone, Debug)]
+pub(crate) struct TouchesArguments {
+    pub(crate) model: OsString,
+    pub(crate) until: f64,
+    /// Runs of each shape.
+    pub(crate) runs: u64,
+    pub(crate) seed: u64,
+    pub(crate) json: bool,
+    pub(crate) quiet: bool,
+}
+
 /// Who names the shapes.
 #[derive(Clone, Debug)]
 pub(crate) enum Evaluated {
@@ -101,6 +131,10 @@ pub(crate) enum Evaluated {
     Peer(Peer),
     /// All peers, in a table.
     AllPeers,
+    /// The best one, from noisy touches.
+    Noise(NoiseArguments),
+    /// The best one, from touches between the poses of the model.
+    HalfStep,
 }
 
 /// How an evaluation is printed.
@@ -122,6 +156,10 @@ pub(crate) struct RecogniseArguments {
     pub(crate) reject: Option<f64>,
     /// The answer that is expected.
     pub(crate) expect: Option<String>,
+    /// The probability that a taxel flips.
+    pub(crate) noise: Option<Noise>,
+    /// An imprint of the dead taxels.
+    pub(crate) mask: Option<OsString>,
     pub(crate) json: bool,
 }
 
@@ -150,6 +188,7 @@ pub(super) fn model() -> Command {
             ),
         )
         .subcommand(confusion())
+        .subcommand(touches())
 }
 
 /// `taxel model train`.
@@ -236,11 +275,6 @@ fn confusion() -> Command {
             .value_parser(value_parser!(u32).range(1..))
             .help(help)
     };
-    let seed = Arg::new("seed")
-        .long("seed")
-        .value_name("N")
-        .value_parser(value_parser!(u64))
-        .help("Seed of the poses that knn draws; default 0");
     let export = Arg::new("export")
         .long("export")
         .value_name("FILE")
@@ -259,7 +293,14 @@ fn confusion() -> Command {
             flag("pairs", "The error for each pair of shapes alone"),
             classifier,
         ])
-        .group(ArgGroup::new("of").args(["given", "greedy", "pairs", "classifier"]))
+        .group(ArgGroup::new("of").args([
+            "given",
+            "greedy",
+            "pairs",
+            "classifier",
+            "noise",
+            "test",
+        ]))
         .args([
             round,
             number("neighbours", "Neighbours that vote in knn; default 1"),
@@ -268,12 +309,117 @@ fn confusion() -> Command {
                 "templates",
                 "Imprints of each shape for template; default 100",
             ),
-            seed,
+            seed(),
             export,
             replace(),
             json(),
+            quiet(),
             flag("csv", "Print a table of commas").conflicts_with("json"),
         ])
+        .args(noisy())
+}
+
+/// `taxel model touches`.
+fn touches() -> Command {
+    let until = Arg::new("until")
+        .long("until")
+        .value_name("P")
+        .value_parser(parse_probability)
+        .default_value("0.99")
+        .help("How probable one shape must be (0 to 1)");
+    let runs = Arg::new("runs")
+        .long("runs")
+        .value_name("N")
+        .value_parser(value_parser!(u64).range(1..=1_000_000_000))
+        .default_value("1000")
+        .help("Runs of each shape");
+    Command::new("touches")
+        .about("Simulate how many touches it takes to name a shape")
+        .after_help(MODEL_TOUCHES_EXAMPLES)
+        .args([which_model(), until, runs, seed(), json(), quiet()])
+}
+
+/// `--seed`.
+fn seed() -> Arg {
+    Arg::new("seed")
+        .long("seed")
+        .value_name("N")
+        .value_parser(value_parser!(u64))
+        .default_value("0")
+        .hide_default_value(true)
+        .help("Seed of what is drawn at random; default 0")
+}
+
+/// The flags of noisy touches.
+fn noisy() -> [Arg; 5] {
+    let noise = Arg::new("noise")
+        .long("noise")
+        .value_name("START:END:STEP")
+        .value_parser(parse_noise_range)
+        .help_heading("Noise")
+        .help("Touches whose taxels flip with these probabilities");
+    let dead = Arg::new("dead")
+        .long("dead")
+        .value_name("N,...")
+        .value_delimiter(',')
+        .value_parser(value_parser!(u32).range(..4096))
+        .requires("noise")
+        .help_heading("Noise")
+        .help("With so many dead taxels; default 0");
+    let touches = Arg::new("touches")
+        .long("touches")
+        .value_name("N")
+        .value_parser(value_parser!(u64).range(1..=1_000_000_000))
+        .default_value("1000")
+        .hide_default_value(true)
+        .help_heading("Noise")
+        .help("Noisy touches of each shape; default 1000");
+    let matrix = Arg::new("matrix")
+        .long("matrix")
+        .value_name("CxR")
+        .value_parser(parse_matrix)
+        .requires("noise")
+        .help_heading("Noise")
+        .help("Columns and rows of the matrix; default the model's");
+    let test = Arg::new("test")
+        .long("test")
+        .value_name("half-step")
+        .value_parser(["half-step"])
+        .hide_possible_values(true)
+        .help_heading("Noise")
+        .help("Touches between the poses of the model");
+    [noise, dead, touches, matrix, test]
+}
+
+/// Probabilities that a taxel flips.
+fn parse_noise_range(text: &str) -> Result<DecimalRange, String> {
+    let range: DecimalRange = text
+        .parse()
+        .map_err(|error: RangeError| error.to_string())?;
+    for value in [range.value(0), range.last()] {
+        Noise::new(value).map_err(|error| error.to_string())?;
+    }
+    Ok(range)
+}
+
+/// The probability that a taxel flips.
+fn parse_noise(text: &str) -> Result<Noise, String> {
+    let number = text
+        .trim()
+        .parse()
+        .map_err(|_| "expected a number".to_owned())?;
+    Noise::new(number).map_err(|error: NoiseError| error.to_string())
+}
+
+/// Columns and rows, such as `16x16`.
+fn parse_matrix(text: &str) -> Result<(u8, u8), &'static str> {
+    let expected = "expected columns and rows from 1 to 64, such as 16x16";
+    let (columns, rows) = text.split_once('x').ok_or(expected)?;
+    let side = |text: &str| {
+        let side = text.trim().parse::<u8>().ok();
+        side.filter(|side| (1..=64).contains(side)).ok_or(expected)
+    };
+    Ok((side(columns)?, side(rows)?))
 }
 
 /// `taxel recognise NAME|FILE`.
@@ -299,6 +445,17 @@ pub(super) fn recognise() -> Command {
         .long("expect")
         .value_name("NAME")
         .help("Exit with status 3 if this is not the answer");
+    let noise = Arg::new("noise")
+        .long("noise")
+        .value_name("E")
+        .value_parser(parse_noise)
+        .help("Each taxel flips with this probability (0 to below 0.5)");
+    let mask = Arg::new("mask")
+        .long("mask")
+        .value_name("NAME|FILE")
+        .value_parser(value_parser!(OsString))
+        .requires("noise")
+        .help("Imprint whose active taxels are dead, stuck on or off");
     Command::new("recognise")
         .alias("recognize")
         .about("Name the shape that left an imprint")
@@ -306,7 +463,7 @@ pub(super) fn recognise() -> Command {
         .arg(what(
             "Imprint: shape of the library, or file; '-' for standard input",
         ))
-        .args([model, top, reject, expect, json()])
+        .args([model, top, reject, expect, noise, mask, json()])
 }
 
 /// `MODEL`: a name or a file.
@@ -353,9 +510,22 @@ pub(super) fn model_request(matches: &ArgMatches) -> Result<ModelRequest, CliErr
             Some(name) => ModelRequest::Delete(name.clone()),
             None => ModelRequest::List(false),
         },
+        "touches" => ModelRequest::Touches(TouchesArguments {
+            model: model(),
+            until: number(own, "until", 0.99),
+            runs: number(own, "runs", 1000),
+            seed: number(own, "seed", 0),
+            json: own.get_flag("json"),
+            quiet: own.get_flag("quiet"),
+        }),
         "confusion" => ModelRequest::Confusion(Box::new(confusion_arguments(own, model()))),
         _ => ModelRequest::List(own.get_flag("json")),
     })
+}
+
+/// The value of a flag that has a default.
+fn number<T: Copy + Send + Sync + 'static>(matches: &ArgMatches, id: &str, default: T) -> T {
+    matches.get_one(id).copied().unwrap_or(default)
 }
 
 /// What the arguments of `taxel model train` ask for.
@@ -398,24 +568,37 @@ fn confusion_arguments(matches: &ArgMatches, model: OsString) -> ConfusionArgume
     let peer = matches
         .get_one::<String>("classifier")
         .map(|name| Peer::from_name(name));
+    let noise = matches.get_one::<DecimalRange>("noise").map(|&noise| {
+        let dead = matches.get_many::<u32>("dead");
+        NoiseArguments {
+            noise,
+            dead: dead.map_or_else(|| vec![0], |dead| dead.copied().collect()),
+            touches: number(matches, "touches", 1000),
+            seed: number(matches, "seed", 0),
+            size: matches.get_one("matrix").copied(),
+            quiet: matches.get_flag("quiet"),
+        }
+    });
     let of = match (given, peer) {
+        _ if matches.contains_id("test") => Evaluated::HalfStep,
         (_, Some(Some(peer))) => Evaluated::Peer(peer),
         (_, Some(None)) => Evaluated::AllPeers,
         (Some(given), None) => Evaluated::Given(given.clone()),
+        _ if noise.is_some() => noise.map_or(Evaluated::Imprints, Evaluated::Noise),
         _ if matches.get_flag("greedy") => Evaluated::Greedy,
         _ if matches.get_flag("pairs") => Evaluated::Pairs,
         _ => Evaluated::Imprints,
     };
     let mut peers = PeerSettings::default();
-    let number = |id: &str| {
+    let limit = |id: &str| {
         matches
             .get_one::<u32>(id)
             .map(|&number| crate::index::wide(number))
     };
-    peers.neighbours = number("neighbours").unwrap_or(peers.neighbours);
-    peers.sample = number("sample").unwrap_or(peers.sample);
-    peers.templates = number("templates").unwrap_or(peers.templates);
-    peers.seed = matches.get_one("seed").copied().unwrap_or(peers.seed);
+    peers.neighbours = limit("neighbours").unwrap_or(peers.neighbours);
+    peers.sample = limit("sample").unwrap_or(peers.sample);
+    peers.templates = limit("templates").unwrap_or(peers.templates);
+    peers.seed = number(matches, "seed", peers.seed);
     let roundings = matches.get_many::<Rounding>("round").into_iter().flatten();
     ConfusionArguments {
         model,
@@ -445,6 +628,8 @@ pub(super) fn recognise_arguments(matches: &ArgMatches) -> RecogniseArguments {
             .map(|&top| crate::index::wide(top)),
         reject: matches.get_one("reject").copied(),
         expect: matches.get_one::<String>("expect").cloned(),
+        noise: matches.get_one::<Noise>("noise").copied(),
+        mask: matches.get_one::<OsString>("mask").cloned(),
         json: matches.get_flag("json"),
     }
 }

@@ -18,6 +18,8 @@ pub(super) mod sweep;
 
 pub(super) mod model;
 
+pub(super) mod noise;
+
 pub(super) mod recognise;
 
 pub(super) mod frames;

@@ -11,6 +11,7 @@ use serde_json::json;
 use crate::cli::arguments::recognition::{
     ConfusionArguments, DEFAULT_MODEL, Evaluated, EvaluationForm, ModelTarget, TrainArguments,
 };
+use crate::cli::commands::noise;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
@@ -422,7 +423,7 @@ fn card_json(
 }
 
 /// A count as JSON; counts beyond 64 bits do not fit in memory anyway, but a weight may make one.
-fn number(count: u128) -> serde_json::Value {
+pub(crate) fn number(count: u128) -> serde_json::Value {
     match u64::try_from(count) {
         Ok(count) => json!(count),
         Err(_) => json!(count.to_string()),
@@ -535,6 +536,10 @@ pub(crate) fn confusion(
                     text + &charset.lines(&evaluation::features(Some(&reached)))
                 }
             }
+        }
+        Evaluated::Noise(noise) => noise::degradation(&model, noise, asked.form, charset)?,
+        Evaluated::HalfStep => {
+            noise::half_step(&model, asked.form == EvaluationForm::Json, charset)?
         }
         Evaluated::AllPeers => {
             let all = Peer::ALL.map(|peer| peer.evaluate(&model, &asked.peers));

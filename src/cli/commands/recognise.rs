@@ -18,7 +18,7 @@ use crate::cli::output::report;
 use crate::formats::json;
 use crate::imprint::Imprint;
 use crate::quote::legible;
-use crate::recognition::{Answer, AnswerState, Evidence, Model};
+use crate::recognition::{Answer, AnswerState, Evidence, Method, Model, NoisyRecogniser};
 
 /// The exit status if the answer is not the expected one.
 const UNEXPECTED: u8 = 3;
@@ -30,9 +30,20 @@ pub(crate) fn recognise(
     charset: Charset,
     output: &mut dyn Write,
 ) -> Result<u8, CliError> {
-    let recogniser = Recogniser {
+    let model = model::find(&asked.model, shelf)?;
+    let noise = match &asked.mask {
+        Some(mask) => asked
+            .noise
+            .map(|noise| Ok(noise.without(imprint_of(mask, shelf)?))),
+        None => asked.noise.map(Ok::<_, CliError>),
+    };
+    let noisy = noise
+        .transpose()?
+        .map(|noise| NoisyRecogniser::new(&model, noise));
+    let mut recogniser = Recogniser {
         asked,
-        model: model::find(&asked.model, shelf)?,
+        model: &model,
+        noisy,
     };
     if let Some(name) = &asked.expect
         && recogniser
@@ -46,12 +57,18 @@ pub(crate) fn recognise(
     match input(&asked.what, shelf)? {
         Asked::Imprint(imprint) => {
             let touches = [imprint];
-            let answer = recogniser.answer(&touches);
+            let (answer, method) = recogniser.answer(&touches)?;
             let text = if asked.json {
-                let line = json::text(&recogniser.json(&touches, &answer, None));
+                let line = json::text(&recogniser.json(&touches, (&answer, method), None));
                 report::ascii_json(&line) + "\n"
             } else {
-                answer::text(&recogniser.model, &touches[0], &answer, asked.top, charset)
+                answer::text(
+                    &model,
+                    &touches[0],
+                    &answer,
+                    (asked.top, asked.noise),
+                    charset,
+                )
             };
             output.write_all(text.as_bytes()).map_err(CliError::Write)?;
             output.flush().map_err(CliError::Write)?;
@@ -65,9 +82,11 @@ pub(crate) fn recognise(
             let mut expected = true;
             lines::answer_each(input, output, "touch", |line, text| {
                 let line = Line::read(line)?;
-                let answer = recogniser.answer(&line.touches);
+                let answered = recogniser.answer(&line.touches);
+                let (answer, method) = answered.map_err(|error| error.to_string())?;
                 expected &= recogniser.expected(&answer);
-                let own = json::text(&recogniser.json(&line.touches, &answer, Some(&line)));
+                let own =
+                    json::text(&recogniser.json(&line.touches, (&answer, method), Some(&line)));
                 text.extend(report::ascii_json(&own).bytes());
                 Ok(())
             })?;
@@ -79,27 +98,46 @@ pub(crate) fn recognise(
 /// A model, and how it is asked.
 struct Recogniser<'a> {
     asked: &'a RecogniseArguments,
-    model: Model,
+    model: &'a Model,
+    /// The same under a noise, if one is given.
+    noisy: Option<NoisyRecogniser<'a>>,
 }
 
 impl Recogniser<'_> {
-    fn answer(&self, touches: &[Imprint]) -> Answer {
+    fn answer(&mut self, touches: &[Imprint]) -> Result<(Answer, Method), CliError> {
+        if let Some(noisy) = &mut self.noisy {
+            for touch in touches {
+                let size = |imprint: &Imprint| (imprint.columns(), imprint.rows());
+                if let Some(mask) = noisy.noise().dead()
+                    && size(mask) != size(touch)
+                {
+                    return Err(CliError::Mask {
+                        mask: size(mask),
+                        imprint: size(touch),
+                    });
+                }
+            }
+            return Ok(noisy.recognise(touches, self.asked.reject));
+        }
         let evidence = Evidence::of(touches);
-        self.model.recognise(match self.asked.reject {
+        let answer = self.model.recognise(match self.asked.reject {
             Some(least) => evidence.reject_below(least),
             None => evidence,
-        })
+        });
+        Ok((answer, Method::Exact))
     }
 
     fn json<'a>(
         &'a self,
         touches: &[Imprint],
-        answer: &'a Answer,
+        (answer, method): (&'a Answer, Method),
         line: Option<&'a Line>,
     ) -> AnswerJson<'a> {
         AnswerJson {
-            model: &self.model,
+            model: self.model,
             answer,
+            method,
+            noise: self.asked.noise,
             nearest: self.model.nearest_of(Evidence::of(touches)),
             top: self.asked.top,
             copied: line.map(Line::copied).unwrap_or_default(),
@@ -114,6 +152,14 @@ impl Recogniser<'_> {
         let named = answer.shape.map(|shape| &self.model.shapes()[shape].name);
         answer.state != AnswerState::Tied && named == Some(expected)
     }
+}
+
+/// The imprint that an argument names.
+fn imprint_of(what: &OsStr, shelf: &Shelf) -> Result<Imprint, CliError> {
+    Ok(match shelf.find(what)? {
+        Content::Imprint(imprint) => imprint,
+        Content::Shape(shape) => shape.imprint,
+    })
 }
 
 /// What is to be recognised.

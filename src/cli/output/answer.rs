@@ -9,7 +9,7 @@ use serde_json::value::RawValue;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::percent;
 use crate::imprint::Imprint;
-use crate::recognition::{Answer, AnswerState, Evidence, Model, Nearest};
+use crate::recognition::{Answer, AnswerState, Evidence, Method, Model, Nearest, Noise};
 
 /// How many shapes a text shows, unless another number is asked for.
 const SHOWN: usize = 8;
@@ -21,6 +21,8 @@ const BAR: usize = 30;
 pub(crate) struct AnswerJson<'a> {
     pub(crate) model: &'a Model,
     pub(crate) answer: &'a Answer,
+    pub(crate) method: Method,
+    pub(crate) noise: Option<Noise>,
     pub(crate) nearest: Option<Nearest>,
     pub(crate) top: Option<usize>,
     /// Keys of the question that come first.
@@ -41,8 +43,8 @@ impl Serialize for AnswerJson<'_> {
             let tied: Vec<&str> = answer.tied.iter().map(|&shape| name(shape)).collect();
             map.serialize_entry("tied", &tied)?;
         }
-        map.serialize_entry("method", "exact")?;
-        map.serialize_entry("noise", &None::<f64>)?;
+        map.serialize_entry("method", self.method.name())?;
+        map.serialize_entry("noise", &self.noise.map(|noise| noise.flip()))?;
         map.serialize_entry("at_rim", &answer.at_rim)?;
         let ranking = answer.ranking.iter().take(self.top.unwrap_or(usize::MAX));
         let ranking = ranking
@@ -65,7 +67,7 @@ pub(crate) fn text(
     model: &Model,
     touch: &Imprint,
     answer: &Answer,
-    top: Option<usize>,
+    (top, noise): (Option<usize>, Option<Noise>),
     charset: Charset,
 ) -> String {
     let name = |shape: usize| model.shapes()[shape].name.as_str();
@@ -78,6 +80,13 @@ pub(crate) fn text(
         (state, Some(shape)) => format!("{}: {}\n", name(shape), state.name()),
         (_, None) => "unknown: no shape of the model leaves this imprint\n".to_owned(),
     };
+    if let Some(noise) = noise {
+        let _ = writeln!(
+            text,
+            "noise {}: every key in every place is compared",
+            noise.flip()
+        );
+    }
     if answer.at_rim {
         text += "the imprint reaches the rim of the matrix: it may be cut off\n";
     }

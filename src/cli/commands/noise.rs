@@ -1,0 +1,253 @@
+//! What noise costs: `taxel model confusion --noise`, `--test half-step` and `taxel model touches`.
+
+use std::fmt::Write;
+use std::sync::atomic::Ordering;
+
+use serde_json::json;
+
+use crate::cli::arguments::recognition::{EvaluationForm, NoiseArguments, TouchesArguments};
+use crate::cli::commands::model;
+use crate::cli::error::CliError;
+use crate::cli::input::shapes::Shelf;
+use crate::cli::output::charset::Charset;
+use crate::cli::output::evaluation::percent;
+use crate::cli::output::progress::Progress;
+use crate::cli::output::report;
+use crate::cli::signals::Signals;
+use crate::formats::json;
+use crate::recognition::{Model, Noise, RecognitionRate, TrainingError, random_taxels};
+
+/// A line of the table: the noise, the number of dead taxels, and what was reached.
+struct NoiseRow {
+    noise: f64,
+    dead: u32,
+    rate: RecognitionRate,
+}
+
+/// How often noisy touches are named right, for each noise and each number of dead taxels.
+pub(crate) fn degradation(
+    model: &Model,
+    asked: &NoiseArguments,
+    form: EvaluationForm,
+    charset: Charset,
+) -> Result<String, CliError> {
+    let signals = Signals::heard().map_err(CliError::System)?;
+    let sizes = (model.sensor().columns(), model.sensor().rows());
+    let (columns, rows) = asked.size.unwrap_or(sizes);
+    let values: Vec<f64> = asked.noise.values().collect();
+    let each = asked.touches * model.shapes().len() as u64;
+    let all = each * values.len() as u64 * asked.dead.len() as u64;
+    let progress = Progress::new(all, asked.quiet, charset);
+    let tell = |touches: u64| {
+        progress.add(touches);
+        !signals.stopped.load(Ordering::Relaxed)
+    };
+    let mut table = Vec::new();
+    for &dead in &asked.dead {
+        let mask = random_taxels(columns, rows, dead, asked.seed);
+        for &value in &values {
+            let noise = Noise::new(value)?.without(mask);
+            let rate = model.recognition_rate(
+                (columns, rows),
+                &noise,
+                &noise,
+                asked.touches,
+                asked.seed,
+                &tell,
+            );
+            let rate = rate.ok_or_else(|| signals.failure())?;
+            table.push(NoiseRow {
+                noise: value,
+                dead,
+                rate,
+            });
+        }
+    }
+    progress.finish();
+    Ok(match form {
+        EvaluationForm::Json => noise_json(&table, (columns, rows), asked.seed),
+        EvaluationForm::Csv => noise_csv(&table),
+        EvaluationForm::Text => charset.lines(&noise_text(&table, asked.seed, charset)),
+    })
+}
+
+fn noise_json(table: &[NoiseRow], (columns, rows): (u8, u8), seed: u64) -> String {
+    let rows_json: Vec<_> = table
+        .iter()
+        .map(|row| {
+            json!({
+                "noise": row.noise,
+                "dead": row.dead,
+                "touches": row.rate.touches,
+                "right": row.rate.right,
+                "accuracy": row.rate.accuracy(),
+                "standard_error": row.rate.standard_error(),
+                "claimed": row.rate.claimed(),
+                "held": row.rate.held_share(),
+            })
+        })
+        .collect();
+    let answer = json!({"columns": columns, "rows": rows, "seed": seed, "degradation": rows_json});
+    json::text(&answer) + "\n"
+}
+
+fn noise_csv(table: &[NoiseRow]) -> String {
+    let mut text = String::from("noise,dead,touches,right,accuracy,standard_error,claimed,held\n");
+    for row in table {
+        let rate = &row.rate;
+        // Cannot fail: the text is kept in memory.
+        let _ = writeln!(
+            text,
+            "{},{},{},{},{},{},{},{}",
+            row.noise,
+            row.dead,
+            rate.touches,
+            rate.right,
+            rate.accuracy(),
+            rate.standard_error(),
+            rate.claimed(),
+            rate.held_share()
+        );
+    }
+    text
+}
+
+/// The table with a bar per row.
+fn noise_text(table: &[NoiseRow], seed: u64, charset: Charset) -> String {
+    const BAR: usize = 30;
+    let full = match charset {
+        Charset::Ascii => "#",
+        Charset::Unicode => "█",
+    };
+    let mut text = String::from("  noise  dead     right            held   claimed\n");
+    for row in table {
+        let rate = &row.rate;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a share is from 0 to 1"
+        )]
+        let bar = full.repeat((rate.accuracy() * BAR as f64).round() as usize);
+        let _ = writeln!(
+            text,
+            "{:>7}  {:>4}  {:>8} ± {:<4}  {:>7}  {:>8}  {bar}",
+            row.noise,
+            row.dead,
+            percent(rate.accuracy()),
+            format!("{:.1}", 100.0 * rate.standard_error()),
+            percent(rate.held_share()),
+            percent(rate.claimed()),
+        );
+    }
+    let touches = table.first().map_or(0, |row| row.rate.touches);
+    let _ = writeln!(
+        text,
+        "{touches} touches a row, seed {seed}; held: imprints that some shape leaves without noise"
+    );
+    text
+}
+
+/// What touches half a step off the grid cost.
+pub(crate) fn half_step(model: &Model, json: bool, charset: Charset) -> Result<String, CliError> {
+    let signals = Signals::heard().map_err(CliError::System)?;
+    let going = |_| !signals.stopped.load(Ordering::Relaxed);
+    let result = model.half_step(&going).map_err(|error| match error {
+        TrainingError::Stopped => signals.failure(),
+        error => error.into(),
+    })?;
+    if json {
+        let answer = json!({
+            "touches": model::number(result.touches),
+            "missing": result.missing(),
+            "error": result.error(),
+            "error_with_nearest": result.error_with_nearest(),
+        });
+        return Ok(answer.to_string() + "\n");
+    }
+    let text = format!(
+        "touches half a step off the grid, in x0, y0 and angle\n\
+         not held by the model    {:>8}\n\
+         wrong, with these        {:>8}\n\
+         wrong, with the nearest  {:>8}\n",
+        percent_fine(result.missing()),
+        percent_fine(result.error()),
+        percent_fine(result.error_with_nearest())
+    );
+    Ok(charset.lines(&text))
+}
+
+/// A share as percent, with three decimals.
+fn percent_fine(share: f64) -> String {
+    format!("{:.3} %", 100.0 * share)
+}
+
+/// How many touches of one shape it takes until it is as probable as wanted.
+pub(crate) fn touches(
+    asked: &TouchesArguments,
+    shelf: &Shelf,
+    charset: Charset,
+) -> Result<String, CliError> {
+    let model = model::find(&asked.model, shelf)?;
+    let signals = Signals::heard().map_err(CliError::System)?;
+    let all = asked.runs * model.shapes().len() as u64;
+    let progress = Progress::new(all, asked.quiet, charset);
+    let tell = |runs: u64| {
+        progress.add(runs);
+        !signals.stopped.load(Ordering::Relaxed)
+    };
+    let results = model.touches_until(asked.until, asked.runs, asked.seed, &tell);
+    let results = results.ok_or_else(|| signals.failure())?;
+    progress.finish();
+    #[expect(clippy::cast_precision_loss, reason = "the number of shapes is small")]
+    let shapes = results.len() as f64;
+    let mean = results.iter().map(|own| own.mean).sum::<f64>() / shapes;
+    let variance: f64 = results.iter().map(|own| own.standard_error.powi(2)).sum();
+    let error = variance.sqrt() / shapes;
+    let named = model.shapes().iter().zip(&results);
+    if asked.json {
+        let shapes: Vec<_> = named
+            .map(|(shape, own)| {
+                json!({
+                    "name": shape.name,
+                    "mean": own.mean,
+                    "standard_error": own.standard_error,
+                    "reached": own.reached,
+                    "runs": own.runs,
+                    "right": own.right,
+                })
+            })
+            .collect();
+        let answer = json!({
+            "until": asked.until,
+            "seed": asked.seed,
+            "mean": mean,
+            "standard_error": error,
+            "shapes": shapes,
+        });
+        return Ok(report::ascii_json(&answer.to_string()) + "\n");
+    }
+    let width = model
+        .shapes()
+        .iter()
+        .map(|shape| shape.name.chars().count());
+    let width = width.fold(10, usize::max);
+    let mut text = format!(
+        "touches until a shape is {} probable; {} runs each, seed {}\n",
+        percent(asked.until),
+        asked.runs,
+        asked.seed
+    );
+    for (shape, own) in named {
+        let left = match own.runs - own.reached {
+            0 => String::new(),
+            never => format!("  {never} runs never"),
+        };
+        let _ = writeln!(
+            text,
+            "  {:<width$}  {:>7.2} ± {:.2}{left}",
+            shape.name, own.mean, own.standard_error
+        );
+    }
+    let _ = writeln!(text, "  {:<width$}  {mean:>7.2} ± {error:.2}", "all shapes");
+    Ok(charset.lines(&text))
+}
