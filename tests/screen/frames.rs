@@ -30,8 +30,8 @@ const SCENES: [(&str, &str, &str, usize); 9] = [
         "<Space>",
         75,
     ),
-    ("a form opens", "f<CR>", "f", 650),
-    ("a field is edited", "f<CR>f<Tab>", "3", 140),
+    ("a form opens", "f<CR>", "f", 690),
+    ("a field is edited", "f<CR>f<Tab>", "3", 160),
     ("a page of Explore", SWEPT, "2", 1700),
     ("a row of Explore", SWEPT, "<Down>", 360),
 ];

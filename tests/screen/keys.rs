@@ -41,7 +41,7 @@ fn taxels_are_turned_over_and_undone() {
 
 #[test]
 fn a_figure_follows_while_it_is_typed_and_escape_restores() {
-    shows("f<Tab>2", &["ellipse rx 2.00 ry 4.00", "NA 28 in all"]);
+    shows("f<Tab>2", &["ellipse rx 2.00 ry 4.00", "NA 28  NAE 28"]);
     shows("f<Tab>2<Esc>", &["empty", "NA 0 in all"]);
     shows(
         "f<Tab>2<Enter>",
@@ -118,8 +118,8 @@ fn the_step_is_told_where_there_is_something_to_move() {
 
 #[test]
 fn kinds_are_chosen_by_arrow_and_by_letter() {
-    shows("f<Down>", &["< rectangle >", "Length", "Width"]);
-    shows("f<Up>", &["< octagon "]);
+    shows("f<Right>", &["< rectangle >", "Length", "Width"]);
+    shows("f<Left>", &["< octagon "]);
     shows("f<7x:Right>", &["< ellipse "]);
     shows("fh", &["< hexagon "]);
     shows("fhh", &["< heptagon "]);

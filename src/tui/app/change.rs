@@ -190,15 +190,17 @@ pub(in crate::tui) fn zoom(app: &mut App, direction: i8) {
         let text = format!("a figure has no zoom; {figure} changes its size");
         return refuse(app, text);
     };
-    set(
-        app,
-        source,
-        MoveKind::Zoom,
-        &[
-            (Parameter::ZoomX, tidy(x + by)),
-            (Parameter::ZoomY, tidy(y + by)),
-        ],
-    );
+    let (x, y) = (tidy(x + by), tidy(y + by));
+    let mut values = vec![(Parameter::ZoomX, x), (Parameter::ZoomY, y)];
+    if let Source::Picture(picture) = &source
+        && app.zoom_centre
+        && x > 0.0
+        && y > 0.0
+    {
+        let (x0, y0) = picture.corner_about_centre(x, y);
+        values.extend([(Parameter::X0, tidy(x0)), (Parameter::Y0, tidy(y0))]);
+    }
+    set(app, source, MoveKind::Zoom, &values);
 }
 
 /// Rounds to 6 decimals, so that steps of a hundredth do not drift; -0 becomes 0.

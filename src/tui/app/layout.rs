@@ -8,7 +8,7 @@ use ratatui::layout::Rect;
 use crate::imprint::Imprint;
 use crate::tui::app::page::Slot;
 use crate::tui::matrix::layout::{matrix_width, scale};
-use crate::tui::widget::write::right_of;
+use crate::tui::widget::write::{below, right_of};
 
 /// The panel is not made narrower than this; below, it is a page of its own.
 const PANEL: u16 = 30;
@@ -18,6 +18,14 @@ const WIDE_PANEL: u16 = 44;
 
 /// A form can stand beside the matrix from this width on.
 const FORM: u16 = 22;
+
+/// A form gets this width beside the descriptors, or at least the narrow one: then ranges stand under the fields.
+const WIDE_FORM: u16 = 40;
+const NARROW_FORM: u16 = 32;
+
+/// Lines of a form above the descriptors, and lines that these need at least.
+const LONGEST_FORM: u16 = 18;
+const LOW_PANEL: u16 = 10;
 
 /// Nothing useful can be shown on less.
 pub const SMALLEST: (u16, u16) = (20, 6);
@@ -35,6 +43,8 @@ pub struct Panes {
     pub panel: Option<Rect>,
     /// A form: in place of the panel, or over the foot of the matrix.
     pub form: Rect,
+    /// The descriptors while a form is open, where there is room for both.
+    pub form_panel: Option<Rect>,
     /// What made the imprint.
     pub source: Rect,
     /// The taxel under the cursor.
@@ -74,12 +84,14 @@ impl Panes {
         };
         let left = (matrix.right() + 1).min(body.right());
         let beside = right_of(body, left);
+        let (form, form_panel) = form(body, beside);
         Some(Self {
             menu: Rect { height: 1, ..area },
             body,
             matrix,
             panel: width.map(|_| beside),
-            form: form(body, beside),
+            form,
+            form_panel,
             source: if foot > 2 { line(foot) } else { absent },
             taxel: line(if foot == 4 { 3 } else { 2 }),
             notice: line(2),
@@ -116,15 +128,24 @@ fn whole_matrix(area: Rect, body: Rect, imprint: &Imprint) -> Option<u16> {
         .or_else(|| beside_panel(1).filter(|_| too_wide))
 }
 
-/// The area of a form: beside the matrix, or over its foot where there is too little room.
-fn form(body: Rect, beside: Rect) -> Rect {
-    if beside.width >= FORM {
-        return beside;
+/// The area of a form: beside the matrix, or over its foot where there is too little room; and that of the descriptors,
+/// where they fit beside the form or below it.
+fn form(body: Rect, beside: Rect) -> (Rect, Option<Rect>) {
+    if beside.width < FORM {
+        let height = body.height.min(8);
+        let y = body.bottom() - height;
+        return (Rect { y, height, ..body }, None);
     }
-    let height = body.height.min(8);
-    Rect {
-        y: body.bottom() - height,
-        height,
-        ..body
+    if beside.width > NARROW_FORM + PANEL {
+        let panel = (beside.width - 1).saturating_sub(WIDE_FORM);
+        let width = beside.width - 1 - panel.clamp(PANEL, WIDE_PANEL);
+        let panel = right_of(beside, beside.x + width + 1);
+        return (Rect { width, ..beside }, Some(panel));
     }
+    if beside.height > LONGEST_FORM + LOW_PANEL && beside.width >= PANEL {
+        let height = LONGEST_FORM;
+        let panel = below(beside, height + 1);
+        return (Rect { height, ..beside }, Some(panel));
+    }
+    (beside, None)
 }

@@ -98,6 +98,8 @@ pub enum Message {
     Sensor,
     /// Scale the shape up or down.
     Zoom(i8),
+    /// Zoom pictures about their centre, or about the origin again.
+    ZoomCentre,
     /// What the mouse did.
     Mouse(Mouse),
     /// The screen has this many columns and rows.

@@ -156,6 +156,8 @@ pub struct App {
     pub(in crate::tui) page: NarrowPage,
     /// How far a key moves or zooms the shape.
     pub(in crate::tui) step: NudgeStep,
+    /// Whether a picture is zoomed about its centre, not about the origin.
+    pub(in crate::tui) zoom_centre: bool,
     /// The pages over the matrix; the last one is on top.
     pub(in crate::tui) dialogs: Vec<Dialog>,
     /// What the line of notices says.
@@ -200,6 +202,7 @@ impl App {
             layers: Layers::default(),
             page: NarrowPage::Matrix,
             step: NudgeStep::Hundredth,
+            zoom_centre: false,
             dialogs: Vec::new(),
             notice: None,
             removed: None,

@@ -12,6 +12,8 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
+use crate::description::Descriptor;
+use crate::formats::value;
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Reading;
 use crate::tui::app::layout::Panes;
@@ -35,14 +37,15 @@ pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
         let source = source(app);
         let source = theme.text(&source);
         let source = write::fitted(&source, room, theme);
+        let in_form = app.pane().map(Page::slot) == Some(Slot::Form);
+        let line = if in_form && panes.form_panel.is_none() {
+            described(app, seen)
+        } else {
+            taxel(app, seen, panes)
+        };
         let pieces = [&*source, beyond].map(|piece| (piece, Role::Text));
         write::line(buffer, panes.source, theme, pieces);
-        write::line(
-            buffer,
-            panes.taxel,
-            theme,
-            [(taxel(app, seen, panes).as_str(), Role::Text)],
-        );
+        write::line(buffer, panes.taxel, theme, [(line.as_str(), Role::Text)]);
     }
     hints(app, buffer, panes);
     let prompt = app.dialogs.last().map(Dialog::page);
@@ -90,6 +93,22 @@ fn source(app: &App) -> String {
         text += &format!(" + {by_hand} by hand");
     }
     text
+}
+
+/// The main descriptors, while a form has the place of the others: so they are seen to change with each key.
+fn described(app: &App, seen: &Reading) -> String {
+    let all = format!("NA {} in all", seen.imprint.count());
+    let Some(description) = seen.description(app.chosen()) else {
+        return all;
+    };
+    let text = |key: &&str| {
+        let descriptor = Descriptor::from_key(key)?;
+        let text = value::text((descriptor.measure)(&description), descriptor.dimension)?;
+        Some(format!("{} {text}", descriptor.symbol))
+    };
+    let main = ["na", "nae", "p", "f"].iter().filter_map(text);
+    let all = (seen.regions.len() > 1).then_some(all);
+    main.chain(all).collect::<Vec<_>>().join("  ")
 }
 
 /// The taxel under the cursor, and how the shape is held. Everything has a place of its own, whatever is before it, and

@@ -57,6 +57,9 @@ pub fn view(app: &App, frame: &mut Frame<'_>) {
         (Some(page), _) => {
             if page.slot() == Slot::Form {
                 matrix.draw(theme, buffer, panes.matrix);
+                if let Some(area) = panes.form_panel {
+                    panel(buffer, area);
+                }
             }
             let area = panes.area(page.slot());
             cursor = page.draw(theme, app.keymap(), buffer, area);

@@ -238,16 +238,20 @@ impl FormDialog {
     /// An arrow: chooses the kind, moves in a field or to another one.
     pub fn choose(&mut self, arrow: Arrow) {
         match (self.form.focus(), arrow) {
-            (None, Arrow::Left | Arrow::Up) => self.next_kind(FigureKind::ALL.len() - 1, |_| true),
-            (None, Arrow::Right | Arrow::Down) => self.next_kind(1, |_| true),
+            (None, Arrow::Left) => self.next_kind(FigureKind::ALL.len() - 1, |_| true),
+            (None, Arrow::Right) => self.next_kind(1, |_| true),
             (Some(_), Arrow::Left | Arrow::Right) => self.form.take(&Message::Choose(arrow)),
-            (Some(_), Arrow::Up) => self.move_focus(-1),
-            (Some(_), Arrow::Down) => self.move_focus(1),
+            (_, Arrow::Up) => self.move_focus(-1),
+            (_, Arrow::Down) => self.move_focus(1),
         }
     }
 
-    /// A character: into the field; on the kind, the next kind that begins with it.
+    /// A character: into the field; on the kind, the next kind that begins with it. No kind begins with a digit, a sign
+    /// or a point: these begin the number in the first field.
     pub fn insert(&mut self, character: char) {
+        if self.form.focus().is_none() && matches!(character, '0'..='9' | '-' | '+' | '.') {
+            self.move_focus(1);
+        }
         if self.form.focus().is_some() {
             self.edit(|form| form.take(&Message::Type(character)));
         } else {

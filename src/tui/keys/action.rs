@@ -172,6 +172,7 @@ actions! {
         TURN_RIGHT_10 "turn-right-10" [] Message::Turn(10);
         ZOOM_IN "zoom-in" ["zoom in"] Message::Zoom(1);
         ZOOM_OUT "zoom-out" ["zoom out"] Message::Zoom(-1);
+        ZOOM_CENTRE "zoom-centre" [] Message::ZoomCentre;
         SENSOR "sensor" [] Message::Sensor;
         PANEL "panel" [] Message::SwitchPage;
         COPY_DESCRIPTORS "copy-descriptors" ["copy", "copy descriptors"] Message::Copy(Copied::Descriptors);

@@ -42,7 +42,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('n') => NEW] "" "New: empty the matrix, to draw by hand";
         [Char('l') => LOAD] "" "Load: bring a stored shape onto the matrix";
         [Char('f') => FIGURE] "" "Figure: place one of the seven figures";
-        [Char('p') => PICTURE] "" "Picture: move, turn and zoom a stored shape";
+        [Char('p') => PICTURE] "" "Picture: place a stored shape, or move the one here";
         [Char('s') => SAVE] "" "Save: store what is on the matrix";
         [Char('d') => DELETE] "" "Delete: remove a stored shape";
         [Char('q') => QUIT] "" "Quit: asks first where work would be lost";
@@ -69,6 +69,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('(') => TURN_LEFT_10, Char(')') => TURN_RIGHT_10] "" "turn it by 10 degrees";
         [Char('z') => ZOOM_IN, Char('Z') => ZOOM_OUT]
             "" "zoom a picture in, out, by the current step";
+        [Char('C') => ZOOM_CENTRE] "" "zoom about the picture's centre, or about the origin";
         [Char('S') => SENSOR] "" "Sensor: columns, rows, threshold, pitch";
         [Char('i') => PANEL] "descriptors" "on a narrow screen: descriptors or matrix";
         [Char('y') => COPY_DESCRIPTORS, Char('Y') => COPY_IMPRINT]

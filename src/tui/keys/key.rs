@@ -1,4 +1,4 @@
-//! Keys, and their notation: `f<Down><Tab>4.00<Enter>`.
+//! Keys, and their notation: `f<Right><Tab>4.00<Enter>`.
 //!
 //! Only keys that arrive on every terminal: no Alt, no Ctrl with a digit. A character stands for itself, `<lt>` for
 //! `<`; named keys and Ctrl stand in angle brackets, so does a character by its number, `<U+3000>`; `<3x:Down>` repeats

@@ -5,6 +5,7 @@
 
 use crate::description::{DESCRIPTORS, Descriptor};
 use crate::formats::value;
+use crate::source::Source;
 use crate::storage::{Expected, ShapeOrigin};
 use crate::tui::app::change::{
     begin, change, hold, inform, let_go, nudge, put_back, refuse, replace, shift, travel, turn,
@@ -42,6 +43,9 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         }
         Message::Load => return Some(open_list(app, Purpose::Load)),
         Message::Delete => return Some(open_list(app, Purpose::Delete)),
+        Message::Picture if matches!(app.history.present().source, Some(Source::Picture(_))) => {
+            edit_picture(app);
+        }
         Message::Picture => return Some(open_list(app, Purpose::Picture)),
         Message::Figure => open_form(app, FormDialog::figure(app.history.present())),
         Message::Sensor => open_form(app, FormDialog::sensor(app.history.present())),
@@ -90,6 +94,18 @@ fn library_request(message: Message) -> Result<LibraryRequest, Message> {
         Message::GiveUp => LibraryRequest::GiveUp,
         other => return Err(other),
     })
+}
+
+/// Opens the form of the picture that is on the matrix.
+fn edit_picture(app: &mut App) {
+    let present = app.history.present();
+    if let Some(Source::Picture(picture)) = &present.source {
+        let name = picture.name().or(app.stored_name()).unwrap_or("imprint");
+        let form = FormDialog::picture(present, picture.clone(), name.to_owned());
+        open_form(app, form);
+        let load = app.key_of(&action::LOAD);
+        inform(app, format!("{load} loads another shape"));
+    }
 }
 
 /// Asks a question where only yes does something.
@@ -178,6 +194,11 @@ fn edit(app: &mut App, message: &Message) {
         Message::Move(dx, dy) => shift(app, dx, dy),
         Message::Turn(degrees) => turn(app, degrees),
         Message::Zoom(direction) => zoom(app, direction),
+        Message::ZoomCentre => {
+            app.zoom_centre = !app.zoom_centre;
+            let centre = ["the origin", "the picture's centre"][usize::from(app.zoom_centre)];
+            inform(app, format!("zoom about {centre}"));
+        }
         Message::NudgeStep(direction) => app.step = app.step.other(direction),
         Message::Paste(_) => refuse(app, "pasted text goes into fields only"),
         _ => {}

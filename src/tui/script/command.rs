@@ -3,7 +3,7 @@
 //! ```text
 //! Size 80x24          Resize 100x30       Set ascii on        Set theme light
 //! Set columns 8       Set threshold 0.6   Set library "DIR"   (all of them: [`crate::tui::script::setting`])
-//! Keys f<Down><Tab>4.00<Enter>            vim notation; <lt>; <3x:Down>
+//! Keys f<Right><Tab>4.00<Enter>           vim notation; <lt>; <3x:Down>
 //! Type "literal text" Paste "1.5"         Click 12,5   Click "Figure"   Drag 3,4 9,9   Scroll 12,5 -3
 //! Screen [name]       State [json-pointer]
 //! Expect /re/         ExpectNot /re/      ExpectAt 3,10 "text"   ExpectStyle 3,10 reverse

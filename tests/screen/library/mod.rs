@@ -138,7 +138,7 @@ fn a_picture_starts_where_it_is_and_follows() {
             "x0        8.00",
             "y0        8.00",
             "Zoom x    1.00",
-            "NA 2 in all",
+            "NA 2  NAE 2",
         ],
     );
     then(

@@ -119,9 +119,9 @@ fn every_kind_of_terminal_is_served() {
             ..Start::default()
         });
         let mut script = session(ascii, (80, 24));
-        program.types(b"f\x1b[B\t\r");
+        program.types(b"f\x1b[C\t\r");
         program.shows("Region 1");
-        script.keys("f<Down><Tab><CR>").expect("keys");
+        script.keys("f<Right><Tab><CR>").expect("keys");
         if term.is_empty() || term == "dumb" {
             program.agrees_plainly(&script);
         } else {
