@@ -63,7 +63,7 @@ mod model;
 mod named_shape;
 
 pub use described::DescribedImprint;
-pub use drawing::Drawing;
+pub use drawing::{ConfusionMap, Drawing, LinePlot};
 pub use imprint_file::{ImprintFormat, ImprintFormatError, read as read_imprint};
 pub use name::{Name, NameError};
 

@@ -12,6 +12,7 @@
 //!                                     -> Evaluation   of the model: the limit of one touch
 //!                                     -> given        the same where only some descriptors are known
 //!                                     -> peers        the paper's way: classifiers on descriptors
+//! shapes + sizes                      -> Separation   the limit against size and threshold
 //! ```
 //!
 //! Convention of this project, after the definition of the Bayes classifier (R. O. Duda, P. E. Hart and D. G. Stork,
@@ -28,6 +29,8 @@ mod sets;
 mod pose_estimate;
 
 mod evaluation;
+
+mod separation;
 
 mod given;
 
@@ -56,6 +59,7 @@ pub use noise::{Distances, Method, Noise, NoiseError, Scanner};
 pub use noisy::NoisyRecogniser;
 pub use peers::{Peer, PeerEvaluation, PeerSettings};
 pub use pose_estimate::{AngleEstimate, PoseEstimate};
+pub use separation::{Separation, SeparationPoint, SizeAxis, SmallestSize};
 pub use sets::{GridSteps, default_figures, equal_figures};
 pub use simulation::{MOST_TOUCHES, RecognitionRate, TouchesUntil, random_taxels};
 pub use training::{Training, TrainingError};

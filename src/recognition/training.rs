@@ -123,6 +123,18 @@ impl<'a> Training<'a> {
         })
     }
 
+    /// A training in which each shape has a grid of its own, of as many poses as the others. The model of it tells the
+    /// sensor and the poses of the first.
+    pub(super) fn of_grids(shapes: Vec<NamedShape>, grids: Vec<PoseGrid>) -> Self {
+        Self {
+            grids,
+            shapes,
+            allow_cut: false,
+            shard: Shard::WHOLE,
+            progress: &|_| true,
+        }
+    }
+
     /// Takes poses that the sensor cuts off, too. Their imprints tell of the sensor's rim, not of the shape alone.
     #[must_use]
     pub fn allow_cut(mut self, allow: bool) -> Self {

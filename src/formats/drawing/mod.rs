@@ -13,6 +13,8 @@
 //! let drawing = Drawing::new(&imprint).with_outline(&figure).with_pitch(2.5);
 //! assert!(drawing.svg().contains(">x / mm</text>"));
 //! ```
+//!
+//! The same pages show a confusion matrix ([`ConfusionMap`]) and curves ([`LinePlot`]).
 
 mod scene;
 
@@ -23,6 +25,10 @@ mod heat;
 mod page;
 
 mod outline;
+
+mod confusion_map;
+
+mod line_plot;
 
 mod svg;
 
@@ -41,6 +47,8 @@ use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::parameter::Parameter;
 use crate::sensor::Sensor;
+pub use confusion_map::ConfusionMap;
+pub use line_plot::LinePlot;
 use page::{DrawingPage, Subject};
 use scene::Segment;
 

@@ -17,9 +17,9 @@ pub(super) const ADVANCE: f64 = 0.6;
 /// The larger side of the plane, unless its cells would be too large.
 const PLANE: f64 = 288.0;
 const LARGEST_CELL: f64 = 24.0;
-const MARGIN: f64 = 8.0;
+pub(super) const MARGIN: f64 = 8.0;
 /// A line of the title or the legend.
-const ROW: f64 = 13.0;
+pub(super) const ROW: f64 = 13.0;
 /// What stands for a thing in the legend.
 const SWATCH: f64 = 16.0;
 

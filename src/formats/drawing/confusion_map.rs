@@ -1,0 +1,274 @@
+//! A confusion matrix as a heat map with its numbers: a row per true shape, a column per name.
+//!
+//! A cell holds a number of touches and its share of the row; the larger the share, the darker the cell. Whoever cannot
+//! tell the shades apart reads the numbers.
+
+use crate::formats::drawing::page::{ADVANCE, DrawingPage, MARGIN, TEXT};
+use crate::formats::drawing::scene::{Element, Position, Segment, Stroke, TextAnchor, rectangle};
+use crate::formats::drawing::svg;
+
+/// More shapes would make a page that nothing prints.
+const MOST: usize = 64;
+
+/// Longer names are cut.
+const LONGEST: usize = 30;
+
+/// The grey of a whole row in one cell: black text on it is readable.
+const DARKEST: f64 = 130.0;
+
+const CELL: Stroke = Stroke {
+    width: 0.4,
+    grey: 150,
+    dash: None,
+};
+
+/// A confusion matrix to draw.
+///
+/// ```
+/// use taxel::formats::ConfusionMap;
+/// let map = ConfusionMap::new(&["disc".into(), "bar".into()], &[vec![9, 1], vec![0, 10]]).expect("few shapes");
+/// assert!(map.svg().contains(">90 %</text>"));
+/// ```
+#[derive(Clone, Debug)]
+pub struct ConfusionMap {
+    labels: Vec<String>,
+    counts: Vec<Vec<u128>>,
+    title: Option<String>,
+}
+
+impl ConfusionMap {
+    /// The matrix of some shapes: `counts[i][j]` touches of shape i are named j; missing ones are 0. None without a shape,
+    /// and for more than 64.
+    pub fn new(labels: &[String], counts: &[Vec<u128>]) -> Option<Self> {
+        if labels.is_empty() || labels.len() > MOST {
+            return None;
+        }
+        let cut = |label: &String| label.chars().take(LONGEST).collect();
+        Some(Self {
+            labels: labels.iter().map(cut).collect(),
+            counts: counts.to_vec(),
+            title: None,
+        })
+    }
+
+    /// With a line above; at most the first 100 characters of it.
+    #[must_use]
+    pub fn with_title(mut self, title: &str) -> Self {
+        self.title = Some(title.chars().take(100).collect());
+        self
+    }
+
+    /// As SVG 1.1.
+    pub fn svg(&self) -> String {
+        svg::write(&self.page())
+    }
+
+    /// As PNG, 8 bits of grey. Characters beyond Latin-1 are shown as `?`.
+    ///
+    /// # Errors
+    /// Those of the encoder, which has none for a page in memory.
+    #[cfg(feature = "png")]
+    pub fn png(&self) -> std::io::Result<Vec<u8>> {
+        crate::formats::drawing::png::write(&self.page())
+    }
+
+    fn count(&self, row: usize, column: usize) -> u128 {
+        let cell = self.counts.get(row).and_then(|row| row.get(column));
+        cell.copied().unwrap_or_default()
+    }
+
+    fn page(&self) -> DrawingPage {
+        let longest = |texts: &mut dyn Iterator<Item = usize>| texts.max().unwrap_or_default();
+        let names = longest(&mut self.labels.iter().map(|label| label.chars().count()));
+        let shapes = 0..self.labels.len();
+        let digits = shapes
+            .clone()
+            .flat_map(|row| shapes.clone().map(move |column| (row, column)));
+        let digits = longest(&mut digits.map(|(row, column)| {
+            let count = self.count(row, column);
+            count.to_string().len()
+        }));
+        let cell = (width(digits.max(6)) + 8.0, TEXT * 2.0 + 8.0);
+        // Names that are wider than a cell run upwards.
+        let upright = width(names) + 4.0 > cell.0;
+        let heading = if upright { width(names) } else { TEXT };
+        let title = self.title.as_ref().map_or(0.0, |_| TEXT + 6.0);
+        let corner = (
+            MARGIN + TEXT + 6.0 + width(names) + 6.0,
+            MARGIN + title + TEXT + 6.0 + heading + 6.0,
+        );
+        let mut layout = MapLayout {
+            map: self,
+            marks: Vec::new(),
+            corner,
+            cell,
+        };
+        layout.cells();
+        layout.names(upright);
+        let end = layout.place(self.labels.len(), self.labels.len());
+        let note = "touches, and their share of the true shape's";
+        let note_end = corner.0 + width(note.chars().count());
+        layout.text(note, (corner.0, end.1 + TEXT + 6.0), TextAnchor::Start);
+        let mut right = end.0.max(note_end);
+        if let Some(title) = &self.title {
+            layout.text(title, (corner.0, MARGIN + TEXT), TextAnchor::Start);
+            right = right.max(corner.0 + width(title.chars().count()));
+        }
+        DrawingPage {
+            size: (right + MARGIN, end.1 + TEXT * 1.3 + 6.0 + MARGIN),
+            plane: (corner, end),
+            title: self
+                .title
+                .clone()
+                .unwrap_or_else(|| "confusion matrix".to_owned()),
+            marks: layout.marks,
+        }
+    }
+}
+
+/// The width of a text of that many characters.
+#[expect(clippy::cast_precision_loss, reason = "far fewer than 2^53 characters")]
+fn width(characters: usize) -> f64 {
+    TEXT * ADVANCE * characters as f64
+}
+
+/// The page while it is laid out.
+struct MapLayout<'a> {
+    map: &'a ConfusionMap,
+    marks: Vec<Element>,
+    corner: Position,
+    cell: Position,
+}
+
+impl MapLayout<'_> {
+    /// The top left corner of a cell.
+    #[expect(clippy::cast_precision_loss, reason = "at most 64 cells")]
+    fn place(&self, row: usize, column: usize) -> Position {
+        (
+            self.corner.0 + self.cell.0 * column as f64,
+            self.corner.1 + self.cell.1 * row as f64,
+        )
+    }
+
+    fn text(&mut self, text: &str, place: Position, anchor: TextAnchor) {
+        self.marks.push(Element::Text {
+            text: text.to_owned(),
+            place,
+            anchor,
+            upright: false,
+        });
+    }
+
+    /// The cells: shades first, then lines, then numbers.
+    fn cells(&mut self) {
+        let shapes = self.map.labels.len();
+        let (mut lines, mut numbers) = (Vec::new(), Vec::new());
+        for row in 0..shapes {
+            let sum: u128 = (0..shapes).map(|column| self.map.count(row, column)).sum();
+            for column in 0..shapes {
+                let count = self.map.count(row, column);
+                let (low, high) = (self.place(row, column), self.place(row + 1, column + 1));
+                let share = share(count, sum);
+                if count > 0 {
+                    self.marks.push(Element::Fill {
+                        what: "cell",
+                        rectangles: vec![(low, high)],
+                        grey: grey(share),
+                    });
+                }
+                lines.extend(rectangle(low, high));
+                let x = f64::midpoint(low.0, high.0);
+                let said = match count {
+                    0 => vec![("·".to_owned(), (x, low.1 + TEXT * 1.5))],
+                    _ => vec![
+                        (count.to_string(), (x, low.1 + TEXT + 3.0)),
+                        (percent(share), (x, low.1 + TEXT * 2.0 + 4.0)),
+                    ],
+                };
+                numbers.extend(said);
+            }
+        }
+        self.line("cells", lines, CELL);
+        // The diagonal, what is named right, has a frame.
+        let right = (0..shapes).flat_map(|shape| {
+            rectangle(self.place(shape, shape), self.place(shape + 1, shape + 1))
+        });
+        let right: Vec<Segment> = right.collect();
+        self.line("diagonal", right, Stroke::black(1.1));
+        for (text, place) in numbers {
+            self.text(&text, place, TextAnchor::Middle);
+        }
+    }
+
+    fn line(&mut self, what: &'static str, steps: Vec<Segment>, line: Stroke) {
+        self.marks.push(Element::Line {
+            what,
+            steps,
+            line,
+            clipped: false,
+        });
+    }
+
+    /// The names of rows and columns, and what they are.
+    fn names(&mut self, upright: bool) {
+        let (shapes, map) = (self.map.labels.len(), self.map);
+        for (index, label) in map.labels.iter().enumerate() {
+            let (left, top) = self.place(index, 0);
+            let y = top + self.cell.1 / 2.0 + TEXT * 0.35;
+            self.text(label, (left - 6.0, y), TextAnchor::End);
+            let (left, top) = self.place(0, index);
+            let x = left + self.cell.0 / 2.0;
+            if upright {
+                self.marks.push(Element::Text {
+                    text: label.clone(),
+                    place: (x + TEXT * 0.35, top - 6.0),
+                    anchor: TextAnchor::Start,
+                    upright: true,
+                });
+            } else {
+                self.text(label, (x, top - 6.0), TextAnchor::Middle);
+            }
+        }
+        let end = self.place(shapes, shapes);
+        let title = map.title.as_ref().map_or(0.0, |_| TEXT + 6.0);
+        let middle = f64::midpoint(self.corner.0, end.0);
+        self.text(
+            "named",
+            (middle, MARGIN + title + TEXT),
+            TextAnchor::Middle,
+        );
+        self.marks.push(Element::Text {
+            text: "true shape".to_owned(),
+            place: (MARGIN + TEXT, f64::midpoint(self.corner.1, end.1)),
+            anchor: TextAnchor::Middle,
+            upright: true,
+        });
+    }
+}
+
+/// A part of a whole; 0 of nothing.
+#[expect(clippy::cast_precision_loss, reason = "a share has no more digits")]
+fn share(part: u128, whole: u128) -> f64 {
+    if whole == 0 {
+        0.0
+    } else {
+        part as f64 / whole as f64
+    }
+}
+
+/// A share in percent, with a decimal where it is not whole.
+fn percent(share: f64) -> String {
+    format!(
+        "{} %",
+        crate::formats::value::decimal(100.0 * share, 1)
+    )
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a share is from 0 to 1"
+)]
+fn grey(share: f64) -> u8 {
+    (255.0 - (255.0 - DARKEST) * share).round() as u8
+}

@@ -1,0 +1,187 @@
+//! Curves over one axis, such as an error against a size. Both axes begin at 0.
+
+use crate::formats::drawing::axis::Ticks;
+use crate::formats::drawing::page::{ADVANCE, DrawingPage, MARGIN, ROW, TEXT};
+use crate::formats::drawing::scene::{
+    Element, Position, Segment, Stroke, TextAnchor, circle, rectangle,
+};
+use crate::formats::drawing::svg;
+
+/// Width and height of the plane, in points.
+const PLANE: Position = (324.0, 200.0);
+
+/// Curves are told apart by their dashes, which repeat after these.
+const DASHES: [Option<[f64; 2]>; 4] = [None, Some([6.0, 3.0]), Some([1.0, 3.0]), Some([12.0, 4.0])];
+
+const GRID: Stroke = Stroke {
+    width: 0.4,
+    grey: 200,
+    dash: None,
+};
+
+/// The largest number of curves.
+const MOST: usize = 32;
+
+/// Longer names are cut.
+const LONGEST: usize = 60;
+
+/// Curves to draw.
+///
+/// ```
+/// use taxel::formats::LinePlot;
+/// let plot = LinePlot::new("scale", "error").with_curve("threshold 0.5", &[(1.0, 0.6), (2.0, 0.1)]);
+/// assert!(plot.svg().contains(">scale</text>"));
+/// ```
+#[derive(Clone, Debug)]
+pub struct LinePlot {
+    labels: [String; 2],
+    curves: Vec<(String, Vec<Position>)>,
+}
+
+impl LinePlot {
+    /// A plot without a curve, with what its axes are.
+    pub fn new(x: &str, y: &str) -> Self {
+        let cut = |text: &str| text.chars().take(LONGEST).collect();
+        Self {
+            labels: [cut(x), cut(y)],
+            curves: Vec::new(),
+        }
+    }
+
+    /// With a curve through points, in their order; points that are below 0 or not finite are left out. Of more than 32
+    /// curves the others are left out.
+    #[must_use]
+    pub fn with_curve(mut self, name: &str, points: &[(f64, f64)]) -> Self {
+        if self.curves.len() < MOST {
+            let shown = |number: f64| (0.0..=1e9).contains(&number);
+            let points = points.iter().copied().filter(|&(x, y)| shown(x) && shown(y));
+            let name = name.chars().take(LONGEST).collect();
+            self.curves.push((name, points.collect()));
+        }
+        self
+    }
+
+    /// As SVG 1.1.
+    pub fn svg(&self) -> String {
+        svg::write(&self.page())
+    }
+
+    /// As PNG, 8 bits of grey. Characters beyond Latin-1 are shown as `?`.
+    ///
+    /// # Errors
+    /// Those of the encoder, which has none for a page in memory.
+    #[cfg(feature = "png")]
+    pub fn png(&self) -> std::io::Result<Vec<u8>> {
+        crate::formats::drawing::png::write(&self.page())
+    }
+
+    /// The largest number on each axis; above 0.
+    fn ends(&self) -> Position {
+        let points = self.curves.iter().flat_map(|(_, points)| points);
+        let ends = points.fold((0.0_f64, 0.0_f64), |end, point| {
+            (end.0.max(point.0), end.1.max(point.1))
+        });
+        // Below a billionth marks have no labels of their own.
+        let end = |end: f64| if end > 1e-9 { end } else { 1.0 };
+        (end(ends.0), end(ends.1))
+    }
+
+    fn page(&self) -> DrawingPage {
+        let (end_x, end_y) = self.ends();
+        let (across, upwards) = (Ticks::new(end_x, 0.0), Ticks::new(end_y, 0.0));
+        let corner = (
+            MARGIN + TEXT * 2.0 + width(upwards.width()) + 6.0,
+            MARGIN + TEXT,
+        );
+        let end = (corner.0 + PLANE.0, corner.1 + PLANE.1);
+        // A twentieth of the plane stays free beyond the last point.
+        let scale = (PLANE.0 / (end_x * 1.05), PLANE.1 / (end_y * 1.05));
+        let place = |(x, y): Position| (corner.0 + x * scale.0, end.1 - y * scale.1);
+        let mut marks = Vec::new();
+        self.axes(&mut marks, (&across, &upwards), (corner, end), &place);
+        let (mut right, mut last) = (end.0, end.1 + TEXT * 2.0 + 6.0);
+        for (index, (name, points)) in (0_u8..).zip(&self.curves) {
+            let line = Stroke {
+                dash: DASHES[usize::from(index) % DASHES.len()],
+                ..Stroke::black(1.1)
+            };
+            let points: Vec<Position> = points.iter().map(|&point| place(point)).collect();
+            let rest = points.iter().skip(1).map(|&to| Segment::Line(to));
+            let path = points.first().map(|&from| Segment::Move(from));
+            let path: Vec<Segment> = path.into_iter().chain(rest).collect();
+            marks.push(path_of("curve", path, line));
+            let dots = points.iter().flat_map(|&point| circle(point, 1.2));
+            marks.push(path_of("points", dots.collect(), Stroke::black(0.8)));
+            let y = end.1 + TEXT * 4.0 + ROW * f64::from(index);
+            last = y;
+            let sample = [Segment::Move((corner.0, y)), Segment::Line((corner.0 + 24.0, y))];
+            marks.push(path_of("legend", sample.to_vec(), line));
+            let at = (corner.0 + 30.0, y + TEXT * 0.35);
+            marks.push(label(name, at, TextAnchor::Start));
+            right = right.max(at.0 + width(name.chars().count()));
+        }
+        DrawingPage {
+            size: (right + MARGIN, last + TEXT * 0.5 + MARGIN),
+            plane: (corner, end),
+            title: format!("{} against {}", self.labels[1], self.labels[0]),
+            marks,
+        }
+    }
+
+    /// The frame, lines at the marks of both axes, and what they are.
+    fn axes(
+        &self,
+        marks: &mut Vec<Element>,
+        (across, upwards): (&Ticks, &Ticks),
+        (from, to): (Position, Position),
+        place: &dyn Fn(Position) -> Position,
+    ) {
+        let mut grid = Vec::new();
+        for (value, text) in &across.0 {
+            let (x, _) = place((*value, 0.0));
+            grid.extend([Segment::Move((x, from.1)), Segment::Line((x, to.1))]);
+            marks.push(label(text, (x, to.1 + TEXT + 3.0), TextAnchor::Middle));
+        }
+        for (value, text) in &upwards.0 {
+            let (_, y) = place((0.0, *value));
+            grid.extend([Segment::Move((from.0, y)), Segment::Line((to.0, y))]);
+            let at = (from.0 - 5.0, y + TEXT * 0.35);
+            marks.push(label(text, at, TextAnchor::End));
+        }
+        marks.push(path_of("grid", grid, GRID));
+        marks.push(path_of("axes", rectangle(from, to), Stroke::black(0.6)));
+        let middle = (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1));
+        let below = (middle.0, to.1 + TEXT * 2.0 + 6.0);
+        marks.push(label(&self.labels[0], below, TextAnchor::Middle));
+        marks.push(Element::Text {
+            text: self.labels[1].clone(),
+            place: (MARGIN + TEXT, middle.1),
+            anchor: TextAnchor::Middle,
+            upright: true,
+        });
+    }
+}
+
+/// The width of a text of that many characters.
+#[expect(clippy::cast_precision_loss, reason = "far fewer than 2^53 characters")]
+fn width(characters: usize) -> f64 {
+    TEXT * ADVANCE * characters as f64
+}
+
+fn path_of(what: &'static str, steps: Vec<Segment>, line: Stroke) -> Element {
+    Element::Line {
+        what,
+        steps,
+        line,
+        clipped: false,
+    }
+}
+
+fn label(text: &str, place: Position, anchor: TextAnchor) -> Element {
+    Element::Text {
+        text: text.to_owned(),
+        place,
+        anchor,
+        upright: false,
+    }
+}

@@ -1,0 +1,479 @@
+//! Which sensor tells a set of shapes apart: the limit of one touch against the size of the shapes in cells, and against
+//! the threshold.
+//!
+//! A scale of 2 makes every length of every shape twice as long in cells, as a sensor with half the pitch does. Each
+//! shape is touched with its centre in one cell and at the angles asked for, on a sensor that cuts nothing off.
+
+use crate::figure::Figure;
+use crate::parameter::Parameter;
+use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, PoseGrid, smallest_sensor};
+use crate::recognition::evaluation::Evaluation;
+use crate::recognition::model::{NamedShape, check_shapes, share};
+use crate::recognition::training::{Training, TrainingError};
+use crate::sensor::Sensor;
+use crate::source::Source;
+
+/// The smallest side of a sensor, as for training.
+const LEAST_SIDE: u8 = 16;
+
+/// Between two values of a scan, a search looks at so many steps.
+const FINER: u8 = 10;
+
+/// What the size of shapes is measured against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SizeAxis {
+    /// Sizes are in cells; a value multiplies them.
+    Scale,
+    /// Sizes are in mm; a value is the pitch of a sensor in mm.
+    Pitch,
+}
+
+impl SizeAxis {
+    /// Returns its name in JSON and in tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Scale => "scale",
+            Self::Pitch => "pitch_mm",
+        }
+    }
+
+    /// Returns the scale that a value stands for; a value above 0.
+    pub fn scale(self, value: f64) -> f64 {
+        match self {
+            Self::Scale => value,
+            Self::Pitch => 1.0 / value,
+        }
+    }
+}
+
+/// A set of shapes whose limit is looked at in several sizes.
+///
+/// ```
+/// use taxel::prelude::*;
+/// use taxel::recognition::{NamedShape, Separation, SizeAxis};
+///
+/// let sensor = Sensor::default();
+/// let shapes = vec![
+///     NamedShape::new("square", Figure::rectangle(2.0, 2.0).on(&sensor)?),
+///     NamedShape::new("disc", Figure::ellipse(1.13, 1.13).on(&sensor)?),
+/// ];
+/// let separation = Separation::new(shapes)?.positions(10).angles("0:350:10".parse()?);
+/// let scales = "1:5:1".parse()?;
+/// let points = separation.scan(SizeAxis::Scale, &scales, 0.5, &|_| true)?;
+/// assert!(points[0].error() > 0.3 && points[4].error() < 0.05);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Separation {
+    shapes: Vec<NamedShape>,
+    positions: u8,
+    angles: DecimalRange,
+}
+
+/// The limit of one touch in one size, with one threshold.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SeparationPoint {
+    /// The value on the axis: a scale, or a pitch in mm.
+    pub value: f64,
+    /// Cells per unit of the given sizes.
+    pub scale: f64,
+    /// The threshold of the sensor.
+    pub threshold: f64,
+    /// The side of the smallest square sensor, at least 16, that cuts nothing off.
+    pub side: u8,
+    /// Number of touches.
+    pub touches: u128,
+    /// Touches that are named right.
+    pub right: u128,
+    /// Touches that only one shape can leave.
+    pub certain: u128,
+    /// Number of distinct keys.
+    pub keys: usize,
+}
+
+impl SeparationPoint {
+    /// Returns the share of touches that are named wrong.
+    pub fn error(&self) -> f64 {
+        share(self.touches - self.right, self.touches)
+    }
+
+    /// Returns the share of touches that only one shape can leave.
+    pub fn certain(&self) -> f64 {
+        share(self.certain, self.touches)
+    }
+}
+
+/// The smallest size that reaches a wanted error, as far as a search has looked.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SmallestSize {
+    /// What was found.
+    pub point: SeparationPoint,
+    /// The step of the search there. 0 if the first value of the scan reaches the error: smaller ones were not tried.
+    pub step: f64,
+    /// How many larger sizes of the scan miss the error again.
+    pub missed_again: usize,
+}
+
+impl Separation {
+    /// A set in hundredths of a cell and whole degrees, as models are trained.
+    ///
+    /// # Errors
+    /// If a name is missing or given twice, or a weight is 0.
+    pub fn new(shapes: Vec<NamedShape>) -> Result<Self, TrainingError> {
+        check_shapes(&shapes)?;
+        Ok(Self {
+            shapes,
+            positions: 100,
+            angles: crate::pose::Ranges::default()[Axis::Angle],
+        })
+    }
+
+    /// Touches at that many positions of a cell in each direction: a divisor of 100, others are taken down to one.
+    #[must_use]
+    pub fn positions(mut self, positions: u8) -> Self {
+        let fitting = (1..=positions.clamp(1, 100)).rev();
+        self.positions = fitting
+            .into_iter()
+            .find(|count| 100_u8.is_multiple_of(*count))
+            .unwrap_or(1);
+        self
+    }
+
+    /// Touches at these angles.
+    #[must_use]
+    pub fn angles(mut self, angles: DecimalRange) -> Self {
+        self.angles = angles;
+        self
+    }
+
+    /// Returns the number of touches of one point, for progress.
+    pub fn touches(&self) -> u64 {
+        let cell = u64::from(self.positions).pow(2);
+        cell * self.angles.count() * self.shapes.len() as u64
+    }
+
+    /// Returns the training for a scale and a threshold.
+    ///
+    /// # Errors
+    /// [`TrainingError::Large`] for shapes that do not fit on the largest sensor, [`TrainingError::Grid`] for values out
+    /// of range.
+    pub fn training(&self, scale: f64, threshold: f64) -> Result<Training<'static>, TrainingError> {
+        let mut scaled = Vec::with_capacity(self.shapes.len());
+        let mut grids = Vec::with_capacity(self.shapes.len());
+        for shape in &self.shapes {
+            let refused = |error| TrainingError::Grid {
+                name: shape.name.clone(),
+                error,
+            };
+            let grid = self
+                .grid(&shape.source, scale, threshold)
+                .map_err(refused)?;
+            let grid = grid.ok_or(TrainingError::Large)?;
+            scaled.push(NamedShape {
+                source: grid.source().clone(),
+                ..shape.clone()
+            });
+            grids.push(grid);
+        }
+        Ok(Training::of_grids(scaled, grids))
+    }
+
+    /// The poses of one shape; None if it is too large for any sensor.
+    ///
+    /// Every shape has a sensor of its own: where a touch lies does not matter, so long as nothing is cut off and the
+    /// positions are those of one cell from a whole number on.
+    fn grid(
+        &self,
+        source: &Source,
+        scale: f64,
+        threshold: f64,
+    ) -> Result<Option<PoseGrid>, crate::pose::GridError> {
+        let mut given = GivenRanges::default();
+        given[Axis::Angle] = Some(self.angles);
+        let source = match source {
+            Source::Figure(figure) => match enlarged(figure, scale)? {
+                Some(figure) => figure.into(),
+                None => return Ok(None),
+            },
+            Source::Picture(_) => {
+                for axis in [Axis::ZoomX, Axis::ZoomY] {
+                    let zoom = source.get(axis.parameter()).unwrap_or(1.0) * scale;
+                    // The error of a zoom out of range names it.
+                    Sensor::LARGEST.check(axis.parameter(), zoom)?;
+                    given[axis] = format!("{:.9}", tidy(zoom)).parse().ok();
+                }
+                source.clone()
+            }
+        };
+        let Some((fit, ranges)) = smallest_sensor([&source], Anchor::Centre, &given, LEAST_SIDE)?
+        else {
+            return Ok(None);
+        };
+        let (start, side) = (ranges[Axis::X0].value(0), fit.side());
+        let whole = start.ceil();
+        let side = if whole == start {
+            side
+        } else if side < Sensor::LARGEST.side() {
+            side + 1
+        } else {
+            return Ok(None);
+        };
+        let sensor = Sensor::new(side, side)?.with(Parameter::Threshold, threshold)?;
+        let step = 1.0 / f64::from(self.positions);
+        let cell = format!("{whole:.0}:{:.2}:{step:.2}", whole + 1.0 - step);
+        let mut ranges = ranges;
+        if let Ok(cell) = cell.parse() {
+            ranges[Axis::X0] = cell;
+            ranges[Axis::Y0] = cell;
+        }
+        PoseGrid::new(source, sensor, Anchor::Centre, ranges).map(Some)
+    }
+
+    /// Returns the limit for one value and one threshold. `progress` is called as by [`Training::progress`].
+    ///
+    /// # Errors
+    /// Those of [`Self::training`]; [`TrainingError::Stopped`].
+    pub fn at(
+        &self,
+        axis: SizeAxis,
+        value: f64,
+        threshold: f64,
+        progress: &(dyn Fn(u64) -> bool + Sync),
+    ) -> Result<SeparationPoint, TrainingError> {
+        let scale = axis.scale(value);
+        let training = self.training(scale, threshold)?;
+        let sides = training.grids().iter().map(|grid| grid.sensor().side());
+        let side = sides.max().unwrap_or(LEAST_SIDE);
+        let limit = Evaluation::of(&training.progress(progress).run()?);
+        Ok(SeparationPoint {
+            value,
+            scale,
+            threshold,
+            side,
+            touches: limit.touches,
+            right: limit.right,
+            certain: limit.certain,
+            keys: limit.keys,
+        })
+    }
+
+    /// Returns the limit for every value of a range, the smallest size first: of pitches the last one.
+    ///
+    /// # Errors
+    /// Those of [`Self::at`].
+    pub fn scan(
+        &self,
+        axis: SizeAxis,
+        values: &DecimalRange,
+        threshold: f64,
+        progress: &(dyn Fn(u64) -> bool + Sync),
+    ) -> Result<Vec<SeparationPoint>, TrainingError> {
+        let mut values: Vec<f64> = values.values().collect();
+        if axis == SizeAxis::Pitch {
+            values.reverse();
+        }
+        let points = values.into_iter();
+        points
+            .map(|value| self.at(axis, value, threshold, progress))
+            .collect()
+    }
+
+    /// Returns the smallest size that has at most this error: of a scan the first, then the first of nine values between
+    /// it and the one before. None if none of the scan has.
+    ///
+    /// The error is not monotonous: it falls with the size on the whole, but rises here and there, and between the values
+    /// that were looked at it may fall below what is wanted unseen. So this is the smallest size *of those that were
+    /// tried*.
+    ///
+    /// # Errors
+    /// Those of [`Self::at`].
+    pub fn smallest(
+        &self,
+        axis: SizeAxis,
+        scan: &[SeparationPoint],
+        error: f64,
+        progress: &(dyn Fn(u64) -> bool + Sync),
+    ) -> Result<Option<SmallestSize>, TrainingError> {
+        let Some(first) = scan.iter().position(|point| point.error() <= error) else {
+            return Ok(None);
+        };
+        let later = &scan[first + 1..];
+        let mut found = SmallestSize {
+            point: scan[first].clone(),
+            step: 0.0,
+            missed_again: later.iter().filter(|point| point.error() > error).count(),
+        };
+        if first > 0 {
+            let (from, to) = (scan[first - 1].value, scan[first].value);
+            let step = (to - from) / f64::from(FINER);
+            found.step = tidy(step.abs());
+            for index in 1..FINER {
+                let value = tidy(from + f64::from(index) * step);
+                let point = self.at(axis, value, scan[first].threshold, progress)?;
+                if point.error() <= error {
+                    found.point = point;
+                    break;
+                }
+            }
+        }
+        Ok(Some(found))
+    }
+}
+
+/// A figure with every length multiplied; None if one is longer than the largest sensor.
+fn enlarged(figure: &Figure, scale: f64) -> Result<Option<Figure>, crate::pose::GridError> {
+    let sensor = Sensor::LARGEST;
+    let mut scaled = *figure;
+    for parameter in [Parameter::X0, Parameter::Y0, Parameter::Angle] {
+        scaled = scaled.with(parameter, 0.0, &sensor)?;
+    }
+    for &parameter in figure.kind().sizes().iter().chain(&[Parameter::Thickness]) {
+        let Some(length) = figure.get(parameter) else {
+            continue;
+        };
+        let length = tidy(length * scale);
+        if length > f64::from(sensor.side()) {
+            return Ok(None);
+        }
+        scaled = scaled.with(parameter, length, &sensor)?;
+    }
+    Ok(Some(scaled))
+}
+
+/// Without the last digits, which come of computing: 3.399, not 3.3990000000000005.
+fn tidy(value: f64) -> f64 {
+    (value * 1e9).round() / 1e9
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::picture::Picture;
+    use crate::pose::Ranges;
+    use crate::recognition::model::Model;
+    use crate::recognition::sets::equal_figures;
+
+    fn coarse(shapes: Vec<NamedShape>) -> Separation {
+        let separation = Separation::new(shapes).expect("a set");
+        separation
+            .positions(10)
+            .angles("0:355:5".parse().expect("a range"))
+    }
+
+    /// Sizes changed by hand, trained as any other set: the same touches and keys.
+    #[test]
+    fn a_point_is_a_training_of_larger_shapes() {
+        let bar = |length: f64, width: f64| Figure::rectangle(length, width).on(&Sensor::LARGEST);
+        let ring = |radius: f64, wall: f64| {
+            let ring = Figure::ellipse(radius, radius).thickness(wall);
+            ring.on(&Sensor::LARGEST)
+        };
+        let set = |scale: f64| {
+            vec![
+                NamedShape::new("bar", bar(3.0 * scale, 2.0 * scale).expect("in range")),
+                NamedShape::new("ring", ring(2.0 * scale, 0.5 * scale).expect("in range")),
+            ]
+        };
+        for (scale, threshold) in [(1.0, 0.5), (1.5, 0.5), (2.0, 0.3)] {
+            let point = coarse(set(1.0)).at(SizeAxis::Scale, scale, threshold, &|_| true);
+            let point = point.expect("it fits");
+            let sensor = Sensor::new(32, 32).and_then(|s| s.with(Parameter::Threshold, threshold));
+            let cell: DecimalRange = "15:15.9:0.1".parse().expect("a range");
+            let ranges = Ranges::default()
+                .with(Axis::X0, cell)
+                .with(Axis::Y0, cell)
+                .with(Axis::Angle, "0:355:5".parse().expect("a range"));
+            let by_hand = Training::new(
+                set(scale),
+                sensor.expect("in range"),
+                Anchor::Centre,
+                ranges,
+            );
+            let model: Model = by_hand.and_then(Training::run).expect("not cut");
+            let limit = Evaluation::of(&model);
+            assert_eq!(
+                (point.touches, point.right, point.certain, point.keys),
+                (limit.touches, limit.right, limit.certain, limit.keys),
+                "{scale} {threshold}"
+            );
+        }
+    }
+
+    #[test]
+    fn pictures_are_zoomed_and_mix_with_figures() {
+        let corner: crate::imprint::Imprint = "##\n#.".parse().expect("rows");
+        let shapes = vec![
+            NamedShape::new("corner", Picture::at_home(corner)),
+            NamedShape::new(
+                "square",
+                Figure::rectangle(2.0, 2.0)
+                    .on(&Sensor::default())
+                    .expect("in range"),
+            ),
+        ];
+        let separation = coarse(shapes);
+        let errors: Vec<f64> = separation
+            .scan(
+                SizeAxis::Scale,
+                &"1:3:1".parse().expect("a range"),
+                0.5,
+                &|_| true,
+            )
+            .expect("they fit")
+            .iter()
+            .map(SeparationPoint::error)
+            .collect();
+        assert!(errors[0] > errors[2] && errors[2] < 0.01, "{errors:?}");
+        // Half the pitch is twice the scale.
+        let pitch = separation.at(SizeAxis::Pitch, 0.5, 0.5, &|_| true);
+        assert_eq!(pitch.expect("it fits").error(), errors[1]);
+        assert_eq!(
+            separation
+                .at(SizeAxis::Scale, 40.0, 0.5, &|_| true)
+                .unwrap_err(),
+            TrainingError::Large
+        );
+    }
+
+    #[test]
+    fn the_smallest_size_is_the_first_of_those_tried() {
+        let separation = coarse(equal_figures());
+        let scan = |range: &str| {
+            let range: DecimalRange = range.parse().expect("a range");
+            let points = separation.scan(SizeAxis::Scale, &range, 0.5, &|_| true);
+            points.expect("they fit")
+        };
+        let points = scan("0.5:1.7:0.2");
+        assert!(points[0].error() > 0.5 && points[6].error() < 0.1);
+        let wanted = 0.2;
+        let found = separation.smallest(SizeAxis::Scale, &points, wanted, &|_| true);
+        let found = found.expect("not stopped").expect("it is reached");
+        assert_eq!(found.step, 0.02);
+        assert!(found.point.error() <= wanted);
+        // The same by looking at every one.
+        let fine = scan("0.5:1.7:0.02");
+        let first = fine.iter().find(|point| {
+            let coarse = points.iter().find(|other| other.error() <= wanted);
+            point.error() <= wanted && coarse.is_some_and(|it| it.value - point.value < 0.2)
+        });
+        assert_eq!(first.map(|point| point.value), Some(found.point.value));
+        let never = separation.smallest(SizeAxis::Scale, &points, 0.001, &|_| true);
+        assert_eq!(never, Ok(None));
+        let at_once = separation.smallest(SizeAxis::Scale, &points[4..], 0.5, &|_| true);
+        let at_once = at_once.expect("not stopped").expect("it is reached");
+        assert_eq!((at_once.point.value, at_once.step), (1.3, 0.0));
+    }
+
+    #[test]
+    fn it_can_be_stopped() {
+        let separation = coarse(equal_figures());
+        let stopped = separation.at(SizeAxis::Scale, 1.0, 0.5, &|_| false);
+        assert_eq!(stopped, Err(TrainingError::Stopped));
+        assert_eq!(separation.touches(), 7 * 100 * 72);
+        assert_eq!(separation.clone().positions(33).positions, 25);
+        assert_eq!(separation.positions(0).positions, 1);
+    }
+}
