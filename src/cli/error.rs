@@ -97,6 +97,22 @@ pub(crate) enum CliError {
         /// The name.
         name: String,
     },
+    /// A set that is too large to be drawn.
+    #[error("{name}: {shapes} shapes, and a drawing shows at most 64; .csv takes all")]
+    TooManyShapes {
+        /// The file.
+        name: String,
+        /// How many.
+        shapes: usize,
+    },
+    /// A size or a threshold at which a set cannot be looked at.
+    #[error("{place}: {error}")]
+    Separation {
+        /// The size and the threshold.
+        place: String,
+        /// Why not.
+        error: TrainingError,
+    },
     /// There is a shape or a file of that name already.
     #[error("{name:?} is there already; --force replaces it")]
     Taken {

@@ -48,8 +48,8 @@ use commands::export::Exported;
 use commands::frames::FramesOutput;
 use commands::touch::Touched;
 use commands::{
-    batch, completions, describe, export, frames, library, man, model, noise, recognise, screen,
-    script, sweep, touch,
+    batch, completions, confusion, describe, export, frames, library, man, model, noise, recognise,
+    screen, script, separate, sweep, touch,
 };
 use error::CliError;
 use input::shapes::Shelf;
@@ -163,8 +163,9 @@ fn run_model(request: ModelRequest, shelf: &Shelf, charset: Charset) -> Result<(
         ModelRequest::Show(which, json) => model::show(&which, json, shelf, charset)?,
         ModelRequest::List(json) => model::list(json, shelf, charset)?,
         ModelRequest::Delete(name) => charset.lines(&model::delete(&name, shelf)?),
-        ModelRequest::Confusion(asked) => model::confusion(&asked, shelf, charset)?,
+        ModelRequest::Confusion(asked) => confusion::confusion(&asked, shelf, charset)?,
         ModelRequest::Touches(asked) => noise::touches(&asked, shelf, charset)?,
+        ModelRequest::Separate(asked) => separate::separate(&asked, shelf, charset)?,
     };
     print(&text)
 }

@@ -190,6 +190,32 @@ impl PoseGrid {
         }
     }
 
+    /// Where the point that the shape turns about lies in a pose, whatever the anchor: x and y in cells.
+    ///
+    /// ```
+    /// use taxel::prelude::*;
+    ///
+    /// // 6 × 3, with its corner at 5, 5 before it is turned.
+    /// let rectangle = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
+    /// let grid = PoseGrid::new(rectangle, Sensor::default(), Anchor::Corner, Ranges::default())?;
+    /// assert_eq!(grid.centre(grid.pose(0)), [8.0, 6.5]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn centre(&self, pose: Pose) -> [f64; 2] {
+        if self.anchor == Anchor::Centre {
+            return [pose[Axis::X0], pose[Axis::Y0]];
+        }
+        let upright = pose.with(Axis::Angle, 0.0);
+        let upright = self.axes().fold(self.source.clone(), |source, axis| {
+            let set = source
+                .clone()
+                .with(axis.parameter(), upright[axis], &self.sensor);
+            set.unwrap_or(source)
+        });
+        let centre = centre::<f64>(&upright);
+        [centre.x, centre.y]
+    }
+
     /// The shape of a pose with the corner as its anchor, as forms and files describe it.
     ///
     /// If the grid's anchor is the centre, the corner is rounded to nine decimals, so a taxel that is covered just at the

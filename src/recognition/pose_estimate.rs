@@ -13,8 +13,7 @@ use crate::touch::Plane;
 pub struct PoseEstimate {
     /// How many poses of the model leave it.
     pub poses: u64,
-    /// Mean position x, y of the model's anchor (the centre, unless a model was trained with corners), in cells on the
-    /// matrix of the imprint.
+    /// Mean position x, y of the centre, about which the shape turns, in cells on the matrix of the imprint.
     pub position: [f64; 2],
     /// Standard deviation of each.
     pub spread: [f64; 2],
@@ -81,15 +80,10 @@ impl Model {
                 f64::from(bounds.left) - f64::from(there.left),
                 f64::from(bounds.top) - f64::from(there.top),
             ];
-            let last = grid.pose(run.first + run.poses - 1)[Axis::X0];
+            let last = grid.centre(grid.pose(run.first + run.poses - 1))[0];
+            let [x, y] = grid.centre(first);
             let weight = run.poses * run.orientations;
-            let y = first[Axis::Y0] + by[1];
-            sums.add(
-                weight,
-                (first[Axis::X0] + by[0], last + by[0]),
-                run.poses,
-                y,
-            );
+            sums.add(weight, (x + by[0], last + by[0]), run.poses, y + by[1]);
             if let Some(period) = period {
                 let angle = first[Axis::Angle].rem_euclid(f64::from(period));
                 sums.turn(weight, angle / f64::from(period));

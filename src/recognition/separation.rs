@@ -200,7 +200,9 @@ impl Separation {
             },
             Source::Picture(_) => {
                 for axis in [Axis::ZoomX, Axis::ZoomY] {
-                    let zoom = source.get(axis.parameter()).unwrap_or(1.0) * scale;
+                    let zoom = source
+                        .get(axis.parameter())
+                        .map_or(scale, |own| own * scale);
                     // The error of a zoom out of range names it.
                     Sensor::LARGEST.check(axis.parameter(), zoom)?;
                     given[axis] = format!("{:.9}", tidy(zoom)).parse().ok();
@@ -224,11 +226,8 @@ impl Separation {
         let sensor = Sensor::new(side, side)?.with(Parameter::Threshold, threshold)?;
         let step = 1.0 / f64::from(self.positions);
         let cell = format!("{whole:.0}:{:.2}:{step:.2}", whole + 1.0 - step);
-        let mut ranges = ranges;
-        if let Ok(cell) = cell.parse() {
-            ranges[Axis::X0] = cell;
-            ranges[Axis::Y0] = cell;
-        }
+        let cell: DecimalRange = cell.parse().unwrap_or(ranges[Axis::X0]);
+        let ranges = ranges.with(Axis::X0, cell).with(Axis::Y0, cell);
         PoseGrid::new(source, sensor, Anchor::Centre, ranges).map(Some)
     }
 

@@ -2,7 +2,7 @@
 
 use crate::figure::{Figure, FigureKind};
 use crate::parameter::Parameter;
-use crate::pose::{Anchor, Axis, GivenRanges, Ranges, smallest_sensor};
+use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, Ranges, smallest_sensor};
 use crate::recognition::model::NamedShape;
 use crate::recognition::training::{Training, TrainingError};
 use crate::sensor::Sensor;
@@ -65,6 +65,16 @@ impl GridSteps {
     };
 }
 
+impl GridSteps {
+    /// Returns the same cell of positions, as a range of hundredths begins, in these steps.
+    pub fn cell(self, fine: &DecimalRange) -> DecimalRange {
+        let hundredths = 100 / u32::from(self.positions.clamp(1, 100));
+        let (first, step) = (fine.value(0), f64::from(hundredths) / 100.0);
+        let text = format!("{first:.2}:{:.2}:{step:.2}", first + 1.0 - step);
+        text.parse().unwrap_or(*fine)
+    }
+}
+
 impl Training<'_> {
     /// A training on the smallest square sensor, at least 16 × 16, that cuts off none of the shapes in any of the poses:
     /// one cell of positions around its middle, all angles.
@@ -90,12 +100,7 @@ impl Training<'_> {
 fn coarser(fine: &Ranges, steps: GridSteps) -> Ranges {
     let mut ranges = *fine;
     for axis in [Axis::X0, Axis::Y0] {
-        let hundredths = 100 / u32::from(steps.positions.clamp(1, 100));
-        let (first, step) = (fine[axis].value(0), f64::from(hundredths) / 100.0);
-        let text = format!("{first:.2}:{:.2}:{step:.2}", first + 1.0 - step);
-        if let Ok(range) = text.parse() {
-            ranges[axis] = range;
-        }
+        ranges[axis] = steps.cell(&fine[axis]);
     }
     ranges
 }

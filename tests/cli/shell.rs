@@ -9,7 +9,7 @@ use super::program;
 use super::taxel;
 
 /// Every command that has a help.
-const COMMANDS: [&str; 21] = [
+const COMMANDS: [&str; 30] = [
     "",
     "figure",
     "picture",
@@ -19,6 +19,15 @@ const COMMANDS: [&str; 21] = [
     "sweep",
     "merge",
     "frames",
+    "model",
+    "model train",
+    "model show",
+    "model list",
+    "model delete",
+    "model confusion",
+    "model touches",
+    "model separate",
+    "recognise",
     "library",
     "library list",
     "library show",

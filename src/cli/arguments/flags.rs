@@ -2,7 +2,7 @@
 
 use std::ffi::OsString;
 
-use clap::{Arg, ArgAction, value_parser};
+use clap::{Arg, ArgAction, ArgMatches, value_parser};
 
 use crate::cli::arguments::parameters;
 use crate::formats::{Name, NameError};
@@ -60,7 +60,7 @@ pub(super) fn shard() -> Arg {
 }
 
 /// A range of the grid, such as `5:5.99:0.01`.
-fn parse_range(text: &str) -> Result<DecimalRange, RangeError> {
+pub(super) fn parse_range(text: &str) -> Result<DecimalRange, RangeError> {
     text.parse()
 }
 
@@ -137,4 +137,31 @@ pub(super) fn json() -> Arg {
         .long("json")
         .action(ArgAction::SetTrue)
         .help("Answer in one line of JSON")
+}
+
+/// How an evaluation is printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum EvaluationForm {
+    Text,
+    Csv,
+    Json,
+}
+
+/// How an evaluation is printed.
+pub(super) fn form_of(matches: &ArgMatches) -> EvaluationForm {
+    if matches.get_flag("json") {
+        EvaluationForm::Json
+    } else if matches.get_flag("csv") {
+        EvaluationForm::Csv
+    } else {
+        EvaluationForm::Text
+    }
+}
+
+/// A number from 0 to 1.
+pub(super) fn parse_probability(text: &str) -> Result<f64, &'static str> {
+    let number = text.trim().parse().ok();
+    number
+        .filter(|number| (0.0..=1.0).contains(number))
+        .ok_or("expected a number from 0 to 1")
 }

@@ -265,7 +265,21 @@ Examples:
   taxel model confusion parts --classifier all
   taxel model confusion parts --noise 0:0.1:0.01 --dead 0,4 --touches 200
   taxel model confusion parts --test half-step
-  taxel model confusion parts --export parts.csv";
+  taxel model confusion parts --export parts.svg";
+
+/// `taxel model separate`: what it answers.
+pub(crate) const MODEL_SEPARATE_EXAMPLES: &str = "\
+Trains the set at each scale (all lengths of all shapes times it) or, where the
+lengths are in mm, at each pitch, and says how many touches even the best
+classifier names wrong. --want scans from the smallest size upwards, then in
+tenths of the step before the first size that reaches the error. The error is not
+monotonous: how many larger sizes miss it again is said, too.
+
+Examples:
+  taxel model separate parts --scale 0.5:2:0.1 --positions 20
+  taxel model separate parts.jsonl --pitch 1:4:0.5 --want 0.05 --positions 10
+  taxel model separate parts --threshold 0.3:0.7:0.1 --positions 10 --json
+  taxel model separate parts --scale 1:2:0.2 --positions 10 --export sizes.svg";
 
 /// `taxel model touches`: what is simulated.
 pub(crate) const MODEL_TOUCHES_EXAMPLES: &str = "\
@@ -289,7 +303,7 @@ Exit status 3: --expect was given, and the answer is another one, tied, rejected
 or unknown.
 
 Examples:
-  taxel recognise imprint.txt
+  taxel recognise imprint.txt --pose
   taxel recognise washer --model shipped.npz --top 3
   taxel batch < poses.jsonl | taxel recognise - --model parts
   taxel recognise imprint.txt --model parts --expect disc --reject 0.9

@@ -6,7 +6,9 @@
 //! | `program` | the same for `script`, `config`, `completions`, `man` and the screen's own flags |
 //! | `flags` | flags that several commands have |
 //! | `parameters` | flags made from the table of parameters, and their values |
-//! | `recognition` | the same for `model` and `recognise` |
+//! | `shape_set` | the shapes of a model, for the next two |
+//! | `separation` | the same for `model separate` |
+//! | `recognition` | the same for the rest of `model`, and for `recognise` |
 //! | `help` | the longer texts of the help |
 //! | `request` | from what clap has read to a `Request` |
 //!
@@ -23,6 +25,10 @@ pub(super) mod flags;
 pub(super) mod frames;
 
 pub(super) mod groups;
+
+pub(super) mod shape_set;
+
+pub(super) mod separation;
 
 pub(super) mod definitions;
 

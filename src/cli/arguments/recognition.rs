@@ -6,13 +6,18 @@ use std::path::PathBuf;
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
 
 use crate::cli::arguments::flags::{
-    anchor, jobs, json, parse_name, quiet, range, replace, sensor_of_imprints, shard, what,
+    EvaluationForm, anchor, form_of, jobs, json, of_sensor, parse_name, parse_probability, quiet,
+    range, replace, sensor_of_imprints, shard, what,
 };
 use crate::cli::arguments::help::{
     MODEL_CONFUSION_EXAMPLES, MODEL_DELETE_EXAMPLES, MODEL_EXAMPLES, MODEL_LIST_EXAMPLES,
     MODEL_SHOW_EXAMPLES, MODEL_TOUCHES_EXAMPLES, MODEL_TRAIN_EXAMPLES, RECOGNISE_EXAMPLES,
 };
 use crate::cli::arguments::parameters::{self, Given};
+use crate::cli::arguments::separation::{SeparateArguments, separate, separate_arguments};
+use crate::cli::arguments::shape_set::{
+    SetArguments, library_all, positions, set_arguments, shape,
+};
 use crate::cli::error::CliError;
 use crate::formats::Name;
 use crate::parameter::Parameter;
@@ -42,19 +47,18 @@ pub(crate) enum ModelRequest {
     Confusion(Box<ConfusionArguments>),
     /// To simulate how many touches it takes.
     Touches(TouchesArguments),
+    /// To look at its error against size and threshold.
+    Separate(Box<SeparateArguments>),
 }
 
 /// A set of shapes, how to train it, and where the model goes.
 #[derive(Clone, Debug)]
 pub(crate) struct TrainArguments {
-    /// Files of JSON lines, or names of the library.
-    pub(crate) what: Vec<OsString>,
-    /// Shapes in words.
-    pub(crate) shapes: Vec<String>,
-    /// Whether all shapes of the library belong to the set.
-    pub(crate) library_all: bool,
+    pub(crate) set: SetArguments,
     pub(crate) anchor: Option<Anchor>,
     pub(crate) ranges: GivenRanges,
+    /// Positions of a cell in each direction, where its range is not given.
+    pub(crate) positions: Option<u8>,
     /// The sensor, if its columns or rows are given; otherwise the smallest one, changed by the other values.
     pub(crate) sensor: Option<Sensor>,
     /// The values of the sensor's flags.
@@ -137,14 +141,6 @@ pub(crate) enum Evaluated {
     HalfStep,
 }
 
-/// How an evaluation is printed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum EvaluationForm {
-    Text,
-    Csv,
-    Json,
-}
-
 /// What is to be recognised, and how.
 #[derive(Clone, Debug)]
 pub(crate) struct RecogniseArguments {
@@ -160,6 +156,10 @@ pub(crate) struct RecogniseArguments {
     pub(crate) noise: Option<Noise>,
     /// An imprint of the dead taxels.
     pub(crate) mask: Option<OsString>,
+    /// Whether to say where the shape lies.
+    pub(crate) pose: bool,
+    /// In mm, for that.
+    pub(crate) pitch_mm: Option<f64>,
     pub(crate) json: bool,
 }
 
@@ -189,6 +189,7 @@ pub(super) fn model() -> Command {
         )
         .subcommand(confusion())
         .subcommand(touches())
+        .subcommand(separate())
 }
 
 /// `taxel model train`.
@@ -198,15 +199,6 @@ fn train() -> Command {
         .num_args(0..)
         .value_parser(value_parser!(OsString))
         .help("Shapes as lines of JSON, '-' for standard input; or names of the\nlibrary");
-    let shape = Arg::new("shape")
-        .long("shape")
-        .value_name("NAME=KIND KEY=NUMBER...")
-        .action(ArgAction::Append)
-        .help("A shape more: 'disc=ellipse radius_x=3 radius_y=3'");
-    let library_all = Arg::new("library-all")
-        .long("library-all")
-        .action(ArgAction::SetTrue)
-        .help("All shapes of the library");
     let out = Arg::new("out")
         .long("out")
         .value_name("FILE.npz")
@@ -224,7 +216,7 @@ fn train() -> Command {
     Command::new("train")
         .about("Learn every imprint of a set of shapes")
         .after_help(MODEL_TRAIN_EXAMPLES)
-        .args([what, shape, library_all, out, name])
+        .args([what, shape(), library_all(), out, name])
         .group(
             ArgGroup::new("shapes")
                 .args(["set", "shape", "library-all"])
@@ -236,6 +228,7 @@ fn train() -> Command {
             Axis::X0 | Axis::Y0 => range(axis, "one cell in which no shape is cut off"),
             _ => range(axis, ""),
         }))
+        .arg(positions())
         .arg(anchor().help("What x0 and y0 place: corner or centre; default corner\nwhere one of them is given, otherwise centre"))
         .args(sensor_of_imprints())
         .args([allow_cut, jobs(), shard(), replace(), json(), quiet()])
@@ -456,6 +449,10 @@ pub(super) fn recognise() -> Command {
         .value_parser(value_parser!(OsString))
         .requires("noise")
         .help("Imprint whose active taxels are dead, stuck on or off");
+    let pose = Arg::new("pose")
+        .long("pose")
+        .action(ArgAction::SetTrue)
+        .help("Say where the shape lies and how it is turned");
     Command::new("recognise")
         .alias("recognize")
         .about("Name the shape that left an imprint")
@@ -463,7 +460,9 @@ pub(super) fn recognise() -> Command {
         .arg(what(
             "Imprint: shape of the library, or file; '-' for standard input",
         ))
-        .args([model, top, reject, expect, noise, mask, json()])
+        .args([model, top, reject, expect, noise, mask, pose])
+        .args(of_sensor(&[Parameter::Pitch]))
+        .arg(json())
 }
 
 /// `MODEL`: a name or a file.
@@ -483,14 +482,6 @@ fn parse_given(text: &str) -> Result<GivenDescriptors, GivenError> {
 /// A descriptor and a step, such as `cg_cd=0.01`.
 fn parse_rounding(text: &str) -> Result<Rounding, GivenError> {
     text.parse()
-}
-
-/// A number from 0 to 1.
-fn parse_probability(text: &str) -> Result<f64, &'static str> {
-    let number = text.trim().parse().ok();
-    number
-        .filter(|number| (0.0..=1.0).contains(number))
-        .ok_or("expected a number from 0 to 1")
 }
 
 /// What the arguments of `taxel model` ask for.
@@ -519,6 +510,7 @@ pub(super) fn model_request(matches: &ArgMatches) -> Result<ModelRequest, CliErr
             quiet: own.get_flag("quiet"),
         }),
         "confusion" => ModelRequest::Confusion(Box::new(confusion_arguments(own, model()))),
+        "separate" => ModelRequest::Separate(Box::new(separate_arguments(own))),
         _ => ModelRequest::List(own.get_flag("json")),
     })
 }
@@ -537,17 +529,14 @@ fn train_arguments(matches: &ArgMatches) -> Result<TrainArguments, CliError> {
         Some(name) => ModelTarget::Named(name.clone()),
         None => ModelTarget::File(matches.get_one("out").cloned().unwrap_or_default()),
     };
-    let all = |id: &str| matches.get_many::<OsString>(id).into_iter().flatten();
-    let shapes = matches.get_many::<String>("shape").into_iter().flatten();
     Ok(TrainArguments {
-        what: all("set").cloned().collect(),
-        shapes: shapes.cloned().collect(),
-        library_all: matches.get_flag("library-all"),
+        set: set_arguments(matches),
         anchor: matches.get_one::<Anchor>("anchor").copied(),
         ranges: GivenRanges::from_fn(|axis| {
             let range = matches.get_one(&format!("range_{}", axis.name()));
             range.copied()
         }),
+        positions: matches.get_one::<u8>("positions").copied(),
         sensor: sized.then_some(sensor),
         given,
         shard: matches.get_one("shard").copied().unwrap_or(Shard::WHOLE),
@@ -605,20 +594,17 @@ fn confusion_arguments(matches: &ArgMatches, model: OsString) -> ConfusionArgume
         of,
         roundings: roundings.copied().collect(),
         peers,
-        form: if matches.get_flag("json") {
-            EvaluationForm::Json
-        } else if matches.get_flag("csv") {
-            EvaluationForm::Csv
-        } else {
-            EvaluationForm::Text
-        },
+        form: form_of(matches),
         export: matches.get_one::<PathBuf>("export").cloned(),
         existing: parameters::existing(matches),
     }
 }
 
 /// What the arguments of `taxel recognise` ask for.
-pub(super) fn recognise_arguments(matches: &ArgMatches) -> RecogniseArguments {
+pub(super) fn recognise_arguments(
+    matches: &ArgMatches,
+    pitch_mm: Option<f64>,
+) -> RecogniseArguments {
     let text = |id: &str| matches.get_one::<OsString>(id).cloned().unwrap_or_default();
     RecogniseArguments {
         what: text("what"),
@@ -630,6 +616,8 @@ pub(super) fn recognise_arguments(matches: &ArgMatches) -> RecogniseArguments {
         expect: matches.get_one::<String>("expect").cloned(),
         noise: matches.get_one::<Noise>("noise").copied(),
         mask: matches.get_one::<OsString>("mask").cloned(),
+        pose: matches.get_flag("pose"),
+        pitch_mm,
         json: matches.get_flag("json"),
     }
 }

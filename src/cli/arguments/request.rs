@@ -262,7 +262,10 @@ fn request(
             Request::Merge(files.cloned().collect(), wanted(own))
         }
         "model" => Request::Model(recognition::model_request(own)?),
-        "recognise" => Request::Recognise(recognition::recognise_arguments(own)),
+        "recognise" => Request::Recognise(recognition::recognise_arguments(
+            own,
+            pitch(own, settings)?.of(None),
+        )),
         _ => Request::Batch(settings.sensor()),
     })
 }

@@ -20,6 +20,10 @@ pub(super) mod model;
 
 pub(super) mod noise;
 
+pub(super) mod confusion;
+
+pub(super) mod separate;
+
 pub(super) mod recognise;
 
 pub(super) mod frames;

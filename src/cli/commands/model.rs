@@ -1,39 +1,31 @@
-//! `taxel model`: trains, shows, lists, deletes and evaluates models of shapes.
+//! `taxel model`: trains, shows, lists and deletes models of shapes.
 
 use std::ffi::OsStr;
-use std::fs::File;
-use std::io::{self, BufReader, Read};
-use std::path::{Path, PathBuf};
+use std::io;
+use std::path::Path;
 use std::sync::atomic::Ordering;
 
 use serde_json::json;
 
-use crate::cli::arguments::recognition::{
-    ConfusionArguments, DEFAULT_MODEL, Evaluated, EvaluationForm, ModelTarget, TrainArguments,
-};
-use crate::cli::commands::noise;
+use crate::cli::arguments::recognition::{DEFAULT_MODEL, ModelTarget, TrainArguments};
 use crate::cli::error::CliError;
+use crate::cli::input::shape_set;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
-use crate::cli::output::evaluation::{self, EvaluationJson};
+use crate::cli::output::evaluation;
 use crate::cli::output::progress::Progress;
 use crate::cli::output::report;
 use crate::cli::signals::Signals;
-use crate::figure::{Figure, FigureKind};
-use crate::formats::{Name, json, named_shape, named_shape_of_words};
-use crate::picture::Picture;
+use crate::formats::{Name, json};
 use crate::pose::{Anchor, Axis, GivenRanges, GridError, Ranges, common_ranges, smallest_sensor};
-use crate::recognition::{Evaluation, Model, NamedShape, Peer, Training, TrainingError, greedy};
-use crate::sensor::Sensor;
-use crate::storage::{
-    Existing, ModelCache, ModelFolder, UnfinishedFile, load_model, model_hash, save_model,
+use crate::recognition::{
+    Evaluation, GridSteps, Model, NamedShape, Training, TrainingError, default_figures,
 };
+use crate::sensor::Sensor;
+use crate::storage::{ModelCache, ModelFolder, UnfinishedFile, load_model, model_hash, save_model};
 
 /// The smallest side of a sensor that training chooses.
 const LEAST_SIDE: u8 = 16;
-
-/// The largest file of shapes.
-const MAX_SET: u64 = 64 << 20;
 
 /// Trains a model and writes it. Returns what is printed.
 pub(crate) fn train(
@@ -52,7 +44,7 @@ pub(crate) fn train(
             models.file(name)
         }
     };
-    let shapes = shapes(asked, shelf)?;
+    let shapes = shape_set::read(&asked.set, shelf)?;
     let (sensor, anchor, ranges) = grid(asked, &shapes)?;
     let signals = Signals::heard().map_err(CliError::System)?;
     // Whether a file can be begun there is found out before the work rather than after it.
@@ -122,7 +114,18 @@ fn grid(
         Anchor::Centre
     };
     let anchor = asked.anchor.unwrap_or(usual);
-    let (sensor, ranges) = fitting(shapes, asked.sensor, anchor, &asked.ranges)?;
+    let (sensor, mut ranges) = fitting(shapes, asked.sensor, anchor, &asked.ranges)?;
+    if let Some(positions) = asked.positions {
+        let steps = GridSteps {
+            positions,
+            ..GridSteps::FINE
+        };
+        for axis in [Axis::X0, Axis::Y0] {
+            if asked.ranges[axis].is_none() {
+                ranges[axis] = steps.cell(&ranges[axis]);
+            }
+        }
+    }
     let sensor = match asked.sensor {
         Some(sensor) => sensor,
         None => {
@@ -152,101 +155,14 @@ fn fitting(
     Ok((sensor, common_ranges(sources(), &sensor, anchor, given)?))
 }
 
-/// The shapes of a set, in the order of the arguments.
-fn shapes(asked: &TrainArguments, shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
-    let lookup = |name: &str| shelf.imprint(name).map_err(|error| error.to_string());
-    let mut shapes = Vec::new();
-    for what in &asked.what {
-        if what == "-" {
-            lines(
-                &mut io::stdin().lock(),
-                "standard input",
-                &lookup,
-                &mut shapes,
-            )?;
-        } else if let Some(path) = file_of_lines(what, shelf) {
-            let name = path.to_string_lossy().into_owned();
-            let mut file = File::open(&path).map_err(|error| CliError::File {
-                name: name.clone(),
-                error,
-            })?;
-            lines(&mut file, &name, &lookup, &mut shapes)?;
-        } else {
-            let name = what.to_string_lossy();
-            let imprint = shelf.imprint(&name)?;
-            shapes.push(NamedShape::new(name, Picture::at_home(imprint)));
-        }
-    }
-    for words in &asked.shapes {
-        let shape = named_shape_of_words(words, &lookup);
-        shapes.push(shape.map_err(|error| CliError::Set {
-            place: "--shape".to_owned(),
-            error: error.to_string(),
-        })?);
-    }
-    if asked.library_all {
-        shapes.extend(library_shapes(shelf)?);
-    }
-    Ok(shapes)
-}
-
-/// All shapes of the library, in its order.
-pub(crate) fn library_shapes(shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
-    let library = shelf.library()?;
-    let mut shapes = Vec::new();
-    for entry in library.list()? {
-        let name = entry.name.to_string();
-        let imprint = library.load(&name)?.shape.imprint;
-        shapes.push(NamedShape::new(name, Picture::at_home(imprint)));
-    }
-    Ok(shapes)
-}
-
-/// The file that an argument names; None if it is the name of a shape.
-fn file_of_lines(what: &OsStr, shelf: &Shelf) -> Option<PathBuf> {
-    let path = Path::new(what);
-    let ending = path
-        .extension()
-        .is_some_and(|ending| ending == "jsonl" || ending == "json");
-    let known = || {
-        what.to_str()
-            .is_some_and(|name| shelf.imprint(name).is_ok())
-    };
-    (ending || path.components().count() > 1 || path.is_file() && !known()).then(|| path.to_owned())
-}
-
-/// Reads a set of shapes, a line of JSON each. Blank lines are skipped.
-fn lines(
-    input: &mut dyn Read,
-    name: &str,
-    lookup: &dyn Fn(&str) -> Result<crate::imprint::Imprint, String>,
-    shapes: &mut Vec<NamedShape>,
-) -> Result<(), CliError> {
-    let mut text = Vec::new();
-    let read = BufReader::new(input)
-        .take(MAX_SET + 1)
-        .read_to_end(&mut text);
-    let refused = |place: String, error: String| CliError::Set { place, error };
-    read.map_err(|error| refused(name.to_owned(), format!("cannot read: {error}")))?;
-    if text.len() as u64 > MAX_SET {
-        let error = "larger than 64 MiB, which no set of shapes is";
-        return Err(refused(name.to_owned(), error.to_owned()));
-    }
-    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
-    for (index, line) in text.split(|&byte| byte == b'\n').enumerate() {
-        if line.trim_ascii().is_empty() {
-            continue;
-        }
-        let shape = named_shape(line, lookup);
-        let place = || format!("{name}, line {}", index + 1);
-        shapes.push(shape.map_err(|error| refused(place(), error.to_string()))?);
-    }
-    Ok(())
-}
-
 /// The folder of the models beside the library.
 fn folder(shelf: &Shelf) -> Result<ModelFolder, CliError> {
     Ok(ModelFolder::beside(shelf.library()?.folder()))
+}
+
+/// Whether there is a model of that name beside the library.
+pub(crate) fn is_kept(name: &Name, shelf: &Shelf) -> bool {
+    folder(shelf).is_ok_and(|models| models.file(name).exists())
 }
 
 /// Finds a model: one beside the library, then a file, then the seven figures if they are asked for.
@@ -271,28 +187,16 @@ pub(crate) fn find(which: &OsStr, shelf: &Shelf) -> Result<Model, CliError> {
 
 /// The model of the seven figures at their default sizes, from the cache or trained now.
 pub(crate) fn figures() -> Result<Model, CliError> {
-    let shape = |kind: FigureKind| {
-        let figure = Figure::default_of(kind, &Sensor::default());
-        NamedShape::new(kind.name(), figure)
+    let training = || Training::fitting(default_figures(), GridSteps::FINE);
+    let Some(cache) = ModelCache::of_user() else {
+        return Ok(training()?.run()?);
     };
-    let shapes = FigureKind::ALL.map(shape);
-    let (sensor, ranges) = fitting(&shapes, None, Anchor::Centre, &GivenRanges::default())?;
-    let training = || Training::new(shapes.clone(), sensor, Anchor::Centre, ranges);
-    let cache = ModelCache::of_user();
-    if let Some(model) = cache
-        .as_ref()
-        .and_then(|cache| cache.load(&training().ok()?))
-    {
+    if let Some(model) = cache.load(&training()?) {
         return Ok(model);
     }
-    let path = match &cache {
-        Some(cache) => Some(cache.file(&training()?)),
-        None => None,
-    };
+    let path = cache.file(&training()?);
     let model = training()?.run()?;
-    if let (Some(cache), Some(path)) = (cache, path) {
-        cache.keep(&path, &model);
-    }
+    cache.keep(&path, &model);
     Ok(model)
 }
 
@@ -411,23 +315,15 @@ fn card_json(
     card.insert("shard".into(), json!(model.shard().to_string()));
     card.insert("poses".into(), json!(model.poses()));
     card.insert("keys".into(), json!(limit.keys));
-    card.insert("touches".into(), number(limit.touches));
-    card.insert("right".into(), number(limit.right));
+    card.insert("touches".into(), evaluation::number(limit.touches));
+    card.insert("right".into(), evaluation::number(limit.right));
     card.insert("error".into(), json!(limit.error()));
-    card.insert("certain".into(), number(limit.certain));
+    card.insert("certain".into(), evaluation::number(limit.certain));
     card.insert("information_bits".into(), json!(limit.information_bits));
     card.insert("never_certain".into(), never.collect());
     card.insert("hash".into(), json!(model_hash(model)?));
     card.insert("version".into(), json!(env!("CARGO_PKG_VERSION")));
     Ok(card)
-}
-
-/// A count as JSON; counts beyond 64 bits do not fit in memory anyway, but a weight may make one.
-pub(crate) fn number(count: u128) -> serde_json::Value {
-    match u64::try_from(count) {
-        Ok(count) => json!(count),
-        Err(_) => json!(count.to_string()),
-    }
 }
 
 /// Lists the models beside the library.
@@ -476,120 +372,4 @@ pub(crate) fn delete(name: &Name, shelf: &Shelf) -> Result<String, CliError> {
             Ok(format!("deleted: {name}\n"))
         }
     }
-}
-
-/// Evaluates a model.
-pub(crate) fn confusion(
-    asked: &ConfusionArguments,
-    shelf: &Shelf,
-    charset: Charset,
-) -> Result<String, CliError> {
-    let model = find(&asked.model, shelf)?;
-    let text = match &asked.of {
-        Evaluated::Imprints => shown(asked, &Evaluation::of(&model), charset)?,
-        Evaluated::Given(given) => {
-            let given = given.clone().rounded(asked.roundings.clone());
-            shown(asked, &given.evaluate(&model), charset)?
-        }
-        Evaluated::Greedy => {
-            let (chosen, limit) = (greedy(&model, &asked.roundings), Evaluation::of(&model));
-            match asked.form {
-                EvaluationForm::Json => {
-                    let steps = chosen.iter().map(|(descriptor, evaluation)| {
-                        json!({
-                            "descriptor": descriptor.key(),
-                            "right": number(evaluation.right),
-                            "error": evaluation.error(),
-                            "values": evaluation.keys,
-                        })
-                    });
-                    let steps: Vec<_> = steps.collect();
-                    json!({"chosen": steps, "limit": limit.error()}).to_string() + "\n"
-                }
-                _ => evaluation::greedy(&chosen, &limit, charset),
-            }
-        }
-        Evaluated::Pairs => {
-            let errors = model.pair_errors();
-            let names = model.shapes().iter().map(|shape| shape.name.clone());
-            let labels: Vec<String> = names.collect();
-            match asked.form {
-                EvaluationForm::Json => {
-                    let line = json!({"labels": labels, "errors": errors}).to_string();
-                    report::ascii_json(&line) + "\n"
-                }
-                _ => evaluation::pairs(&labels, &errors, charset),
-            }
-        }
-        Evaluated::Peer(peer) => {
-            let reached = peer.evaluate(&model, &asked.peers);
-            match asked.form {
-                EvaluationForm::Json => {
-                    let line = json::text(&EvaluationJson {
-                        evaluation: &reached.evaluation,
-                        peer: Some(&reached),
-                    });
-                    report::ascii_json(&line) + "\n"
-                }
-                _ => {
-                    let text = shown(asked, &reached.evaluation, charset)?;
-                    text + &charset.lines(&evaluation::features(Some(&reached)))
-                }
-            }
-        }
-        Evaluated::Noise(noise) => noise::degradation(&model, noise, asked.form, charset)?,
-        Evaluated::HalfStep => {
-            noise::half_step(&model, asked.form == EvaluationForm::Json, charset)?
-        }
-        Evaluated::AllPeers => {
-            let all = Peer::ALL.map(|peer| peer.evaluate(&model, &asked.peers));
-            let limit = Evaluation::of(&model);
-            match asked.form {
-                EvaluationForm::Json => {
-                    let mut table = serde_json::Map::new();
-                    for reached in &all {
-                        let error = json!(reached.evaluation.error());
-                        table.insert(reached.peer.name().to_owned(), error);
-                    }
-                    table.insert("limit".to_owned(), json!(limit.error()));
-                    json::text(&table) + "\n"
-                }
-                _ => evaluation::peers(&all, &limit, charset),
-            }
-        }
-    };
-    Ok(text)
-}
-
-/// One evaluation, in the form that is asked for.
-fn shown(
-    asked: &ConfusionArguments,
-    own: &Evaluation,
-    charset: Charset,
-) -> Result<String, CliError> {
-    if let Some(path) = &asked.export {
-        write(path, evaluation::csv(own).as_bytes(), asked.existing)?;
-    }
-    Ok(match asked.form {
-        EvaluationForm::Json => {
-            let line = json::text(&EvaluationJson {
-                evaluation: own,
-                peer: None,
-            });
-            report::ascii_json(&line) + "\n"
-        }
-        EvaluationForm::Csv => evaluation::csv(own),
-        EvaluationForm::Text => {
-            let matrix = evaluation::matrix(own, charset);
-            let worst = evaluation::worst_pairs(own, charset);
-            format!("{}\n{matrix}{worst}", evaluation::summary(own, charset))
-        }
-    })
-}
-
-/// Writes a file, whole or not at all.
-fn write(path: &Path, bytes: &[u8], existing: Existing) -> Result<(), CliError> {
-    let mut file = UnfinishedFile::new(path, existing)?;
-    file.write(bytes)?;
-    Ok(file.finish()?.persist()?)
 }

@@ -5,12 +5,13 @@ use std::sync::atomic::Ordering;
 
 use serde_json::json;
 
-use crate::cli::arguments::recognition::{EvaluationForm, NoiseArguments, TouchesArguments};
+use crate::cli::arguments::flags::EvaluationForm;
+use crate::cli::arguments::recognition::{NoiseArguments, TouchesArguments};
 use crate::cli::commands::model;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
-use crate::cli::output::evaluation::percent;
+use crate::cli::output::evaluation::{self, percent};
 use crate::cli::output::progress::Progress;
 use crate::cli::output::report;
 use crate::cli::signals::Signals;
@@ -157,7 +158,7 @@ pub(crate) fn half_step(model: &Model, json: bool, charset: Charset) -> Result<S
     })?;
     if json {
         let answer = json!({
-            "touches": model::number(result.touches),
+            "touches": evaluation::number(result.touches),
             "missing": result.missing(),
             "error": result.error(),
             "error_with_nearest": result.error_with_nearest(),

@@ -14,6 +14,7 @@ use crate::cli::input::lines::{self, MAX_LINE};
 use crate::cli::input::shapes::{Located, Shelf};
 use crate::cli::output::answer::{self, AnswerJson};
 use crate::cli::output::charset::Charset;
+use crate::cli::output::pose::PoseReport;
 use crate::cli::output::report;
 use crate::formats::json;
 use crate::imprint::Imprint;
@@ -62,13 +63,17 @@ pub(crate) fn recognise(
                 let line = json::text(&recogniser.json(&touches, (&answer, method), None));
                 report::ascii_json(&line) + "\n"
             } else {
-                answer::text(
+                let mut text = answer::text(
                     &model,
                     &touches[0],
                     &answer,
                     (asked.top, asked.noise),
                     charset,
-                )
+                );
+                if let Some(pose) = recogniser.pose(&touches, &answer).flatten() {
+                    text += &pose.text(&touches[0], charset);
+                }
+                text
             };
             output.write_all(text.as_bytes()).map_err(CliError::Write)?;
             output.flush().map_err(CliError::Write)?;
@@ -140,8 +145,19 @@ impl Recogniser<'_> {
             noise: self.asked.noise,
             nearest: self.model.nearest_of(Evidence::of(touches)),
             top: self.asked.top,
+            pose: self.pose(touches, answer),
             copied: line.map(Line::copied).unwrap_or_default(),
         }
+    }
+
+    /// Where the shape of an answer lies in the last touch, if that is asked for; inner None without an answer, and if
+    /// the shape does not leave that imprint.
+    fn pose(&self, touches: &[Imprint], answer: &Answer) -> Option<Option<PoseReport>> {
+        self.asked.pose.then(|| {
+            let (shape, touch) = (answer.shape?, touches.last()?);
+            let estimate = self.model.pose_of(shape, touch, &|_| true)?;
+            PoseReport::new(&self.model, shape, touch, estimate, self.asked.pitch_mm)
+        })
     }
 
     /// Whether the answer is the expected one; yes if none is.

@@ -10,3 +10,5 @@ pub(super) mod lines;
 pub(super) mod recording;
 
 pub(super) mod shapes;
+
+pub(super) mod shape_set;

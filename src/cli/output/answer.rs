@@ -2,12 +2,14 @@
 
 use std::fmt::Write;
 
-use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde::Serialize;
+use serde::ser::{SerializeMap, Serializer};
 use serde_json::json;
 use serde_json::value::RawValue;
 
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::percent;
+use crate::cli::output::pose::PoseReport;
 use crate::imprint::Imprint;
 use crate::recognition::{Answer, AnswerState, Evidence, Method, Model, Nearest, Noise};
 
@@ -17,6 +19,14 @@ const SHOWN: usize = 8;
 /// Characters of the longest bar.
 const BAR: usize = 30;
 
+/// The nearest imprint as an object of JSON.
+#[derive(Serialize)]
+struct NearestJson<'a> {
+    name: &'a str,
+    distance: u32,
+    imprint: Vec<String>,
+}
+
 /// An answer as an object of JSON, its keys in the order of the documentation.
 pub(crate) struct AnswerJson<'a> {
     pub(crate) model: &'a Model,
@@ -25,6 +35,8 @@ pub(crate) struct AnswerJson<'a> {
     pub(crate) noise: Option<Noise>,
     pub(crate) nearest: Option<Nearest>,
     pub(crate) top: Option<usize>,
+    /// Where the shape lies: None if that was not asked for, inner None if it cannot be said.
+    pub(crate) pose: Option<Option<PoseReport>>,
     /// Keys of the question that come first.
     pub(crate) copied: Vec<(&'static str, &'a RawValue)>,
 }
@@ -50,14 +62,15 @@ impl Serialize for AnswerJson<'_> {
         let ranking = ranking
             .map(|&(shape, probability)| json!({"name": name(shape), "probability": probability}));
         map.serialize_entry("ranking", &ranking.collect::<Vec<_>>())?;
-        let nearest = self.nearest.as_ref().map(|nearest| {
-            json!({
-                "name": name(nearest.shape),
-                "distance": nearest.distance,
-                "imprint": nearest.imprint.lines().collect::<Vec<_>>(),
-            })
+        let nearest = self.nearest.as_ref().map(|nearest| NearestJson {
+            name: name(nearest.shape),
+            distance: nearest.distance,
+            imprint: nearest.imprint.lines().collect(),
         });
         map.serialize_entry("nearest", &nearest)?;
+        if let Some(pose) = &self.pose {
+            map.serialize_entry("pose", &pose.as_ref().map(PoseReport::json))?;
+        }
         map.end()
     }
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde_json::json;
 
 use crate::cli::output::charset::Charset;
 use crate::recognition::{Evaluation, Peer, PeerEvaluation, ShapeDescriptor};
@@ -42,6 +43,14 @@ impl Serialize for EvaluationJson<'_> {
             map.serialize_entry("dropped", &dropped.collect::<Vec<_>>())?;
         }
         map.end()
+    }
+}
+
+/// A count as JSON; counts beyond 64 bits do not fit in memory anyway, but a weight may make one.
+pub(crate) fn number(count: u128) -> serde_json::Value {
+    match u64::try_from(count) {
+        Ok(count) => json!(count),
+        Err(_) => json!(count.to_string()),
     }
 }
 
@@ -108,7 +117,7 @@ pub(crate) fn summary(evaluation: &Evaluation, charset: Charset) -> String {
 
 /// A part of a whole; 0 of nothing.
 #[expect(clippy::cast_precision_loss, reason = "a share has no more digits")]
-fn ratio(part: u128, whole: u128) -> f64 {
+pub(crate) fn ratio(part: u128, whole: u128) -> f64 {
     if whole == 0 {
         0.0
     } else {

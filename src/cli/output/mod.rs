@@ -16,4 +16,10 @@ pub(super) mod progress;
 
 pub(super) mod evaluation;
 
+pub(super) mod plot;
+
+pub(super) mod pose;
+
+pub(super) mod separation;
+
 pub(super) mod answer;

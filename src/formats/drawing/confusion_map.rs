@@ -232,11 +232,7 @@ impl MapLayout<'_> {
         let end = self.place(shapes, shapes);
         let title = map.title.as_ref().map_or(0.0, |_| TEXT + 6.0);
         let middle = f64::midpoint(self.corner.0, end.0);
-        self.text(
-            "named",
-            (middle, MARGIN + title + TEXT),
-            TextAnchor::Middle,
-        );
+        self.text("named", (middle, MARGIN + title + TEXT), TextAnchor::Middle);
         self.marks.push(Element::Text {
             text: "true shape".to_owned(),
             place: (MARGIN + TEXT, f64::midpoint(self.corner.1, end.1)),
@@ -258,10 +254,7 @@ fn share(part: u128, whole: u128) -> f64 {
 
 /// A share in percent, with a decimal where it is not whole.
 fn percent(share: f64) -> String {
-    format!(
-        "{} %",
-        crate::formats::value::decimal(100.0 * share, 1)
-    )
+    format!("{} %", crate::formats::value::decimal(100.0 * share, 1))
 }
 
 #[expect(

@@ -54,7 +54,10 @@ impl LinePlot {
     pub fn with_curve(mut self, name: &str, points: &[(f64, f64)]) -> Self {
         if self.curves.len() < MOST {
             let shown = |number: f64| (0.0..=1e9).contains(&number);
-            let points = points.iter().copied().filter(|&(x, y)| shown(x) && shown(y));
+            let points = points
+                .iter()
+                .copied()
+                .filter(|&(x, y)| shown(x) && shown(y));
             let name = name.chars().take(LONGEST).collect();
             self.curves.push((name, points.collect()));
         }
@@ -114,7 +117,10 @@ impl LinePlot {
             marks.push(path_of("points", dots.collect(), Stroke::black(0.8)));
             let y = end.1 + TEXT * 4.0 + ROW * f64::from(index);
             last = y;
-            let sample = [Segment::Move((corner.0, y)), Segment::Line((corner.0 + 24.0, y))];
+            let sample = [
+                Segment::Move((corner.0, y)),
+                Segment::Line((corner.0 + 24.0, y)),
+            ];
             marks.push(path_of("legend", sample.to_vec(), line));
             let at = (corner.0 + 30.0, y + TEXT * 0.35);
             marks.push(label(name, at, TextAnchor::Start));

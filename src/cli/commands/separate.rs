@@ -1,0 +1,174 @@
+//! `taxel model separate`: the error of a set against the size of its shapes and the threshold of the sensor.
+
+use std::ffi::OsStr;
+use std::io;
+use std::path::Path;
+use std::sync::atomic::Ordering;
+
+use crate::cli::arguments::flags::EvaluationForm;
+use crate::cli::arguments::recognition::DEFAULT_MODEL;
+use crate::cli::arguments::separation::SeparateArguments;
+use crate::cli::commands::confusion::ending;
+use crate::cli::commands::export::put;
+use crate::cli::commands::model;
+use crate::cli::error::CliError;
+use crate::cli::input::shape_set;
+use crate::cli::input::shapes::Shelf;
+use crate::cli::output::charset::Charset;
+use crate::cli::output::progress::Progress;
+use crate::cli::output::separation::{self, Curve};
+use crate::cli::signals::Signals;
+use crate::formats::Name;
+use crate::pose::{Axis, DecimalRange, Ranges};
+use crate::recognition::{Model, Separation, TrainingError};
+use crate::sensor::Sensor;
+use crate::storage::UnfinishedFile;
+
+/// Between two sizes of a scan, a search looks at so many more.
+const REFINED: u64 = 9;
+
+/// Looks at all sizes and thresholds. Returns what is printed.
+pub(crate) fn separate(
+    asked: &SeparateArguments,
+    shelf: &Shelf,
+    charset: Charset,
+) -> Result<String, CliError> {
+    let (separation, usual) = set(asked, shelf)?;
+    let thresholds: Vec<f64> = match &asked.thresholds {
+        Some(range) => range.values().collect(),
+        None => vec![usual],
+    };
+    check(asked, &separation, &thresholds)?;
+    let signals = Signals::heard().map_err(CliError::System)?;
+    if let Some(path) = &asked.export {
+        drop(UnfinishedFile::new(path, asked.existing)?);
+    }
+    let more = asked.wanted.map_or(0, |_| REFINED);
+    let points = (asked.sizes.count() + more) * thresholds.len() as u64;
+    let progress = Progress::new(separation.touches() * points, asked.quiet, charset);
+    let tell = |poses: u64| {
+        progress.add(poses);
+        !signals.stopped.load(Ordering::Relaxed)
+    };
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(asked.jobs)
+        .build();
+    let pool = pool.map_err(|error| CliError::System(io::Error::other(error)))?;
+    let curves = pool.install(|| curves(asked, &separation, &thresholds, &tell));
+    progress.finish();
+    let curves = curves.map_err(|error| match error {
+        TrainingError::Stopped => signals.failure(),
+        error => error.into(),
+    })?;
+    if let Some(path) = &asked.export {
+        let content = match ending(path).as_str() {
+            "svg" => separation::drawing(asked.axis, &curves).svg().into_bytes(),
+            "png" => {
+                let drawing = separation::drawing(asked.axis, &curves);
+                drawing.png().map_err(CliError::Write)?
+            }
+            _ => separation::csv(asked.axis, &curves).into_bytes(),
+        };
+        put(path, &content, asked.existing)?;
+    }
+    Ok(match asked.form {
+        EvaluationForm::Json => separation::json_text(asked.axis, &curves, asked.wanted),
+        EvaluationForm::Csv => separation::csv(asked.axis, &curves),
+        EvaluationForm::Text => {
+            separation::text(asked.axis, &asked.sizes, &curves, asked.wanted, charset)
+        }
+    })
+}
+
+/// One curve for each threshold.
+fn curves(
+    asked: &SeparateArguments,
+    separation: &Separation,
+    thresholds: &[f64],
+    tell: &(dyn Fn(u64) -> bool + Sync),
+) -> Result<Vec<Curve>, TrainingError> {
+    let mut curves = Vec::with_capacity(thresholds.len());
+    for &threshold in thresholds {
+        let points = separation.scan(asked.axis, &asked.sizes, threshold, tell)?;
+        let smallest = match asked.wanted {
+            Some(error) => separation.smallest(asked.axis, &points, error, tell)?,
+            None => None,
+        };
+        curves.push(Curve {
+            threshold,
+            points,
+            smallest,
+        });
+    }
+    Ok(curves)
+}
+
+/// Refuses what would fail on the way, before the work.
+fn check(
+    asked: &SeparateArguments,
+    separation: &Separation,
+    thresholds: &[f64],
+) -> Result<(), CliError> {
+    for &threshold in thresholds {
+        for size in asked.sizes.values() {
+            let name = asked.axis.name();
+            let place = || format!("{name} {size}, threshold {threshold}");
+            let refused = |error| CliError::Separation {
+                place: place(),
+                error,
+            };
+            separation
+                .training(asked.axis.scale(size), threshold)
+                .map_err(refused)?;
+        }
+    }
+    Ok(())
+}
+
+/// The set, and the threshold if none is given.
+fn set(asked: &SeparateArguments, shelf: &Shelf) -> Result<(Separation, f64), CliError> {
+    if let ([what], [], false) = (
+        &asked.set.what[..],
+        &asked.set.shapes[..],
+        asked.set.library_all,
+    ) && is_model(what, shelf)
+    {
+        let model = model::find(what, shelf)?;
+        let separation = Separation::new(model.shapes().to_vec())?
+            .positions(asked.positions.unwrap_or(positions(&model)))
+            .angles(asked.angles.unwrap_or(model.ranges()[Axis::Angle]));
+        return Ok((separation, model.sensor().threshold()));
+    }
+    let mut separation = Separation::new(shape_set::read(&asked.set, shelf)?)?
+        .angles(asked.angles.unwrap_or(Ranges::default()[Axis::Angle]));
+    if let Some(positions) = asked.positions {
+        separation = separation.positions(positions);
+    }
+    Ok((separation, Sensor::default().threshold()))
+}
+
+/// Whether an argument is a model, rather than a shape or a file of shapes.
+fn is_model(what: &OsStr, shelf: &Shelf) -> bool {
+    let path = Path::new(what);
+    let name = what.to_str().and_then(|name| Name::new(name).ok());
+    let kept = name.is_some_and(|name| model::is_kept(&name, shelf));
+    let known = || {
+        what.to_str()
+            .is_some_and(|name| shelf.imprint(name).is_ok())
+    };
+    kept || ending(path) == "npz" || what == DEFAULT_MODEL && !path.exists() && !known()
+}
+
+/// The positions of a model's cell in each direction; 100 where it has another grid than one cell.
+fn positions(model: &Model) -> u8 {
+    let of = |range: &DecimalRange| {
+        let count = u8::try_from(range.count()).ok()?;
+        let whole = (range.step() * f64::from(count) - 1.0).abs() < 1e-9;
+        (whole && 100_u8.is_multiple_of(count)).then_some(count)
+    };
+    let ranges = model.ranges();
+    match (of(&ranges[Axis::X0]), of(&ranges[Axis::Y0])) {
+        (Some(x), Some(y)) if x == y => x,
+        _ => 100,
+    }
+}

@@ -1,0 +1,108 @@
+//! The shapes of a set: from files of lines, from the library, and in words.
+
+use std::ffi::OsStr;
+use std::fs::File;
+use std::io::{self, BufReader, Read};
+use std::path::{Path, PathBuf};
+
+use crate::cli::arguments::shape_set::SetArguments;
+use crate::cli::error::CliError;
+use crate::cli::input::shapes::Shelf;
+use crate::formats::{ShapeLookup, named_shape, named_shape_of_words};
+use crate::picture::Picture;
+use crate::recognition::NamedShape;
+
+/// The largest file of shapes.
+const MAX_SET: u64 = 64 << 20;
+
+/// The shapes of a set, in the order of the arguments.
+pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
+    let lookup = |name: &str| shelf.imprint(name).map_err(|error| error.to_string());
+    let mut shapes = Vec::new();
+    for what in &asked.what {
+        if what == "-" {
+            lines(
+                &mut io::stdin().lock(),
+                "standard input",
+                &lookup,
+                &mut shapes,
+            )?;
+        } else if let Some(path) = file_of_lines(what, shelf) {
+            let name = path.to_string_lossy().into_owned();
+            let mut file = File::open(&path).map_err(|error| CliError::File {
+                name: name.clone(),
+                error,
+            })?;
+            lines(&mut file, &name, &lookup, &mut shapes)?;
+        } else {
+            let name = what.to_string_lossy();
+            let imprint = shelf.imprint(&name)?;
+            shapes.push(NamedShape::new(name, Picture::at_home(imprint)));
+        }
+    }
+    for words in &asked.shapes {
+        let shape = named_shape_of_words(words, &lookup);
+        shapes.push(shape.map_err(|error| CliError::Set {
+            place: "--shape".to_owned(),
+            error: error.to_string(),
+        })?);
+    }
+    if asked.library_all {
+        shapes.extend(library_shapes(shelf)?);
+    }
+    Ok(shapes)
+}
+
+/// All shapes of the library, in its order.
+fn library_shapes(shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
+    let library = shelf.library()?;
+    let mut shapes = Vec::new();
+    for entry in library.list()? {
+        let name = entry.name.to_string();
+        let imprint = library.load(&name)?.shape.imprint;
+        shapes.push(NamedShape::new(name, Picture::at_home(imprint)));
+    }
+    Ok(shapes)
+}
+
+/// The file that an argument names; None if it is the name of a shape.
+fn file_of_lines(what: &OsStr, shelf: &Shelf) -> Option<PathBuf> {
+    let path = Path::new(what);
+    let ending = path
+        .extension()
+        .is_some_and(|ending| ending == "jsonl" || ending == "json");
+    let known = || {
+        what.to_str()
+            .is_some_and(|name| shelf.imprint(name).is_ok())
+    };
+    (ending || path.components().count() > 1 || path.is_file() && !known()).then(|| path.to_owned())
+}
+
+/// Reads a set of shapes, a line of JSON each. Blank lines are skipped.
+fn lines(
+    input: &mut dyn Read,
+    name: &str,
+    lookup: &ShapeLookup<'_>,
+    shapes: &mut Vec<NamedShape>,
+) -> Result<(), CliError> {
+    let mut text = Vec::new();
+    let read = BufReader::new(input)
+        .take(MAX_SET + 1)
+        .read_to_end(&mut text);
+    let refused = |place: String, error: String| CliError::Set { place, error };
+    read.map_err(|error| refused(name.to_owned(), format!("cannot read: {error}")))?;
+    if text.len() as u64 > MAX_SET {
+        let error = "larger than 64 MiB, which no set of shapes is";
+        return Err(refused(name.to_owned(), error.to_owned()));
+    }
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
+    for (index, line) in text.split(|&byte| byte == b'\n').enumerate() {
+        if line.trim_ascii().is_empty() {
+            continue;
+        }
+        let shape = named_shape(line, lookup);
+        let place = || format!("{name}, line {}", index + 1);
+        shapes.push(shape.map_err(|error| refused(place(), error.to_string()))?);
+    }
+    Ok(())
+}

@@ -1,0 +1,106 @@
+//! A curve in a terminal: in Braille, or in strokes of ASCII.
+//!
+//! ```text
+//! 0.62 ⠉⠢⢄
+//!         ⠈⠑⠢⢄⡀
+//!    0        ⠈⠉⠒⠤
+//!      0.5        2
+//! ```
+
+use crate::cli::output::charset::Charset;
+use crate::formats::value::decimal;
+use crate::tui::widget::dots::{DOTS, DotCanvas, glyph};
+use crate::tui::widget::theme::Theme;
+
+/// Characters of the plane, across and down.
+const SIZE: (u16, u16) = (60, 12);
+
+/// The curve through points, both axes named. The vertical one begins at 0, the other one at the first value.
+pub(crate) fn lines(y: &str, x: &str, points: &[(f64, f64)], charset: Charset) -> String {
+    let over = |of: fn(&(f64, f64)) -> f64| points.iter().map(of);
+    let highest = over(|point| point.1).fold(0.0, f64::max);
+    let left = over(|point| point.0).fold(f64::INFINITY, f64::min);
+    let right = over(|point| point.0).fold(f64::NEG_INFINITY, f64::max);
+    if points.is_empty() || right <= left {
+        return String::new();
+    }
+    let mut canvas = DotCanvas::new(SIZE.0, SIZE.1);
+    let (width, height) = canvas.size();
+    let end = if highest > 0.0 { highest } else { 1.0 };
+    let place = |&(x, y): &(f64, f64)| {
+        (
+            (x - left) / (right - left) * (width - 1.0) + 0.5,
+            (1.0 - y / end) * (height - 1.0) + 0.5,
+        )
+    };
+    for pair in points.windows(2) {
+        canvas.line(place(&pair[0]), place(&pair[1]));
+    }
+    let rows = drawn(&canvas, charset);
+    let (top, bottom) = (decimal(highest, 4), "0");
+    let margin = top.len().max(y.len());
+    let mut text = format!("{y:>margin$}\n");
+    for (index, row) in rows.iter().enumerate() {
+        let mark = match index {
+            0 => top.as_str(),
+            _ if index + 1 == rows.len() => bottom,
+            _ => "",
+        };
+        text += &format!("{mark:>margin$} |{}\n", row.trim_end());
+    }
+    let (left, right) = (decimal(left, 6), decimal(right, 6));
+    let room = usize::from(SIZE.0).saturating_sub(left.len() + right.len());
+    let axis = format!("{left}{x:^room$}{right}");
+    text + &format!("{:>margin$}  {}\n", "", axis)
+}
+
+/// The rows of a canvas, blank where it has no dots.
+fn drawn(canvas: &DotCanvas, charset: Charset) -> Vec<String> {
+    let mut rows = vec![vec![' '; usize::from(SIZE.0)]; usize::from(SIZE.1)];
+    for (column, row, dots) in canvas.characters() {
+        rows[usize::from(row)][usize::from(column)] = character(dots, charset);
+    }
+    rows.into_iter()
+        .map(|row| row.into_iter().collect())
+        .collect()
+}
+
+/// The character for some dots.
+pub(crate) fn character(dots: u8, charset: Charset) -> char {
+    glyph(&Theme::plain(charset == Charset::Ascii), dots)
+}
+
+/// A canvas whose taxels are squares of four by four dots.
+pub(crate) fn canvas_of_taxels(columns: u8, rows: u8) -> DotCanvas {
+    let across = u16::from(columns) * (4 / DOTS.0);
+    let down = u16::from(rows) * (4 / DOTS.1);
+    DotCanvas::new(across, down)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_falling_error_is_a_falling_line() {
+        let points = [(0.5, 0.6), (1.0, 0.3), (2.0, 0.0)];
+        let text = lines("error", "scale", &points, Charset::Ascii);
+        let rows: Vec<&str> = text.lines().collect();
+        assert_eq!(rows.len(), usize::from(SIZE.1) + 2, "{text}");
+        assert!(text.is_ascii());
+        assert!(rows[1].starts_with("  0.6 |\\"), "{text}");
+        assert!(rows[12].starts_with("    0 |   "), "{text}");
+        assert!(
+            rows[13].trim().starts_with("0.5") && rows[13].ends_with('2'),
+            "{text}"
+        );
+        assert!(rows[1].len() < rows[12].len(), "{text}");
+        let braille = |sign: char| ('\u{2801}'..'\u{2900}').contains(&sign);
+        let dotted = lines("error", "scale", &points, Charset::Unicode);
+        assert!(
+            dotted.chars().filter(|&sign| braille(sign)).count() > 50,
+            "{dotted}"
+        );
+        assert_eq!(lines("error", "scale", &[(1.0, 0.5)], Charset::Ascii), "");
+    }
+}

@@ -1,0 +1,214 @@
+//! Where a recognised shape lies: in words, as JSON, and its outline over the touch.
+
+use serde::Serialize;
+
+use crate::cli::output::charset::Charset;
+use crate::cli::output::plot::{canvas_of_taxels, character};
+use crate::formats::value::decimal;
+use crate::geometry::{Ellipse, Pen, Point, Side, Solid};
+use crate::imprint::Imprint;
+use crate::pose::{Anchor, Axis, Placed, Pose, PoseGrid, Ranges};
+use crate::recognition::{Model, PoseEstimate};
+use crate::sensor::Sensor;
+use crate::tui::widget::dots::DotCanvas;
+
+/// Dots of a taxel in each direction.
+const DOTS: f64 = 4.0;
+
+/// Straight pieces of an ellipse.
+const PIECES: u16 = 128;
+
+/// A pose as an object of JSON, its keys in the order of the documentation.
+#[derive(Serialize)]
+pub(crate) struct PoseJson<'a> {
+    name: &'a str,
+    poses: u64,
+    centre: [f64; 2],
+    centre_in_box: [f64; 2],
+    centre_sd: [f64; 2],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    centre_mm: Option<[f64; 2]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    centre_sd_mm: Option<[f64; 2]>,
+    angle: Option<AngleJson>,
+}
+
+/// The angle of a pose: mean and standard deviation in degrees from 0 to the period, and the fewest neighbouring whole
+/// degrees that hold 95 %.
+#[derive(Serialize)]
+struct AngleJson {
+    mean: Option<f64>,
+    sd: Option<f64>,
+    period: u32,
+    from: u32,
+    degrees: u32,
+}
+
+/// A shape's pose, as far as one touch tells it.
+pub(crate) struct PoseReport {
+    name: String,
+    estimate: PoseEstimate,
+    /// The top left corner of the imprint's box, in cells.
+    corner: [f64; 2],
+    /// The shape in the mean pose.
+    placed: Placed,
+    pitch_mm: Option<f64>,
+}
+
+impl PoseReport {
+    /// The pose of a shape of a model on an imprint; None of an empty one.
+    pub(crate) fn new(
+        model: &Model,
+        shape: usize,
+        touch: &Imprint,
+        estimate: PoseEstimate,
+        pitch_mm: Option<f64>,
+    ) -> Option<Self> {
+        let bounds = touch.bounds()?;
+        let named = model.shapes().get(shape)?;
+        let [x, y] = estimate.position;
+        let angle = estimate.angle.as_ref().map_or(0.0, |angle| {
+            let (first, count) = angle.most;
+            angle
+                .mean
+                .unwrap_or(f64::from(first) + f64::from(count) / 2.0)
+        });
+        let own = *model.ranges();
+        let still = Ranges::from_fn(|axis| match axis {
+            Axis::ZoomX | Axis::ZoomY => own[axis].part(0..1).unwrap_or(own[axis]),
+            _ => crate::pose::DecimalRange::whole(0),
+        });
+        let source = named.source.clone();
+        let grid = PoseGrid::new(source, Sensor::LARGEST, Anchor::Centre, still).ok()?;
+        let pose = Pose::from_fn(|axis| match axis {
+            Axis::X0 => x,
+            Axis::Y0 => y,
+            Axis::Angle => angle,
+            _ => own[axis].value(0),
+        });
+        Some(Self {
+            name: named.name.clone(),
+            estimate,
+            corner: [f64::from(bounds.left), f64::from(bounds.top)],
+            placed: grid.placed(pose),
+            pitch_mm,
+        })
+    }
+
+    /// The pose as an object of JSON: lengths in cells, and in mm with a pitch; degrees as of flags.
+    pub(crate) fn json(&self) -> PoseJson<'_> {
+        let estimate = &self.estimate;
+        let [x, y] = estimate.position;
+        let in_mm = |pair: [f64; 2]| self.pitch_mm.map(|pitch| pair.map(|cells| cells * pitch));
+        PoseJson {
+            name: &self.name,
+            poses: estimate.poses,
+            centre: [x, y],
+            centre_in_box: [x - self.corner[0], y - self.corner[1]],
+            centre_sd: estimate.spread,
+            centre_mm: in_mm([x, y]),
+            centre_sd_mm: in_mm(estimate.spread),
+            angle: estimate.angle.as_ref().map(|angle| AngleJson {
+                mean: angle.mean,
+                sd: angle.spread,
+                period: angle.period,
+                from: angle.most.0,
+                degrees: angle.most.1,
+            }),
+        }
+    }
+
+    /// The pose in words, and the outline of the shape over the touch.
+    pub(crate) fn text(&self, touch: &Imprint, charset: Charset) -> String {
+        let estimate = &self.estimate;
+        let pair = |factor: f64, [x, y]: [f64; 2]| {
+            format!("{}, {}", decimal(x * factor, 2), decimal(y * factor, 2))
+        };
+        let (position, spread) = (estimate.position, estimate.spread);
+        let mut text = format!(
+            "centre at {} ± {} cells",
+            pair(1.0, position),
+            pair(1.0, spread)
+        );
+        if let Some(pitch) = self.pitch_mm {
+            let (position, spread) = (pair(pitch, position), pair(pitch, spread));
+            text += &format!(", {position} ± {spread} mm");
+        }
+        text += &match &estimate.angle {
+            None => "; it looks the same at every angle\n".to_owned(),
+            Some(angle) => {
+                let (first, count) = angle.most;
+                let mean = match (angle.mean, angle.spread) {
+                    (Some(mean), Some(spread)) => {
+                        format!("{}° ± {}°", decimal(mean, 1), decimal(spread, 1))
+                    }
+                    _ => "any".to_owned(),
+                };
+                let period = match angle.period {
+                    360 => String::new(),
+                    period => format!(" (modulo {period}°)"),
+                };
+                let last = (first + count - 1) % angle.period;
+                format!("\nangle {mean}{period}; 95 % in {count}°, from {first}° to {last}°\n")
+            }
+        };
+        charset.lines(&(text + &self.drawn(touch, charset)))
+    }
+
+    /// The touch with the outline over it, two characters a taxel.
+    fn drawn(&self, touch: &Imprint, charset: Charset) -> String {
+        let mut outline = Outline(canvas_of_taxels(touch.columns(), touch.rows()));
+        self.placed.draw(&mut outline);
+        let (full, empty) = charset.taxels();
+        let mut rows: Vec<Vec<char>> = (0..touch.rows())
+            .map(|row| {
+                let taxels = (0..touch.columns()).flat_map(|column| {
+                    let sign = if touch.get(column, row) { full } else { empty };
+                    sign.chars()
+                });
+                taxels.collect()
+            })
+            .collect();
+        for (column, row, dots) in outline.0.characters() {
+            let cell = rows.get_mut(usize::from(row));
+            if let Some(cell) = cell.and_then(|row| row.get_mut(usize::from(column))) {
+                *cell = character(dots, charset);
+            }
+        }
+        let lines = rows.into_iter().map(|row| {
+            let row: String = row.into_iter().collect();
+            format!("  {}\n", row.trim_end())
+        });
+        lines.collect()
+    }
+}
+
+/// Draws a boundary as dots.
+struct Outline(DotCanvas);
+
+impl Outline {
+    fn line(&mut self, from: (f64, f64), to: (f64, f64)) {
+        let place = |(x, y): (f64, f64)| (x * DOTS, y * DOTS);
+        self.0.line(place(from), place(to));
+    }
+}
+
+impl Pen<f64> for Outline {
+    fn edge(&mut self, from: Point<f64>, to: Point<f64>) {
+        self.line((from.x, from.y), (to.x, to.y));
+    }
+
+    fn ellipse(&mut self, ellipse: &Ellipse<f64>, _material: Side) {
+        let at = |piece: u16| {
+            let turn = std::f64::consts::TAU * f64::from(piece) / f64::from(PIECES);
+            let (sin, cos) = turn.sin_cos();
+            (
+                ellipse.centre.x + ellipse.across.x * cos + ellipse.along.x * sin,
+                ellipse.centre.y + ellipse.across.y * cos + ellipse.along.y * sin,
+            )
+        };
+        for piece in 0..PIECES {
+            self.line(at(piece), at(piece + 1));
+        }
+    }
+}

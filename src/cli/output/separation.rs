@@ -1,0 +1,260 @@
+//! Errors against sizes: as a table and a plot for people, as commas, as JSON, and as curves to draw.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+use serde_json::Value;
+
+use crate::cli::output::charset::Charset;
+use crate::cli::output::evaluation::{number, percent};
+use crate::cli::output::plot;
+use crate::formats::value::decimal;
+use crate::formats::{LinePlot, json};
+use crate::pose::DecimalRange;
+use crate::recognition::{SeparationPoint, SizeAxis, SmallestSize};
+
+/// The points of one threshold.
+pub(crate) struct Curve {
+    pub(crate) threshold: f64,
+    pub(crate) points: Vec<SeparationPoint>,
+    /// The smallest size that reaches the wanted error; None if none does, or none is wanted.
+    pub(crate) smallest: Option<SmallestSize>,
+}
+
+/// A value as short as it can be written.
+fn short(value: f64) -> String {
+    decimal(value, 6)
+}
+
+/// The name of an axis in a sentence.
+fn noun(axis: SizeAxis) -> &'static str {
+    match axis {
+        SizeAxis::Pitch => "pitch",
+        _ => "scale",
+    }
+}
+
+/// A value of the axis with its unit.
+fn said(axis: SizeAxis, value: f64) -> String {
+    match axis {
+        SizeAxis::Pitch => format!("pitch {} mm", short(value)),
+        _ => format!("scale {}", short(value)),
+    }
+}
+
+/// A table and a plot for each threshold, and what was searched for.
+pub(crate) fn text(
+    axis: SizeAxis,
+    sizes: &DecimalRange,
+    curves: &[Curve],
+    wanted: Option<f64>,
+    charset: Charset,
+) -> String {
+    let mut text = format!(
+        "{:<9} threshold    error  certain       keys  sensor\n",
+        axis.name()
+    );
+    for point in curves.iter().flat_map(|curve| &curve.points) {
+        // Cannot fail: the text is kept in memory.
+        let _ = writeln!(
+            text,
+            "{:<9} {:>9}  {:>7}  {:>7}  {:>9}  {side} x {side}",
+            short(point.value),
+            short(point.threshold),
+            percent(point.error()),
+            percent(point.certain()),
+            point.keys,
+            side = point.side
+        );
+    }
+    if sizes.count() > 1 {
+        for curve in curves {
+            let points = curve.points.iter();
+            let points: Vec<_> = points.map(|point| (point.value, point.error())).collect();
+            if curves.len() > 1 {
+                let _ = writeln!(text, "\nthreshold {}", short(curve.threshold));
+            } else {
+                text.push('\n');
+            }
+            text += &plot::lines("error", axis.name(), &points, charset);
+        }
+    } else if curves.len() > 1 {
+        let points = curves.iter().flat_map(|curve| &curve.points);
+        let points: Vec<_> = points
+            .map(|point| (point.threshold, point.error()))
+            .collect();
+        text.push('\n');
+        text += &plot::lines("error", "threshold", &points, charset);
+    }
+    if let Some(wanted) = wanted {
+        text.push('\n');
+        for curve in curves {
+            if curves.len() > 1 {
+                let _ = write!(text, "threshold {}: ", short(curve.threshold));
+            }
+            text += &found(axis, sizes, curve, wanted);
+        }
+    }
+    charset.lines(&text)
+}
+
+/// What a search has found, and how it looked.
+fn found(axis: SizeAxis, sizes: &DecimalRange, curve: &Curve, wanted: f64) -> String {
+    let wanted = short(wanted);
+    let coarse = short(sizes.step());
+    let Some(smallest) = &curve.smallest else {
+        return format!(
+            "no {} that was tried has an error of at most {wanted}\n",
+            noun(axis)
+        );
+    };
+    let order = match axis {
+        SizeAxis::Pitch => "downwards",
+        _ => "upwards",
+    };
+    let (place, error) = (said(axis, smallest.point.value), smallest.point.error());
+    let mut text = format!(
+        "an error of at most {wanted} is first reached at {place}: {}\n",
+        percent_fine(error)
+    );
+    if smallest.step > 0.0 {
+        let fine = short(smallest.step);
+        let _ = writeln!(
+            text,
+            "  searched {order} in steps of {coarse}, then of {fine} before the first that reaches it"
+        );
+    } else {
+        let _ = writeln!(
+            text,
+            "  it is the first that was tried; smaller sizes may reach it as well"
+        );
+    }
+    match smallest.missed_again {
+        0 => text += "  all larger sizes that were tried reach it, too\n",
+        1 => {
+            text += "  the error is not monotonous: 1 larger size that was tried misses it again\n"
+        }
+        more => {
+            let _ = writeln!(
+                text,
+                "  the error is not monotonous: {more} larger sizes that were tried miss it again"
+            );
+        }
+    }
+    text
+}
+
+/// A share in percent, to three decimals.
+fn percent_fine(share: f64) -> String {
+    format!("{} %", decimal(100.0 * share, 3))
+}
+
+/// A row of names, then a row for each size and threshold.
+pub(crate) fn csv(axis: SizeAxis, curves: &[Curve]) -> String {
+    let mut text = format!(
+        "{},threshold,error,touches,right,certain,keys,side\n",
+        axis.name()
+    );
+    for point in curves.iter().flat_map(|curve| &curve.points) {
+        let _ = writeln!(
+            text,
+            "{},{},{},{},{},{},{},{}",
+            short(point.value),
+            short(point.threshold),
+            point.error(),
+            point.touches,
+            point.right,
+            point.certain,
+            point.keys,
+            point.side
+        );
+    }
+    text
+}
+
+/// One object: the axis, the points, and with `--want` what was found for each threshold.
+pub(crate) fn json_text(axis: SizeAxis, curves: &[Curve], wanted: Option<f64>) -> String {
+    let point = |point: &SeparationPoint| PointJson {
+        pitch_mm: (axis == SizeAxis::Pitch).then_some(point.value),
+        scale: point.scale,
+        threshold: point.threshold,
+        error: point.error(),
+        touches: number(point.touches),
+        right: number(point.right),
+        certain: number(point.certain),
+        keys: point.keys,
+        side: point.side,
+    };
+    let points = curves.iter().flat_map(|curve| &curve.points);
+    let found = |error: f64, curve: &Curve| FoundJson {
+        threshold: curve.threshold,
+        error,
+        smallest: curve.smallest.as_ref().map(|it| point(&it.point)),
+        step: curve.smallest.as_ref().map(|it| it.step),
+        missed_again: curve.smallest.as_ref().map(|it| it.missed_again),
+    };
+    let answer = CurvesJson {
+        axis: axis.name(),
+        points: points.map(point).collect(),
+        want: wanted.map(|error| curves.iter().map(|curve| found(error, curve)).collect()),
+    };
+    json::text(&answer) + "\n"
+}
+
+/// All points, and with `--want` what was found for each threshold.
+#[derive(Serialize)]
+struct CurvesJson {
+    axis: &'static str,
+    points: Vec<PointJson>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    want: Option<Vec<FoundJson>>,
+}
+
+/// A point as an object of JSON, its keys in the order of the documentation.
+#[derive(Serialize)]
+struct PointJson {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pitch_mm: Option<f64>,
+    scale: f64,
+    threshold: f64,
+    error: f64,
+    touches: Value,
+    right: Value,
+    certain: Value,
+    keys: usize,
+    side: u8,
+}
+
+/// The smallest size that was found; null where there is none.
+#[derive(Serialize)]
+struct FoundJson {
+    threshold: f64,
+    error: f64,
+    smallest: Option<PointJson>,
+    step: Option<f64>,
+    missed_again: Option<usize>,
+}
+
+/// The curves, over the sizes, or over the thresholds where there is one size only.
+pub(crate) fn drawing(axis: SizeAxis, curves: &[Curve]) -> LinePlot {
+    let one_size = curves.iter().all(|curve| curve.points.len() == 1);
+    if one_size && curves.len() > 1 {
+        let points = curves.iter().flat_map(|curve| &curve.points);
+        let points: Vec<_> = points
+            .map(|point| (point.threshold, point.error()))
+            .collect();
+        let size = curves[0].points[0].value;
+        return LinePlot::new("threshold", "error").with_curve(&said(axis, size), &points);
+    }
+    let label = match axis {
+        SizeAxis::Pitch => "pitch / mm",
+        _ => "scale",
+    };
+    curves
+        .iter()
+        .fold(LinePlot::new(label, "error"), |plot, curve| {
+            let points = curve.points.iter();
+            let points: Vec<_> = points.map(|point| (point.value, point.error())).collect();
+            plot.with_curve(&format!("threshold {}", short(curve.threshold)), &points)
+        })
+}
