@@ -71,8 +71,8 @@ pub fn fitting(number: f64, width: usize) -> String {
 /// use taxel::formats::value::grouped;
 /// assert_eq!([7, 999, 1000, 3_600_000].map(grouped), ["7", "999", "1,000", "3,600,000"]);
 /// ```
-pub fn grouped(count: u64) -> String {
-    let digits = count.to_string();
+pub fn grouped(count: impl Into<u128>) -> String {
+    let digits = count.into().to_string();
     let mut text = String::with_capacity(digits.len() * 4 / 3);
     for (index, digit) in digits.chars().enumerate() {
         if index > 0 && (digits.len() - index).is_multiple_of(3) {

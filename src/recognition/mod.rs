@@ -61,5 +61,7 @@ pub use peers::{Peer, PeerEvaluation, PeerSettings};
 pub use pose_estimate::{AngleEstimate, PoseEstimate};
 pub use separation::{Separation, SeparationPoint, SizeAxis, SmallestSize};
 pub use sets::{GridSteps, default_figures, equal_figures};
+#[cfg(feature = "tui")]
+pub(crate) use simulation::below;
 pub use simulation::{MOST_TOUCHES, RecognitionRate, TouchesUntil, random_taxels};
 pub use training::{Training, TrainingError};

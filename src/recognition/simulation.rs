@@ -76,7 +76,7 @@ fn generator(seed: u64, task: u64) -> Pcg64 {
 }
 
 /// A number from 0 to below `end`, each as likely as any other to within 2⁻⁶⁴.
-pub(super) fn below(random: &mut Pcg64, end: u64) -> u64 {
+pub(crate) fn below(random: &mut Pcg64, end: u64) -> u64 {
     let product = u128::from(random.next_u64()) * u128::from(end);
     u64::try_from(product >> 64).expect("below `end`")
 }

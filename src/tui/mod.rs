@@ -35,6 +35,8 @@ pub mod prompt;
 
 pub mod explore;
 
+pub mod recognise;
+
 pub mod runtime;
 
 pub mod terminal;

@@ -321,7 +321,10 @@ fn the_shape_is_turned_and_zoomed_by_commands() {
 #[test]
 fn commands_are_completed_and_recalled() {
     let mut session = session(":re<Tab>");
-    shows(&session, &[":re   rectangle redo redraw region restore"]);
+    shows(
+        &session,
+        &[":re   recognise rectangle redo redraw region restore"],
+    );
     then(&mut session, "g<Tab>", &[":region"]);
     then(
         &mut session,

@@ -41,6 +41,7 @@ fn every_size_of_every_screen_is_drawn() {
                     palette: Palette::Dark,
                 },
                 mouse: true,
+                seed: 0,
             };
             let mut session = on(world(), &options, (80, 24), keys);
             for width in (0..=120).step_by(7).chain(17..=24).chain(58..70) {

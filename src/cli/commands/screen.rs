@@ -5,6 +5,7 @@
 //! a file.
 
 use std::fs::{self, File};
+use std::hash::{BuildHasher, RandomState};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
@@ -12,7 +13,7 @@ use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::settings::resolved::Effective;
-use crate::storage::{Library, Orphan, ShapeOrigin};
+use crate::storage::{Library, ModelCache, Orphan, ShapeOrigin};
 use crate::tui::app::state::{App, Options};
 use crate::tui::runtime::World;
 use crate::tui::script::record::Recorder;
@@ -46,6 +47,8 @@ pub(crate) fn screen(
         sensor: settings.sensor(),
         theme: terminal.theme(),
         mouse: terminal.mouse,
+        // Another one each time.
+        seed: RandomState::new().hash_one(0),
     };
     let library = shelf.library()?;
     let mut record = record
@@ -58,7 +61,8 @@ pub(crate) fn screen(
         }
     };
     let app = App::new(&options).with_keymap(settings.keymap().clone());
-    let ended = terminal::run(app, World::new(library), &terminal, &mut watch);
+    let world = World::new(library).with_model_cache(ModelCache::of_user());
+    let ended = terminal::run(app, world, &terminal, &mut watch);
     if let Some(record) = record {
         let name = record.path.to_string_lossy().into_owned();
         if let Err(error) = record.end(ended.as_ref().ok().copied()) {

@@ -96,6 +96,7 @@ fn options(asked: &Script, settings: &Effective, charset: Charset) -> ScriptOpti
             sensor: settings.sensor(),
             theme,
             mouse: true,
+            seed: 0,
         },
         size: asked.size,
         styles: asked.styles,

@@ -19,6 +19,9 @@ use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
+use crate::tui::recognise::confusion::Confusion;
+use crate::tui::recognise::exercise::Exercise;
+use crate::tui::recognise::state::Recognition;
 use crate::tui::shapes::state::ListDialog;
 use crate::tui::widget::theme::{Role, Theme};
 
@@ -47,6 +50,12 @@ pub enum Dialog {
     Results(Box<Results>),
     /// The name of the file to export to.
     Export(ExportDialog),
+    /// Recognition of the shape on the matrix.
+    Recognition(Box<Recognition>),
+    /// A random touch that is to be named.
+    Exercise(Box<Exercise>),
+    /// The confusion matrix of a model.
+    Confusion(Box<Confusion>),
 }
 
 impl Dialog {
@@ -64,6 +73,9 @@ impl Dialog {
             Self::Running(page) => page,
             Self::Results(page) => &**page,
             Self::Export(page) => page,
+            Self::Recognition(page) => &**page,
+            Self::Exercise(page) => &**page,
+            Self::Confusion(page) => &**page,
         }
     }
 

@@ -108,6 +108,7 @@ impl Panes {
             },
             Slot::Body => self.body,
             Slot::Form => self.form,
+            Slot::Panel => self.panel.unwrap_or(self.body),
             Slot::Prompt | Slot::Question => self.notice,
         }
     }

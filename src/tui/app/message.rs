@@ -8,6 +8,7 @@ use crate::storage::{Expected, LibraryEntry, LoadedShape};
 use crate::tui::app::document::Document;
 use crate::tui::explore::message::{ExploreMessage, WorkerEvent};
 use crate::tui::keys::key::Arrow;
+use crate::tui::recognise::message::RecogniseMessage;
 
 /// A message, from a key, a click, a command, a script, or as the answer to an effect.
 #[derive(Clone, Debug, PartialEq)]
@@ -134,6 +135,8 @@ pub enum Message {
     MouseOnOff,
     /// Something about the imprints of all poses.
     Explore(ExploreMessage),
+    /// Something about recognition.
+    Recognise(RecogniseMessage),
     /// An event of a worker.
     Worker(WorkerEvent),
     /// Redraw the whole screen.

@@ -9,7 +9,7 @@ use crate::tui::app::change::{change, settle};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::menu;
 use crate::tui::app::message::{Message, Mouse, MouseKind};
-use crate::tui::app::page::Page;
+use crate::tui::app::page::{Page, Slot};
 use crate::tui::app::state::{App, NarrowPage};
 use crate::tui::matrix::layout::TaxelGrid;
 use crate::tui::widget::number::taxels;
@@ -39,7 +39,7 @@ pub(in crate::tui) fn act(app: &mut App, mouse: Mouse) -> Option<Message> {
         (MouseKind::ScrollDown, _) => return scroll(app, WHEEL),
         (MouseKind::Release, _) => app.paint = None,
         (MouseKind::Press, Some(Target::Option(message))) => {
-            return app.dialogs.is_empty().then_some(message);
+            return app.on_matrix_itself().then_some(message);
         }
         (MouseKind::Press, Some(Target::Taxel(column, row, whole))) => {
             app.notice = None;
@@ -111,8 +111,16 @@ fn at(app: &App, column: u16, row: u16) -> Option<Target> {
     }
     if let Some(dialog) = app.dialogs.last() {
         let page = dialog.page();
-        let area = Some(panes.area(page.slot())).filter(|&area| inside(area))?;
-        return page.click(area, place).map(Target::Page);
+        // A narrow screen shows the matrix or the panel.
+        let hidden =
+            page.slot() == Slot::Panel && panes.panel.is_none() && app.page == NarrowPage::Matrix;
+        let area = panes.area(page.slot());
+        if inside(area) && !hidden {
+            return page.click(area, place).map(Target::Page);
+        }
+        if !page.leaves_matrix() {
+            return None;
+        }
     }
     if panes.panel.is_some_and(inside) {
         return Some(Target::Panel);

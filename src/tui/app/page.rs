@@ -6,6 +6,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
+use crate::imprint::Imprint;
 use crate::tui::app::message::Message;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
@@ -20,6 +21,8 @@ pub enum Slot {
     Body,
     /// Beside the matrix, which stays visible.
     Form,
+    /// In place of the descriptors: beside the matrix, or where that is too narrow, a page of its own.
+    Panel,
     /// In the line of notices, over the page below. Notices stand above it.
     Prompt,
     /// In place of a notice, over the page below.
@@ -55,6 +58,16 @@ pub trait Page {
 
     /// Whether Cancel and Quit go to its own update. Otherwise they close it.
     fn cancels_itself(&self) -> bool {
+        false
+    }
+
+    /// The imprint that the matrix is compared with: taxels that differ have marks. None for no comparison.
+    fn compared_with(&self) -> Option<&Imprint> {
+        None
+    }
+
+    /// Whether keys, clicks and the cursor that it has no use for are the matrix's.
+    fn leaves_matrix(&self) -> bool {
         false
     }
 

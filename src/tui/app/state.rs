@@ -16,6 +16,7 @@ use crate::tui::keys::action::{self, Action};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::matrix::layers::Layers;
+use crate::tui::recognise::state::Recognition;
 use crate::tui::widget::theme::Theme;
 
 /// How the program starts.
@@ -27,6 +28,8 @@ pub struct Options {
     pub theme: Theme,
     /// Whether the mouse sets taxels at the start.
     pub mouse: bool,
+    /// What random touches are made from.
+    pub seed: u64,
 }
 
 impl Options {
@@ -36,6 +39,7 @@ impl Options {
             sensor: Sensor::default(),
             theme: Theme::plain(ascii),
             mouse: true,
+            seed: 0,
         }
     }
 }
@@ -166,6 +170,8 @@ pub struct App {
     pub(in crate::tui) removed: Option<String>,
     /// The results of the last sweep, while they are closed.
     pub(in crate::tui) results: Option<Box<Results>>,
+    /// Recognition, while it is not looked at.
+    pub(in crate::tui) recognition: Option<Box<Recognition>>,
     /// How many sweeps and exports were begun; the number of the last one.
     pub(in crate::tui) works: u64,
     /// The commands that were given, the last one last.
@@ -207,6 +213,7 @@ impl App {
             notice: None,
             removed: None,
             results: None,
+            recognition: Some(Box::new(Recognition::new(options.seed))),
             works: 0,
             commands: Vec::new(),
             mouse: options.mouse,
@@ -249,11 +256,18 @@ impl App {
 
     /// Where keys are looked up.
     pub fn context(&self) -> Context {
-        match (self.dialogs.last(), self.mode) {
-            (Some(dialog), _) => dialog.page().context(),
+        match (self.dialogs.last().map(Dialog::page), self.mode) {
+            (Some(page), Mode::Grab) if page.leaves_matrix() => Context::Grab,
+            (Some(page), _) => page.context(),
             (None, Mode::Grab) => Context::Grab,
             (None, Mode::Draw) => Context::Matrix,
         }
+    }
+
+    /// Whether the matrix takes keys and clicks: nothing lies over it, or only what leaves them to it.
+    pub(in crate::tui) fn on_matrix_itself(&self) -> bool {
+        let top = self.dialogs.last().map(Dialog::page);
+        top.is_none_or(Page::leaves_matrix)
     }
 
     /// The top page that has a pane of its own, None if that is the matrix.

@@ -12,13 +12,14 @@ use crate::tui::help::Help;
 use crate::tui::history::HistoryDialog;
 
 use crate::tui::runtime::effect::{Effect, TerminalEffect};
-use crate::tui::{explore, form, matrix, prompt, shapes};
+use crate::tui::{explore, form, matrix, prompt, recognise, shapes};
 
 /// Does what a message says. A notice stays until the next message that is not an answer to the last one.
 pub fn update(app: &mut App, message: Message) -> Option<Effect> {
     let effect = handle(app, message);
     app.read();
-    effect
+    // A message that wants something else is followed by another one.
+    effect.or_else(|| recognise::update::follow(app))
 }
 
 /// Handles a message, without reading the document anew.
@@ -78,6 +79,9 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
         Dialog::Running(running) => explore::work::in_running(app, running, &message),
         Dialog::Results(results) => explore::update::in_results(app, results, message),
         Dialog::Export(dialog) => explore::update::in_export(app, dialog, &message),
+        Dialog::Recognition(page) => recognise::update::in_recognition(app, page, message),
+        Dialog::Exercise(page) => recognise::update::in_exercise(app, page, message),
+        Dialog::Confusion(page) => recognise::update::in_confusion(app, page, &message),
     }
 }
 

@@ -54,6 +54,15 @@ pub fn view(app: &App, frame: &mut Frame<'_>) {
     let panel = |buffer: &mut Buffer, area: Rect| panel::draw(&matrix, theme, buffer, area);
     let mut cursor = None;
     match (app.pane(), panes.panel) {
+        (Some(page), beside) if page.slot() == Slot::Panel => {
+            if beside.is_some() || app.page == NarrowPage::Matrix {
+                cursor = matrix.draw(theme, buffer, panes.matrix);
+            }
+            if beside.is_some() || app.page == NarrowPage::Panel {
+                let area = panes.area(Slot::Panel);
+                cursor = page.draw(theme, app.keymap(), buffer, area).or(cursor);
+            }
+        }
         (Some(page), _) => {
             if page.slot() == Slot::Form {
                 matrix.draw(theme, buffer, panes.matrix);

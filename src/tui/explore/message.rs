@@ -9,6 +9,7 @@ use crate::pose::PoseGrid;
 use crate::source::Source;
 use crate::storage::Existing;
 use crate::sweep::SweepResult;
+use crate::tui::recognise::message::RecognitionEvent;
 
 /// What a sweep found, whole or in part.
 #[derive(Debug)]
@@ -121,6 +122,8 @@ pub enum WorkerEvent {
     Exists(u64, String),
     /// The work failed, and why.
     Failed(u64, String),
+    /// Something about models.
+    Recognition(RecognitionEvent),
     /// Something that belongs to no piece of work cannot be done, and why.
     Refused(String),
 }

@@ -140,7 +140,7 @@ fn draw(theme: &Theme, running: &Running, buffer: &mut Buffer, area: Rect) {
 }
 
 /// A bar as long as what is done.
-fn gauge(theme: &Theme, done: u64, all: u64, buffer: &mut Buffer, row: Rect) {
+pub(in crate::tui) fn gauge(theme: &Theme, done: u64, all: u64, buffer: &mut Buffer, row: Rect) {
     let [full, _, empty] = theme.bar();
     let width = row.width.min(WIDEST);
     let filled = u128::from(done) * u128::from(width) / u128::from(all.max(1));

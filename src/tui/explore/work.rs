@@ -20,6 +20,7 @@ use crate::tui::explore::message::{ExploreMessage, Findings, WorkerEvent};
 use crate::tui::explore::ranges::state::{RangesForm, explored};
 use crate::tui::explore::results::Results;
 use crate::tui::explore::running::{Running, WorkKind};
+use crate::tui::recognise;
 use crate::tui::runtime::effect::{Effect, Work};
 
 /// Handles what a key, a command or an answered question asks for.
@@ -140,6 +141,8 @@ pub(crate) fn on_worker(app: &mut App, told: WorkerEvent) -> Option<Effect> {
         WorkerEvent::Progress(number, progress) => {
             if let Some(running) = running(app, number) {
                 running.progress = Some(progress);
+            } else {
+                recognise::update::on_progress(app, number, progress);
             }
         }
         WorkerEvent::Estimate(grid, time) => {
@@ -176,8 +179,11 @@ pub(crate) fn on_worker(app: &mut App, told: WorkerEvent) -> Option<Effect> {
                     ask(app, place, Dialog::Export(ExportDialog::new(&name)));
                 }
                 refuse(app, reason);
+            } else {
+                recognise::update::on_failure(app, number, &reason);
             }
         }
+        WorkerEvent::Recognition(event) => recognise::update::on_worker(app, event),
         WorkerEvent::Refused(reason) => refuse(app, reason),
     }
     None

@@ -15,6 +15,7 @@ use crate::tui::app::message::Purpose;
 use crate::tui::app::message::{Copied, Endpoint, Erase, Layer, Message};
 use crate::tui::explore::message::{ExploreMessage, ExplorePage, Zoom};
 use crate::tui::keys::key::Arrow;
+use crate::tui::recognise::message::RecogniseMessage;
 
 /// Something that a user can ask for.
 #[derive(Debug, PartialEq)]
@@ -57,6 +58,10 @@ pub enum Arguments {
     Taxel,
     /// Cells along x and along y.
     Distance,
+    /// The name of a set of shapes.
+    Model,
+    /// A whole number.
+    Seed,
 }
 
 impl Action {
@@ -93,6 +98,8 @@ impl Arguments {
             Self::Degrees => "DEGREES",
             Self::Taxel => "COLUMN ROW",
             Self::Distance => "DX DY",
+            Self::Model => "SET",
+            Self::Seed => "NUMBER",
         }
     }
 
@@ -131,7 +138,7 @@ macro_rules! actions {
 }
 
 use ExploreMessage::{Angle, Columns, Feature, NextPage, Sort, Zoomed};
-use Message::Explore;
+use Message::{Explore, Recognise};
 
 actions! {
     alone {
@@ -234,6 +241,13 @@ actions! {
         PREVIOUS_ZOOM_X "previous-zoom-x" [] Explore(Zoomed(Zoom::X, -1));
         NEXT_ZOOM_Y "next-zoom-y" [] Explore(Zoomed(Zoom::Y, 1));
         PREVIOUS_ZOOM_Y "previous-zoom-y" [] Explore(Zoomed(Zoom::Y, -1));
+        RECOGNISE "recognise" [] Recognise(RecogniseMessage::Open);
+        TOUCH "touch" [] Recognise(RecogniseMessage::Touch);
+        KEEP "keep" [] Recognise(RecogniseMessage::Keep);
+        FORGET "forget" [] Recognise(RecogniseMessage::Forget);
+        NEXT_SET "next-set" [] Recognise(RecogniseMessage::NextSet(1));
+        PREVIOUS_SET "previous-set" [] Recognise(RecogniseMessage::NextSet(-1));
+        CONFUSION "confusion" [] Recognise(RecogniseMessage::Confusion);
         REDRAW "redraw" [] Message::Redraw;
         SUSPEND "suspend" [] Message::Suspend;
     }
@@ -246,8 +260,10 @@ actions! {
         "load" Arguments::Shape(Purpose::Load);
         "move" Arguments::Distance;
         "picture" Arguments::Shape(Purpose::Picture);
+        "recognise" Arguments::Model;
         "restore" Arguments::Deleted;
         "save" Arguments::Name;
+        "seed" Arguments::Seed;
         "sensor" Arguments::Sensor;
         "turn" Arguments::Degrees;
     }

@@ -97,6 +97,12 @@ contexts! {
     Map "map" "On the map" Ignored, EXPLORE;
     /// In the field for the name of an exported file.
     Export "export" "Exporting" Typed, EVERYWHERE;
+    /// On the matrix, with recognition beside it.
+    Recognise "recognise" "Recognising" Ignored, Some(Self::Matrix);
+    /// In the exercise.
+    Guess "guess" "Naming a random touch" Typed, EVERYWHERE;
+    /// On the confusion matrix.
+    Confusion "confusion" "At the confusion matrix" Ignored, EVERYWHERE;
     /// At a yes-or-no question.
     Question "question" "At a question" Ignored, EVERYWHERE;
     /// In the list of keys.
@@ -108,7 +114,9 @@ contexts! {
 impl Context {
     /// The screen that this place is a page of; hints show the keys of both.
     pub fn screen(self) -> Option<Self> {
-        self.outer().filter(|&outer| outer == Self::Explore)
+        let pages = [Self::Explore, Self::Matrix];
+        let own = self.outer().filter(|outer| pages.contains(outer));
+        own.filter(|_| self != Self::Grab)
     }
 
     /// Whether a character that is not bound is typed into a field.

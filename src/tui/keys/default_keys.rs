@@ -61,6 +61,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "outline" "the true outline; the rectangle with CG (G), CD (D)";
         [Char('g') => GRAB] "grab" "hold the shape, to move it with the arrows";
         [Char('e') => EXPLORE] "explore" "Explore: all imprints of the shape, over all poses";
+        [Char('r') => RECOGNISE] "recognise" "Recognise: name the shape from its touch";
         [ShiftArrow(Left) => NUDGE_LEFT, ShiftArrow(Right) => NUDGE_RIGHT,
             ShiftArrow(Up) => NUDGE_UP, ShiftArrow(Down) => NUDGE_DOWN]
             "" "move the shape without holding it";
@@ -240,6 +241,39 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Ctrl('u') => ERASE_ALL] "clear" "clear the name";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "write nothing";
         [F1 => HELP] "help" "these keys";
+    }
+
+    Recognise {
+        [Char('t') => TOUCH] "touch" "a random shape of the set touches: name it";
+        [Char('a') => KEEP, Char('x') => FORGET]
+            "keep" "keep this touch as one of several; forget them";
+        [Char('o') => NEXT_SET, Char('O') => PREVIOUS_SET]
+            "set" "next, previous set of shapes";
+        [Char('v') => CONFUSION] "confusion" "which shapes are taken for which";
+        [Enter => ACCEPT] "" "train the set, after that was stopped";
+        [Esc => CANCEL, Char('r') => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]
+            "close" "stop training; back to the descriptors";
+    }
+
+    Guess {
+        [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "choose" "previous, next shape, or by its first letter";
+        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten shapes back, on";
+        [Home => FIRST, End => LAST] "" "first, last shape";
+        [Enter => ACCEPT] "name it" "name the shape, or 1 to 9";
+        [Char(' ') => TOUCH] "again" "it touches again, in another pose";
+        [Tab => PANEL] "" "on a narrow screen: list or matrix";
+        [Esc => CANCEL, Ctrl('g') => CANCEL] "give up" "show which shape it was";
+        [F1 => HELP] "help" "these keys";
+    }
+
+    Confusion {
+        [LEFT => CURSOR_LEFT, RIGHT => CURSOR_RIGHT, UP => CURSOR_UP, DOWN => CURSOR_DOWN]
+            "cell" "to another cell";
+        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten rows up, down";
+        [Home => FIRST, End => LAST] "" "first, last cell";
+        [Enter => ACCEPT] "to matrix" "put the imprint of the cell onto the matrix";
+        [Char('?') => HELP] "help" "these keys";
+        [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL] "close" "back to the matrix";
     }
 
     Help {

@@ -16,7 +16,6 @@ use crate::tui::app::document::Document;
 use crate::tui::app::history::History;
 use crate::tui::app::message::{Copied, Endpoint, Layer, Message, Purpose};
 use crate::tui::app::state::{App, Display, Mode, NarrowPage, RunState};
-use crate::tui::explore;
 use crate::tui::form::state::FormDialog;
 use crate::tui::help::Help;
 use crate::tui::history::HistoryDialog;
@@ -28,6 +27,7 @@ use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::runtime::effect::{Effect, LibraryRequest, TerminalEffect};
 use crate::tui::shapes::state::ListDialog;
 use crate::tui::widget::number::around;
+use crate::tui::{explore, recognise};
 
 /// What there is to say of an empty matrix.
 const NO_REGION: &str = "no region: the matrix is empty";
@@ -70,6 +70,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::Copy(what) => return copy(app, what),
         Message::MouseOnOff => return Some(switch_mouse(app)),
         Message::Explore(asked) => return explore::work::act(app, asked),
+        Message::Recognise(asked) => return recognise::update::act(app, asked),
         Message::Undo if app.removed.is_some() => {
             let name = app.removed.take()?;
             return Some(Effect::Library(LibraryRequest::Restore(name)));

@@ -15,8 +15,10 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::{Modifier, Style};
 
 use crate::description::{Region, RegionKind};
+use crate::imprint::Imprint;
 use crate::source::Source;
 use crate::tui::app::document::Reading;
+use crate::tui::app::page::Page;
 use crate::tui::app::state::{App, Display};
 use crate::tui::matrix::layers::{Layers, Overlay};
 use crate::tui::matrix::layout::TaxelGrid;
@@ -36,6 +38,8 @@ pub struct MatrixView<'a> {
     pub chosen: Option<usize>,
     /// How taxels are shown.
     pub display: Display,
+    /// The imprint that it is compared with, None for no comparison.
+    pub compared: Option<&'a Imprint>,
     /// What touches, where something does.
     pub source: Option<&'a Source>,
     /// What is shown over the taxels.
@@ -51,6 +55,7 @@ impl<'a> MatrixView<'a> {
             cursor: app.cursor(),
             chosen: app.chosen(),
             display: app.display,
+            compared: app.pane().and_then(Page::compared_with),
             source: app.shown().source.as_ref(),
             layers: app.layers,
         }
@@ -97,7 +102,8 @@ impl<'a> MatrixView<'a> {
                     height: grid.lines,
                 };
                 let here = (column, row) == self.cursor;
-                let role = role(seen, chosen, column, row);
+                let role = self.difference(column, row);
+                let role = role.unwrap_or_else(|| role_of(seen, chosen, column, row));
                 self.draw_taxel(theme, role, (column, row), buffer, place);
                 if here {
                     cursor = Some(Position::new(place.x, grid.y + middle));
@@ -127,6 +133,20 @@ impl<'a> MatrixView<'a> {
         overlay.draw(grid, theme, buffer, active, cursor);
     }
 
+    /// How a taxel differs from the imprint that the matrix is compared with; None if it does not.
+    fn difference(&self, column: u8, row: u8) -> Option<Role> {
+        let compared = self.compared?;
+        let inside = column < compared.columns() && row < compared.rows();
+        match (
+            self.reading.imprint.get(column, row),
+            inside && compared.get(column, row),
+        ) {
+            (true, false) => Some(Role::Surplus),
+            (false, true) => Some(Role::Missing),
+            _ => None,
+        }
+    }
+
     /// A taxel: two characters, or more of the same where it is drawn larger. The cursor stands on its left, on a large one
     /// on its right, too; what is between still tells the state: a blank is an inactive taxel.
     fn draw_taxel(
@@ -139,6 +159,7 @@ impl<'a> MatrixView<'a> {
     ) {
         let seen = self.reading;
         let [first, second] = match self.display {
+            _ if matches!(role, Role::Surplus | Role::Missing) => theme.taxel(role),
             Display::Imprint => theme.taxel(role),
             Display::Shades => theme.shade(coverage(seen, column, row)),
             Display::Percent => percent(theme, coverage(seen, column, row)),
@@ -183,7 +204,7 @@ impl<'a> MatrixView<'a> {
 }
 
 /// What a taxel is to the region that is described.
-fn role(seen: &Reading, chosen: Option<&Region>, column: u8, row: u8) -> Role {
+fn role_of(seen: &Reading, chosen: Option<&Region>, column: u8, row: u8) -> Role {
     let active = seen.imprint.get(column, row);
     let in_region = chosen
         .filter(|region| region.taxels().get(column, row))

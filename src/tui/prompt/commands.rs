@@ -20,6 +20,7 @@ use crate::sensor::SENSOR_PARAMETERS;
 use crate::tui::keys::action::{ACTIONS, Action, Arguments};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::default_keys::DEFAULT_KEYS;
+use crate::tui::recognise::sets::ModelChoice;
 
 /// A command: all lines that begin with one word.
 #[derive(Clone, Debug)]
@@ -37,7 +38,12 @@ const SHORT: [(&str, &str); 2] = [("q", "quit"), ("q!", "quit!")];
 
 /// Actions that work on the matrix, where the prompt opens: those that have a key there or have no key at all.
 pub fn actions() -> impl Iterator<Item = &'static Action> {
-    let places = [Context::Matrix, Context::Grab, Context::Everywhere];
+    let places = [
+        Context::Matrix,
+        Context::Grab,
+        Context::Recognise,
+        Context::Everywhere,
+    ];
     let bound = |action: &Action, places: &[Context]| {
         let mut rows = DEFAULT_KEYS
             .iter()
@@ -197,6 +203,10 @@ fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
             let ranges = Axis::ALL.map(|axis| format!("--{}", axis.parameter().flag()));
             words([&ranges[..], &["--anchor".to_owned()]].concat(), said)
         }
+        (Some(Arguments::Model), []) => {
+            let sets = ModelChoice::BUILT_IN;
+            sets.iter().map(|set| set.name().to_owned()).collect()
+        }
         (_, []) => {
             let words = command.words.iter().filter(|(word, _)| !word.is_empty());
             words.map(|(word, _)| (*word).to_owned()).collect()
@@ -229,9 +239,9 @@ mod tests {
     fn lines_are_completed_as_far_as_it_is_certain() {
         for (line, expected, candidates) in [
             ("fi", "figure ", 1),
-            ("re", "re", 4),
+            ("re", "re", 6),
             ("res", "restore ", 1),
-            ("co", "co", 3),
+            ("co", "co", 4),
             ("cop", "copy ", 1),
             ("copy ", "copy ", 2),
             ("copy i", "copy imprint ", 1),

@@ -25,6 +25,8 @@ use crate::tui::explore::ranges::state::explored;
 use crate::tui::keys::action::{self, Arguments};
 use crate::tui::keys::binding::Context;
 use crate::tui::prompt::commands::{PromptCommand, find};
+use crate::tui::recognise::message::RecogniseMessage;
+use crate::tui::recognise::sets::ModelChoice;
 
 /// The message of a line.
 ///
@@ -77,11 +79,28 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
         (Arguments::Figure, [kind, pairs @ ..]) => figure(kind, pairs, app),
         (Arguments::Sensor, pairs) => sensor(pairs, app),
         (Arguments::Ranges, pairs) => explore(pairs, app),
+        (Arguments::Model, _) => {
+            let choice = ModelChoice::from_name(name_of(rest)?);
+            Ok(Message::Recognise(RecogniseMessage::Choose(choice)))
+        }
+        (Arguments::Seed, _) => seed(rest),
         (Arguments::Degrees, _) => degrees(rest),
         (Arguments::Taxel, [column, row]) => taxel(column, row, &app.shown().sensor),
         (Arguments::Distance, [dx, dy]) => distance(dx, dy).ok_or_else(unexpected),
         (Arguments::Taxel | Arguments::Distance, _) => Err(unexpected()),
     }
+}
+
+/// A seed of random touches.
+fn seed(text: &str) -> Result<Message, String> {
+    let seed = text.parse().map_err(|_| {
+        format!(
+            "seed takes a whole number from 0 to {}, found {:?}",
+            u64::MAX,
+            shortened(text)
+        )
+    })?;
+    Ok(Message::Recognise(RecogniseMessage::Seed(seed)))
 }
 
 /// Whole degrees, at most one turn either way.

@@ -3,10 +3,12 @@
 use std::sync::Arc;
 
 use crate::formats::StoredShape;
+use crate::imprint::Imprint;
 use crate::pose::PoseGrid;
 use crate::storage::{Existing, Expected};
 use crate::tui::app::message::Purpose;
 use crate::tui::explore::message::Findings;
+use crate::tui::recognise::sets::{ModelChoice, TrainedModel};
 
 /// An effect.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,6 +45,12 @@ pub enum Work {
     Write(u64, Arc<Findings>, String, Existing),
     /// Stop the work in progress.
     Stop,
+    /// Train a model, or read it.
+    Prepare(u64, ModelChoice),
+    /// Stop that.
+    StopPreparing,
+    /// Search a model for the nearest imprint, and for the poses of a shape, None for that of the nearest imprint.
+    Look(Arc<TrainedModel>, Box<Imprint>, Option<usize>),
 }
 
 /// Requests to the library.

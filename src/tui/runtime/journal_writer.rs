@@ -18,7 +18,7 @@ use crate::formats::StoredShape;
 use crate::storage::Journal;
 use crate::tui::app::state::App;
 use crate::tui::explore::message::WorkerEvent;
-use crate::tui::runtime::workers::EventSink;
+use crate::tui::runtime::progress::EventSink;
 
 /// Changes are gathered for this time before they are written, so a crash loses less than a second of work.
 const GATHER: Duration = Duration::from_millis(400);

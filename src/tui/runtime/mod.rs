@@ -4,6 +4,8 @@
 //! ```text
 //! effect           what update may ask for: the library, a worker, the terminal
 //! workers          sweeps and exports, each on a thread of its own
+//! progress         how workers report
+//! models           models for recognition: trained, read, searched
 //! journal_writer   unsaved work, written beside the program
 //! mailbox          messages from the workers, which wake the event loop
 //! ```
@@ -12,22 +14,27 @@ pub mod effect;
 
 pub mod workers;
 
+mod models;
+
+pub mod progress;
+
 pub mod journal_writer;
 
 pub mod mailbox;
 
-pub use crate::tui::runtime::workers::EventSink;
+pub use crate::tui::runtime::progress::EventSink;
 
 use std::io;
 use std::sync::Arc;
 
 use crate::tui::runtime::journal_writer::JournalWriter;
+use crate::tui::runtime::models::ModelStore;
 use crate::tui::runtime::workers::Workers;
 use tempfile::TempDir;
 
 use crate::formats::value::counted;
 use crate::formats::{Name, StoredShape};
-use crate::storage::{Expected, Journal, Library, LibraryError, Orphan, UNNAMED};
+use crate::storage::{Expected, Journal, Library, LibraryError, ModelCache, Orphan, UNNAMED};
 use crate::tui::app::message::{Leftover, LibraryEvent, Message};
 use crate::tui::app::state::App;
 use crate::tui::app::update::update;
@@ -52,11 +59,12 @@ impl World {
     /// The world around a library; the newest unsaved work in it will be offered.
     pub fn new(library: Library) -> Self {
         let journal = JournalWriter::new(Journal::new(&library));
+        let workers = Workers::with(ModelStore::beside(&library));
         let mut world = Self {
             library,
             orphan: None,
             journal,
-            workers: Workers::default(),
+            workers,
             _scratch: None,
         };
         world.orphan = world.newest_orphan();
@@ -65,11 +73,12 @@ impl World {
 
     /// The same for a script: unsaved work is neither offered nor kept, so that a script does the same every time.
     pub fn quiet(library: Library) -> Self {
+        let workers = Workers::with(ModelStore::beside(&library));
         Self {
             library,
             orphan: None,
             journal: JournalWriter::idle(),
-            workers: Workers::default(),
+            workers,
             _scratch: None,
         }
     }
@@ -120,7 +129,16 @@ impl World {
     #[must_use]
     pub fn with_workers(mut self, post: EventSink) -> Self {
         self.journal.report_to(Arc::clone(&post));
-        self.workers = Workers::beside(post);
+        self.workers.post_to(post);
+        self
+    }
+
+    /// Keeps models that can be trained again in a cache.
+    #[must_use]
+    pub fn with_model_cache(mut self, cache: Option<ModelCache>) -> Self {
+        if let Some(cache) = cache {
+            self.workers.keep_models(cache);
+        }
         self
     }
 

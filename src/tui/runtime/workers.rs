@@ -9,25 +9,20 @@
 //! When the program ends, a running sweep ends with it; an export is stopped first, so that no partial file stays. A
 //! panic of a worker becomes an event, too.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crate::pose::PoseGrid;
-use crate::storage::{ArchiveFileError, AtlasFile, Existing, PoseFile, location};
+use crate::storage::{ArchiveFileError, AtlasFile, Existing, ModelCache, PoseFile, location};
 use crate::sweep::{Sweep, SweepResult, TimingSample};
 use crate::tui::explore::export::is_poses;
-use crate::tui::explore::message::{Findings, SweepProgress, WorkerEvent};
+use crate::tui::explore::message::{Findings, WorkerEvent};
 use crate::tui::runtime::effect::Work;
-
-/// Takes events of workers, from any thread.
-pub type EventSink = Arc<dyn Fn(WorkerEvent) + Send + Sync>;
-
-/// Minimum interval between progress events.
-const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
+use crate::tui::runtime::models::{self, ModelStore, ModelWorker};
+use crate::tui::runtime::progress::{EventSink, ProgressReporter, guarded, proceed};
 
 /// An estimate is the best of all runs within this time.
 const MEASURED: Duration = Duration::from_millis(30);
@@ -43,6 +38,8 @@ pub(in crate::tui) struct Workers {
     measuring: Arc<AtomicBool>,
     /// The thread that writes a file.
     writing: Option<JoinHandle<()>>,
+    /// Prepares models.
+    models: ModelWorker,
 }
 
 impl std::fmt::Debug for Workers {
@@ -54,11 +51,21 @@ impl std::fmt::Debug for Workers {
 }
 
 impl Workers {
-    /// Workers on threads of their own.
-    pub(in crate::tui) fn beside(post: EventSink) -> Self {
+    /// Workers that do their work at once, with these models.
+    pub(super) fn with(models: ModelStore) -> Self {
         let mut workers = Self::default();
-        workers.post = Some(post);
+        workers.models.store = models;
         workers
+    }
+
+    /// Has work done on threads of their own.
+    pub(super) fn post_to(&mut self, post: EventSink) {
+        self.post = Some(post);
+    }
+
+    /// Keeps trained models in a cache.
+    pub(super) fn keep_models(&mut self, cache: ModelCache) {
+        self.models.store.keep_in(cache);
     }
 
     /// Begins a piece of work. Without threads, does it and returns its last event.
@@ -107,6 +114,14 @@ impl Workers {
                 self.writing = Some(thread);
                 None
             }
+            Work::Prepare(number, choice) => self.models.prepare(number, choice, self.post.clone()),
+            Work::StopPreparing => {
+                self.models.stop();
+                None
+            }
+            Work::Look(trained, imprint, shape) => {
+                models::look(trained, *imprint, shape, self.post.clone())
+            }
         }
     }
 
@@ -127,57 +142,6 @@ impl Drop for Workers {
             let _ = thread.join();
         }
     }
-}
-
-/// Counts poses of several threads and sends progress events.
-struct ProgressReporter<'a> {
-    /// The number of the work, which its events carry.
-    number: u64,
-    /// Where events are sent.
-    post: &'a EventSink,
-    /// When the work began.
-    start: Instant,
-    /// Poses done.
-    poses: AtomicU64,
-    /// When progress was sent last.
-    last: Mutex<Instant>,
-}
-
-impl<'a> ProgressReporter<'a> {
-    /// Progress of work that begins now.
-    fn new(number: u64, post: &'a EventSink) -> Self {
-        let start = Instant::now();
-        Self {
-            number,
-            post,
-            start,
-            poses: AtomicU64::new(0),
-            last: Mutex::new(start),
-        }
-    }
-
-    /// Counts poses that are done.
-    fn add(&self, poses: u64) {
-        let poses = self.poses.fetch_add(poses, Ordering::Relaxed) + poses;
-        // A thread that finds the lock taken leaves the report to the other one.
-        if let Ok(mut last) = self.last.try_lock()
-            && last.elapsed() >= PROGRESS_INTERVAL
-        {
-            *last = Instant::now();
-            let elapsed = self.start.elapsed();
-            (self.post)(WorkerEvent::Progress(
-                self.number,
-                SweepProgress { poses, elapsed },
-            ));
-        }
-    }
-}
-
-/// Turns a panic into an event; without it the program would wait for ever.
-fn guarded(number: u64, work: impl FnOnce() -> WorkerEvent) -> WorkerEvent {
-    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
-        WorkerEvent::Failed(number, "the work failed; this is a bug".to_owned())
-    })
 }
 
 /// Estimates the time of a sweep; None if it was stopped.
@@ -213,14 +177,6 @@ fn sweep(
             classes,
         }),
     )
-}
-
-/// Counts poses that are done, and returns whether to go on.
-fn proceed(poses: u64, stop: &AtomicBool, clock: Option<&ProgressReporter<'_>>) -> bool {
-    if let Some(clock) = clock {
-        clock.add(poses);
-    }
-    !stop.load(Ordering::Relaxed)
 }
 
 /// Writes the results to a file and sends whether that worked.

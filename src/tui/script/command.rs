@@ -7,7 +7,7 @@
 //! Type "literal text" Paste "1.5"         Click 12,5   Click "Figure"   Drag 3,4 9,9   Scroll 12,5 -3
 //! Screen [name]       State [json-pointer]
 //! Expect /re/         ExpectNot /re/      ExpectAt 3,10 "text"   ExpectStyle 3,10 reverse
-//! Signal HUP          Wait                Quit
+//! Signal HUP          Wait                Quit                Seed 7
 //! ```
 //! Places are column,row of the screen, from 0. `#` begins a comment line. `Quit` holds where the program has ended.
 //! A drag visits its places and no others, as a terminal reports them.
@@ -131,6 +131,7 @@ fn command(line: &str) -> Result<ScriptCommand, String> {
         }
         "Resize" => size(rest).map(|(columns, rows)| ScriptCommand::Resize(columns, rows)),
         "Set" => setting::read(rest).map(ScriptCommand::Set),
+        "Seed" => seed(rest).map(|seed| ScriptCommand::Set(ScriptSetting::Seed(seed))),
         "Keys" => parse(rest)
             .map(ScriptCommand::Keys)
             .map_err(|error| error.to_string()),
@@ -165,11 +166,22 @@ fn command(line: &str) -> Result<ScriptCommand, String> {
         "Wait" => nothing(ScriptCommand::Wait),
         "Quit" => nothing(ScriptCommand::Quit),
         _ => Err(format!(
-            "{:?} is unknown, expected one of Size, Set, Resize, Keys, Type, Paste, Click, Drag, Scroll, Screen, \
+            "{:?} is unknown, expected one of Size, Set, Seed, Resize, Keys, Type, Paste, Click, Drag, Scroll, Screen, \
              State, Expect, ExpectNot, ExpectAt, ExpectStyle, Signal, Wait, Quit",
             shortened(word)
         )),
     }
+}
+
+/// What random touches are made from.
+fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| {
+        let found = shortened(text);
+        format!(
+            "expected a whole number of at most {}, found {found:?}",
+            u64::MAX
+        )
+    })
 }
 
 /// Two places or more.

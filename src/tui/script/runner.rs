@@ -23,6 +23,7 @@ use crate::tui::app::message::{Message, Mouse, MouseKind};
 use crate::tui::app::state::{App, Options};
 use crate::tui::keys::key::Key;
 use crate::tui::keys::keymap::Keymap;
+use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::runtime::World;
 use crate::tui::script::command::{ScreenPosition, ScriptCommand, ScriptError, read};
 use crate::tui::script::session::Session;
@@ -127,6 +128,7 @@ pub fn run_shown(
         let options = &mut settings.options;
         match setting {
             ScriptSetting::Size(columns, rows) => settings.size = (*columns, *rows),
+            ScriptSetting::Seed(seed) => options.seed = *seed,
             ScriptSetting::Ascii(ascii) => options.theme.ascii = *ascii,
             ScriptSetting::Color(depth) => options.theme.depth = *depth,
             ScriptSetting::Theme(palette) => options.theme.palette = *palette,
@@ -219,6 +221,9 @@ fn act(session: &mut Session, line: usize, command: &ScriptCommand) -> Result<()
                 MouseKind::ScrollDown
             };
             (0..turns.unsigned_abs()).for_each(|_| mouse(session, kind, *place));
+        }
+        ScriptCommand::Set(ScriptSetting::Seed(seed)) => {
+            session.send(Message::Recognise(RecogniseMessage::Seed(*seed)));
         }
         ScriptCommand::Signal(name) if name == "TSTP" => session.send(Message::Redraw),
         // What is not saved is in the journal already; the program ends without a question.

@@ -3,7 +3,7 @@
 //! ```text
 //! Size 80x24          Set ascii on        Set theme light    Set color 256
 //! Set columns 8       Set rows 8          Set threshold 0.6  Set pitch 0.5
-//! Set mouse off
+//! Set mouse off      Seed 7
 //! Set library "DIR"   Set shape {...}     Set leftover {...}
 //! ```
 //! `shape` puts a shape into the user's library, given as the content of its file in one line; `leftover` is unsaved
@@ -36,6 +36,8 @@ pub enum ScriptSetting {
     Sensor(Parameter, f64),
     /// The library's folder.
     Library(PathBuf),
+    /// What random touches are made from.
+    Seed(u64),
     /// A shape of the user's.
     Shape(Box<StoredShape>),
     /// Unsaved work of a program that crashed.
@@ -109,6 +111,7 @@ impl fmt::Display for ScriptSetting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Size(columns, rows) => write!(f, "Size {columns}x{rows}"),
+            Self::Seed(seed) => write!(f, "Seed {seed}"),
             Self::Ascii(ascii) => write!(f, "Set ascii {}", name_of(*ascii, &SWITCH)),
             Self::Color(depth) => write!(f, "Set color {}", name_of(*depth, &ColorDepth::NAMES)),
             Self::Theme(palette) => write!(f, "Set theme {}", name_of(*palette, &Palette::NAMES)),
@@ -143,6 +146,7 @@ pub fn of_options(options: &Options) -> Vec<ScriptSetting> {
         ScriptSetting::Color(theme.depth),
         ScriptSetting::Theme(theme.palette),
         ScriptSetting::Mouse(options.mouse),
+        ScriptSetting::Seed(options.seed),
     ];
     let value = |parameter| Some(ScriptSetting::Sensor(parameter, sensor.get(parameter)?));
     let values = SENSOR_PARAMETERS.into_iter().filter_map(value);
@@ -169,6 +173,7 @@ mod tests {
                 palette: Palette::Light,
             },
             mouse: false,
+            seed: 7,
         };
         let mut settings = of_options(&options);
         settings.extend([
@@ -179,7 +184,10 @@ mod tests {
         ]);
         for setting in settings {
             let line = setting.to_string();
-            let text = line.strip_prefix("Set ").expect("a line of this kind");
+            let Some(text) = line.strip_prefix("Set ") else {
+                assert_eq!(line, "Seed 7");
+                continue;
+            };
             assert_eq!(read(text), Ok(setting), "{line}");
         }
     }

@@ -33,6 +33,10 @@ pub enum Role {
     Hole,
     /// An inactive taxel.
     Inactive,
+    /// An active taxel that the nearest imprint does not have.
+    Surplus,
+    /// An inactive taxel that it has.
+    Missing,
     /// Where the cursor is.
     Cursor,
     /// The field that has the focus.
@@ -124,6 +128,8 @@ fn tone(role: Role, palette: Palette) -> Option<Tone> {
         (Palette::Dark, Role::Title) => Some((Color::Cyan, 80, [95, 215, 215])),
         (Palette::Dark, Role::Chosen) => Some((Color::Green, 114, [135, 215, 135])),
         (Palette::Dark, Role::Active) => Some((Color::Blue, 75, [95, 175, 255])),
+        (Palette::Dark, Role::Surplus | Role::Missing) => tone(Role::Error, palette),
+        (Palette::Light, Role::Surplus | Role::Missing) => tone(Role::Error, palette),
         (Palette::Dark, Role::Hole) => Some((Color::Yellow, 221, [255, 215, 95])),
         (Palette::Dark, Role::Error) => Some((Color::Red, 203, [255, 95, 95])),
         (Palette::Light, Role::Title) => Some((Color::Blue, 25, [0, 95, 175])),
@@ -171,6 +177,7 @@ impl Theme {
         let style = match role {
             Role::Quiet | Role::Inactive => Style::new().add_modifier(Modifier::DIM),
             Role::Key | Role::Title | Role::Error => Style::new().add_modifier(Modifier::BOLD),
+            Role::Surplus | Role::Missing => Style::new().add_modifier(Modifier::BOLD),
             Role::Cursor | Role::Focus => Style::new().add_modifier(Modifier::REVERSED),
             Role::Text | Role::Active | Role::Chosen | Role::Hole => Style::new(),
         };
@@ -205,6 +212,8 @@ impl Theme {
         match (role, self.ascii) {
             (Role::Chosen, true) => ['#', '#'],
             (Role::Active, true) => ['%', '%'],
+            (Role::Surplus, _) => ['+', '+'],
+            (Role::Missing, _) => ['-', '-'],
             (Role::Hole, true) => ['o', 'o'],
             (_, true) => ['.', ' '],
             (Role::Chosen, false) => ['█', '█'],
@@ -282,6 +291,7 @@ impl Theme {
 pub(crate) fn spelling(sign: char) -> Option<&'static str> {
     Some(match sign {
         '°' => " deg",
+        '±' => "+-",
         '²' => "^2",
         '×' => "x",
         '·' => "*",

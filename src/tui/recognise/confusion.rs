@@ -1,0 +1,364 @@
+//! The confusion matrix of a model: how often the best classifier takes a touch of one shape for another, and for the
+//! cell under the cursor an imprint that it takes so.
+
+use std::sync::Arc;
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::formats::value::{counted, grouped};
+use crate::imprint::Imprint;
+use crate::recognition::{Model, ShapeCount};
+use crate::sensor::Sensor;
+use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::app::page::{Page, Slot};
+use crate::tui::keys::binding::Context;
+use crate::tui::keys::key::Arrow;
+use crate::tui::keys::keymap::Keymap;
+use crate::tui::recognise::exercise::onto;
+use crate::tui::recognise::message::RecogniseMessage;
+use crate::tui::recognise::sets::TrainedModel;
+use crate::tui::recognise::view::percent;
+use crate::tui::widget::number::narrow;
+use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::{thumbnail, write};
+
+/// The matrix, as it is looked at.
+#[derive(Clone, Debug)]
+pub struct Confusion {
+    /// The model.
+    trained: Arc<TrainedModel>,
+    /// The cell under the cursor: the shape that touches, the shape that is named.
+    cell: (usize, usize),
+    /// An imprint of that cell; None if there is none.
+    example: Option<Example>,
+}
+
+/// An imprint of a cell, the most frequent one.
+#[derive(Clone, Debug, PartialEq)]
+struct Example {
+    /// The imprint, cut to its box; None of a touch that leaves nothing.
+    imprint: Option<Imprint>,
+    /// The shapes that leave it.
+    counts: Vec<ShapeCount>,
+}
+
+/// Columns of a cell.
+const CELL: u16 = 7;
+
+/// The most columns of a name.
+const NAME: usize = 12;
+
+impl Confusion {
+    /// The matrix of a model, the cursor on the pair of shapes that is confused most.
+    pub fn new(trained: Arc<TrainedModel>) -> Self {
+        let confusion = &trained.evaluation.confusion;
+        let cells = (0..confusion.len())
+            .flat_map(|row| (0..confusion.len()).map(move |column| (row, column)));
+        let wrong = cells.filter(|(row, column)| row != column);
+        // Of equals the first.
+        let worst = wrong
+            .rev()
+            .max_by_key(|&(row, column)| confusion[row][column]);
+        let mut page = Self {
+            trained,
+            cell: (0, 0),
+            example: None,
+        };
+        page.go_to(worst.unwrap_or((0, 0)));
+        page
+    }
+
+    /// Number of shapes.
+    fn count(&self) -> usize {
+        self.trained.model.shapes().len()
+    }
+
+    /// The imprint of the cell on a sensor of the user's if it fits on that, otherwise on that of the model; and the
+    /// sensor. None if there is none.
+    pub fn imprint_on(&self, sensor: Sensor) -> Option<(Sensor, Imprint)> {
+        let imprint = self.example.as_ref()?.imprint?;
+        Some(onto(&imprint, sensor, *self.trained.model.sensor()))
+    }
+
+    /// Puts the cursor onto a cell, or onto the nearest one.
+    fn go_to(&mut self, (row, column): (usize, usize)) {
+        let last = self.count() - 1;
+        self.cell = (row.min(last), column.min(last));
+        self.example = example(&self.trained.model, self.cell);
+    }
+
+    /// Moves the cursor.
+    pub fn take(&mut self, message: &Message) {
+        let (row, column) = self.cell;
+        let cell = match *message {
+            Message::Cursor(Arrow::Left) => (row, column.saturating_sub(1)),
+            Message::Cursor(Arrow::Right) => (row, column + 1),
+            Message::Cursor(Arrow::Up) => (row.saturating_sub(1), column),
+            Message::Cursor(Arrow::Down) => (row + 1, column),
+            Message::Scroll(lines) => (row.saturating_add_signed(isize::from(lines)), column),
+            Message::ScrollTo(Endpoint::First) => (0, 0),
+            Message::ScrollTo(Endpoint::Last) => (usize::MAX, usize::MAX),
+            Message::Recognise(RecogniseMessage::SelectCell(row, column)) => (row, column),
+            _ => return,
+        };
+        self.go_to(cell);
+    }
+}
+
+/// The imprint that a shape leaves in the most poses among those that are named as another one; the first of equals.
+fn example(model: &Model, (touched, named): (usize, usize)) -> Option<Example> {
+    let poses_of = |key: usize| {
+        let counts = model.counts(key);
+        let own = counts
+            .iter()
+            .find(|count| usize::from(count.shape) == touched)?;
+        (name_of(model, counts) == Some(named)).then_some(own.poses)
+    };
+    let found = (0..model.keys().len()).filter_map(|key| Some((poses_of(key)?, key)));
+    let (_, key) = found.rev().max_by_key(|(poses, _)| *poses)?;
+    Some(Example {
+        imprint: model.keys().imprint(key),
+        counts: model.counts(key).to_vec(),
+    })
+}
+
+/// The shape that the best classifier names: the most frequent one, of equals the first.
+fn name_of(model: &Model, counts: &[ShapeCount]) -> Option<usize> {
+    let weighted = |count: &&ShapeCount| {
+        let weight = model.shapes().get(usize::from(count.shape));
+        u128::from(count.poses) * u128::from(weight.map_or(0, |shape| shape.weight))
+    };
+    let most = counts.iter().rev().max_by_key(weighted);
+    most.map(|count| usize::from(count.shape))
+}
+
+/// Where the parts of the page are.
+struct Layout {
+    /// The headings of the columns.
+    head: Rect,
+    /// The rows of the matrix.
+    rows: Rect,
+    /// Columns of a label.
+    label: u16,
+    /// The first visible row and column.
+    first: (usize, usize),
+    /// How many columns are visible.
+    columns: usize,
+    /// What the cursor is on, in words.
+    detail: Rect,
+    /// Its imprint, where there is room beside the matrix.
+    picture: Option<Rect>,
+}
+
+/// Lines for what the cursor is on.
+const DETAIL: u16 = 2;
+
+impl Layout {
+    fn of(area: Rect, page: &Confusion) -> Self {
+        let count = page.count();
+        let names = (0..count).map(|shape| write::width(page.trained.name(shape)));
+        let name = names.fold(0, usize::max).min(NAME);
+        let label = narrow(count.to_string().len() + 1 + name + 1);
+        let beside = area.width.saturating_sub(label);
+        let all = narrow(count).saturating_mul(CELL);
+        // Beside the matrix there is an imprint, unless that would leave too few columns.
+        let picture = 18;
+        let with_picture = all.saturating_add(picture) <= beside || beside >= picture + 6 * CELL;
+        let room = if with_picture {
+            beside - picture
+        } else {
+            beside
+        };
+        let columns = usize::from(room / CELL).clamp(1, count.max(1));
+        let rows = write::below(area, 3);
+        let rows = Rect {
+            height: rows.height.saturating_sub(DETAIL),
+            ..rows
+        };
+        let (row, column) = page.cell;
+        let x = area.x + label + narrow(columns).saturating_mul(CELL) + 2;
+        Self {
+            head: write::row(area, 2),
+            rows,
+            label,
+            first: (
+                write::first_of(rows.height, count, row),
+                write::first_of(narrow(columns), count, column),
+            ),
+            columns,
+            detail: write::below(area, area.height.saturating_sub(DETAIL)),
+            picture: with_picture.then(|| write::right_of(rows, x)),
+        }
+    }
+
+    /// The columns of the screen that a column of the matrix has.
+    fn cell(&self, row: Rect, index: usize) -> Rect {
+        let x = row.x + self.label + narrow(index).saturating_mul(CELL);
+        let cell = write::right_of(row, x);
+        Rect {
+            width: cell.width.min(CELL),
+            ..cell
+        }
+    }
+}
+
+impl Page for Confusion {
+    fn context(&self) -> Context {
+        Context::Confusion
+    }
+
+    fn slot(&self) -> Slot {
+        Slot::Screen
+    }
+
+    fn draw(
+        &self,
+        theme: &Theme,
+        _keymap: &Keymap,
+        buffer: &mut Buffer,
+        area: Rect,
+    ) -> Option<Position> {
+        write::clear(buffer, area);
+        let layout = Layout::of(area, self);
+        let evaluation = &self.trained.evaluation;
+        let title = format!("Confusion: {}", self.trained.choice);
+        let error = percent(evaluation.error());
+        let limit = format!("  best possible error {}", error.trim_start());
+        let pieces = [(title.as_str(), Role::Title), (limit.as_str(), Role::Text)];
+        write::line(buffer, area, theme, pieces);
+        let meaning = "rows: the shape that touches; columns: its name; percent of the row";
+        write::line(buffer, write::row(area, 1), theme, [(meaning, Role::Quiet)]);
+        let last = layout.first.1 + layout.columns;
+        for (index, column) in (layout.first.1..last.min(self.count())).enumerate() {
+            let number = format!("{:>5} ", column + 1);
+            let place = layout.cell(layout.head, index);
+            write::line(buffer, place, theme, [(number.as_str(), Role::Title)]);
+        }
+        let rows = (layout.first.0..self.count()).take(layout.rows.height.into());
+        let mut cursor = None;
+        for (index, row) in rows.enumerate() {
+            let line = write::row(layout.rows, index);
+            cursor = self.draw_row(theme, &layout, row, buffer, line).or(cursor);
+        }
+        self.draw_detail(theme, &layout, buffer);
+        cursor
+    }
+
+    fn click(&self, area: Rect, at: Position) -> Option<Message> {
+        let layout = Layout::of(area, self);
+        if !layout.rows.contains(at) {
+            return None;
+        }
+        let row = layout.first.0 + usize::from(at.y - layout.rows.y);
+        let across = at.x.checked_sub(layout.rows.x + layout.label)? / CELL;
+        let column = layout.first.1 + usize::from(across);
+        let inside =
+            row < self.count() && column < self.count() && usize::from(across) < layout.columns;
+        inside.then_some(Message::Recognise(RecogniseMessage::SelectCell(
+            row, column,
+        )))
+    }
+
+    fn scrolls(&self) -> bool {
+        true
+    }
+}
+
+impl Confusion {
+    /// A row: its number and name, and its cells. Returns where the cursor is, if it is here.
+    fn draw_row(
+        &self,
+        theme: &Theme,
+        layout: &Layout,
+        row: usize,
+        buffer: &mut Buffer,
+        line: Rect,
+    ) -> Option<Position> {
+        let digits = self.count().to_string().len();
+        let number = format!("{:>digits$} ", row + 1);
+        let name = Rect {
+            width: layout.label.saturating_sub(1).min(line.width),
+            ..line
+        };
+        let pieces = [
+            (number.as_str(), Role::Title),
+            (self.trained.name(row), Role::Text),
+        ];
+        write::line(buffer, name, theme, pieces);
+        let touches: u128 = self.trained.evaluation.confusion[row].iter().sum();
+        let mut cursor = None;
+        let last = layout.first.1 + layout.columns;
+        for (index, column) in (layout.first.1..last.min(self.count())).enumerate() {
+            let place = layout.cell(line, index);
+            let count = self.trained.evaluation.confusion[row][column];
+            let text = cell_text(theme, count, touches, row == column);
+            let here = (row, column) == self.cell;
+            let role = match (here, row == column, count) {
+                (true, ..) => Role::Focus,
+                (_, true, _) => Role::Key,
+                (_, _, 0) => Role::Quiet,
+                _ => Role::Text,
+            };
+            write::line(buffer, place, theme, [(text.as_str(), role)]);
+            if here {
+                cursor = Some(Position::new(place.x, place.y));
+            }
+        }
+        cursor
+    }
+
+    /// What the cursor is on.
+    fn draw_detail(&self, theme: &Theme, layout: &Layout, buffer: &mut Buffer) {
+        let (row, column) = self.cell;
+        let confusion = &self.trained.evaluation.confusion[row];
+        let touches: u128 = confusion.iter().sum();
+        let text = format!(
+            "{} named {}: {} of {} touches",
+            self.trained.name(row),
+            self.trained.name(column),
+            grouped(confusion[column]),
+            grouped(touches),
+        );
+        write::line(buffer, layout.detail, theme, [(text.as_str(), Role::Text)]);
+        let Some(example) = &self.example else { return };
+        let leaves = example.counts.iter().map(|own| {
+            let name = self.trained.name(own.shape.into());
+            format!("{name} in {}", counted(own.poses, "pose"))
+        });
+        let text = format!(
+            "one imprint of it: {}",
+            leaves.collect::<Vec<_>>().join(", ")
+        );
+        write::line(
+            buffer,
+            write::row(layout.detail, 1),
+            theme,
+            [(text.as_str(), Role::Text)],
+        );
+        if let (Some(area), Some(imprint)) = (layout.picture, &example.imprint) {
+            thumbnail::draw(theme, imprint, buffer, area);
+        }
+    }
+}
+
+/// A cell: percent of its row; the diagonal in brackets, nothing as a dot.
+fn cell_text(theme: &Theme, count: u128, touches: u128, diagonal: bool) -> String {
+    #[expect(clippy::cast_precision_loss, reason = "for reading")]
+    let share = count as f64 / touches.max(1) as f64;
+    let percent = percent(share);
+    let number = match count {
+        0 => theme.text("·").into_owned(),
+        _ => percent.trim_end_matches(" %").trim_start().to_owned(),
+    };
+    let number = if count == 0 && theme.ascii {
+        ".".to_owned()
+    } else {
+        number
+    };
+    if diagonal {
+        format!("{:>7}", format!("[{number}]"))
+    } else {
+        format!("{number:>6} ")
+    }
+}

@@ -1,0 +1,270 @@
+//! The exercise: a random shape of the set touches the matrix, and the user names it.
+
+use std::sync::Arc;
+
+use rand_pcg::Pcg64;
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::imprint::Imprint;
+use crate::recognition::below;
+use crate::sensor::Sensor;
+use crate::touch::Plane;
+use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::app::page::{Page, Slot};
+use crate::tui::keys::action;
+use crate::tui::keys::binding::Context;
+use crate::tui::keys::keymap::Keymap;
+use crate::tui::recognise::message::RecogniseMessage;
+use crate::tui::recognise::sets::TrainedModel;
+use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::write;
+
+/// A shape that is to be named.
+#[derive(Clone, Debug)]
+pub struct Exercise {
+    /// The set that it is of.
+    trained: Arc<TrainedModel>,
+    /// Its number, which is not shown.
+    shape: usize,
+    /// Its touches as they lay on the matrix, the present one last.
+    touches: Vec<Imprint>,
+    /// The row of the list that is selected.
+    selected: usize,
+}
+
+impl Exercise {
+    /// A random shape of a set, as likely as its weight says; not touched yet.
+    pub fn new(trained: Arc<TrainedModel>, random: &mut Pcg64) -> Self {
+        let shapes = trained.model.shapes();
+        let weights = shapes.iter().map(|shape| u64::from(shape.weight));
+        let mut rest = below(random, weights.clone().sum());
+        let shape = weights.take_while(|&weight| {
+            let later = rest >= weight;
+            rest = rest.saturating_sub(weight);
+            later
+        });
+        let shape = shape.count();
+        Self {
+            trained,
+            shape,
+            touches: Vec::new(),
+            selected: 0,
+        }
+    }
+
+    /// Touches with the shape in a random pose of the model's grid. Returns the sensor and the imprint: on a sensor of
+    /// the user's if it fits on that, away from the rim if there is room; otherwise on that of the model.
+    pub fn touch(&mut self, sensor: Sensor, random: &mut Pcg64) -> Option<(Sensor, Imprint)> {
+        let grid = self.trained.grid(self.shape)?;
+        let pose = grid.pose(below(random, grid.poses()));
+        let own = *grid.sensor();
+        let imprint = Plane::new(own).touch(&grid.placed(pose));
+        let (sensor, imprint) = onto(&imprint, sensor, own);
+        self.touches.push(imprint);
+        Some((sensor, imprint))
+    }
+
+    /// The shape.
+    pub fn shape(&self) -> usize {
+        self.shape
+    }
+
+    /// The name of a shape of the set.
+    pub fn name(&self, shape: usize) -> &str {
+        self.trained.name(shape)
+    }
+
+    /// Its touches.
+    pub fn into_touches(self) -> Vec<Imprint> {
+        self.touches
+    }
+
+    /// The row that is selected: the number of a shape.
+    pub fn selected(&self) -> usize {
+        self.selected
+    }
+
+    /// Number of shapes of the set.
+    fn count(&self) -> usize {
+        self.trained.model.shapes().len()
+    }
+
+    /// Handles what selects a row; `true` if it names a shape by its number at once.
+    pub fn take(&mut self, message: &Message) -> bool {
+        let last = self.count() - 1;
+        match *message {
+            Message::Scroll(lines) => {
+                let row = self.selected.saturating_add_signed(isize::from(lines));
+                self.selected = row.min(last);
+            }
+            Message::ScrollTo(Endpoint::First) => self.selected = 0,
+            Message::ScrollTo(Endpoint::Last) => self.selected = last,
+            Message::Recognise(RecogniseMessage::Select(row)) => {
+                self.selected = row.min(last);
+            }
+            Message::Type(character) => return self.type_character(character),
+            _ => {}
+        }
+        false
+    }
+
+    /// A digit names one of the first nine shapes; a letter selects the next shape whose name begins with it.
+    fn type_character(&mut self, character: char) -> bool {
+        if let Some(number) = character.to_digit(10) {
+            let row = (number as usize).checked_sub(1);
+            if let Some(row) = row.filter(|&row| row < self.count()) {
+                self.selected = row;
+                return true;
+            }
+            return false;
+        }
+        let begins = |row: &usize| {
+            let first = self.name(*row).chars().next();
+            first.is_some_and(|first| first.to_lowercase().eq(character.to_lowercase()))
+        };
+        let rows = (self.selected + 1..self.count()).chain(0..=self.selected);
+        if let Some(row) = rows.clone().find(begins) {
+            self.selected = row;
+        }
+        false
+    }
+}
+
+/// An imprint on the user's sensor if it fits on that, otherwise on that of its model; and the sensor.
+pub(super) fn onto(imprint: &Imprint, sensor: Sensor, own: Sensor) -> (Sensor, Imprint) {
+    let place = |sensor: Sensor| Some((sensor, moved_onto(imprint, &sensor)?));
+    let placed = place(sensor).or_else(|| place(own));
+    placed.unwrap_or((sensor, Imprint::empty(sensor.columns(), sensor.rows())))
+}
+
+/// The same imprint where it fits on a sensor: as near to its own place as that allows, off the rim if there is room.
+/// None if it does not fit.
+fn moved_onto(imprint: &Imprint, sensor: &Sensor) -> Option<Imprint> {
+    let mut moved = Imprint::empty(sensor.columns(), sensor.rows());
+    let Some(bounds) = imprint.bounds() else {
+        return Some(moved);
+    };
+    let place = |start: u8, end: u8, side: u8| {
+        let room = side.checked_sub(end - start)?;
+        let margin = u8::from(room >= 2);
+        Some(start.clamp(margin, room - margin))
+    };
+    let left = place(bounds.left, bounds.right, sensor.columns())?;
+    let top = place(bounds.top, bounds.bottom, sensor.rows())?;
+    for (column, row) in imprint.active() {
+        moved.set(column - bounds.left + left, row - bounds.top + top, true);
+    }
+    Some(moved)
+}
+
+/// Lines above the list.
+const HEAD: u16 = 3;
+
+/// The rows of the list, and the number of the first one.
+fn rows(exercise: &Exercise, area: Rect) -> (Rect, usize) {
+    let rows = write::below(area, HEAD);
+    let first = write::first_of(rows.height, exercise.count(), exercise.selected);
+    (rows, first)
+}
+
+impl Page for Exercise {
+    fn context(&self) -> Context {
+        Context::Guess
+    }
+
+    fn slot(&self) -> Slot {
+        Slot::Panel
+    }
+
+    fn draw(
+        &self,
+        theme: &Theme,
+        keymap: &Keymap,
+        buffer: &mut Buffer,
+        area: Rect,
+    ) -> Option<Position> {
+        write::clear(buffer, area);
+        let title = match self.touches.len() {
+            0 | 1 => "Which shape is this?".to_owned(),
+            count => format!("Which shape is this? Touch {count}"),
+        };
+        write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
+        let key = |action| keymap.label(Context::Guess, action);
+        let how = format!(
+            "{} names it, {} touches it again",
+            key(&action::ACCEPT),
+            key(&action::TOUCH)
+        );
+        write::line(
+            buffer,
+            write::row(area, 1),
+            theme,
+            [(how.as_str(), Role::Quiet)],
+        );
+        let (list, first) = rows(self, area);
+        let mut cursor = None;
+        for (line, shape) in (first..self.count()).take(list.height.into()).enumerate() {
+            let row = write::row(list, line);
+            let selected = shape == self.selected;
+            let (sign, role) = if selected {
+                ("> ", Role::Focus)
+            } else {
+                ("  ", Role::Text)
+            };
+            let number = match shape {
+                0..9 => format!("{} ", shape + 1),
+                _ => "  ".to_owned(),
+            };
+            let pieces = [
+                (sign, Role::Key),
+                (number.as_str(), Role::Key),
+                (self.name(shape), role),
+            ];
+            write::line(buffer, row, theme, pieces);
+            if selected {
+                cursor = Some(Position::new(row.x, row.y));
+            }
+        }
+        cursor
+    }
+
+    fn click(&self, area: Rect, at: Position) -> Option<Message> {
+        let (list, first) = rows(self, area);
+        let shape = first + usize::from(at.y.checked_sub(list.y)?);
+        if !list.contains(at) || shape >= self.count() {
+            return None;
+        }
+        // As in other lists: a click selects, a click on the selected row takes it.
+        Some(if shape == self.selected {
+            Message::Accept
+        } else {
+            Message::Recognise(RecogniseMessage::Select(shape))
+        })
+    }
+
+    fn scrolls(&self) -> bool {
+        true
+    }
+
+    fn cancels_itself(&self) -> bool {
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_touch_comes_onto_the_sensor_where_it_fits() {
+        let read = |text: &str| text.parse::<Imprint>().expect("an imprint");
+        let own = read("......\n......\n......\n....##\n....#.\n......");
+        let sensor = |columns, rows| Sensor::new(columns, rows).expect("a sensor");
+        let onto = |columns, rows| moved_onto(&own, &sensor(columns, rows));
+        assert_eq!(onto(4, 4), Some(read("....\n.##.\n.#..\n....")));
+        assert_eq!(onto(3, 2), Some(read(".##\n.#.")));
+        assert_eq!(onto(1, 9), None);
+        assert_eq!(onto(8, 8).and_then(|moved| moved.bounds()), own.bounds());
+    }
+}

@@ -1,0 +1,69 @@
+//! What is asked of recognition on the screen, and what its worker reports.
+
+use std::sync::Arc;
+
+use crate::formats::Name;
+use crate::imprint::Imprint;
+use crate::recognition::{Nearest, PoseEstimate};
+use crate::tui::recognise::sets::{ModelChoice, TrainedModel};
+
+/// What a key or a command asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RecogniseMessage {
+    /// To open the page.
+    Open,
+    /// To open it with a set.
+    Choose(ModelChoice),
+    /// The set that comes so many further on.
+    NextSet(i8),
+    /// A random shape of the set touches the matrix.
+    Touch,
+    /// To keep the touch on the matrix as one of several of the same shape.
+    Keep,
+    /// To forget the touches that were kept.
+    Forget,
+    /// The confusion matrix.
+    Confusion,
+    /// Random touches from this seed on.
+    Seed(u64),
+    /// To select a row of a list, counted from 0.
+    Select(usize),
+    /// To select a cell of the confusion matrix: row, column.
+    SelectCell(usize, usize),
+}
+
+/// What of a touch takes a search over the whole model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Look {
+    /// The model that was searched.
+    pub trained: Arc<TrainedModel>,
+    /// The imprint.
+    pub imprint: Imprint,
+    /// The nearest imprint that a shape of the set leaves.
+    pub nearest: Option<Nearest>,
+    /// The number of the shape that the answer names, or of that of the nearest imprint, and in which poses it leaves that
+    /// imprint.
+    pub pose: Option<(usize, PoseEstimate)>,
+}
+
+/// A model, or why there is none.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prepared {
+    /// The number of the piece of work.
+    pub number: u64,
+    /// The names of the models that are stored.
+    pub stored: Vec<Name>,
+    /// The model, or why there is none.
+    pub trained: Result<Arc<TrainedModel>, String>,
+}
+
+/// What the worker reports.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RecognitionEvent {
+    /// A training of that number began; how many poses it has.
+    Begun(u64, u64),
+    /// A model is ready, or there is none.
+    Prepared(Box<Prepared>),
+    /// A search is over.
+    Looked(Box<Look>),
+}

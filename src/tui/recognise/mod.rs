@@ -1,0 +1,25 @@
+//! Recognise: names the shape on the matrix from one touch or several, and how far that can be trusted.
+//!
+//! ```text
+//! sets        the sets of shapes that can be chosen, and how they are trained
+//! message     what keys ask for, and what the worker reports
+//! state       the set, its model, the touches, the answer
+//! view        the panel beside the matrix: shapes with bars, the nearest imprint, the pose
+//! update      what messages do; the answer follows the matrix
+//! exercise    a random touch to name, and the score
+//! confusion   which shapes are taken for which, with an imprint that two share
+//! ```
+
+pub mod sets;
+
+pub mod message;
+
+pub mod state;
+
+pub mod view;
+
+pub mod exercise;
+
+pub mod confusion;
+
+pub mod update;

@@ -1,0 +1,295 @@
+//! The state of recognition: the set and its model, the touches, the answer to them, the exercise's score.
+
+use std::sync::Arc;
+
+use rand_core::SeedableRng;
+use rand_pcg::Pcg64;
+
+use crate::formats::Name;
+use crate::imprint::Imprint;
+use crate::recognition::{Answer, Evidence};
+use crate::tui::explore::message::SweepProgress;
+use crate::tui::recognise::message::{Look, Prepared};
+use crate::tui::recognise::sets::{ModelChoice, TrainedModel};
+use crate::tui::widget::number::around;
+
+/// How far the model of the chosen set is.
+#[derive(Clone, Debug)]
+pub enum ModelState {
+    /// There is none: training was stopped, or failed, or never began.
+    Missing,
+    /// It is being trained or read.
+    Preparing(Preparation),
+    /// It is there.
+    Ready(Arc<TrainedModel>),
+}
+
+/// A model on its way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Preparation {
+    /// The number of the piece of work.
+    pub number: u64,
+    /// Poses of all shapes, once that is known; a model from a file has none.
+    pub poses: Option<u64>,
+    /// Poses that are done.
+    pub done: u64,
+    /// Whether it was told to stop.
+    pub stopping: bool,
+}
+
+/// How the exercise goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Score {
+    /// Shapes that were to be named.
+    pub asked: u32,
+    /// How many the user named right.
+    pub right: u32,
+    /// How many the best classifier names right.
+    pub best: u32,
+}
+
+/// The state of the page.
+#[derive(Clone, Debug)]
+pub struct Recognition {
+    /// The set.
+    choice: ModelChoice,
+    /// The names of stored models.
+    stored: Vec<Name>,
+    /// Its model.
+    state: ModelState,
+    /// The touches of the shape that were kept.
+    kept: Vec<Imprint>,
+    /// The imprint on the matrix.
+    present: Imprint,
+    /// Whether the last kept touch is the one on the matrix.
+    present_kept: bool,
+    /// The answer to all touches; None without a model or a touch.
+    answer: Option<Answer>,
+    /// What was searched last.
+    look: Option<Box<Look>>,
+    /// Whether a search is under way.
+    looking: bool,
+    /// The score of the exercise.
+    pub(super) score: Score,
+    /// Where random touches come from.
+    pub(super) random: Pcg64,
+}
+
+impl Recognition {
+    /// The seven figures, without a model yet; random touches come from a seed.
+    pub fn new(seed: u64) -> Self {
+        Self {
+            choice: ModelChoice::Figures,
+            stored: Vec::new(),
+            state: ModelState::Missing,
+            kept: Vec::new(),
+            present: Imprint::empty(1, 1),
+            present_kept: false,
+            answer: None,
+            look: None,
+            looking: false,
+            score: Score::default(),
+            random: Pcg64::seed_from_u64(seed),
+        }
+    }
+
+    /// The set.
+    pub fn choice(&self) -> &ModelChoice {
+        &self.choice
+    }
+
+    /// How far its model is.
+    pub fn state(&self) -> &ModelState {
+        &self.state
+    }
+
+    /// Its model, once that is there.
+    pub fn trained(&self) -> Option<&Arc<TrainedModel>> {
+        match &self.state {
+            ModelState::Ready(trained) => Some(trained),
+            _ => None,
+        }
+    }
+
+    /// The set that comes `by` further on, the first after the last.
+    pub fn other(&self, by: i8) -> ModelChoice {
+        let stored = self.stored.iter().cloned().map(ModelChoice::Stored);
+        let mut all: Vec<ModelChoice> = ModelChoice::BUILT_IN.into_iter().chain(stored).collect();
+        // A stored model that has been deleted stands behind all others.
+        if !all.contains(&self.choice) {
+            all.push(self.choice.clone());
+        }
+        let before = all.iter().take_while(|choice| **choice != self.choice);
+        let next = around(before.count(), by, all.len());
+        all.swap_remove(next)
+    }
+
+    /// Chooses a set, whose model is prepared by the piece of work of that number. Touches and score begin anew with
+    /// another set.
+    pub fn prepare(&mut self, choice: ModelChoice, number: u64) {
+        if choice != self.choice {
+            self.kept.clear();
+            self.present_kept = false;
+            self.score = Score::default();
+        }
+        self.choice = choice;
+        self.state = ModelState::Preparing(Preparation {
+            number,
+            poses: None,
+            done: 0,
+            stopping: false,
+        });
+        self.look = None;
+        self.looking = false;
+        self.ask();
+    }
+
+    /// The model on its way, if it is that of a piece of work.
+    fn preparation(&mut self, number: u64) -> Option<&mut Preparation> {
+        match &mut self.state {
+            ModelState::Preparing(preparation) if preparation.number == number => Some(preparation),
+            _ => None,
+        }
+    }
+
+    /// Takes how many poses a training has.
+    pub fn take_poses(&mut self, number: u64, poses: u64) {
+        if let Some(preparation) = self.preparation(number) {
+            preparation.poses = Some(poses);
+        }
+    }
+
+    /// Takes how far a training is.
+    pub fn take_progress(&mut self, number: u64, progress: SweepProgress) {
+        if let Some(preparation) = self.preparation(number) {
+            preparation.done = progress.poses;
+        }
+    }
+
+    /// Notes that the model on its way was told to stop; `false` if there is none, or it was told already.
+    pub fn stop(&mut self) -> bool {
+        match &mut self.state {
+            ModelState::Preparing(preparation) => {
+                !std::mem::replace(&mut preparation.stopping, true)
+            }
+            _ => false,
+        }
+    }
+
+    /// Takes a model. Returns why there is none.
+    pub fn take_model(&mut self, prepared: Prepared) -> Option<String> {
+        self.preparation(prepared.number)?;
+        self.stored = prepared.stored;
+        match prepared.trained {
+            Ok(trained) => {
+                self.state = ModelState::Ready(trained);
+                self.ask();
+                None
+            }
+            Err(reason) => {
+                self.state = ModelState::Missing;
+                Some(reason)
+            }
+        }
+    }
+
+    /// The touches that the answer is to: those kept, and the one on the matrix unless it is the last of them or empty.
+    pub fn touches(&self) -> Vec<Imprint> {
+        let present = (!self.present_kept && !self.present.is_empty()).then_some(self.present);
+        self.kept.iter().copied().chain(present).collect()
+    }
+
+    /// How many touches were kept.
+    pub fn kept(&self) -> usize {
+        self.kept.len()
+    }
+
+    /// The imprint on the matrix.
+    pub fn present(&self) -> &Imprint {
+        &self.present
+    }
+
+    /// The answer; None without a model or a touch.
+    pub fn answer(&self) -> Option<&Answer> {
+        self.answer.as_ref()
+    }
+
+    /// What was searched of the imprint on the matrix, once that is known.
+    pub fn look(&self) -> Option<&Look> {
+        let look = self.look.as_deref()?;
+        let trained = self.trained()?;
+        (look.imprint == self.present && Arc::ptr_eq(&look.trained, trained)).then_some(look)
+    }
+
+    /// Takes what is on the matrix now.
+    pub fn show(&mut self, imprint: Imprint) {
+        if imprint != self.present {
+            self.present = imprint;
+            self.present_kept = false;
+            self.ask();
+        }
+    }
+
+    /// Keeps the touch on the matrix; `false` if it is kept already, or nothing is touched.
+    pub fn keep(&mut self) -> bool {
+        if self.present_kept || self.present.is_empty() {
+            return false;
+        }
+        self.kept.push(self.present);
+        self.present_kept = true;
+        true
+    }
+
+    /// Keeps these touches of a shape in place of all others; the last of them is on the matrix.
+    pub fn keep_all(&mut self, touches: Vec<Imprint>) {
+        if let Some(&last) = touches.last() {
+            self.present = last;
+        }
+        // One touch is that of the matrix.
+        self.present_kept = touches.len() > 1;
+        self.kept = if self.present_kept {
+            touches
+        } else {
+            Vec::new()
+        };
+        self.ask();
+    }
+
+    /// Forgets the touches that were kept; `false` if there were none.
+    pub fn forget(&mut self) -> bool {
+        let any = !self.kept.is_empty();
+        self.kept.clear();
+        self.present_kept = false;
+        self.ask();
+        any
+    }
+
+    /// Answers anew.
+    fn ask(&mut self) {
+        let touches = self.touches();
+        self.answer = match &self.state {
+            ModelState::Ready(trained) if !touches.is_empty() => {
+                Some(trained.model.recognise(Evidence::of(&touches)))
+            }
+            _ => None,
+        };
+    }
+
+    /// The imprint to search for next, with the shape whose pose is wanted; None while a search is under way, or where
+    /// there is nothing to search for. Notes that it is under way.
+    pub fn begin_look(&mut self) -> Option<(Arc<TrainedModel>, Imprint, Option<usize>)> {
+        let trained = Arc::clone(self.trained()?);
+        if self.looking || self.present.is_empty() || self.look().is_some() {
+            return None;
+        }
+        self.looking = true;
+        let shape = self.answer().and_then(|answer| answer.shape);
+        Some((trained, self.present, shape))
+    }
+
+    /// Takes what was searched.
+    pub fn take_look(&mut self, look: Look) {
+        self.looking = false;
+        self.look = Some(Box::new(look));
+    }
+}

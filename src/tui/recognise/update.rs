@@ -1,0 +1,285 @@
+//! What messages do on the page of recognition and in its exercise. The answer follows the matrix: [`follow`] is called
+//! after every message.
+
+use std::sync::Arc;
+
+use rand_core::SeedableRng;
+use rand_pcg::Pcg64;
+
+use crate::imprint::Imprint;
+use crate::sensor::Sensor;
+use crate::tui::app::change::{begin, inform, let_go, refuse};
+use crate::tui::app::dialog::Dialog;
+use crate::tui::app::document::Document;
+use crate::tui::app::message::Message;
+use crate::tui::app::state::{App, NarrowPage};
+use crate::tui::explore::message::SweepProgress;
+use crate::tui::keys::action;
+use crate::tui::matrix;
+use crate::tui::recognise::confusion::Confusion;
+use crate::tui::recognise::exercise::Exercise;
+use crate::tui::recognise::message::{Prepared, RecogniseMessage, RecognitionEvent};
+use crate::tui::recognise::sets::ModelChoice;
+use crate::tui::recognise::state::{ModelState, Recognition};
+use crate::tui::runtime::effect::{Effect, Work};
+
+/// Handles what is asked for over the matrix, with the page open or not.
+pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effect> {
+    match asked {
+        RecogniseMessage::Open => open(app, None),
+        RecogniseMessage::Choose(choice) => open(app, Some(choice)),
+        RecogniseMessage::NextSet(by) => {
+            let choice = state(app)?.other(by);
+            open(app, Some(choice))
+        }
+        RecogniseMessage::Touch => {
+            touch(app);
+            None
+        }
+        RecogniseMessage::Keep => {
+            keep(app);
+            None
+        }
+        RecogniseMessage::Forget => {
+            if state(app)?.forget() {
+                inform(app, "the kept touches are forgotten");
+            } else {
+                inform(app, "no touches are kept");
+            }
+            None
+        }
+        RecogniseMessage::Confusion => {
+            match state(app)?.trained() {
+                Some(trained) => {
+                    let page = Confusion::new(Arc::clone(trained));
+                    app.dialogs.push(Dialog::Confusion(Box::new(page)));
+                }
+                None => not_trained(app),
+            }
+            None
+        }
+        RecogniseMessage::Seed(seed) => {
+            state(app)?.random = Pcg64::seed_from_u64(seed);
+            None
+        }
+        RecogniseMessage::Select(_) | RecogniseMessage::SelectCell(..) => None,
+    }
+}
+
+/// The state, wherever it is: on the page, or kept while that is closed.
+fn state(app: &mut App) -> Option<&mut Recognition> {
+    let mut dialogs = app.dialogs.iter_mut().rev();
+    let open = dialogs.find_map(|dialog| match dialog {
+        Dialog::Recognition(page) => Some(page),
+        _ => None,
+    });
+    open.or(app.recognition.as_mut()).map(|page| &mut **page)
+}
+
+/// Opens the page, if it is not open, and has the model prepared, of another set or where there is none.
+fn open(app: &mut App, choice: Option<ModelChoice>) -> Option<Effect> {
+    if let Some(page) = app.recognition.take() {
+        app.dialogs.push(Dialog::Recognition(page));
+        app.page = NarrowPage::Panel;
+    }
+    let page = state(app)?;
+    let choice = choice.unwrap_or_else(|| page.choice().clone());
+    let missing = matches!(page.state(), ModelState::Missing);
+    if !missing && choice == *page.choice() {
+        return None;
+    }
+    app.works += 1;
+    let number = app.works;
+    state(app)?.prepare(choice.clone(), number);
+    Some(Effect::Work(Work::Prepare(number, choice)))
+}
+
+fn not_trained(app: &mut App) {
+    refuse(app, "the set is not trained yet");
+}
+
+/// Begins an exercise.
+fn touch(app: &mut App) {
+    let Some(page) = state(app) else { return };
+    let Some(trained) = page.trained().cloned() else {
+        return not_trained(app);
+    };
+    page.forget();
+    let exercise = Exercise::new(trained, &mut page.random);
+    touch_again(app, exercise);
+}
+
+/// Puts another touch of the shape onto the matrix, and goes on asking for its name.
+fn touch_again(app: &mut App, mut exercise: Exercise) {
+    let sensor = app.history.present().sensor;
+    let Some(page) = state(app) else { return };
+    if let Some((sensor, imprint)) = exercise.touch(sensor, &mut page.random) {
+        put(app, sensor, imprint);
+    }
+    let_go(app);
+    app.dialogs.push(Dialog::Exercise(Box::new(exercise)));
+}
+
+/// Puts an imprint onto the matrix as if it were drawn: nothing says what made it.
+fn put(app: &mut App, sensor: Sensor, imprint: Imprint) {
+    let mut document = Document::empty(sensor);
+    document.edits = imprint;
+    begin(app, document, None);
+}
+
+/// Keeps the touch on the matrix.
+fn keep(app: &mut App) {
+    let Some(page) = state(app) else { return };
+    let kept = page.keep();
+    let text = match (kept, page.kept()) {
+        (true, 1) => "1 touch kept; now touch the shape elsewhere".to_owned(),
+        (true, count) => format!("{count} touches kept"),
+        (false, 0) => "nothing is touched".to_owned(),
+        (false, _) => "this touch is kept already".to_owned(),
+    };
+    inform(app, text);
+}
+
+/// Handles a message over the page. What it does not know goes to the matrix.
+pub(in crate::tui) fn in_recognition(
+    app: &mut App,
+    mut page: Box<Recognition>,
+    message: Message,
+) -> Option<Effect> {
+    match message {
+        Message::Cancel | Message::Quit => {
+            if page.stop() {
+                app.dialogs.push(Dialog::Recognition(page));
+                inform(app, "stopping");
+                return Some(Effect::Work(Work::StopPreparing));
+            }
+            app.recognition = Some(page);
+            app.page = NarrowPage::Matrix;
+            let_go(app);
+            None
+        }
+        message => {
+            app.dialogs.push(Dialog::Recognition(page));
+            match message {
+                Message::Accept => open(app, None),
+                message => matrix::update::act(app, message),
+            }
+        }
+    }
+}
+
+/// Handles a message in the exercise.
+pub(in crate::tui) fn in_exercise(
+    app: &mut App,
+    mut exercise: Box<Exercise>,
+    message: Message,
+) -> Option<Effect> {
+    match message {
+        Message::Accept => guess(app, *exercise, true),
+        Message::Cancel | Message::Quit => guess(app, *exercise, false),
+        Message::Recognise(RecogniseMessage::Touch) => touch_again(app, *exercise),
+        Message::SwitchPage => {
+            app.dialogs.push(Dialog::Exercise(exercise));
+            return matrix::update::act(app, message);
+        }
+        message => {
+            if exercise.take(&message) {
+                guess(app, *exercise, true);
+            } else {
+                app.dialogs.push(Dialog::Exercise(exercise));
+            }
+        }
+    }
+    None
+}
+
+/// Ends the exercise with the selected shape as its name, or without one.
+fn guess(app: &mut App, exercise: Exercise, named: bool) {
+    let (shape, selected) = (exercise.shape(), exercise.selected());
+    let (right, name) = (named && shape == selected, exercise.name(shape).to_owned());
+    let touch = action_key(app);
+    let text = match (named, right) {
+        (true, true) => format!("right: {name}; {touch} touches another shape"),
+        (true, false) => format!("no: {name}, not {}", exercise.name(selected)),
+        (false, _) => format!("it was: {name}"),
+    };
+    if let Some(page) = state(app) {
+        page.keep_all(exercise.into_touches());
+        let best = page.answer().and_then(|answer| answer.shape);
+        page.score.asked += 1;
+        page.score.right += u32::from(right);
+        page.score.best += u32::from(best == Some(shape));
+    }
+    app.page = NarrowPage::Panel;
+    inform(app, text);
+}
+
+fn action_key(app: &App) -> String {
+    let context = crate::tui::keys::binding::Context::Recognise;
+    app.keymap().label(context, &action::TOUCH)
+}
+
+/// Handles a message over the confusion matrix.
+pub(in crate::tui) fn in_confusion(
+    app: &mut App,
+    mut page: Box<Confusion>,
+    message: &Message,
+) -> Option<Effect> {
+    if *message == Message::Accept {
+        let sensor = app.history.present().sensor;
+        if let Some((sensor, imprint)) = page.imprint_on(sensor) {
+            put(app, sensor, imprint);
+            return None;
+        }
+        refuse(app, "there is no imprint in this cell");
+    }
+    page.take(message);
+    app.dialogs.push(Dialog::Confusion(page));
+    None
+}
+
+/// Takes what a worker reports.
+pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) {
+    let Some(page) = state(app) else { return };
+    match event {
+        RecognitionEvent::Begun(number, poses) => page.take_poses(number, poses),
+        RecognitionEvent::Prepared(prepared) => {
+            if let Some(reason) = page.take_model(*prepared) {
+                refuse(app, reason);
+            }
+        }
+        RecognitionEvent::Looked(look) => page.take_look(*look),
+    }
+}
+
+/// Takes that a training failed for a reason that nobody expected.
+pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) {
+    let prepared = Prepared {
+        number,
+        stored: Vec::new(),
+        trained: Err(reason.to_owned()),
+    };
+    if let Some(reason) = state(app).and_then(|page| page.take_model(prepared)) {
+        refuse(app, reason);
+    }
+}
+
+/// Takes how far a training is.
+pub(in crate::tui) fn on_progress(app: &mut App, number: u64, progress: SweepProgress) {
+    if let Some(page) = state(app) {
+        page.take_progress(number, progress);
+    }
+}
+
+/// Lets the answer follow the matrix. Returns a search for what it does not know at once.
+pub(in crate::tui) fn follow(app: &mut App) -> Option<Effect> {
+    let imprint = app.reading().imprint;
+    let mut dialogs = app.dialogs.iter_mut();
+    let page = dialogs.find_map(|dialog| match dialog {
+        Dialog::Recognition(page) => Some(page),
+        _ => None,
+    })?;
+    page.show(imprint);
+    let (trained, imprint, shape) = page.begin_look()?;
+    Some(Effect::Work(Work::Look(trained, Box::new(imprint), shape)))
+}

@@ -1,0 +1,427 @@
+//! The panel beside the matrix: the set, the shapes with bars, the nearest imprint, the pose, touches and score.
+//!
+//! ```text
+//! the set                     +--------------------------------------------+
+//! its grid, its limit         | Recognise: the seven figures of 30 cells   |
+//!                             | grid: 0.01 cells, 1°; 25,200,000 touches   |
+//!                             | best possible error 33.0 %, certain 38.3 % |
+//!                             |                                            |
+//! the answer in a word        | likely: hexagon                            |
+//! every shape it may be       | hexagon  ████████████████████       71.0 % |
+//!                             | octagon  ███████                    29.0 % |
+//!                             |                                            |
+//! where a touch is not known, | nearest: hexagon, 2 taxels differ          |
+//! what is most like it        | + surplus, - missing                       |
+//! where the shape lies        | centre 7.51 ± 0.08, 7.48 ± 0.11            |
+//!                             +--------------------------------------------+
+//! ```
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::formats::value::{counted, grouped};
+use crate::imprint::Imprint;
+use crate::pose::{Anchor, Axis};
+use crate::recognition::{Answer, AnswerState, Nearest, PoseEstimate};
+use crate::tui::app::page::{Page, Slot};
+use crate::tui::explore::running::gauge;
+use crate::tui::keys::action;
+use crate::tui::keys::binding::Context;
+use crate::tui::keys::keymap::Keymap;
+use crate::tui::recognise::message::Look;
+use crate::tui::recognise::sets::TrainedModel;
+use crate::tui::recognise::state::{ModelState, Preparation, Recognition};
+use crate::tui::widget::number::narrow;
+use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::write;
+
+/// Columns of a percentage with its sign and the space before it.
+const PERCENT: usize = 9;
+
+/// The most columns of a name.
+const NAME: usize = 14;
+
+impl Page for Recognition {
+    fn context(&self) -> Context {
+        Context::Recognise
+    }
+
+    fn slot(&self) -> Slot {
+        Slot::Panel
+    }
+
+    fn draw(
+        &self,
+        theme: &Theme,
+        keymap: &Keymap,
+        buffer: &mut Buffer,
+        area: Rect,
+    ) -> Option<Position> {
+        write::clear(buffer, area);
+        let mut panel = Panel {
+            theme,
+            keymap,
+            buffer,
+            area,
+            line: 0,
+        };
+        let title = format!("Recognise: {}", self.choice());
+        panel.text(&title, Role::Title);
+        match self.state() {
+            ModelState::Missing => {
+                let train = panel.key(&action::ACCEPT);
+                panel.text(&format!("not trained; {train} trains it"), Role::Text);
+            }
+            ModelState::Preparing(preparation) => panel.preparation(preparation),
+            ModelState::Ready(trained) => {
+                panel.model(trained);
+                panel.gap();
+                panel.answer(self, trained);
+                panel.touches(self);
+            }
+        }
+        None
+    }
+
+    fn compared_with(&self) -> Option<&Imprint> {
+        let nearest = self.look()?.nearest.as_ref()?;
+        (nearest.distance > 0).then_some(&nearest.imprint)
+    }
+
+    fn leaves_matrix(&self) -> bool {
+        true
+    }
+
+    fn cancels_itself(&self) -> bool {
+        true
+    }
+}
+
+/// The panel while it is drawn: where it stands, and the line that comes next.
+struct Panel<'a> {
+    theme: &'a Theme,
+    keymap: &'a Keymap,
+    buffer: &'a mut Buffer,
+    area: Rect,
+    line: usize,
+}
+
+impl Panel<'_> {
+    /// Writes a line of its own.
+    fn text(&mut self, text: &str, role: Role) {
+        let row = write::row(self.area, self.line);
+        write::line(self.buffer, row, self.theme, [(text, role)]);
+        self.line += 1;
+    }
+
+    /// Writes a text over as many lines as it needs.
+    fn wrapped(&mut self, text: &str, role: Role) {
+        let rest = write::below(self.area, narrow(self.line));
+        if rest.height > 0 {
+            self.line += write::wrapped(self.buffer, rest, self.theme, text, role);
+        }
+    }
+
+    /// Leaves a line free where there is room.
+    fn gap(&mut self) {
+        self.line += usize::from(self.area.height >= 16);
+    }
+
+    fn key(&self, action: &'static action::Action) -> String {
+        self.keymap.label(Context::Recognise, action)
+    }
+
+    /// How far a training is.
+    fn preparation(&mut self, preparation: &Preparation) {
+        let Some(poses) = preparation.poses else {
+            return self.text("being prepared", Role::Text);
+        };
+        let percent = u128::from(preparation.done) * 100 / u128::from(poses.max(1));
+        let text = format!("training: {}, {percent} %", counted(poses, "pose"));
+        self.text(&text, Role::Text);
+        let row = write::row(self.area, self.line);
+        gauge(self.theme, preparation.done, poses, self.buffer, row);
+        self.line += 1;
+        let stop = self.key(&action::CANCEL);
+        let text = if preparation.stopping {
+            "stopping".to_owned()
+        } else {
+            format!("{stop} stops")
+        };
+        self.text(&text, Role::Quiet);
+    }
+
+    /// The grid of a model, and the limit of what one touch tells.
+    fn model(&mut self, trained: &TrainedModel) {
+        let (model, evaluation) = (&trained.model, &trained.evaluation);
+        let ranges = model.ranges();
+        let steps = format!(
+            "grid: {} cells, {}°; {}",
+            decimal(ranges[Axis::X0].step()),
+            decimal(ranges[Axis::Angle].step()),
+            touches(evaluation.touches),
+        );
+        self.text(&steps, Role::Quiet);
+        let certain = percent_of(evaluation.certain, evaluation.touches);
+        let limit = format!(
+            "best possible error {}, certain {certain}",
+            percent(evaluation.error()).trim_start()
+        );
+        self.text(&limit, Role::Quiet);
+        if let Some(unknown) = trained.unknown_between {
+            let text = format!(
+                "{} of the poses between are unknown",
+                percent(unknown).trim_start()
+            );
+            self.text(&text, Role::Quiet);
+        }
+    }
+
+    /// The answer, every shape that it may be, and what was searched.
+    fn answer(&mut self, page: &Recognition, trained: &TrainedModel) {
+        let Some(answer) = page.answer() else {
+            let touch = self.key(&action::TOUCH);
+            let text =
+                format!("Nothing is touched. {touch} touches at random; draw, or place a shape.");
+            return self.wrapped(&text, Role::Text);
+        };
+        let verdict = verdict(answer, page.touches().len(), trained);
+        self.wrapped(&verdict, Role::Title);
+        let names = answer.ranking.iter().map(|&(shape, _)| trained.name(shape));
+        let name = names.map(write::width).fold(0, usize::max).min(NAME);
+        // The lines about the touch come first.
+        let room = usize::from(self.area.height)
+            .saturating_sub(self.line + 6)
+            .max(1);
+        for &(shape, probability) in answer.ranking.iter().take(room) {
+            self.shape(trained.name(shape), name, probability);
+        }
+        let rest = answer.ranking.len().saturating_sub(room);
+        if rest > 0 {
+            self.text(&format!("and {rest} more"), Role::Quiet);
+        }
+        if let Some(look) = page.look() {
+            self.gap();
+            self.look(look, trained);
+        }
+    }
+
+    /// A shape with its bar.
+    fn shape(&mut self, name: &str, width: usize, probability: f64) {
+        let row = write::row(self.area, self.line);
+        self.line += 1;
+        let name = write::fitted(name, width, self.theme);
+        let gap = " ".repeat(width.saturating_sub(write::width(&name)) + 1);
+        let bar = usize::from(row.width).saturating_sub(width + 1 + PERCENT);
+        let (full, empty) = bar_of(probability, bar);
+        let [filled, _, _] = self.theme.bar();
+        let bar = filled.to_string().repeat(full) + &" ".repeat(empty);
+        let pieces = [
+            (&*name, Role::Text),
+            (gap.as_str(), Role::Text),
+            (bar.as_str(), Role::Chosen),
+            (&percent(probability), Role::Text),
+        ];
+        write::line(self.buffer, row, self.theme, pieces);
+    }
+
+    /// The nearest imprint, and the pose.
+    fn look(&mut self, look: &Look, trained: &TrainedModel) {
+        match &look.nearest {
+            None => self.text("no imprint of the set fits the matrix", Role::Text),
+            Some(nearest) if nearest.distance > 0 => {
+                let text = format!(
+                    "nearest: {}, {}",
+                    trained.name(nearest.shape),
+                    differ(nearest.distance)
+                );
+                self.text(&text, Role::Text);
+                self.text(&legend(look, nearest), Role::Quiet);
+            }
+            Some(_) => {}
+        }
+        if let Some((shape, pose)) = &look.pose {
+            let own = look.nearest.as_ref().map(|nearest| nearest.distance);
+            for line in place(trained, *shape, pose, own == Some(0)) {
+                self.text(&line, Role::Text);
+            }
+        }
+    }
+
+    /// The touches that were kept, and the score.
+    fn touches(&mut self, page: &Recognition) {
+        if page.kept() > 0 {
+            self.gap();
+            let touches = touches(page.kept() as u128);
+            let forget = self.key(&action::FORGET);
+            self.text(&format!("{touches} kept; {forget} forgets"), Role::Text);
+        }
+        let score = page.score;
+        if score.asked > 0 {
+            self.gap();
+            let text = format!(
+                "exercise: {} of {} right, best possible {}",
+                score.right, score.asked, score.best
+            );
+            self.text(&text, Role::Text);
+        }
+    }
+}
+
+/// The answer in words.
+fn verdict(answer: &Answer, touches: usize, trained: &TrainedModel) -> String {
+    let state = answer.state.name();
+    let names: Vec<&str> = match answer.state {
+        AnswerState::Tied => answer.tied.iter().map(|&tied| trained.name(tied)).collect(),
+        _ => answer
+            .shape
+            .iter()
+            .map(|&shape| trained.name(shape))
+            .collect(),
+    };
+    let what = if names.is_empty() {
+        let these = if touches > 1 { "all of these" } else { "this" };
+        format!(": no shape of the set leaves {these}")
+    } else {
+        format!(": {}", names.join(", "))
+    };
+    let rim = if answer.at_rim {
+        "; at the rim, it may be cut off"
+    } else {
+        ""
+    };
+    format!("{state}{what}{rim}")
+}
+
+/// Which taxels differ from the nearest imprint, with the marks that they have on the matrix.
+fn legend(look: &Look, nearest: &Nearest) -> String {
+    let differing = look.imprint.differing(&nearest.imprint);
+    let surplus = differing.active();
+    let surplus = surplus.filter(|&(column, row)| look.imprint.get(column, row));
+    let surplus = surplus.count();
+    let missing = differing.count() as usize - surplus;
+    let [add, remove] = MARKS;
+    match (surplus, missing) {
+        (_, 0) => format!("{add} {surplus} surplus"),
+        (0, _) => format!("{remove} {missing} missing"),
+        _ => format!("{add} {surplus} surplus, {remove} {missing} missing"),
+    }
+}
+
+/// The marks of surplus and of missing taxels.
+const MARKS: [char; 2] = ['+', '-'];
+
+/// Where the shape lies: the mean and the spread over the poses that leave the imprint, in lines.
+fn place(trained: &TrainedModel, shape: usize, pose: &PoseEstimate, own: bool) -> [String; 3] {
+    let name = if own {
+        String::new()
+    } else {
+        format!("{} ", trained.name(shape))
+    };
+    let what = match trained.model.anchor() {
+        Anchor::Centre => "centre",
+        Anchor::Corner => "corner",
+    };
+    let [x, y] = pose.position;
+    let [dx, dy] = pose.spread;
+    let place = format!("{name}{what} {x:.2} ± {dx:.2}, {y:.2} ± {dy:.2}");
+    let poses = counted(pose.poses, "pose");
+    let any = || ("any angle".to_owned(), poses.clone());
+    let (angle, poses) = pose.angle.as_ref().map_or_else(any, |angle| {
+        let ((first, count), period) = (angle.most, angle.period);
+        let (Some(mean), Some(spread)) = (angle.mean, angle.spread) else {
+            return any();
+        };
+        if count >= period {
+            return any();
+        }
+        let turn = match period {
+            360 => String::new(),
+            period => format!(" modulo {period}°"),
+        };
+        let last = (first + count - 1) % period;
+        (
+            format!("angle {:.0}° ± {spread:.1}°{turn}", whole(mean, period)),
+            format!("95 % in {first}°..{last}°; {poses}"),
+        )
+    });
+    [place, angle, poses]
+}
+
+/// The nearest whole degree below a period.
+fn whole(angle: f64, period: u32) -> f64 {
+    angle.round().rem_euclid(f64::from(period))
+}
+
+/// A number of taxels that differ.
+fn differ(count: u32) -> String {
+    let verb = if count == 1 { "differs" } else { "differ" };
+    format!("{} {verb}", counted(count.into(), "taxel"))
+}
+
+/// A number of touches.
+fn touches(count: u128) -> String {
+    let ending = if count == 1 { "" } else { "es" };
+    format!("{} touch{ending}", grouped(count))
+}
+
+/// A number as short as it is.
+fn decimal(value: f64) -> String {
+    let value = (value * 1e4).round() / 1e4;
+    value.to_string()
+}
+
+/// A share of a whole in percent.
+fn percent_of(part: u128, whole: u128) -> String {
+    #[expect(clippy::cast_precision_loss, reason = "for reading")]
+    let share = part as f64 / whole.max(1) as f64;
+    percent(share).trim_start().to_owned()
+}
+
+/// A probability in percent. What is not quite 0 or 1 does not look so.
+pub(super) fn percent(share: f64) -> String {
+    let percent = share * 100.0;
+    let text = if share > 0.0 && percent < 0.05 {
+        "<0.1".to_owned()
+    } else if share < 1.0 && percent >= 99.95 {
+        ">99.9".to_owned()
+    } else {
+        format!("{percent:.1}")
+    };
+    let width = PERCENT - 2;
+    format!("{text:>width$} %")
+}
+
+/// The full and the empty columns of a bar; what is above 0 has one at least.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "up to the columns of a screen"
+)]
+fn bar_of(share: f64, width: usize) -> (usize, usize) {
+    let full = (share * width as f64).round() as usize;
+    let full = full.clamp(usize::from(share > 0.0).min(width), width);
+    (full, width - full)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_nearly_certain_does_not_look_certain() {
+        for (share, text) in [
+            (1.0, "  100.0 %"),
+            (0.9999, "  >99.9 %"),
+            (0.5, "   50.0 %"),
+            (0.0001, "   <0.1 %"),
+            (0.0, "    0.0 %"),
+        ] {
+            assert_eq!(percent(share), text);
+        }
+        assert_eq!(bar_of(0.0001, 10), (1, 9));
+        assert_eq!(bar_of(1.0, 0), (0, 0));
+        assert_eq!(bar_of(0.5, 10), (5, 5));
+    }
+}

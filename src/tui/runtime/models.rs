@@ -1,0 +1,201 @@
+//! Models for recognition: trained or read, and searched.
+//!
+//! ```text
+//! Prepare(number, set)  -> Begun, Progress …, then Prepared: the model, or why there is none
+//! Look(model, imprint)  -> Looked: the nearest imprint and the pose
+//! ```
+//! A built-in set is trained once; the cache keeps its model, if the world has one. A stored model is read from the folder
+//! beside the library. Training goes on while a sweep begins, and stops only when it is told to.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+
+use crate::formats::Name;
+use crate::imprint::Imprint;
+use crate::recognition::{Model, TrainingError};
+use crate::storage::{Library, ModelCache, ModelFolder, load_model};
+use crate::sweep::Shard;
+use crate::tui::explore::message::WorkerEvent;
+use crate::tui::recognise::message::{Look, Prepared, RecognitionEvent};
+use crate::tui::recognise::sets::{ModelChoice, TrainedModel};
+use crate::tui::runtime::progress::{EventSink, ProgressReporter, guarded, proceed};
+
+/// Where models are.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ModelStore {
+    /// The user's own.
+    folder: Option<ModelFolder>,
+    /// Those that can be trained again.
+    cache: Option<ModelCache>,
+}
+
+impl ModelStore {
+    /// The models beside a library, without a cache.
+    pub(super) fn beside(library: &Library) -> Self {
+        Self {
+            folder: Some(ModelFolder::beside(library.folder())),
+            cache: None,
+        }
+    }
+
+    /// Keeps trained models in a cache.
+    pub(super) fn keep_in(&mut self, cache: ModelCache) {
+        self.cache = Some(cache);
+    }
+
+    /// The names of the user's models; none of a folder that cannot be read.
+    fn names(&self) -> Vec<Name> {
+        let names = |folder: &ModelFolder| folder.names().into_iter().flatten();
+        self.folder.iter().flat_map(names).collect()
+    }
+
+    /// Reads or trains the model of a set. `begun` is called with the number of poses before a training, `progress`
+    /// during it, as by a sweep.
+    fn model(
+        &self,
+        choice: &ModelChoice,
+        begun: &dyn Fn(u64),
+        progress: &(dyn Fn(u64) -> bool + Sync),
+    ) -> Result<Model, String> {
+        let training = match (choice.training(), choice) {
+            (Some(training), _) => training.map_err(|error| error.to_string())?,
+            (None, ModelChoice::Stored(name)) => return self.stored(name),
+            (None, _) => return Err(format!("{choice} cannot be trained")),
+        };
+        let cached = self
+            .cache
+            .as_ref()
+            .map(|cache| (cache, cache.file(&training)));
+        if let Some((cache, _)) = &cached
+            && let Some(model) = cache.load(&training)
+        {
+            return Ok(model);
+        }
+        begun(training.poses());
+        let model = training.progress(progress).run();
+        let model = model.map_err(|error| match error {
+            TrainingError::Stopped => "training was stopped".to_owned(),
+            error => error.to_string(),
+        })?;
+        if let Some((cache, file)) = cached {
+            cache.keep(&file, &model);
+        }
+        Ok(model)
+    }
+
+    /// Reads one of the user's models.
+    fn stored(&self, name: &Name) -> Result<Model, String> {
+        let folder = self.folder.as_ref();
+        let folder = folder.ok_or_else(|| format!("there is no model {name}"))?;
+        let model = load_model(&folder.file(name)).map_err(|error| error.to_string())?;
+        if model.shard() != Shard::WHOLE {
+            let shard = model.shard();
+            return Err(format!(
+                "model {name} is shard {shard} only; 'taxel merge' puts shards together"
+            ));
+        }
+        Ok(model)
+    }
+}
+
+/// The thread that prepares a model.
+#[derive(Debug, Default)]
+pub(super) struct ModelWorker {
+    /// Where models are.
+    pub(super) store: ModelStore,
+    /// Set to stop the training in progress.
+    stop: Arc<AtomicBool>,
+    /// The training in progress.
+    thread: Option<JoinHandle<()>>,
+}
+
+impl ModelWorker {
+    /// Prepares a model on a thread of its own, or at once if there is no receiver; then the event is returned.
+    pub(super) fn prepare(
+        &mut self,
+        number: u64,
+        choice: ModelChoice,
+        post: Option<EventSink>,
+    ) -> Option<WorkerEvent> {
+        self.stop();
+        self.stop = Arc::default();
+        let (store, stop) = (self.store.clone(), Arc::clone(&self.stop));
+        let Some(post) = post else {
+            let event = prepare(&store, number, choice, &|_| (), &|_| true);
+            return Some(WorkerEvent::Recognition(event));
+        };
+        self.thread = Some(std::thread::spawn(move || {
+            let clock = ProgressReporter::new(number, &post);
+            let begun = |poses| {
+                post(WorkerEvent::Recognition(RecognitionEvent::Begun(
+                    number, poses,
+                )));
+            };
+            let progress = |poses| proceed(poses, &stop, Some(&clock));
+            let event = guarded(number, || {
+                WorkerEvent::Recognition(prepare(&store, number, choice, &begun, &progress))
+            });
+            post(event);
+        }));
+        None
+    }
+
+    /// Stops the training in progress.
+    pub(super) fn stop(&self) {
+        self.stop.store(true, Ordering::Relaxed);
+    }
+}
+
+impl Drop for ModelWorker {
+    fn drop(&mut self) {
+        self.stop();
+        if let Some(thread) = self.thread.take() {
+            // It catches its own panics. A model that is being written to the cache is written first.
+            let _ = thread.join();
+        }
+    }
+}
+
+fn prepare(
+    store: &ModelStore,
+    number: u64,
+    choice: ModelChoice,
+    begun: &dyn Fn(u64),
+    progress: &(dyn Fn(u64) -> bool + Sync),
+) -> RecognitionEvent {
+    let model = store.model(&choice, begun, progress);
+    RecognitionEvent::Prepared(Box::new(Prepared {
+        number,
+        stored: store.names(),
+        trained: model.map(|model| Arc::new(TrainedModel::new(choice, model))),
+    }))
+}
+
+/// Searches a model, on a thread of its own or at once.
+pub(super) fn look(
+    trained: Arc<TrainedModel>,
+    imprint: Imprint,
+    shape: Option<usize>,
+    post: Option<EventSink>,
+) -> Option<WorkerEvent> {
+    let search = move || {
+        let nearest = trained.model.nearest(&imprint);
+        let pose = nearest.as_ref().and_then(|nearest| {
+            let shape = shape.or(Some(nearest.shape))?;
+            let pose = trained.model.pose_of(shape, &nearest.imprint, &|_| true);
+            Some((shape, pose?))
+        });
+        WorkerEvent::Recognition(RecognitionEvent::Looked(Box::new(Look {
+            trained,
+            imprint,
+            nearest,
+            pose,
+        })))
+    };
+    let Some(post) = post else {
+        return Some(search());
+    };
+    std::thread::spawn(move || post(guarded(0, search)));
+    None
+}

@@ -1,0 +1,73 @@
+//! How workers report: events from any thread, progress now and then, a panic as an event.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use crate::tui::explore::message::{SweepProgress, WorkerEvent};
+
+/// Takes events of workers, from any thread.
+pub type EventSink = Arc<dyn Fn(WorkerEvent) + Send + Sync>;
+
+/// Minimum interval between progress events.
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
+
+/// Counts poses of several threads and sends progress events.
+pub(super) struct ProgressReporter<'a> {
+    /// The number of the work, which its events carry.
+    number: u64,
+    /// Where events are sent.
+    post: &'a EventSink,
+    /// When the work began.
+    start: Instant,
+    /// Poses done.
+    poses: AtomicU64,
+    /// When progress was sent last.
+    last: Mutex<Instant>,
+}
+
+impl<'a> ProgressReporter<'a> {
+    /// Progress of work that begins now.
+    pub(super) fn new(number: u64, post: &'a EventSink) -> Self {
+        let start = Instant::now();
+        Self {
+            number,
+            post,
+            start,
+            poses: AtomicU64::new(0),
+            last: Mutex::new(start),
+        }
+    }
+
+    /// Counts poses that are done.
+    fn add(&self, poses: u64) {
+        let poses = self.poses.fetch_add(poses, Ordering::Relaxed) + poses;
+        // A thread that finds the lock taken leaves the report to the other one.
+        if let Ok(mut last) = self.last.try_lock()
+            && last.elapsed() >= PROGRESS_INTERVAL
+        {
+            *last = Instant::now();
+            let elapsed = self.start.elapsed();
+            (self.post)(WorkerEvent::Progress(
+                self.number,
+                SweepProgress { poses, elapsed },
+            ));
+        }
+    }
+}
+
+/// Turns a panic into an event; without it the program would wait for ever.
+pub(super) fn guarded(number: u64, work: impl FnOnce() -> WorkerEvent) -> WorkerEvent {
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
+        WorkerEvent::Failed(number, "the work failed; this is a bug".to_owned())
+    })
+}
+
+/// Counts poses that are done, and returns whether to go on.
+pub(super) fn proceed(poses: u64, stop: &AtomicBool, clock: Option<&ProgressReporter<'_>>) -> bool {
+    if let Some(clock) = clock {
+        clock.add(poses);
+    }
+    !stop.load(Ordering::Relaxed)
+}
