@@ -12,8 +12,10 @@
 //! and what lies beyond changes no probability by more than 1e-9.
 //!
 //! **Speed.** The matrix is one string of bits, so a shift of a key is a shift of the string, and the shifted strings of
-//! the observed imprint are made once. A distance then is a few words of `and` and popcount. Most pairs are not even
-//! looked at: the numbers of active taxels, in all and in each row and column, bound the distance from below.
+//! the observed imprint are made once. A distance then is a few words of `and` and popcount. Keys stand in groups of one
+//! box and one number of taxels. How many of the observed taxels lie inside of a box in a place bounds the distance of the
+//! whole group there: those outside differ, and so does what the numbers inside differ by. Most places are never looked
+//! at.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -152,27 +154,27 @@ pub struct Scanner<'a> {
     model: &'a Model,
     columns: u8,
     rows: u8,
-    /// By number of active taxels, those of equal ones in the order of the model.
-    templates: Vec<Template>,
-    /// The templates' taxels as strings of bits.
+    groups: Vec<Group>,
+    /// The numbers of the keys, group after group.
+    keys: Vec<u32>,
+    /// The keys' taxels as strings of bits, in the same order.
     bits: Vec<u64>,
-    /// Active taxels of each row and then of each column of each template.
-    sums: Vec<u8>,
     /// Touches of each shape.
     totals: Vec<u64>,
 }
 
-/// A key that fits the matrix.
+/// Keys of one box and one number of taxels.
 #[derive(Clone, Copy, Debug)]
-struct Template {
-    key: u32,
-    count: u32,
+struct Group {
     width: u8,
     height: u8,
-    /// Where its bits and its sums start.
-    bits: usize,
+    count: u32,
+    /// Words of a string.
     length: usize,
-    sums: usize,
+    /// Where its keys and their bits start, and how many there are.
+    first: usize,
+    bits: usize,
+    keys: usize,
 }
 
 /// An observed imprint, without its dead taxels, in all places.
@@ -184,9 +186,37 @@ struct Observed {
     /// Words of a string.
     words: usize,
     count: u32,
-    dead: u32,
-    row_sums: Vec<u8>,
-    column_sums: Vec<u8>,
+    /// Active taxels above and left of each corner of a cell, and dead ones.
+    active: Sums,
+    dead: Option<Sums>,
+}
+
+/// Sums of the taxels above and left of each corner of a cell, row after row.
+struct Sums {
+    width: usize,
+    sums: Vec<u16>,
+}
+
+impl Sums {
+    fn of(imprint: &Imprint) -> Self {
+        let width = usize::from(imprint.columns()) + 1;
+        let mut sums = vec![0_u16; width * (usize::from(imprint.rows()) + 1)];
+        for (row, &word) in imprint.words().iter().enumerate() {
+            let mut in_row = 0;
+            for column in 1..width {
+                in_row += u16::from(word >> (column - 1) & 1 == 1);
+                sums[(row + 1) * width + column] = sums[row * width + column] + in_row;
+            }
+        }
+        Self { width, sums }
+    }
+
+    /// Taxels inside of a box.
+    fn inside(&self, (column, row): (usize, usize), (width, height): (usize, usize)) -> u32 {
+        let at = |column: usize, row: usize| u32::from(self.sums[row * self.width + column]);
+        let (right, bottom) = (column + width, row + height);
+        at(right, bottom) + at(column, row) - at(right, row) - at(column, bottom)
+    }
 }
 
 /// The string of bits of a matrix, and its copies shifted down by 0, 1, … bits.
@@ -225,37 +255,15 @@ impl Observed {
             seen.set_word(row, word & imprint.words()[row]);
         }
         let (strings, words) = shifted(&seen);
-        let cells = u32::from(imprint.columns()) * u32::from(imprint.rows());
-        let dead = cells - living.count();
         Self {
             shifted: strings,
-            living: (dead > 0).then(|| shifted(&living).0),
+            living: dead.map(|_| shifted(&living).0),
             words,
             count: seen.count(),
-            dead,
-            row_sums: row_sums(seen.words()).collect(),
-            column_sums: column_sums(seen.words(), seen.columns()),
+            active: Sums::of(&seen),
+            dead: dead.filter(|dead| !dead.is_empty()).map(Sums::of),
         }
     }
-}
-
-/// Active taxels of each row.
-fn row_sums(rows: &[u64]) -> impl Iterator<Item = u8> + '_ {
-    let count = |word: &u64| u8::try_from(word.count_ones()).expect("64 at most");
-    rows.iter().map(count)
-}
-
-/// Active taxels of each column.
-fn column_sums(rows: &[u64], columns: u8) -> Vec<u8> {
-    let mut sums = vec![0; columns.into()];
-    for &row in rows {
-        let mut rest = row;
-        while rest != 0 {
-            sums[wide(rest.trailing_zeros())] += 1;
-            rest &= rest - 1;
-        }
-    }
-    sums
 }
 
 impl<'a> Scanner<'a> {
@@ -265,59 +273,63 @@ impl<'a> Scanner<'a> {
             model,
             columns,
             rows,
-            templates: Vec::new(),
+            groups: Vec::new(),
+            keys: Vec::new(),
             bits: Vec::new(),
-            sums: Vec::new(),
             totals: vec![0; model.shapes().len()],
         };
         let keys = model.keys();
-        let mut order: Vec<(u32, usize)> = (0..keys.len())
-            .filter(|&key| keys.get(key).width <= columns && keys.get(key).height <= rows)
-            .map(|key| (keys.get(key).count(), key))
+        let mut order: Vec<_> = (0..keys.len())
+            .map(|number| (keys.get(number), number))
+            .filter(|(key, _)| key.width <= columns && key.height <= rows)
+            .map(|(key, number)| ((key.height, key.width, key.count()), number))
             .collect();
         order.sort_unstable();
-        for (count, key) in order {
-            scanner.add(keys.get(key), count, key);
+        for own in order.chunk_by(|one, other| one.0 == other.0) {
+            let (height, width, count) = own[0].0;
+            let length = match usize::from(height).checked_sub(1) {
+                Some(last) => (last * usize::from(columns) + usize::from(width)).div_ceil(64),
+                None => 0,
+            };
+            scanner.groups.push(Group {
+                width,
+                height,
+                count,
+                length,
+                first: scanner.keys.len(),
+                bits: scanner.bits.len(),
+                keys: own.len(),
+            });
+            for &(_, number) in own {
+                scanner.add(keys.get(number), length, number);
+            }
         }
         scanner
     }
 
-    fn add(&mut self, key: KeyRef<'_>, count: u32, number: usize) {
+    fn add(&mut self, key: KeyRef<'_>, length: usize, number: usize) {
         let (columns, start) = (usize::from(self.columns), self.bits.len());
-        let rows: Vec<u64> = key.rows().collect();
-        let length = match rows.len().checked_sub(1) {
-            Some(last) => (last * columns + usize::from(key.width)).div_ceil(64),
-            None => 0,
-        };
         self.bits.resize(start + length, 0);
-        for (row, &word) in rows.iter().enumerate() {
+        for (row, word) in key.rows().enumerate() {
             or_bits(&mut self.bits[start..], row * columns, word);
         }
-        self.templates.push(Template {
-            key: crate::index::narrow(number),
-            count,
-            width: key.width,
-            height: key.height,
-            bits: start,
-            length,
-            sums: self.sums.len(),
-        });
-        self.sums.extend(row_sums(&rows));
-        self.sums.extend(column_sums(&rows, key.width));
-        let across = u64::from(self.columns - key.width) + 1;
-        let down = u64::from(self.rows - key.height) + 1;
+        self.keys.push(crate::index::narrow(number));
+        let places = self.places(key.width, key.height);
         for count in self.model.counts(number) {
-            self.totals[usize::from(count.shape)] += count.poses * across * down;
+            self.totals[usize::from(count.shape)] += count.poses * places;
         }
+    }
+
+    /// Number of places of a box on the matrix.
+    fn places(&self, width: u8, height: u8) -> u64 {
+        (u64::from(self.columns - width) + 1) * (u64::from(self.rows - height) + 1)
     }
 
     /// Returns the number of pairs of a key and a place on the matrix.
     pub fn pairs(&self) -> u64 {
-        let places = |template: &Template| {
-            let across = u64::from(self.columns - template.width) + 1;
-            across * (u64::from(self.rows - template.height) + 1)
-        };
-        self.templates.iter().map(places).sum()
+        let pairs = self.groups.iter();
+        let pairs = pairs.map(|group| group.keys as u64 * self.places(group.width, group.height));
+        pairs.sum()
     }
 
     /// Returns P(shape | imprint) for each shape of the set; None if no key fits the matrix, or, without noise, if no shape
@@ -382,7 +394,7 @@ impl<'a> Scanner<'a> {
             }
         }
         let observed = Observed::new(imprint, noise.dead.as_ref());
-        let least = pulp::Arch::new().dispatch(|| self.least(&observed))?;
+        let least = self.least(&observed)?;
         let most = least + reach;
         Some(Distances {
             least,
@@ -436,123 +448,214 @@ impl<'a> Scanner<'a> {
 
     /// The least distance of any key in any place.
     fn least(&self, observed: &Observed) -> Option<u32> {
-        let least = AtomicU32::new(u32::MAX);
-        // From the keys with about as many taxels outwards, so that a small distance is found soon.
-        let middle = self
-            .templates
-            .partition_point(|template| template.count < observed.count);
-        let (fewer, more) = self.templates.split_at(middle);
-        let scan = |template: &Template| {
-            let most = least.load(Ordering::Relaxed);
-            self.places(template, observed, most.saturating_sub(1), |distance| {
-                least.fetch_min(distance, Ordering::Relaxed);
-            });
+        // The most promising group first: what it reaches rules out most others.
+        let bound = |group: &Group| {
+            let places = self.places_within(group, observed, u32::MAX);
+            places.into_iter().map(|(_, bound)| bound).min()
         };
-        more.par_iter().with_min_len(256).for_each(scan);
-        fewer.par_iter().rev().with_min_len(256).for_each(scan);
-        Some(least.into_inner()).filter(|_| !self.templates.is_empty())
+        let mut groups: Vec<(u32, usize)> = (0..self.groups.len())
+            .into_par_iter()
+            .filter_map(|index| Some((bound(&self.groups[index])?, index)))
+            .collect();
+        groups.sort_unstable();
+        let least = AtomicU32::new(u32::MAX);
+        groups.into_par_iter().for_each(|(bound, index)| {
+            let most = least.load(Ordering::Relaxed);
+            if bound >= most {
+                return;
+            }
+            let group = &self.groups[index];
+            let places = self.places_within(group, observed, most.saturating_sub(1));
+            let chunks = (0..group.keys.div_ceil(CHUNK)).into_par_iter();
+            chunks.for_each(|chunk| {
+                let mut best = u32::MAX;
+                pulp::Arch::new().dispatch(|| {
+                    self.compare(group, chunk, &places, observed, |_, distance| {
+                        best = best.min(distance);
+                    });
+                });
+                least.fetch_min(best, Ordering::Relaxed);
+            });
+        });
+        Some(least.into_inner()).filter(|&least| least < u32::MAX)
     }
 
     /// Touches of each shape at the distances from `least` to `most`.
     fn histogram(&self, observed: &Observed, least: u32, most: u32) -> Vec<Vec<u64>> {
         let (shapes, width) = (self.totals.len(), wide(most - least) + 1);
-        // Keys with so many taxels can be that near.
-        let first = self
-            .templates
-            .partition_point(|own| own.count + most < observed.count);
-        let last = self
-            .templates
-            .partition_point(|own| own.count <= observed.count + most + observed.dead);
-        let chunks = self.templates[first..last].par_chunks(1024);
-        let sums = chunks.map(|templates| {
-            let mut sums = vec![0_u64; shapes * width];
-            let mut places = vec![0_u64; width];
-            pulp::Arch::new().dispatch(|| {
-                for template in templates {
-                    let mut any = false;
-                    self.places(template, observed, most, |distance| {
-                        places[wide(distance - least)] += 1;
-                        any = true;
-                    });
-                    if !any {
-                        continue;
-                    }
-                    for count in self.model.counts(wide(template.key)) {
-                        let own = &mut sums[usize::from(count.shape) * width..][..width];
-                        for (sum, places) in own.iter_mut().zip(&places) {
-                            *sum += count.poses * places;
-                        }
-                    }
-                    places.fill(0);
-                }
-            });
-            sums
+        let groups = self.groups.par_iter().map(|group| {
+            let places = self.places_within(group, observed, most);
+            if places.is_empty() {
+                return vec![0; shapes * width];
+            }
+            let chunks = (0..group.keys.div_ceil(CHUNK))
+                .into_par_iter()
+                .map(|chunk| self.histogram_of(group, chunk, &places, observed, (least, width)));
+            chunks.reduce(|| vec![0; shapes * width], added)
         });
-        let add = |mut one: Vec<u64>, other: Vec<u64>| {
-            one.iter_mut()
-                .zip(other)
-                .for_each(|(sum, more)| *sum += more);
-            one
-        };
-        let sums = sums.reduce(|| vec![0; shapes * width], add);
+        let sums = groups.reduce(|| vec![0; shapes * width], added);
         sums.chunks(width).map(<[u64]>::to_vec).collect()
     }
 
-    /// Gives the distance in each place where it is at most `most`.
-    #[inline(always)]
-    fn places(
+    /// The part of one chunk of a group: for each shape `width` distances from `least` on.
+    fn histogram_of(
         &self,
-        template: &Template,
+        group: &Group,
+        chunk: usize,
+        places: &[(usize, u32)],
         observed: &Observed,
-        most: u32,
-        mut take: impl FnMut(u32),
-    ) {
-        // Only the taxels that are not dead of a key count.
-        let fewest = template.count.saturating_sub(observed.dead);
-        if observed.count > template.count.saturating_add(most)
-            || fewest > observed.count.saturating_add(most)
-        {
-            return;
-        }
-        if template.length == 0 {
-            if observed.count <= most {
-                take(observed.count);
+        (least, width): (u32, usize),
+    ) -> Vec<u64> {
+        let mut sums = vec![0_u64; self.totals.len() * width];
+        // Places at each distance, of one key after the other.
+        let mut at = vec![0_u64; width];
+        let mut last = None;
+        let mut end = |key: usize, at: &mut [u64]| {
+            for count in self.model.counts(wide(self.keys[key])) {
+                let own = &mut sums[usize::from(count.shape) * width..][..width];
+                for (sum, places) in own.iter_mut().zip(&*at) {
+                    *sum += count.poses * places;
+                }
             }
-            return;
+            at.fill(0);
+        };
+        pulp::Arch::new().dispatch(|| {
+            self.compare(group, chunk, places, observed, |key, distance| {
+                let beyond = wide(distance - least);
+                if beyond >= width {
+                    return;
+                }
+                if let Some(last) = last.replace(key).filter(|&last| last != key) {
+                    end(last, &mut at);
+                }
+                at[beyond] += 1;
+            });
+        });
+        if let Some(last) = last {
+            end(last, &mut at);
         }
-        let bits = &self.bits[template.bits..][..template.length];
-        let (width, height) = (usize::from(template.width), usize::from(template.height));
-        let sums = &self.sums[template.sums..][..width + height];
-        let (row_sums, column_sums) = sums.split_at(height);
-        let bounded = observed.living.is_none();
-        let (mut near_columns, mut columns) = ([0_u8; 64], 0);
-        for column in 0..=usize::from(self.columns) - width {
-            let own = &observed.column_sums[column..][..width];
-            if !bounded || apart(own, column_sums, observed.count) <= most {
-                near_columns[columns] = u8::try_from(column).expect("below 64");
-                columns += 1;
-            }
-        }
-        for row in 0..=usize::from(self.rows) - height {
-            let own = &observed.row_sums[row..][..height];
-            if bounded && apart(own, row_sums, observed.count) > most {
-                continue;
-            }
-            for &column in &near_columns[..columns] {
-                let place = row * usize::from(self.columns) + usize::from(column);
-                let seen = &observed.shifted[place * observed.words..];
-                let shared = shared(bits, seen);
-                let count = match &observed.living {
-                    None => template.count,
-                    Some(living) => self::shared(bits, &living[place * observed.words..]),
+        sums
+    }
+
+    /// The places on the matrix where keys of a group may have a distance of at most `most`, by the number of their first
+    /// bit, each with the least distance that is possible there.
+    fn places_within(&self, group: &Group, observed: &Observed, most: u32) -> Vec<(usize, u32)> {
+        let size = (usize::from(group.width), usize::from(group.height));
+        let mut places = Vec::new();
+        for row in 0..=usize::from(self.rows) - size.1 {
+            for column in 0..=usize::from(self.columns) - size.0 {
+                let inside = observed.active.inside((column, row), size);
+                let dead = observed.dead.as_ref();
+                let dead = dead.map_or(0, |dead| dead.inside((column, row), size));
+                // Dead taxels of a key do not count, however many of them it covers.
+                let apart = if inside > group.count {
+                    inside - group.count
+                } else {
+                    (group.count - inside).saturating_sub(dead)
                 };
-                let distance = observed.count + count - 2 * shared;
-                if distance <= most {
-                    take(distance);
+                let bound = observed.count - inside + apart;
+                if bound <= most {
+                    places.push((row * usize::from(self.columns) + column, bound));
                 }
             }
         }
+        places
     }
+
+    /// Gives the distance of each key of a chunk of a group in each of some places: the keys one after the other.
+    #[inline(always)]
+    fn compare(
+        &self,
+        group: &Group,
+        chunk: usize,
+        places: &[(usize, u32)],
+        observed: &Observed,
+        take: impl FnMut(usize, u32),
+    ) {
+        match group.length {
+            _ if observed.living.is_some() => {
+                self.compare_any(group, chunk, places, observed, take);
+            }
+            1 => self.compare_words::<1>(group, chunk, places, observed, take),
+            2 => self.compare_words::<2>(group, chunk, places, observed, take),
+            3 => self.compare_words::<3>(group, chunk, places, observed, take),
+            4 => self.compare_words::<4>(group, chunk, places, observed, take),
+            _ => self.compare_any(group, chunk, places, observed, take),
+        }
+    }
+
+    /// The same for keys of a fixed number of words, without dead taxels.
+    #[inline(always)]
+    fn compare_words<const N: usize>(
+        &self,
+        group: &Group,
+        chunk: usize,
+        places: &[(usize, u32)],
+        observed: &Observed,
+        mut take: impl FnMut(usize, u32),
+    ) {
+        // The strings of the places side by side, so that the inner loop reads on.
+        let strings: Vec<[u64; N]> = places
+            .iter()
+            .map(|&(place, _)| {
+                let string = &observed.shifted[place * observed.words..];
+                std::array::from_fn(|word| string.get(word).map_or(0, |&word| word))
+            })
+            .collect();
+        let sum = observed.count + group.count;
+        let (keys, bits) = self.chunk(group, chunk);
+        for (key, bits) in keys.zip(bits.chunks_exact(N)) {
+            for string in &strings {
+                let mut shared = 0;
+                for word in 0..N {
+                    shared += (bits[word] & string[word]).count_ones();
+                }
+                take(key, sum - 2 * shared);
+            }
+        }
+    }
+
+    /// The same for keys of any number of words, and with dead taxels.
+    #[inline(always)]
+    fn compare_any(
+        &self,
+        group: &Group,
+        chunk: usize,
+        places: &[(usize, u32)],
+        observed: &Observed,
+        mut take: impl FnMut(usize, u32),
+    ) {
+        let (keys, bits) = self.chunk(group, chunk);
+        for (index, key) in keys.enumerate() {
+            let bits = &bits[index * group.length..][..group.length];
+            for &(place, _) in places {
+                let shared = shared(bits, &observed.shifted[place * observed.words..]);
+                let count = match &observed.living {
+                    None => group.count,
+                    Some(living) => self::shared(bits, &living[place * observed.words..]),
+                };
+                take(key, observed.count + count - 2 * shared);
+            }
+        }
+    }
+
+    /// The keys of a chunk, by their places in the scanner, and their bits.
+    fn chunk(&self, group: &Group, chunk: usize) -> (std::ops::Range<usize>, &[u64]) {
+        let (start, end) = (chunk * CHUNK, group.keys.min((chunk + 1) * CHUNK));
+        let bits = &self.bits[group.bits + start * group.length..group.bits + end * group.length];
+        (group.first + start..group.first + end, bits)
+    }
+}
+
+/// Keys that are compared in one piece.
+const CHUNK: usize = 4096;
+
+/// Sums added up.
+fn added(mut one: Vec<u64>, other: Vec<u64>) -> Vec<u64> {
+    one.iter_mut()
+        .zip(other)
+        .for_each(|(sum, more)| *sum += more);
+    one
 }
 
 /// Bits that both strings have, as far as the first goes.
@@ -560,18 +663,6 @@ impl<'a> Scanner<'a> {
 fn shared(bits: &[u64], seen: &[u64]) -> u32 {
     let both = bits.iter().zip(seen);
     both.map(|(bits, seen)| (bits & seen).count_ones()).sum()
-}
-
-/// A lower bound of the distance, by sums over rows or columns: those of the key and of the part of the imprint that it lies
-/// on. What lies beside it, of `count` active taxels in all, differs.
-#[inline(always)]
-fn apart(seen: &[u8], own: &[u8], count: u32) -> u32 {
-    let (mut inside, mut apart) = (0_u32, 0_u32);
-    for (&seen, &own) in seen.iter().zip(own) {
-        inside += u32::from(seen);
-        apart += u32::from(seen.abs_diff(own));
-    }
-    apart + count - inside
 }
 
 /// A count as a number to compute with.
@@ -583,8 +674,8 @@ fn float(count: u64) -> f64 {
     count as f64
 }
 
-/// The number of taxels of an imprint's key: its order among the templates.
 impl KeyRef<'_> {
+    /// Its active taxels.
     fn count(self) -> u32 {
         self.bits.iter().map(|word| word.count_ones()).sum()
     }

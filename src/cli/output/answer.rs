@@ -4,7 +4,6 @@ use std::fmt::Write;
 
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
-use serde_json::json;
 use serde_json::value::RawValue;
 
 use crate::cli::output::charset::Charset;
@@ -59,8 +58,10 @@ impl Serialize for AnswerJson<'_> {
         map.serialize_entry("noise", &self.noise.map(|noise| noise.flip()))?;
         map.serialize_entry("at_rim", &answer.at_rim)?;
         let ranking = answer.ranking.iter().take(self.top.unwrap_or(usize::MAX));
-        let ranking = ranking
-            .map(|&(shape, probability)| json!({"name": name(shape), "probability": probability}));
+        let ranking = ranking.map(|&(shape, probability)| Ranked {
+            name: name(shape),
+            probability,
+        });
         map.serialize_entry("ranking", &ranking.collect::<Vec<_>>())?;
         let nearest = self.nearest.as_ref().map(|nearest| NearestJson {
             name: name(nearest.shape),
@@ -73,6 +74,13 @@ impl Serialize for AnswerJson<'_> {
         }
         map.end()
     }
+}
+
+/// A shape of the ranking.
+#[derive(Serialize)]
+struct Ranked<'a> {
+    name: &'a str,
+    probability: f64,
 }
 
 /// An answer for people: the name and how far it can be trusted, bars, and the nearest imprint.
