@@ -108,14 +108,40 @@ pub(in crate::tui) fn put_back(app: &mut App) {
     inform(app, "put back");
 }
 
-/// A document from a form or a command. A notice says how many taxels set by hand were dropped.
+/// Whether a document shows another thing than the one that has the present name: a figure of another kind, or a picture
+/// of another shape.
+pub(in crate::tui) fn is_other(app: &App, document: &Document) -> bool {
+    let present = app.history.present().source.as_ref();
+    let name = app.history.origin().name.as_ref();
+    name.is_some_and(|stored| match &document.source {
+        Some(Source::Figure(figure)) => present.and_then(Source::kind) != Some(figure.kind()),
+        Some(Source::Picture(picture)) => match present {
+            Some(Source::Picture(old)) if old.imprint() == picture.imprint() => false,
+            _ => picture.name() != Some(stored.name.as_str()),
+        },
+        None => false,
+    })
+}
+
+/// A document from a form or a command. A figure of another kind, or a picture of another shape, is a new document: the
+/// name of the one before stays with that. A notice says how many taxels set by hand were dropped.
 pub(in crate::tui) fn replace(app: &mut App, document: Document) {
     let present = app.history.present();
     if *present == document {
         return;
     }
     let dropped = present.edits.count().saturating_sub(document.edits.count());
-    change(app, document);
+    if is_other(app, &document) {
+        let nowhere = DocumentOrigin {
+            loaded: None,
+            name: None,
+            saved: Document::empty(document.sensor),
+        };
+        app.history.begin(document, nowhere);
+        settle(app);
+    } else {
+        change(app, document);
+    }
     say_dropped(app, dropped);
 }
 

@@ -94,6 +94,8 @@ pub struct Question {
     pub yes: Message,
     /// What no does, None for nothing.
     pub no: Option<Message>,
+    /// What else may be answered; empty if nothing.
+    pub more: String,
 }
 
 impl Question {
@@ -103,6 +105,7 @@ impl Question {
             text: text.into(),
             yes,
             no: None,
+            more: String::new(),
         }
     }
 }
@@ -127,6 +130,6 @@ impl Page for Question {
             Some(_) => String::new(),
             None => format!(" ({}/{})", key(&action::ACCEPT), key(&action::DECLINE)),
         };
-        Some((format!("{}{answers}", self.text), Role::Error))
+        Some((format!("{}{answers}{}", self.text, self.more), Role::Error))
     }
 }

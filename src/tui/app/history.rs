@@ -48,6 +48,8 @@ pub struct History {
     future: Vec<Revision>,
     /// All origins; revisions refer to them by index.
     origins: Vec<DocumentOrigin>,
+    /// What origins were before their shape was deleted, by their index: it may be brought back.
+    gone: Vec<(usize, DocumentOrigin)>,
 }
 
 impl History {
@@ -66,6 +68,7 @@ impl History {
             },
             future: Vec::new(),
             origins,
+            gone: Vec::new(),
         }
     }
 
@@ -111,12 +114,31 @@ impl History {
     /// The stored shape of that name is gone: nothing would be found again of what came from it.
     pub fn removed(&mut self, name: &str) {
         let gone = folded(name);
-        for origin in &mut self.origins {
+        for (index, origin) in self.origins.iter_mut().enumerate() {
             let own = origin.name.as_ref();
             let own = own.filter(|stored| stored.owner == ShapeOrigin::Own);
             if own.is_some_and(|stored| folded(&stored.name) == gone) {
+                self.gone.push((index, origin.clone()));
                 origin.name = None;
                 origin.saved = Document::empty(origin.saved.sensor);
+            }
+        }
+    }
+
+    /// The deleted shape of that name is there again: what came from it has its name again, unless it has another now.
+    pub fn restored(&mut self, name: &str) {
+        let back = folded(name);
+        let is_back = |(_, origin): &mut (usize, DocumentOrigin)| {
+            let stored = origin.name.as_ref();
+            stored.is_some_and(|stored| folded(&stored.name) == back)
+        };
+        for (index, before) in self.gone.extract_if(.., is_back) {
+            if let Some(origin) = self
+                .origins
+                .get_mut(index)
+                .filter(|origin| origin.name.is_none())
+            {
+                *origin = before;
             }
         }
     }

@@ -7,7 +7,7 @@ use crate::formats::StoredShape;
 use crate::storage::{Expected, LibraryEntry, LoadedShape};
 use crate::tui::app::document::Document;
 use crate::tui::explore::message::{ExploreMessage, WorkerEvent};
-use crate::tui::keys::key::Arrow;
+use crate::tui::keys::key::{Arrow, Key};
 use crate::tui::recognise::message::RecogniseMessage;
 
 /// A message, from a key, a click, a command, a script, or as the answer to an effect.
@@ -139,6 +139,8 @@ pub enum Message {
     Recognise(RecogniseMessage),
     /// An event of a worker.
     Worker(WorkerEvent),
+    /// A key that means nothing here.
+    Unknown(Key),
     /// Redraw the whole screen.
     Redraw,
     /// Suspend the program, as Ctrl-Z does, until the shell continues it.

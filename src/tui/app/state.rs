@@ -14,6 +14,7 @@ use crate::tui::app::page::Page;
 use crate::tui::explore::results::Results;
 use crate::tui::keys::action::{self, Action};
 use crate::tui::keys::binding::Context;
+use crate::tui::keys::key::Key;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::recognise::state::Recognition;
@@ -192,6 +193,10 @@ pub struct App {
     pub(in crate::tui) keymap: Keymap,
     /// Whether the program runs.
     pub(in crate::tui) run_state: RunState,
+    /// Whether it ends once what is on the matrix is saved: so the question at Quit was answered.
+    pub(in crate::tui) quits_when_saved: bool,
+    /// The keys without a meaning that a notice has named: each is named once.
+    pub(in crate::tui) unknown_keys: Vec<Key>,
 }
 
 impl App {
@@ -224,6 +229,8 @@ impl App {
             theme: options.theme,
             keymap: Keymap::default(),
             run_state: RunState::Running,
+            quits_when_saved: false,
+            unknown_keys: Vec::new(),
         }
     }
 
@@ -268,6 +275,12 @@ impl App {
     pub(in crate::tui) fn on_matrix_itself(&self) -> bool {
         let top = self.dialogs.last().map(Dialog::page);
         top.is_none_or(Page::leaves_matrix)
+    }
+
+    /// What a key means now.
+    pub fn meaning(&self, key: Key) -> Message {
+        let message = self.keymap.lookup(self.context(), key);
+        message.unwrap_or(Message::Unknown(key))
     }
 
     /// The top page that has a pane of its own, None if that is the matrix.

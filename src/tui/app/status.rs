@@ -14,6 +14,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::description::Descriptor;
 use crate::formats::value;
+use crate::tui::app::change::is_other;
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Reading;
 use crate::tui::app::layout::Panes;
@@ -75,7 +76,11 @@ pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
 fn source(app: &App) -> String {
     let document = app.shown();
     let by_hand = document.edits.count();
-    let name = app.stored_name().map_or(String::new(), |stored| {
+    // A form may show another thing, which has no name yet.
+    let own = app
+        .stored_name()
+        .filter(|_| app.dialogs.is_empty() || !is_other(app, document));
+    let name = own.map_or(String::new(), |stored| {
         let changed = if app.unsaved() { "*" } else { "" };
         format!("{stored}{changed}: ")
     });

@@ -3,13 +3,15 @@
 //! The top page receives the message, or the matrix if there is none. A notice stays until the next message from the
 //! user.
 
-use crate::tui::app::change::settle;
+use crate::tui::app::change::{refuse, settle};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::Message;
 use crate::tui::app::mouse;
 use crate::tui::app::state::{App, RunState};
 use crate::tui::help::Help;
 use crate::tui::history::HistoryDialog;
+use crate::tui::keys::action;
+use crate::tui::keys::key::Key;
 
 use crate::tui::runtime::effect::{Effect, TerminalEffect};
 use crate::tui::{explore, form, matrix, prompt, recognise, shapes};
@@ -35,6 +37,10 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
             app.run_state = RunState::Terminated;
             return None;
         }
+        Message::Unknown(key) => {
+            unknown(app, key);
+            return None;
+        }
         Message::Library(answer) => return shapes::update::on_library(app, answer),
         Message::Worker(told) => return explore::work::on_worker(app, told),
         Message::Mouse(mouse) => {
@@ -44,6 +50,9 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
         _ => {}
     }
     app.notice = None;
+    if app.dialogs.is_empty() || matches!(message, Message::Cancel | Message::Quit) {
+        app.quits_when_saved = false;
+    }
     // A key between press and release: what is dragged on would change another document than the press did.
     app.paint = None;
     if !message.moves_shape() {
@@ -52,6 +61,18 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
     match app.dialogs.pop() {
         Some(dialog) => in_dialog(app, dialog, message),
         None => matrix::update::act(app, message),
+    }
+}
+
+/// Says of a key without a meaning where the keys are listed; of each key once.
+fn unknown(app: &mut App, key: Key) {
+    if !app.unknown_keys.contains(&key) {
+        app.unknown_keys.push(key);
+        let help = app.keymap().label(app.context(), &action::HELP);
+        refuse(
+            app,
+            format!("{} does nothing here; {help} lists the keys", key.label()),
+        );
     }
 }
 
@@ -115,6 +136,11 @@ fn in_history(app: &mut App, mut list: HistoryDialog, message: &Message) -> Opti
 }
 
 fn at_question(app: &mut App, question: Question, message: &Message) -> Option<Effect> {
+    if *message == Message::Save && question.yes == Message::QuitNow && app.unsaved() {
+        let effect = matrix::update::act(app, Message::Save);
+        app.quits_when_saved = true;
+        return effect;
+    }
     match (message, question.no) {
         (Message::Accept, _) => matrix::update::act(app, question.yes),
         (Message::Decline, Some(no)) => matrix::update::act(app, no),

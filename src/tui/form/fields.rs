@@ -59,6 +59,11 @@ impl ParameterField {
         self.input.text()
     }
 
+    /// Whether it was changed since it was made.
+    pub fn changed(&self) -> bool {
+        self.text() != self.initial_text
+    }
+
     /// Where its cursor stands, in columns.
     pub fn cursor(&self) -> usize {
         self.input.cursor()

@@ -38,6 +38,8 @@ pub struct FormDialog {
     form: ParameterForm,
     /// Fields of other kinds of figure, kept as they were typed.
     hidden: Vec<ParameterField>,
+    /// What the fields had at first: the shape on the matrix, or a new one.
+    begun: Option<Source>,
     /// What is on the matrix without the form.
     before: Document,
     /// Its imprint.
@@ -86,6 +88,7 @@ impl FormDialog {
             subject,
             form,
             hidden: Vec::new(),
+            begun: shown.source.clone(),
             before: before.clone(),
             before_imprint: Reading::of(before).imprint,
             settled: shown.clone(),
@@ -145,13 +148,15 @@ impl FormDialog {
         }
     }
 
-    /// The fields of the subject, those that were there before as they were.
+    /// The fields of the subject: those that were typed in before as they were, the others with its own values.
     fn fill(&mut self) {
         let (sensor, focus) = (*self.form.sensor(), self.form.focus());
         let mut known = std::mem::take(&mut self.hidden);
         known.extend(
             std::mem::replace(&mut self.form, ParameterForm::new(Vec::new(), sensor)).into_fields(),
         );
+        // A figure of another kind is another figure: what the one on the matrix has does not stick to it.
+        known.retain(ParameterField::changed);
         let parameters = self.parameters();
         let fields = parameters.into_iter().map(|parameter| {
             let at = known
@@ -168,10 +173,17 @@ impl FormDialog {
         self.form.set_focus(focus);
     }
 
-    /// A field with the value that the matrix shows now, or the default.
+    /// A field with the value of the shape that the form began with, or the default; a figure of another kind has its
+    /// defaults.
     fn new_field(&self, parameter: Parameter, sensor: &Sensor) -> ParameterField {
-        let of_source = |source: &Source| source.get(parameter);
-        let own = self.shown.source.as_ref().and_then(of_source);
+        let own = match (&self.subject, &self.begun) {
+            (FormSubject::Figure(kind), begun)
+                if begun.as_ref().and_then(Source::kind) != Some(*kind) =>
+            {
+                Figure::default_of(*kind, sensor).get(parameter)
+            }
+            (_, begun) => begun.as_ref().and_then(|source| source.get(parameter)),
+        };
         let own = own.or_else(|| self.shown.sensor.get(parameter));
         let optional = parameter == Parameter::Thickness;
         let value = if optional {

@@ -5,6 +5,8 @@
 
 use crate::description::{DESCRIPTORS, Descriptor};
 use crate::formats::value;
+use crate::parameter::Parameter;
+use crate::parameter::number::short;
 use crate::source::Source;
 use crate::storage::{Expected, ShapeOrigin};
 use crate::tui::app::change::{
@@ -20,6 +22,7 @@ use crate::tui::form::state::FormDialog;
 use crate::tui::help::Help;
 use crate::tui::history::HistoryDialog;
 use crate::tui::keys::action;
+use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Arrow;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::matrix::layout::TaxelGrid;
@@ -122,8 +125,34 @@ fn save(app: &mut App) {
     let own = app
         .stored()
         .filter(|stored| stored.owner == ShapeOrigin::Own);
-    let name = own.map_or("", |stored| &stored.name);
-    app.dialogs.push(Dialog::Name(NameDialog::new(name)));
+    let dialog = match own {
+        Some(stored) => NameDialog::new(&stored.name),
+        None => NameDialog::proposing(&proposed_name(app)),
+    };
+    app.dialogs.push(Dialog::Name(dialog));
+}
+
+/// A name for what is on the matrix, as long as it has none: the figure with its sizes, the picture or the shape that it
+/// comes from, or "drawing".
+fn proposed_name(app: &App) -> String {
+    if let Some(stored) = app.stored() {
+        return format!("{} copy", stored.name);
+    }
+    match &app.history.present().source {
+        Some(Source::Figure(figure)) => {
+            let size = |&parameter: &Parameter| figure.get(parameter).map(short);
+            let sizes: Vec<String> = figure.kind().sizes().iter().filter_map(size).collect();
+            let wall = figure
+                .get(Parameter::Thickness)
+                .filter(|_| figure.has_hole());
+            let wall = wall.map_or(String::new(), |wall| format!(" wall {}", short(wall)));
+            format!("{} {}{wall}", figure.kind().name(), sizes.join(" x "))
+        }
+        Some(Source::Picture(picture)) => picture
+            .name()
+            .map_or_else(|| "picture".to_owned(), |name| format!("{name} moved")),
+        None => "drawing".to_owned(),
+    }
 }
 
 /// Quits, after a question if work would be lost.
@@ -137,7 +166,12 @@ fn quit(app: &mut App) {
         return;
     };
     let text = format!("{what} is not saved. Quit anyway?");
-    ask(app, text, Message::QuitNow);
+    let key = app.keymap().label(Context::Question, &action::SAVE);
+    let mut question = Question::new(text, Message::QuitNow);
+    if app.unsaved() && !key.is_empty() {
+        question.more = format!("; {key} saves it");
+    }
+    app.dialogs.push(Dialog::Question(question));
 }
 
 /// Switches the mouse: it sets taxels, or the terminal selects text with it.
@@ -171,6 +205,12 @@ fn edit(app: &mut App, message: &Message) {
         Message::Undo => travel(app, History::undo, "undone", "nothing to undo"),
         Message::Redo => travel(app, History::redo, "redone", "nothing to redo"),
         Message::Region(by) => choose_region(app, by),
+        Message::Display if app.history.present().source.is_none() => {
+            app.display = Display::Imprint;
+            let figure = app.key_of(&action::FIGURE);
+            let text = "no coverage to show: what is drawn by hand has none";
+            refuse(app, format!("{text}; {figure} places a figure"));
+        }
         Message::Display => {
             app.display = match app.display {
                 Display::Imprint => Display::Shades,

@@ -8,11 +8,11 @@
 //! ```
 //! A taxel of the described region, another active taxel, one of a described hole and an inactive one differ in their
 //! characters, not only in colour. A matrix that is larger than its pane scrolls with the cursor; one that is much
-//! smaller is drawn larger, a whole number of times. Coverage is shown in five shades or as two digits of percent.
+//! smaller is drawn larger, a whole number of times. Coverage is shown in five shades or in percent: two digits
+//! where a taxel has room for a space beside them, else the tens alone, so that numbers do not run together.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
-use ratatui::style::{Modifier, Style};
 
 use crate::description::{Region, RegionKind};
 use crate::imprint::Imprint;
@@ -162,21 +162,10 @@ impl<'a> MatrixView<'a> {
             _ if matches!(role, Role::Surplus | Role::Missing) => theme.taxel(role),
             Display::Imprint => theme.taxel(role),
             Display::Shades => theme.shade(coverage(seen, column, row)),
-            Display::Percent => percent(theme, coverage(seen, column, row)),
+            Display::Percent => percent(theme, coverage(seen, column, row), place.width > 2),
         };
         let here = (column, row) == self.cursor;
-        // Every other number is bold, so that neighbours can be told from each other.
-        let heavy = self.display == Display::Percent && column % 2 == 1 && first.is_ascii_digit();
         let style = theme.style(role);
-        let weight = (style.add_modifier - Modifier::DIM) | Modifier::BOLD;
-        let style = if heavy {
-            Style {
-                add_modifier: weight,
-                ..style
-            }
-        } else {
-            style
-        };
         // Full cells are filled, a sign or a number stands in the middle.
         let fill = if first == second && !first.is_ascii_digit() {
             first
@@ -233,13 +222,15 @@ fn coverage(seen: &Reading, column: u8, row: u8) -> f64 {
     clippy::cast_sign_loss,
     reason = "0 to 99"
 )]
-fn percent(theme: &Theme, coverage: f64) -> [char; 2] {
+fn percent(theme: &Theme, coverage: f64, wide: bool) -> [char; 2] {
     if coverage <= 0.0 || coverage >= 1.0 {
         return theme.shade(coverage);
     }
     let percent = (coverage * 100.0) as u8;
-    [
-        char::from(b'0' + percent / 10),
-        char::from(b'0' + percent % 10),
-    ]
+    let units = if wide {
+        char::from(b'0' + percent % 10)
+    } else {
+        ' '
+    };
+    [char::from(b'0' + percent / 10), units]
 }

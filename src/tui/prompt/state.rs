@@ -30,6 +30,13 @@ impl NameDialog {
         }
     }
 
+    /// A field that proposes a name: what is typed replaces it.
+    pub fn proposing(name: &str) -> Self {
+        let mut dialog = Self::new(name);
+        dialog.field.enter();
+        dialog
+    }
+
     /// The name.
     ///
     /// # Errors

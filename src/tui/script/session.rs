@@ -74,9 +74,7 @@ impl Session {
 
     /// Presses a key and draws the screen.
     pub fn press(&mut self, key: Key) {
-        if let Some(message) = self.app.keymap().lookup(self.app.context(), key) {
-            self.send(message);
-        }
+        self.send(self.app.meaning(key));
     }
 
     /// Sends a message and draws the screen.

@@ -11,7 +11,7 @@ use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Document;
 use crate::tui::app::history::StoredName;
 use crate::tui::app::message::{Endpoint, Leftover, LibraryEvent, Message, Purpose};
-use crate::tui::app::state::{App, Mode};
+use crate::tui::app::state::{App, Mode, RunState};
 use crate::tui::form::state::FormDialog;
 use crate::tui::keys::action::{self, Arguments};
 use crate::tui::keys::binding::Context;
@@ -97,6 +97,9 @@ fn on_change(app: &mut App, change: LibraryEvent) {
     match change {
         LibraryEvent::Stored(name, stamp) => {
             inform(app, format!("saved as {name}"));
+            if app.quits_when_saved {
+                app.run_state = RunState::Quit;
+            }
             app.history.stored(StoredName {
                 name,
                 stamp,
@@ -117,6 +120,7 @@ fn on_change(app: &mut App, change: LibraryEvent) {
         }
         LibraryEvent::Restored(name) => {
             app.removed = None;
+            app.history.restored(&name);
             inform(app, format!("{name} is back"));
         }
         LibraryEvent::Found(left) => offer(app, "", &left),
@@ -165,6 +169,7 @@ fn offer(app: &mut App, before: &str, left: &Leftover) {
         text,
         yes: Message::Recover,
         no: Some(Message::GiveUp),
+        more: String::new(),
     };
     app.dialogs.push(Dialog::Question(question));
 }

@@ -257,7 +257,7 @@ impl<'a> EventLoop<'a> {
             (self.watch)(&input);
             let message = match input {
                 // Each key where the one before has led.
-                Input::Key(key) => self.app.keymap().lookup(self.app.context(), key),
+                Input::Key(key) => Some(self.app.meaning(key)),
                 Input::Paste(text) => Some(Message::Paste(text)),
                 Input::Mouse(mouse) => Some(Message::Mouse(mouse)),
                 Input::Size(columns, rows) => Some(Message::Resized(columns, rows)),
