@@ -59,10 +59,11 @@
 //!  ───────────  above: total, no input or output, no panic; below: the world
 //!  formats      text, PBM, CSV, NPY, JSON, atlases; drawings as SVG and PNG
 //!  storage      files: atomic writes, the folder of stored shapes, journal, trash
+//!  acquire      where frames come from: serial, pipes, tcp, files; recording them
 //!  tui          the screen                                                         ratatui, crossterm
 //!  cli          the command line over all of it                                    clap
 //! ```
-//! Files and streams are touched by `storage`, `formats`, `cli`, `tui::runtime`, `tui::terminal` and `main` only.
+//! Files and streams are touched by `storage`, `acquire`, `formats`, `cli`, `tui::runtime`, `tui::terminal` and `main` only.
 //!
 //! The way of a pose:
 //! ```text
@@ -82,7 +83,8 @@
 //! frames              formats::recording                               json
 //! png                 formats::Drawing::png
 //! library             storage                                          json
-//! tui                 tui                                              library, recognition, frames
+//! acquire             acquire                                          frames, library
+//! tui                 tui                                              library, recognition, acquire
 //! cli (the default)   cli, and the program                             tui, png
 //! ```
 //!
@@ -152,6 +154,9 @@ pub mod formats;
 
 #[cfg(any(feature = "library", feature = "sweep"))]
 pub mod storage;
+
+#[cfg(all(feature = "acquire", unix))]
+pub mod acquire;
 
 #[cfg(feature = "tui")]
 pub mod tui;

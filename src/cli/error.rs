@@ -5,6 +5,7 @@
 
 use std::io;
 
+use crate::acquire::RecorderError;
 use crate::cli::input::content::InputError;
 use crate::cli::output::charset::Charset;
 use crate::formats::ArchiveError;
@@ -186,6 +187,9 @@ pub(crate) enum CliError {
         /// What is wrong with it, and where.
         error: RecordingError,
     },
+    /// Frames cannot be recorded.
+    #[error(transparent)]
+    Recorder(RecorderError),
     /// A recording does not have what is asked for.
     #[error("{name}: {}", legible(.message))]
     Frames {

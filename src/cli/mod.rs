@@ -49,7 +49,7 @@ use commands::frames::FramesOutput;
 use commands::touch::Touched;
 use commands::{
     batch, completions, confusion, describe, export, frames, library, man, model, noise, recognise,
-    screen, script, separate, sweep, touch,
+    screen, script, separate, sweep, touch, watch,
 };
 use error::CliError;
 use input::shapes::Shelf;
@@ -136,6 +136,9 @@ fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, Cli
         Request::Model(request) => run_model(request, &shelf, charset)?,
         Request::Recognise(asked) => {
             return recognise::recognise(&asked, &shelf, charset, &mut io::stdout().lock());
+        }
+        Request::Watch(asked) => {
+            return watch::watch(&asked, &mut |text| note(text, charset));
         }
         Request::Frames(asked, form, kept) => {
             let mut answers = BufWriter::new(io::stdout().lock());

@@ -15,6 +15,8 @@ mod foreign;
 
 mod frames;
 
+mod watch;
+
 mod batch;
 
 mod library;

@@ -9,7 +9,7 @@ use super::program;
 use super::taxel;
 
 /// Every command that has a help.
-const COMMANDS: [&str; 30] = [
+const COMMANDS: [&str; 31] = [
     "",
     "figure",
     "picture",
@@ -28,6 +28,7 @@ const COMMANDS: [&str; 30] = [
     "model touches",
     "model separate",
     "recognise",
+    "watch",
     "library",
     "library list",
     "library show",

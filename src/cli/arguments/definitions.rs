@@ -27,6 +27,7 @@ use crate::cli::arguments::program::{
     ascii, completions, config, config_file, look, man, record, script, size,
 };
 use crate::cli::arguments::recognition;
+use crate::cli::arguments::watch;
 use crate::cli::commands::export;
 use crate::figure::FigureKind;
 use crate::parameter::Parameter;
@@ -55,6 +56,7 @@ pub(crate) fn all() -> Command {
         .subcommand(recognition::model())
         .subcommand(recognition::recognise())
         .subcommand(frames())
+        .subcommand(watch::command())
         .subcommand(library())
         .subcommand(script())
         .subcommand(config().args(sensor()))

@@ -264,10 +264,10 @@ impl ProcessingArguments {
                 _ => 0,
             },
             mask: path("mask"),
-            tare: matches.get_one::<u64>("tare").copied().unwrap_or(0),
+            tare: matches.get_one("tare").map_or(0, |&frames| frames),
             gain: path("gain"),
             rule: rule(matches)?,
-            least: matches.get_one::<u32>("least").copied().unwrap_or(0),
+            least: matches.get_one("least").map_or(0, |&taxels| taxels),
         })
     }
 }

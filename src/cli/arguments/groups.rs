@@ -2,6 +2,8 @@
 
 use clap::Command;
 
+use crate::cli::arguments::parameters;
+
 /// Headings and their commands, in the order of the help.
 pub(crate) const GROUPS: [(&str, &[&str]); 5] = [
     (
@@ -20,6 +22,9 @@ pub(crate) const GROUPS: [(&str, &[&str]); 5] = [
 /// The longest name of a command, and two spaces.
 const COLUMN: usize = 13;
 
+/// What is left of 80 columns.
+const WIDTH: usize = 65;
+
 /// The commands with a help that lists them by groups; for reading arguments only, since completions and the manual list
 /// what is not hidden.
 pub(crate) fn grouped(mut all: Command) -> Command {
@@ -30,7 +35,9 @@ pub(crate) fn grouped(mut all: Command) -> Command {
         for name in commands {
             let about = all.find_subcommand(name).and_then(Command::get_about);
             if let Some(about) = about {
-                template += &format!("  {name:<COLUMN$}{about}\n");
+                let about = parameters::wrapped(&about.to_string(), WIDTH);
+                let indent = format!("\n  {:COLUMN$}", "");
+                template += &format!("  {name:<COLUMN$}{}\n", about.replace('\n', &indent));
             }
         }
     }

@@ -396,3 +396,19 @@ Examples:
   taxel frames recording.csv --frame 2 --low 5 --high 20 --heat --ascii
   taxel frames recording.csv --peak --at-least 10 --heat --export touch.svg
   taxel frames plain.csv --rows 4 --columns 5 --crop 1,0,3x3 --json";
+
+pub(crate) const WATCH_EXAMPLES: &str = "\
+Each frame is answered by one line, as of 'taxel frames --all --json'; without a
+threshold its imprint is null. Streams are numbers in lines, JSON lines, what
+'ros2 topic echo' prints, FlexiTac's and MatSense's bytes; what begins one is
+found by looking. A recording is played at its own rate. A serial line or a
+connection that is lost is tried again each second. Torn, short, long and
+garbled frames are dropped and counted.
+
+--write records every frame, also those that nobody reads: numpy opens the file
+at every moment. What the values are is in a .json of the same name.
+
+Examples:
+  taxel watch recording.csv --once --at-least 10
+  taxel watch - --once --format lines --percent 50 --write touch.npy < rows.txt
+  taxel watch touch.npy --speed 10 --at-least 9";

@@ -24,6 +24,8 @@ pub(super) mod flags;
 
 pub(super) mod frames;
 
+pub(super) mod watch;
+
 pub(super) mod groups;
 
 pub(super) mod shape_set;

@@ -17,6 +17,7 @@ use crate::cli::arguments::parameters;
 use crate::cli::arguments::parameters::Given;
 use crate::cli::arguments::program::Script;
 use crate::cli::arguments::recognition::{self, ModelRequest, RecogniseArguments};
+use crate::cli::arguments::watch::WatchArguments;
 use crate::cli::commands::completions::Shell;
 use crate::cli::commands::export::Export;
 use crate::cli::commands::sweep::Wanted;
@@ -72,6 +73,8 @@ pub(crate) enum Request {
     Recognise(RecogniseArguments),
     /// List a recording, or describe its frames.
     Frames(Box<FramesArguments>, Form, Kept),
+    /// Answer the frames of a source as they come.
+    Watch(Box<WatchArguments>),
     /// A subcommand of `taxel library`.
     Library(Chore),
     /// Print the settings.
@@ -245,6 +248,10 @@ fn request(
             let to = required::<PathBuf>(own, "to")?;
             let export = export(own, &to, command, "export")?;
             Request::Export(what(own)?, export, pitch)
+        }
+        "watch" => {
+            let source = required::<OsString>(own, "source")?;
+            Request::Watch(Box::new(WatchArguments::of(own, source)?))
         }
         "frames" => {
             let file = required::<PathBuf>(own, "file")?;

@@ -97,7 +97,8 @@ impl Export {
     /// The same file with the number of a frame at the end of its name, before the ending.
     pub(crate) fn numbered(&self, number: u64) -> Self {
         let path = self.path.as_ref().map(|path| {
-            let mut name = path.file_stem().unwrap_or_default().to_owned();
+            let stem = path.file_stem().unwrap_or(path.as_os_str());
+            let mut name = stem.to_owned();
             name.push(format!("-{number}"));
             if let Some(ending) = path.extension() {
                 name.push(".");

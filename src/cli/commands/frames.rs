@@ -530,7 +530,10 @@ fn keep(
     let begun = export.map(|export| export.begin_frame(imprint, heat, title, pitch));
     let begun = begun.transpose()?;
     if let Some(Saving { name, force }) = &output.kept.saving {
-        let sensor = Sensor::new(imprint.columns(), imprint.rows()).unwrap_or_default();
+        let sensor = Sensor::default()
+            .with(Parameter::Columns, imprint.columns().into())
+            .and_then(|sensor| sensor.with(Parameter::Rows, imprint.rows().into()))
+            .unwrap_or(Sensor::LARGEST);
         let with_pitch = pitch.and_then(|pitch| sensor.with(Parameter::Pitch, pitch).ok());
         let shape = StoredShape {
             name: name.clone(),

@@ -28,6 +28,8 @@ pub(super) mod recognise;
 
 pub(super) mod frames;
 
+pub(super) mod watch;
+
 pub(super) mod screen;
 
 pub(super) mod script;

@@ -8,6 +8,8 @@ pub(super) mod report;
 
 pub(super) mod heat_map;
 
+pub(super) mod line_writer;
+
 pub(super) mod recording_list;
 
 pub(super) mod sweep_summary;

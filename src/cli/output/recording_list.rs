@@ -38,7 +38,7 @@ impl ListedChannel {
         let present = values.iter().filter(|value| !value.is_nan());
         self.peak.add(frame.number, present.sum());
         self.frames += 1;
-        self.values = frame.values().len() as u64;
+        self.values = self.info.values.unwrap_or(frame.values().len() as u64);
         self.cells = self.cells.max(frame.cells());
         self.first = self.first.or(frame.first);
     }

@@ -6,7 +6,8 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingFormat, Sink};
 use crate::formats::recording::lines::is_blank;
 use crate::formats::recording::{
-    delimited, emed, flexitac, json_lines, npz, numpy, popu, ros_text, tekscan, xsensor, zebris,
+    delimited, emed, flexitac, json_lines, mcap, npz, numpy, popu, ros_text, tekscan, xsensor,
+    zebris,
 };
 
 /// So many bytes tell the form.
@@ -25,6 +26,9 @@ pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
         lines.any(|line| line.starts_with(word))
     };
     let first = trimmed.split(|&byte| byte == b'\n').next().unwrap_or(b"");
+    if start.starts_with(mcap::MAGIC) {
+        return Some(RecordingFormat::Mcap);
+    }
     Some(match start {
         [0x93, b'N', b'U', b'M', b'P', b'Y', ..] => RecordingFormat::Npy,
         [0xaa, 0x55, ..] => RecordingFormat::Flexitac,
@@ -93,7 +97,7 @@ pub fn read(
         RecordingFormat::Ros2 => ros_text::read(input, options, sink),
         RecordingFormat::Csv => delimited::read(input, options, sink),
         RecordingFormat::Flexitac => flexitac::read(&mut input, options, sink),
-        RecordingFormat::Mcap => Err(RecordingError::Unknown),
+        RecordingFormat::Mcap => mcap::read(&mut input, options, sink),
     }?;
     Ok(format)
 }

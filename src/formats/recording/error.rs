@@ -32,7 +32,7 @@ pub enum RecordingError {
     },
 }
 
-const FORMS: &str = "Tekscan ASCII, XSENSOR CSV, emed .lst, zebris .apd, CSV, NPY, NPZ, JSON lines, PoPu JSON, \
+const FORMS: &str = "Tekscan ASCII, XSENSOR CSV, emed .lst, zebris .apd, CSV, NPY, NPZ, JSON lines, PoPu JSON, MCAP, \
                      ros2 topic echo";
 
 fn place(line: Option<u64>, column: Option<u64>) -> String {

@@ -80,6 +80,8 @@ pub struct ChannelInfo {
     pub name: Option<String>,
     /// Rows and columns of its frames.
     pub shape: Option<(u16, u16)>,
+    /// How many values a frame has, where rows and columns are not known.
+    pub values: Option<u64>,
     /// The unit of its values.
     pub unit: Option<String>,
     /// When the recording began, as it writes it.

@@ -45,6 +45,10 @@ mod cell_names;
 
 mod numpy;
 
+mod cdr;
+
+mod mcap;
+
 mod npz;
 
 pub(crate) mod json_lines;

@@ -27,6 +27,15 @@ pub(super) struct NumberType {
 }
 
 impl NumberType {
+    /// A kind of number (`b`, `i`, `u` or `f`) of 1, 2, 4 or 8 bytes.
+    pub(super) fn new(kind: u8, size: usize, big_endian: bool) -> Self {
+        Self {
+            kind,
+            size,
+            big_endian,
+        }
+    }
+
     /// That of a code such as `<f4`.
     pub(super) fn of(code: &str) -> Option<Self> {
         let [order, kind, size @ ..] = code.as_bytes() else {

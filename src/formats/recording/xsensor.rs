@@ -154,6 +154,7 @@ impl XsensorState {
                 let info = ChannelInfo {
                     name: Some(name.clone()),
                     shape: self.rows.zip(self.columns),
+                    values: None,
                     unit: self.unit.clone(),
                     start: self
                         .date

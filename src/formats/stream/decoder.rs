@@ -2,7 +2,7 @@
 
 use crate::formats::recording::ros_text;
 use crate::formats::stream::documents::{JsonDecoder, RosDecoder};
-use crate::formats::stream::event::{EventSink, StreamCounts, StreamFormat, StreamOptions};
+use crate::formats::stream::event::{StreamCounts, StreamFormat, StreamOptions, StreamSink};
 use crate::formats::stream::flexitac::FlexitacDecoder;
 use crate::formats::stream::lines::LinesDecoder;
 use crate::formats::stream::matsense::MatsenseDecoder;
@@ -103,7 +103,7 @@ impl StreamDecoder {
     }
 
     /// Decodes the next bytes.
-    pub fn push(&mut self, bytes: &[u8], sink: &mut EventSink<'_>) {
+    pub fn push(&mut self, bytes: &[u8], sink: &mut StreamSink<'_>) {
         self.counts.bytes += bytes.len() as u64;
         match &mut self.state {
             State::Looking => {
@@ -118,7 +118,7 @@ impl StreamDecoder {
     }
 
     /// The end of the input: what is whole is given, what is not is counted.
-    pub fn finish(&mut self, sink: &mut EventSink<'_>) {
+    pub fn finish(&mut self, sink: &mut StreamSink<'_>) {
         if let State::Looking = self.state {
             self.look(true, sink);
         }
@@ -137,7 +137,7 @@ impl StreamDecoder {
     }
 
     /// Decodes the lines that are ended.
-    fn text(&mut self, bytes: &[u8], sink: &mut EventSink<'_>) {
+    fn text(&mut self, bytes: &[u8], sink: &mut StreamSink<'_>) {
         let mut rest = bytes;
         while let Some(end) = rest.iter().position(|&byte| byte == b'\n') {
             let (line, after) = (&rest[..end], &rest[end + 1..]);
@@ -168,7 +168,7 @@ impl StreamDecoder {
         }
     }
 
-    fn line(&mut self, line: &[u8], sink: &mut EventSink<'_>) {
+    fn line(&mut self, line: &[u8], sink: &mut StreamSink<'_>) {
         if std::mem::take(&mut self.torn) {
             return;
         }
@@ -181,7 +181,7 @@ impl StreamDecoder {
     }
 
     /// Finds the form, and decodes what has come so far.
-    fn look(&mut self, ended: bool, sink: &mut EventSink<'_>) {
+    fn look(&mut self, ended: bool, sink: &mut StreamSink<'_>) {
         let Some(format) = form(&self.bytes, self.options.shape, ended) else {
             return;
         };

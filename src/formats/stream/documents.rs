@@ -2,7 +2,7 @@
 
 use crate::formats::recording::json_lines::FrameLine;
 use crate::formats::recording::ros_text::{self, RosLine, RosMessage};
-use crate::formats::stream::event::{EventSink, StreamCounts, StreamEvent};
+use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::frame::Frame;
 
 /// A decoder of JSON lines.
@@ -27,7 +27,7 @@ impl JsonDecoder {
         &mut self,
         line: &[u8],
         counts: &mut StreamCounts,
-        sink: &mut EventSink<'_>,
+        sink: &mut StreamSink<'_>,
     ) {
         if line.trim_ascii().is_empty() {
             return;
@@ -78,7 +78,7 @@ impl RosDecoder {
         &mut self,
         line: &[u8],
         counts: &mut StreamCounts,
-        sink: &mut EventSink<'_>,
+        sink: &mut StreamSink<'_>,
     ) {
         // A boundary, or a line that has a whole array.
         let trimmed = line.trim_ascii();
@@ -97,7 +97,7 @@ impl RosDecoder {
     }
 
     /// The end of a message.
-    fn end(&mut self, line: &[u8], counts: &mut StreamCounts, sink: &mut EventSink<'_>) {
+    fn end(&mut self, line: &[u8], counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         let shape = self.message.shape().or(self.shape);
         let values = self.message.values.len();
         let begun = std::mem::replace(&mut self.begun, true);
@@ -126,7 +126,7 @@ impl RosDecoder {
     }
 
     /// The end of the input: an array that is closed is whole.
-    pub(super) fn finish(&mut self, counts: &mut StreamCounts, sink: &mut EventSink<'_>) {
+    pub(super) fn finish(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         if self.message.begun() {
             self.broken |= self.message.is_open();
             self.end(b"", counts, sink);

@@ -129,4 +129,4 @@ impl StreamCounts {
 }
 
 /// Takes what a decoder reports.
-pub(super) type EventSink<'a> = dyn FnMut(StreamEvent<'_>) + 'a;
+pub(super) type StreamSink<'a> = dyn FnMut(StreamEvent<'_>) + 'a;

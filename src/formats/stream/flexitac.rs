@@ -4,7 +4,7 @@
 //! not where it was due, the one is taken that is nearest to that place among those that the next marker confirms.
 //! Taking the first one instead would read frames from their middle.
 
-use crate::formats::stream::event::{EventSink, StreamCounts, StreamEvent};
+use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::frame::Frame;
 
 const MARKER: [u8; 2] = [0xaa, 0x55];
@@ -48,7 +48,7 @@ impl FlexitacDecoder {
         &mut self,
         bytes: &[u8],
         counts: &mut StreamCounts,
-        sink: &mut EventSink<'_>,
+        sink: &mut StreamSink<'_>,
     ) {
         // A piece at a time, so that the buffer stays small however much comes at once.
         for piece in bytes.chunks(self.period()) {
@@ -58,7 +58,7 @@ impl FlexitacDecoder {
     }
 
     /// The end of the input.
-    pub(super) fn finish(&mut self, counts: &mut StreamCounts, sink: &mut EventSink<'_>) {
+    pub(super) fn finish(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         while self.step(true, counts, sink) {}
         if !self.bytes.is_empty() {
             self.withdraw(sink);
@@ -70,7 +70,7 @@ impl FlexitacDecoder {
     }
 
     /// Takes one frame off, or drops what is none; false if more bytes are needed.
-    fn step(&mut self, ended: bool, counts: &mut StreamCounts, sink: &mut EventSink<'_>) -> bool {
+    fn step(&mut self, ended: bool, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) -> bool {
         let period = self.period();
         if self.in_step {
             let whole = self.bytes.len() == period;
@@ -99,7 +99,7 @@ impl FlexitacDecoder {
         self.search(ended, counts)
     }
 
-    fn withdraw(&mut self, sink: &mut EventSink<'_>) {
+    fn withdraw(&mut self, sink: &mut StreamSink<'_>) {
         if std::mem::take(&mut self.shown) {
             sink(StreamEvent::Withdrawn);
         }

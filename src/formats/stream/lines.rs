@@ -2,7 +2,7 @@
 //!
 //! A line that is not ended is never read: its last number may be torn.
 
-use crate::formats::stream::event::{EventSink, StreamCounts, StreamEvent};
+use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::formats::stream::numbers;
 use crate::frame::{Frame, MAX_FRAME_SIDE};
 
@@ -22,6 +22,8 @@ pub(super) struct LinesDecoder {
     broken: bool,
     /// What that row looks like.
     broken_row: Vec<u8>,
+    /// Whether there was an empty line.
+    parted: bool,
     frame: Frame,
 }
 
@@ -34,6 +36,7 @@ impl LinesDecoder {
             rows: 0,
             broken: false,
             broken_row: Vec::new(),
+            parted: false,
             frame: Frame::new(1, 1),
         }
     }
@@ -43,7 +46,7 @@ impl LinesDecoder {
         &mut self,
         line: &[u8],
         counts: &mut StreamCounts,
-        sink: &mut EventSink<'_>,
+        sink: &mut StreamSink<'_>,
     ) {
         if line.trim_ascii().is_empty() {
             self.boundary(counts, sink);
@@ -105,7 +108,8 @@ impl LinesDecoder {
     }
 
     /// An empty line.
-    fn boundary(&mut self, counts: &mut StreamCounts, sink: &mut EventSink<'_>) {
+    fn boundary(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+        self.parted = true;
         if !std::mem::replace(&mut self.begun, true) || self.rows == 0 {
             self.clear();
             return;
@@ -122,7 +126,7 @@ impl LinesDecoder {
     }
 
     /// Gives a frame of the shape.
-    fn give(&mut self, counts: &mut StreamCounts, sink: &mut EventSink<'_>) {
+    fn give(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         let Some((rows, columns)) = self.shape else {
             return;
         };
@@ -144,21 +148,24 @@ impl LinesDecoder {
         &mut self,
         torn: &[u8],
         counts: &mut StreamCounts,
-        sink: &mut EventSink<'_>,
+        sink: &mut StreamSink<'_>,
     ) {
         if !torn.trim_ascii().is_empty() {
             self.rows = self.rows.saturating_add(1);
             self.broken = true;
             self.broken_row = torn.iter().take(64).copied().collect();
         }
-        // Lines of one frame each and nothing else.
-        if self.shape.is_none() && !self.broken && self.rows > 0 && counts.frames == 0 {
+        // Lines and nothing else: of frames, or rows of a single one.
+        if self.shape.is_none() && !self.parted && self.rows > 0 {
             counts.unshaped = Some(self.values.len() as u64 / u64::from(self.rows));
+            self.clear();
+            return;
         }
         self.boundary(counts, sink);
     }
 }
 
 fn width(count: usize) -> u16 {
-    u16::try_from(count).unwrap_or(u16::MAX)
+    // A frame of more is refused.
+    u16::try_from(count).map_or(MAX_FRAME_SIDE + 1, |width| width)
 }

@@ -2,7 +2,7 @@
 //!
 //! Which of the two it is, the first two frames of the right length tell. Frames of another length are dropped.
 
-use crate::formats::stream::event::{EventSink, StreamCounts, StreamEvent};
+use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::frame::Frame;
 
 const END: u8 = 0xff;
@@ -143,7 +143,7 @@ impl MatsenseDecoder {
         &mut self,
         bytes: &[u8],
         counts: &mut StreamCounts,
-        sink: &mut EventSink<'_>,
+        sink: &mut StreamSink<'_>,
     ) {
         for &byte in bytes {
             let undecided = self.candidates.len() > 1;
@@ -173,7 +173,7 @@ impl MatsenseDecoder {
         }
     }
 
-    fn decide(&mut self, index: usize, counts: &mut StreamCounts, sink: &mut EventSink<'_>) {
+    fn decide(&mut self, index: usize, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         let (parts, waiting) = self.candidates.swap_remove(index);
         if parts.dropped > 0 {
             counts.drop_frames(parts.dropped, b"");
@@ -185,13 +185,13 @@ impl MatsenseDecoder {
     }
 
     /// The end of the input: of a single frame the form is that in which it has the right length.
-    pub(super) fn finish(&mut self, counts: &mut StreamCounts, sink: &mut EventSink<'_>) {
+    pub(super) fn finish(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         if self.candidates.len() > 1 {
             let index = self
                 .candidates
                 .iter()
                 .position(|(_, waiting)| !waiting.is_empty());
-            self.decide(index.unwrap_or(0), counts, sink);
+            self.decide(index.map_or(0, |index| index), counts, sink);
         }
         for (parts, _) in &mut self.candidates {
             if parts.inside && !parts.values.is_empty() {
@@ -202,7 +202,7 @@ impl MatsenseDecoder {
     }
 }
 
-fn give(frame: &mut Frame, values: &[u8], counts: &mut StreamCounts, sink: &mut EventSink<'_>) {
+fn give(frame: &mut Frame, values: &[u8], counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
     for (slot, &value) in frame.values_mut().iter_mut().zip(values) {
         *slot = f64::from(value);
     }

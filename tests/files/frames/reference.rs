@@ -230,6 +230,43 @@ fn zebris_counts_lines_as_x() {
     assert_eq!(info.pitch_mm, Some([8.46591, 8.46591]));
 }
 
+/// The topics of the MCAP file that have the whole matrix.
+fn mcap(iscan: &Recorded) {
+    let found = whole("data/made/frames.mcap", Some((28, 28))).expect("it is there");
+    let names: Vec<_> = found
+        .channels
+        .iter()
+        .flat_map(|info| info.name.clone())
+        .collect();
+    assert_eq!(names.len(), 4, "{names:?}");
+    let mut processing = Processing::default();
+    processing.rule = Some(Rule::at_least(10.0).expect("a number"));
+    for (channel, name) in names.iter().enumerate() {
+        let frames = found.frames.iter().filter(|frame| frame.channel == channel);
+        assert_eq!(frames.clone().count(), 12, "{name}");
+        if name.ends_with("#thumb") {
+            continue;
+        }
+        for (index, frame) in frames.enumerate() {
+            let own = processing.run(frame).expect("it fits").imprint;
+            let theirs = processing
+                .run(&iscan.frames[60 + index])
+                .expect("it fits")
+                .imprint;
+            assert_eq!(own, theirs, "{name}, frame {index}");
+            assert_eq!(frame.number, index as u64);
+        }
+    }
+    let bytes = std::fs::read(folder().expect("there").join("data/made/frames.mcap"));
+    let cut = recorded(&bytes.expect("a file")[..60_000], Some((28, 28)));
+    assert!(
+        cut.frames.len() > 8
+            && cut
+                .error
+                .is_some_and(|error| error.to_string().contains("footer"))
+    );
+}
+
 /// Frames 61 to 72 of the I-Scan file in other forms, each with what must be named.
 #[test]
 fn the_same_frames_in_other_forms_give_the_same_imprints() {
@@ -274,6 +311,7 @@ fn the_same_frames_in_other_forms_give_the_same_imprints() {
             );
         }
     }
+    mcap(&iscan);
     for (name, named) in [
         ("flexitac16.ascii", None),
         ("flexitac16.bin", Some((16, 16))),

@@ -9,7 +9,7 @@ use crate::docs::documents;
 const TAXEL: &str = env!("CARGO_BIN_EXE_taxel");
 
 /// The commands with a help of their own, in the order of `taxel help`; those of `library` are shown by its own help.
-const COMMANDS: [&str; 14] = [
+const COMMANDS: [&str; 15] = [
     "",
     "figure",
     "picture",
@@ -19,6 +19,7 @@ const COMMANDS: [&str; 14] = [
     "sweep",
     "merge",
     "frames",
+    "watch",
     "library",
     "script",
     "config",

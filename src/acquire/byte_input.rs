@@ -1,0 +1,113 @@
+//! Bytes of a source, read without waiting longer than a moment.
+
+use std::fs::File;
+use std::io::{self, ErrorKind, Read};
+use std::net::TcpStream;
+use std::os::fd::{AsFd, BorrowedFd};
+use std::time::Duration;
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+
+use crate::acquire::serial;
+use crate::acquire::source::FrameSource;
+
+/// How long a read waits for bytes.
+const MOMENT: Timespec = Timespec {
+    tv_sec: 0,
+    tv_nsec: 100_000_000,
+};
+
+/// How long a file that ends is left alone until it may have grown.
+const GROWTH: Duration = Duration::from_millis(50);
+
+/// How long a connection may take.
+const CONNECTING: Duration = Duration::from_secs(5);
+
+/// What a read has brought.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum ReadOutcome {
+    /// So many bytes, perhaps none yet.
+    Bytes(usize),
+    /// The end.
+    End,
+}
+
+/// An open source of bytes.
+#[derive(Debug)]
+pub(super) enum ByteInput {
+    Standard(io::Stdin),
+    Tcp(TcpStream),
+    /// A serial line or a pipe.
+    Device(File),
+    /// A file, and whether it is waited for when it ends.
+    File(File, bool),
+}
+
+impl ByteInput {
+    /// Opens a source; a file is read to its end only, if asked for.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub(super) fn open(source: &FrameSource, baud: u32, once: bool) -> io::Result<Self> {
+        Ok(match source {
+            FrameSource::Standard => Self::Standard(io::stdin()),
+            FrameSource::Tcp(address) => Self::Tcp(connect(address)?),
+            FrameSource::Serial(path) => Self::Device(serial::open_line(path, baud)?),
+            FrameSource::Fifo(path) => Self::Device(File::open(path)?),
+            FrameSource::File(path) => Self::File(File::open(path)?, !once),
+        })
+    }
+
+    fn fd(&self) -> BorrowedFd<'_> {
+        match self {
+            Self::Standard(input) => input.as_fd(),
+            Self::Tcp(stream) => stream.as_fd(),
+            Self::Device(file) | Self::File(file, _) => file.as_fd(),
+        }
+    }
+
+    /// Reads what is there; waits a moment where there is nothing.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub(super) fn read(&mut self, bytes: &mut [u8]) -> io::Result<ReadOutcome> {
+        if !matches!(self, Self::File(..)) {
+            let mut fds = [PollFd::from_borrowed_fd(self.fd(), PollFlags::IN)];
+            match poll(&mut fds, Some(&MOMENT)) {
+                Ok(0) | Err(rustix::io::Errno::INTR) => return Ok(ReadOutcome::Bytes(0)),
+                Ok(_) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+        let read = match self {
+            // Not through the buffer of the standard library, which would be polled past.
+            Self::Standard(input) => rustix::io::read(&*input, bytes).map_err(io::Error::from),
+            Self::Tcp(stream) => stream.read(bytes),
+            Self::Device(file) | Self::File(file, _) => file.read(bytes),
+        };
+        match (read, &self) {
+            (Ok(0), Self::File(_, true)) => {
+                std::thread::sleep(GROWTH);
+                Ok(ReadOutcome::Bytes(0))
+            }
+            (Ok(0), _) => Ok(ReadOutcome::End),
+            (Ok(count), _) => Ok(ReadOutcome::Bytes(count)),
+            (Err(error), _) => match error.kind() {
+                ErrorKind::Interrupted | ErrorKind::WouldBlock => Ok(ReadOutcome::Bytes(0)),
+                _ => Err(error),
+            },
+        }
+    }
+}
+
+fn connect(address: &str) -> io::Result<TcpStream> {
+    use std::net::ToSocketAddrs;
+    let mut failure = io::Error::new(ErrorKind::NotFound, "no such host");
+    for address in address.to_socket_addrs()? {
+        match TcpStream::connect_timeout(&address, CONNECTING) {
+            Ok(stream) => return Ok(stream),
+            Err(error) => failure = error,
+        }
+    }
+    Err(failure)
+}

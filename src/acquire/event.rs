@@ -1,0 +1,97 @@
+//! What an acquisition is asked for, what it reports, and why it ends.
+
+use std::io;
+use std::time::Duration;
+
+use crate::formats::recording::{ChannelInfo, RecordingError, RecordingNote};
+use crate::formats::stream::{StreamCounts, StreamFormat};
+use crate::frame::Frame;
+
+/// How a source is read.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct AcquireOptions {
+    /// The form of a stream; found by looking where there is none. With one a file is a stream, not a recording.
+    pub format: Option<StreamFormat>,
+    /// Rows and columns.
+    pub shape: Option<(u16, u16)>,
+    /// Bits per second of a serial line.
+    pub baud: u32,
+    /// Read to the end, as fast as it goes, and stop there.
+    pub once: bool,
+    /// Begin a recording again at its end.
+    pub repeat: bool,
+    /// How many times as fast as it was recorded a recording is played.
+    pub speed: f64,
+}
+
+impl Default for AcquireOptions {
+    fn default() -> Self {
+        Self {
+            format: None,
+            shape: None,
+            baud: 115_200,
+            once: false,
+            repeat: false,
+            speed: 1.0,
+        }
+    }
+}
+
+/// What an acquisition reports.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub enum AcquireEvent<'a> {
+    /// A channel of a recording, before its first frame.
+    Channel(&'a ChannelInfo),
+    /// A whole frame.
+    Frame {
+        /// The frame.
+        frame: &'a Frame,
+        /// Its time in seconds since the first one: its own, or else that of its arrival.
+        time: Option<f64>,
+    },
+    /// A frame that is shown but not kept, until what follows it confirms it.
+    Provisional(&'a Frame),
+    /// The provisional frame was none.
+    Withdrawn,
+    /// Something odd in a recording.
+    Note(&'a RecordingNote),
+    /// Ten times a second, frames or not: what has come so far.
+    Tick(&'a StreamCounts),
+    /// No frame for two seconds.
+    Silent {
+        /// Bytes a second that came meanwhile.
+        bytes_per_second: f64,
+        /// What has come so far.
+        counts: &'a StreamCounts,
+    },
+    /// The source is gone; it is tried again each second.
+    Lost(&'a io::Error),
+    /// The source is back.
+    Back {
+        /// How long it was gone.
+        gap: Duration,
+    },
+    /// A recording begins again.
+    Again,
+    /// The end of a stream, with all that has come.
+    Ended(&'a StreamCounts),
+}
+
+/// Why an acquisition has ended.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum AcquireError {
+    /// The source cannot be opened, or read on.
+    #[error("cannot {doing}: {error}")]
+    Io {
+        /// What was to be done.
+        doing: &'static str,
+        /// What the system reports.
+        error: io::Error,
+    },
+    /// The recording is damaged.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+}

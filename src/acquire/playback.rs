@@ -1,0 +1,113 @@
+//! A recording, played back at its own rate, another one, or as fast as it goes.
+
+use std::fs::File;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions};
+use crate::acquire::stream::Consumer;
+use crate::formats::recording::{ReadOptions, RecordingEvent, read};
+use crate::formats::stream::StreamCounts;
+
+/// The rate of a recording that does not say its own: ten frames a second.
+const STEP: f64 = 0.1;
+
+/// A wait is cut into pieces of this length, so that it can be broken off.
+const MOMENT: Duration = Duration::from_millis(100);
+
+/// No recording is waited for longer than a day.
+const LONGEST: f64 = 86_400.0;
+
+/// When the next frame is due.
+struct Pace {
+    begun: Instant,
+    /// Seconds from one frame to the next, where frames have no time.
+    step: f64,
+    speed: f64,
+    frames: u32,
+}
+
+impl Pace {
+    /// Waits for a frame; `Break` if no more is wanted.
+    fn wait(
+        &mut self,
+        time: Option<f64>,
+        stop: &AtomicBool,
+        consumer: &mut Consumer<'_>,
+    ) -> ControlFlow<()> {
+        let own = f64::from(self.frames) * self.step;
+        self.frames = self.frames.saturating_add(1);
+        let seconds = (time.unwrap_or(own) / self.speed).clamp(0.0, LONGEST);
+        let due = self.begun + Duration::from_secs_f64(seconds);
+        loop {
+            let left = due.saturating_duration_since(Instant::now());
+            if stop.load(Ordering::Relaxed) {
+                return ControlFlow::Break(());
+            }
+            if left.is_zero() {
+                return ControlFlow::Continue(());
+            }
+            consumer(AcquireEvent::Tick(&StreamCounts::default()))?;
+            std::thread::sleep(left.min(MOMENT));
+        }
+    }
+}
+
+/// Plays a recording.
+pub(super) fn run(
+    path: &Path,
+    options: &AcquireOptions,
+    stop: &AtomicBool,
+    consumer: &mut Consumer<'_>,
+) -> Result<(), AcquireError> {
+    let mut file = File::open(path).map_err(|error| AcquireError::Io {
+        doing: "open it",
+        error,
+    })?;
+    let mut reading = ReadOptions::default();
+    reading.shape = options.shape;
+    let mut round = 0;
+    loop {
+        let mut pace = Pace {
+            begun: Instant::now(),
+            step: STEP,
+            speed: options.speed,
+            frames: 0,
+        };
+        let mut flow = ControlFlow::Continue(());
+        read(&mut file, reading, &mut |event| {
+            flow = match event {
+                RecordingEvent::Channel(info) => {
+                    pace.step = info.seconds_per_frame.unwrap_or(STEP);
+                    match round {
+                        0 => consumer(AcquireEvent::Channel(info)),
+                        _ => ControlFlow::Continue(()),
+                    }
+                }
+                RecordingEvent::Frame(frame) => {
+                    let waited = if options.once {
+                        ControlFlow::Continue(())
+                    } else {
+                        pace.wait(frame.time, stop, consumer)
+                    };
+                    let stopped = stop.load(Ordering::Relaxed);
+                    match waited {
+                        ControlFlow::Continue(()) if !stopped => consumer(AcquireEvent::Frame {
+                            frame,
+                            time: frame.time,
+                        }),
+                        _ => ControlFlow::Break(()),
+                    }
+                }
+                RecordingEvent::Note(note) => consumer(AcquireEvent::Note(note)),
+            };
+            flow
+        })?;
+        round += 1;
+        if flow.is_break() || !options.repeat || consumer(AcquireEvent::Again).is_break() {
+            return Ok(());
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! A serial line: raw bytes at any speed, for this program alone.
+
+use std::fs::File;
+use std::io;
+use std::os::fd::OwnedFd;
+use std::path::Path;
+
+use rustix::fs::{FlockOperation, Mode, OFlags, flock, open};
+use rustix::io::Errno;
+use rustix::termios::{
+    ControlModes, OptionalActions, QueueSelector, ioctl_tiocexcl, tcflush, tcgetattr, tcsetattr,
+};
+
+/// Opens a line at a speed in bits per second. Many boards begin anew when a line is opened; what they had sent before is
+/// thrown away.
+///
+/// # Errors
+/// [`io::ErrorKind::ResourceBusy`] if another program has it open; else what the system reports.
+pub(super) fn open_line(path: &Path, baud: u32) -> io::Result<File> {
+    let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
+    let busy = || io::Error::new(io::ErrorKind::ResourceBusy, "another program has it open");
+    let line: OwnedFd = match open(path, flags, Mode::empty()) {
+        Err(Errno::BUSY) => return Err(busy()),
+        opened => opened?,
+    };
+    match flock(&line, FlockOperation::NonBlockingLockExclusive) {
+        Err(Errno::WOULDBLOCK) => return Err(busy()),
+        // Not every system locks devices.
+        Ok(()) | Err(_) => {}
+    }
+    let mut settings = tcgetattr(&line)?;
+    settings.make_raw();
+    settings.control_modes |= ControlModes::CREAD | ControlModes::CLOCAL;
+    settings.set_speed(baud)?;
+    tcsetattr(&line, OptionalActions::Now, &settings)?;
+    // A pseudo-terminal has no such mode.
+    let _ = ioctl_tiocexcl(&line);
+    tcflush(&line, QueueSelector::IFlush)?;
+    Ok(File::from(line))
+}

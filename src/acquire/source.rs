@@ -1,0 +1,56 @@
+//! What a source is called, and what it is.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::os::unix::fs::FileTypeExt;
+use std::path::PathBuf;
+
+/// Where frames come from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum FrameSource {
+    /// Standard input, `-`.
+    Standard,
+    /// A connection to `HOST:PORT`, `tcp://HOST:PORT`.
+    Tcp(String),
+    /// A serial line.
+    Serial(PathBuf),
+    /// A pipe with a name.
+    Fifo(PathBuf),
+    /// A file: a recording, or bytes that may become more.
+    File(PathBuf),
+}
+
+impl FrameSource {
+    /// The source of that name. A path that does not exist counts as a file.
+    pub fn new(name: &OsStr) -> Self {
+        if name == "-" {
+            return Self::Standard;
+        }
+        if let Some(address) = name.to_str().and_then(|name| name.strip_prefix("tcp://")) {
+            return Self::Tcp(address.to_owned());
+        }
+        let path = PathBuf::from(name);
+        match fs::metadata(&path).map(|metadata| metadata.file_type()) {
+            Ok(kind) if kind.is_char_device() => Self::Serial(path),
+            Ok(kind) if kind.is_fifo() => Self::Fifo(path),
+            _ => Self::File(path),
+        }
+    }
+
+    /// Its name in messages.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Standard => "standard input".to_owned(),
+            Self::Tcp(address) => format!("tcp://{address}"),
+            Self::Serial(path) | Self::Fifo(path) | Self::File(path) => {
+                path.to_string_lossy().into_owned()
+            }
+        }
+    }
+
+    /// Whether it comes back after it was lost, so that it is tried again.
+    pub(super) fn comes_back(&self) -> bool {
+        matches!(self, Self::Tcp(_) | Self::Serial(_))
+    }
+}

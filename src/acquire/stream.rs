@@ -1,0 +1,204 @@
+//! A source of bytes, decoded as long as it lasts; one that comes back is opened again each second.
+
+use std::io;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use crate::acquire::byte_input::{ByteInput, ReadOutcome};
+use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions};
+use crate::acquire::source::FrameSource;
+use crate::formats::stream::{StreamDecoder, StreamEvent, StreamOptions};
+
+/// Bytes read at a time.
+const CHUNK: usize = 1 << 16;
+
+/// A stream without a frame for this long is said to be silent.
+const SILENCE: Duration = Duration::from_secs(2);
+
+/// A source that is gone is tried again after this time.
+const RETRY: Duration = Duration::from_secs(1);
+
+/// The time between two ticks.
+const TICK: Duration = Duration::from_millis(100);
+
+/// What is measured while a stream is read.
+struct StreamClock {
+    /// The first frame's time.
+    first: Option<Instant>,
+    last_frame: Instant,
+    last_tick: Instant,
+    /// Bytes until the last frame or the last message.
+    bytes: u64,
+}
+
+impl StreamClock {
+    fn new() -> Self {
+        let now = Instant::now();
+        Self {
+            first: None,
+            last_frame: now,
+            last_tick: now,
+            bytes: 0,
+        }
+    }
+}
+
+/// Takes what is reported.
+pub(super) type Consumer<'a> = dyn FnMut(AcquireEvent<'_>) -> ControlFlow<()> + 'a;
+
+/// Reads a source of bytes.
+pub(super) fn run(
+    source: &FrameSource,
+    options: &AcquireOptions,
+    stop: &AtomicBool,
+    consumer: &mut Consumer<'_>,
+) -> Result<(), AcquireError> {
+    let mut stream = StreamOptions::default();
+    stream.format = options.format;
+    stream.shape = options.shape;
+    stream.from_start = !source.comes_back();
+    let mut decoder = StreamDecoder::new(stream);
+    let mut clock = StreamClock::new();
+    let open = || ByteInput::open(source, options.baud, options.once);
+    let mut input = open().map_err(|error| AcquireError::Io {
+        doing: "open it",
+        error,
+    })?;
+    // Arrival tells nothing of a file.
+    let timed = !options.once && !matches!(source, FrameSource::File(_));
+    let mut bytes = vec![0; CHUNK];
+    while !stop.load(Ordering::Relaxed) {
+        let lost = match input.read(&mut bytes) {
+            Ok(ReadOutcome::Bytes(count)) => {
+                let read = &bytes[..count];
+                if decode(&mut decoder, read, timed, &mut clock, consumer).is_break()
+                    || tick(&decoder, &mut clock, consumer).is_break()
+                {
+                    return Ok(());
+                }
+                continue;
+            }
+            Ok(ReadOutcome::End) if source.comes_back() && !options.once => {
+                io::Error::new(io::ErrorKind::UnexpectedEof, "the other end has closed it")
+            }
+            Ok(ReadOutcome::End) => break,
+            Err(error) if source.comes_back() && !options.once => error,
+            Err(error) => {
+                let doing = "read it";
+                return Err(AcquireError::Io { doing, error });
+            }
+        };
+        match again(&open, &lost, stop, &decoder, consumer) {
+            Some(found) => input = found,
+            None => return Ok(()),
+        }
+        decoder.restart();
+        clock.last_frame = Instant::now();
+    }
+    let mut flow = ControlFlow::Continue(());
+    decoder.finish(&mut |event| {
+        if flow.is_continue() {
+            flow = report(event, timed, &mut clock, consumer);
+        }
+    });
+    let _ = consumer(AcquireEvent::Ended(decoder.counts()));
+    Ok(())
+}
+
+/// Opens a source again, each second, until it is there; none if no more is wanted.
+fn again(
+    open: &dyn Fn() -> io::Result<ByteInput>,
+    lost: &io::Error,
+    stop: &AtomicBool,
+    decoder: &StreamDecoder,
+    consumer: &mut Consumer<'_>,
+) -> Option<ByteInput> {
+    let since = Instant::now();
+    if consumer(AcquireEvent::Lost(lost)).is_break() {
+        return None;
+    }
+    loop {
+        let next = Instant::now() + RETRY;
+        while Instant::now() < next {
+            if stop.load(Ordering::Relaxed)
+                || consumer(AcquireEvent::Tick(decoder.counts())).is_break()
+            {
+                return None;
+            }
+            std::thread::sleep(TICK);
+        }
+        if let Ok(input) = open() {
+            let gap = since.elapsed();
+            let back = consumer(AcquireEvent::Back { gap });
+            return back.is_continue().then_some(input);
+        }
+    }
+}
+
+fn decode(
+    decoder: &mut StreamDecoder,
+    bytes: &[u8],
+    timed: bool,
+    clock: &mut StreamClock,
+    consumer: &mut Consumer<'_>,
+) -> ControlFlow<()> {
+    let mut flow = ControlFlow::Continue(());
+    decoder.push(bytes, &mut |event| {
+        if flow.is_continue() {
+            flow = report(event, timed, clock, consumer);
+        }
+    });
+    flow
+}
+
+/// Reports an event of the decoder; a frame without a time of its own has that of its arrival.
+fn report(
+    event: StreamEvent<'_>,
+    timed: bool,
+    clock: &mut StreamClock,
+    consumer: &mut Consumer<'_>,
+) -> ControlFlow<()> {
+    match event {
+        StreamEvent::Frame(frame) => {
+            let now = Instant::now();
+            clock.last_frame = now;
+            let arrived = now - *clock.first.get_or_insert(now);
+            let arrived = timed.then_some(arrived.as_secs_f64());
+            consumer(AcquireEvent::Frame {
+                time: frame.time.or(arrived),
+                frame,
+            })
+        }
+        StreamEvent::Provisional(frame) => consumer(AcquireEvent::Provisional(frame)),
+        StreamEvent::Withdrawn => consumer(AcquireEvent::Withdrawn),
+    }
+}
+
+/// Reports that time has gone by, and whether a stream is silent.
+fn tick(
+    decoder: &StreamDecoder,
+    clock: &mut StreamClock,
+    consumer: &mut Consumer<'_>,
+) -> ControlFlow<()> {
+    let now = Instant::now();
+    if now - clock.last_tick < TICK {
+        return ControlFlow::Continue(());
+    }
+    clock.last_tick = now;
+    let counts = decoder.counts();
+    consumer(AcquireEvent::Tick(counts))?;
+    let silent = now - clock.last_frame;
+    if silent < SILENCE {
+        clock.bytes = counts.bytes;
+        return ControlFlow::Continue(());
+    }
+    clock.last_frame = now;
+    #[expect(clippy::cast_precision_loss, reason = "a rate for a message")]
+    let bytes_per_second = (counts.bytes - clock.bytes) as f64 / silent.as_secs_f64();
+    clock.bytes = counts.bytes;
+    consumer(AcquireEvent::Silent {
+        bytes_per_second,
+        counts,
+    })
+}

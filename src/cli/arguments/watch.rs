@@ -1,0 +1,122 @@
+//! The arguments of `taxel watch`.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::builder::PossibleValuesParser;
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+
+use crate::acquire::AcquireOptions;
+use crate::cli::arguments::flags;
+use crate::cli::arguments::frames::{self, ProcessingArguments};
+use crate::cli::arguments::help::WATCH_EXAMPLES;
+use crate::cli::arguments::parameters;
+use crate::cli::error::CliError;
+use crate::formats::stream::StreamFormat;
+use crate::parameter::number;
+use crate::storage::Existing;
+
+/// What `taxel watch` is to do.
+#[derive(Clone, Debug)]
+pub(crate) struct WatchArguments {
+    pub(crate) source: OsString,
+    pub(crate) options: AcquireOptions,
+    pub(crate) processing: ProcessingArguments,
+    /// The file that frames are recorded in.
+    pub(crate) write: Option<PathBuf>,
+    pub(crate) existing: Existing,
+}
+
+pub(crate) fn command() -> Command {
+    let source = Arg::new("source")
+        .value_name("SOURCE")
+        .required(true)
+        .value_parser(value_parser!(OsString))
+        .help("Serial line, FIFO, tcp://HOST:PORT, recording or file; '-' for\nstandard input");
+    let names = StreamFormat::NAMES.map(|(name, _)| name);
+    let format = Arg::new("format")
+        .long("format")
+        .value_name("FORMAT")
+        .value_parser(PossibleValuesParser::new(
+            std::iter::once("auto").chain(names),
+        ))
+        .hide_possible_values(true)
+        .help(parameters::wrapped(
+            &format!("Form of the stream: auto, {}", names.join(", ")),
+            52,
+        ));
+    let baud = Arg::new("baud")
+        .long("baud")
+        .value_name("BAUD")
+        .value_parser(value_parser!(u32).range(50..=20_000_000))
+        .help("Speed of a serial line; default 115200");
+    let once = Arg::new("once")
+        .long("once")
+        .action(ArgAction::SetTrue)
+        .conflicts_with_all(["loop", "speed"])
+        .help("Read to the end, as fast as it goes, and stop");
+    let again = Arg::new("loop")
+        .long("loop")
+        .action(ArgAction::SetTrue)
+        .help("Begin a recording again at its end");
+    let speed = Arg::new("speed")
+        .long("speed")
+        .value_name("FACTOR")
+        .value_parser(parse_speed)
+        .help("Play a recording so many times as fast");
+    let write = Arg::new("write")
+        .long("write")
+        .value_name("FILE.npy")
+        .value_parser(parse_npy)
+        .help("Record all frames, for numpy and 'taxel frames'");
+    Command::new("watch")
+        .about("Answer the frames of a sensor, live or played back")
+        .after_help(WATCH_EXAMPLES)
+        .arg(source)
+        .args([format, baud, once, again, speed].map(|arg| arg.help_heading("Source")))
+        .args(frames::processing())
+        .args(frames::rules())
+        .args([write, flags::replace().requires("write"), flags::json()])
+}
+
+fn parse_speed(text: &str) -> Result<f64, String> {
+    let speed = number::read(text).ok_or_else(|| number::complaint(text))?;
+    (speed > 0.0 && speed <= 1e6)
+        .then_some(speed)
+        .ok_or_else(|| "expected a number above 0, up to 1000000".to_owned())
+}
+
+fn parse_npy(text: &str) -> Result<PathBuf, &'static str> {
+    let path = PathBuf::from(text);
+    let is_npy = path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("npy"));
+    is_npy
+        .then_some(path)
+        .ok_or("expected a name that ends in .npy")
+}
+
+impl WatchArguments {
+    /// What the arguments of [`command`] ask for.
+    ///
+    /// # Errors
+    /// If a threshold is out of range.
+    pub(crate) fn of(matches: &ArgMatches, source: OsString) -> Result<Self, CliError> {
+        let processing = ProcessingArguments::of(matches)?;
+        let format = matches.get_one::<String>("format");
+        let mut options = AcquireOptions::default();
+        options.format = format.and_then(|name| StreamFormat::from_name(name));
+        options.shape = processing.shape;
+        options.baud = matches.get_one("baud").copied().unwrap_or(options.baud);
+        options.once = matches.get_flag("once");
+        options.repeat = matches.get_flag("loop");
+        options.speed = matches.get_one("speed").copied().unwrap_or(options.speed);
+        Ok(Self {
+            source,
+            options,
+            processing,
+            write: matches.get_one::<PathBuf>("write").cloned(),
+            existing: parameters::existing(matches),
+        })
+    }
+}

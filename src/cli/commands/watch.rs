@@ -1,0 +1,360 @@
+//! `taxel watch`: a line of JSON for each frame of a source, and a recording of all of them if one is wanted.
+//!
+//! Every frame is recorded before it is answered. A live source that is recorded is never held up: if whoever reads the
+//! answers is slow, frames are left unanswered, and their number is reported. Otherwise answers wait, as in any pipeline.
+
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+use crate::acquire::{
+    AcquireError, AcquireEvent, FrameRecorder, FrameSource, RecordingMetadata, acquire,
+};
+use crate::cli::arguments::watch::WatchArguments;
+use crate::cli::commands::frames;
+use crate::cli::error::CliError;
+use crate::cli::output::line_writer::LineWriter;
+use crate::cli::output::report;
+use crate::cli::signals::Signals;
+use crate::formats::json;
+use crate::formats::recording::{ChannelInfo, FrameAnswer, RecordingError, SetRule};
+use crate::formats::stream::StreamCounts;
+use crate::formats::value::grouped;
+use crate::frame::{Frame, FrameError, Processing, Rule, TareFrames};
+use crate::matrix::Matrix;
+
+/// Dropped frames are reported no more often than this.
+const REPORT: Duration = Duration::from_secs(1);
+
+/// What is done with frames as they come.
+struct Watcher<'a> {
+    asked: &'a WatchArguments,
+    name: String,
+    processing: Processing,
+    rule: Option<SetRule>,
+    /// Frames of the tare, and those that wait for it.
+    tare: Option<(TareFrames, Vec<Frame>)>,
+    recorder: Option<FrameRecorder>,
+    metadata: RecordingMetadata,
+    channels: Vec<ChannelInfo>,
+    /// The number of the channel that is answered.
+    channel: Option<usize>,
+    lines: LineWriter,
+    frame: Frame,
+    /// Whether a frame may be left unanswered.
+    live: bool,
+    dropped: u64,
+    reported: Option<Instant>,
+    note: &'a mut dyn FnMut(&str),
+    failure: Option<CliError>,
+}
+
+/// Answers the frames of a source until it ends. Returns the exit status: 0, or that of the signal that stopped it.
+///
+/// # Errors
+/// If the source, the recording or the answers fail.
+pub(crate) fn watch(asked: &WatchArguments, note: &mut dyn FnMut(&str)) -> Result<u8, CliError> {
+    let source = FrameSource::new(&asked.source);
+    let signals = Signals::heard().map_err(CliError::System)?;
+    let processing = frames::processing(&asked.processing)?;
+    let rule = asked.processing.rule.map(|rule| SetRule {
+        rule,
+        least: asked.processing.least,
+        from: "flag",
+    });
+    let metadata = RecordingMetadata {
+        source: source.name(),
+        rule,
+        ..RecordingMetadata::default()
+    };
+    let recorder = asked.write.as_ref();
+    let recorder = recorder.map(|path| FrameRecorder::create(path, asked.existing, &metadata));
+    let tare = asked.processing.tare;
+    let mut watcher = Watcher {
+        asked,
+        name: source.name(),
+        processing,
+        rule: None,
+        tare: (tare > 0).then(|| (TareFrames::new(tare), Vec::new())),
+        recorder: recorder.transpose().map_err(CliError::Recorder)?,
+        metadata,
+        channels: Vec::new(),
+        channel: None,
+        lines: LineWriter::start(),
+        frame: Frame::new(1, 1),
+        live: !asked.options.once && !matches!(source, FrameSource::File(_)),
+        dropped: 0,
+        reported: None,
+        note,
+        failure: None,
+    };
+    watcher.set_rule(rule);
+    let acquired = acquire(&source, &asked.options, &signals.stopped, &mut |event| {
+        watcher.on(event)
+    });
+    watcher.finish(acquired)?;
+    let stopped = signals.stopped.load(std::sync::atomic::Ordering::Relaxed);
+    Ok(match signals.failure() {
+        CliError::Stopped { status } if stopped => status,
+        _ => 0,
+    })
+}
+
+impl Watcher<'_> {
+    fn set_rule(&mut self, rule: Option<SetRule>) {
+        self.rule = rule;
+        self.processing.rule = rule.map(|set| set.rule);
+        self.processing.least = rule.map_or(0, |set| set.least);
+    }
+
+    fn on(&mut self, event: AcquireEvent<'_>) -> ControlFlow<()> {
+        let done = match event {
+            AcquireEvent::Channel(info) => self.add_channel(info),
+            AcquireEvent::Frame { frame, time } => self.add_frame(frame, time),
+            AcquireEvent::Tick(counts) => self.tick(counts),
+            AcquireEvent::Silent {
+                bytes_per_second,
+                counts,
+            } => {
+                self.silent(bytes_per_second, counts);
+                Ok(())
+            }
+            AcquireEvent::Lost(error) => {
+                let text = format!("lost: {error}; trying again each second");
+                self.say(&text);
+                Ok(())
+            }
+            AcquireEvent::Back { gap } => {
+                self.say(&format!("back after {:.1} s", gap.as_secs_f64()));
+                Ok(())
+            }
+            AcquireEvent::Note(note) => {
+                self.say(&format!("warning: {note}"));
+                Ok(())
+            }
+            AcquireEvent::Ended(counts) => self.ended(counts),
+            _ => Ok(()),
+        };
+        match done {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(error) => {
+                self.failure = Some(error);
+                ControlFlow::Break(())
+            }
+        }
+    }
+
+    fn say(&mut self, text: &str) {
+        let line = format!("{}: {text}", self.name);
+        (self.note)(&line);
+    }
+
+    fn refused(&self, message: &str) -> CliError {
+        CliError::Frames {
+            name: self.name.clone(),
+            message: message.to_owned(),
+        }
+    }
+
+    /// Another channel of a recording. With its first one come unit and threshold.
+    fn add_channel(&mut self, info: &ChannelInfo) -> Result<(), CliError> {
+        self.channels.push(info.clone());
+        let names: Vec<&str> = self
+            .channels
+            .iter()
+            .map(|channel| channel.name.as_deref().unwrap_or("unnamed"))
+            .collect();
+        let asked = self.asked.processing.channel.as_deref();
+        match asked {
+            None if names.len() > 1 => {
+                let names = names.join(", ");
+                let message = format!("several channels, choose one with --channel: {names}");
+                return Err(self.refused(&message));
+            }
+            Some(asked) if info.name.as_deref() != Some(asked) => return Ok(()),
+            _ => self.channel = Some(names.len() - 1),
+        }
+        if self.rule.is_none()
+            && let Some(Ok(rule)) = info.threshold.map(Rule::at_least)
+        {
+            let least = self.asked.processing.least;
+            self.set_rule(Some(SetRule {
+                rule,
+                least,
+                from: "file",
+            }));
+        }
+        self.metadata.unit.clone_from(&info.unit);
+        self.metadata.pitch_mm = info.pitch_mm;
+        self.metadata.rule = self.rule;
+        self.describe()
+    }
+
+    fn describe(&self) -> Result<(), CliError> {
+        let recorder = self.recorder.as_ref();
+        let described = recorder.map(|recorder| recorder.describe(&self.metadata));
+        described.transpose().map(drop).map_err(CliError::Recorder)
+    }
+
+    /// Records a frame, and answers it, at once or as soon as there is a tare.
+    fn add_frame(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), CliError> {
+        if self.channel.unwrap_or(frame.channel) != frame.channel {
+            return Ok(());
+        }
+        if let Some(recorder) = &mut self.recorder {
+            recorder.add(frame, time).map_err(CliError::Recorder)?;
+        }
+        let mut own = std::mem::replace(&mut self.frame, Frame::new(1, 1));
+        own.copy_from(frame);
+        own.time = time;
+        let Some((tare, waiting)) = &mut self.tare else {
+            let answered = self.answer(&own);
+            self.frame = own;
+            return answered;
+        };
+        let mut seen = Matrix::filled(1, 1, f64::NAN);
+        let added = self.processing.view.of(&own, &mut seen);
+        let added = added.and_then(|()| tare.add(&seen));
+        waiting.push(own);
+        added.map_err(|error| self.refused(&error.to_string()))?;
+        self.end_tare()
+    }
+
+    /// Answers what has waited for the tare, once it has all its frames.
+    fn end_tare(&mut self) -> Result<(), CliError> {
+        let Some((tare, waiting)) = self.tare.take_if(|(tare, _)| tare.missing() == 0) else {
+            return Ok(());
+        };
+        let tare = tare
+            .finish()
+            .map_err(|error| self.refused(&error.to_string()))?;
+        self.metadata = std::mem::take(&mut self.metadata).with_tare(&tare);
+        self.processing.tare = Some(tare);
+        self.describe()?;
+        waiting.iter().try_for_each(|frame| self.answer(frame))
+    }
+
+    fn answer(&mut self, frame: &Frame) -> Result<(), CliError> {
+        let processed = match self.processing.run(frame) {
+            Ok(processed) => processed,
+            Err(error) => {
+                return Err(CliError::Frames {
+                    name: self.name.clone(),
+                    message: error.to_string(),
+                });
+            }
+        };
+        let channel = self.channels.get(frame.channel);
+        let answer = FrameAnswer {
+            frame,
+            channel: channel.and_then(|channel| channel.name.as_deref()),
+            processed,
+            rule: self.rule,
+            tare: self.asked.processing.tare,
+        };
+        let line = report::ascii_json(&json::text(&answer)) + "\n";
+        let may_give_up = self.live && self.recorder.is_some();
+        if self.lines.send(line.into_bytes(), may_give_up) {
+            return Ok(());
+        }
+        Err(CliError::Write(std::io::ErrorKind::BrokenPipe.into()))
+    }
+
+    fn tick(&mut self, counts: &StreamCounts) -> Result<(), CliError> {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.tick().map_err(CliError::Recorder)?;
+        }
+        self.shaped(counts)?;
+        if self.reported.is_none_or(|last| last.elapsed() >= REPORT) {
+            self.report_dropped(counts);
+        }
+        Ok(())
+    }
+
+    /// What cannot be decoded without rows and columns is an error.
+    fn shaped(&self, counts: &StreamCounts) -> Result<(), CliError> {
+        match counts.unshaped.filter(|_| counts.frames == 0) {
+            Some(0) => {
+                Err(self.refused("bytes, but not how many a frame: name --rows and --columns"))
+            }
+            Some(values) => Err(CliError::Recording {
+                name: self.name.clone(),
+                error: RecordingError::Shape { values },
+            }),
+            None if counts.cut => Err(self.refused(
+                "the echo leaves out values ('...'): run ros2 topic echo with --full-length",
+            )),
+            None => Ok(()),
+        }
+    }
+
+    fn report_dropped(&mut self, counts: &StreamCounts) {
+        if counts.dropped <= self.dropped {
+            return;
+        }
+        self.dropped = counts.dropped;
+        self.reported = Some(Instant::now());
+        let sample = counts.sample.as_deref().unwrap_or("");
+        let dropped = grouped(counts.dropped);
+        let text =
+            format!("{dropped} torn, short, long or garbled frames so far, the last: {sample}");
+        self.say(&text);
+    }
+
+    fn silent(&mut self, bytes_per_second: f64, counts: &StreamCounts) {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a rate for a message"
+        )]
+        let rate = grouped(bytes_per_second.round() as u64);
+        let question = match (counts.bytes, bytes_per_second > 0.0) {
+            (_, true) => ": baud, rows, columns or format?",
+            (0, _) => ": is it sending?",
+            _ => "",
+        };
+        self.say(&format!("{rate} B/s and no frame{question}"));
+    }
+
+    fn ended(&mut self, counts: &StreamCounts) -> Result<(), CliError> {
+        self.shaped(counts)?;
+        self.report_dropped(counts);
+        if counts.frames == 0 {
+            let bytes = grouped(counts.bytes);
+            return Err(self.refused(&format!(
+                "{bytes} bytes and no frame: rows, columns or format?"
+            )));
+        }
+        Ok(())
+    }
+
+    /// Writes out everything.
+    fn finish(mut self, acquired: Result<(), AcquireError>) -> Result<(), CliError> {
+        let mut failure = self.failure.take();
+        if let (None, Some((tare, _))) = (&failure, &self.tare) {
+            let wanted = self.asked.processing.tare;
+            let frames = wanted - tare.missing();
+            failure = Some(self.refused(&FrameError::Tare { frames, wanted }.to_string()));
+        }
+        let recorded = self.recorder.take().map(FrameRecorder::finish);
+        let given_up = self.lines.given_up;
+        if given_up > 0 {
+            let text = format!(
+                "{} frames were recorded but not answered",
+                grouped(given_up)
+            );
+            self.say(&text);
+        }
+        let name = self.name.clone();
+        let written = self.lines.finish();
+        let damage = acquired.err().map(|error| match error {
+            AcquireError::Recording(error) => CliError::Recording { name, error },
+            error => CliError::Frames {
+                name,
+                message: error.to_string(),
+            },
+        });
+        recorded.transpose().map_err(CliError::Recorder)?;
+        written.map_err(CliError::Write)?;
+        failure.or(damage).map_or(Ok(()), Err)
+    }
+}

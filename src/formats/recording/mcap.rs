@@ -1,0 +1,364 @@
+//! MCAP files of ROS 2: arrays, images and tactile states in CDR, a channel a topic, of a tactile state a channel a sensor.
+//!
+//! Records follow one another, those of chunks too, so the file is read from front to back in the same memory, and one
+//! that was never closed gives all its whole messages. Source: <https://mcap.dev/spec>.
+
+use std::io::{self, BufRead, Read};
+
+use crate::formats::recording::cdr::CdrReader;
+use crate::formats::recording::error::RecordingError;
+use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
+use crate::frame::{Frame, LARGEST_VALUE, MAX_FRAME_SIDE};
+
+pub(super) const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+
+/// No message of a frame is larger.
+const LARGEST_RECORD: u64 = 1 << 24;
+
+/// No file has more topics or sensors with frames.
+const MOST_CHANNELS: usize = 256;
+
+const FOOTER: u8 = 2;
+const SCHEMA: u8 = 3;
+const CHANNEL: u8 = 4;
+const MESSAGE: u8 = 5;
+const CHUNK: u8 = 6;
+
+/// A kind of message that has frames.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum MessageKind {
+    /// A `MultiArray` of numbers: their kind, as of numpy, and bytes.
+    Array(u8, usize),
+    Image,
+    TactileState,
+}
+
+impl MessageKind {
+    /// That of a schema such as `std_msgs/msg/UInt16MultiArray`.
+    fn of(schema: &str) -> Option<Self> {
+        let (package, name) = (schema.split('/').next()?, schema.rsplit('/').next()?);
+        match (package, name) {
+            ("sensor_msgs", "Image") => Some(Self::Image),
+            ("tactile_msgs", "TactileState") => Some(Self::TactileState),
+            ("std_msgs", name) => {
+                let (kind, size) = match name.strip_suffix("MultiArray")? {
+                    "Int8" => (b'i', 1),
+                    "UInt8" | "Byte" | "Char" => (b'u', 1),
+                    "Int16" => (b'i', 2),
+                    "UInt16" => (b'u', 2),
+                    "Int32" => (b'i', 4),
+                    "UInt32" => (b'u', 4),
+                    "Int64" => (b'i', 8),
+                    "UInt64" => (b'u', 8),
+                    "Float32" => (b'f', 4),
+                    "Float64" => (b'f', 8),
+                    _ => return None,
+                };
+                Some(Self::Array(kind, size))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// A channel that was reported.
+struct GivenChannel {
+    name: String,
+    frames: u64,
+}
+
+struct McapState<'a, 'b> {
+    options: ReadOptions,
+    schemas: Vec<(u16, MessageKind)>,
+    topics: Vec<(u16, String, MessageKind)>,
+    given: Vec<GivenChannel>,
+    start: Option<u64>,
+    values: Vec<f64>,
+    frame: Frame,
+    sink: &'a mut Sink<'b>,
+}
+
+/// Reads a recording.
+pub(super) fn read(
+    input: &mut impl BufRead,
+    options: ReadOptions,
+    sink: &mut Sink<'_>,
+) -> Result<(), RecordingError> {
+    let mut state = McapState {
+        options,
+        schemas: Vec::new(),
+        topics: Vec::new(),
+        given: Vec::new(),
+        start: None,
+        values: Vec::new(),
+        frame: Frame::new(1, 1),
+        sink,
+    };
+    let mut magic = [0; MAGIC.len()];
+    whole(input, &mut magic)?;
+    let mut record = Vec::new();
+    loop {
+        let mut head = [0; 9];
+        whole(input, &mut head)?;
+        let [kind, length @ ..] = head;
+        let length = u64::from_le_bytes(length);
+        match kind {
+            FOOTER => break,
+            CHUNK => chunk(input)?,
+            SCHEMA | CHANNEL | MESSAGE => {
+                if length > LARGEST_RECORD {
+                    return Err(RecordingError::damaged("a record of more than 16 MiB"));
+                }
+                record.clear();
+                let read = input.by_ref().take(length).read_to_end(&mut record)?;
+                if (read as u64) < length {
+                    return Err(torn());
+                }
+                if state.record(kind, &record)? {
+                    return Ok(());
+                }
+            }
+            _ => {
+                let skipped = io::copy(&mut input.by_ref().take(length), &mut io::sink())?;
+                if skipped < length {
+                    return Err(torn());
+                }
+            }
+        }
+    }
+    if state.given.is_empty() {
+        return Err(RecordingError::damaged(
+            "no messages with frames, expected std_msgs/*MultiArray, sensor_msgs/Image or tactile_msgs/TactileState",
+        ));
+    }
+    Ok(())
+}
+
+fn torn() -> RecordingError {
+    RecordingError::damaged("the file ends without a footer: it was not closed")
+}
+
+fn whole(input: &mut impl Read, bytes: &mut [u8]) -> Result<(), RecordingError> {
+    input.read_exact(bytes).map_err(|error| match error.kind() {
+        io::ErrorKind::UnexpectedEof => torn(),
+        _ => error.into(),
+    })
+}
+
+/// Reads what stands before the records of a chunk, which follow like any others.
+fn chunk(input: &mut impl Read) -> Result<(), RecordingError> {
+    // Start, end, size, checksum.
+    let mut head = [0; 32];
+    whole(input, &mut head)?;
+    let [.., a, b, c, d] = head;
+    let length = u32::from_le_bytes([a, b, c, d]);
+    if length > 0 {
+        let mut name = Vec::new();
+        input
+            .by_ref()
+            .take(u64::from(length.min(40)))
+            .read_to_end(&mut name)?;
+        let name = String::from_utf8_lossy(&name);
+        return Err(RecordingError::damaged(format!(
+            "chunks are compressed ({name}): write them without, as 'mcap compress --compression none' does"
+        )));
+    }
+    let mut records = [0; 8];
+    whole(input, &mut records)
+}
+
+/// A text behind its length, and what follows it.
+fn text(bytes: &[u8]) -> Option<(&str, &[u8])> {
+    let (length, rest) = bytes.split_first_chunk::<4>()?;
+    let length = usize::try_from(u32::from_le_bytes(*length)).ok()?;
+    let (text, rest) = rest.split_at_checked(length)?;
+    Some((str::from_utf8(text).ok()?, rest))
+}
+
+impl McapState<'_, '_> {
+    /// Takes a record; true if no more is wanted.
+    fn record(&mut self, kind: u8, record: &[u8]) -> Result<bool, RecordingError> {
+        let broken = || RecordingError::damaged("a record is broken");
+        let (id, rest) = record.split_first_chunk::<2>().ok_or_else(broken)?;
+        let id = u16::from_le_bytes(*id);
+        match kind {
+            SCHEMA => {
+                let (name, _) = text(rest).ok_or_else(broken)?;
+                let known = self.schemas.iter().any(|(own, _)| *own == id);
+                let kind = MessageKind::of(name).filter(|_| !known);
+                self.schemas.extend(kind.map(|kind| (id, kind)));
+            }
+            CHANNEL => {
+                let (schema, rest) = rest.split_first_chunk::<2>().ok_or_else(broken)?;
+                let schema = u16::from_le_bytes(*schema);
+                let (topic, rest) = text(rest).ok_or_else(broken)?;
+                let (encoding, _) = text(rest).ok_or_else(broken)?;
+                let found = self.schemas.iter().find(|(own, _)| *own == schema);
+                let known = self.topics.iter().any(|(own, ..)| *own == id);
+                if let Some(&(_, kind)) = found.filter(|_| encoding == "cdr" && !known) {
+                    self.topics.push((id, topic.to_owned(), kind));
+                }
+            }
+            _ => {
+                let (_, rest) = rest.split_first_chunk::<4>().ok_or_else(broken)?;
+                let (time, rest) = rest.split_first_chunk::<8>().ok_or_else(broken)?;
+                let (_, data) = rest.split_first_chunk::<8>().ok_or_else(broken)?;
+                let found = self.topics.iter().find(|(own, ..)| *own == id);
+                if let Some((_, topic, kind)) = found.cloned() {
+                    let time = u64::from_le_bytes(*time);
+                    let message = self.message(&topic, kind, time, data);
+                    return message.ok_or_else(|| {
+                        RecordingError::damaged(format!("{topic}: a message is broken"))
+                    })?;
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// Takes a message; None if it is broken.
+    fn message(
+        &mut self,
+        topic: &str,
+        kind: MessageKind,
+        time: u64,
+        data: &[u8],
+    ) -> Option<Result<bool, RecordingError>> {
+        let start = *self.start.get_or_insert(time);
+        #[expect(clippy::cast_precision_loss, reason = "a difference in nanoseconds")]
+        let seconds = (i128::from(time) - i128::from(start)) as f64 * 1e-9;
+        self.frame.time = Some(seconds);
+        let mut cdr = CdrReader::new(data)?;
+        match kind {
+            MessageKind::Array(kind, size) => {
+                let mut sizes = Vec::new();
+                for _ in 0..cdr.count(12)? {
+                    cdr.text()?;
+                    sizes.push(cdr.word()?);
+                    cdr.word()?;
+                }
+                let offset = usize::try_from(cdr.word()?).ok()?;
+                self.values.clear();
+                cdr.numbers(kind, size, &mut self.values)?;
+                self.values.drain(..offset.min(self.values.len()));
+                let side = |side: u32| {
+                    u16::try_from(side)
+                        .ok()
+                        .filter(|side| (1..=MAX_FRAME_SIDE).contains(side))
+                };
+                let shape = match sizes[..] {
+                    [rows, columns] | [rows, columns, 1] => side(rows).zip(side(columns)),
+                    _ => None,
+                };
+                Some(self.give(topic.to_owned(), shape))
+            }
+            MessageKind::Image => {
+                let shape = image(&mut cdr, &mut self.values)?;
+                Some(self.give(topic.to_owned(), Some(shape)))
+            }
+            MessageKind::TactileState => {
+                header(&mut cdr)?;
+                for _ in 0..cdr.count(8)? {
+                    let name = format!("{topic}#{}", cdr.text()?);
+                    self.values.clear();
+                    cdr.numbers(b'f', 4, &mut self.values)?;
+                    match self.give(name, None) {
+                        Ok(false) => {}
+                        ended => return Some(ended),
+                    }
+                }
+                Some(Ok(false))
+            }
+        }
+    }
+
+    /// Gives the values as a frame of a channel; true if no more is wanted.
+    fn give(&mut self, name: String, shape: Option<(u16, u16)>) -> Result<bool, RecordingError> {
+        let found = self.values.len();
+        let cells = |(rows, columns): (u16, u16)| usize::from(rows) * usize::from(columns);
+        // What is named for one channel need not fit the others.
+        let named = self.options.shape.filter(|&asked| cells(asked) == found);
+        let shape = shape.or(named);
+        let channel = match self.given.iter().position(|own| own.name == name) {
+            Some(channel) => channel,
+            None if self.given.len() == MOST_CHANNELS => {
+                let message = format!("more than {MOST_CHANNELS} channels");
+                return Err(RecordingError::damaged(message));
+            }
+            None => {
+                let info = ChannelInfo {
+                    name: Some(name.clone()),
+                    shape,
+                    values: Some(found as u64),
+                    ..ChannelInfo::default()
+                };
+                self.given.push(GivenChannel {
+                    name: name.clone(),
+                    frames: 0,
+                });
+                if (self.sink)(RecordingEvent::Channel(&info)).is_break() {
+                    return Ok(true);
+                }
+                self.given.len() - 1
+            }
+        };
+        self.frame.channel = channel;
+        self.frame.number = self.given[channel].frames;
+        match shape {
+            Some(shape) if cells(shape) == found => {
+                self.frame.reset(shape.1, shape.0);
+                self.frame.values_mut().copy_from_slice(&self.values);
+            }
+            Some(shape) => {
+                let message = format!("{name}: found {found} values, expected {}", cells(shape));
+                return Err(RecordingError::damaged(message));
+            }
+            // Counted only: rows and columns have to be named.
+            None => self.frame.reset(1, 1),
+        }
+        if self.values.iter().any(|value| value.abs() > LARGEST_VALUE) {
+            return Err(RecordingError::damaged(format!(
+                "{name}: a value is infinite"
+            )));
+        }
+        self.given[channel].frames += 1;
+        Ok((self.sink)(RecordingEvent::Frame(&self.frame)).is_break())
+    }
+}
+
+/// Passes over a `std_msgs/Header`.
+fn header(cdr: &mut CdrReader<'_>) -> Option<()> {
+    cdr.word()?;
+    cdr.word()?;
+    cdr.text().map(drop)
+}
+
+/// Reads an image; rows and columns.
+fn image(cdr: &mut CdrReader<'_>, values: &mut Vec<f64>) -> Option<(u16, u16)> {
+    header(cdr)?;
+    let (height, width) = (cdr.word()?, cdr.word()?);
+    let (kind, size) = match cdr.text()? {
+        "mono8" | "8UC1" => (b'u', 1),
+        "mono16" | "16UC1" => (b'u', 2),
+        "32FC1" => (b'f', 4),
+        _ => return None,
+    };
+    let big_endian = cdr.byte()? != 0;
+    let step = usize::try_from(cdr.word()?).ok()?;
+    let data = cdr.bytes()?;
+    let side = |side: u32| {
+        u16::try_from(side)
+            .ok()
+            .filter(|side| (1..=MAX_FRAME_SIDE).contains(side))
+    };
+    let (rows, columns) = (side(height)?, side(width)?);
+    let line = usize::from(columns) * size;
+    values.clear();
+    for row in 0..usize::from(rows) {
+        let start = row.checked_mul(step)?;
+        let bytes = data.get(start..start.checked_add(line)?)?;
+        let number = super::numpy::NumberType::new(kind, size, big_endian);
+        values.extend(bytes.chunks(size).map(|bytes| number.value(bytes)));
+    }
+    Some((rows, columns))
+}

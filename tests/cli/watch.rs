@@ -1,0 +1,268 @@
+//! `taxel watch`: frames as they come, from pipes, pseudo-terminals and recordings, and recordings of them.
+
+use std::fs;
+use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
+use std::process::{Child, Command};
+use std::time::Duration;
+
+use serde_json::Value;
+
+use super::{misused, program, taxel};
+
+fn sample(name: &str) -> String {
+    format!(
+        "{}/tests/files/frames/samples/{name}",
+        env!("CARGO_MANIFEST_DIR")
+    )
+}
+
+fn lines(text: &str) -> Vec<Value> {
+    let lines = text.lines();
+    lines
+        .map(|line| serde_json::from_str(line).expect(line))
+        .collect()
+}
+
+/// So many frames of 2 x 2 in lines, the first value counting.
+fn stream(frames: std::ops::Range<u32>) -> String {
+    frames
+        .map(|number| format!("{number} 2\n3 4\n\n"))
+        .collect()
+}
+
+#[test]
+fn a_recording_is_answered_as_by_frames() {
+    for (name, shape) in [
+        ("tekscan.asf", ""),
+        ("named.csv", ""),
+        ("flexitac.bin", "--rows 4 --columns 5"),
+    ] {
+        let flags = format!("{} --at-least 9 --tare 2 {shape}", sample(name));
+        let watched = taxel(&format!("watch --once {flags}"), "");
+        let listed = taxel(&format!("frames --all --json {flags}"), "");
+        assert_eq!(watched, listed, "{name}");
+        assert_eq!(lines(&watched.stdout).len(), 3, "{name}");
+    }
+    // A recording without a threshold has no imprints, but frames.
+    let run = taxel(&format!("watch --once {}", sample("u2.npy")), "");
+    assert_eq!(lines(&run.stdout)[0]["imprint"], Value::Null);
+    // At ten thousand times its rate, from time to time.
+    let run = taxel(&format!("watch --speed 10000 {}", sample("named.csv")), "");
+    assert_eq!(lines(&run.stdout).len(), 3);
+}
+
+#[test]
+fn a_stream_is_a_filter_in_a_pipeline() {
+    let run = taxel(
+        "watch - --percent 75",
+        stream(0..3) + "1 x\n\n" + &stream(3..5),
+    );
+    let found = lines(&run.stdout);
+    assert_eq!((run.status, found.len()), (Some(0), 5));
+    assert_eq!(found[0]["imprint"], serde_json::json!(["..", "##"]));
+    assert!(found[4]["time"].as_f64().is_some_and(|time| time >= 0.0));
+    assert_eq!(
+        run.stderr,
+        "standard input: 1 torn, short, long or garbled frames so far, the last: 1 x\n"
+    );
+    let run = taxel("watch - --once", [0xff; 100]);
+    assert_eq!(run.status, Some(1));
+    assert!(
+        run.stderr.contains("--rows and --columns"),
+        "{}",
+        run.stderr
+    );
+    let run = taxel("watch - --once --tare 3", stream(0..2));
+    assert_eq!((run.status, run.stdout.as_str()), (Some(1), ""));
+    assert!(
+        run.stderr.contains("a tare of 3 frames, but there are 2"),
+        "{}",
+        run.stderr
+    );
+    misused("watch - --once --speed 2", "the argument '--once'");
+    misused("watch - --write touch.txt", "invalid value 'touch.txt'");
+}
+
+/// What python's numpy has to say of a file, if it is there.
+fn numpy(path: &Path) -> Option<String> {
+    let script = "import sys, numpy; a = numpy.load(sys.argv[1]); print(len(a), a.dtype.names, a['values'].sum())";
+    let run = Command::new("python3")
+        .args(["-c", script])
+        .arg(path)
+        .output();
+    match run {
+        Ok(run) if run.status.success() => Some(String::from_utf8_lossy(&run.stdout).into_owned()),
+        _ if std::env::var_os("TAXEL_NUMPY").is_some() => {
+            panic!("numpy opens {}: {run:?}", path.display())
+        }
+        _ => {
+            eprintln!("SKIPPED: numpy is not installed");
+            None
+        }
+    }
+}
+
+#[test]
+fn a_recording_of_a_stream_is_read_by_taxel_and_numpy() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("touch.npy");
+    let line = format!("watch - --once --at-least 3 --write {}", file.display());
+    let run = taxel(&line, stream(0..50));
+    assert_eq!((run.status, lines(&run.stdout).len()), (Some(0), 50));
+    let again = taxel(
+        &format!("frames {} --all --at-least 3 --json", file.display()),
+        "",
+    );
+    let (first, again) = (lines(&run.stdout), lines(&again.stdout));
+    assert_eq!(again.len(), 50);
+    for (first, again) in first.iter().zip(&again) {
+        assert_eq!(
+            (&first["sum"], &first["imprint"]),
+            (&again["sum"], &again["imprint"])
+        );
+        assert_eq!(first["frame"], again["label"]);
+    }
+    if let Some(said) = numpy(&file) {
+        assert_eq!(said, "50 ('time', 'number', 'values') 1675.0\n");
+    }
+    let beside = fs::read_to_string(file.with_extension("json")).expect("it is there");
+    let beside: Value = serde_json::from_str(&beside).expect("JSON");
+    assert_eq!(
+        (&beside["format"], &beside["source"]),
+        (&"taxel-touch/1".into(), &"standard input".into())
+    );
+    // It is not replaced by mistake.
+    let run = taxel(&line, stream(0..1));
+    assert_eq!(run.status, Some(1));
+    assert!(run.stderr.contains("--force replaces it"), "{}", run.stderr);
+    assert_eq!(
+        taxel(&format!("{line} --force"), stream(0..1)).status,
+        Some(0)
+    );
+}
+
+fn started(arguments: &[&str]) -> Child {
+    program(arguments, "C.UTF-8")
+        .spawn()
+        .expect("the program starts")
+}
+
+/// Killed at many moments: what was recorded until then opens, and no frame of it is wrong.
+#[test]
+fn after_a_kill_the_recording_opens_and_every_frame_is_right() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for round in 0..12_u32 {
+        let file = folder.path().join(format!("touch-{round}.npy"));
+        let path = file.to_str().expect("UTF-8");
+        let mut child = started(&["watch", "-", "--format", "lines", "--write", path]);
+        let mut input = child.stdin.take().expect("piped");
+        let mut output = BufReader::new(child.stdout.take().expect("piped"));
+        // Longer than the records wait, in some rounds.
+        let mut answer = String::new();
+        for piece in 0..=round / 3 {
+            let frames = stream(piece * 100..(piece + 1) * 100);
+            input.write_all(frames.as_bytes()).expect("it reads");
+            for _ in 0..99 {
+                answer.clear();
+                output.read_line(&mut answer).expect("it answers");
+            }
+            std::thread::sleep(Duration::from_millis(u64::from(round) * 40));
+        }
+        child.kill().expect("it is killed");
+        child.wait().expect("it ends");
+        let run = taxel(&format!("frames {path} --all --at-least 1 --json"), "");
+        for (number, frame) in lines(&run.stdout).iter().enumerate() {
+            assert_eq!(frame["sum"], 9 + number, "{frame}");
+        }
+        if lines(&run.stdout).is_empty() {
+            assert!(
+                run.stderr.is_empty() || run.stderr.contains("no frames"),
+                "{}",
+                run.stderr
+            );
+        }
+        // A second and more after the first hundred they are in the file.
+        assert!(
+            round < 9 || lines(&run.stdout).len() >= 100,
+            "round {round}"
+        );
+        numpy(&file);
+    }
+}
+
+#[test]
+fn a_fifo_is_read_until_its_writer_closes_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let fifo = folder.path().join("frames");
+    if !Command::new("mkfifo")
+        .arg(&fifo)
+        .status()
+        .is_ok_and(|status| status.success())
+    {
+        eprintln!("SKIPPED: there is no mkfifo");
+        return;
+    }
+    let child = started(&["watch", fifo.to_str().expect("UTF-8")]);
+    let mut writer = fs::File::options()
+        .write(true)
+        .open(&fifo)
+        .expect("it is read");
+    // Torn anywhere.
+    for piece in stream(0..40).as_bytes().chunks(7) {
+        writer.write_all(piece).expect("it is read");
+    }
+    drop(writer);
+    let run = super::finish(child, b"");
+    assert_eq!(
+        (run.status, lines(&run.stdout).len()),
+        (Some(0), 40),
+        "{}",
+        run.stderr
+    );
+}
+
+/// A pair of pseudo-terminals in place of a serial line; its torn start is dropped.
+#[test]
+fn a_serial_line_is_read_and_a_busy_one_is_said_to_be_busy() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (ours, theirs) = (folder.path().join("ours"), folder.path().join("theirs"));
+    let end = |path: &Path| format!("pty,raw,echo=0,link={}", path.display());
+    let socat = Command::new("socat")
+        .args([end(&ours), end(&theirs)])
+        .spawn();
+    let Ok(mut socat) = socat else {
+        eprintln!("SKIPPED: there is no socat");
+        return;
+    };
+    while !ours.exists() || !theirs.exists() {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let theirs = theirs.to_str().expect("UTF-8");
+    let mut child = started(&["watch", theirs, "--baud", "250000", "--format", "lines"]);
+    std::thread::sleep(Duration::from_millis(500));
+    let busy = taxel(&format!("watch {theirs}"), "");
+    assert_eq!(busy.status, Some(1));
+    assert!(
+        busy.stderr.contains("busy") || busy.stderr.contains("another program"),
+        "{}",
+        busy.stderr
+    );
+    let mut writer = fs::File::options()
+        .write(true)
+        .open(&ours)
+        .expect("it is there");
+    writer
+        .write_all(("3 4\n\n".to_owned() + &stream(7..27)).as_bytes())
+        .expect("written");
+    let mut output = BufReader::new(child.stdout.take().expect("piped"));
+    for number in 7..27 {
+        let mut answer = String::new();
+        output.read_line(&mut answer).expect("it answers");
+        assert_eq!(lines(&answer)[0]["sum"], 9 + number);
+    }
+    child.kill().expect("it is killed");
+    child.wait().expect("it ends");
+    socat.kill().expect("it is killed");
+    socat.wait().expect("it ends");
+}
