@@ -390,3 +390,141 @@ fn wide_characters_in_a_number_are_seen() {
     shows("f<Tab>字字字字字字1", &["字字字1"]);
     shows("f<Enter>e字字字字字字字字1", &["字字字字字字1"]);
 }
+
+#[test]
+fn recognise_names_the_shape_and_follows_the_matrix() {
+    shows("r", &["Recognise: the seven figures", "Nothing is touched"]);
+    shows("f<Enter>r", &["certain: ellipse", "100.0 %", "any angle"]);
+    shows("rf<Enter>", &["certain: ellipse"]);
+    shows(
+        "f<Enter>r<Space>",
+        &[
+            "unknown: no shape",
+            "nearest: ellipse, 1 taxel differs",
+            "- 1 missing",
+        ],
+    );
+    shows("f<Enter>r<Space>u", &["certain: ellipse"]);
+    // What is held moves, and the arrows are the matrix's otherwise.
+    shows("f<Enter>rg<Right>", &["at 4.01, 4.00", "certain: ellipse"]);
+    shows(
+        "f<Enter>r<Right>",
+        &["column  9, row  8", "certain: ellipse"],
+    );
+    for close in ["<Esc>", "r", "q", "<C-c>"] {
+        shows(
+            &format!("f<Enter>r{close}"),
+            &["Region 1 of 1", "NA     52"],
+        );
+    }
+    // The answer is there again at once.
+    shows("f<Enter>r<Esc>r", &["certain: ellipse"]);
+}
+
+#[test]
+fn recognise_goes_through_sets_and_takes_one_by_name() {
+    shows("ro", &["the seven figures of 30 cells"]);
+    shows("roO", &["certain 100.0 %"]);
+    shows(
+        ":recognise figures-30<Enter>",
+        &["the seven figures of 30 cells"],
+    );
+    shows(
+        ":reco<Tab>figures-<Tab><Enter>",
+        &["the seven figures of 30 cells"],
+    );
+    shows(
+        ":recognise nothing<Enter>",
+        &[
+            "Recognise: model nothing",
+            "not trained; Enter trains it",
+            "models/nothing.npz",
+        ],
+    );
+    shows(
+        ":recognise nothing<Enter>o",
+        &["Recognise: the seven figures", "Nothing is touched"],
+    );
+    shows(":seed x<Enter>", &["seed takes a whole number"]);
+    shows(":touch<Enter>", &["Recognise: the seven figures"]);
+}
+
+#[test]
+fn touches_are_kept_multiplied_and_forgotten() {
+    let hexagon = ":figure hexagon --side 3.4 --x0 4.31 --y0 4.52 --angle 17<Enter>";
+    let one = format!(":recognise figures-30<Enter>{hexagon}");
+    shows(&one, &["likely: hexagon", "45.3 %"]);
+    // The touch that was kept counts once, however long it stays on the matrix.
+    shows(&format!("{one}a"), &["1 touch kept", "45.3 %"]);
+    shows(
+        &format!("{one}aa"),
+        &["this touch is kept already", "45.3 %"],
+    );
+    shows(
+        &format!("{one}a><gt>"),
+        &["likely: octagon", "1 touch kept; x forgets"],
+    );
+    hides(&format!("{one}a<gt><gt><gt><gt>"), &["45.3 %"]);
+    shows(
+        &format!("{one}ax"),
+        &["the kept touches are forgotten", "45.3 %"],
+    );
+    shows(":recognise figures-30<Enter>a", &["nothing is touched"]);
+    shows(":recognise figures-30<Enter>x", &["no touches are kept"]);
+}
+
+#[test]
+fn a_random_touch_is_named_by_row_letter_or_number_and_scored() {
+    let touch = ":seed 7<Enter>:recognise figures-30<Enter>t";
+    shows(
+        touch,
+        &["Which shape is this?", "> 1 ellipse", "drawn by hand"],
+    );
+    hides(touch, &["%"]);
+    shows(
+        &format!("{touch}<Enter>"),
+        &["right: ellipse", "1 of 1 right"],
+    );
+    shows(
+        &format!("{touch}<Down><Enter>"),
+        &["no: ellipse, not rectangle", "0 of 1 right"],
+    );
+    shows(&format!("{touch}o<Enter>"), &["no: ellipse, not octagon"]);
+    shows(&format!("{touch}5"), &["no: ellipse, not hexagon"]);
+    shows(&format!("{touch}9"), &["Which shape is this?"]);
+    shows(
+        &format!("{touch}<Esc>"),
+        &["it was: ellipse", "0 of 1 right"],
+    );
+    shows(
+        &format!("{touch}<Space><Space>1"),
+        &["right: ellipse", "3 touches kept"],
+    );
+    shows(&format!("{touch}1u"), &["NA 0 in all"]);
+}
+
+#[test]
+fn the_confusion_matrix_starts_at_the_worst_pair() {
+    let open = ":recognise figures-30<Enter>v";
+    shows(
+        open,
+        &[
+            "Confusion:",
+            "octagon named ellipse: 2,184,280 of 3,600,000 touches",
+        ],
+    );
+    shows(&format!("{open}<Home>"), &["ellipse named ellipse"]);
+    shows(
+        &format!("{open}<Up><Right>"),
+        &["heptagon named rectangle: 0 of"],
+    );
+    shows(
+        &format!("{open}<Up><Right><Enter>"),
+        &["no imprint in this cell"],
+    );
+    shows(
+        &format!("{open}<Enter>"),
+        &["likely: ellipse", "drawn by hand"],
+    );
+    shows(&format!("{open}<Esc>"), &["Recognise:"]);
+}

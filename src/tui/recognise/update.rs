@@ -25,6 +25,16 @@ use crate::tui::runtime::effect::{Effect, Work};
 
 /// Handles what is asked for over the matrix, with the page open or not.
 pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effect> {
+    // A command may come while the page is closed; what it says has to be seen. Without a model, it comes too early.
+    if app.recognition.is_some() && !matches!(asked, RecogniseMessage::Seed(_)) {
+        let choice = match &asked {
+            RecogniseMessage::Choose(choice) => Some(choice.clone()),
+            _ => None,
+        };
+        if let Some(effect) = open(app, choice) {
+            return Some(effect);
+        }
+    }
     match asked {
         RecogniseMessage::Open => open(app, None),
         RecogniseMessage::Choose(choice) => open(app, Some(choice)),

@@ -18,7 +18,7 @@ use crate::formats::StoredShape;
 use crate::storage::Journal;
 use crate::tui::app::state::App;
 use crate::tui::explore::message::WorkerEvent;
-use crate::tui::runtime::progress::EventSink;
+use crate::tui::runtime::progress::WorkerEventSink;
 
 /// Changes are gathered for this time before they are written, so a crash loses less than a second of work.
 const GATHER: Duration = Duration::from_millis(400);
@@ -43,7 +43,7 @@ enum JournalRequest {
     /// Write now; the answer is whether everything is written.
     Flush(Sender<bool>),
     /// Where errors are reported.
-    ReportTo(EventSink),
+    ReportTo(WorkerEventSink),
 }
 
 impl JournalWriter {
@@ -74,7 +74,7 @@ impl JournalWriter {
     }
 
     /// Reports errors to `post` from now on.
-    pub(in crate::tui) fn report_to(&self, post: EventSink) {
+    pub(in crate::tui) fn report_to(&self, post: WorkerEventSink) {
         self.send(JournalRequest::ReportTo(post));
     }
 
@@ -144,7 +144,7 @@ struct JournalThread {
     /// What is still to be written.
     pending: Pending,
     /// Where errors are reported.
-    post: Option<EventSink>,
+    post: Option<WorkerEventSink>,
     /// Whether the present error has been reported: once is enough.
     reported: bool,
 }

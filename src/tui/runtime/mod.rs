@@ -22,7 +22,7 @@ pub mod journal_writer;
 
 pub mod mailbox;
 
-pub use crate::tui::runtime::progress::EventSink;
+pub use crate::tui::runtime::progress::WorkerEventSink;
 
 use std::io;
 use std::sync::Arc;
@@ -127,7 +127,7 @@ impl World {
     /// Runs long work on threads of its own and sends their events to `post`. Without this, work is done before the next
     /// message, without progress or estimates, so that a script shows the same every time.
     #[must_use]
-    pub fn with_workers(mut self, post: EventSink) -> Self {
+    pub fn with_workers(mut self, post: WorkerEventSink) -> Self {
         self.journal.report_to(Arc::clone(&post));
         self.workers.post_to(post);
         self

@@ -19,7 +19,7 @@ use crate::sweep::Shard;
 use crate::tui::explore::message::WorkerEvent;
 use crate::tui::recognise::message::{Look, Prepared, RecognitionEvent};
 use crate::tui::recognise::sets::{ModelChoice, TrainedModel};
-use crate::tui::runtime::progress::{EventSink, ProgressReporter, guarded, proceed};
+use crate::tui::runtime::progress::{ProgressReporter, WorkerEventSink, guarded, proceed};
 
 /// Where models are.
 #[derive(Clone, Debug, Default)]
@@ -116,7 +116,7 @@ impl ModelWorker {
         &mut self,
         number: u64,
         choice: ModelChoice,
-        post: Option<EventSink>,
+        post: Option<WorkerEventSink>,
     ) -> Option<WorkerEvent> {
         self.stop();
         self.stop = Arc::default();
@@ -177,7 +177,7 @@ pub(super) fn look(
     trained: Arc<TrainedModel>,
     imprint: Imprint,
     shape: Option<usize>,
-    post: Option<EventSink>,
+    post: Option<WorkerEventSink>,
 ) -> Option<WorkerEvent> {
     let search = move || {
         let nearest = trained.model.nearest(&imprint);

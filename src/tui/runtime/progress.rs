@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use crate::tui::explore::message::{SweepProgress, WorkerEvent};
 
 /// Takes events of workers, from any thread.
-pub type EventSink = Arc<dyn Fn(WorkerEvent) + Send + Sync>;
+pub type WorkerEventSink = Arc<dyn Fn(WorkerEvent) + Send + Sync>;
 
 /// Minimum interval between progress events.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
@@ -18,7 +18,7 @@ pub(super) struct ProgressReporter<'a> {
     /// The number of the work, which its events carry.
     number: u64,
     /// Where events are sent.
-    post: &'a EventSink,
+    post: &'a WorkerEventSink,
     /// When the work began.
     start: Instant,
     /// Poses done.
@@ -29,7 +29,7 @@ pub(super) struct ProgressReporter<'a> {
 
 impl<'a> ProgressReporter<'a> {
     /// Progress of work that begins now.
-    pub(super) fn new(number: u64, post: &'a EventSink) -> Self {
+    pub(super) fn new(number: u64, post: &'a WorkerEventSink) -> Self {
         let start = Instant::now();
         Self {
             number,

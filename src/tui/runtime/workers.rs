@@ -22,7 +22,7 @@ use crate::tui::explore::export::is_poses;
 use crate::tui::explore::message::{Findings, WorkerEvent};
 use crate::tui::runtime::effect::Work;
 use crate::tui::runtime::models::{self, ModelStore, ModelWorker};
-use crate::tui::runtime::progress::{EventSink, ProgressReporter, guarded, proceed};
+use crate::tui::runtime::progress::{ProgressReporter, WorkerEventSink, guarded, proceed};
 
 /// An estimate is the best of all runs within this time.
 const MEASURED: Duration = Duration::from_millis(30);
@@ -31,7 +31,7 @@ const MEASURED: Duration = Duration::from_millis(30);
 #[derive(Default)]
 pub(in crate::tui) struct Workers {
     /// None: work is done at once.
-    post: Option<EventSink>,
+    post: Option<WorkerEventSink>,
     /// Set to stop the work in progress.
     stop: Arc<AtomicBool>,
     /// Set to stop the estimate in progress.
@@ -59,7 +59,7 @@ impl Workers {
     }
 
     /// Has work done on threads of their own.
-    pub(super) fn post_to(&mut self, post: EventSink) {
+    pub(super) fn post_to(&mut self, post: WorkerEventSink) {
         self.post = Some(post);
     }
 

@@ -111,6 +111,7 @@ impl Program {
             .envs(start.variables.iter().copied())
             .env("TAXEL_LIBRARY", start.library.unwrap_or(library.path()))
             .env("TAXEL_CONFIG", "/dev/null")
+            .env("XDG_CACHE_HOME", library.path().join("cache"))
             .env("PTY_COMMAND", start.command.join("\x1f"))
             .stdin(slave.try_clone().expect("a file"))
             .stdout(Stdio::null())
