@@ -8,6 +8,7 @@
 //!
 //! ```text
 //! FOLDER/washer.json                    a shape
+//! FOLDER/.commands                      what was typed after `:`, a line each
 //! FOLDER/.lock                          held while writing
 //! FOLDER/.taxel-tmp                     being written
 //! FOLDER/.trash/0000000007 washer.json  deleted
@@ -41,6 +42,9 @@ mod library;
 #[cfg(feature = "library")]
 mod journal;
 
+#[cfg(feature = "library")]
+mod commands;
+
 #[cfg(feature = "sweep")]
 mod first_error;
 
@@ -55,6 +59,9 @@ pub use error::FileError;
 
 #[cfg(feature = "library")]
 pub use error::LibraryError;
+
+#[cfg(feature = "library")]
+pub use commands::CommandFile;
 
 #[cfg(feature = "library")]
 pub use journal::{Journal, Orphan, UNNAMED};

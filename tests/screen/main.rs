@@ -2,6 +2,7 @@
 
 mod session;
 
+mod files;
 mod frames;
 mod keys;
 

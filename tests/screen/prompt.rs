@@ -146,7 +146,9 @@ fn earlier_lines_come_back_one_by_one() {
         ("<Up>", ":new"),
         ("<Down>", ":grab"),
         ("<Down><Down>", ":z"),
-        ("<Down>", ":z"),
+        // Below what was typed are the offers.
+        ("<Down>", ":zoom"),
+        ("<Up>", ":z"),
     ] {
         press(&mut session, keys);
         let screen = session.screen();

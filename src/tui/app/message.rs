@@ -4,6 +4,7 @@
 //! answer with messages, too. A script sends the same ones.
 
 use crate::formats::StoredShape;
+use crate::imprint::Imprint;
 use crate::storage::{Expected, LibraryEntry, LoadedShape};
 use crate::tui::app::document::Document;
 use crate::tui::explore::message::{ExploreMessage, WorkerEvent};
@@ -137,6 +138,14 @@ pub enum Message {
     Explore(ExploreMessage),
     /// Something about recognition.
     Recognise(RecogniseMessage),
+    /// Open a file.
+    OpenFile(String),
+    /// Write what is on the matrix to a file.
+    WriteFile(String),
+    /// Write it over a file that exists.
+    Overwrite(String, Vec<u8>),
+    /// The answer to a request about files.
+    File(FileEvent),
     /// An event of a worker.
     Worker(WorkerEvent),
     /// A key that means nothing here.
@@ -156,6 +165,30 @@ impl Message {
             Nudge(_) | Move(..) | Turn(_) | Zoom(_) | NudgeStep(_) | PutBack
         )
     }
+}
+
+/// The answer to a request about files. Errors are sentences.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FileEvent {
+    /// The file of that name was opened.
+    Opened(String, OpenedFile),
+    /// The file of that name was written.
+    Written(String),
+    /// It was not: there is one of that name; and what it should hold.
+    Exists(String, Vec<u8>),
+    /// Nothing came of it.
+    Failed(String),
+    /// The paths that were asked for.
+    Paths(Vec<String>),
+}
+
+/// What a file held.
+#[derive(Clone, Debug, PartialEq)]
+pub enum OpenedFile {
+    /// A shape.
+    Shape(Box<StoredShape>),
+    /// An imprint alone.
+    Imprint(Box<Imprint>),
 }
 
 /// A layer over the taxels.

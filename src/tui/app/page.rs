@@ -46,6 +46,10 @@ pub trait Page {
         area: Rect,
     ) -> Option<Position>;
 
+    /// Draws what stands over the page below it; `body` is the area between the menu and the lines at the foot. Nothing
+    /// unless the page says otherwise.
+    fn draw_over(&self, _theme: &Theme, _buffer: &mut Buffer, _body: Rect) {}
+
     /// What a click at a position of its area means, None if there is nothing to click on.
     fn click(&self, _area: Rect, _at: Position) -> Option<Message> {
         None

@@ -51,6 +51,9 @@ pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
     hints(app, buffer, panes);
     let prompt = app.dialogs.last().map(Dialog::page);
     let prompt = prompt.filter(|page| page.slot() == Slot::Prompt);
+    if let Some(page) = prompt {
+        page.draw_over(theme, buffer, panes.body);
+    }
     let cursor = prompt.and_then(|page| page.draw(theme, app.keymap(), buffer, panes.notice));
     if let Some((text, role)) = notice(app, panes) {
         // The prompt keeps its line, and the notice stands above it.

@@ -13,6 +13,7 @@ use crate::tui::history::HistoryDialog;
 use crate::tui::keys::action;
 use crate::tui::keys::key::Key;
 
+use crate::tui::matrix::files;
 use crate::tui::runtime::effect::{Effect, TerminalEffect};
 use crate::tui::{explore, form, matrix, prompt, recognise, shapes};
 
@@ -42,6 +43,7 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
             return None;
         }
         Message::Library(answer) => return shapes::update::on_library(app, answer),
+        Message::File(answer) => return files::on_file(app, answer),
         Message::Worker(told) => return explore::work::on_worker(app, told),
         Message::Mouse(mouse) => {
             let meant = mouse::act(app, mouse)?;

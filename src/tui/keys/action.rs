@@ -46,6 +46,8 @@ pub enum Arguments {
     Deleted,
     /// A name to save under.
     Name,
+    /// A file, and what for.
+    File(FilePurpose),
     /// A kind of figure and its parameters.
     Figure,
     /// Parameters of the sensor.
@@ -62,6 +64,15 @@ pub enum Arguments {
     Model,
     /// A whole number.
     Seed,
+}
+
+/// What a file is named for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FilePurpose {
+    /// To open it.
+    Open,
+    /// To write it.
+    Write,
 }
 
 impl Action {
@@ -92,6 +103,7 @@ impl Arguments {
     pub fn form(self) -> &'static str {
         match self {
             Self::Shape(_) | Self::Deleted | Self::Name => "NAME",
+            Self::File(_) => "FILE",
             Self::Figure => "KIND --side 3 ...",
             Self::Sensor => "--columns 32 ...",
             Self::Ranges => "--x0 5:5.99:0.01 ...",
@@ -103,9 +115,12 @@ impl Arguments {
         }
     }
 
-    /// Whether the rest of the line is the name of a shape, which may have spaces.
+    /// Whether the rest of the line is the name of a shape or a file, which may have spaces.
     pub fn is_name(self) -> bool {
-        matches!(self, Self::Shape(_) | Self::Deleted | Self::Name)
+        matches!(
+            self,
+            Self::Shape(_) | Self::Deleted | Self::Name | Self::File(_)
+        )
     }
 }
 
@@ -256,9 +271,11 @@ actions! {
         "cursor" Arguments::Taxel;
         "delete" Arguments::Shape(Purpose::Delete);
         "explore" Arguments::Ranges;
+        "export" Arguments::File(FilePurpose::Write);
         "figure" Arguments::Figure;
         "load" Arguments::Shape(Purpose::Load);
         "move" Arguments::Distance;
+        "open" Arguments::File(FilePurpose::Open);
         "picture" Arguments::Shape(Purpose::Picture);
         "recognise" Arguments::Model;
         "restore" Arguments::Deleted;
@@ -266,6 +283,7 @@ actions! {
         "seed" Arguments::Seed;
         "sensor" Arguments::Sensor;
         "turn" Arguments::Degrees;
+        "write" Arguments::File(FilePurpose::Write);
     }
 }
 

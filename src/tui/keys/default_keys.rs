@@ -145,7 +145,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     Command {
         [Enter => ACCEPT] "run" "run the command";
         [Tab => NEXT] "complete" "complete the word";
-        [UP => UP, DOWN => DOWN] "earlier" "earlier, later commands";
+        [UP => UP, DOWN => DOWN] "earlier" "earlier commands, those that are offered";
         [LEFT => LEFT, RIGHT => RIGHT] "" "move in the line";
         [Home => TO_START, End => TO_END] "" "to its start, its end";
         [Backspace => ERASE_BEFORE, Delete => ERASE_UNDER] "" "delete a character";

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! layout   where the taxels are        view     draws them
+//! files    :open and :write
 //! update   keys without a page         panel    draws the descriptors
 //! ```
 
@@ -12,5 +13,7 @@ pub mod layers;
 pub mod view;
 
 pub mod panel;
+
+pub mod files;
 
 pub mod update;

@@ -8,7 +8,7 @@ use crate::formats::value;
 use crate::parameter::Parameter;
 use crate::parameter::number::short;
 use crate::source::Source;
-use crate::storage::{Expected, ShapeOrigin};
+use crate::storage::{Existing, Expected, ShapeOrigin};
 use crate::tui::app::change::{
     begin, change, hold, inform, let_go, nudge, put_back, refuse, replace, shift, travel, turn,
     zoom,
@@ -24,10 +24,11 @@ use crate::tui::history::HistoryDialog;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Arrow;
+use crate::tui::matrix::files;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::matrix::layout::TaxelGrid;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
-use crate::tui::runtime::effect::{Effect, LibraryRequest, TerminalEffect};
+use crate::tui::runtime::effect::{Effect, FileRequest, LibraryRequest, TerminalEffect};
 use crate::tui::shapes::state::ListDialog;
 use crate::tui::widget::number::around;
 use crate::tui::{explore, recognise};
@@ -53,7 +54,10 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::Figure => open_form(app, FormDialog::figure(app.history.present())),
         Message::Sensor => open_form(app, FormDialog::sensor(app.history.present())),
         Message::Save => save(app),
-        Message::Command => app.dialogs.push(Dialog::Command(CommandDialog::default())),
+        Message::Command => {
+            let dialog = CommandDialog::new(&app.commands);
+            app.dialogs.push(Dialog::Command(dialog));
+        }
         Message::History => {
             let (steps, present) = app.history.steps();
             app.dialogs
@@ -67,6 +71,12 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::Replace(shape, stamp) => {
             let text = format!("Replace {}?", shape.name);
             ask(app, text, Message::Store(shape, Expected::Stamp(stamp)));
+        }
+        Message::OpenFile(name) => return Some(Effect::File(FileRequest::Open(name))),
+        Message::WriteFile(name) => return files::write(app, name),
+        Message::Overwrite(name, content) => {
+            let request = FileRequest::Write(name, content, Existing::Replaced);
+            return Some(Effect::File(request));
         }
         Message::Quit => quit(app),
         Message::QuitNow => app.run_state = RunState::Quit,

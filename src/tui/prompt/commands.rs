@@ -33,6 +33,22 @@ pub struct PromptCommand {
     pub arguments: Option<Arguments>,
 }
 
+/// No more lines that were given before are offered.
+const MOST_RECENT: usize = 5;
+
+impl PromptCommand {
+    /// What follows the name, or what the key of the same action does.
+    pub fn help(&self) -> &'static str {
+        if let Some(arguments) = self.arguments {
+            return arguments.form();
+        }
+        let own = |action: &Action| self.words.iter().any(|(_, word)| *word == action);
+        let mut rows = DEFAULT_KEYS.iter();
+        let row = rows.find(|row| row.keys.iter().any(|(_, action)| own(action)));
+        row.map_or("", |row| row.help)
+    }
+}
+
 /// Short forms of commands.
 const SHORT: [(&str, &str); 2] = [("q", "quit"), ("q!", "quit!")];
 
@@ -213,6 +229,41 @@ fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
         }
         _ => Vec::new(),
     }
+}
+
+/// A line that the prompt offers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Offer {
+    /// The line, or its first word where arguments follow.
+    pub line: String,
+    /// What it does, or what follows it; empty for a line that was given before.
+    pub help: &'static str,
+}
+
+/// What the prompt offers while a line is typed: lines given before that begin with it, the last one first, then commands
+/// whose names begin with it, then those whose names contain it.
+pub fn offers(typed: &str, given: &[String]) -> Vec<Offer> {
+    let typed = typed.trim_start();
+    let mut recent: Vec<&String> = Vec::new();
+    for line in given.iter().rev() {
+        if line.starts_with(typed) && line != typed && !recent.contains(&line) {
+            recent.push(line);
+        }
+    }
+    let recent = recent.into_iter().take(MOST_RECENT).map(|line| Offer {
+        line: line.clone(),
+        help: "",
+    });
+    let name = typed.split(' ').next().unwrap_or(typed);
+    let more = name.len() < typed.len();
+    let mut named: Vec<PromptCommand> = commands();
+    named.retain(|command| command.name == name || !more && command.name.contains(name));
+    named.sort_by_key(|command| !command.name.starts_with(name));
+    let named = named.into_iter().map(|command| Offer {
+        line: command.name.to_owned(),
+        help: command.help(),
+    });
+    recent.chain(named).collect()
 }
 
 /// The longest common start of several words; None if there are none.

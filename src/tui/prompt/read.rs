@@ -4,6 +4,7 @@
 //! figure hexagon --side 3 --angle 17     a kind, then flags as on the command line
 //! sensor --columns 32 --rows 32          only what changes
 //! explore --x0 5:5.99:0.01 --anchor centre
+//! open ~/mask.csv      write drawing.svg
 //! load my shape                          names may contain spaces, and are never quoted
 //! cursor 3 4      move 0.5 -1      turn 15
 //! ```
@@ -22,7 +23,7 @@ use crate::tui::app::message::{Message, Purpose};
 use crate::tui::app::state::App;
 use crate::tui::explore::message::ExploreMessage;
 use crate::tui::explore::ranges::state::explored;
-use crate::tui::keys::action::{self, Arguments};
+use crate::tui::keys::action::{self, Arguments, FilePurpose};
 use crate::tui::keys::binding::Context;
 use crate::tui::prompt::commands::{PromptCommand, find};
 use crate::tui::recognise::message::RecogniseMessage;
@@ -71,6 +72,8 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
                 Purpose::Delete => Message::AskRemove(name),
             })
         }
+        (Arguments::File(FilePurpose::Open), _) => Ok(Message::OpenFile(rest.to_owned())),
+        (Arguments::File(FilePurpose::Write), _) => Ok(Message::WriteFile(rest.to_owned())),
         (Arguments::Deleted, _) => Ok(Message::Restore(name_of(rest)?.to_string())),
         (Arguments::Name, _) if app.reading().imprint.is_empty() => {
             Err("nothing to save: the matrix is empty".to_owned())

@@ -6,7 +6,7 @@
 use crate::formats::name::LONGEST;
 use crate::formats::{Name, NameError};
 use crate::tui::app::message::Message;
-use crate::tui::prompt::commands::complete;
+use crate::tui::prompt::commands::{Offer, complete, offers};
 use crate::tui::widget::text_field::TextField;
 
 /// A command has at most this many characters.
@@ -57,30 +57,79 @@ pub struct CommandDialog {
     recalled: Option<usize>,
     /// What was typed before an earlier line was asked for.
     draft: String,
+    /// The lines that were given before.
+    given: Vec<String>,
+    /// Which of the offered lines it shows, and what was typed before it.
+    picked: Option<(usize, String)>,
 }
 
-impl Default for CommandDialog {
-    fn default() -> Self {
+impl CommandDialog {
+    /// An empty prompt after these lines, the last one last.
+    pub fn new(given: &[String]) -> Self {
         Self {
+            given: given.to_vec(),
+            picked: None,
             field: TextField::new("", LONGEST_COMMAND),
             candidates: Vec::new(),
             recalled: None,
             draft: String::new(),
         }
     }
-}
 
-impl CommandDialog {
+    /// What is offered, and the index of the line that is picked.
+    pub fn offers(&self) -> (Vec<Offer>, Option<usize>) {
+        let (picked, typed) = match &self.picked {
+            Some((picked, typed)) => (Some(*picked), typed.as_str()),
+            None => (None, self.field.text()),
+        };
+        (offers(typed, &self.given), picked)
+    }
+
+    /// Shows the next of the offered lines, or the one before it; before the first one, what was typed. Returns false
+    /// where there is none before.
+    pub fn pick(&mut self, down: bool) -> bool {
+        let (offers, picked) = self.offers();
+        let next = match (picked, down) {
+            (None, false) => return false,
+            (None, true) => Some(0),
+            (Some(now), true) => Some(now + 1),
+            (Some(now), false) => now.checked_sub(1),
+        };
+        let typed = match self.picked.take() {
+            Some((_, typed)) => typed,
+            None => self.field.text().to_owned(),
+        };
+        self.candidates.clear();
+        match next {
+            None => self.field.set(typed),
+            Some(next) => {
+                let last = offers.len().saturating_sub(1);
+                if let Some(offer) = offers.get(next.min(last)) {
+                    self.field.set(offer.line.clone());
+                    self.picked = Some((next.min(last), typed));
+                }
+            }
+        }
+        true
+    }
+
+    /// Whether it shows an earlier line.
+    pub fn recalls(&self) -> bool {
+        self.recalled.is_some()
+    }
+
     /// Types, moves or deletes.
     pub fn edit(&mut self, message: &Message) {
         self.candidates.clear();
         if self.field.take(message) {
             self.recalled = None;
+            self.picked = None;
         }
     }
 
     /// Completes the last word, or the name of a shape, of which `names` are all that there are.
     pub fn complete(&mut self, names: &[String]) {
+        self.picked = None;
         let (line, candidates) = complete(self.field.text(), names);
         self.field.set(line);
         self.candidates = candidates;
@@ -123,7 +172,7 @@ mod tests {
     #[test]
     fn earlier_lines_are_gone_through_one_by_one() {
         let lines = ["new", "grab", "new"].map(str::to_owned);
-        let mut dialog = CommandDialog::default();
+        let mut dialog = CommandDialog::new(&[]);
         dialog.edit(&Message::Type('z'));
         let mut shown = Vec::new();
         for earlier in [true, true, true, true, false, false, false, false] {

@@ -13,7 +13,7 @@ use crate::tui::matrix;
 use crate::tui::prompt::commands::wants_names;
 use crate::tui::prompt::read::read;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
-use crate::tui::runtime::effect::{Effect, LibraryRequest, TerminalEffect};
+use crate::tui::runtime::effect::{Effect, FileRequest, LibraryRequest, TerminalEffect};
 
 /// Handles a message in the `:` prompt, which stays open until a command was understood.
 pub(in crate::tui) fn in_command(
@@ -46,17 +46,26 @@ pub(in crate::tui) fn in_command(
             if wanted.is_none() {
                 dialog.complete(&[]);
             }
+            let line = dialog.field.text().trim_start();
+            let rest = line.split_once(' ').map_or("", |(_, rest)| rest);
+            let last_word = rest.trim_start().to_owned();
             app.dialogs.push(Dialog::Command(dialog));
             // The names are completed when they are known.
-            return wanted.map(|names| {
-                Effect::Library(match names {
-                    Arguments::Deleted => LibraryRequest::Trash,
-                    _ => LibraryRequest::List,
-                })
+            return wanted.map(|names| match names {
+                Arguments::File(_) => Effect::File(FileRequest::Paths(last_word)),
+                Arguments::Deleted => Effect::Library(LibraryRequest::Trash),
+                _ => Effect::Library(LibraryRequest::List),
             });
         }
-        Message::Choose(Arrow::Up) => dialog.earlier(&app.commands),
-        Message::Choose(Arrow::Down) => dialog.later(&app.commands),
+        Message::Choose(Arrow::Down) if dialog.recalls() => dialog.later(&app.commands),
+        Message::Choose(Arrow::Down) => {
+            dialog.pick(true);
+        }
+        Message::Choose(Arrow::Up) => {
+            if !dialog.pick(false) {
+                dialog.earlier(&app.commands);
+            }
+        }
         other => dialog.edit(&other),
     }
     app.dialogs.push(Dialog::Command(dialog));

@@ -14,11 +14,18 @@ use crate::tui::app::page::{Page, Slot};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
+use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
 /// The label of the name to save under.
 const NAME_LABEL: &str = "Save as: ";
+
+/// Most lines that are offered at once.
+const MOST_OFFERS: u16 = 9;
+
+/// Most columns of a line before what it does.
+const MOST_INDENT: usize = 40;
 
 impl Page for NameDialog {
     fn context(&self) -> Context {
@@ -81,6 +88,42 @@ impl Page for CommandDialog {
             &self.field,
             &candidates,
         ))
+    }
+
+    /// What is offered, as a list over the foot of the body.
+    fn draw_over(&self, theme: &Theme, buffer: &mut Buffer, body: Rect) {
+        let (offers, picked) = self.offers();
+        let room = body.height.min(MOST_OFFERS);
+        let height = room.min(narrow(offers.len()));
+        let area = Rect {
+            y: body.bottom() - height,
+            height,
+            ..body
+        };
+        write::clear(buffer, area);
+        let visible = offers.len().min(usize::from(height));
+        let first = write::first_of(height, offers.len(), picked.map_or(0, |at| at));
+        let widest = offers.iter().map(|offer| write::width(&offer.line)).max();
+        let indent = widest.map_or(0, |widest| widest.min(MOST_INDENT));
+        for (index, offer) in offers.iter().enumerate().skip(first).take(visible) {
+            let row = write::row(area, index - first);
+            let here = picked == Some(index);
+            let sign = if here { "> " } else { "  " };
+            let role = if here { Role::Focus } else { Role::Key };
+            let line = format!("{:indent$}", offer.line);
+            let help = if offer.help.is_empty() {
+                "earlier"
+            } else {
+                offer.help
+            };
+            let pieces = [
+                (sign, Role::Text),
+                (line.as_str(), role),
+                ("  ", Role::Text),
+                (help, Role::Quiet),
+            ];
+            write::line(buffer, row, theme, pieces);
+        }
     }
 }
 

@@ -15,10 +15,23 @@ use crate::tui::recognise::sets::{ModelChoice, TrainedModel};
 pub enum Effect {
     /// A request to the library; its answer is the next message.
     Library(LibraryRequest),
+    /// A request about files; its answer is the next message.
+    File(FileRequest),
     /// Work for a worker.
     Work(Work),
     /// Something that only the terminal can do.
     Terminal(TerminalEffect),
+}
+
+/// Requests about files.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FileRequest {
+    /// Open a file that holds an imprint or a shape.
+    Open(String),
+    /// Write a file, given its name, what it shall hold, and what happens to one that exists.
+    Write(String, Vec<u8>, Existing),
+    /// List the paths that begin like this.
+    Paths(String),
 }
 
 /// Effects on the terminal.

@@ -3,6 +3,7 @@
 //! Nothing else on the screen touches files or threads, but for the terminal itself.
 //! ```text
 //! effect           what update may ask for: the library, a worker, the terminal
+//! files            opens and writes files of imprints
 //! workers          sweeps and exports, each on a thread of its own
 //! progress         how workers report
 //! models           models for recognition: trained, read, searched
@@ -11,6 +12,8 @@
 //! ```
 
 pub mod effect;
+
+pub mod files;
 
 pub mod workers;
 
@@ -34,7 +37,9 @@ use tempfile::TempDir;
 
 use crate::formats::value::counted;
 use crate::formats::{Name, StoredShape};
-use crate::storage::{Expected, Journal, Library, LibraryError, ModelCache, Orphan, UNNAMED};
+use crate::storage::{
+    CommandFile, Expected, Journal, Library, LibraryError, ModelCache, Orphan, UNNAMED,
+};
 use crate::tui::app::message::{Leftover, LibraryEvent, Message};
 use crate::tui::app::state::App;
 use crate::tui::app::update::update;
@@ -49,6 +54,10 @@ pub struct World {
     orphan: Option<(Orphan, usize)>,
     /// Where unsaved work is kept.
     journal: JournalWriter,
+    /// Where the commands of the prompt are remembered, None for nowhere.
+    commands: Option<CommandFile>,
+    /// How many of them are.
+    remembered: usize,
     /// Sweeps and exports in progress.
     workers: Workers,
     /// The folder of a temporary library. The last field: it is dropped after the journal has been written.
@@ -61,6 +70,8 @@ impl World {
         let journal = JournalWriter::new(Journal::new(&library));
         let workers = Workers::with(ModelStore::beside(&library));
         let mut world = Self {
+            commands: Some(CommandFile::of(&library)),
+            remembered: 0,
             library,
             orphan: None,
             journal,
@@ -77,6 +88,8 @@ impl World {
         Self {
             library,
             orphan: None,
+            commands: None,
+            remembered: 0,
             journal: JournalWriter::idle(),
             workers,
             _scratch: None,
@@ -142,6 +155,14 @@ impl World {
         self
     }
 
+    /// Gives the program the commands of earlier runs.
+    pub fn remind(&mut self, app: &mut App) {
+        if let Some(file) = &self.commands {
+            app.commands = file.read();
+            self.remembered = app.commands.len();
+        }
+    }
+
     /// The first message: that a crashed program left unsaved work; None if there is none.
     pub fn greeting(&self) -> Option<Message> {
         Some(Message::Library(LibraryEvent::Found(self.left()?)))
@@ -166,6 +187,7 @@ impl World {
         let terminal = loop {
             match update(app, next) {
                 Some(Effect::Library(request)) => next = self.perform(request),
+                Some(Effect::File(request)) => next = Message::File(files::perform(request)),
                 Some(Effect::Work(work)) => match self.workers.perform(work) {
                     Some(event) => next = Message::Worker(event),
                     None => break None,
@@ -175,6 +197,12 @@ impl World {
             }
         };
         self.journal.note(app);
+        if let Some(file) = &self.commands
+            && app.commands.len() > self.remembered
+        {
+            file.write(&app.commands);
+            self.remembered = app.commands.len();
+        }
         terminal
     }
 

@@ -51,6 +51,7 @@ impl Session {
             world,
             terminal,
         };
+        session.world.remind(&mut session.app);
         let greeting = session.world.greeting();
         for message in [Some(Message::Resized(width, height)), greeting]
             .into_iter()

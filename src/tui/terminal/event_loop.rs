@@ -165,6 +165,7 @@ impl<'a> EventLoop<'a> {
     fn run(&mut self) -> io::Result<Outcome> {
         session::enter(&self.device, &self.settings, self.mouse)?;
         self.tell_size();
+        self.world.remind(&mut self.app);
         if let Some(greeting) = self.world.greeting() {
             self.update(greeting)?;
         }

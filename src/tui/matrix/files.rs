@@ -1,0 +1,133 @@
+//! What is on the matrix, from a file and to a file: `:open`, `:write` and `:export`.
+//!
+//! A file is read by what it holds and written by its ending: an imprint as text, table, bitmap or array, a shape with
+//! what touched as JSON, a drawing as SVG or PNG.
+
+use std::path::Path;
+
+use crate::formats::{Drawing, ImprintFormat, Name};
+use crate::imprint::Imprint;
+use crate::parameter::Parameter;
+use crate::quote::shortened;
+use crate::storage::{Existing, UNNAMED};
+use crate::tui::app::change::{begin, inform, refuse};
+use crate::tui::app::dialog::{Dialog, Question};
+use crate::tui::app::document::Document;
+use crate::tui::app::message::{FileEvent, Message, OpenedFile};
+use crate::tui::app::state::App;
+use crate::tui::runtime::effect::{Effect, FileRequest};
+
+/// What a name can end in.
+const ENDINGS: &str = ".txt .csv .npy .pbm .json .svg .png";
+
+/// The request to write a file; None where there is nothing to write, or no form has that ending, which is said.
+pub(in crate::tui) fn write(app: &mut App, name: String) -> Option<Effect> {
+    if app.reading().imprint.is_empty() {
+        refuse(app, "nothing to write: the matrix is empty");
+        return None;
+    }
+    match content(app, &name) {
+        Ok(content) => Some(Effect::File(FileRequest::Write(
+            name,
+            content,
+            Existing::Kept,
+        ))),
+        Err(reason) => {
+            refuse(app, reason);
+            None
+        }
+    }
+}
+
+/// What a file of that name holds.
+fn content(app: &App, name: &str) -> Result<Vec<u8>, String> {
+    let ending = Path::new(name)
+        .extension()
+        .and_then(|ending| ending.to_str());
+    let ending = ending.map_or(String::new(), str::to_lowercase);
+    let reading = app.reading();
+    if let Some(format) = ImprintFormat::of_ending(&ending) {
+        return Ok(format.write(&reading.imprint));
+    }
+    match ending.as_str() {
+        "json" => {
+            let own = Path::new(name).file_stem().and_then(|stem| stem.to_str());
+            let own = app.stored_name().or(own).map(Name::new);
+            let name = own
+                .and_then(Result::ok)
+                .map_or_else(|| Name::new(UNNAMED), Ok);
+            let name = name.map_err(|error| error.to_string())?;
+            Ok(app.shown().to_shape(name, reading).write().into_bytes())
+        }
+        "svg" => Ok(drawing(app).svg().into_bytes()),
+        #[cfg(feature = "png")]
+        "png" => drawing(app).png().map_err(|error| error.to_string()),
+        _ => Err(format!(
+            "{:?}: expected a name that ends in one of {ENDINGS}",
+            shortened(name)
+        )),
+    }
+}
+
+/// The drawing of what is on the matrix, with the outline of what touches.
+fn drawing(app: &App) -> Drawing {
+    let document = app.shown();
+    let mut drawing = Drawing::new(&app.reading().imprint);
+    if let Some(source) = &document.source {
+        drawing = drawing.with_outline(source);
+    }
+    if document.sensor.pitch_mm() != 1.0 {
+        drawing = drawing.with_pitch(document.sensor.pitch_mm());
+    }
+    match app.chosen() {
+        Some(index) => drawing.with_region(index),
+        None => drawing,
+    }
+}
+
+/// Handles the answer to a request about files.
+pub(in crate::tui) fn on_file(app: &mut App, answer: FileEvent) -> Option<Effect> {
+    match answer {
+        FileEvent::Opened(name, file) => match opened(app, file) {
+            Ok(document) => {
+                begin(app, document, None);
+                app.chosen = None;
+                inform(app, format!("{name} opened"));
+            }
+            Err(reason) => refuse(app, format!("{name}: {reason}")),
+        },
+        FileEvent::Written(path) => inform(app, format!("written: {path}")),
+        FileEvent::Exists(name, content) => {
+            let text = format!("Replace {name}?");
+            let yes = Message::Overwrite(name, content);
+            app.dialogs.push(Dialog::Question(Question::new(text, yes)));
+        }
+        FileEvent::Failed(reason) => refuse(app, reason),
+        FileEvent::Paths(paths) => {
+            if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
+                command.complete(&paths);
+            }
+        }
+    }
+    None
+}
+
+/// The document of a file: a shape with its own sensor, an imprint on a sensor of as many columns and rows.
+fn opened(app: &App, file: OpenedFile) -> Result<Document, String> {
+    match file {
+        OpenedFile::Shape(shape) => Ok(Document::of_shape(&shape)),
+        OpenedFile::Imprint(imprint) => of_imprint(app, &imprint),
+    }
+}
+
+fn of_imprint(app: &App, imprint: &Imprint) -> Result<Document, String> {
+    let sensor = app.history.present().sensor;
+    let sensor = sensor
+        .with(Parameter::Columns, imprint.columns().into())
+        .and_then(|sensor| sensor.with(Parameter::Rows, imprint.rows().into()))
+        .map_err(|error| error.labelled())?;
+    Ok(Document {
+        edits: *imprint,
+        ..Document::empty(sensor)
+    })
+}
