@@ -243,3 +243,39 @@ fn a_counted_header_of_a_square_is_reported() {
         "the header counts 9 values, taken as 3 rows of 3 columns"
     );
 }
+
+#[test]
+fn topics_and_their_sensors_are_channels() {
+    let bytes = sample("topics.mcap");
+    let found = recorded(&bytes, Some((4, 5)));
+    assert!(found.error.is_none(), "{:?}", found.error);
+    let names: Vec<_> = found
+        .channels
+        .iter()
+        .filter_map(|info| info.name.as_deref())
+        .collect();
+    assert_eq!(names, ["/pad", "/state#pad", "/state#tip", "/image"]);
+    for channel in [0, 1, 3] {
+        assert_eq!(
+            imprints(&found, channel, 9.0),
+            IMPRINTS,
+            "{}",
+            names[channel]
+        );
+    }
+    // Of three values nothing says how they lie.
+    assert_eq!(
+        (found.channels[2].shape, found.channels[2].values),
+        (None, Some(3))
+    );
+    let last = found.frames.last().expect("frames");
+    assert_eq!((last.number, last.time), (2, Some(0.5)));
+    // Not closed: whole messages, then the error.
+    let open = recorded(&bytes[..bytes.len() - 80], Some((4, 5)));
+    assert!(open.frames.len() >= 11, "{}", open.frames.len());
+    let message = open.error.map(|error| error.to_string());
+    assert_eq!(
+        message.as_deref(),
+        Some("the file ends without a footer: it was not closed")
+    );
+}

@@ -6,6 +6,8 @@ mod archive;
 
 mod formats;
 
+mod frames;
+
 mod keys;
 
 mod screen;
@@ -18,7 +20,7 @@ pub(crate) use screen::session_of;
 pub(crate) type Body = (&'static str, &'static str, fn(&[u8]));
 
 /// All of them.
-pub(crate) const BODIES: [Body; 15] = [
+pub(crate) const BODIES: [Body; 17] = [
     ("shape", "shape", formats::shape),
     ("job", "job", formats::job),
     ("imprint", "imprint", formats::imprint),
@@ -34,6 +36,8 @@ pub(crate) const BODIES: [Body; 15] = [
     ("script", "script", screen::script),
     ("play", "script", screen::play),
     ("session", "session", screen::session),
+    ("recording", "recording", frames::recording),
+    ("stream", "stream", frames::stream),
 ];
 
 /// The body of that name.

@@ -1,0 +1,78 @@
+//! Recordings of sensors and streams of frames.
+
+use std::io::Cursor;
+use std::ops::ControlFlow;
+
+use taxel::formats::recording::{ReadOptions, RecordingEvent, read};
+use taxel::formats::stream::{StreamDecoder, StreamEvent, StreamOptions};
+use taxel::frame::{Processing, Rule};
+
+use super::is_short;
+
+/// A recording of any form, without and with a shape that may fit.
+pub(crate) fn recording(bytes: &[u8]) {
+    let with_shape = ReadOptions::default().with_shape(4, 5);
+    for options in [ReadOptions::default(), with_shape] {
+        let mut processing = Processing::default();
+        processing.rule = Rule::percent(50.0).ok();
+        let mut channels = 0;
+        let read = read(Cursor::new(bytes), options, &mut |event| {
+            match event {
+                RecordingEvent::Channel(_) => channels += 1,
+                RecordingEvent::Frame(frame) => {
+                    assert!(
+                        frame.channel < channels,
+                        "a channel is reported before its frames"
+                    );
+                    assert!(frame.values().iter().all(|value| !value.is_infinite()));
+                    if let Ok(processed) = processing.run(frame) {
+                        assert!(processed.sum.is_finite());
+                    }
+                }
+                RecordingEvent::Note(note) => is_short(&note.to_string()),
+                _ => {}
+            }
+            ControlFlow::Continue(())
+        });
+        if let Err(error) = read {
+            is_short(&error.to_string());
+        }
+    }
+}
+
+/// A stream of any form: the first byte says what is known of it. It is decoded alike in pieces and as a whole.
+pub(crate) fn stream(bytes: &[u8]) {
+    let Some((&first, bytes)) = bytes.split_first() else {
+        return;
+    };
+    let mut options = StreamOptions::default();
+    options.from_start = first & 1 == 0;
+    options.shape = (first & 2 != 0).then_some((4, 5));
+    let decoded = |pieces: &[&[u8]]| {
+        let mut decoder = StreamDecoder::new(options);
+        let mut frames = Vec::new();
+        let mut sink = |event: StreamEvent<'_>| {
+            if let StreamEvent::Frame(frame) = event {
+                let values = frame.values().iter().map(|value| value.to_bits());
+                frames.push(values.collect::<Vec<_>>());
+            }
+        };
+        for piece in pieces {
+            decoder.push(piece, &mut sink);
+        }
+        decoder.finish(&mut sink);
+        assert_eq!(decoder.counts().frames, frames.len() as u64);
+        assert_eq!(decoder.counts().bytes, bytes.len() as u64);
+        frames
+    };
+    let whole = decoded(&[bytes]);
+    // Which form a stream has is told by what has come first, so the beginning is one piece.
+    let start = bytes.len().min(usize::from(first) * 8);
+    let (start, rest) = bytes.split_at(start);
+    let pieces: Vec<&[u8]> = std::iter::once(start).chain(rest.chunks(7)).collect();
+    if whole.len() < 1000 && options.shape.is_some() && start.len() > 300 {
+        assert!(decoded(&pieces) == whole, "decoded in pieces");
+    } else {
+        decoded(&pieces);
+    }
+}
