@@ -66,8 +66,9 @@ pub(super) fn run(
         doing: "open it",
         error,
     })?;
-    let mut reading = ReadOptions::default();
-    reading.shape = options.shape;
+    let reading = ReadOptions {
+        shape: options.shape,
+    };
     let mut round = 0;
     loop {
         let mut pace = Pace {

@@ -23,10 +23,9 @@ pub(super) fn open_line(path: &Path, baud: u32) -> io::Result<File> {
         Err(Errno::BUSY) => return Err(busy()),
         opened => opened?,
     };
-    match flock(&line, FlockOperation::NonBlockingLockExclusive) {
-        Err(Errno::WOULDBLOCK) => return Err(busy()),
-        // Not every system locks devices.
-        Ok(()) | Err(_) => {}
+    // Not every system locks devices.
+    if flock(&line, FlockOperation::NonBlockingLockExclusive) == Err(Errno::WOULDBLOCK) {
+        return Err(busy());
     }
     let mut settings = tcgetattr(&line)?;
     settings.make_raw();

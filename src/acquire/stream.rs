@@ -54,10 +54,11 @@ pub(super) fn run(
     stop: &AtomicBool,
     consumer: &mut Consumer<'_>,
 ) -> Result<(), AcquireError> {
-    let mut stream = StreamOptions::default();
-    stream.format = options.format;
-    stream.shape = options.shape;
-    stream.from_start = !source.comes_back();
+    let stream = StreamOptions {
+        format: options.format,
+        shape: options.shape,
+        from_start: !source.comes_back(),
+    };
     let mut decoder = StreamDecoder::new(stream);
     let mut clock = StreamClock::new();
     let open = || ByteInput::open(source, options.baud, options.once);

@@ -250,11 +250,11 @@ impl McapState<'_, '_> {
                     [rows, columns] | [rows, columns, 1] => side(rows).zip(side(columns)),
                     _ => None,
                 };
-                Some(self.give(topic.to_owned(), shape))
+                Some(self.give(topic, shape))
             }
             MessageKind::Image => {
                 let shape = image(&mut cdr, &mut self.values)?;
-                Some(self.give(topic.to_owned(), Some(shape)))
+                Some(self.give(topic, Some(shape)))
             }
             MessageKind::TactileState => {
                 header(&mut cdr)?;
@@ -262,7 +262,7 @@ impl McapState<'_, '_> {
                     let name = format!("{topic}#{}", cdr.text()?);
                     self.values.clear();
                     cdr.numbers(b'f', 4, &mut self.values)?;
-                    match self.give(name, None) {
+                    match self.give(&name, None) {
                         Ok(false) => {}
                         ended => return Some(ended),
                     }
@@ -273,7 +273,7 @@ impl McapState<'_, '_> {
     }
 
     /// Gives the values as a frame of a channel; true if no more is wanted.
-    fn give(&mut self, name: String, shape: Option<(u16, u16)>) -> Result<bool, RecordingError> {
+    fn give(&mut self, name: &str, shape: Option<(u16, u16)>) -> Result<bool, RecordingError> {
         let found = self.values.len();
         let cells = |(rows, columns): (u16, u16)| usize::from(rows) * usize::from(columns);
         // What is named for one channel need not fit the others.
@@ -287,13 +287,13 @@ impl McapState<'_, '_> {
             }
             None => {
                 let info = ChannelInfo {
-                    name: Some(name.clone()),
+                    name: Some(name.to_owned()),
                     shape,
                     values: Some(found as u64),
                     ..ChannelInfo::default()
                 };
                 self.given.push(GivenChannel {
-                    name: name.clone(),
+                    name: name.to_owned(),
                     frames: 0,
                 });
                 if (self.sink)(RecordingEvent::Channel(&info)).is_break() {
