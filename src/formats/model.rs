@@ -18,7 +18,7 @@ use crate::imprint::Imprint;
 use crate::pose::Axis;
 use crate::quote::shortened;
 use crate::recognition::{Model, ModelParts, NamedShape, ShapeCount};
-use crate::sensor::Sensor;
+use crate::sensor::{MAX_SIDE, Sensor};
 
 /// What the header must say first.
 pub const FORMAT: &str = "taxel-model/1";
@@ -188,7 +188,12 @@ fn keys<R: Read + Seek>(archive: &mut ArrayReader<R>) -> Result<Keys, ArchiveErr
     let mut keys: Keys = Vec::with_capacity(heights.len());
     for (index, (&height, &width)) in heights.iter().zip(&widths).enumerate() {
         let rows = &rows[index * stride..][..stride];
-        let imprint = imprint(rows, kind, (width, height)).ok_or(ArchiveError::Array("rows"))?;
+        let imprint = if (width, height) == (0, 0) && rows.iter().all(|&byte| byte == 0) {
+            None
+        } else {
+            let imprint = imprint(rows, kind, (width, height));
+            Some(imprint.ok_or(ArchiveError::Array("rows"))?)
+        };
         keys.push((imprint, Vec::new()));
     }
     let (numbers, counts) = (archive.words("key")?, archive.words("count")?);
@@ -208,12 +213,9 @@ fn keys<R: Read + Seek>(archive: &mut ArrayReader<R>) -> Result<Keys, ArchiveErr
     Ok(keys)
 }
 
-/// The imprint of a key; inner None of the empty one, outer None of what is not cut to its box.
-fn imprint(rows: &[u8], kind: Dtype, (width, height): (u8, u8)) -> Option<Option<Imprint>> {
-    if (width, height) == (0, 0) {
-        return rows.iter().all(|&byte| byte == 0).then_some(None);
-    }
-    if width == 0 || height == 0 || width > 64 || height > 64 {
+/// The imprint of a key that has taxels; None of what is not cut to its box.
+fn imprint(rows: &[u8], kind: Dtype, (width, height): (u8, u8)) -> Option<Imprint> {
+    if width == 0 || height == 0 || width > MAX_SIDE || height > MAX_SIDE {
         return None;
     }
     let mut imprint = Imprint::empty(width, height);
@@ -227,5 +229,5 @@ fn imprint(rows: &[u8], kind: Dtype, (width, height): (u8, u8)) -> Option<Option
         imprint.set_word(row, word);
     }
     let bounds = imprint.bounds()?;
-    (bounds.columns() == (0..width) && bounds.rows() == (0..height)).then_some(Some(imprint))
+    (bounds.columns() == (0..width) && bounds.rows() == (0..height)).then_some(imprint)
 }

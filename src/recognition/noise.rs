@@ -563,6 +563,10 @@ impl<'a> Scanner<'a> {
     }
 
     /// Gives the distance of each key of a chunk of a group in each of some places: the keys one after the other.
+    #[expect(
+        clippy::inline_always,
+        reason = "so that it is compiled for the registers that are there"
+    )]
     #[inline(always)]
     fn compare(
         &self,
@@ -585,6 +589,10 @@ impl<'a> Scanner<'a> {
     }
 
     /// The same for keys of a fixed number of words, without dead taxels.
+    #[expect(
+        clippy::inline_always,
+        reason = "so that it is compiled for the registers that are there"
+    )]
     #[inline(always)]
     fn compare_words<const N: usize>(
         &self,
@@ -616,6 +624,10 @@ impl<'a> Scanner<'a> {
     }
 
     /// The same for keys of any number of words, and with dead taxels.
+    #[expect(
+        clippy::inline_always,
+        reason = "so that it is compiled for the registers that are there"
+    )]
     #[inline(always)]
     fn compare_any(
         &self,
@@ -659,6 +671,10 @@ fn added(mut one: Vec<u64>, other: Vec<u64>) -> Vec<u64> {
 }
 
 /// Bits that both strings have, as far as the first goes.
+#[expect(
+    clippy::inline_always,
+    reason = "so that it is compiled for the registers that are there"
+)]
 #[inline(always)]
 fn shared(bits: &[u64], seen: &[u64]) -> u32 {
     let both = bits.iter().zip(seen);

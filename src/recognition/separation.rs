@@ -432,7 +432,7 @@ mod tests {
         assert_eq!(
             separation
                 .at(SizeAxis::Scale, 40.0, 0.5, &|_| true)
-                .unwrap_err(),
+                .expect_err("no sensor is that large"),
             TrainingError::Large
         );
     }

@@ -34,6 +34,9 @@ const EQUAL: [(FigureKind, &[(Parameter, f64)]); 7] = [
 ];
 
 /// Returns the seven figures, each of about 30 cells: only their form tells them apart.
+///
+/// # Panics
+/// Never: the sizes are in range.
 pub fn equal_figures() -> Vec<NamedShape> {
     let sensor = Sensor::default();
     let shape = |(kind, sizes): (FigureKind, &[(Parameter, f64)])| {

@@ -11,7 +11,7 @@ use crate::cli::commands::model;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
-use crate::cli::output::evaluation::{self, percent};
+use crate::cli::output::evaluation::{self, bar, percent};
 use crate::cli::output::progress::Progress;
 use crate::cli::output::report;
 use crate::cli::signals::Signals;
@@ -116,19 +116,10 @@ fn noise_csv(table: &[NoiseRow]) -> String {
 /// The table with a bar per row.
 fn noise_text(table: &[NoiseRow], seed: u64, charset: Charset) -> String {
     const BAR: usize = 30;
-    let full = match charset {
-        Charset::Ascii => "#",
-        Charset::Unicode => "█",
-    };
     let mut text = String::from("  noise  dead     right            held   claimed\n");
     for row in table {
         let rate = &row.rate;
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a share is from 0 to 1"
-        )]
-        let bar = full.repeat((rate.accuracy() * BAR as f64).round() as usize);
+        let bar = bar(rate.accuracy(), BAR, charset);
         let _ = writeln!(
             text,
             "{:>7}  {:>4}  {:>8} ± {:<4}  {:>7}  {:>8}  {bar}",

@@ -70,7 +70,7 @@ pub(crate) fn recognise(
                     (asked.top, asked.noise),
                     charset,
                 );
-                if let Some(pose) = recogniser.pose(&touches, &answer).flatten() {
+                if let Some(pose) = recogniser.pose(&touches, &answer) {
                     text += &pose.text(&touches[0], charset);
                 }
                 text
@@ -145,19 +145,21 @@ impl Recogniser<'_> {
             noise: self.asked.noise,
             nearest: self.model.nearest_of(Evidence::of(touches)),
             top: self.asked.top,
+            asks_pose: self.asked.pose,
             pose: self.pose(touches, answer),
             copied: line.map(Line::copied).unwrap_or_default(),
         }
     }
 
-    /// Where the shape of an answer lies in the last touch, if that is asked for; inner None without an answer, and if
-    /// the shape does not leave that imprint.
-    fn pose(&self, touches: &[Imprint], answer: &Answer) -> Option<Option<PoseReport>> {
-        self.asked.pose.then(|| {
-            let (shape, touch) = (answer.shape?, touches.last()?);
-            let estimate = self.model.pose_of(shape, touch, &|_| true)?;
-            PoseReport::new(&self.model, shape, touch, estimate, self.asked.pitch_mm)
-        })
+    /// Where the shape of an answer lies in the last touch, if that is asked for. None without an answer, and if the shape
+    /// does not leave that imprint.
+    fn pose(&self, touches: &[Imprint], answer: &Answer) -> Option<PoseReport> {
+        if !self.asked.pose {
+            return None;
+        }
+        let (shape, touch) = (answer.shape?, touches.last()?);
+        let estimate = self.model.pose_of(shape, touch, &|_| true)?;
+        PoseReport::new(self.model, shape, touch, estimate, self.asked.pitch_mm)
     }
 
     /// Whether the answer is the expected one; yes if none is.

@@ -58,7 +58,7 @@ fn library_shapes(shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
     let library = shelf.library()?;
     let mut shapes = Vec::new();
     for entry in library.list()? {
-        let name = entry.name.to_string();
+        let name = entry.name.clone();
         let imprint = library.load(&name)?.shape.imprint;
         shapes.push(NamedShape::new(name, Picture::at_home(imprint)));
     }

@@ -7,7 +7,7 @@ use serde::ser::{SerializeMap, Serializer};
 use serde_json::value::RawValue;
 
 use crate::cli::output::charset::Charset;
-use crate::cli::output::evaluation::percent;
+use crate::cli::output::evaluation::{bar, percent};
 use crate::cli::output::pose::PoseReport;
 use crate::imprint::Imprint;
 use crate::recognition::{Answer, AnswerState, Evidence, Method, Model, Nearest, Noise};
@@ -34,8 +34,10 @@ pub(crate) struct AnswerJson<'a> {
     pub(crate) noise: Option<Noise>,
     pub(crate) nearest: Option<Nearest>,
     pub(crate) top: Option<usize>,
-    /// Where the shape lies: None if that was not asked for, inner None if it cannot be said.
-    pub(crate) pose: Option<Option<PoseReport>>,
+    /// Whether it was asked where the shape lies.
+    pub(crate) asks_pose: bool,
+    /// Where the shape lies; None if it cannot be said.
+    pub(crate) pose: Option<PoseReport>,
     /// Keys of the question that come first.
     pub(crate) copied: Vec<(&'static str, &'a RawValue)>,
 }
@@ -69,8 +71,8 @@ impl Serialize for AnswerJson<'_> {
             imprint: nearest.imprint.lines().collect(),
         });
         map.serialize_entry("nearest", &nearest)?;
-        if let Some(pose) = &self.pose {
-            map.serialize_entry("pose", &pose.as_ref().map(PoseReport::json))?;
+        if self.asks_pose {
+            map.serialize_entry("pose", &self.pose.as_ref().map(PoseReport::json))?;
         }
         map.end()
     }
@@ -119,7 +121,7 @@ pub(crate) fn text(
             text,
             "  {:<width$}  {:<BAR$}  {:>7}",
             name(shape),
-            bar(probability, charset),
+            bar(probability, BAR, charset),
             percent(probability)
         );
     }
@@ -146,20 +148,6 @@ pub(crate) fn text(
         text += "  # both   + only in the touch   - only in the nearest imprint\n";
     }
     charset.lines(&text)
-}
-
-/// A bar of a share's length.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a share is from 0 to 1"
-)]
-fn bar(share: f64, charset: Charset) -> String {
-    let full = match charset {
-        Charset::Ascii => "#",
-        Charset::Unicode => "█",
-    };
-    full.repeat((share * BAR as f64).round() as usize)
 }
 
 /// Two imprints of one size in one matrix.

@@ -75,6 +75,21 @@ pub(crate) fn percent(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)
 }
 
+/// A bar for a share, of at most `width` characters.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "a share is from 0 to 1, a width that of a terminal"
+)]
+pub(crate) fn bar(share: f64, width: usize, charset: Charset) -> String {
+    let full = match charset {
+        Charset::Ascii => "#",
+        Charset::Unicode => "█",
+    };
+    full.repeat((share * width as f64).round() as usize)
+}
+
 /// What an evaluation says, in lines: touches, error, certain, top two, information.
 pub(crate) fn summary(evaluation: &Evaluation, charset: Charset) -> String {
     let number = |number| grouped(number, charset);

@@ -124,16 +124,16 @@ fn touch_again(app: &mut App, mut exercise: Exercise) {
     let sensor = app.history.present().sensor;
     let Some(page) = state(app) else { return };
     if let Some((sensor, imprint)) = exercise.touch(sensor, &mut page.random) {
-        put(app, sensor, imprint);
+        put(app, sensor, &imprint);
     }
     let_go(app);
     app.dialogs.push(Dialog::Exercise(Box::new(exercise)));
 }
 
 /// Puts an imprint onto the matrix as if it were drawn: nothing says what made it.
-fn put(app: &mut App, sensor: Sensor, imprint: Imprint) {
+fn put(app: &mut App, sensor: Sensor, imprint: &Imprint) {
     let mut document = Document::empty(sensor);
-    document.edits = imprint;
+    document.edits = *imprint;
     begin(app, document, None);
 }
 
@@ -238,7 +238,7 @@ pub(in crate::tui) fn in_confusion(
     if *message == Message::Accept {
         let sensor = app.history.present().sensor;
         if let Some((sensor, imprint)) = page.imprint_on(sensor) {
-            put(app, sensor, imprint);
+            put(app, sensor, &imprint);
             return None;
         }
         refuse(app, "there is no imprint in this cell");

@@ -175,7 +175,7 @@ fn prepare(
 /// Searches a model, on a thread of its own or at once.
 pub(super) fn look(
     trained: Arc<TrainedModel>,
-    imprint: Imprint,
+    imprint: Box<Imprint>,
     shape: Option<usize>,
     post: Option<WorkerEventSink>,
 ) -> Option<WorkerEvent> {
@@ -188,7 +188,7 @@ pub(super) fn look(
         });
         WorkerEvent::Recognition(RecognitionEvent::Looked(Box::new(Look {
             trained,
-            imprint,
+            imprint: *imprint,
             nearest,
             pose,
         })))

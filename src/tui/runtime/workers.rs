@@ -120,7 +120,7 @@ impl Workers {
                 None
             }
             Work::Look(trained, imprint, shape) => {
-                models::look(trained, *imprint, shape, self.post.clone())
+                models::look(trained, imprint, shape, self.post.clone())
             }
         }
     }

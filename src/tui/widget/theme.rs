@@ -128,8 +128,9 @@ fn tone(role: Role, palette: Palette) -> Option<Tone> {
         (Palette::Dark, Role::Title) => Some((Color::Cyan, 80, [95, 215, 215])),
         (Palette::Dark, Role::Chosen) => Some((Color::Green, 114, [135, 215, 135])),
         (Palette::Dark, Role::Active) => Some((Color::Blue, 75, [95, 175, 255])),
-        (Palette::Dark, Role::Surplus | Role::Missing) => tone(Role::Error, palette),
-        (Palette::Light, Role::Surplus | Role::Missing) => tone(Role::Error, palette),
+        (Palette::Dark | Palette::Light, Role::Surplus | Role::Missing) => {
+            tone(Role::Error, palette)
+        }
         (Palette::Dark, Role::Hole) => Some((Color::Yellow, 221, [255, 215, 95])),
         (Palette::Dark, Role::Error) => Some((Color::Red, 203, [255, 95, 95])),
         (Palette::Light, Role::Title) => Some((Color::Blue, 25, [0, 95, 175])),
@@ -176,8 +177,9 @@ impl Theme {
     pub fn style(&self, role: Role) -> Style {
         let style = match role {
             Role::Quiet | Role::Inactive => Style::new().add_modifier(Modifier::DIM),
-            Role::Key | Role::Title | Role::Error => Style::new().add_modifier(Modifier::BOLD),
-            Role::Surplus | Role::Missing => Style::new().add_modifier(Modifier::BOLD),
+            Role::Key | Role::Title | Role::Error | Role::Surplus | Role::Missing => {
+                Style::new().add_modifier(Modifier::BOLD)
+            }
             Role::Cursor | Role::Focus => Style::new().add_modifier(Modifier::REVERSED),
             Role::Text | Role::Active | Role::Chosen | Role::Hole => Style::new(),
         };
