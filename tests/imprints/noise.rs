@@ -6,7 +6,7 @@ use serde_json::Value;
 use taxel::prelude::*;
 use taxel::recognition::{Method, Model, NamedShape, Noise, Scanner};
 
-use crate::recognition::{published, ranges, s1, s4, sensor, train};
+use crate::recognition::{float, published, ranges, s1, s4, sensor, train};
 
 /// Shapes that fit a matrix of 5 × 5, with few keys.
 fn tiny() -> Model {
@@ -45,8 +45,8 @@ fn by_definition(model: &Model, imprint: &Imprint, flip: f64, dead: &Imprint) ->
                     })
                     .product();
                 for count in model.counts(key) {
-                    sums[usize::from(count.shape)] += count.poses as f64 * probability;
-                    totals[usize::from(count.shape)] += count.poses as f64;
+                    sums[usize::from(count.shape)] += float(count.poses) * probability;
+                    totals[usize::from(count.shape)] += float(count.poses);
                 }
             }
         }
@@ -236,7 +236,7 @@ fn touches_until_certain_are_as_published() {
         let touches = model
             .touches_until(0.99, 4000, 3, &|_| true)
             .expect("not stopped");
-        let mean = touches.iter().map(|own| own.mean).sum::<f64>() / touches.len() as f64;
+        let mean = touches.iter().map(|own| own.mean).sum::<f64>() / float(touches.len() as u64);
         println!("{mean} {expected}");
         assert!(
             (mean / expected - 1.0).abs() < 0.02,

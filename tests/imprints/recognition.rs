@@ -9,6 +9,12 @@ use taxel::recognition::{
 };
 use taxel::sweep::Shard;
 
+/// A count as a number to compute with.
+#[expect(clippy::cast_precision_loss, reason = "all counts are small")]
+pub(crate) fn float(count: u64) -> f64 {
+    count as f64
+}
+
 pub(crate) fn sensor(side: u8) -> Sensor {
     let sensor = Sensor::default();
     [Parameter::Columns, Parameter::Rows]
@@ -326,15 +332,12 @@ fn answers_say_how_far_they_can_be_trusted() {
     let twice = [bar, bar];
     let answer = model.recognise(Evidence::of(&twice));
     let counts = model.counts_of(&bar);
-    let squares: f64 = counts
-        .iter()
-        .map(|count| (count.poses as f64).powi(2))
-        .sum();
+    let squares: f64 = counts.iter().map(|count| float(count.poses).powi(2)).sum();
     for &(shape, probability) in &answer.ranking {
         let own = counts
             .iter()
             .find(|count| usize::from(count.shape) == shape);
-        let expected = (own.expect("it has one").poses as f64).powi(2) / squares;
+        let expected = float(own.expect("it has one").poses).powi(2) / squares;
         assert!((probability - expected).abs() < 1e-12);
     }
     // Contradicting ones leave nothing.
@@ -348,7 +351,7 @@ fn answers_say_how_far_they_can_be_trusted() {
 #[test]
 fn an_unknown_imprint_has_a_nearest_one() {
     let model = train(s4(), 32, published());
-    let mut touch: Imprint = ".########.".repeat(1).parse().expect("an imprint");
+    let mut touch: Imprint = ".########.".to_string().parse().expect("an imprint");
     touch = touch.resized(12, 9);
     let mut shifted = Imprint::empty(12, 9);
     for row in 2..5 {

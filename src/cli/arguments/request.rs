@@ -70,7 +70,7 @@ pub(crate) enum Request {
     /// A subcommand of `taxel model`.
     Model(ModelRequest),
     /// Name the shape that left an imprint.
-    Recognise(RecogniseArguments),
+    Recognise(Box<RecogniseArguments>),
     /// List a recording, or describe its frames.
     Frames(Box<FramesArguments>, Form, Kept),
     /// Answer the frames of a source as they come.
@@ -269,10 +269,10 @@ fn request(
             Request::Merge(files.cloned().collect(), wanted(own))
         }
         "model" => Request::Model(recognition::model_request(own)?),
-        "recognise" => Request::Recognise(recognition::recognise_arguments(
+        "recognise" => Request::Recognise(Box::new(recognition::recognise_arguments(
             own,
             pitch(own, settings)?.of(None),
-        )),
+        ))),
         _ => Request::Batch(settings.sensor()),
     })
 }

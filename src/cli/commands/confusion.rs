@@ -62,18 +62,15 @@ pub(crate) fn confusion(
         }
         Evaluated::Peer(peer) => {
             let reached = peer.evaluate(&model, &asked.peers);
-            match asked.form {
-                EvaluationForm::Json => {
-                    let line = json::text(&EvaluationJson {
-                        evaluation: &reached.evaluation,
-                        peer: Some(&reached),
-                    });
-                    report::ascii_json(&line) + "\n"
-                }
-                _ => {
-                    let text = shown(asked, &reached.evaluation, charset)?;
-                    text + &charset.lines(&evaluation::features(Some(&reached)))
-                }
+            if asked.form == EvaluationForm::Json {
+                let line = json::text(&EvaluationJson {
+                    evaluation: &reached.evaluation,
+                    peer: Some(&reached),
+                });
+                report::ascii_json(&line) + "\n"
+            } else {
+                let text = shown(asked, &reached.evaluation, charset)?;
+                text + &charset.lines(&evaluation::features(Some(&reached)))
             }
         }
         Evaluated::Noise(noise) => noise::degradation(&model, noise, asked.form, charset)?,

@@ -126,14 +126,13 @@ fn grid(
             }
         }
     }
-    let sensor = match asked.sensor {
-        Some(sensor) => sensor,
-        None => {
-            let (columns, rows) = (sensor.columns(), sensor.rows());
-            asked
-                .given
-                .sensor(Sensor::new(columns, rows).map_err(GridError::from)?)?
-        }
+    let sensor = if let Some(sensor) = asked.sensor {
+        sensor
+    } else {
+        let (columns, rows) = (sensor.columns(), sensor.rows());
+        asked
+            .given
+            .sensor(Sensor::new(columns, rows).map_err(GridError::from)?)?
     };
     Ok((sensor, anchor, ranges))
 }

@@ -132,7 +132,7 @@ fn found(axis: SizeAxis, sizes: &DecimalRange, curve: &Curve, wanted: f64) -> St
     match smallest.missed_again {
         0 => text += "  all larger sizes that were tried reach it, too\n",
         1 => {
-            text += "  the error is not monotonous: 1 larger size that was tried misses it again\n"
+            text += "  the error is not monotonous: 1 larger size that was tried misses it again\n";
         }
         more => {
             let _ = writeln!(

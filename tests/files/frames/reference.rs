@@ -236,7 +236,7 @@ fn mcap(iscan: &Recorded) {
     let names: Vec<_> = found
         .channels
         .iter()
-        .flat_map(|info| info.name.clone())
+        .filter_map(|info| info.name.clone())
         .collect();
     assert_eq!(names.len(), 4, "{names:?}");
     let mut processing = Processing::default();
