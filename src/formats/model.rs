@@ -12,7 +12,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::formats::archive::{anchor, ranges};
 use crate::formats::npy::Dtype;
-use crate::formats::npz::{ArchiveError, ArrayReader, ArrayWriter, HEADER, little_endian};
+use crate::formats::npz::{
+    ArchiveError, ArrayReader, ArrayWriter, HEADER, format_in, little_endian,
+};
 use crate::formats::record::{Record, Values};
 use crate::imprint::Imprint;
 use crate::pose::Axis;
@@ -141,14 +143,16 @@ fn header(model: &Model) -> Result<Vec<u8>, ArchiveError> {
 pub fn read(input: impl Read + Seek) -> Result<Model, ArchiveError> {
     let mut archive = ArrayReader::new(input)?;
     let header = archive.header()?;
-    let header: ModelHeader<Record<'_>, Values> = serde_json::from_slice(&header)
-        .map_err(|error| ArchiveError::Header(crate::formats::json::message(&error)))?;
-    if header.format != FORMAT {
+    // Another format has other fields: what it is goes before what it lacks.
+    let found = format_in(&header)?;
+    if found != FORMAT {
         return Err(ArchiveError::Format {
-            found: shortened(&header.format),
+            found: shortened(&found),
             expected: FORMAT,
         });
     }
+    let header: ModelHeader<Record<'_>, Values> = serde_json::from_slice(&header)
+        .map_err(|error| ArchiveError::Header(crate::formats::json::message(&error)))?;
     let sensor = header.sensor.sensor(Sensor::default())?;
     let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
     let mut shapes = Vec::with_capacity(header.shapes.len());

@@ -117,12 +117,16 @@ pub(crate) fn little_endian(words: &[u64]) -> Vec<u8> {
 /// # Errors
 /// If it is not an archive with a header.
 pub fn format_of(input: impl Read + Seek) -> Result<String, ArchiveError> {
+    format_in(&ArrayReader::new(input)?.header()?)
+}
+
+/// What a header says that its archive holds; whatever else is in it.
+pub(crate) fn format_in(header: &[u8]) -> Result<String, ArchiveError> {
     #[derive(serde::Deserialize)]
     struct Format {
         format: String,
     }
-    let header = ArrayReader::new(input)?.header()?;
-    let format: Format = serde_json::from_slice(&header)
+    let format: Format = serde_json::from_slice(header)
         .map_err(|error| ArchiveError::Header(crate::formats::json::message(&error)))?;
     Ok(format.format)
 }

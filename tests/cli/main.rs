@@ -26,6 +26,12 @@ mod picture;
 mod sweep;
 mod sweep_files;
 
+mod model;
+
+mod recognise;
+
+mod separate;
+
 mod settings;
 
 mod shell;
@@ -52,6 +58,11 @@ fn program<A: AsRef<OsStr>>(arguments: &[A], locale: &str) -> Command {
         .env(
             "TAXEL_LIBRARY",
             concat!(env!("CARGO_TARGET_TMPDIR"), "/no-library"),
+        )
+        // No model that another version has cached.
+        .env(
+            "XDG_CACHE_HOME",
+            concat!(env!("CARGO_TARGET_TMPDIR"), "/cache"),
         )
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())

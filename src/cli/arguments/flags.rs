@@ -1,6 +1,7 @@
 //! Flags that several commands have.
 
 use std::ffi::OsString;
+use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 
@@ -164,4 +165,16 @@ pub(super) fn parse_probability(text: &str) -> Result<f64, &'static str> {
     number
         .filter(|number| (0.0..=1.0).contains(number))
         .ok_or("expected a number from 0 to 1")
+}
+
+/// A file of numbers or of a drawing, which its ending tells.
+pub(super) fn parse_report(text: &str) -> Result<PathBuf, &'static str> {
+    let path = PathBuf::from(text);
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    let known = ending.is_some_and(|ending| {
+        ["csv", "svg", "png"].contains(&ending.to_ascii_lowercase().as_str())
+    });
+    known
+        .then_some(path)
+        .ok_or("expected a name that ends in .csv, .svg or .png")
 }

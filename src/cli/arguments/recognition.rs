@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
 
 use crate::cli::arguments::flags::{
-    EvaluationForm, anchor, form_of, jobs, json, of_sensor, parse_name, parse_probability, quiet,
-    range, replace, sensor_of_imprints, shard, what,
+    EvaluationForm, anchor, form_of, jobs, json, of_sensor, parse_name, parse_probability,
+    parse_report, quiet, range, replace, sensor_of_imprints, shard, what,
 };
 use crate::cli::arguments::help::{
     MODEL_CONFUSION_EXAMPLES, MODEL_DELETE_EXAMPLES, MODEL_EXAMPLES, MODEL_LIST_EXAMPLES,
@@ -252,6 +252,7 @@ fn confusion() -> Command {
         .value_name("KEY=STEP")
         .action(ArgAction::Append)
         .value_parser(parse_rounding)
+        .requires("descriptors")
         .help("Measure a descriptor in steps: cg_cd=0.01");
     let classifier = Arg::new("classifier")
         .long("classifier")
@@ -266,12 +267,14 @@ fn confusion() -> Command {
             .long(name)
             .value_name("N")
             .value_parser(value_parser!(u32).range(1..))
+            .requires("classifier")
             .help(help)
     };
     let export = Arg::new("export")
         .long("export")
         .value_name("FILE")
-        .value_parser(value_parser!(PathBuf))
+        .value_parser(parse_report)
+        .conflicts_with_all(["greedy", "pairs", "noise", "test"])
         .help("Write the matrix as .csv, .svg or .png");
     Command::new("confusion")
         .about("Show which shapes one touch confuses, and the limit of any method")
@@ -286,6 +289,7 @@ fn confusion() -> Command {
             flag("pairs", "The error for each pair of shapes alone"),
             classifier,
         ])
+        .group(ArgGroup::new("descriptors").args(["given", "greedy"]))
         .group(ArgGroup::new("of").args([
             "given",
             "greedy",
@@ -307,7 +311,7 @@ fn confusion() -> Command {
             replace(),
             json(),
             quiet(),
-            flag("csv", "Print a table of commas").conflicts_with("json"),
+            flag("csv", "Print a table of commas").conflicts_with_all(["json", "greedy", "pairs"]),
         ])
         .args(noisy())
 }

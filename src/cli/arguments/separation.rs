@@ -6,7 +6,8 @@ use std::path::PathBuf;
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
 
 use crate::cli::arguments::flags::{
-    EvaluationForm, form_of, jobs, json, parse_probability, parse_range, quiet, range, replace,
+    EvaluationForm, form_of, jobs, json, parse_probability, parse_range, parse_report, quiet,
+    range, replace,
 };
 use crate::cli::arguments::help::MODEL_SEPARATE_EXAMPLES;
 use crate::cli::arguments::parameters;
@@ -62,7 +63,7 @@ pub(super) fn separate() -> Command {
     let export = Arg::new("export")
         .long("export")
         .value_name("FILE")
-        .value_parser(value_parser!(PathBuf))
+        .value_parser(parse_report)
         .help("Write the numbers as .csv, or the curves as .svg or .png");
     let csv = Arg::new("csv")
         .long("csv")

@@ -16,21 +16,21 @@ use crate::tui::widget::theme::Theme;
 const SIZE: (u16, u16) = (60, 12);
 
 /// The curve through points, both axes named. The vertical one begins at 0, the other one at the first value.
+/// Empty for a single point, and where all are 0.
 pub(crate) fn lines(y: &str, x: &str, points: &[(f64, f64)], charset: Charset) -> String {
     let over = |of: fn(&(f64, f64)) -> f64| points.iter().map(of);
     let highest = over(|point| point.1).fold(0.0, f64::max);
     let left = over(|point| point.0).fold(f64::INFINITY, f64::min);
     let right = over(|point| point.0).fold(f64::NEG_INFINITY, f64::max);
-    if points.is_empty() || right <= left {
+    if points.is_empty() || right <= left || highest <= 0.0 {
         return String::new();
     }
     let mut canvas = DotCanvas::new(SIZE.0, SIZE.1);
     let (width, height) = canvas.size();
-    let end = if highest > 0.0 { highest } else { 1.0 };
     let place = |&(x, y): &(f64, f64)| {
         (
             (x - left) / (right - left) * (width - 1.0) + 0.5,
-            (1.0 - y / end) * (height - 1.0) + 0.5,
+            (1.0 - y / highest) * (height - 1.0) + 0.5,
         )
     };
     for pair in points.windows(2) {

@@ -6,6 +6,7 @@
 use crate::formats::drawing::page::{ADVANCE, DrawingPage, MARGIN, TEXT};
 use crate::formats::drawing::scene::{Element, Position, Segment, Stroke, TextAnchor, rectangle};
 use crate::formats::drawing::svg;
+use crate::formats::value::decimal;
 
 /// More shapes would make a page that nothing prints.
 const MOST: usize = 64;
@@ -14,7 +15,7 @@ const MOST: usize = 64;
 const LONGEST: usize = 30;
 
 /// The grey of a whole row in one cell: black text on it is readable.
-const DARKEST: f64 = 130.0;
+const DARKEST: f64 = 160.0;
 
 const CELL: Stroke = Stroke {
     width: 0.4,
@@ -88,7 +89,7 @@ impl ConfusionMap {
             let count = self.count(row, column);
             count.to_string().len()
         }));
-        let cell = (width(digits.max(6)) + 8.0, TEXT * 2.0 + 8.0);
+        let cell = (width(digits.max(7)) + 8.0, TEXT * 2.0 + 8.0);
         // Names that are wider than a cell run upwards.
         let upright = width(names) + 4.0 > cell.0;
         let heading = if upright { width(names) } else { TEXT };
@@ -252,9 +253,15 @@ fn share(part: u128, whole: u128) -> f64 {
     }
 }
 
-/// A share in percent, with a decimal where it is not whole.
+/// A share in percent, with a decimal where it is not whole; a share that is neither nothing nor all never looks so.
 fn percent(share: f64) -> String {
-    format!("{} %", crate::formats::value::decimal(100.0 * share, 1))
+    if share > 0.0 && share < 0.0005 {
+        return "<0.1 %".to_owned();
+    }
+    if share < 1.0 && share >= 0.9995 {
+        return ">99.9 %".to_owned();
+    }
+    format!("{} %", decimal(100.0 * share, 1))
 }
 
 #[expect(

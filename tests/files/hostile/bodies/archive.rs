@@ -81,10 +81,15 @@ pub(crate) fn arrays(bytes: &[u8]) {
     thread_local! {
         static SOUND: LazyCell<Vec<Arrays>> = const { LazyCell::new(sound) };
     }
-    let Some((&choice, mut rest)) = bytes.split_first() else {
-        return;
-    };
-    let mut arrays = SOUND.with(|sound| sound[usize::from(choice) % sound.len()].clone());
+    if let Some(changed) = SOUND.with(|sound| changed(sound, bytes)) {
+        archive(&changed);
+    }
+}
+
+/// One of some archives with other bytes in its arrays, see [`arrays`]; None without a first byte.
+pub(super) fn changed(sound: &[Arrays], bytes: &[u8]) -> Option<Vec<u8>> {
+    let (&choice, mut rest) = bytes.split_first()?;
+    let mut arrays = sound[usize::from(choice) % sound.len()].clone();
     while let [which, low, high, gone, come, more @ ..] = rest {
         let (new, more) = more.split_at(more.len().min((*come).into()));
         let index = usize::from(*which) % arrays.len();
@@ -94,7 +99,7 @@ pub(crate) fn arrays(bytes: &[u8]) {
         content.splice(at..end, new.iter().copied());
         rest = more;
     }
-    archive(&packed(&arrays));
+    Some(packed(&arrays))
 }
 
 /// One of the sound archives, its sums about the turns in place of which `change` puts others.
@@ -110,7 +115,7 @@ pub(crate) fn with_spread(choice: usize, change: impl FnOnce(&mut Vec<u64>)) -> 
 }
 
 /// The arrays of an archive: name and content.
-type Arrays = Vec<(String, Vec<u8>)>;
+pub(super) type Arrays = Vec<(String, Vec<u8>)>;
 
 /// The arrays that are read; the others are for people.
 const READ: [&str; 5] = [
@@ -151,19 +156,19 @@ fn sound() -> Vec<Arrays> {
         (&figures, part),
         (&pictures, part),
     ]
-    .map(|(grid, shard)| unpacked(&bytes_of(&Sweep::new(grid).shard(shard).run())))
+    .map(|(grid, shard)| unpacked(&bytes_of(&Sweep::new(grid).shard(shard).run()), &READ))
     .to_vec()
 }
 
-fn unpacked(bytes: &[u8]) -> Arrays {
+pub(super) fn unpacked(bytes: &[u8], names: &[&str]) -> Arrays {
     let mut archive = ZipArchive::new(Cursor::new(bytes)).expect("a sound archive");
-    let array = |name: &str| {
+    let mut array = |name: &str| {
         let mut content = Vec::new();
         let mut file = archive.by_name(name).expect("it is there");
         file.read_to_end(&mut content).expect("it can be read");
         (name.to_owned(), content)
     };
-    READ.map(array).to_vec()
+    names.iter().map(|name| array(name)).collect()
 }
 
 fn packed(arrays: &Arrays) -> Vec<u8> {

@@ -8,6 +8,8 @@ mod formats;
 
 mod frames;
 
+mod model;
+
 mod keys;
 
 mod screen;
@@ -20,7 +22,7 @@ pub(crate) use screen::session_of;
 pub(crate) type Body = (&'static str, &'static str, fn(&[u8]));
 
 /// All of them.
-pub(crate) const BODIES: [Body; 17] = [
+pub(crate) const BODIES: [Body; 20] = [
     ("shape", "shape", formats::shape),
     ("job", "job", formats::job),
     ("imprint", "imprint", formats::imprint),
@@ -29,6 +31,9 @@ pub(crate) const BODIES: [Body; 17] = [
     ("npy", "npy", formats::npy),
     ("archive", "archive", archive::archive),
     ("arrays", "arrays", archive::arrays),
+    ("model", "model", model::model),
+    ("model_arrays", "model_arrays", model::model_arrays),
+    ("named_shape", "named_shape", model::named),
     ("config", "config", formats::config),
     ("keys", "keys", keys::keys),
     ("terminal", "terminal", keys::terminal),

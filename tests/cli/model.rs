@@ -1,0 +1,532 @@
+//! `taxel model`: training, shards, evaluation, and what is refused.
+
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use super::finish;
+use super::misused;
+use super::program;
+use super::refused;
+use super::sweep::{folder, names};
+use super::taxel;
+use super::{Run, run_in};
+
+/// Two shapes that no touch confuses.
+pub(crate) const PARTS: &str = "{\"name\":\"disc\",\"figure\":\"ellipse\",\"radius_x\":3,\"radius_y\":3}\n\
+                                {\"name\":\"ring\",\"picture\":\"washer\"}\n";
+
+/// Four rectangles that are hard to tell apart.
+pub(crate) const RECTANGLES: &str = "{\"name\":\"a\",\"figure\":\"rectangle\",\"length\":6,\"width\":3}\n\
+     {\"name\":\"b\",\"figure\":\"rectangle\",\"length\":6,\"width\":3.2}\n\
+     \n\
+     {\"name\":\"c\",\"figure\":\"rectangle\",\"length\":6.2,\"width\":3}\n\
+     {\"name\":\"d\",\"figure\":\"rectangle\",\"length\":4.2,\"width\":4.2}\n";
+
+/// The grid of the published figures.
+const PUBLISHED: &str = "--x0 10:10.99:0.01 --y0 10:10.99:0.01 --angle 0:359:1 --anchor corner \
+                         --columns 32 --rows 32 --quiet";
+
+/// One that is done at once.
+pub(crate) const COARSE: &str = "--positions 10 --angle 0:355:5 --quiet";
+
+/// A folder with files, and a program whose library is in it.
+pub(crate) struct Place(pub(crate) tempfile::TempDir);
+
+impl Place {
+    pub(crate) fn new() -> Self {
+        let place = Self(folder());
+        place.write("parts.jsonl", PARTS);
+        place.write("rectangles.jsonl", RECTANGLES);
+        place
+    }
+
+    pub(crate) fn path(&self, name: &str) -> String {
+        self.0.path().join(name).display().to_string()
+    }
+
+    pub(crate) fn write(&self, name: &str, text: &str) {
+        fs::write(self.0.path().join(name), text).expect("written");
+    }
+
+    pub(crate) fn read(&self, name: &str) -> Vec<u8> {
+        fs::read(self.0.path().join(name)).expect("it is there")
+    }
+
+    /// Runs a line in the folder; words are split at spaces, but not between single quotes.
+    pub(crate) fn run(&self, line: &str, input: &str) -> Run {
+        let mut arguments = Vec::new();
+        for (index, part) in line.split('\'').enumerate() {
+            if index % 2 == 1 {
+                arguments.push(part);
+            } else {
+                arguments.extend(part.split_whitespace());
+            }
+        }
+        let mut program = program(&arguments, "C.UTF-8");
+        program
+            .current_dir(self.0.path())
+            .env("TAXEL_LIBRARY", self.0.path().join("library"));
+        finish(program.spawn().expect("it starts"), input.as_bytes())
+    }
+
+    /// The same, of a line that must work; returns what it prints.
+    pub(crate) fn done(&self, line: &str) -> String {
+        let run = self.run(line, "");
+        assert_eq!(run.status, Some(0), "{line}: {}", run.stderr);
+        run.stdout
+    }
+
+    pub(crate) fn json(&self, line: &str) -> Value {
+        serde_json::from_str(&self.done(line)).expect("a line of JSON")
+    }
+}
+
+/// The keys of an object as they stand in its text.
+pub(crate) fn keys(text: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let (mut depth, mut quoted, mut word) = (0, false, String::new());
+    for sign in text.chars() {
+        match sign {
+            '"' => {
+                quoted = !quoted;
+                if quoted {
+                    word.clear();
+                }
+            }
+            _ if quoted => word.push(sign),
+            '{' | '[' => depth += 1,
+            '}' | ']' => depth -= 1,
+            ':' if depth == 1 => found.push(word.clone()),
+            _ => {}
+        }
+    }
+    found
+}
+
+#[test]
+fn four_rectangles_by_command_line_are_confused_as_published() {
+    let place = Place::new();
+    place.done(&format!(
+        "model train rectangles.jsonl {PUBLISHED} --out s4.npz"
+    ));
+    let text = place.done("model confusion s4.npz --json");
+    assert_eq!(
+        keys(&text),
+        [
+            "labels",
+            "touches",
+            "right",
+            "accuracy",
+            "error",
+            "certain",
+            "tied",
+            "right_in_top_two",
+            "information_bits",
+            "prior_bits",
+            "keys",
+            "keys_of_one_shape",
+            "confusion"
+        ]
+    );
+    let limit: Value = serde_json::from_str(&text).expect("JSON");
+    let count = |key: &str| limit[key].as_u64().expect("a count");
+    assert_eq!(
+        ["touches", "right", "certain", "tied"].map(count),
+        [14_400_000, 10_498_796, 4_821_044, 524]
+    );
+    assert_eq!(
+        limit["confusion"].to_string(),
+        "[[1642740,650164,1307096,0],[261984,2673920,664096,0],[572156,445708,2582136,0],[0,0,0,3600000]]"
+    );
+    assert_eq!(limit["labels"].to_string(), r#"["a","b","c","d"]"#);
+    let bits = limit["information_bits"].as_f64().expect("bits");
+    assert_eq!(format!("{bits:.4}"), "1.2066");
+    let table = place.done("model confusion s4.npz --csv");
+    assert_eq!(
+        table.lines().nth(1),
+        Some("a,1642740,650164,1307096,0"),
+        "{table}"
+    );
+    let shown = place.done("model confusion s4.npz");
+    assert!(
+        shown.contains("1 a [1642740]") && shown.contains("·"),
+        "{shown}"
+    );
+    assert!(shown.contains("most confused: a and c (13.1 %)"), "{shown}");
+}
+
+#[test]
+fn what_descriptors_pairs_and_classifiers_are_worth() {
+    let place = Place::new();
+    place.done(&format!(
+        "model train rectangles.jsonl {COARSE} --out m.npz"
+    ));
+    let limit = place.json("model confusion m.npz --json");
+    let right = |answer: &Value| answer["right"].as_u64().expect("a count");
+    let given = place.json("model confusion m.npz --given na,p --json");
+    assert_eq!(given["touches"], limit["touches"]);
+    assert!(right(&given) <= right(&limit));
+    let fine = place.json("model confusion m.npz --given cg_cd --json");
+    let rounded = place.json("model confusion m.npz --given cg_cd --round cg_cd=0.1 --json");
+    assert!(right(&rounded) < right(&fine) && rounded["keys"].as_u64() < fine["keys"].as_u64());
+    let greedy = place.json("model confusion m.npz --greedy --json");
+    let chosen = greedy["chosen"].as_array().expect("steps");
+    assert!(!chosen.is_empty() && right(chosen.last().expect("one")) <= right(&limit));
+    assert_eq!(greedy["limit"], limit["error"]);
+    let pairs = place.json("model confusion m.npz --pairs --json");
+    assert_eq!(pairs["errors"][0][3].as_f64(), Some(0.0));
+    assert_eq!(pairs["errors"][0][2], pairs["errors"][2][0]);
+    let table = place.json("model confusion m.npz --classifier all --json");
+    for name in ["z", "diagonal", "lda", "qda", "knn", "template"] {
+        let peer = place.json(&format!("model confusion m.npz --classifier {name} --json"));
+        assert_eq!(peer["classifier"], name);
+        assert_eq!(peer["error"], table[name], "{name}");
+        assert!(right(&peer) <= right(&limit) && peer["certain"].is_null());
+    }
+    assert_eq!(table["limit"], limit["error"]);
+    misused(
+        "model confusion m.npz --given na,cg",
+        "invalid value 'na,cg' for '--given <KEY,...>': cg says where the imprint lies",
+    );
+    misused(
+        "model confusion m.npz --round cg_cd=0",
+        "invalid value 'cg_cd=0' for '--round <KEY=STEP>': rounding \"cg_cd=0\": expected",
+    );
+}
+
+#[test]
+fn shards_and_threads_give_the_same_bytes() {
+    let place = Place::new();
+    let train = "model train parts.jsonl --positions 10 --angle 0:359:3 --quiet";
+    place.done(&format!("{train} --jobs 1 --out one.npz"));
+    place.done(&format!("{train} --jobs 2 --out two.npz"));
+    assert!(
+        place.read("one.npz") == place.read("two.npz"),
+        "threads differ"
+    );
+    for shard in 1..=3 {
+        place.done(&format!("{train} --shard {shard}/3 --out part-{shard}.npz"));
+    }
+    place.done("merge part-3.npz part-1.npz part-2.npz --out merged.npz");
+    assert!(
+        place.read("merged.npz") == place.read("one.npz"),
+        "shards differ"
+    );
+    let run = place.run("merge part-1.npz part-3.npz --out no.npz", "");
+    refused(&run, 1, "shard 2/3 is missing");
+    let run = place.run("merge part-1.npz one.npz --out no.npz", "");
+    refused(&run, 1, "shard 1/1 belongs to another training");
+    assert!(!names(place.0.path()).contains(&"no.npz".to_owned()));
+}
+
+#[test]
+fn models_have_names_and_cards() {
+    let place = Place::new();
+    assert_eq!(place.done("model list"), "");
+    place.done(&format!(
+        "model train rectangles.jsonl {COARSE} --name parts --threshold 0.4"
+    ));
+    assert!(place.path("models/parts.npz").ends_with("parts.npz"));
+    assert_eq!(names(&place.0.path().join("models")), ["parts.npz"]);
+    let card = place.done("model show parts");
+    for line in [
+        "16 x 16 sensor, threshold 0.4, centre at x0 7:7.9:0.1, y0 7:7.9:0.1, angle 0:355:5",
+        "  d: rectangle length 4.20, width 4.20, recognised in 100.0 %",
+        "7200 poses each",
+    ] {
+        assert!(card.lines().any(|own| own == line), "{line}\n{card}");
+    }
+    let card = place.json("model show parts --json");
+    assert_eq!(card["shapes"][1]["name"], "b");
+    assert_eq!(card["ranges"]["x0"], "7:7.9:0.1");
+    assert_eq!(card["hash"].as_str().map(str::len), Some(32));
+    let list = place.done("model list --json");
+    assert!(list.contains(r#""shapes":["a","b","c","d"]"#), "{list}");
+    let run = place.run(
+        &format!("model train parts.jsonl {COARSE} --name parts"),
+        "",
+    );
+    let there = format!(
+        "{:?} is there already; --force replaces it",
+        place.path("models/parts.npz")
+    );
+    refused(&run, 1, &there);
+    assert_eq!(place.done("model delete parts"), "deleted: parts\n");
+    refused(
+        &place.run("model delete parts", ""),
+        1,
+        "no model is called \"parts\", and no file either; 'taxel model list' shows all",
+    );
+}
+
+/// A set from everywhere: a file, standard input, the library, words.
+#[test]
+fn shapes_come_from_files_words_and_the_library() {
+    let place = Place::new();
+    place.done("library save mine washer");
+    let line = format!(
+        "model train rectangles.jsonl - mine --shape 'big disc=ellipse radius_x=5 radius_y=5' \
+         --shape 'key=picture key' {COARSE} --out all.npz"
+    );
+    let run = place.run(
+        &line,
+        "{\"name\":\"corner\",\"imprint\":[\"##\",\"#.\"],\"weight\":2}\r\n",
+    );
+    assert_eq!(run.status, Some(0), "{}", run.stderr);
+    let limit = place.json("model confusion all.npz --json");
+    assert_eq!(
+        limit["labels"].to_string(),
+        r#"["a","b","c","d","corner","mine","big disc","key"]"#
+    );
+    let card = place.json("model show all.npz --json");
+    assert_eq!(card["shapes"][4]["weight"], 2);
+    assert_eq!(card["touches"].as_u64(), Some(9 * 7200));
+}
+
+#[test]
+fn sets_that_make_no_sense_are_refused_in_one_sentence() {
+    let place = Place::new();
+    let train = |what: &str, input: &str| {
+        place.run(&format!("model train {what} {COARSE} --out m.npz"), input)
+    };
+    let disc = r#""figure":"ellipse","radius_x":3,"radius_y":3"#;
+    for (input, message) in [
+        (
+            format!("{{\"name\":\"a\",{disc}}}\n{{{disc}}}\n"),
+            "standard input, line 2: name: missing; every shape of a set needs one",
+        ),
+        (
+            format!("{{\"name\":\"a\",{disc}}}\n\n{{\"name\":\"a\",{disc}}}\n"),
+            "name \"a\" is given twice; each shape needs its own",
+        ),
+        (
+            "{\"name\":\"a\"".to_owned(),
+            "standard input, line 1: column 11: ",
+        ),
+        (
+            "{\"name\":\"a\",\"figure\":\"ellipse\",\"radius_x\":3}".to_owned(),
+            "standard input, line 1: radius_y",
+        ),
+        (
+            "{\"name\":\"a\",\"figure\":\"ellipse\",\"radius_x\":3,\"radius_y\":3,\"sensor\":{}}"
+                .to_owned(),
+            "standard input, line 1: ",
+        ),
+        (
+            "{\"name\":\"a\",\"picture\":\"no such\"}".to_owned(),
+            "standard input, line 1: picture",
+        ),
+        (String::new(), "0 shapes, expected 1 to 32768"),
+    ] {
+        let run = train("-", &input);
+        assert_eq!((run.status, run.stdout.as_str()), (Some(1), ""), "{input}");
+        assert!(
+            run.stderr.starts_with(&format!("error: {message}")),
+            "{input}: {}",
+            run.stderr
+        );
+        assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
+    }
+    refused(
+        &train("--shape 'disc=ellipse radius_x'", ""),
+        1,
+        "--shape: \"radius_x\": expected KEY=NUMBER, such as radius_x=3",
+    );
+    let run = train("no-such-shape", "");
+    assert!(run.stderr.contains("no-such-shape"), "{}", run.stderr);
+    // A cut imprint tells of the rim.
+    let cut = "model train --shape 't=triangle side=11.77' --x0 5:5.9:0.1 --y0 5:5.9:0.1 \
+               --angle 0:350:10 --columns 16 --rows 16 --quiet --out cut.npz";
+    refused(
+        &place.run(cut, ""),
+        1,
+        "t: the 16 x 16 sensor cuts off 3600 of 3600 poses; use a larger sensor or other positions, \
+         or allow it",
+    );
+    place.done(&format!("{cut} --allow-cut"));
+    refused(
+        &train("--shape 'huge=ellipse radius_x=40 radius_y=40'", ""),
+        1,
+        "huge: the 64 x 64 sensor cuts off 7200 of 7200 poses; use a larger sensor or other positions, \
+         or allow it",
+    );
+    refused(
+        &taxel("model confusion nowhere", ""),
+        1,
+        "no model is called \"nowhere\", and no file either; 'taxel model list' shows all",
+    );
+    misused(
+        "model train parts.jsonl",
+        "the following required arguments",
+    );
+    misused(
+        "model train --out m.npz",
+        "the following required arguments",
+    );
+    misused(
+        "model train parts.jsonl --out m.npz --positions 3",
+        "invalid value '3' for '--positions <N>': expected 1, 2, 4, 5, 10, 20, 25, 50 or 100",
+    );
+}
+
+#[test]
+fn damaged_models_are_refused() {
+    let place = Place::new();
+    place.done("model train parts.jsonl --positions 2 --angle 0:330:30 --quiet --out m.npz");
+    let good = place.read("m.npz");
+    let mut refusals = 0;
+    for at in (0..good.len()).step_by(good.len() / 60) {
+        let mut bad = good.clone();
+        bad[at] ^= 0x55;
+        fs::write(place.path("bad.npz"), &bad).expect("written");
+        let run = place.run("model confusion bad.npz --json", "");
+        assert!(matches!(run.status, Some(0 | 1)), "{at}: {}", run.stderr);
+        refusals += i32::from(run.status == Some(1));
+    }
+    assert!(refusals > 30, "{refusals}");
+    for bytes in [&b""[..], b"no archive", &good[..good.len() / 2]] {
+        fs::write(place.path("bad.npz"), bytes).expect("written");
+        let run = place.run("recognise - --model bad.npz", "#\n");
+        assert_eq!(run.status, Some(1));
+        assert!(
+            run.stderr.contains("bad.npz: no archive of arrays"),
+            "{}",
+            run.stderr
+        );
+    }
+    // An atlas is no model.
+    place.done("sweep hexagon --x0 5 --y0 5 --angle 0 --quiet --atlas atlas.npz");
+    let run = place.run("model show atlas.npz", "");
+    assert_eq!(run.status, Some(1));
+    assert!(run.stderr.contains("taxel-model/1"), "{}", run.stderr);
+}
+
+#[test]
+fn the_matrix_goes_into_files() {
+    let place = Place::new();
+    place.done(&format!(
+        "model train rectangles.jsonl {COARSE} --out m.npz"
+    ));
+    for name in ["m.csv", "m.svg", "m.png"] {
+        place.done(&format!("model confusion m.npz --export {name}"));
+    }
+    let svg = String::from_utf8(place.read("m.svg")).expect("text");
+    let limit = place.json("model confusion m.npz --json");
+    let number = limit["confusion"][0][0].to_string();
+    assert!(svg.contains(&format!(">{number}</text>")), "{svg}");
+    assert!(place.read("m.png").starts_with(b"\x89PNG"));
+    let table = place.done("model confusion m.npz --csv");
+    assert_eq!(place.read("m.csv"), table.as_bytes());
+    let run = place.run("model confusion m.npz --export m.svg", "");
+    refused(&run, 1, "\"m.svg\" is there already; --force replaces it");
+    misused(
+        "model confusion m.npz --export m.txt",
+        "invalid value 'm.txt' for '--export <FILE>': expected a name that ends in .csv, .svg or .png",
+    );
+    misused(
+        "model confusion m.npz --greedy --export m.csv",
+        "the argument '--greedy' cannot be used with '--export <FILE>'",
+    );
+    misused(
+        "model confusion m.npz --round cg_cd=0.01",
+        "the following required arguments were not provided",
+    );
+}
+
+#[test]
+fn an_interrupted_training_leaves_nothing() {
+    let place = Place::new();
+    // Minutes of work.
+    let line =
+        "model train rectangles.jsonl --x0 10:10.9999:0.0001 --y0 10:10.9999:0.0001 --out m.npz";
+    let arguments: Vec<&str> = line.split(' ').collect();
+    let mut program = program(&arguments, "C.UTF-8");
+    let mut child = program
+        .current_dir(place.0.path())
+        .spawn()
+        .expect("it starts");
+    // It listens to signals before it says what it will do.
+    let mut notes = BufReader::new(child.stderr.take().expect("piped"));
+    let mut note = String::new();
+    notes.read_line(&mut note).expect("a line");
+    assert!(note.contains("sensor, threshold 0.5"), "{note}");
+    std::thread::sleep(Duration::from_millis(200));
+    let start = Instant::now();
+    let id = i32::try_from(child.id()).expect("a process");
+    let id = rustix::process::Pid::from_raw(id).expect("a process");
+    rustix::process::kill_process(id, rustix::process::Signal::INT).expect("it runs still");
+    let mut rest = String::new();
+    notes.read_to_string(&mut rest).expect("text");
+    let run = finish(child, b"");
+    println!("stopped after {:?}", start.elapsed());
+    assert_eq!(rest, "error: stopped; nothing was written\n");
+    assert_eq!((run.status, run.stdout.as_str()), (Some(130), ""));
+    assert_eq!(names(place.0.path()), ["parts.jsonl", "rectangles.jsonl"]);
+}
+
+/// Read by the real numpy, where Python has it; with `TAXEL_NUMPY` set it must.
+#[test]
+fn numpy_reads_a_model() {
+    let numpy = Command::new("python3")
+        .args(["-c", "import numpy"])
+        .output();
+    if !numpy.is_ok_and(|output| output.status.success()) {
+        assert!(
+            std::env::var_os("TAXEL_NUMPY").is_none(),
+            "python3 has no numpy"
+        );
+        eprintln!("SKIPPED: no python3 with numpy");
+        return;
+    }
+    let place = Place::new();
+    place.done(&format!(
+        "model train rectangles.jsonl {COARSE} --out m.npz"
+    ));
+    let limit = place.done("model confusion m.npz --json");
+    let check = r"
+import sys, json, numpy
+model, limit = numpy.load(sys.argv[1]), json.loads(sys.argv[2])
+header = json.loads(model['header'].tobytes())
+assert header['format'] == 'taxel-model/1' and header['poses'] == 7200, header
+assert [shape['name'] for shape in header['shapes']] == limit['labels']
+keys, shapes = len(model['height']), len(limit['labels'])
+assert keys == limit['keys'] and model['rows'].shape[0] == keys
+counts = numpy.zeros((keys, shapes), dtype=numpy.uint64)
+counts[model['key'], model['shape']] = model['count']
+assert (counts.sum(axis=0) == header['poses']).all()
+assert counts.max(axis=1).sum() == limit['right']
+assert counts[(counts > 0).sum(axis=1) == 1].sum() == limit['certain']
+bits = model['rows'][:, :, None] >> numpy.arange(16, dtype=model['rows'].dtype) & 1
+assert (bits.any(axis=2).sum(axis=1) == model['height']).sum() > 0
+assert (bits.any(axis=1).sum(axis=1) == model['width']).all()
+";
+    let python = Command::new("python3")
+        .args(["-c", check, &place.path("m.npz"), &limit])
+        .output()
+        .expect("python3 runs");
+    let said = String::from_utf8_lossy(&python.stderr);
+    assert!(python.status.success(), "{said}");
+}
+
+#[test]
+fn ascii_is_kept_to() {
+    let place = Place::new();
+    place.done(&format!(
+        "model train rectangles.jsonl {COARSE} --out m.npz"
+    ));
+    let file = place.path("m.npz");
+    for line in [
+        "model confusion",
+        "model show",
+        "model confusion --classifier all",
+    ] {
+        let arguments: Vec<&str> = line.split(' ').chain([file.as_str()]).collect();
+        let run = run_in("C", &arguments, b"");
+        assert_eq!(run.status, Some(0), "{}", run.stderr);
+        assert!(run.stdout.is_ascii(), "{}", run.stdout);
+    }
+}

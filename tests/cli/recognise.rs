@@ -1,0 +1,251 @@
+//! `taxel recognise`: answers for people and for programs, one and in bulk, and exit statuses.
+
+use serde_json::Value;
+
+use super::model::{COARSE, Place, keys};
+use super::{Run, refused};
+
+/// A square of 4 × 4, which only one of the rectangles leaves.
+const SQUARE: &str = "......\n.####.\n.####.\n.####.\n.####.\n......\n";
+
+/// A bar that three of them leave.
+const BAR: &str = "........\n.######.\n.######.\n.######.\n........\n";
+
+/// No rectangle leaves it.
+const SPECK: &str = "...\n.#.\n...\n";
+
+/// A place with a model of four rectangles, called `r`.
+fn place() -> Place {
+    let place = Place::new();
+    place.done(&format!("model train rectangles.jsonl {COARSE} --name r"));
+    place.write("square.txt", SQUARE);
+    place.write("bar.txt", BAR);
+    place
+}
+
+fn answer(run: &Run) -> Value {
+    assert_eq!(run.status, Some(0), "{}", run.stderr);
+    serde_json::from_str(&run.stdout).expect("a line of JSON")
+}
+
+#[test]
+fn an_answer_has_its_keys_in_order() {
+    let place = place();
+    let text = place.done("recognise square.txt --model r --json");
+    let documented = [
+        "answer", "state", "method", "noise", "at_rim", "ranking", "nearest",
+    ];
+    assert_eq!(keys(&text), documented);
+    assert_eq!(
+        text,
+        "{\"answer\":\"d\",\"state\":\"certain\",\"method\":\"exact\",\"noise\":null,\"at_rim\":false,\
+         \"ranking\":[{\"name\":\"d\",\"probability\":1.0}],\"nearest\":{\"name\":\"d\",\"distance\":0,\
+         \"imprint\":[\"......\",\".####.\",\".####.\",\".####.\",\".####.\",\"......\"]}}\n"
+    );
+    let bar = answer(&place.run("recognise bar.txt --model r --json", ""));
+    assert_eq!(bar["state"], "likely");
+    let ranking = bar["ranking"].as_array().expect("a ranking");
+    let sum: f64 = ranking
+        .iter()
+        .map(|shape| shape["probability"].as_f64().expect("a number"))
+        .sum();
+    assert!((sum - 1.0).abs() < 1e-12 && ranking.len() == 3, "{bar}");
+    let top = answer(&place.run("recognise bar.txt --model r --json --top 1", ""));
+    assert_eq!(top["ranking"], Value::from(ranking[..1].to_vec()));
+    let cut = answer(&place.run(
+        "recognise - --model r --json",
+        "####.\n####.\n####.\n####.\n",
+    ));
+    assert_eq!(
+        (&cut["state"], &cut["at_rim"]),
+        (&"likely".into(), &true.into())
+    );
+}
+
+#[test]
+fn people_read_names_bars_and_differences() {
+    let place = place();
+    let text = place.done("recognise bar.txt --model r");
+    assert!(text.starts_with("a: likely\n  a  ██"), "{text}");
+    let square = place.run("recognise - --model r", SQUARE);
+    assert!(
+        square.stdout.starts_with("d: certain\n"),
+        "{}",
+        square.stdout
+    );
+    let odd = "........\n.######.\n.#####..\n.######.\n........\n";
+    let unknown = place.run("recognise - --model r --ascii", odd);
+    assert_eq!(unknown.status, Some(0));
+    assert!(
+        unknown
+            .stdout
+            .starts_with("unknown: no shape of the model leaves this imprint\nnearest: "),
+        "{}",
+        unknown.stdout
+    );
+    assert!(unknown.stdout.is_ascii() && unknown.stdout.contains("# both"));
+    let rejected = place.run("recognise bar.txt --model r --reject 0.99", "");
+    assert!(
+        rejected
+            .stdout
+            .starts_with("rejected: no shape is as probable as asked for\n"),
+        "{}",
+        rejected.stdout
+    );
+}
+
+#[test]
+fn the_exit_status_says_whether_the_answer_was_expected() {
+    let place = place();
+    place.done(&format!(
+        "model train --shape 'one=rectangle length=4 width=4' --shape 'two=rectangle length=4 width=4' \
+         {COARSE} --name twins"
+    ));
+    for (line, status) in [
+        ("square.txt --model r --expect d", 0),
+        ("square.txt --model r --expect a", 3),
+        ("bar.txt --model r --expect a", 0),
+        ("bar.txt --model r --expect a --reject 0.99", 3),
+        ("square.txt --model twins --expect one", 3),
+        ("square.txt --model twins --expect two --json", 3),
+    ] {
+        let run = place.run(&format!("recognise {line}"), "");
+        assert_eq!(
+            (run.status, run.stderr.as_str()),
+            (Some(status), ""),
+            "{line}"
+        );
+    }
+    let tied = place.run("recognise square.txt --model twins", "");
+    assert!(
+        tied.stdout.starts_with("one or two: tied\n"),
+        "{}",
+        tied.stdout
+    );
+    let tied = place.done("recognise square.txt --model twins --json");
+    assert_eq!(keys(&tied)[..3], ["answer", "state", "tied"]);
+    assert!(tied.contains(r#""tied":["one","two"]"#), "{tied}");
+    let unknown = place.run("recognise - --model r --expect d", SPECK);
+    assert_eq!(unknown.status, Some(3));
+    // Lines: one that is not as expected, and one that is wrong, which goes before.
+    let good =
+        "{\"imprint\":[\"......\",\".####.\",\".####.\",\".####.\",\".####.\",\"......\"]}\n";
+    let speck = "{\"imprint\":[\"...\",\".#.\",\"...\"]}\n";
+    let run = |input: &str| place.run("recognise - --model r --expect d", input).status;
+    assert_eq!(run(good), Some(0));
+    assert_eq!(run(&[good, speck].concat()), Some(3));
+    assert_eq!(run(&[good, speck, "{}\n"].concat()), Some(1));
+    refused(
+        &place.run("recognise square.txt --model r --expect disc", ""),
+        1,
+        "--expect \"disc\": the model has no such shape",
+    );
+    refused(
+        &place.run("recognise square.txt --model nobody", ""),
+        1,
+        "no model is called \"nobody\", and no file either; 'taxel model list' shows all",
+    );
+    refused(
+        &place.run("recognise nothing.txt --model r", ""),
+        1,
+        "no shape is called \"nothing.txt\", and no file either",
+    );
+}
+
+#[test]
+fn lines_are_answered_in_their_order() {
+    let place = place();
+    let square = r#"["......",".####.",".####.",".####.",".####.","......"]"#;
+    let bar = r#"["........",".######.",".######.",".######.","........"]"#;
+    let input = format!(
+        "{{\"frame\":7,\"imprint\":{bar},\"label\":\"x\",\"other\":[1]}}\n\n\
+         {{\"time\":0.10,\"channel\":\"left\",\"imprint\":{square}}}\n\
+         {{\"imprint\":[\"#?\"]}}\n\
+         {{\"touches\":[{bar},{bar}]}}\n\
+         {{\"touches\":[{bar},{square}]}}\n"
+    );
+    let run = place.run("recognise - --model r", &input);
+    assert_eq!(run.status, Some(1));
+    assert_eq!(run.stderr, "error: 1 of 5 lines could not be answered\n");
+    let lines: Vec<&str> = run.stdout.lines().collect();
+    assert_eq!(lines.len(), 5, "{}", run.stdout);
+    assert!(lines[0].starts_with(r#"{"frame":7,"label":"x","answer":"a","state":"likely""#));
+    assert!(
+        lines[1].starts_with(r#"{"time":0.10,"channel":"left","answer":"d","state":"certain""#)
+    );
+    let error: Value = serde_json::from_str(lines[2]).expect("JSON");
+    let error = error["error"].as_str().expect("a message");
+    assert!(
+        error.contains("imprint: row 1, column 2: found '?', expected '#' or '.'"),
+        "{error}"
+    );
+    let read = |line: &str| serde_json::from_str::<Value>(line).expect("JSON");
+    let one = read(lines[0])["ranking"][0]["probability"].as_f64();
+    let two = read(lines[3])["ranking"][0]["probability"].as_f64();
+    assert!(two > one, "two touches tell more than one");
+    assert_eq!(read(lines[4])["state"], "unknown");
+    // Answers of a batch are such lines.
+    let poses = "{\"figure\":\"rectangle\",\"length\":4.2,\"width\":4.2,\"x0\":5.2,\"y0\":5.3,\"angle\":20}\n";
+    let answers = place.run("batch", &poses.repeat(3));
+    let run = place.run("recognise - --model r --expect d", &answers.stdout);
+    assert_eq!((run.status, run.stdout.lines().count()), (Some(0), 3));
+}
+
+#[test]
+fn a_pose_is_told_in_cells_degrees_and_mm() {
+    let place = place();
+    let text = place.done("recognise bar.txt --model r --pose --json");
+    assert_eq!(keys(&text).last().map(String::as_str), Some("pose"));
+    let bar: Value = serde_json::from_str(&text).expect("JSON");
+    let pose = &bar["pose"];
+    assert_eq!(pose["name"], bar["answer"]);
+    let number = |value: &Value| value.as_f64().expect("a number");
+    // The bar's middle, from the matrix and from the box, which begins at (1, 1).
+    assert!((number(&pose["centre"][0]) - 4.0).abs() < 0.1, "{pose}");
+    assert!((number(&pose["centre"][1]) - 2.5).abs() < 0.1, "{pose}");
+    let from_box = number(&pose["centre"][0]) - number(&pose["centre_in_box"][0]);
+    assert!((from_box - 1.0).abs() < 1e-9, "{pose}");
+    assert_eq!(pose["angle"]["period"], 180);
+    let degrees = number(&pose["angle"]["degrees"]);
+    assert!((1.0..90.0).contains(&degrees), "{pose}");
+    assert!(pose["centre_mm"].is_null());
+    let mm = answer(&place.run("recognise bar.txt --model r --pose --pitch 2.5 --json", ""));
+    let in_mm = number(&mm["pose"]["centre_mm"][0]);
+    assert!((in_mm - 2.5 * number(&pose["centre"][0])).abs() < 1e-9);
+    let text = place.done("recognise bar.txt --model r --pose --pitch 2.5");
+    assert!(
+        text.contains(" cells, ") && text.contains(" mm\nangle "),
+        "{text}"
+    );
+    let braille = |sign: char| ('\u{2801}'..'\u{2900}').contains(&sign);
+    assert!(
+        text.chars().filter(|&sign| braille(sign)).count() > 15,
+        "{text}"
+    );
+    // Nothing has no pose, and a disc no angle.
+    let unknown = answer(&place.run("recognise - --model r --pose --json", SPECK));
+    assert!(unknown["pose"].is_null() && unknown.get("pose").is_some());
+    place.done(&format!("model train parts.jsonl {COARSE} --name parts"));
+    let figure = "figure ellipse --radius-x 3 --radius-y 3 --x0 4.5 --y0 5 --json";
+    let touched = place.done(figure);
+    let disc = answer(&place.run("recognise - --model parts --pose --json", &touched));
+    assert_eq!(disc["answer"], "disc", "{disc}");
+    assert!(disc["pose"]["angle"].is_null());
+    assert!(
+        (number(&disc["pose"]["centre"][0]) - 7.5).abs() < 0.3,
+        "{disc}"
+    );
+}
+
+#[test]
+fn the_seven_figures_are_at_hand() {
+    let place = Place::new();
+    let touched = place.done("figure hexagon --side 4 --x0 5.3 --y0 5.1 --angle 12 --json");
+    let known = answer(&place.run("recognise -", &touched));
+    assert_eq!(
+        (&known["answer"], &known["state"]),
+        (&"hexagon".into(), &"certain".into())
+    );
+    let card = place.done("model show figures");
+    assert!(card.contains("hexagon: hexagon side 4.00"), "{card}");
+}

@@ -1,0 +1,199 @@
+//! `taxel model separate`: the error against size and threshold, by command line.
+
+use super::misused;
+use super::model::{COARSE, Place, keys};
+use super::refused;
+
+#[test]
+fn the_error_falls_with_the_size_as_trained_by_hand() {
+    let place = Place::new();
+    let line =
+        "model separate rectangles.jsonl --scale 1:2:0.5 --positions 10 --angle 0:355:5 --quiet";
+    let text = place.done(&format!("{line} --json"));
+    assert_eq!(keys(&text), ["axis", "points"]);
+    let answer = place.json(&format!("{line} --json"));
+    assert_eq!(answer["axis"], "scale");
+    let points = answer["points"].as_array().expect("points");
+    assert_eq!(points.len(), 3);
+    let point = text
+        .split_once("[{")
+        .and_then(|(_, rest)| rest.split_once('}'));
+    let point = format!("{{{}}}", point.expect("a point").0);
+    assert_eq!(
+        keys(&point),
+        [
+            "scale",
+            "threshold",
+            "error",
+            "touches",
+            "right",
+            "certain",
+            "keys",
+            "side"
+        ]
+    );
+    // At 1 it is the training of the set, at 2 that of shapes twice as large.
+    place.done(&format!(
+        "model train rectangles.jsonl {COARSE} --out m.npz"
+    ));
+    let twice = "--shape 'a=rectangle length=12 width=6' --shape 'b=rectangle length=12 width=6.4' \
+                 --shape 'c=rectangle length=12.4 width=6' --shape 'd=rectangle length=8.4 width=8.4'";
+    place.done(&format!("model train {twice} {COARSE} --out twice.npz"));
+    for (file, point) in [("m.npz", &points[0]), ("twice.npz", &points[2])] {
+        let limit = place.json(&format!("model confusion {file} --json"));
+        for key in ["touches", "right", "certain", "keys", "error"] {
+            assert_eq!(point[key], limit[key], "{file} {key}");
+        }
+    }
+    // A model has its shapes and its grid.
+    let model = place.json("model separate m.npz --scale 1:2:0.5 --quiet --json");
+    assert_eq!(model["points"], answer["points"]);
+    let table = place.done(&format!("{line} --csv"));
+    assert!(
+        table.starts_with("scale,threshold,error,touches,right,certain,keys,side\n1,0.5,"),
+        "{table}"
+    );
+    place.done(&format!("{line} --export m.csv"));
+    assert_eq!(place.read("m.csv"), table.as_bytes());
+    let shown = place.done(line);
+    assert!(shown.starts_with("scale     threshold    error"), "{shown}");
+    let braille = |sign: char| ('\u{2801}'..'\u{2900}').contains(&sign);
+    assert!(
+        shown.chars().filter(|&sign| braille(sign)).count() > 50,
+        "{shown}"
+    );
+    for name in ["m.svg", "m.png"] {
+        place.done(&format!("{line} --export {name}"));
+    }
+    let svg = String::from_utf8(place.read("m.svg")).expect("text");
+    assert!(
+        svg.contains(">threshold 0.5</text>") && svg.contains(">scale</text>"),
+        "{svg}"
+    );
+}
+
+#[test]
+fn half_the_pitch_is_twice_the_scale() {
+    let place = Place::new();
+    let grid = "--positions 5 --angle 0:350:10 --quiet --json";
+    let scales = place.json(&format!(
+        "model separate rectangles.jsonl --scale 0.5:2:0.5 {grid}"
+    ));
+    let pitches = place.json(&format!(
+        "model separate rectangles.jsonl --pitch 0.5:2:0.5 {grid}"
+    ));
+    assert_eq!(pitches["axis"], "pitch_mm");
+    let find = |value: &serde_json::Value, key: &str, wanted: f64| {
+        let points = value["points"].as_array().expect("points");
+        let found = points
+            .iter()
+            .find(|point| point[key].as_f64() == Some(wanted));
+        found.expect("a point")["right"].clone()
+    };
+    for (scale, pitch) in [(0.5, 2.0), (1.0, 1.0), (2.0, 0.5)] {
+        assert_eq!(
+            find(&scales, "scale", scale),
+            find(&pitches, "pitch_mm", pitch)
+        );
+    }
+}
+
+#[test]
+fn the_smallest_size_that_reaches_an_error_is_found() {
+    let place = Place::new();
+    let line =
+        "model separate rectangles.jsonl --scale 1:3:0.5 --positions 5 --angle 0:350:10 --quiet";
+    let answer = place.json(&format!("{line} --want 0.1 --json"));
+    let found = &answer["want"][0];
+    let scale = found["smallest"]["scale"].as_f64().expect("a scale");
+    let error = found["smallest"]["error"].as_f64().expect("an error");
+    assert!(error <= 0.1 && scale > 1.0, "{answer}");
+    assert_eq!(found["step"].as_f64(), Some(0.05));
+    // The one before it does not reach it.
+    let before = scale - 0.05;
+    let before = place.json(&format!(
+        "model separate rectangles.jsonl --scale {before:.2} --positions 5 --angle 0:350:10 --quiet --json"
+    ));
+    assert!(
+        before["points"][0]["error"].as_f64() > Some(0.1),
+        "{before}"
+    );
+    let text = place.done(&format!("{line} --want 0.1"));
+    assert!(
+        text.contains(&format!(
+            "an error of at most 0.1 is first reached at scale {scale}:"
+        )) && text.contains("searched upwards in steps of 0.5, then of 0.05"),
+        "{text}"
+    );
+    let text = place.done(&format!("{line} --want 0"));
+    assert!(
+        text.contains("no scale that was tried has an error of at most 0\n"),
+        "{text}"
+    );
+    let never = place.json(&format!("{line} --want 0 --json"));
+    assert!(never["want"][0]["smallest"].is_null());
+    let text = place.done(&format!("{line} --want 0.9"));
+    assert!(text.contains("it is the first that was tried"), "{text}");
+    // Finer pitches are larger shapes: the search comes from above.
+    let text = place.done(
+        "model separate rectangles.jsonl --pitch 0.4:1:0.2 --positions 5 --angle 0:350:10 --quiet --want 0.1",
+    );
+    assert!(
+        text.contains("first reached at pitch 0.")
+            && text.contains("searched downwards in steps of 0.2"),
+        "{text}"
+    );
+}
+
+#[test]
+fn every_threshold_has_its_curve() {
+    let place = Place::new();
+    let line = "model separate rectangles.jsonl --positions 5 --angle 0:350:10 --quiet";
+    let answer = place.json(&format!("{line} --threshold 0.3:0.7:0.2 --json"));
+    let thresholds = answer["points"].as_array().expect("points").iter();
+    let thresholds: Vec<_> = thresholds
+        .map(|point| point["threshold"].as_f64())
+        .collect();
+    assert_eq!(thresholds, [Some(0.3), Some(0.5), Some(0.7)]);
+    let text = place.done(&format!(
+        "{line} --scale 1:1.5:0.5 --threshold 0.4:0.6:0.2 --want 0.01"
+    ));
+    for part in [
+        "\nthreshold 0.4\n",
+        "\nthreshold 0.6\n",
+        "threshold 0.4: ",
+        "threshold 0.6: ",
+    ] {
+        assert!(text.contains(part), "{part}\n{text}");
+    }
+}
+
+#[test]
+fn sizes_that_fit_on_no_sensor_are_refused_before_the_work() {
+    let place = Place::new();
+    refused(
+        &place.run("model separate rectangles.jsonl --scale 1:20:1 --quiet", ""),
+        1,
+        "scale 10, threshold 0.5: the shapes do not fit on 64 x 64 taxels in every angle",
+    );
+    let run = place.run(
+        "model separate rectangles.jsonl --threshold 0:0.5:0.1 --quiet",
+        "",
+    );
+    assert_eq!(run.status, Some(1));
+    assert!(
+        run.stderr.contains("threshold: 0 is out of range"),
+        "{}",
+        run.stderr
+    );
+    let run = place.run(
+        "model separate rectangles.jsonl --pitch 0:1:0.5 --quiet",
+        "",
+    );
+    assert_eq!(run.status, Some(1), "{}", run.stderr);
+    misused("model separate a.npz", "the following required arguments");
+    misused(
+        "model separate a.npz --scale 1 --pitch 1",
+        "the argument '--scale <START:END:STEP>' cannot be used with '--pitch",
+    );
+}

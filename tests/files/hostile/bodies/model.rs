@@ -1,0 +1,135 @@
+//! Models, which `taxel recognise` reads, and the shapes of a set: any bytes, and sound models with arrays that are not.
+
+use std::cell::LazyCell;
+use std::io::Cursor;
+
+use taxel::figure::Figure;
+use taxel::formats::{named_shape, named_shape_of_words, read_model, write_model};
+use taxel::imprint::Imprint;
+use taxel::picture::Picture;
+use taxel::pose::{Anchor, Axis, Ranges};
+use taxel::recognition::{Evaluation, Evidence, Model, NamedShape, Training};
+use taxel::sensor::Sensor;
+use taxel::sweep::Shard;
+
+use super::archive::{Arrays, changed, unpacked};
+use super::is_short;
+
+/// Any bytes.
+pub(crate) fn model(bytes: &[u8]) {
+    match read_model(Cursor::new(bytes)) {
+        Ok(model) => is_sound(&model),
+        Err(error) => is_short(&error.to_string()),
+    }
+}
+
+/// Some bytes of an array in place of others, as in [`arrays`](super::archive::arrays).
+pub(crate) fn model_arrays(bytes: &[u8]) {
+    thread_local! {
+        static SOUND: LazyCell<Vec<Arrays>> = const { LazyCell::new(sound) };
+    }
+    if let Some(changed) = SOUND.with(|sound| changed(sound, bytes)) {
+        model(&changed);
+    }
+}
+
+/// A shape of a set, as a line of JSON and in words.
+pub(crate) fn named(bytes: &[u8]) {
+    let lookup = |name: &str| match name {
+        "corner" => Ok("##\n#.".parse().expect("rows")),
+        _ => Err("no such shape".to_owned()),
+    };
+    let read = [
+        Some(named_shape(bytes, &lookup)),
+        std::str::from_utf8(bytes)
+            .ok()
+            .map(|text| named_shape_of_words(text, &lookup)),
+    ];
+    for read in read.into_iter().flatten() {
+        match read {
+            Ok(shape) => {
+                let sensor = Sensor::LARGEST;
+                let trained = Training::new([shape], sensor, Anchor::Centre, one_pose());
+                if let Err(error) = trained {
+                    is_short(&error.to_string());
+                }
+            }
+            Err(error) => is_short(&error.to_string()),
+        }
+    }
+}
+
+/// The centre of the largest sensor.
+fn one_pose() -> Ranges {
+    let at = |text: &str| text.parse().expect("a range");
+    Ranges::default()
+        .with(Axis::X0, at("32"))
+        .with(Axis::Y0, at("32"))
+        .with(Axis::Angle, at("0"))
+}
+
+/// A model that was read: its counts sum up, it answers, and it is the same when it is written and read again.
+fn is_sound(model: &Model) {
+    let written = bytes_of(model);
+    let again = read_model(Cursor::new(&written)).expect("what was read can be read again");
+    assert_eq!(bytes_of(&again), written);
+    let limit = Evaluation::of(model);
+    assert_eq!(
+        limit.confusion.iter().flatten().sum::<u128>(),
+        limit.touches
+    );
+    assert!(limit.certain <= limit.right && limit.right <= limit.touches);
+    assert!(limit.error().is_finite() && limit.information_bits <= limit.prior_bits);
+    let touch: Imprint = "....\n.##.\n.##.\n....".parse().expect("rows");
+    let answer = model.recognise(Evidence::of(&[touch]));
+    let sum: f64 = answer.ranking.iter().map(|(_, share)| share).sum();
+    assert!(
+        answer.ranking.is_empty() || (sum - 1.0).abs() < 1e-9,
+        "{sum}"
+    );
+    if let Err(error) = Model::merge([again]) {
+        is_short(&error.to_string());
+    }
+}
+
+fn bytes_of(model: &Model) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    write_model(model, &mut bytes).expect("it goes into memory");
+    bytes.into_inner()
+}
+
+/// All arrays of a model; the header comes first.
+const READ: [&str; 7] = [
+    "header.npy",
+    "height.npy",
+    "width.npy",
+    "rows.npy",
+    "key.npy",
+    "shape.npy",
+    "count.npy",
+];
+
+/// A whole model and a shard.
+fn sound() -> Vec<Arrays> {
+    [Shard::WHOLE, Shard::new(1, 2).expect("a shard")]
+        .map(|shard| unpacked(&bytes_of(&small(shard)), &READ))
+        .to_vec()
+}
+
+/// A bar that weighs twice, and a corner.
+fn small(shard: Shard) -> Model {
+    let sensor = Sensor::new(8, 8).expect("in range");
+    let corner: Imprint = "##\n#.".parse().expect("rows");
+    let bar = Figure::rectangle(3.0, 2.0).on(&sensor).expect("in range");
+    let shapes = [
+        NamedShape::new("bar", bar).weighted(2),
+        NamedShape::new("corner", Picture::at_home(corner)),
+    ];
+    let range = |text: &str| text.parse().expect("a range");
+    let ranges = Ranges::default()
+        .with(Axis::X0, range("4:4.5:0.5"))
+        .with(Axis::Y0, range("4:4.75:0.25"))
+        .with(Axis::Angle, range("0:90:45"));
+    let training = Training::new(shapes, sensor, Anchor::Centre, ranges).expect("a set");
+    training.shard(shard).run().expect("nothing is cut off")
+}
