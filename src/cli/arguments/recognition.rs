@@ -169,7 +169,7 @@ pub(super) fn model() -> Command {
         Command::new(name).about(about).after_help(examples)
     };
     Command::new("model")
-        .about("Train models of shapes, and see how well one touch tells these apart")
+        .about("Train models of shapes, and see what one touch can tell")
         .after_help(MODEL_EXAMPLES)
         .subcommand_required(true)
         .subcommand(train())

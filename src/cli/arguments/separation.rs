@@ -71,7 +71,7 @@ pub(super) fn separate() -> Command {
         .conflicts_with("json")
         .help("Print a table of commas");
     Command::new("separate")
-        .about("Find the sensor that tells shapes apart: the error against their size")
+        .about("Find the sensor that tells the shapes apart")
         .after_help(MODEL_SEPARATE_EXAMPLES)
         .args([what, shape(), library_all()])
         .group(

@@ -8,8 +8,9 @@ use crate::docs::documents;
 
 const TAXEL: &str = env!("CARGO_BIN_EXE_taxel");
 
-/// The commands with a help of their own, in the order of `taxel help`; those of `library` are shown by its own help.
-const COMMANDS: [&str; 15] = [
+/// The commands with a help of their own, in the order of `taxel help`; those of `library` are shown by its own help,
+/// those of `model` have one each.
+const COMMANDS: [&str; 24] = [
     "",
     "figure",
     "picture",
@@ -20,6 +21,15 @@ const COMMANDS: [&str; 15] = [
     "merge",
     "frames",
     "watch",
+    "model",
+    "model train",
+    "model show",
+    "model list",
+    "model delete",
+    "model confusion",
+    "model touches",
+    "model separate",
+    "recognise",
     "library",
     "script",
     "config",
@@ -29,6 +39,11 @@ const COMMANDS: [&str; 15] = [
 
 /// What a shell line prints, with this build's `taxel` first on the path and the program's own settings.
 fn shell(line: &str) -> String {
+    shell_in(Path::new(env!("CARGO_MANIFEST_DIR")), line)
+}
+
+/// The same in a folder.
+pub(crate) fn shell_in(current: &Path, line: &str) -> String {
     let folder = Path::new(TAXEL)
         .parent()
         .expect("the program is in a folder");
@@ -36,8 +51,10 @@ fn shell(line: &str) -> String {
     let path = std::iter::once(folder.to_owned()).chain(std::env::split_paths(&path));
     let output = Command::new("sh")
         .args(["-c", line])
+        .current_dir(current)
         .env("PATH", std::env::join_paths(path).expect("a path"))
         .env("TAXEL_CONFIG", "/dev/null")
+        .env("LC_ALL", "C.UTF-8")
         .output()
         .expect("there is a shell");
     assert!(
@@ -102,9 +119,17 @@ fn every_command_shown_exists_with_its_flags() {
             let call = call.split(" #").next().expect("a line");
             let call = call.split(['|', '<', '>', ';']).next().expect("a command");
             let mut words = call.split_whitespace().skip(1).peekable();
-            let name = words
+            let mut name = words
                 .next_if(|word| !word.starts_with('-'))
-                .unwrap_or_default();
+                .unwrap_or_default()
+                .to_owned();
+            // A subcommand has a help of its own.
+            let longer = words.peek().map(|word| format!("{name} {word}"));
+            if let Some(longer) = longer.filter(|longer| COMMANDS.contains(&longer.as_str())) {
+                words.next();
+                name = longer;
+            }
+            let name = name.as_str();
             if name == "help" {
                 continue;
             }

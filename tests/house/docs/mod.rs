@@ -11,6 +11,7 @@ mod commands;
 mod dependencies;
 mod glossary;
 mod links;
+mod recognition;
 mod screen;
 mod tables;
 
@@ -32,6 +33,13 @@ const BLOCKS: &[Block] = &[
     ("command-line", commands::help),
     ("positions", positions),
     ("study", commands::study),
+    ("recognition-set", recognition::set),
+    ("recognition-train", recognition::train),
+    ("recognition-confusion", recognition::confusion),
+    ("recognition-worth", recognition::worth),
+    ("recognition-peers", recognition::peers),
+    ("recognition-sizes", recognition::sizes),
+    ("recognition-want", recognition::want),
     ("dependencies", dependencies::block),
 ];
 

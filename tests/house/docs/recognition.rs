@@ -1,0 +1,98 @@
+//! What the page about recognition shows: each number is printed by the program when the page is checked.
+
+use std::fs;
+use std::path::Path;
+
+use crate::docs::commands::shell_in;
+
+/// The set of the page.
+const SET: &str = include_str!("../../../examples/figures.jsonl");
+
+/// Lines of a shell in a folder with the set, and after the first block with its model; each with what it prints.
+fn shown(trained: bool, lines: &[&str]) -> String {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    fs::write(folder.path().join("figures.jsonl"), SET).expect("written");
+    if trained {
+        train_in(folder.path());
+    }
+    let shown = lines
+        .iter()
+        .map(|line| format!("$ {line}\n{}", shell_in(folder.path(), line)));
+    let shown: Vec<String> = shown.collect();
+    format!("\n```text\n{}```\n\n", shown.join("\n"))
+}
+
+const TRAIN: &str = "taxel model train figures.jsonl --out figures.npz --quiet";
+
+fn train_in(folder: &Path) {
+    shell_in(folder, TRAIN);
+}
+
+pub(crate) fn set() -> String {
+    format!("\n```json\n{SET}```\n\n")
+}
+
+pub(crate) fn train() -> String {
+    shown(false, &[TRAIN])
+}
+
+pub(crate) fn confusion() -> String {
+    shown(true, &["taxel model confusion figures.npz | tail -n +9"])
+}
+
+pub(crate) fn worth() -> String {
+    shown(
+        true,
+        &[
+            "taxel model confusion figures.npz --given na,p | grep wrong",
+            "taxel model confusion figures.npz --greedy",
+            "taxel model confusion figures.npz --greedy --round cg_cd=0.01",
+        ],
+    )
+}
+
+pub(crate) fn peers() -> String {
+    shown(
+        true,
+        &["taxel model confusion figures.npz --classifier all"],
+    )
+}
+
+pub(crate) fn sizes() -> String {
+    shown(
+        true,
+        &["for scale in 0.577 1 1.414 2; do \
+           taxel model separate figures.npz --scale $scale --csv --quiet | tail -1; done"],
+    )
+}
+
+pub(crate) fn want() -> String {
+    shown(
+        true,
+        &[
+            "taxel model separate figures.npz --scale 0.5:3:0.1 --positions 20 --want 0.01 --quiet | tail -19",
+        ],
+    )
+}
+
+/// The figures that the text of the page tells, held to what the program prints.
+#[test]
+fn the_text_says_what_the_commands_print() {
+    let page = crate::docs::document("docs/recognition.md");
+    let sizes = sizes();
+    let errors: Vec<f64> = sizes
+        .lines()
+        .filter(|line| line.contains(",0.5,"))
+        .map(|line| {
+            let error = line.split(',').nth(2).expect("an error");
+            error.parse().expect("a number")
+        })
+        .collect();
+    let said = ["0.63", "0.33", "0.11", "0.02"];
+    assert_eq!(errors.len(), said.len(), "{sizes}");
+    for (error, said) in errors.iter().zip(said) {
+        assert_eq!(format!("{error:.2}"), said);
+        assert!(page.contains(&format!(" {said}")), "{said}");
+    }
+    assert!(page.contains("The limit is 0.330") && format!("{:.3}", errors[1]) == "0.330");
+}
