@@ -147,5 +147,5 @@ fn file(path: &Path, own: &Evaluation) -> Result<Vec<u8>, CliError> {
 /// The ending of a file's name in small letters; empty without one.
 pub(crate) fn ending(path: &Path) -> String {
     let ending = path.extension().and_then(|ending| ending.to_str());
-    ending.unwrap_or_default().to_ascii_lowercase()
+    ending.map_or_else(String::new, str::to_ascii_lowercase)
 }

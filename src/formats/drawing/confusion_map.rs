@@ -75,7 +75,7 @@ impl ConfusionMap {
 
     fn count(&self, row: usize, column: usize) -> u128 {
         let cell = self.counts.get(row).and_then(|row| row.get(column));
-        cell.copied().unwrap_or_default()
+        cell.map_or(0, |&count| count)
     }
 
     fn page(&self) -> DrawingPage {
