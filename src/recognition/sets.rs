@@ -40,15 +40,14 @@ const EQUAL: [(FigureKind, &[(Parameter, f64)]); 7] = [
 pub fn equal_figures() -> Vec<NamedShape> {
     let sensor = Sensor::default();
     let shape = |(kind, sizes): (FigureKind, &[(Parameter, f64)])| {
-        let size = |figure: Figure, &(parameter, value): &(Parameter, f64)| {
-            figure
-                .with(parameter, value, &sensor)
-                .expect("a size of its own in range")
-        };
-        let figure = sizes.iter().fold(Figure::default_of(kind, &sensor), size);
-        NamedShape::new(kind.name(), figure)
+        let mut sizes = sizes.iter();
+        let default = Figure::default_of(kind, &sensor);
+        let figure = sizes.try_fold(default, |figure, &(parameter, value)| {
+            figure.with(parameter, value, &sensor)
+        });
+        Some(NamedShape::new(kind.name(), figure.ok()?))
     };
-    EQUAL.map(shape).to_vec()
+    EQUAL.into_iter().filter_map(shape).collect()
 }
 
 /// The steps of a grid of poses: one cell of positions, all angles.

@@ -105,7 +105,7 @@ Examples:
 pub(crate) const SCRIPT_EXAMPLES: &str = r#"One command a line; places are column,row of the screen, from 0:
   Size 80x24          Set ascii on        Set theme light   Set columns 8
   Set library "DIR"   Set shape {...}     Set leftover {}   Set mouse off
-  Resize 100x30
+  Resize 100x30       Seed 7 (of random touches)
   Keys f<Right><Tab>4.00<Enter>           <lt> for '<'; <3x:Down> thrice
   Type "text"         Paste "1.5"         Click 12,5   Click "Figure"
   Drag 3,4 9,9        Scroll 12,5 -3      Signal HUP   Wait   Quit

@@ -1,4 +1,4 @@
-//! What messages do on the page of recognition and in its exercise. The answer follows the matrix: [`follow`] is called
+//! What messages do on the page of recognition and in its exercise. The answer follows the matrix: `follow` is called
 //! after every message.
 
 use std::sync::Arc;
