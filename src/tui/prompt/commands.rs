@@ -17,6 +17,7 @@ use crate::figure::FigureKind;
 use crate::parameter::Parameter;
 use crate::pose::Axis;
 use crate::sensor::SENSOR_PARAMETERS;
+use crate::tui::app::message::Message;
 use crate::tui::keys::action::{ACTIONS, Action, Arguments};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::default_keys::DEFAULT_KEYS;
@@ -54,22 +55,21 @@ const SHORT: [(&str, &str); 2] = [("q", "quit"), ("q!", "quit!")];
 
 /// Actions that work on the matrix, where the prompt opens: those that have a key there or have no key at all.
 pub fn actions() -> impl Iterator<Item = &'static Action> {
-    let places = [
-        Context::Matrix,
-        Context::Grab,
-        Context::Recognise,
-        Context::Everywhere,
-    ];
+    let places = [Context::Matrix, Context::Grab, Context::Everywhere];
     let bound = |action: &Action, places: &[Context]| {
         let mut rows = DEFAULT_KEYS
             .iter()
             .filter(|row| places.contains(&row.context));
         rows.any(|row| row.keys.iter().any(|(_, own)| *own == action))
     };
-    ACTIONS
-        .iter()
-        .copied()
-        .filter(move |action| bound(action, &places) || !bound(action, &Context::ALL))
+    ACTIONS.iter().copied().filter(move |action| {
+        recognises(action) || bound(action, &places) || !bound(action, &Context::ALL)
+    })
+}
+
+/// Whether it belongs to recognition, whose page leaves the prompt to the matrix.
+fn recognises(action: &Action) -> bool {
+    matches!(action.message(), Some(Message::Recognise(_)))
 }
 
 /// All commands by name.
