@@ -25,6 +25,8 @@ pub mod help;
 
 pub mod history;
 
+pub mod compare;
+
 pub mod matrix;
 
 pub mod form;

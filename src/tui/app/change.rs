@@ -4,17 +4,27 @@
 //! back into range: the cursor, the chosen region, the mode.
 
 use crate::formats::value::counted;
+use crate::imprint::Imprint;
 use crate::parameter::Parameter;
 use crate::source::Source;
+use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Document;
 use crate::tui::app::history::{DocumentOrigin, History, StoredName};
 use crate::tui::app::state::{App, Mode, MoveKind, Notice};
+use crate::tui::compare::{Comparison, heading};
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
 
 /// Shows a notice.
 pub(in crate::tui) fn inform(app: &mut App, text: impl Into<String>) {
     app.notice = Some(Notice::Info(text.into()));
+}
+
+/// Compares the imprint on the matrix with another one, which is named.
+pub(in crate::tui) fn compare_with(app: &mut App, name: &str, other: &Imprint) {
+    let own = ("the matrix".to_owned(), &app.reading().imprint);
+    let comparison = Comparison::new(own, (heading(name), other));
+    app.dialogs.push(Dialog::Compare(comparison));
 }
 
 /// Shows why something was not done.

@@ -8,6 +8,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot};
+use crate::tui::compare::Comparison;
 use crate::tui::explore::export::ExportDialog;
 use crate::tui::explore::ranges::state::RangesForm;
 use crate::tui::explore::results::Results;
@@ -40,6 +41,8 @@ pub enum Dialog {
     Question(Question),
     /// The list of keys.
     Help(Help),
+    /// Two imprints.
+    Compare(Comparison),
     /// The steps of the history.
     History(HistoryDialog),
     /// The ranges of a sweep.
@@ -69,6 +72,7 @@ impl Dialog {
             Self::Question(page) => page,
             Self::Help(page) => page,
             Self::History(page) => page,
+            Self::Compare(page) => page,
             Self::Ranges(page) => &**page,
             Self::Running(page) => page,
             Self::Results(page) => &**page,

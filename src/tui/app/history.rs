@@ -212,6 +212,20 @@ impl History {
         (steps, self.past.len())
     }
 
+    /// The state before the last step that changed something, None if there is none.
+    pub fn before(&self) -> Option<&Document> {
+        let past = self.past.iter().rev();
+        let mut others = past.filter(|state| state.document != self.present.document);
+        others.next().map(|state| &state.document)
+    }
+
+    /// The state after that many steps, None if there are fewer.
+    pub fn after(&self, step: usize) -> Option<&Document> {
+        let later = self.future.iter().rev();
+        let mut states = self.past.iter().chain([&self.present]).chain(later);
+        states.nth(step).map(|state| &state.document)
+    }
+
     /// Back or forth to the state after that many steps, or as near to it as there are states.
     pub fn go_to(&mut self, step: usize) {
         while self.past.len() > step && self.undo().is_some() {}

@@ -60,6 +60,10 @@ pub enum Message {
     Grab,
     /// Put the held shape back to where it was taken.
     PutBack,
+    /// Compare the imprint on the matrix with the one that is selected, or with the state before the last step.
+    Compare,
+    /// Compare it with the shape of that name.
+    CompareNamed(String),
     /// Show all steps of the history.
     History,
     /// Move the shape by a step.
@@ -209,6 +213,8 @@ pub enum Purpose {
     Delete,
     /// To place it as a picture.
     Picture,
+    /// To compare it with the matrix.
+    Compare,
 }
 
 /// What can be copied.

@@ -3,8 +3,9 @@
 //! The top page receives the message, or the matrix if there is none. A notice stays until the next message from the
 //! user.
 
-use crate::tui::app::change::{refuse, settle};
+use crate::tui::app::change::{compare_with, refuse, settle};
 use crate::tui::app::dialog::{Dialog, Question};
+use crate::tui::app::document::Reading;
 use crate::tui::app::message::Message;
 use crate::tui::app::mouse;
 use crate::tui::app::state::{App, RunState};
@@ -97,6 +98,13 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
         Dialog::Command(command) => prompt::update::in_command(app, command, message),
         Dialog::Question(question) => at_question(app, question, &message),
         Dialog::Help(help) => in_help(app, help, &message),
+        Dialog::Compare(mut page) => {
+            if let Message::Field(by) = message {
+                page.next_view(by);
+            }
+            app.dialogs.push(Dialog::Compare(page));
+            None
+        }
         Dialog::History(list) => in_history(app, list, &message),
         Dialog::Ranges(form) => explore::work::in_ranges(app, form, message),
         Dialog::Running(running) => explore::work::in_running(app, running, &message),
@@ -126,6 +134,18 @@ fn in_history(app: &mut App, mut list: HistoryDialog, message: &Message) -> Opti
     match *message {
         Message::Scroll(lines) => list.scroll(lines),
         Message::ScrollTo(end) => list.scroll_to(end),
+        Message::Compare => {
+            let step = list.selected();
+            let state = app
+                .history
+                .after(step)
+                .map(|state| Reading::of(state).imprint);
+            app.dialogs.push(Dialog::History(list));
+            if let Some(imprint) = state {
+                compare_with(app, &format!("the state after step {step}"), &imprint);
+            }
+            return None;
+        }
         Message::Accept => {
             app.history.go_to(list.selected());
             settle(app);

@@ -8,7 +8,7 @@ use ratatui::layout::Rect;
 use crate::formats::value::{counted, grouped};
 use crate::storage::Existing;
 use crate::touch::Plane;
-use crate::tui::app::change::{change, inform, refuse};
+use crate::tui::app::change::{change, compare_with, inform, refuse};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
@@ -33,6 +33,15 @@ pub(crate) fn in_results(
         Message::Accept => return put_onto_matrix(app, results),
         Message::Cancel | Message::Quit => {
             app.results = Some(results);
+            return None;
+        }
+        Message::Compare => {
+            let row = results.selected();
+            let entry = results.rows_from(row).next();
+            app.dialogs.push(Dialog::Results(results));
+            if let Some((_, entry)) = entry {
+                compare_with(app, &format!("imprint {}", row + 1), &entry.imprint);
+            }
             return None;
         }
         Message::Cursor(arrow) => results.move_cursor(arrow),

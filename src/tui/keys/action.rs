@@ -183,6 +183,7 @@ actions! {
         RECTANGLE "rectangle" [] Message::Layer(Layer::Rectangle);
         GRAB "grab" [] Message::Grab;
         PUT_BACK "put-back" [] Message::PutBack;
+        COMPARE "compare" [] Message::Compare;
         HISTORY "history" [] Message::History;
         NUDGE_LEFT "nudge-left" ["nudge left"] Message::Nudge(Arrow::Left);
         NUDGE_RIGHT "nudge-right" ["nudge right"] Message::Nudge(Arrow::Right);
@@ -268,6 +269,7 @@ actions! {
     }
 
     with_arguments {
+        "compare" Arguments::Shape(Purpose::Compare);
         "cursor" Arguments::Taxel;
         "delete" Arguments::Shape(Purpose::Delete);
         "explore" Arguments::Ranges;

@@ -77,6 +77,8 @@ contexts! {
     List "list" "In the list of shapes" Typed, EVERYWHERE;
     /// In the list of steps.
     History "history" "In the history" Ignored, EVERYWHERE;
+    /// Where two imprints are compared.
+    Compare "compare" "Comparing" Ignored, EVERYWHERE;
     /// In the field for a name.
     Name "name" "Saving" Typed, EVERYWHERE;
     /// In the `:` prompt.

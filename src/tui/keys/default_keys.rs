@@ -53,6 +53,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char(' ') => TOGGLE] "toggle" "turn the taxel under the cursor on or off";
         [Char('u') => UNDO] "undo" "undo the last change, then those before";
         [Char('U') => REDO, Ctrl('r') => REDO] "redo" "redo what was undone";
+        [Char('=') => COMPARE] "" "compare with the state before the last step";
         [Char('H') => HISTORY] "" "History: all steps, to go back to any of them";
         [Tab => REGION, BackTab => PREVIOUS_REGION]
             "region" "describe the next, the previous piece or hole";
@@ -127,8 +128,16 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten steps back, on";
         [Home => FIRST, End => LAST] "" "the start, the latest step";
         [Enter => ACCEPT] "go there" "go to the state after this step";
+        [Char('=') => COMPARE] "compare" "compare that state with the present one";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL, Char('H') => CANCEL]
             "close" "leave everything as it is";
+        [Char('?') => HELP] "help" "these keys";
+    }
+
+    Compare {
+        [Tab => NEXT, BackTab => PREVIOUS] "view" "differences, the first, the second";
+        [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL, Char('=') => CANCEL]
+            "close" "back to where you were";
         [Char('?') => HELP] "help" "these keys";
     }
 
@@ -199,6 +208,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             Char('v') => SORT_BY_VALUE,
             Char('c') => SORT_BY_PIECES, Char('h') => SORT_BY_HOLES]
             "sort" "poses, 1st pose, value, pieces, holes; again: reversed";
+        [Char('=') => COMPARE] "compare" "compare it with the imprint on the matrix";
         [Char('j') => FIND] "find" "jump to the imprint that is on the matrix";
         [Char('g') => FOLLOW] "map" "go to its first pose on the map";
     }

@@ -10,11 +10,11 @@ use crate::parameter::number::short;
 use crate::source::Source;
 use crate::storage::{Existing, Expected, ShapeOrigin};
 use crate::tui::app::change::{
-    begin, change, hold, inform, let_go, nudge, put_back, refuse, replace, shift, travel, turn,
-    zoom,
+    begin, change, compare_with, hold, inform, let_go, nudge, put_back, refuse, replace, shift,
+    travel, turn, zoom,
 };
 use crate::tui::app::dialog::{Dialog, Question};
-use crate::tui::app::document::Document;
+use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::History;
 use crate::tui::app::message::{Copied, Endpoint, Layer, Message, Purpose};
 use crate::tui::app::state::{App, Display, Mode, NarrowPage, RunState};
@@ -58,6 +58,14 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
             let dialog = CommandDialog::new(&app.commands);
             app.dialogs.push(Dialog::Command(dialog));
         }
+        Message::Compare => match app
+            .history
+            .before()
+            .map(|before| Reading::of(before).imprint)
+        {
+            Some(before) => compare_with(app, "the state before", &before),
+            None => inform(app, "nothing to compare with: there was no step yet"),
+        },
         Message::History => {
             let (steps, present) = app.history.steps();
             app.dialogs
@@ -102,6 +110,7 @@ fn library_request(message: Message) -> Result<LibraryRequest, Message> {
         Message::Store(shape, expected) => LibraryRequest::Store(shape, expected),
         Message::LoadNamed(name) => LibraryRequest::Named(Purpose::Load, name),
         Message::PictureNamed(name) => LibraryRequest::Named(Purpose::Picture, name),
+        Message::CompareNamed(name) => LibraryRequest::Named(Purpose::Compare, name),
         Message::Restore(name) => LibraryRequest::Restore(name),
         Message::Remove(name) => LibraryRequest::Remove(name),
         Message::Recover => LibraryRequest::Recover,

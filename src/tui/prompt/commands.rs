@@ -292,7 +292,7 @@ mod tests {
             ("fi", "figure ", 1),
             ("re", "re", 6),
             ("res", "restore ", 1),
-            ("co", "co", 4),
+            ("co", "co", 5),
             ("cop", "copy ", 1),
             ("copy ", "copy ", 2),
             ("copy i", "copy imprint ", 1),

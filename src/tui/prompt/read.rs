@@ -70,6 +70,7 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
                 Purpose::Load => Message::LoadNamed(name),
                 Purpose::Picture => Message::PictureNamed(name),
                 Purpose::Delete => Message::AskRemove(name),
+                Purpose::Compare => Message::CompareNamed(name),
             })
         }
         (Arguments::File(FilePurpose::Open), _) => Ok(Message::OpenFile(rest.to_owned())),

@@ -6,7 +6,7 @@
 use crate::imprint::Imprint;
 use crate::picture::Picture;
 use crate::storage::{Expected, LibraryEntry, LoadedShape, ShapeOrigin};
-use crate::tui::app::change::{begin, change as change_to, inform, refuse};
+use crate::tui::app::change::{begin, change as change_to, compare_with, inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Document;
 use crate::tui::app::history::StoredName;
@@ -59,6 +59,9 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
             let name = loaded.shape.name.to_string();
             open_picture(app, &loaded.shape.imprint, name);
         }
+        LibraryEvent::Named(Purpose::Compare, Ok(loaded)) => {
+            compare_with(app, loaded.shape.name.as_str(), &loaded.shape.imprint);
+        }
         LibraryEvent::Named(_, Ok(loaded)) => {
             if let Err(reason) = place(app, &loaded) {
                 refuse(app, reason);
@@ -81,7 +84,7 @@ fn on_list(app: &mut App, mut entries: Vec<LibraryEntry>) -> Option<Effect> {
         }
         Some(Dialog::Command(command)) => {
             match wants_names(command.field.text()) {
-                Some(Arguments::Shape(Purpose::Load | Purpose::Picture)) => {}
+                Some(Arguments::Shape(Purpose::Load | Purpose::Picture | Purpose::Compare)) => {}
                 _ => entries.retain(|entry| entry.origin == ShapeOrigin::Own),
             }
             let names: Vec<String> = entries.into_iter().map(|entry| entry.name).collect();

@@ -83,6 +83,7 @@ fn draw(
         Purpose::Load => "Load",
         Purpose::Delete => "Delete",
         Purpose::Picture => "Picture",
+        Purpose::Compare => "Compare",
     };
     let filter = format!("  filter: {}", dialog.filter());
     let count = format!("   {} of {}", dialog.rows().len(), dialog.total());
