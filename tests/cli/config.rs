@@ -13,6 +13,12 @@ fn refused(text: &str, expected: &str) {
     assert_eq!(error, expected, "{text}");
 }
 
+/// The parts of the keys, as messages list them.
+fn contexts() -> String {
+    let names: Vec<&str> = Context::ALL.iter().map(|context| context.name()).collect();
+    names.join(", ")
+}
+
 #[test]
 fn nothing_has_to_be_said() {
     for text in ["", "\n# nothing\n", "[sensor]\n[keys]\n[keys.matrix]\n"] {
@@ -58,7 +64,7 @@ fn what_is_unknown_or_unfit_is_refused_with_its_place() {
         ),
         (
             "[keys.matrx]\nx = 'toggle'\n",
-            "1:7: unknown key \"matrx\", expected one of matrix, grab, form, list, name, command, ranges, running, explore, imprints, statistics, histogram, map, export, question, help, everywhere",
+            &format!("1:7: unknown key \"matrx\", expected one of {}", contexts()),
         ),
         (
             "[keys.matrix]\nx = 'togle'\n",
@@ -140,7 +146,7 @@ fn session(config: &str, keys: &str) -> Session {
     session
 }
 
-const KEYS: &str = "[keys.matrix]\nx = 'toggle'\n'<C-n>' = 'new'\nn = 'none'\nh = 'cursor-left'\n'?' = 'undo'\nH = 'help'\nm = 'none'\n[keys.form]\n'<C-n>' = 'next'\n";
+const KEYS: &str = "[keys.matrix]\nx = 'toggle'\n'<C-n>' = 'new'\nn = 'none'\nh = 'cursor-left'\n'?' = 'undo'\nK = 'help'\nm = 'none'\n[keys.form]\n'<C-n>' = 'next'\n";
 
 fn shows(keys: &str, texts: &[&str]) {
     let screen = session(KEYS, keys).screen();
@@ -166,13 +172,13 @@ fn menu_hints_help_and_notices_name_the_keys_of_the_file() {
         "",
         &[
             "Ctrl-N New   l Load",
-            "q Quit   H Help",
+            "q Quit   K Help",
             "empty: x draws, f places a figure",
             "x toggle  ? undo",
         ],
     );
     shows(
-        "H",
+        "K",
         &[
             "Ctrl-N                  New: empty the matrix",
             "h arrows                move the cursor",
