@@ -41,7 +41,7 @@ fn whole(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("evaluate");
     group.throughput(Throughput::Elements(model.keys().len() as u64));
     group.bench_function("confusion", |bencher| {
-        bencher.iter(|| Evaluation::of(&model))
+        bencher.iter(|| Evaluation::of(&model));
     });
     group.bench_function("pairs", |bencher| bencher.iter(|| model.pair_errors()));
     group.finish();
