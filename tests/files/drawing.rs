@@ -6,7 +6,7 @@ use std::path::Path;
 
 use taxel::description::regions;
 use taxel::figure::Figure;
-use taxel::formats::Drawing;
+use taxel::formats::{ConfusionMap, Drawing, LinePlot};
 use taxel::imprint::Imprint;
 use taxel::picture::Picture;
 use taxel::sensor::Sensor;
@@ -214,5 +214,64 @@ mod pixels {
             }
         }
         assert!(differing > 1000);
+    }
+}
+
+#[test]
+fn a_confusion_matrix_has_its_numbers_and_shades() {
+    let labels = ["disc", "a long name <&>", "bar"].map(str::to_owned);
+    let counts = [vec![90, 10, 0], vec![3, 9996, 1], vec![0, 0, 1_234_567]];
+    let map = ConfusionMap::new(&labels, &counts).expect("few shapes");
+    let svg = map.clone().with_title("error 1 %").svg();
+    golden("confusion", &svg);
+    for text in [
+        ">90 %<",
+        ">&lt;0.1 %<",
+        ">&gt;99.9 %<",
+        ">1234567<",
+        ">100 %<",
+    ] {
+        assert!(svg.contains(text), "{text}");
+    }
+    assert_eq!(map.svg().matches(">·</text>").count(), 3);
+    // What is missing counts as nothing, and what is too much is left out.
+    let odd = ConfusionMap::new(&labels, &[vec![1; 9]]).expect("few shapes");
+    assert_eq!(odd.svg().matches(">·</text>").count(), 6);
+    let many = vec!["x".to_owned(); 65];
+    assert!(ConfusionMap::new(&many, &[]).is_none() && ConfusionMap::new(&[], &[]).is_none());
+}
+
+#[test]
+fn curves_have_axes_and_a_legend() {
+    let plot = LinePlot::new("scale", "error")
+        .with_curve("threshold 0.5", &[(0.5, 0.7), (1.0, 0.33), (2.0, 0.02)])
+        .with_curve(
+            "threshold 0.3",
+            &[(0.5, 0.8), (f64::NAN, 1.0), (2.0, -1.0), (2.0, 0.1)],
+        );
+    golden("curves", &plot.svg());
+    assert_eq!(plot.svg().matches("class=\"curve\"").count(), 2);
+    // Without a point there is a page as well, and never more than 32 curves.
+    let empty = LinePlot::new(&"x".repeat(500), "y").with_curve("", &[]);
+    assert!(empty.svg().contains("viewBox") && !empty.svg().contains("NaN"));
+    let many = (0..99).fold(LinePlot::new("x", "y"), |plot, _| {
+        plot.with_curve("c", &[(1.0, 1.0)])
+    });
+    assert_eq!(many.svg().matches("class=\"curve\"").count(), 32);
+}
+
+#[cfg(feature = "png")]
+#[test]
+fn matrices_and_curves_are_drawn_in_pixels() {
+    let labels = ["a", "b"].map(str::to_owned);
+    let map = ConfusionMap::new(&labels, &[vec![5, 5], vec![0, 10]]).expect("few shapes");
+    let plot = LinePlot::new("x", "y").with_curve("c", &[(0.0, 0.0), (1.0, 1.0)]);
+    for png in [map.png(), plot.png()] {
+        let png = png.expect("in memory");
+        let decoder = png::Decoder::new(std::io::Cursor::new(&png));
+        let mut reader = decoder.read_info().expect("a PNG");
+        let mut pixels = vec![0; reader.output_buffer_size().expect("small")];
+        reader.next_frame(&mut pixels).expect("pixels");
+        assert!(pixels.contains(&0) && pixels.contains(&255));
     }
 }
