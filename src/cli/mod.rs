@@ -176,6 +176,7 @@ fn run_model(request: ModelRequest, shelf: &Shelf, charset: Charset) -> Result<(
 /// Runs a subcommand of `taxel library`.
 fn chore(chore: Chore, shelf: &Shelf, charset: Charset) -> Result<(), CliError> {
     match chore {
+        Chore::Names => print(&library::names(shelf)?),
         Chore::List(json) => print(&library::list(shelf, json, charset)?),
         Chore::Show(name, form) => print(&library::show(shelf, name.as_str(), form, charset)?),
         Chore::Save(saving, what) => print(&charset.lines(&library::save(shelf, saving, &what)?)),

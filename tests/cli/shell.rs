@@ -282,6 +282,61 @@ fn shells_take_the_completions() {
     misused("completions csh", "invalid value 'csh'");
 }
 
+/// Names of shapes where a command takes one; blanks and quotation marks are bash's.
+#[test]
+fn bash_completes_names_of_shapes() {
+    if !has("bash") {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    in_library(folder.path(), &["save", "Mein Ring", "washer"]);
+    let binary = Path::new(env!("CARGO_BIN_EXE_taxel"));
+    let path = format!(
+        "{}:{}",
+        binary.parent().expect("a folder").display(),
+        std::env::var("PATH").expect("a path")
+    );
+    let completions = taxel("completions bash", "").stdout;
+    let offered = |words: &[&str]| {
+        let script = "source /dev/stdin; COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); \
+                      _taxel_shapes taxel \"${COMP_WORDS[-1]}\" \"${COMP_WORDS[-2]}\"; \
+                      printf '%s\\n' \"${COMPREPLY[@]}\"";
+        let mut bash = Command::new("bash");
+        bash.args(["--norc", "-c", script, "bash", "taxel"]).args(words);
+        bash.env("PATH", &path);
+        bash.env("TAXEL_LIBRARY", folder.path().join("library"));
+        let pipe = std::process::Stdio::piped;
+        let child = bash.stdin(pipe()).stdout(pipe()).stderr(pipe()).spawn();
+        super::finish(child.expect("it starts"), completions.as_bytes()).stdout
+    };
+    for (words, names) in [
+        (&["picture", "wa"][..], "washer\n"),
+        (&["describe", "Me"], "Mein\\ Ring\n"),
+        (&["export", "Mein\\ R"], "Mein\\ Ring\n"),
+        (&["library", "show", "\"Mein R"], "Mein Ring\n"),
+        (&["library", "delete", "'Me"], "Mein Ring\n"),
+        (&["library", "save", "new", "oval"], "oval\\ ring\n"),
+        (&["sweep", "--picture", "wash"], "washer\n"),
+        (&["model", "train", "arrow", "wash"], "washer\n"),
+        // Files, which bash completes itself, and flags.
+        (&["export", "washer", "wa"], "\n"),
+        (&["picture", "no shape"], "\n"),
+        (&["library", "show", "--j"], "--json\n"),
+        (&["library", "sh"], "show\n"),
+    ] {
+        assert_eq!(offered(words), names, "{words:?}");
+    }
+    let all = offered(&["recognise", ""]);
+    assert!(all.contains("washer\n") && all.contains("Mein\\ Ring\n"), "{all}");
+    let listed = taxel("library list --names", "").stdout;
+    assert!(listed.contains("oval ring\n") && !listed.contains("shipped"), "{listed}");
+    for shell in ["zsh", "fish"] {
+        let script = taxel(&format!("completions {shell}"), "").stdout;
+        let name = if shell == "zsh" { ":_taxel_shapes' \\\n" } else { "__fish_taxel_shapes)" };
+        assert!(script.matches(name).count() >= 4, "{shell}: {script}");
+    }
+}
+
 /// What bash offers after a line.
 #[test]
 fn bash_completes_commands_kinds_and_flags() {

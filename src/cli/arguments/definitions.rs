@@ -9,7 +9,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
-use clap::{Arg, ArgGroup, Command, value_parser};
+use clap::{Arg, ArgAction, ArgGroup, Command, value_parser};
 
 use crate::cli::arguments::flags::{
     anchor, force, jobs, json, name, of_sensor, parse_name, quiet, range, replace, sensor,
@@ -269,7 +269,12 @@ fn library() -> Command {
     let command = |name: &'static str, about: &'static str, examples: &'static str| {
         Command::new(name).about(about).after_help(examples)
     };
-    let list = command("list", "List all shapes", LIST_EXAMPLES).arg(json());
+    let names = Arg::new("names")
+        .long("names")
+        .action(ArgAction::SetTrue)
+        .conflicts_with("json")
+        .help("Print the names alone, one a line");
+    let list = command("list", "List all shapes", LIST_EXAMPLES).args([names, json()]);
     let show = command("show", "Show a shape and describe it", SHOW_EXAMPLES)
         .arg(name("Which shape"))
         .args(of_sensor(&[Parameter::Pitch]))

@@ -115,6 +115,8 @@ pub(crate) enum Swept {
 pub(crate) enum Chore {
     /// List all shapes; whether as JSON.
     List(bool),
+    /// Print their names.
+    Names,
     /// Describe a shape.
     Show(Name, Form),
     /// Store a shape of the library or of a file under this name.
@@ -374,6 +376,7 @@ fn chore(matches: &ArgMatches, settings: &Effective) -> Result<Chore, CliError> 
     };
     let name = own.try_get_one::<Name>("name").ok().flatten().cloned();
     Ok(match (command, name) {
+        ("list", _) if own.get_flag("names") => Chore::Names,
         ("list", _) => Chore::List(own.get_flag("json")),
         ("show", Some(name)) => Chore::Show(name, form(own, settings)?),
         ("save", Some(name)) => {

@@ -1,4 +1,6 @@
-//! `taxel completions`: writes a shell's completions for `taxel`, made from the definitions of the commands.
+//! `taxel completions`: writes a shell's completions for `taxel`, made from the definitions of the commands. Names of
+//! shapes come from `taxel library list --names` at the moment when they are asked for; where no name fits, shells offer
+//! files.
 
 use clap::Command;
 use clap::builder::PossibleValue;
@@ -32,15 +34,116 @@ impl Shell {
     }
 }
 
+/// For bash: what clap wrote, and names of shapes where a command takes one. A blank in a name is escaped, unless the word
+/// was begun with a quotation mark: that is no part of what bash replaces.
+const SHAPES_OF_BASH: &str = r#"
+_taxel_shapes() {
+    _taxel "$@"
+    local cur="${COMP_WORDS[COMP_CWORD]}" command="${COMP_WORDS[1]}" first=2 quote="" name
+    case "$command" in
+        library | model)
+            command+=" ${COMP_WORDS[2]}"
+            first=3
+            ;;
+    esac
+    case "$command" in
+        "library save" | "model train")
+            [[ "$3" == --* ]] && return 0
+            ;;
+        picture | describe | export | recognise | "library show" | "library delete")
+            [[ $COMP_CWORD -eq $first || "$3" == --json ]] || return 0
+            ;;
+        sweep)
+            [[ "$3" == --picture ]] || return 0
+            ;;
+        *)
+            return 0
+            ;;
+    esac
+    [[ $COMP_CWORD -ge $first && "$cur" != -* ]] || return 0
+    case "$cur" in
+        \"* | \'*)
+            quote="${cur:0:1}"
+            cur="${cur:1}"
+            ;;
+        *)
+            cur="${cur//\\/}"
+            ;;
+    esac
+    COMPREPLY=()
+    while IFS= read -r name; do
+        [[ "$name" == "$cur"* ]] || continue
+        [[ -n "$quote" ]] || printf -v name %q "$name"
+        COMPREPLY+=("$name")
+    done < <(taxel library list --names 2> /dev/null)
+}
+
+complete -F _taxel_shapes -o bashdefault -o default taxel
+"#;
+
+/// For zsh: the function that offers names of shapes, or files.
+const SHAPES_OF_ZSH: &str = r#"(( $+functions[_taxel_shapes] )) ||
+_taxel_shapes() {
+    local -a shapes
+    shapes=(${(f)"$(_call_program shapes taxel library list --names 2> /dev/null)"})
+    _alternative 'shapes:shape:compadd -a shapes' 'files:file:_files'
+}
+
+"#;
+
+/// Where clap's script for zsh takes any file: an argument that is a name of a shape begins and ends so.
+const NAMES_OF_ZSH: [(&str, &str); 4] = [
+    ("':what -- ", ":_default' \\"),
+    ("'*::set -- ", ":_default' \\"),
+    ("':name -- Which shape", ":_default' \\"),
+    ("'--picture=[", ":_default' \\"),
+];
+
+/// For fish, which escapes what it inserts.
+const SHAPES_OF_FISH: &str = r#"
+function __fish_taxel_shapes
+    taxel library list --names 2> /dev/null
+end
+complete -c taxel -n "__fish_taxel_using_subcommand picture describe export recognise" -a "(__fish_taxel_shapes)" -d shape
+complete -c taxel -n "__fish_taxel_using_subcommand library; and __fish_seen_subcommand_from show save delete" -a "(__fish_taxel_shapes)" -d shape
+complete -c taxel -n "__fish_taxel_using_subcommand model; and __fish_seen_subcommand_from train" -a "(__fish_taxel_shapes)" -d shape
+complete -c taxel -n "__fish_taxel_using_subcommand sweep" -l picture -r -a "(__fish_taxel_shapes)" -d shape
+"#;
+
+/// The script for zsh, with names of shapes where clap has any file.
+fn shapes_of_zsh(script: &str) -> String {
+    let mut changed = String::new();
+    for line in script.lines() {
+        if line.starts_with("if [ \"$funcstack[1]\"") {
+            changed += SHAPES_OF_ZSH;
+        }
+        let is_shape = |(start, end): &(&str, &str)| line.starts_with(start) && line.ends_with(end);
+        if NAMES_OF_ZSH.iter().any(is_shape) {
+            changed += &line.replace(":_default' \\", ":_taxel_shapes' \\");
+        } else {
+            changed += line;
+        }
+        changed.push('\n');
+    }
+    changed
+}
+
 /// The completions of all commands, as a script for the shell.
 pub(crate) fn script(shell: Shell, mut all: Command) -> Vec<u8> {
     let (mut script, name) = (Vec::new(), "taxel");
     match shell {
-        Shell::Bash => generate(Bash, &mut all, name, &mut script),
-        Shell::Zsh => generate(Zsh, &mut all, name, &mut script),
+        Shell::Bash => {
+            generate(Bash, &mut all, name, &mut script);
+            script.extend(SHAPES_OF_BASH.as_bytes());
+        }
+        Shell::Zsh => {
+            generate(Zsh, &mut all, name, &mut script);
+            script = shapes_of_zsh(&String::from_utf8_lossy(&script)).into_bytes();
+        }
         Shell::Fish => {
             generate(Fish, &mut all, name, &mut script);
             script.extend(words_of_fish(&all).into_bytes());
+            script.extend(SHAPES_OF_FISH.as_bytes());
         }
     }
     script

@@ -1,6 +1,7 @@
 //! `taxel library`: lists, shows, stores, deletes, restores and checks shapes.
 //!
-//! `list` prints a line per shape; a damaged one is listed with the reason instead of its numbers:
+//! `list` prints a line per shape, with `--names` its name alone. A damaged one is listed with the reason instead of its
+//! numbers:
 //! ```text
 //! name           origin      size   NA  pieces  holes
 //! oval ring      shipped  16 × 16   52       1      1
@@ -21,7 +22,7 @@ use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::report;
 use crate::description::{RegionKind, regions};
-use crate::formats::{StoredShape, json};
+use crate::formats::{Name, StoredShape, json};
 use crate::quote::legible;
 use crate::sensor::Sensor;
 use crate::storage::{Library, LibraryEntry, ShapeOrigin};
@@ -110,6 +111,17 @@ impl Serialize for ListLine {
 fn lines(library: &Library) -> Result<Vec<ListLine>, CliError> {
     let entries = library.list()?.into_iter();
     Ok(entries.map(|entry| ListLine::of(library, entry)).collect())
+}
+
+/// The answer of `taxel library list --names`: for scripts and for what a shell completes. No file is read, and a file
+/// whose name no shape can have is left out.
+///
+/// # Errors
+/// If the folder cannot be listed.
+pub(crate) fn names(shelf: &Shelf) -> Result<String, CliError> {
+    let entries = shelf.library()?.list()?.into_iter();
+    let names = entries.filter(|entry| Name::new(&*entry.name).is_ok());
+    Ok(names.map(|entry| entry.name + "\n").collect())
 }
 
 /// Lists all shapes: a table, or an array of objects in JSON.
