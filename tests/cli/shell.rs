@@ -302,7 +302,8 @@ fn bash_completes_names_of_shapes() {
                       _taxel_shapes taxel \"${COMP_WORDS[-1]}\" \"${COMP_WORDS[-2]}\"; \
                       printf '%s\\n' \"${COMPREPLY[@]}\"";
         let mut bash = Command::new("bash");
-        bash.args(["--norc", "-c", script, "bash", "taxel"]).args(words);
+        bash.args(["--norc", "-c", script, "bash", "taxel"])
+            .args(words);
         bash.env("PATH", &path);
         bash.env("TAXEL_LIBRARY", folder.path().join("library"));
         let pipe = std::process::Stdio::piped;
@@ -327,12 +328,22 @@ fn bash_completes_names_of_shapes() {
         assert_eq!(offered(words), names, "{words:?}");
     }
     let all = offered(&["recognise", ""]);
-    assert!(all.contains("washer\n") && all.contains("Mein\\ Ring\n"), "{all}");
+    assert!(
+        all.contains("washer\n") && all.contains("Mein\\ Ring\n"),
+        "{all}"
+    );
     let listed = taxel("library list --names", "").stdout;
-    assert!(listed.contains("oval ring\n") && !listed.contains("shipped"), "{listed}");
+    assert!(
+        listed.contains("oval ring\n") && !listed.contains("shipped"),
+        "{listed}"
+    );
     for shell in ["zsh", "fish"] {
         let script = taxel(&format!("completions {shell}"), "").stdout;
-        let name = if shell == "zsh" { ":_taxel_shapes' \\\n" } else { "__fish_taxel_shapes)" };
+        let name = if shell == "zsh" {
+            ":_taxel_shapes' \\\n"
+        } else {
+            "__fish_taxel_shapes)"
+        };
         assert!(script.matches(name).count() >= 4, "{shell}: {script}");
     }
 }

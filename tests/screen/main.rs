@@ -4,6 +4,7 @@ mod session;
 
 mod files;
 mod frames;
+mod key_lines;
 mod keys;
 
 mod library;

@@ -218,3 +218,25 @@ fn help_is_whole_and_holds_where_it_is() {
     hides(&held, &["move the cursor"]);
     shows("f<Enter>e?", &["Ranges of a sweep"]);
 }
+
+/// The title has the sensor, the pitch where one is set, and the name; on a low screen the name stands with the source.
+#[test]
+fn a_title_names_sensor_and_shape() {
+    let title = |screen: String| screen.lines().nth(1).unwrap_or_default().to_owned();
+    let at = |keys: &str| title(sized((80, 24), false, keys).screen());
+    assert_eq!(at(""), "16 × 16 · threshold 0.50");
+    let set = ":sensor --columns 32 --rows 9 --threshold 0.305 --pitch 2.5<Enter>";
+    assert_eq!(at(set), "32 × 9 · threshold 0.305 · pitch 2.5 mm");
+    let loaded = at("lwasher<Enter>");
+    assert_eq!(loaded, "16 × 16 · threshold 0.50 · washer");
+    let changed = at("lwasher<Enter><Space>");
+    assert_eq!(changed, "16 × 16 · threshold 0.50 · washer*");
+    // It follows a form, and a page over the whole body covers it.
+    assert_eq!(at("S<Tab><Tab><C-u>0.3"), "16 × 16 · threshold 0.30");
+    assert!(!at("?").contains("threshold"));
+    let low = sized((60, 22), false, "lwasher<Enter><Space>").screen();
+    assert!(!low.contains("threshold 0.50"), "{low}");
+    assert!(low.contains("\nwasher*: "), "{low}");
+    let ascii = title(sized((80, 24), true, "").screen());
+    assert_eq!(ascii, "16 x 16, threshold 0.50");
+}

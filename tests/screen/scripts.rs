@@ -84,7 +84,7 @@ fn what_does_not_hold_is_told_with_its_line() {
     for (script, message) in [
         (
             "Keys f\nExpect /zzz/",
-            "line 2: no /zzz/ on the screen\n  | n New",
+            "line 2: no /zzz/ on the screen\n  | Enter accept",
         ),
         ("ExpectNot /New/", "line 1: /New/ is on the screen"),
         (
@@ -250,7 +250,7 @@ fn a_script_prints_as_it_goes() {
 #[test]
 fn wide_characters_cover_what_was_there() {
     let script = "Keys <Space>sfoobar<Enter>s<C-u>\nType \"字字\"\nKeys <Enter>\n\
-                  Expect /saved as 字字/\nExpect /(?m)^字字: drawn by hand$/\n\
-                  ExpectAt 2,20 \"字: drawn\"\nExpectAt 4,20 \": drawn\"";
+                  Expect /saved as 字字/\nExpect /(?m)0.50 · 字字$/\n\
+                  ExpectAt 27,1 \"字字\"\nExpectAt 29,1 \"字\"";
     output(script, false).expect("it holds");
 }

@@ -27,6 +27,9 @@ const NARROW_FORM: u16 = 32;
 const LONGEST_FORM: u16 = 18;
 const LOW_PANEL: u16 = 10;
 
+/// From this many lines on there is one for the title: neither descriptors nor the default sensor lose any.
+const TITLED: u16 = 24;
+
 /// Nothing useful can be shown on less.
 pub const SMALLEST: (u16, u16) = (20, 6);
 
@@ -37,6 +40,10 @@ pub struct Panes {
     pub menu: Rect,
     /// Everything between the menu and the lines at the foot.
     pub body: Rect,
+    /// The sensor and the name, above the matrix; empty on a low screen. Pages over the whole body cover it.
+    pub title: Rect,
+    /// The body below the title.
+    pub content: Rect,
     /// The matrix with its rulers.
     pub matrix: Rect,
     /// The descriptors, where there is room beside the matrix.
@@ -77,17 +84,24 @@ impl Panes {
             height: area.height - 1 - foot,
             ..area
         };
-        let width = whole_matrix(area, body, imprint);
-        let matrix = Rect {
-            width: width.unwrap_or(matrix_width(imprint, 2).min(area.width)),
+        let title = Rect {
+            height: u16::from(area.height >= TITLED),
             ..body
         };
-        let left = (matrix.right() + 1).min(body.right());
-        let beside = right_of(body, left);
-        let (form, form_panel) = form(body, beside);
+        let content = below(body, title.height);
+        let width = whole_matrix(area, content, imprint);
+        let matrix = Rect {
+            width: width.unwrap_or(matrix_width(imprint, 2).min(area.width)),
+            ..content
+        };
+        let left = (matrix.right() + 1).min(content.right());
+        let beside = right_of(content, left);
+        let (form, form_panel) = form(content, beside);
         Some(Self {
             menu: Rect { height: 1, ..area },
             body,
+            title,
+            content,
             matrix,
             panel: width.map(|_| beside),
             form,
@@ -108,7 +122,7 @@ impl Panes {
             },
             Slot::Body => self.body,
             Slot::Form => self.form,
-            Slot::Panel => self.panel.unwrap_or(self.body),
+            Slot::Panel => self.panel.unwrap_or(self.content),
             Slot::Prompt | Slot::Question => self.notice,
         }
     }

@@ -1,90 +1,215 @@
-//! The menu in the first line: the paper's seven options, and Help.
+//! The two lines of keys: the menu in the first line of the screen, and the hints in the last one.
 //!
 //! ```text
-//! n New   l Load   f Figure   p Picture   s Save   d Delete   q Quit   ? Help      from 70 columns on
+//! n New   l Load   f Figure   p Picture   s Save   d Delete   q Quit   ? Help      on the matrix, from 70 columns on
 //! New  Load  Figure  Picture  Save  Delete  Quit  ? Help                           the key is the bold letter
+//! Enter accept   Esc cancel   ? help                                               in a form or a list
+//! Tab page   d D descriptor   x export   e ranges   ? help   Esc close             on all pages of Explore
 //! ```
-//! Names and keys are those of the table of keys as they are now. Options that do not fit are left out.
+//! On the matrix the menu has the paper's seven options, and Help; on other pages what leads on from them or out of them.
+//! The hints have the other keys that mean something now, and what the menu had no room for. Both are made from the table
+//! of keys as it is now, and a click does what the key does.
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 
+use crate::tui::app::layout::Panes;
 use crate::tui::app::message::Message;
+use crate::tui::app::state::App;
+use crate::tui::explore::message::ExploreMessage;
 use crate::tui::keys::binding::{Binding, Context};
 use crate::tui::keys::default_keys::{DEFAULT_KEYS, MENU};
+use crate::tui::keys::key::Key;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// An option of the menu, and where it stands.
-#[derive(Clone, Copy, Debug)]
-pub struct MenuItem<'a> {
+/// From this width on the menu shows keys beside the names of the paper's options.
+const WIDE: u16 = 70;
+
+/// Some keys of a place and what they do, as a line shows them.
+#[derive(Clone, Debug)]
+pub struct Item<'a> {
     /// Its place.
     pub area: Rect,
-    /// Its key now, if it has one.
+    /// The row of the table of keys.
     pub binding: &'a Binding,
-    /// What it does.
-    pub message: &'static Message,
-    /// Its name, which begins with its key but for Help.
-    pub name: &'static str,
-    /// Whether there is room for the key beside the name.
-    pub with_key: bool,
+    /// Its name: a word or two.
+    pub name: &'a str,
+    /// The keys before the name; empty if there are none, or if the key is the first letter of the name.
+    pub keys: String,
+    /// How the name looks.
+    role: Role,
 }
 
-/// The options of the menu; those that do not fit are left out.
-pub fn items(area: Rect, keymap: &Keymap) -> Vec<MenuItem<'_>> {
-    let with_key = area.width >= 70;
-    let rows = || DEFAULT_KEYS.iter().zip(keymap.rows());
-    let help = rows().filter(|(row, _)| row.context == Context::Matrix && row.does(&Message::Help));
+impl Item<'_> {
+    /// What a click at a position does: what its first key does, at the second key what that does. None beside it, and for
+    /// the four arrows together.
+    pub fn click(&self, at: Position) -> Option<Message> {
+        if !self.area.contains(at) {
+            return None;
+        }
+        let parts = self.binding.short_parts();
+        let mut x = self.area.x;
+        for (part, action) in parts.iter().filter(|_| !self.keys.is_empty()) {
+            x += narrow(part.chars().count());
+            if at.x < x {
+                return action.and_then(|action| action.message().cloned());
+            }
+        }
+        match parts.first() {
+            Some((_, action)) => action.and_then(|action| action.message().cloned()),
+            // An option without a key can still be clicked on.
+            None => by_default(self.binding),
+        }
+    }
+
+    /// Draws it.
+    fn draw(&self, theme: &Theme, buffer: &mut Buffer) {
+        let keys = (self.keys.as_str(), Role::Key);
+        let pieces = if !self.keys.is_empty() {
+            [keys, (" ", Role::Text), (self.name, self.role)]
+        } else if self.binding.keys.is_empty() {
+            [keys, ("", Role::Text), (self.name, self.role)]
+        } else {
+            let (first, rest) = self.name.split_at(1);
+            [keys, (first, Role::Key), (rest, self.role)]
+        };
+        write::line(buffer, self.area, theme, pieces);
+    }
+}
+
+/// Draws a line of keys.
+pub fn draw(theme: &Theme, buffer: &mut Buffer, items: &[Item<'_>]) {
+    for item in items {
+        item.draw(theme, buffer);
+    }
+}
+
+/// The menu of the page that one is on, as much as fits.
+pub fn menu(app: &App, area: Rect) -> Vec<Item<'_>> {
+    let (context, keymap) = (app.context(), app.keymap());
+    let gap = if area.width < WIDE { 2 } else { 3 };
+    let options = matches!(context, Context::Matrix | Context::Grab);
+    let rows: Vec<(&Binding, &str)> = if options {
+        let all = keymap.rows().iter().take(MENU).chain(help(keymap));
+        all.map(|row| (row, option(row))).collect()
+    } else {
+        let own = of_menu(context, keymap).into_iter();
+        own.map(|row| (row, row.hint)).collect()
+    };
+    let brief = options && area.width < WIDE;
+    placed(area, gap, Role::Text, brief, rows)
+}
+
+/// The hints: the keys that mean something now and are not in the menu, as many as fit.
+pub fn hints<'a>(app: &'a App, panes: &Panes) -> Vec<Item<'a>> {
+    let (context, keymap) = (app.context(), app.keymap());
+    let screen = context.screen().filter(|&screen| screen != context);
+    let taken: Vec<Key> = keymap
+        .of(context)
+        .flat_map(|row| row.keys.iter().map(|(key, _)| *key))
+        .collect();
+    // A key of the page may mean something else on the screen around it.
+    let free = move |row: &&Binding| {
+        (row.keys.first()).is_some_and(|(key, _)| row.context == context || !taken.contains(key))
+    };
+    let outer = screen.into_iter().flat_map(|screen| keymap.of(screen));
+    let all = keymap.of(context).chain(outer).filter(free);
+    let menu = menu(app, panes.menu);
+    let rest = all.filter(|row| {
+        !row.hint.is_empty() && menu.iter().all(|item| !std::ptr::eq(item.binding, *row))
+    });
+    // Where the descriptors are a page of their own, its key comes first; elsewhere it does nothing.
+    let page = |row: &&Binding| row.does(&Message::SwitchPage);
+    let (first, others): (Vec<_>, Vec<_>) = rest.partition(page);
+    let first = first.into_iter().filter(|_| panes.panel.is_none());
+    let rows = first.chain(others).map(|row| (row, row.hint)).collect();
+    placed(panes.hints, 2, Role::Quiet, false, rows)
+}
+
+/// The rows of the menu of a page other than the matrix: those of the screen that it is a page of, or its own; of a form,
+/// a list, a prompt or a question those that accept, leave or explain it.
+fn of_menu(context: Context, keymap: &Keymap) -> Vec<&Binding> {
+    let hinted = |row: &&Binding| !row.hint.is_empty() && !row.keys.is_empty();
+    match context.screen() {
+        Some(Context::Matrix) => {
+            let own = keymap.of(context).filter(hinted);
+            own.chain(help(keymap)).collect()
+        }
+        Some(screen) => keymap.of(screen).filter(hinted).collect(),
+        None => {
+            let leading = |row: &&Binding| LEADING.iter().any(|message| row.does(message));
+            keymap.of(context).filter(hinted).filter(leading).collect()
+        }
+    }
+}
+
+/// What leads on from a page, out of it, or to its keys.
+const LEADING: [Message; 6] = [
+    Message::Accept,
+    Message::Decline,
+    Message::Cancel,
+    Message::Help,
+    Message::Explore(ExploreMessage::Stop),
+    Message::Terminate,
+];
+
+/// The row of Help on the matrix.
+fn help(keymap: &Keymap) -> impl Iterator<Item = &Binding> {
+    let all = keymap
+        .rows()
+        .iter()
+        .filter(|row| row.context == Context::Matrix);
+    // By its place in the table: its keys may have been taken away.
+    all.filter(|row| by_default(row) == Some(Message::Help))
+}
+
+/// The name of one of the paper's options: what stands before the colon in its help.
+fn option(row: &Binding) -> &str {
+    let end = row.help.find([':', ',']);
+    end.map_or(row.help, |end| &row.help[..end])
+}
+
+/// The rows that fit, one after the other; `brief`: without the keys that are the first letters of the names.
+fn placed<'a>(
+    area: Rect,
+    gap: u16,
+    role: Role,
+    brief: bool,
+    rows: Vec<(&'a Binding, &'a str)>,
+) -> Vec<Item<'a>> {
     let mut x = area.x;
     let mut items = Vec::new();
-    for (row, binding) in rows().take(MENU).chain(help) {
-        let Some(message) = row.keys.first().and_then(|(_, action)| action.message()) else {
-            continue;
+    for (binding, name) in rows {
+        let mut keys = binding.short_labels();
+        if brief && name.to_lowercase().starts_with(&keys) {
+            keys.clear();
+        }
+        let before = match keys.chars().count() {
+            0 => 0,
+            keys => keys + 1,
         };
-        let end = binding.help.find([':', ',']);
-        let name = end.map_or(binding.help, |end| &binding.help[..end]);
-        let label = binding.short_labels();
-        // An option without a key can still be clicked on.
-        let key = if label.is_empty() || !with_key && name.to_lowercase().starts_with(&label) {
-            0
-        } else {
-            label.chars().count() + 1
-        };
-        let width = narrow(key + name.len());
-        if x + width > area.right() {
+        let width = narrow(before + name.chars().count());
+        if area.height == 0 || x.saturating_add(width) > area.right() {
             break;
         }
-        items.push(MenuItem {
+        items.push(Item {
             area: Rect { x, width, ..area },
             binding,
-            message,
             name,
-            with_key: key > 0,
+            keys,
+            role,
         });
-        x += width + if with_key { 3 } else { 2 };
+        x = x.saturating_add(width + gap);
     }
     items
 }
 
-/// Draws the options: key and name, from the table of keys.
-pub fn draw(theme: &Theme, keymap: &Keymap, buffer: &mut Buffer, area: Rect) {
-    for item in items(area, keymap) {
-        let label = item.binding.short_labels();
-        let pieces = if item.with_key {
-            [
-                (label.as_str(), Role::Key),
-                (" ", Role::Text),
-                (item.name, Role::Text),
-            ]
-        } else if label.is_empty() {
-            [(item.name, Role::Text), ("", Role::Text), ("", Role::Text)]
-        } else {
-            // The key is the first letter.
-            let (first, rest) = item.name.split_at(1);
-            [(first, Role::Key), (rest, Role::Text), ("", Role::Text)]
-        };
-        write::line(buffer, item.area, theme, pieces);
-    }
+/// What the first key of a row does by default, though its keys may have been taken away.
+fn by_default(row: &Binding) -> Option<Message> {
+    let same = |own: &&Binding| own.context == row.context && own.help == row.help;
+    let (_, action) = DEFAULT_KEYS.iter().find(same)?.keys.first()?;
+    action.message().cloned()
 }

@@ -7,6 +7,7 @@
 //! state      App                                        update: the only writer of it
 //! steps      what a step of the history did, in words
 //! layout     the panes of the screen                    view: draws them
+//! menu, title, status      the lines above and below
 //! ```
 
 pub mod document;
@@ -32,6 +33,8 @@ pub mod mouse;
 pub mod update;
 
 pub mod menu;
+
+pub mod title;
 
 pub mod status;
 

@@ -1,4 +1,4 @@
-//! What the mouse does: it paints taxels, and otherwise does what a key would.
+//! What the mouse does: it paints taxels, and otherwise does what a key would, also on the lines that name keys.
 //!
 //! A press on a taxel switches it, and a drag from there gives all taxels on its way the same state, as one change. On
 //! a page, the page itself says what a click means ([`crate::tui::app::page::Page::click`]).
@@ -17,8 +17,8 @@ use crate::tui::widget::number::taxels;
 /// What the mouse points at.
 #[derive(Clone, Debug, PartialEq)]
 enum Target {
-    /// An option of the menu.
-    Option(Message),
+    /// A key in the menu or in the hints.
+    Key(Message),
     /// A taxel; and whether the whole matrix is visible, so that the cursor may go there without scrolling it.
     Taxel(u8, u8, bool),
     /// The heading of the descriptors, or a descriptor.
@@ -38,9 +38,7 @@ pub(in crate::tui) fn act(app: &mut App, mouse: Mouse) -> Option<Message> {
         (MouseKind::ScrollUp, _) => return scroll(app, -WHEEL),
         (MouseKind::ScrollDown, _) => return scroll(app, WHEEL),
         (MouseKind::Release, _) => app.paint = None,
-        (MouseKind::Press, Some(Target::Option(message))) => {
-            return app.on_matrix_itself().then_some(message);
-        }
+        (MouseKind::Press, Some(Target::Key(message))) => return Some(message),
         (MouseKind::Press, Some(Target::Taxel(column, row, whole))) => {
             app.notice = None;
             app.paint = Some((!app.reading().imprint.get(column, row), (column, row)));
@@ -104,10 +102,14 @@ fn at(app: &App, column: u16, row: u16) -> Option<Target> {
     let panes = app.panes()?;
     let place = Position::new(column, row);
     let inside = |area: Rect| area.contains(place);
-    if inside(panes.menu) {
-        let mut items = menu::items(panes.menu, app.keymap()).into_iter();
-        let option = items.find(|item| inside(item.area));
-        return option.map(|item| Target::Option(item.message.clone()));
+    let items = match place {
+        _ if inside(panes.menu) => Some(menu::menu(app, panes.menu)),
+        _ if inside(panes.hints) => Some(menu::hints(app, &panes)),
+        _ => None,
+    };
+    if let Some(items) = items {
+        let mut meanings = items.iter().map(|item| item.click(place));
+        return meanings.find_map(|meaning| meaning).map(Target::Key);
     }
     if let Some(dialog) = app.dialogs.last() {
         let page = dialog.page();
@@ -127,7 +129,7 @@ fn at(app: &App, column: u16, row: u16) -> Option<Target> {
     }
     // On a narrow screen the descriptors may have the place of the matrix.
     if panes.panel.is_none() && app.page == NarrowPage::Panel {
-        return inside(panes.body).then_some(Target::Panel);
+        return inside(panes.content).then_some(Target::Panel);
     }
     let matrix = Some(panes.matrix).filter(|&area| inside(area))?;
     let grid = TaxelGrid::of(matrix, &app.reading().imprint, app.cursor());

@@ -271,12 +271,6 @@ impl App {
         }
     }
 
-    /// Whether the matrix takes keys and clicks: nothing lies over it, or only what leaves them to it.
-    pub(in crate::tui) fn on_matrix_itself(&self) -> bool {
-        let top = self.dialogs.last().map(Dialog::page);
-        top.is_none_or(Page::leaves_matrix)
-    }
-
     /// What a key means now.
     pub fn meaning(&self, key: Key) -> Message {
         let message = self.keymap.lookup(self.context(), key);

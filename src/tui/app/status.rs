@@ -1,12 +1,13 @@
 //! The lines at the foot of the screen.
 //!
 //! ```text
-//! washer*: ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0° + 1 by hand     name, whether it is changed, what made the imprint
+//! ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0° + 1 by hand              what made the imprint
 //! column  8, row  8  covered 1.000000    active  NA 52 in all        the taxel under the cursor
 //! saved as washer                                                    a notice, a question, or a prompt
 //! Space toggle  u undo  ? help                                       keys that mean something now
 //! ```
-//! On a low screen the taxel shares its line with notices, and on a lower one the first line goes. A notice that needs
+//! On a low screen, without a title, the name stands before the source; on a lower one the taxel shares its line with
+//! notices, then the first line goes. A notice that needs
 //! several lines grows upwards.
 
 use ratatui::buffer::Buffer;
@@ -14,15 +15,14 @@ use ratatui::layout::{Position, Rect};
 
 use crate::description::Descriptor;
 use crate::formats::value;
-use crate::tui::app::change::is_other;
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Reading;
 use crate::tui::app::layout::Panes;
-use crate::tui::app::message::Message;
+use crate::tui::app::menu;
 use crate::tui::app::page::{Page, Slot};
 use crate::tui::app::state::{App, Mode, Notice};
+use crate::tui::app::title::name;
 use crate::tui::keys::action;
-use crate::tui::keys::binding::Binding;
 use crate::tui::widget::theme::Role;
 use crate::tui::widget::write;
 
@@ -35,7 +35,7 @@ pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
     if app.pane().map(Page::slot) != Some(Slot::Screen) {
         let beyond = if seen.beyond { BEYOND } else { "" };
         let room = usize::from(panes.source.width).saturating_sub(beyond.len());
-        let source = source(app);
+        let source = source(app, panes);
         let source = theme.text(&source);
         let source = write::fitted(&source, room, theme);
         let in_form = app.pane().map(Page::slot) == Some(Slot::Form);
@@ -48,7 +48,7 @@ pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
         write::line(buffer, panes.source, theme, pieces);
         write::line(buffer, panes.taxel, theme, [(line.as_str(), Role::Text)]);
     }
-    hints(app, buffer, panes);
+    menu::draw(theme, buffer, &menu::hints(app, panes));
     let prompt = app.dialogs.last().map(Dialog::page);
     let prompt = prompt.filter(|page| page.slot() == Slot::Prompt);
     if let Some(page) = prompt {
@@ -76,17 +76,12 @@ pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
 }
 
 /// What made the imprint.
-fn source(app: &App) -> String {
+fn source(app: &App, panes: &Panes) -> String {
     let document = app.shown();
     let by_hand = document.edits.count();
-    // A form may show another thing, which has no name yet.
-    let own = app
-        .stored_name()
-        .filter(|_| app.dialogs.is_empty() || !is_other(app, document));
-    let name = own.map_or(String::new(), |stored| {
-        let changed = if app.unsaved() { "*" } else { "" };
-        format!("{stored}{changed}: ")
-    });
+    // Where there is no title, the name stands here.
+    let own = name(app).filter(|_| panes.title.height == 0);
+    let name = own.map_or(String::new(), |name| format!("{name}: "));
     let Some(source) = &document.source else {
         return name
             + &if by_hand == 0 {
@@ -172,33 +167,4 @@ fn notice(app: &App, panes: &Panes) -> Option<(String, Role)> {
             Notice::Refusal(text) => (format!("! {text}"), Role::Error),
         })
     })
-}
-
-/// Keys that mean something now, as many as fit.
-fn hints(app: &App, buffer: &mut Buffer, panes: &Panes) {
-    let mut rest = panes.hints;
-    let context = app.context();
-    let screen = context.screen().unwrap_or(context);
-    let here = |binding: &&Binding| !binding.hint.is_empty() && !binding.keys.is_empty();
-    let hinted = |context| app.keymap().of(context).filter(here);
-    let own = || hinted(context).chain(hinted(screen).filter(move |_| screen != context));
-    // Where the descriptors are a page of their own, its key comes first; elsewhere it does nothing.
-    let page = |binding: &&Binding| binding.does(&Message::SwitchPage);
-    let first = own().filter(page).filter(|_| panes.panel.is_none());
-    let bindings = first.chain(own().filter(|binding| !page(binding)));
-    for (index, binding) in bindings.enumerate() {
-        let gap = if index == 0 { "" } else { "  " };
-        let keys = binding.short_labels();
-        let needed = gap.len() + keys.chars().count() + 1 + binding.hint.chars().count();
-        if needed > usize::from(rest.width) {
-            break;
-        }
-        let pieces = [
-            (gap, Role::Text),
-            (keys.as_str(), Role::Key),
-            (" ", Role::Text),
-            (binding.hint, Role::Quiet),
-        ];
-        rest = write::right_of(rest, write::line(buffer, rest, app.theme(), pieces));
-    }
 }

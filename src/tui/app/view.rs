@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! +--------------------------------------------------+
-//! | menu: the paper's seven options                  |
+//! | menu: the paper's options, or those of a page    |
+//! | title: sensor, name                              |
 //! | column ruler                |                    |
 //! | row   matrix                | descriptor panel,  |   or a page over the whole width
 //! | ruler                       | or a form          |
@@ -10,7 +11,7 @@
 //! | what made the imprint                            |
 //! | the taxel under the cursor                       |
 //! | notice, question or prompt                       |
-//! | hints: keys that mean something now              |
+//! | hints: other keys that mean something now        |
 //! +--------------------------------------------------+
 //! ```
 //! On a narrow screen matrix and panel are two pages; on a low one the lines below the matrix give way first. A screen
@@ -23,8 +24,9 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use crate::tui::app::layout::{Panes, SMALLEST};
-use crate::tui::app::page::Slot;
+use crate::tui::app::page::{Page, Slot};
 use crate::tui::app::state::{App, NarrowPage};
+use crate::tui::app::title::title;
 use crate::tui::app::{menu, status};
 use crate::tui::matrix::panel;
 use crate::tui::matrix::view::MatrixView;
@@ -49,8 +51,13 @@ pub fn view(app: &App, frame: &mut Frame<'_>) {
         }
         return;
     };
-    menu::draw(theme, app.keymap(), buffer, panes.menu);
+    menu::draw(theme, buffer, &menu::menu(app, panes.menu));
     let matrix = MatrixView::of(app);
+    let covers = |slot| matches!(slot, Slot::Screen | Slot::Body);
+    if !app.pane().map(Page::slot).is_some_and(covers) {
+        let title = title(app);
+        write::line(buffer, panes.title, theme, [(&*title, Role::Text)]);
+    }
     let panel = |buffer: &mut Buffer, area: Rect| panel::draw(&matrix, theme, buffer, area);
     let mut cursor = None;
     match (app.pane(), panes.panel) {
@@ -77,7 +84,7 @@ pub fn view(app: &App, frame: &mut Frame<'_>) {
             cursor = matrix.draw(theme, buffer, panes.matrix);
             panel(buffer, beside);
         }
-        (None, None) if app.page == NarrowPage::Panel => panel(buffer, panes.body),
+        (None, None) if app.page == NarrowPage::Panel => panel(buffer, panes.content),
         (None, None) => cursor = matrix.draw(theme, buffer, panes.matrix),
     }
     // A name and a command are typed in the line of notices.

@@ -196,20 +196,30 @@ impl Binding {
 
     /// Its keys in short, for hints: the first one, or the first two that do different things if both are short.
     pub fn short_labels(&self) -> String {
+        let parts = self.short_parts().into_iter();
+        parts.map(|(label, _)| label).collect()
+    }
+
+    /// The same in parts, each with the action that a click on it does: none for the four arrows together.
+    pub fn short_parts(&self) -> Vec<(String, Option<&'static Action>)> {
         if let Some(arrows) = self.keys.iter().find_map(|(key, _)| self.all_arrows(*key)) {
-            return arrows.to_owned();
+            return vec![(arrows.to_owned(), None)];
         }
-        let Some((first, action)) = self.keys.first() else {
-            return String::new();
+        let Some(&(first, action)) = self.keys.first() else {
+            return Vec::new();
         };
-        let opposite = self.keys.iter().find(|(_, other)| other != action);
-        let opposite = opposite.map(|(key, _)| key.label());
+        let opposite = self.keys.iter().find(|(_, other)| *other != action);
+        let opposite = opposite.map(|&(key, other)| (key.label(), other));
         let first = first.label();
-        match opposite.as_deref() {
-            Some(second) if first.len() + second.len() <= 9 => format!("{first} {second}"),
+        match opposite {
+            Some((second, other)) if first.len() + second.len() <= 9 => {
+                vec![(first, Some(action)), (format!(" {second}"), Some(other))]
+            }
             // Two long names with one beginning.
-            Some("PageDown") if first == "PageUp" => "PageUp/Down".to_owned(),
-            _ => first,
+            Some((second, other)) if second == "PageDown" && first == "PageUp" => {
+                vec![(first, Some(action)), ("/Down".to_owned(), Some(other))]
+            }
+            _ => vec![(first, Some(action))],
         }
     }
 }

@@ -29,7 +29,7 @@ fn a_shape_is_saved_and_comes_back() {
     then(
         &mut session,
         "<Enter>",
-        &["saved as mine", "mine: ellipse rx 4.00"],
+        &["saved as mine", "· mine\n", "\nellipse rx 4.00"],
     );
     then(&mut session, "n", &["empty"]);
     then(
@@ -37,7 +37,8 @@ fn a_shape_is_saved_and_comes_back() {
         "lmine<Enter>",
         &[
             "mine loaded",
-            "mine: ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0°",
+            "· mine\n",
+            "\nellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0°",
             "NA 52 in all",
         ],
     );
@@ -69,7 +70,7 @@ fn saving_over_another_shape_asks() {
     then(
         &mut session,
         "<Right><Right><Space>s<Enter>",
-        &["one*:", "Replace one? (y/n)"],
+        &["· one*\n", "Replace one? (y/n)"],
     );
     then(&mut session, "y", &["saved as one"]);
     then(
@@ -101,11 +102,15 @@ fn undo_brings_back_the_name_too() {
     then(
         &mut session,
         "laaa<Enter>lbbb<Enter>",
-        &["bbb: drawn by hand", "NA 2 in all"],
+        &["· bbb\n", "\ndrawn by hand", "NA 2 in all"],
     );
-    then(&mut session, "u", &["aaa: drawn by hand", "NA 1 in all"]);
+    then(
+        &mut session,
+        "u",
+        &["· aaa\n", "\ndrawn by hand", "NA 1 in all"],
+    );
     then(&mut session, "s", &["Save as: aaa"]);
-    then(&mut session, "<Esc>U", &["bbb: drawn by hand"]);
+    then(&mut session, "<Esc>U", &["· bbb\n", "\ndrawn by hand"]);
     // Nothing is left to save of an empty matrix.
     press(&mut session, "lwasher<Enter>nq");
     assert!(session.app().ended());
@@ -158,7 +163,8 @@ fn a_picture_starts_where_it_is_and_follows() {
         &mut session,
         "z",
         &[
-            "pair*: picture of pair at 2.00, 9.00, 0°, zoom 2.00…; reaches beyond the sensor",
+            "· pair*\n",
+            "\npicture of pair at 2.00, 9.00, 0°, zoom 2.00 x 2.00; reaches beyond the sensor",
             "NA 0 in all",
         ],
     );
@@ -214,24 +220,24 @@ fn a_shape_of_another_sensor_is_placed_where_it_fits() {
 #[test]
 fn the_mouse_draws_and_points() {
     let mut session = session("");
-    // Column 2, row 1 of the matrix: 3 columns of ruler, 2 a taxel; the menu and the ruler above.
-    mouse(&mut session, MouseKind::Press, 7, 3);
+    // Column 2, row 1 of the matrix: 3 columns of ruler, 2 a taxel; menu, title and ruler above.
+    mouse(&mut session, MouseKind::Press, 7, 4);
     shows(&session, &["column  2, row  1    active", "NA 1 in all"]);
-    mouse(&mut session, MouseKind::Drag, 9, 3);
-    mouse(&mut session, MouseKind::Drag, 11, 4);
-    mouse(&mut session, MouseKind::Drag, 7, 3);
-    mouse(&mut session, MouseKind::Release, 7, 3);
+    mouse(&mut session, MouseKind::Drag, 9, 4);
+    mouse(&mut session, MouseKind::Drag, 11, 5);
+    mouse(&mut session, MouseKind::Drag, 7, 4);
+    mouse(&mut session, MouseKind::Release, 7, 4);
     // Between two places that are told the line is drawn.
     shows(&session, &["NA 4 in all"]);
-    mouse(&mut session, MouseKind::Drag, 20, 10);
+    mouse(&mut session, MouseKind::Drag, 20, 11);
     shows(&session, &["NA 4 in all"]);
     then(&mut session, "u", &["NA 0 in all"]);
     // "f Figure", then the field Radius y, then a place without anything.
     mouse(&mut session, MouseKind::Press, 20, 0);
     shows(&session, &["Kind", "Radius x"]);
-    mouse(&mut session, MouseKind::Press, 50, 5);
+    mouse(&mut session, MouseKind::Press, 50, 6);
     then(&mut session, "2", &["ellipse rx 4.00 ry 2.00"]);
-    mouse(&mut session, MouseKind::Press, 79, 18);
+    mouse(&mut session, MouseKind::Press, 79, 19);
     mouse(&mut session, MouseKind::Press, 65535, 65535);
     press(&mut session, "<Enter>?");
     mouse(&mut session, MouseKind::ScrollDown, 5, 5);

@@ -87,7 +87,8 @@ fn bytes_at_80_x_24() {
         press("toggle that makes a hole", "<Space>", b" ", TOGGLE);
         press("toggle back", "<Space>", b" ", TOGGLE);
         press("help", "?", b"?", 2500);
-        press("help closed", "<Esc>", b"\x1b\x1b", 2500);
+        // The menu of the matrix comes back with it.
+        press("help closed", "<Esc>", b"\x1b\x1b", 2600);
         press("empty", "n", b"n", 2500);
         press("first toggle", "<Space>", b" ", FIRST_TOGGLE);
         for name in ["second toggle", "third toggle"] {

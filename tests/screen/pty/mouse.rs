@@ -33,18 +33,18 @@ fn it_clicks_drags_and_scrolls() {
         }
         assert!(script.screen().contains(shown), "{}", script.screen());
     };
-    // A taxel: the ruler has three columns, the menu and the other ruler two rows.
+    // A taxel: the ruler has three columns, menu, title and the other ruler three rows.
     act(
-        &[(Press, 3 + 2 * 5, 2 + 4), (Release, 13, 6)],
+        &[(Press, 3 + 2 * 5, 3 + 4), (Release, 13, 7)],
         "NA 1 in all",
     );
     // From that one on, a few told places; the line between them is drawn.
     act(
         &[
-            (Press, 13, 7),
-            (Drag, 17, 7),
-            (Drag, 17, 11),
-            (Release, 17, 11),
+            (Press, 13, 8),
+            (Drag, 17, 8),
+            (Drag, 17, 12),
+            (Release, 17, 12),
         ],
         "NA 8 in all",
     );

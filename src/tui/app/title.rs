@@ -1,0 +1,55 @@
+//! The title of the matrix screen: the sensor, and the name of what is on the matrix.
+//!
+//! ```text
+//! 32 × 32 · threshold 0.30 · pitch 2.5 mm · washer*      the pitch where one is set; * for changes that are not saved
+//! ```
+//! It has no styles, so that it costs few bytes.
+
+use crate::parameter::Parameter;
+use crate::sensor::Sensor;
+use crate::tui::app::change::is_other;
+use crate::tui::app::state::App;
+
+/// The text of the title.
+pub fn title(app: &App) -> String {
+    let sensor = &app.shown().sensor;
+    let pitch = sensor.pitch_mm();
+    let is_set = pitch != sensor.default_value(Parameter::Pitch);
+    let parts = [
+        Some(format!("{} × {}", sensor.columns(), sensor.rows())),
+        Some(format!("threshold {}", threshold(sensor))),
+        is_set.then(|| format!("pitch {pitch} mm")),
+        name(app),
+    ];
+    // In ASCII a dot would be an asterisk, and that is the mark of changes.
+    let between = if app.theme().ascii { ", " } else { " · " };
+    parts
+        .into_iter()
+        .flatten()
+        .collect::<Vec<_>>()
+        .join(between)
+}
+
+/// The name of what is on the matrix, with `*` if it was changed since it was saved. None for what has no name, and for
+/// what a form shows in place of it.
+pub(in crate::tui) fn name(app: &App) -> Option<String> {
+    let stored = app.stored_name()?;
+    if !app.dialogs.is_empty() && is_other(app, app.shown()) {
+        return None;
+    }
+    let changed = if app.unsaved() { "*" } else { "" };
+    Some(format!("{stored}{changed}"))
+}
+
+/// The threshold with two decimals, or as many more as it has.
+fn threshold(sensor: &Sensor) -> String {
+    let (exact, short) = (
+        sensor.threshold().to_string(),
+        format!("{:.2}", sensor.threshold()),
+    );
+    if exact.len() > short.len() {
+        exact
+    } else {
+        short
+    }
+}

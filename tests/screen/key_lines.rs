@@ -1,0 +1,114 @@
+//! The two lines that name keys: the menu and the hints, on each page, and clicks on them.
+
+use taxel::tui::app::message::{Message, Mouse, MouseKind};
+use taxel::tui::script::Session;
+
+use crate::session::{Screen, press, session, shows, sized};
+
+/// The first and the last line of a screen.
+fn lines(of: &(impl Screen + ?Sized)) -> (String, String) {
+    let (screen, _) = of.screen();
+    let mut lines = screen.lines();
+    let menu = lines.next().unwrap_or_default().to_owned();
+    (menu, lines.last().unwrap_or_default().to_owned())
+}
+
+/// A click on a text of the first line or of the last one.
+fn click(session: &mut Session, text: &str) {
+    let screen = Session::screen(session);
+    let rows = [0, screen.lines().count() - 1];
+    let found = rows.into_iter().find_map(|row| {
+        let line = screen.lines().nth(row)?;
+        let column = line[..line.find(text)?].chars().count();
+        Some((u16::try_from(row).ok()?, u16::try_from(column).ok()?))
+    });
+    let (row, column) = found.unwrap_or_else(|| panic!("no {text:?} in the lines of\n{screen}"));
+    for kind in [MouseKind::Press, MouseKind::Release] {
+        session.send(Message::Mouse(Mouse { kind, column, row }));
+    }
+}
+
+#[test]
+fn the_menu_names_the_keys_of_the_page() {
+    let paper = "n New   l Load   f Figure   p Picture   s Save   d Delete   q Quit   ? Help";
+    for (keys, menu, hints) in [
+        ("", paper, "Space toggle"),
+        ("f<CR>g", paper, "arrows move  + - step"),
+        ("f", "Enter accept   Esc cancel   ? help", "Tab field"),
+        ("l", "Enter accept   Esc cancel   ? help", "Up Down choose"),
+        (
+            "<Space>s",
+            "Enter save   Esc cancel   F1 help",
+            "Ctrl-U clear",
+        ),
+        (":", "Enter run   Esc cancel   F1 help", "Tab complete"),
+        ("<Space>q", "y yes   n no   Esc not now   ? help", ""),
+        ("?", "q close", "Up Down scroll"),
+        ("f<CR>e", "Enter start   Esc cancel   ? help", "Tab field"),
+        (
+            "f<CR>:explore --x0 5 --y0 5 --angle 0<CR>",
+            "Tab page   d D descriptor   x export   e ranges   ? help   Esc close",
+            "Enter to matrix",
+        ),
+    ] {
+        let (first, last) = lines(keys);
+        assert_eq!(first, menu, "{keys}");
+        assert!(last.starts_with(hints), "{keys}: {last}");
+        assert!(
+            !last.contains("Esc cancel"),
+            "{keys}: once is enough: {last}"
+        );
+    }
+    let (menu, hints) = lines("f<CR>r");
+    assert!(menu.starts_with("t touch"), "{menu}");
+    assert!(
+        menu.ends_with("? Help") || menu.ends_with("? help"),
+        "{menu}"
+    );
+    // There o is the next set, and not the outline.
+    assert!(
+        hints.starts_with("Space toggle") && !hints.contains("outline"),
+        "{hints}"
+    );
+    // What the menu has no room for stands in the hints.
+    let narrow = sized((20, 20), false, "f");
+    let (menu, hints) = lines(&narrow);
+    assert_eq!(
+        (menu.as_str(), hints.as_str()),
+        ("Enter accept", "Tab field")
+    );
+}
+
+#[test]
+fn clicks_on_the_lines_of_keys_do_what_the_keys_do() {
+    let mut session = session("");
+    click(&mut session, "Space toggle");
+    shows(&session, &["NA 1 in all"]);
+    click(&mut session, "undo");
+    shows(&session, &["NA 0 in all"]);
+    click(&mut session, "Figure");
+    shows(&session, &["Radius x"]);
+    click(&mut session, "? help");
+    shows(&session, &["In a form"]);
+    click(&mut session, "close");
+    click(&mut session, "field");
+    press(&mut session, "2");
+    shows(&session, &["ellipse rx 2.00 ry 4.00"]);
+    click(&mut session, "accept");
+    shows(&session, &["Region 1 of 1", "n New"]);
+    // The second key of two, and four arrows, on which there is nothing to click.
+    click(&mut session, "g grab");
+    click(&mut session, "arrows");
+    click(&mut session, "+ -");
+    shows(&session, &["held, step 0.1"]);
+    click(&mut session, "- step");
+    shows(&session, &["held, step 0.01"]);
+    click(&mut session, "put back");
+    press(&mut session, ":explore --x0 5 --y0 5 --angle 0<CR>");
+    click(&mut session, "page");
+    shows(&session, &["min   mean"]);
+    click(&mut session, "close");
+    click(&mut session, "q Quit");
+    click(&mut session, "yes");
+    assert!(session.app().ended());
+}
