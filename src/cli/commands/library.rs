@@ -120,7 +120,7 @@ fn lines(library: &Library) -> Result<Vec<ListLine>, CliError> {
 /// If the folder cannot be listed.
 pub(crate) fn names(shelf: &Shelf) -> Result<String, CliError> {
     let entries = shelf.library()?.list()?.into_iter();
-    let names = entries.filter(|entry| Name::new(&*entry.name).is_ok());
+    let names = entries.filter(|entry| Name::new(&entry.name).is_ok());
     Ok(names.map(|entry| entry.name + "\n").collect())
 }
 

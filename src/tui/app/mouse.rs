@@ -38,7 +38,6 @@ pub(in crate::tui) fn act(app: &mut App, mouse: Mouse) -> Option<Message> {
         (MouseKind::ScrollUp, _) => return scroll(app, -WHEEL),
         (MouseKind::ScrollDown, _) => return scroll(app, WHEEL),
         (MouseKind::Release, _) => app.paint = None,
-        (MouseKind::Press, Some(Target::Key(message))) => return Some(message),
         (MouseKind::Press, Some(Target::Taxel(column, row, whole))) => {
             app.notice = None;
             app.paint = Some((!app.reading().imprint.get(column, row), (column, row)));
@@ -59,7 +58,9 @@ pub(in crate::tui) fn act(app: &mut App, mouse: Mouse) -> Option<Message> {
             }
         }
         (MouseKind::Press, Some(Target::Panel)) => return Some(Message::Region(1)),
-        (MouseKind::Press, Some(Target::Page(message))) => return Some(message),
+        (MouseKind::Press, Some(Target::Key(message) | Target::Page(message))) => {
+            return Some(message);
+        }
         _ => {}
     }
     None
