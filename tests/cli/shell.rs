@@ -133,7 +133,7 @@ fn furnished(folder: &Path) {
         write(name, text);
     }
     write("parts.jsonl", super::model::PARTS);
-    write("rows.txt", "0 0 0 0\n0 9 9 0\n0 9 9 0\n0 0 0 0\n");
+    write("rows.txt", include_str!("../files/frames/samples/rows.txt"));
     write("test.taxel", "Keys f<Enter>\nExpect /ellipse/\n");
     for folder_of in [
         "shapes",

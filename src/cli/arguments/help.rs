@@ -272,8 +272,8 @@ pub(crate) const MODEL_SEPARATE_EXAMPLES: &str = "\
 Trains the set at each scale (all lengths of all shapes times it) or, where the
 lengths are in mm, at each pitch, and says how many touches even the best
 classifier names wrong. --want scans from the smallest size upwards, then in
-tenths of the step before the first size that reaches the error. The error is not
-monotonous: how many larger sizes miss it again is said, too.
+tenths of the step before the first size that reaches the error. The error is
+not monotonous: how many larger sizes miss it again is said, too.
 
 Examples:
   taxel model separate parts --scale 0.5:2:0.1 --positions 20

@@ -198,7 +198,7 @@ fn train() -> Command {
         .value_name("FILE.jsonl|NAME")
         .num_args(0..)
         .value_parser(value_parser!(OsString))
-        .help("Shapes as lines of JSON, '-' for standard input; or names of the\nlibrary");
+        .help("Shapes: lines of JSON, '-' for standard input, or names\nof the library");
     let out = Arg::new("out")
         .long("out")
         .value_name("FILE.npz")
@@ -215,6 +215,7 @@ fn train() -> Command {
         .help("Take poses that the sensor cuts off, too");
     Command::new("train")
         .about("Learn every imprint of a set of shapes")
+        .override_usage("taxel model train [OPTIONS] <--out FILE|--name NAME> [FILE|NAME]...")
         .after_help(MODEL_TRAIN_EXAMPLES)
         .args([what, shape(), library_all(), out, name])
         .group(
@@ -229,7 +230,7 @@ fn train() -> Command {
             _ => range(axis, ""),
         }))
         .arg(positions())
-        .arg(anchor().help("What x0 and y0 place: corner or centre; default corner\nwhere one of them is given, otherwise centre"))
+        .arg(anchor().help("What x0 and y0 place: corner or centre; default\ncorner where one of them is given, else centre"))
         .args(sensor_of_imprints())
         .args([allow_cut, jobs(), shard(), replace(), json(), quiet()])
 }
@@ -261,7 +262,7 @@ fn confusion() -> Command {
             Peer::ALL.map(Peer::name).into_iter().chain(["all"]),
         ))
         .hide_possible_values(true)
-        .help("Another way to name shapes: z, diagonal, lda, qda, knn,\ntemplate, or all of them in a table");
+        .help("Another way to name shapes: z, diagonal, lda, qda,\nknn, template, or all of them in a table");
     let number = |name: &'static str, help: &'static str| {
         Arg::new(name)
             .long(name)
@@ -282,10 +283,7 @@ fn confusion() -> Command {
         .args([
             which_model(),
             given,
-            flag(
-                "greedy",
-                "Choose descriptors one by one until none adds anything",
-            ),
+            flag("greedy", "Choose descriptors one by one until none helps"),
             flag("pairs", "The error for each pair of shapes alone"),
             classifier,
         ])
@@ -354,7 +352,7 @@ fn noisy() -> [Arg; 5] {
         .value_name("START:END:STEP")
         .value_parser(parse_noise_range)
         .help_heading("Noise")
-        .help("Touches whose taxels flip with these probabilities");
+        .help("Touches whose taxels flip this often");
     let dead = Arg::new("dead")
         .long("dead")
         .value_name("N,...")
@@ -377,7 +375,7 @@ fn noisy() -> [Arg; 5] {
         .value_parser(parse_matrix)
         .requires("noise")
         .help_heading("Noise")
-        .help("Columns and rows of the matrix; default the model's");
+        .help("Size of the matrix; default the model's");
     let test = Arg::new("test")
         .long("test")
         .value_name("half-step")
@@ -446,7 +444,7 @@ pub(super) fn recognise() -> Command {
         .long("noise")
         .value_name("E")
         .value_parser(parse_noise)
-        .help("Each taxel flips with this probability (0 to below 0.5)");
+        .help("Each taxel flips with this probability (below 0.5)");
     let mask = Arg::new("mask")
         .long("mask")
         .value_name("NAME|FILE")

@@ -59,12 +59,12 @@ pub(super) fn separate() -> Command {
         .long("want")
         .value_name("ERROR")
         .value_parser(parse_probability)
-        .help("Find the smallest size with at most this error (0 to 1)");
+        .help("Find the smallest size with this error");
     let export = Arg::new("export")
         .long("export")
         .value_name("FILE")
         .value_parser(parse_report)
-        .help("Write the numbers as .csv, or the curves as .svg or .png");
+        .help("Write the numbers (.csv) or the curves\n(.svg, .png)");
     let csv = Arg::new("csv")
         .long("csv")
         .action(ArgAction::SetTrue)
@@ -72,6 +72,7 @@ pub(super) fn separate() -> Command {
         .help("Print a table of commas");
     Command::new("separate")
         .about("Find the sensor that tells the shapes apart")
+        .override_usage("taxel model separate [OPTIONS] [MODEL|FILE.jsonl|NAME]...")
         .after_help(MODEL_SEPARATE_EXAMPLES)
         .args([what, shape(), library_all()])
         .group(
@@ -89,13 +90,13 @@ pub(super) fn separate() -> Command {
             of_sizes(
                 "range_pitch",
                 "pitch",
-                "Lengths are in mm: the pitch of the sensor in mm",
+                "Pitch in mm; lengths are in mm, too",
             )
             .conflicts_with("range_scale"),
             of_sizes(
                 "range_threshold",
                 "threshold",
-                "Threshold of the sensor; default that of the model,\nor 0.5",
+                "Threshold; default the model's, or 0.5",
             ),
             range(Axis::Angle, "that of the model, or 0:359:1"),
             positions(),

@@ -19,9 +19,9 @@ pub(crate) struct SetArguments {
 pub(super) fn shape() -> Arg {
     Arg::new("shape")
         .long("shape")
-        .value_name("NAME=KIND KEY=NUMBER...")
+        .value_name("NAME=KIND...")
         .action(ArgAction::Append)
-        .help("A shape more: 'disc=ellipse radius_x=3 radius_y=3'")
+        .help("A shape: 'disc=ellipse radius_x=3 radius_y=3'")
 }
 
 /// `--positions`, for a coarser grid without naming a cell.
@@ -31,7 +31,7 @@ pub(super) fn positions() -> Arg {
         .value_name("N")
         .value_parser(parse_positions)
         .help_heading("Grid")
-        .help("Positions of a cell in each direction; default 100")
+        .help("Positions of a cell each way; default 100")
 }
 
 /// `--library-all`.
