@@ -44,6 +44,8 @@ pub enum Message {
     PointAt(u8, u8),
     /// Switch the taxel under the cursor on or off.
     Toggle,
+    /// A digit of the count for the next message.
+    Count(u16),
     /// Undo the last change.
     Undo,
     /// Redo the change that was undone last.
@@ -161,6 +163,15 @@ pub enum Message {
 }
 
 impl Message {
+    /// Whether a count before it does it that many times.
+    pub(in crate::tui) fn repeats(&self) -> bool {
+        use Message::{Cursor, Nudge, Redo, Region, Turn, Undo, Zoom};
+        matches!(
+            self,
+            Cursor(_) | Nudge(_) | Turn(_) | Zoom(_) | Undo | Redo | Region(_)
+        )
+    }
+
     /// Whether it moves the shape, or sets how far it moves.
     pub(in crate::tui) fn moves_shape(&self) -> bool {
         use Message::{Move, Nudge, NudgeStep, PutBack, Turn, Zoom};

@@ -163,6 +163,8 @@ pub struct App {
     pub(in crate::tui) step: NudgeStep,
     /// Whether a picture is zoomed about its centre, not about the origin.
     pub(in crate::tui) zoom_centre: bool,
+    /// How many times the next message is meant, None if no count was typed.
+    pub(in crate::tui) count: Option<u16>,
     /// The pages over the matrix; the last one is on top.
     pub(in crate::tui) dialogs: Vec<Dialog>,
     /// What the line of notices says.
@@ -214,6 +216,7 @@ impl App {
             page: NarrowPage::Matrix,
             step: NudgeStep::Hundredth,
             zoom_centre: false,
+            count: None,
             dialogs: Vec::new(),
             notice: None,
             removed: None,

@@ -8,7 +8,7 @@ use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Reading;
 use crate::tui::app::message::Message;
 use crate::tui::app::mouse;
-use crate::tui::app::state::{App, RunState};
+use crate::tui::app::state::{App, Notice, RunState};
 use crate::tui::help::Help;
 use crate::tui::history::HistoryDialog;
 use crate::tui::keys::action;
@@ -17,6 +17,9 @@ use crate::tui::keys::key::Key;
 use crate::tui::matrix::files;
 use crate::tui::runtime::effect::{Effect, TerminalEffect};
 use crate::tui::{explore, form, matrix, prompt, recognise, shapes};
+
+/// No message is done more often by a count.
+const MOST_TIMES: u16 = 999;
 
 /// Does what a message says. A notice stays until the next message that is not an answer to the last one.
 pub fn update(app: &mut App, message: Message) -> Option<Effect> {
@@ -40,6 +43,7 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
             return None;
         }
         Message::Unknown(key) => {
+            app.count = None;
             unknown(app, key);
             return None;
         }
@@ -52,6 +56,25 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
         }
         _ => {}
     }
+    if let Message::Count(digit) = message {
+        let before = app.count.map_or(0, |count| count);
+        app.count = Some((before * 10 + digit).min(MOST_TIMES)).filter(|&count| count > 0);
+        app.notice = app
+            .count
+            .map(|count| Notice::Info(format!("{count} times")));
+        return None;
+    }
+    let times = app.count.take().filter(|_| message.repeats());
+    for _ in 1..times.map_or(1, |times| times) {
+        if let Some(effect) = perform(app, message.clone()) {
+            return Some(effect);
+        }
+    }
+    perform(app, message)
+}
+
+/// Does what a message of the user says, once.
+fn perform(app: &mut App, message: Message) -> Option<Effect> {
     app.notice = None;
     if app.dialogs.is_empty() || matches!(message, Message::Cancel | Message::Quit) {
         app.quits_when_saved = false;

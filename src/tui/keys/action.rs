@@ -181,6 +181,16 @@ actions! {
         COVERAGE "coverage" [] Message::Display;
         OUTLINE "outline" [] Message::Layer(Layer::Outline);
         RECTANGLE "rectangle" [] Message::Layer(Layer::Rectangle);
+        COUNT_ZERO "count-0" [] Message::Count(0);
+        COUNT_ONE "count-1" [] Message::Count(1);
+        COUNT_TWO "count-2" [] Message::Count(2);
+        COUNT_THREE "count-3" [] Message::Count(3);
+        COUNT_FOUR "count-4" [] Message::Count(4);
+        COUNT_FIVE "count-5" [] Message::Count(5);
+        COUNT_SIX "count-6" [] Message::Count(6);
+        COUNT_SEVEN "count-7" [] Message::Count(7);
+        COUNT_EIGHT "count-8" [] Message::Count(8);
+        COUNT_NINE "count-9" [] Message::Count(9);
         GRAB "grab" [] Message::Grab;
         PUT_BACK "put-back" [] Message::PutBack;
         COMPARE "compare" [] Message::Compare;

@@ -50,6 +50,8 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "" "move the cursor";
         [Home => FIRST_COLUMN, End => LAST_COLUMN] "" "cursor to the first, the last column";
         [PageUp => FIRST_ROW, PageDown => LAST_ROW] "" "cursor to the first, the last row";
+        [Char('1') => COUNT_ONE, Char('2') => COUNT_TWO, Char('3') => COUNT_THREE, Char('4') => COUNT_FOUR, Char('5') => COUNT_FIVE, Char('6') => COUNT_SIX, Char('7') => COUNT_SEVEN, Char('8') => COUNT_EIGHT, Char('9') => COUNT_NINE, Char('0') => COUNT_ZERO]
+            "" "a count: how many times the next key does it, 12 Right";
         [Char(' ') => TOGGLE] "toggle" "turn the taxel under the cursor on or off";
         [Char('u') => UNDO] "undo" "undo the last change, then those before";
         [Char('U') => REDO, Ctrl('r') => REDO] "redo" "redo what was undone";

@@ -62,8 +62,11 @@ pub fn actions() -> impl Iterator<Item = &'static Action> {
             .filter(|row| places.contains(&row.context));
         rows.any(|row| row.keys.iter().any(|(_, own)| *own == action))
     };
+    // A count is typed before a key, never as a command.
+    let counts = |action: &Action| matches!(action.message(), Some(Message::Count(_)));
     ACTIONS.iter().copied().filter(move |action| {
-        recognises(action) || bound(action, &places) || !bound(action, &Context::ALL)
+        let works = recognises(action) || bound(action, &places) || !bound(action, &Context::ALL);
+        works && !counts(action)
     })
 }
 
