@@ -25,7 +25,7 @@ const WRITTEN_OUT: Duration = Duration::from_millis(400);
 const BUFFER: usize = 1 << 18;
 
 /// What `touch.json` says.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct RecordingMetadata {
     /// The source's name.
     pub source: String,

@@ -39,7 +39,7 @@ pub mod settings;
 mod commands;
 
 use std::ffi::OsString;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, IsTerminal, Write};
 
 use arguments::definitions;
 use arguments::recognition::ModelRequest;
@@ -90,7 +90,7 @@ fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, Cli
         Request::Settings => print(&settings.text(charset))?,
         Request::Help(text) => print(&charset.lines(&text))?,
         Request::Screen(size, record) => {
-            return screen::screen(&settings, size, record, &shelf, charset);
+            return screen::screen(&settings, size, record, &shelf, charset, None);
         }
         Request::Script(asked) => script::run(&asked, &settings, &shelf, charset)?,
         Request::Figure(figure, sensor, form, kept) => {
@@ -136,6 +136,11 @@ fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, Cli
         Request::Model(request) => run_model(request, &shelf, charset)?,
         Request::Recognise(asked) => {
             return recognise::recognise(&asked, &shelf, charset, &mut io::stdout().lock());
+        }
+        // On a terminal the frames are looked at; in a pipeline they are answered.
+        Request::Watch(asked) if !asked.json && io::stdout().is_terminal() => {
+            let watched = watch::request(&asked)?;
+            return screen::screen(&settings, None, None, &shelf, charset, Some(watched));
         }
         Request::Watch(asked) => {
             return watch::watch(&asked, &mut |text| note(text, charset));

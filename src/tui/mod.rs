@@ -39,6 +39,8 @@ pub mod explore;
 
 pub mod recognise;
 
+pub mod live;
+
 pub mod runtime;
 
 pub mod terminal;

@@ -25,6 +25,8 @@ pub(crate) struct WatchArguments {
     /// The file that frames are recorded in.
     pub(crate) write: Option<PathBuf>,
     pub(crate) existing: Existing,
+    /// A line of JSON for each frame, also on a terminal.
+    pub(crate) json: bool,
 }
 
 pub(crate) fn command() -> Command {
@@ -117,6 +119,7 @@ impl WatchArguments {
             processing,
             write: matches.get_one::<PathBuf>("write").cloned(),
             existing: parameters::existing(matches),
+            json: matches.get_flag("json"),
         })
     }
 }

@@ -8,13 +8,17 @@ use std::fs::{self, File};
 use std::hash::{BuildHasher, RandomState};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::settings::resolved::Effective;
 use crate::storage::{Library, ModelCache, Orphan, ShapeOrigin};
+use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Options};
+use crate::tui::live::message::LiveMessage;
+use crate::tui::live::request::WatchRequest;
 use crate::tui::runtime::World;
 use crate::tui::script::record::Recorder;
 use crate::tui::script::setting::{ScriptSetting, of_options};
@@ -22,6 +26,8 @@ use crate::tui::terminal;
 use crate::tui::terminal::settings::{Flags, TerminalSettings};
 
 /// Runs the screen until the user quits, and returns the exit status.
+///
+/// With `watched`, it begins with the frames of that source.
 ///
 /// # Errors
 /// [`CliError::Screen`] if there is no terminal; [`CliError::Recorded`] or [`CliError::Record`] if the record cannot be
@@ -32,6 +38,7 @@ pub(crate) fn screen(
     record: Option<PathBuf>,
     shelf: &Shelf,
     charset: Charset,
+    watched: Option<WatchRequest>,
 ) -> Result<u8, CliError> {
     // A locale that is not UTF-8 means ASCII; one that is says nothing about the terminal's font.
     let ascii = (charset == Charset::Ascii).then_some(true);
@@ -62,7 +69,8 @@ pub(crate) fn screen(
     };
     let app = App::new(&options).with_keymap(settings.keymap().clone());
     let world = World::new(library).with_model_cache(ModelCache::of_user());
-    let ended = terminal::run(app, world, &terminal, &mut watch);
+    let first = watched.map(|request| Message::Live(LiveMessage::Watch(Arc::new(request))));
+    let ended = terminal::run(app, first, world, &terminal, &mut watch);
     if let Some(record) = record {
         let name = record.path.to_string_lossy().into_owned();
         if let Err(error) = record.end(ended.as_ref().ok().copied()) {

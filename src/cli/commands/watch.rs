@@ -21,6 +21,7 @@ use crate::formats::stream::StreamCounts;
 use crate::formats::value::grouped;
 use crate::frame::{Frame, FrameError, Processing, Rule, TareFrames};
 use crate::matrix::Matrix;
+use crate::tui::live::request::WatchRequest;
 
 /// Dropped frames are reported no more often than this.
 const REPORT: Duration = Duration::from_secs(1);
@@ -99,6 +100,25 @@ pub(crate) fn watch(asked: &WatchArguments, note: &mut dyn FnMut(&str)) -> Resul
     })
 }
 
+/// The same as a page of the screen.
+///
+/// # Errors
+/// If the mask or the gain cannot be read.
+pub(crate) fn request(asked: &WatchArguments) -> Result<WatchRequest, CliError> {
+    let mut request = WatchRequest::new(&asked.source);
+    request.options = asked.options.clone();
+    request.processing = frames::processing(&asked.processing)?;
+    request.rule = asked.processing.rule.map(|rule| SetRule {
+        rule,
+        least: asked.processing.least,
+        from: "flag",
+    });
+    request.tare = asked.processing.tare;
+    request.channel.clone_from(&asked.processing.channel);
+    request.write = asked.write.clone().map(|path| (path, asked.existing));
+    Ok(request)
+}
+
 impl Watcher<'_> {
     fn set_rule(&mut self, rule: Option<SetRule>) {
         self.rule = rule;
@@ -115,7 +135,7 @@ impl Watcher<'_> {
                 bytes_per_second,
                 counts,
             } => {
-                self.silent(bytes_per_second, counts);
+                self.say(&counts.silence(bytes_per_second));
                 Ok(())
             }
             AcquireEvent::Lost(error) => {
@@ -298,21 +318,6 @@ impl Watcher<'_> {
         let text =
             format!("{dropped} torn, short, long or garbled frames so far, the last: {sample}");
         self.say(&text);
-    }
-
-    fn silent(&mut self, bytes_per_second: f64, counts: &StreamCounts) {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a rate for a message"
-        )]
-        let rate = grouped(bytes_per_second.round() as u64);
-        let question = match (counts.bytes, bytes_per_second > 0.0) {
-            (_, true) => ": baud, rows, columns or format?",
-            (0, _) => ": is it sending?",
-            _ => "",
-        };
-        self.say(&format!("{rate} B/s and no frame{question}"));
     }
 
     fn ended(&mut self, counts: &StreamCounts) -> Result<(), CliError> {

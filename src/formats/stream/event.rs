@@ -1,5 +1,6 @@
 //! What a stream may be, what is known of it beforehand, and what its decoder reports.
 
+use crate::formats::value::grouped;
 use crate::frame::Frame;
 
 /// The forms of streams.
@@ -109,6 +110,22 @@ pub struct StreamCounts {
 const SAMPLE: usize = 40;
 
 impl StreamCounts {
+    /// What may be wrong where no frame has come for some time, given the bytes a second that came meanwhile.
+    pub fn silence(&self, bytes_per_second: f64) -> String {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a rate for a message"
+        )]
+        let rate = grouped(bytes_per_second.round() as u64);
+        let question = match (self.bytes, bytes_per_second > 0.0) {
+            (_, true) => ": baud, rows, columns or format?",
+            (0, _) => ": is it sending?",
+            _ => "",
+        };
+        format!("{rate} B/s and no frame{question}")
+    }
+
     /// Counts dropped frames.
     pub(super) fn drop_frames(&mut self, frames: u64, bytes: &[u8]) {
         self.dropped += frames;

@@ -19,6 +19,7 @@ use crate::tui::history::HistoryDialog;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
+use crate::tui::live::state::Live;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::recognise::confusion::Confusion;
 use crate::tui::recognise::exercise::Exercise;
@@ -59,6 +60,8 @@ pub enum Dialog {
     Exercise(Box<Exercise>),
     /// The confusion matrix of a model.
     Confusion(Box<Confusion>),
+    /// The frames of a sensor.
+    Live(Box<Live>),
 }
 
 impl Dialog {
@@ -80,6 +83,7 @@ impl Dialog {
             Self::Recognition(page) => &**page,
             Self::Exercise(page) => &**page,
             Self::Confusion(page) => &**page,
+            Self::Live(page) => &**page,
         }
     }
 

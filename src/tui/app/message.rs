@@ -9,6 +9,7 @@ use crate::storage::{Expected, LibraryEntry, LoadedShape};
 use crate::tui::app::document::Document;
 use crate::tui::explore::message::{ExploreMessage, WorkerEvent};
 use crate::tui::keys::key::{Arrow, Key};
+use crate::tui::live::message::LiveMessage;
 use crate::tui::recognise::message::RecogniseMessage;
 
 /// A message, from a key, a click, a command, a script, or as the answer to an effect.
@@ -152,6 +153,8 @@ pub enum Message {
     Overwrite(String, Vec<u8>),
     /// The answer to a request about files.
     File(FileEvent),
+    /// Something about the frames of a sensor.
+    Live(LiveMessage),
     /// An event of a worker.
     Worker(WorkerEvent),
     /// A key that means nothing here.

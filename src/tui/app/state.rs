@@ -16,6 +16,7 @@ use crate::tui::keys::action::{self, Action};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Key;
 use crate::tui::keys::keymap::Keymap;
+use crate::tui::live::state::Live;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::recognise::state::Recognition;
 use crate::tui::widget::theme::Theme;
@@ -175,6 +176,8 @@ pub struct App {
     pub(in crate::tui) results: Option<Box<Results>>,
     /// Recognition, while it is not looked at.
     pub(in crate::tui) recognition: Option<Box<Recognition>>,
+    /// The page of a source of frames, while it is not looked at.
+    pub(in crate::tui) live: Option<Box<Live>>,
     /// How many sweeps and exports were begun; the number of the last one.
     pub(in crate::tui) works: u64,
     /// The commands that were given, the last one last.
@@ -222,6 +225,7 @@ impl App {
             removed: None,
             results: None,
             recognition: Some(Box::new(Recognition::new(options.seed))),
+            live: None,
             works: 0,
             commands: Vec::new(),
             mouse: options.mouse,

@@ -16,7 +16,7 @@ use crate::tui::keys::key::Key;
 
 use crate::tui::matrix::files;
 use crate::tui::runtime::effect::{Effect, TerminalEffect};
-use crate::tui::{explore, form, matrix, prompt, recognise, shapes};
+use crate::tui::{explore, form, live, matrix, prompt, recognise, shapes};
 
 /// No message is done more often by a count.
 const MOST_TIMES: u16 = 999;
@@ -136,6 +136,7 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
         Dialog::Recognition(page) => recognise::update::in_recognition(app, page, message),
         Dialog::Exercise(page) => recognise::update::in_exercise(app, page, message),
         Dialog::Confusion(page) => recognise::update::in_confusion(app, page, &message),
+        Dialog::Live(page) => live::update::in_live(app, page, message),
     }
 }
 

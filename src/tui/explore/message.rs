@@ -9,6 +9,7 @@ use crate::pose::PoseGrid;
 use crate::source::Source;
 use crate::storage::Existing;
 use crate::sweep::SweepResult;
+use crate::tui::live::message::LiveEvent;
 use crate::tui::recognise::message::RecognitionEvent;
 
 /// What a sweep found, whole or in part.
@@ -124,6 +125,8 @@ pub enum WorkerEvent {
     Failed(u64, String),
     /// Something about models.
     Recognition(RecognitionEvent),
+    /// Something about the frames that the work of that number watches.
+    Live(u64, LiveEvent),
     /// Something that belongs to no piece of work cannot be done, and why.
     Refused(String),
 }

@@ -20,8 +20,8 @@ use crate::tui::explore::message::{ExploreMessage, Findings, WorkerEvent};
 use crate::tui::explore::ranges::state::{RangesForm, explored};
 use crate::tui::explore::results::Results;
 use crate::tui::explore::running::{Running, WorkKind};
-use crate::tui::recognise;
 use crate::tui::runtime::effect::{Effect, Work};
+use crate::tui::{live, recognise};
 
 /// Handles what a key, a command or an answered question asks for.
 pub(crate) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
@@ -184,6 +184,7 @@ pub(crate) fn on_worker(app: &mut App, told: WorkerEvent) -> Option<Effect> {
             }
         }
         WorkerEvent::Recognition(event) => recognise::update::on_worker(app, event),
+        WorkerEvent::Live(number, event) => live::update::on_worker(app, number, &event),
         WorkerEvent::Refused(reason) => refuse(app, reason),
     }
     None

@@ -15,6 +15,7 @@ use crate::tui::app::message::Purpose;
 use crate::tui::app::message::{Copied, Endpoint, Erase, Layer, Message};
 use crate::tui::explore::message::{ExploreMessage, ExplorePage, Zoom};
 use crate::tui::keys::key::Arrow;
+use crate::tui::live::message::LiveMessage;
 use crate::tui::recognise::message::RecogniseMessage;
 
 /// Something that a user can ask for.
@@ -64,6 +65,8 @@ pub enum Arguments {
     Model,
     /// A whole number.
     Seed,
+    /// A source of frames.
+    FrameSource,
 }
 
 /// What a file is named for.
@@ -112,6 +115,7 @@ impl Arguments {
             Self::Distance => "DX DY",
             Self::Model => "SET",
             Self::Seed => "NUMBER",
+            Self::FrameSource => "SOURCE",
         }
     }
 
@@ -274,6 +278,18 @@ actions! {
         NEXT_SET "next-set" [] Recognise(RecogniseMessage::NextSet(1));
         PREVIOUS_SET "previous-set" [] Recognise(RecogniseMessage::NextSet(-1));
         CONFUSION "confusion" [] Recognise(RecogniseMessage::Confusion);
+        WATCH "watch" [] Message::Live(LiveMessage::Open);
+        TARE "tare" [] Message::Live(LiveMessage::Tare);
+        NO_TARE "no-tare" [] Message::Live(LiveMessage::NoTare);
+        THRESHOLD_UP "threshold-up" [] Message::Live(LiveMessage::Threshold(1));
+        THRESHOLD_DOWN "threshold-down" [] Message::Live(LiveMessage::Threshold(-1));
+        PERCENT "percent" [] Message::Live(LiveMessage::Percent);
+        FREEZE "freeze" [] Message::Live(LiveMessage::Freeze);
+        PEAK_HOLD "peak-hold" [] Message::Live(LiveMessage::PeakHold);
+        NEXT_LAYER "next-layer" [] Message::Live(LiveMessage::NextLayer);
+        NUMBERS "numbers" [] Message::Live(LiveMessage::Numbers);
+        OWN_RANGE "own-range" [] Message::Live(LiveMessage::OwnRange);
+        RECORD "record" [] Message::Live(LiveMessage::Record);
         REDRAW "redraw" [] Message::Redraw;
         SUSPEND "suspend" [] Message::Suspend;
     }
@@ -295,6 +311,7 @@ actions! {
         "seed" Arguments::Seed;
         "sensor" Arguments::Sensor;
         "turn" Arguments::Degrees;
+        "watch" Arguments::FrameSource;
         "write" Arguments::File(FilePurpose::Write);
     }
 }

@@ -105,6 +105,8 @@ contexts! {
     Guess "guess" "Naming a random touch" Typed, EVERYWHERE;
     /// On the confusion matrix.
     Confusion "confusion" "At the confusion matrix" Ignored, EVERYWHERE;
+    /// At the frames of a sensor.
+    Live "live" "Watching a sensor" Ignored, EVERYWHERE;
     /// At a yes-or-no question.
     Question "question" "At a question" Ignored, EVERYWHERE;
     /// In the list of keys.

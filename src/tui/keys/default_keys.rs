@@ -65,6 +65,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('g') => GRAB] "grab" "hold the shape, to move it with the arrows";
         [Char('e') => EXPLORE] "explore" "Explore: all imprints of the shape, over all poses";
         [Char('r') => RECOGNISE] "recognise" "Recognise: name the shape from its touch";
+        [Char('w') => WATCH] "" "Watch: the frames of a sensor, once one is watched";
         [ShiftArrow(Left) => NUDGE_LEFT, ShiftArrow(Right) => NUDGE_RIGHT,
             ShiftArrow(Up) => NUDGE_UP, ShiftArrow(Down) => NUDGE_DOWN]
             "" "move the shape without holding it";
@@ -287,6 +288,28 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Enter => ACCEPT] "to matrix" "put the imprint of the cell onto the matrix";
         [Char('?') => HELP] "help" "these keys";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL] "close" "back to the matrix";
+    }
+
+    Live {
+        [Char('t') => TARE, Char('T') => NO_TARE]
+            "tare" "take off the median of the last 30 frames; nothing";
+        [Char('+') => THRESHOLD_UP, Char('=') => THRESHOLD_UP, Char('-') => THRESHOLD_DOWN]
+            "threshold" "the threshold up, down";
+        [Char('%') => PERCENT] "" "a threshold in percent of the peak, or in the unit";
+        [Char(' ') => FREEZE] "freeze" "stay at this frame, or follow the source again";
+        [LEFT => SCROLL_UP, RIGHT => SCROLL_DOWN, UP => SCROLL_UP, DOWN => SCROLL_DOWN]
+            "scrub" "to an earlier, a later frame";
+        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten frames back, on";
+        [Home => FIRST, End => LAST] "" "the oldest frame; follow the source";
+        [Char('p') => PEAK_HOLD] "peak" "hold the peak of each cell, or let go of it";
+        [Char('v') => NEXT_LAYER] "view" "raw values, tared values, the imprint";
+        [Char('#') => NUMBERS] "" "values as numbers, or in shades";
+        [Char('g') => OWN_RANGE] "" "shades over this frame's values, or a fixed range";
+        [Char('r') => RECORD] "record" "record all frames in a file, or end that";
+        [Enter => ACCEPT] "to matrix" "take the imprint to the matrix";
+        [Char('?') => HELP] "help" "these keys";
+        [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]
+            "close" "leave the source; the history is kept";
     }
 
     Help {

@@ -34,7 +34,7 @@ pub struct AxisWindow {
 
 impl AxisWindow {
     /// `cells` of which `room` can be seen, the cursor as near to the middle as the ends allow.
-    fn new(cells: u8, room: u16, cursor: u8) -> Self {
+    pub(in crate::tui) fn new(cells: u8, room: u16, cursor: u8) -> Self {
         let count = taxels(room).min(cells);
         Self {
             first: cursor.saturating_sub(count / 2).min(cells - count),

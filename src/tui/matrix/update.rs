@@ -31,7 +31,7 @@ use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::runtime::effect::{Effect, FileRequest, LibraryRequest, TerminalEffect};
 use crate::tui::shapes::state::ListDialog;
 use crate::tui::widget::number::around;
-use crate::tui::{explore, recognise};
+use crate::tui::{explore, live, recognise};
 
 /// What there is to say of an empty matrix.
 const NO_REGION: &str = "no region: the matrix is empty";
@@ -91,6 +91,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::Copy(what) => return copy(app, what),
         Message::MouseOnOff => return Some(switch_mouse(app)),
         Message::Explore(asked) => return explore::work::act(app, asked),
+        Message::Live(asked) => return live::update::act(app, &asked),
         Message::Recognise(asked) => return recognise::update::act(app, asked),
         Message::Undo if app.removed.is_some() => {
             let name = app.removed.take()?;

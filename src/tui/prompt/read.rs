@@ -11,6 +11,8 @@
 //! Names, flags and ranges are those of the program's own command line. Parameters of a figure that are not given have
 //! their defaults; those of the sensor keep their values.
 
+use std::sync::Arc;
+
 use crate::figure::{Figure, FigureKind};
 use crate::formats::Name;
 use crate::parameter::Parameter;
@@ -25,6 +27,8 @@ use crate::tui::explore::message::ExploreMessage;
 use crate::tui::explore::ranges::state::explored;
 use crate::tui::keys::action::{self, Arguments, FilePurpose};
 use crate::tui::keys::binding::Context;
+use crate::tui::live::message::LiveMessage;
+use crate::tui::live::request::WatchRequest;
 use crate::tui::prompt::commands::{PromptCommand, find};
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::sets::ModelChoice;
@@ -88,6 +92,10 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
             Ok(Message::Recognise(RecogniseMessage::Choose(choice)))
         }
         (Arguments::Seed, _) => seed(rest),
+        (Arguments::FrameSource, _) => {
+            let request = Arc::new(WatchRequest::new(rest));
+            Ok(Message::Live(LiveMessage::Watch(request)))
+        }
         (Arguments::Degrees, _) => degrees(rest),
         (Arguments::Taxel, [column, row]) => taxel(column, row, &app.shown().sensor),
         (Arguments::Distance, [dx, dy]) => distance(dx, dy).ok_or_else(unexpected),

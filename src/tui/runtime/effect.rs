@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
+use crate::acquire::RecordingMetadata;
 use crate::formats::StoredShape;
 use crate::imprint::Imprint;
 use crate::pose::PoseGrid;
 use crate::storage::{Existing, Expected};
 use crate::tui::app::message::Purpose;
 use crate::tui::explore::message::Findings;
+use crate::tui::live::request::WatchRequest;
 use crate::tui::recognise::sets::{ModelChoice, TrainedModel};
 
 /// An effect.
@@ -62,6 +64,14 @@ pub enum Work {
     Prepare(u64, ModelChoice),
     /// Stop that.
     StopPreparing,
+    /// Watch a source of frames.
+    Watch(u64, Arc<WatchRequest>),
+    /// Stop that.
+    StopWatching,
+    /// Record all frames of the source that is watched.
+    Record(Box<RecordingMetadata>),
+    /// Stop that.
+    StopRecording,
     /// Search a model for the nearest imprint, and for the poses of a shape, None for that of the nearest imprint.
     Look(Arc<TrainedModel>, Box<Imprint>, Option<usize>),
 }

@@ -7,6 +7,7 @@
 //! workers          sweeps and exports, each on a thread of its own
 //! progress         how workers report
 //! models           models for recognition: trained, read, searched
+//! frames           a source of frames: watched, recorded
 //! journal_writer   unsaved work, written beside the program
 //! mailbox          messages from the workers, which wake the event loop
 //! ```
@@ -18,6 +19,8 @@ pub mod files;
 pub mod workers;
 
 mod models;
+
+mod frames;
 
 pub mod progress;
 
@@ -204,6 +207,22 @@ impl World {
             self.remembered = app.commands.len();
         }
         terminal
+    }
+
+    /// Whether frames have come, or something else is to be said of their source.
+    pub(in crate::tui) fn has_frames(&self) -> bool {
+        self.workers.frames.has_new()
+    }
+
+    /// Takes the frames that have come; None if there are none.
+    pub(in crate::tui) fn take_frames(&self) -> Option<Message> {
+        self.workers.frames.take().map(Message::Worker)
+    }
+
+    /// The next frames of a source that is not watched on a thread of its own: a message for each.
+    pub(in crate::tui) fn next_frames(&mut self, count: usize) -> Vec<Message> {
+        let events = self.workers.frames.next(count).into_iter();
+        events.map(Message::Worker).collect()
     }
 
     /// Writes unsaved work at once, because the program is about to end.

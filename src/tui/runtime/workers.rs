@@ -21,6 +21,7 @@ use crate::sweep::{Sweep, SweepResult, TimingSample};
 use crate::tui::explore::export::is_poses;
 use crate::tui::explore::message::{Findings, WorkerEvent};
 use crate::tui::runtime::effect::Work;
+use crate::tui::runtime::frames::FrameWatcher;
 use crate::tui::runtime::models::{self, ModelStore, ModelWorker};
 use crate::tui::runtime::progress::{ProgressReporter, WorkerEventSink, guarded, proceed};
 
@@ -40,6 +41,8 @@ pub(in crate::tui) struct Workers {
     writing: Option<JoinHandle<()>>,
     /// Prepares models.
     models: ModelWorker,
+    /// Watches a source of frames.
+    pub(super) frames: FrameWatcher,
 }
 
 impl std::fmt::Debug for Workers {
@@ -119,6 +122,13 @@ impl Workers {
                 self.models.stop();
                 None
             }
+            Work::Watch(number, request) => self.frames.watch(number, request, self.post.clone()),
+            Work::StopWatching => {
+                self.frames.stop();
+                None
+            }
+            Work::Record(metadata) => self.frames.record(&metadata),
+            Work::StopRecording => self.frames.stop_recording(),
             Work::Look(trained, imprint, shape) => {
                 models::look(trained, imprint, shape, self.post.clone())
             }

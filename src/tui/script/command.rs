@@ -8,6 +8,7 @@
 //! Screen [name]       State [json-pointer]
 //! Expect /re/         ExpectNot /re/      ExpectAt 3,10 "text"   ExpectStyle 3,10 reverse
 //! Signal HUP          Wait                Quit                Seed 7
+//! Source touch.csv    Frames 3            frames of a file, as many as asked for: the clock stands still
 //! ```
 //! Places are column,row of the screen, from 0. `#` begins a comment line. `Quit` holds where the program has ended.
 //! A drag visits its places and no others, as a terminal reports them.
@@ -61,6 +62,10 @@ pub enum ScriptCommand {
     Wait,
     /// The program must have ended.
     Quit,
+    /// Watch a file with frames; none is read yet.
+    Source(String),
+    /// The next frames of it, at most so many, each drawn.
+    Frames(usize),
 }
 
 /// The styles that can be expected, and their letters in printed screens.
@@ -163,14 +168,29 @@ fn command(line: &str) -> Result<ScriptCommand, String> {
             shortened(rest),
             SIGNALS.join(", ")
         )),
+        "Source" if rest.is_empty() => Err("expected the name of a file with frames".to_owned()),
+        "Source" => Ok(ScriptCommand::Source(rest.to_owned())),
+        "Frames" => frames(rest).map(ScriptCommand::Frames),
         "Wait" => nothing(ScriptCommand::Wait),
         "Quit" => nothing(ScriptCommand::Quit),
         _ => Err(format!(
             "{:?} is unknown, expected one of Size, Set, Seed, Resize, Keys, Type, Paste, Click, Drag, Scroll, Screen, \
-             State, Expect, ExpectNot, ExpectAt, ExpectStyle, Signal, Wait, Quit",
+             State, Expect, ExpectNot, ExpectAt, ExpectStyle, Signal, Source, Frames, Wait, Quit",
             shortened(word)
         )),
     }
+}
+
+/// A number of frames.
+fn frames(text: &str) -> Result<usize, String> {
+    let number = text
+        .parse()
+        .ok()
+        .filter(|count| (1..=10_000).contains(count));
+    number.ok_or_else(|| {
+        let found = shortened(text);
+        format!("expected a whole number from 1 to 10000, found {found:?}")
+    })
 }
 
 /// What random touches are made from.

@@ -13,6 +13,7 @@
 //! command, so that a script prints the same each time.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use serde_json::{Value, json};
 
@@ -23,6 +24,8 @@ use crate::tui::app::message::{Message, Mouse, MouseKind};
 use crate::tui::app::state::{App, Options};
 use crate::tui::keys::key::Key;
 use crate::tui::keys::keymap::Keymap;
+use crate::tui::live::message::LiveMessage;
+use crate::tui::live::request::WatchRequest;
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::runtime::World;
 use crate::tui::script::command::{ScreenPosition, ScriptCommand, ScriptError, read};
@@ -225,6 +228,11 @@ fn act(session: &mut Session, line: usize, command: &ScriptCommand) -> Result<()
         ScriptCommand::Set(ScriptSetting::Seed(seed)) => {
             session.send(Message::Recognise(RecogniseMessage::Seed(*seed)));
         }
+        ScriptCommand::Source(name) => {
+            let request = Arc::new(WatchRequest::new(name));
+            session.send(Message::Live(LiveMessage::Watch(request)));
+        }
+        ScriptCommand::Frames(count) => session.frames(*count),
         ScriptCommand::Signal(name) if name == "TSTP" => session.send(Message::Redraw),
         // What is not saved is in the journal already; the program ends without a question.
         ScriptCommand::Signal(_) => session.send(Message::Terminate),

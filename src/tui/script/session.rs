@@ -85,6 +85,13 @@ impl Session {
         self.draw();
     }
 
+    /// Reads the next frames of the source that is watched, at most so many, and draws each.
+    pub fn frames(&mut self, count: usize) {
+        for message in self.world.next_frames(count) {
+            self.send(message);
+        }
+    }
+
     /// Gives the screen another size.
     pub fn resize(&mut self, width: u16, height: u16) {
         self.terminal.backend_mut().resize(width, height);

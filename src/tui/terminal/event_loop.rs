@@ -13,7 +13,7 @@
 
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use ratatui::Terminal;
 use ratatui::layout::Size;
@@ -36,9 +36,13 @@ use crate::tui::terminal::settings::TerminalSettings;
 use crate::tui::terminal::signals::{SignalEvent, SignalReceiver};
 use crate::tui::terminal::{job, session};
 
-/// Runs the program until it ends, and leaves the terminal as it was.
+/// The least time between two pictures of a source of frames.
+const PICTURE: Duration = Duration::from_millis(34);
+
+/// Runs the program until it ends, and leaves the terminal as it was. A first message may be sent to it.
 pub(in crate::tui) fn run(
     app: App,
+    first: Option<Message>,
     world: World,
     settings: &TerminalSettings,
     mailbox: Mailbox,
@@ -48,6 +52,7 @@ pub(in crate::tui) fn run(
     let signals = SignalReceiver::new()?;
     leave_on_panic();
     let mut event_loop = EventLoop::new(watch, app, world, *settings, device, signals, mailbox);
+    event_loop.first = first;
     let ended = catch_unwind(AssertUnwindSafe(|| {
         event_loop.run().or_else(|error| match error {
             // Whoever finds it out first: reading, writing, or taking the terminal anew.
@@ -110,6 +115,14 @@ struct EventLoop<'a> {
     mouse: bool,
     /// How the program ended, once it has.
     outcome: Option<Outcome>,
+    /// What is sent to the program at its start.
+    first: Option<Message>,
+    /// When bytes were read last.
+    read_at: Instant,
+    /// When frames are taken next: never while none have come.
+    frames_due: Option<Instant>,
+    /// When they were taken last.
+    frames_at: Option<Instant>,
 }
 
 /// What the loop was woken for.
@@ -158,6 +171,10 @@ impl<'a> EventLoop<'a> {
             screen,
             mouse: settings.mouse,
             outcome: None,
+            first: None,
+            read_at: Instant::now(),
+            frames_due: None,
+            frames_at: None,
         }
     }
 
@@ -169,9 +186,12 @@ impl<'a> EventLoop<'a> {
         if let Some(greeting) = self.world.greeting() {
             self.update(greeting)?;
         }
+        if let Some(first) = self.first.take() {
+            self.update(first)?;
+        }
         self.draw()?;
         while self.outcome.is_none() {
-            let ready = self.wait(self.reader.patience())?;
+            let ready = self.wait(self.patience())?;
             // A signal before keys: who ends the program shall not have to wait for it to read what was typed.
             if ready.signals {
                 self.on_signals()?;
@@ -184,10 +204,38 @@ impl<'a> EventLoop<'a> {
                     self.collect()?;
                 }
                 self.read(&ready)?;
+                self.take_frames()?;
                 self.draw()?;
             }
         }
         Ok(self.outcome.unwrap_or(Outcome::Quit))
+    }
+
+    /// How long to sleep at most: until half a sequence is what it is, or until frames are taken.
+    fn patience(&self) -> Option<Duration> {
+        let reader = self.reader.patience();
+        let reader = reader.map(|patience| patience.saturating_sub(self.read_at.elapsed()));
+        let frames = self.frames_due;
+        let frames = frames.map(|due| due.saturating_duration_since(Instant::now()));
+        reader.into_iter().chain(frames).min()
+    }
+
+    /// Takes the frames that have come, if the last picture is old enough; those that come meanwhile are taken together.
+    fn take_frames(&mut self) -> io::Result<()> {
+        if !self.world.has_frames() {
+            self.frames_due = None;
+            return Ok(());
+        }
+        let now = Instant::now();
+        let due = self.frames_at.map_or(now, |last| last + PICTURE);
+        if due > now {
+            self.frames_due = Some(due);
+            return Ok(());
+        }
+        self.frames_due = None;
+        self.frames_at = Some(now);
+        let frames = self.world.take_frames();
+        frames.map_or(Ok(()), |frames| self.update(frames))
     }
 
     /// Sleeps until there is something to do, or for `patience`.
@@ -248,8 +296,9 @@ impl<'a> EventLoop<'a> {
                 self.outcome = Some(Outcome::Hangup);
                 return Ok(());
             };
+            self.read_at = Instant::now();
             self.reader.read(&buffer[..count])
-        } else if ready.late {
+        } else if ready.late && self.is_settled() {
             self.reader.settle()
         } else {
             return Ok(());
@@ -271,6 +320,12 @@ impl<'a> EventLoop<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Whether nothing more came in time after half a sequence.
+    fn is_settled(&self) -> bool {
+        let patience = self.reader.patience();
+        patience.is_some_and(|patience| self.read_at.elapsed() >= patience)
     }
 
     /// Handles a message, then its effect on the terminal.

@@ -50,17 +50,18 @@ use crate::tui::runtime::World;
 use input::Input;
 
 /// Runs the program until it ends. The terminal is left as it was, after an error, a signal and a panic too, and
-/// unsaved work is in the journal wherever the program may not come back. `watch` is called with each input.
+/// unsaved work is in the journal wherever the program may not come back. `first` is sent to it at its start; `watch` is called with each input.
 ///
 /// # Errors
 /// Where there is no terminal, or it cannot be read or written.
 pub fn run(
     app: App,
+    first: Option<Message>,
     world: World,
     settings: &TerminalSettings,
     watch: &mut dyn FnMut(&Input),
 ) -> io::Result<Outcome> {
     let (sender, mailbox) = mailbox::new()?;
     let world = world.with_workers(Arc::new(move |told| sender.send(Message::Worker(told))));
-    event_loop::run(app, world, settings, mailbox, watch)
+    event_loop::run(app, first, world, settings, mailbox, watch)
 }

@@ -14,6 +14,8 @@ pub mod columns;
 
 pub mod theme;
 
+pub mod heat;
+
 pub mod dots;
 
 pub mod write;

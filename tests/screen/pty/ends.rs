@@ -167,7 +167,7 @@ fn panics() {
     let settings = TerminalSettings::from_environment(std::env::var_os, &Flags::default());
     let app = App::new(&Options::plain(true));
     let world = World::scratch().expect("a folder");
-    let outcome = terminal::run(app, world, &settings, &mut |input| {
+    let outcome = terminal::run(app, None, world, &settings, &mut |input| {
         assert!(!matches!(input, Input::Key(_)), "on purpose");
     });
     println!("{outcome:?}");

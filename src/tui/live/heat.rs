@@ -1,0 +1,224 @@
+//! The heat map: the values of all taxels in shades or as numbers, and the edge of the imprint.
+//!
+//! ```text
+//! ░░▒▒▒•▓•        two columns a taxel: the second one of a taxel at the edge of the imprint has a mark
+//! ░▒•▓            half a character a taxel: the larger of two; with colours, each has its own
+//!   12   45•      numbers
+//! ```
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+use ratatui::style::Style;
+
+use crate::formats::value::fitting;
+use crate::imprint::Imprint;
+use crate::matrix::Matrix;
+use crate::tui::live::layout::{CellForm, HeatGrid, NUMBER};
+use crate::tui::live::state::{HeatLayer, Live, LiveReading};
+use crate::tui::widget::heat;
+use crate::tui::widget::theme::{Role, Theme};
+
+/// What is drawn.
+pub(super) struct HeatMap<'a> {
+    theme: &'a Theme,
+    reading: &'a LiveReading,
+    layer: HeatLayer,
+    range: (f64, f64),
+    grid: HeatGrid,
+}
+
+impl<'a> HeatMap<'a> {
+    /// The heat map of a frame in an area.
+    pub(super) fn of(live: &Live, reading: &'a LiveReading, theme: &'a Theme, area: Rect) -> Self {
+        let size = (reading.values.columns(), reading.values.rows());
+        Self {
+            theme,
+            reading,
+            layer: live.layer(),
+            range: live.range(),
+            grid: HeatGrid::of(area, size, live.numbers(), near(reading)),
+        }
+    }
+
+    /// Draws it.
+    pub(super) fn draw(&self, buffer: &mut Buffer, area: Rect) {
+        let area = area.intersection(*buffer.area());
+        for (x, column) in self.grid.columns.visible() {
+            for (y, row) in self.grid.rows.visible() {
+                match self.grid.form {
+                    CellForm::Wide => self.wide(buffer, area, (2 * x, y), (column, row)),
+                    CellForm::Half if y % 2 == 0 => {
+                        self.half(buffer, area, (x, y / 2), (column, row));
+                    }
+                    CellForm::Half => {}
+                    CellForm::Number => self.number(buffer, area, (NUMBER * x, y), (column, row)),
+                }
+            }
+        }
+    }
+
+    /// How much of the range a value is; NaN where there is no cell.
+    fn share(&self, column: u8, row: u8) -> f64 {
+        let value = self.reading.values.get(column, row);
+        let (low, high) = self.range;
+        value.map_or(f64::NAN, |value| (value - low) / (high - low))
+    }
+
+    /// The character and the style of a taxel.
+    fn taxel(&self, column: u8, row: u8) -> (char, Style) {
+        let share = self.share(column, row);
+        match (self.layer, &self.reading.imprint) {
+            (HeatLayer::Imprint, Some(imprint)) => {
+                let role = match (imprint.get(column, row), self.reading.main.get(column, row)) {
+                    (true, true) => Role::Chosen,
+                    (true, false) => Role::Active,
+                    (false, _) => Role::Inactive,
+                };
+                let [sign, _] = self.theme.taxel(role);
+                let sign = if share.is_nan() { ' ' } else { sign };
+                (sign, self.theme.style(role))
+            }
+            _ => (
+                heat::shade(self.theme, share),
+                heat::style(self.theme, share),
+            ),
+        }
+    }
+
+    /// Whether a taxel is marked as one at the edge of the imprint. The layer of the imprint needs no marks.
+    fn is_marked(&self, column: u8, row: u8) -> bool {
+        let imprint = self.reading.imprint.as_ref();
+        self.layer != HeatLayer::Imprint
+            && imprint.is_some_and(|imprint| is_edge(imprint, column, row))
+    }
+
+    fn wide(&self, buffer: &mut Buffer, area: Rect, at: (u16, u16), (column, row): (u8, u8)) {
+        let (sign, style) = self.taxel(column, row);
+        let second = match sign {
+            _ if self.is_marked(column, row) => heat::edge(self.theme),
+            '·' | '.' if self.is_low(column, row) => ' ',
+            sign => sign,
+        };
+        put(buffer, area, at, sign, style);
+        put(buffer, area, (at.0 + 1, at.1), second, style);
+    }
+
+    /// Whether a taxel is a single sign, as one of nothing.
+    fn is_low(&self, column: u8, row: u8) -> bool {
+        match (self.layer, &self.reading.imprint) {
+            (HeatLayer::Imprint, Some(imprint)) => !imprint.get(column, row),
+            _ => self.share(column, row) <= 0.0,
+        }
+    }
+
+    fn half(&self, buffer: &mut Buffer, area: Rect, at: (u16, u16), (column, row): (u8, u8)) {
+        let has_lower = row + 1 < self.reading.values.rows();
+        let upper = self.share(column, row);
+        let lower = if has_lower {
+            self.share(column, row + 1)
+        } else {
+            f64::NAN
+        };
+        let larger = if lower > upper || upper.is_nan() && !lower.is_nan() {
+            row + 1
+        } else {
+            row
+        };
+        let (sign, style) = self.taxel(column, larger);
+        let marked = self.is_marked(column, row) || self.is_marked(column, row + 1);
+        if self.layer == HeatLayer::Imprint && self.reading.imprint.is_some() {
+            let active =
+                |row| (self.reading.imprint.as_ref()).is_some_and(|own| own.get(column, row));
+            let style = if active(row) || active(row + 1) {
+                self.theme.style(Role::Chosen)
+            } else {
+                self.theme.style(Role::Inactive)
+            };
+            let sign = self.theme.half(active(row), active(row + 1));
+            let ascii = self.theme.ascii && active(row + 1);
+            return put(buffer, area, at, if ascii { '#' } else { sign }, style);
+        }
+        if marked {
+            return put(buffer, area, at, heat::edge(self.theme), style);
+        }
+        if heat::has_halves(self.theme) {
+            let colors = [upper, lower].map(|share| heat::color(self.theme, share));
+            let (sign, style) = match colors {
+                [Some(upper), Some(lower)] => ('▀', Style::new().fg(upper).bg(lower)),
+                [Some(upper), None] => ('▀', Style::new().fg(upper)),
+                [None, Some(lower)] => ('▄', Style::new().fg(lower)),
+                [None, None] => (sign, style),
+            };
+            return put(buffer, area, at, sign, style);
+        }
+        put(buffer, area, at, sign, style);
+    }
+
+    fn number(&self, buffer: &mut Buffer, area: Rect, at: (u16, u16), (column, row): (u8, u8)) {
+        let Some(value) = self.reading.values.get(column, row) else {
+            return;
+        };
+        let width = usize::from(NUMBER - 2);
+        let text = if value.is_nan() {
+            String::new()
+        } else {
+            fitting(value, width)
+        };
+        let text = if text.chars().count() > width {
+            "9999".replace('9', if value > 0.0 { "^" } else { "v" })
+        } else {
+            text
+        };
+        let mark = match &self.reading.imprint {
+            Some(imprint) if imprint.get(column, row) => heat::edge(self.theme),
+            _ => ' ',
+        };
+        let style = heat::style(self.theme, self.share(column, row));
+        for (x, sign) in (at.0..).zip(format!("{text:>width$}{mark}").chars()) {
+            put(buffer, area, (x, at.1), sign, style);
+        }
+    }
+}
+
+/// A taxel near which there is contact: the middle of the main region, or the largest value.
+fn near(reading: &LiveReading) -> (u8, u8) {
+    let middle = reading.main.bounds().map(|bounds| {
+        let of = |side: std::ops::Range<u8>| side.start.midpoint(side.end);
+        (of(bounds.columns()), of(bounds.rows()))
+    });
+    let largest = || reading.max.map(|(_, at)| at);
+    middle.or_else(largest).map_or((0, 0), |at| at)
+}
+
+/// Whether a taxel is active and one of its four neighbours is not.
+fn is_edge(imprint: &Imprint, column: u8, row: u8) -> bool {
+    let is_inside = column > 0
+        && row > 0
+        && imprint.get(column - 1, row)
+        && imprint.get(column + 1, row)
+        && imprint.get(column, row - 1)
+        && imprint.get(column, row + 1);
+    imprint.get(column, row) && !is_inside
+}
+
+fn put(buffer: &mut Buffer, area: Rect, (x, y): (u16, u16), sign: char, style: Style) {
+    let position = Position::new(area.x.saturating_add(x), area.y.saturating_add(y));
+    if area.contains(position) {
+        buffer[position].set_char(sign).set_style(style);
+    }
+}
+
+/// Shades from the lower to the upper end of the range, with these.
+pub(super) fn scale(theme: &Theme, (low, high): (f64, f64), unit: &str) -> String {
+    let shades: String = heat::shades(theme).iter().skip(1).collect();
+    format!("{} {shades} {}{unit}", fitting(low, 7), fitting(high, 7))
+}
+
+/// How many cells have values.
+pub(super) fn cells(values: &Matrix<f64>) -> usize {
+    values
+        .values()
+        .iter()
+        .filter(|value| !value.is_nan())
+        .count()
+}

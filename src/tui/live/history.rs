@@ -1,0 +1,86 @@
+//! The frames that have come, as many of the last ones as fit into some memory.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use crate::frame::Frame;
+
+/// The memory for values, in bytes.
+pub const HISTORY_BYTES: usize = 32 << 20;
+
+/// The bytes that a frame counts for.
+pub(in crate::tui) fn bytes_of(frame: &Frame) -> usize {
+    size_of::<Frame>() + size_of_val(frame.values())
+}
+
+/// Frames, each with a number of its own that counts on over all that have come.
+#[derive(Clone, Debug, Default)]
+pub struct FrameHistory {
+    frames: VecDeque<Arc<Frame>>,
+    /// The number of the first one that is still here.
+    first: u64,
+    bytes: usize,
+}
+
+impl FrameHistory {
+    /// Adds the newest frame; the oldest ones go where there is no memory for them. The newest one always stays.
+    pub fn push(&mut self, frame: Arc<Frame>) {
+        self.bytes += bytes_of(&frame);
+        self.frames.push_back(frame);
+        while self.bytes > HISTORY_BYTES && self.frames.len() > 1 {
+            if let Some(oldest) = self.frames.pop_front() {
+                self.bytes -= bytes_of(&oldest);
+                self.first += 1;
+            }
+        }
+    }
+
+    /// The number of the newest frame; None before the first one.
+    pub fn newest(&self) -> Option<u64> {
+        let length = self.frames.len() as u64;
+        (length > 0).then(|| self.first + length - 1)
+    }
+
+    /// The number of the oldest frame that is still here; None before the first one.
+    pub fn oldest(&self) -> Option<u64> {
+        (!self.frames.is_empty()).then_some(self.first)
+    }
+
+    /// The frame of a number; None if it is not here any more, or not yet.
+    pub fn get(&self, number: u64) -> Option<&Arc<Frame>> {
+        let index = number.checked_sub(self.first)?;
+        self.frames.get(usize::try_from(index).ok()?)
+    }
+
+    /// At most `count` frames that end with the one of a number, the last one first.
+    pub fn back_from(&self, number: u64, count: usize) -> impl Iterator<Item = &Arc<Frame>> {
+        let numbers = (self.first..=number).rev().take(count);
+        numbers.filter_map(|number| self.get(number))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_oldest_frames_go_where_there_is_no_memory() {
+        let mut history = FrameHistory::default();
+        assert_eq!((history.oldest(), history.newest()), (None, None));
+        let each = bytes_of(&Frame::new(512, 512));
+        let most = HISTORY_BYTES / each;
+        for number in 0..2 * most as u64 {
+            let mut frame = Frame::new(512, 512);
+            frame.number = number;
+            history.push(Arc::new(frame));
+            assert!(history.bytes <= HISTORY_BYTES);
+        }
+        let newest = history.newest().expect("some are here");
+        assert_eq!(newest, 2 * most as u64 - 1);
+        assert_eq!(history.oldest(), Some(newest + 1 - most as u64));
+        assert_eq!(history.get(newest).map(|frame| frame.number), Some(newest));
+        assert!(history.get(0).is_none() && history.get(newest + 1).is_none());
+        assert_eq!(history.back_from(newest, 3).count(), 3);
+        assert_eq!(history.back_from(newest, 2 * most).count(), most);
+    }
+}

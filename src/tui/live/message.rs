@@ -1,0 +1,108 @@
+//! What is asked of the live page, and what its source reports.
+
+use std::sync::Arc;
+
+use crate::formats::recording::ChannelInfo;
+use crate::frame::Frame;
+use crate::tui::live::request::WatchRequest;
+
+/// What a key or a command asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LiveMessage {
+    /// The page of the last source.
+    Open,
+    /// To watch a source.
+    Watch(Arc<WatchRequest>),
+    /// To take off the median of the frames up to the one that is shown.
+    Tare,
+    /// To take nothing off.
+    NoTare,
+    /// The threshold up or down.
+    Threshold(i8),
+    /// A threshold in percent of the largest value, or in the sensor's unit.
+    Percent,
+    /// To stay at the frame that is shown, or to follow the source again.
+    Freeze,
+    /// To show the largest value that each cell has had since then, or the present one.
+    PeakHold,
+    /// The next of raw values, tared values and imprint.
+    NextLayer,
+    /// Values as numbers, or in shades.
+    Numbers,
+    /// Shades over the range of the frame that is shown, or over a fixed range.
+    OwnRange,
+    /// To begin a recording, or to end it.
+    Record,
+}
+
+/// What the source reports.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LiveEvent {
+    /// There are frames, or something else to report.
+    Waiting,
+    /// All that has come since the last time.
+    Arrived(Arc<FrameBatch>),
+    /// A recording has begun in this file.
+    Recording(String),
+    /// It has ended with so many frames.
+    Recorded(String, u64),
+    /// It cannot be begun, and why.
+    NotRecorded(String),
+}
+
+/// Frames that have come, and how the source is.
+#[derive(Clone, Debug, Default)]
+pub struct FrameBatch {
+    /// The frames, the newest last. Their times are those of their arrival where they have none of their own.
+    pub frames: Vec<Arc<Frame>>,
+    /// A frame after these that is not confirmed yet.
+    pub provisional: Option<Arc<Frame>>,
+    /// How the source is.
+    pub status: FeedStatus,
+}
+
+impl PartialEq for FrameBatch {
+    /// Whether they are one: they are never changed.
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self, other)
+    }
+}
+
+/// How a source is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FeedStatus {
+    /// Whether frames come, and if not, why.
+    pub state: SourceState,
+    /// The channel that is watched, once that is known.
+    pub channel: Option<Arc<ChannelInfo>>,
+    /// How many channels there are; 0 of a stream.
+    pub channels: usize,
+    /// Frames that were torn, short, long or garbled.
+    pub lost: u64,
+    /// What the last of these looked like.
+    pub sample: Option<String>,
+    /// Frames that came while nobody took them and there was no memory for more.
+    pub overflowed: u64,
+    /// How many frames are in the recording; None without one.
+    pub recorded: Option<u64>,
+    /// Why the recording has ended early.
+    pub record_error: Option<String>,
+}
+
+/// Whether frames come.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum SourceState {
+    /// None has come yet.
+    #[default]
+    Waiting,
+    /// They come.
+    Live,
+    /// None for two seconds, and what may be wrong.
+    Silent(String),
+    /// The source is gone, and why; it is tried again each second.
+    Lost(String),
+    /// It has come to its end.
+    Ended,
+    /// It cannot be read, and why.
+    Failed(String),
+}

@@ -1,0 +1,28 @@
+//! The live page: the frames of a sensor as they come, or played back, as a heat map with what can be said of them.
+//!
+//! ```text
+//! request    which source, and how its frames are looked at
+//! message    what keys ask for, and what the source reports
+//! history    the frames that have come, as many as fit into some memory
+//! state      which frame is shown and how; its imprint and descriptors
+//! layout     where taxels and numbers stand
+//! heat       the heat map, with the edge of the imprint
+//! view       the page: heat map, and beside it what can be said of the frame
+//! update     what messages do
+//! ```
+
+pub mod request;
+
+pub mod message;
+
+pub mod history;
+
+pub mod state;
+
+mod layout;
+
+mod heat;
+
+pub mod view;
+
+pub mod update;

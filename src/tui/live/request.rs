@@ -1,0 +1,65 @@
+//! What is to be watched, and how its frames are looked at.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use crate::acquire::AcquireOptions;
+use crate::formats::recording::SetRule;
+use crate::frame::Processing;
+use crate::storage::Existing;
+use crate::tui::recognise::sets::ModelChoice;
+
+/// A source of frames and the settings that the page begins with.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct WatchRequest {
+    /// Its name: a path, `tcp://HOST:PORT`, or `-` for standard input.
+    pub source: OsString,
+    /// How it is read.
+    pub options: AcquireOptions,
+    /// Crop, flip, turn, mask and gain.
+    pub processing: Processing,
+    /// The threshold; without one that of the recording, if it has one.
+    pub rule: Option<SetRule>,
+    /// How many of the first frames a tare is made of; 0 for none.
+    pub tare: u64,
+    /// The channel of a recording; without a name the first one.
+    pub channel: Option<String>,
+    /// The file that all frames are recorded in from the start.
+    pub write: Option<(PathBuf, Existing)>,
+    /// The set of shapes that imprints are compared with.
+    pub model: Option<ModelChoice>,
+}
+
+impl PartialEq for WatchRequest {
+    /// Whether they are one: they are never changed.
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self, other)
+    }
+}
+
+impl WatchRequest {
+    /// A source, looked at as it is.
+    pub fn new(source: impl Into<OsString>) -> Self {
+        Self {
+            source: source.into(),
+            options: AcquireOptions::default(),
+            processing: Processing::default(),
+            rule: None,
+            tare: 0,
+            channel: None,
+            write: None,
+            model: None,
+        }
+    }
+
+    /// The source's name for people, without the folders that it is in.
+    pub fn name(&self) -> String {
+        let name = self.source.to_string_lossy();
+        match &*name {
+            "-" => "standard input".to_owned(),
+            tcp if tcp.starts_with("tcp://") => tcp.to_owned(),
+            path => path.rsplit('/').next().map_or(path, |last| last).to_owned(),
+        }
+    }
+}

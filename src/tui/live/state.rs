@@ -1,0 +1,579 @@
+//! The state of the live page: which frame is shown and how, and what can be said of it.
+
+use std::sync::Arc;
+
+use crate::description::{Description, main_region, regions};
+use crate::formats::recording::SetRule;
+use crate::frame::{Frame, FrameError, Processing, Rule, Tare, TareFrames};
+use crate::imprint::Imprint;
+use crate::matrix::Matrix;
+use crate::tui::live::history::FrameHistory;
+use crate::tui::live::message::{FeedStatus, FrameBatch, SourceState};
+use crate::tui::live::request::WatchRequest;
+
+/// A tare that is asked for by a key is made of at most so many frames.
+const TARED: usize = 30;
+
+/// The rate is that of at most so many frames.
+const RATED: usize = 32;
+
+/// What is shown of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HeatLayer {
+    /// What the sensor has sent.
+    Raw,
+    /// The same after tare and gain.
+    Tared,
+    /// Which taxels are active.
+    Imprint,
+}
+
+impl HeatLayer {
+    /// Its name on the screen.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Raw => "raw",
+            Self::Tared => "tared",
+            Self::Imprint => "imprint",
+        }
+    }
+}
+
+/// What can be said of the frame that is shown.
+#[derive(Clone, Debug)]
+pub struct LiveReading {
+    /// The frame.
+    pub frame: Arc<Frame>,
+    /// The values that are shown; NaN where there is no cell.
+    pub values: Matrix<f64>,
+    /// The sum of the raw values.
+    pub sum: f64,
+    /// The largest of the values that are shown, and its column and row; None without cells.
+    pub max: Option<(f64, (u8, u8))>,
+    /// The active taxels; None without a threshold.
+    pub imprint: Option<Imprint>,
+    /// Those of the main region; empty where there is none.
+    pub main: Imprint,
+    /// The main region.
+    pub description: Option<Description>,
+    /// Number of pieces and holes.
+    pub regions: usize,
+}
+
+/// How a tare was made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TareMark {
+    /// Of how many frames.
+    pub frames: u64,
+    /// The number of the last of these.
+    pub number: u64,
+    /// Its time.
+    pub time: Option<f64>,
+}
+
+/// The state of the page.
+#[derive(Clone, Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
+pub struct Live {
+    /// What is watched.
+    request: Arc<WatchRequest>,
+    /// The number of the piece of work that watches it.
+    number: u64,
+    processing: Processing,
+    rule: Option<SetRule>,
+    history: FrameHistory,
+    /// The number in the history of the frame that is shown; None follows the source.
+    frozen: Option<u64>,
+    provisional: Option<Arc<Frame>>,
+    status: FeedStatus,
+    /// Whether no more frames are taken from the source.
+    stopped: bool,
+    layer: HeatLayer,
+    numbers: bool,
+    own_range: bool,
+    /// The largest value that each cell has had, while that is shown.
+    held: Option<Arc<Frame>>,
+    /// The first frames, until they are enough for the tare that was asked for.
+    first: Option<TareFrames>,
+    tare: Option<TareMark>,
+    /// The upper end of the fixed range.
+    top: f64,
+    not_drawn: u64,
+    recording: Option<String>,
+    reading: Option<LiveReading>,
+    /// Why the frame cannot be processed.
+    error: Option<String>,
+}
+
+impl Live {
+    /// A page that waits for the first frame.
+    pub fn new(request: Arc<WatchRequest>, number: u64) -> Self {
+        let mut live = Self {
+            processing: request.processing.clone(),
+            rule: None,
+            history: FrameHistory::default(),
+            frozen: None,
+            provisional: None,
+            status: FeedStatus::default(),
+            stopped: false,
+            layer: HeatLayer::Tared,
+            numbers: false,
+            own_range: false,
+            held: None,
+            first: (request.tare > 0).then(|| TareFrames::new(request.tare)),
+            tare: None,
+            top: 1.0,
+            not_drawn: 0,
+            recording: None,
+            reading: None,
+            error: None,
+            request,
+            number,
+        };
+        live.set_rule(live.request.rule);
+        live
+    }
+
+    /// What is watched.
+    pub fn request(&self) -> &Arc<WatchRequest> {
+        &self.request
+    }
+
+    /// The number of the piece of work that watches it.
+    pub fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// How the source is.
+    pub fn status(&self) -> &FeedStatus {
+        &self.status
+    }
+
+    /// Whether no more frames are taken from the source.
+    pub fn stopped(&self) -> bool {
+        self.stopped
+    }
+
+    /// What can be said of the frame that is shown; None before the first one.
+    pub fn reading(&self) -> Option<&LiveReading> {
+        self.reading.as_ref()
+    }
+
+    /// Why the frame cannot be processed.
+    pub fn error(&self) -> Option<&str> {
+        self.error.as_deref()
+    }
+
+    /// The threshold.
+    pub fn rule(&self) -> Option<SetRule> {
+        self.rule
+    }
+
+    /// What is shown of a frame.
+    pub fn layer(&self) -> HeatLayer {
+        self.layer
+    }
+
+    /// Whether values are shown as numbers.
+    pub fn numbers(&self) -> bool {
+        self.numbers
+    }
+
+    /// Whether the largest value of each cell is shown.
+    pub fn holds_peak(&self) -> bool {
+        self.held.is_some()
+    }
+
+    /// How many frames lie between the one that is shown and the newest; None if the source is followed.
+    pub fn frozen(&self) -> Option<u64> {
+        let newest = self.history.newest()?;
+        self.frozen.map(|shown| newest - shown.min(newest))
+    }
+
+    /// How the tare was made; None without one.
+    pub fn tare(&self) -> Option<TareMark> {
+        self.tare
+    }
+
+    /// What is taken off each cell; None without a tare.
+    pub fn tare_values(&self) -> Option<&Tare> {
+        self.processing.tare.as_ref()
+    }
+
+    /// Number of frames that came while another one was drawn.
+    pub fn not_drawn(&self) -> u64 {
+        self.not_drawn + self.status.overflowed
+    }
+
+    /// The file that is recorded in; None without one.
+    pub fn recording(&self) -> Option<&str> {
+        self.recording.as_deref()
+    }
+
+    /// The unit of the values, with a space before it; empty if it is not known.
+    pub fn unit(&self) -> String {
+        let channel = self.status.channel.as_deref();
+        let unit = channel.and_then(|channel| channel.unit.as_deref());
+        unit.map_or(String::new(), |unit| format!(" {unit}"))
+    }
+
+    /// The values between which shades are spread.
+    pub fn range(&self) -> (f64, f64) {
+        let largest = self.reading.as_ref().and_then(|reading| reading.max);
+        match largest {
+            Some((largest, _)) if self.own_range && largest > 0.0 => (0.0, largest),
+            _ => (0.0, self.top),
+        }
+    }
+
+    /// Frames a second, by the times of the last ones; what the recording says where they have none.
+    pub fn rate(&self) -> Option<f64> {
+        let newest = self.history.newest()?;
+        let times: Vec<f64> = self
+            .history
+            .back_from(newest, RATED)
+            .map_while(|frame| frame.time)
+            .collect();
+        if let [last, .., first] = times[..]
+            && last > first
+        {
+            #[expect(clippy::cast_precision_loss, reason = "at most 32")]
+            return Some((times.len() - 1) as f64 / (last - first));
+        }
+        let step = self.status.channel.as_deref()?.seconds_per_frame?;
+        (step > 0.0).then(|| 1.0 / step)
+    }
+
+    /// Takes what has come.
+    pub fn take(&mut self, batch: &FrameBatch) {
+        let had_channel = self.status.channel.is_some();
+        self.status = batch.status.clone();
+        if let Some(error) = &self.status.record_error {
+            self.recording = None;
+            self.error = Some(error.clone());
+        }
+        let threshold = (self.status.channel.as_deref()).and_then(|channel| channel.threshold);
+        if !had_channel
+            && self.rule.is_none()
+            && let Some(Ok(rule)) = threshold.map(Rule::at_least)
+        {
+            let (least, from) = (self.processing.least, "file");
+            self.set_rule(Some(SetRule { rule, least, from }));
+        }
+        for frame in &batch.frames {
+            self.add(frame);
+        }
+        if self.frozen.is_none() {
+            let unseen = batch.frames.len().saturating_sub(1);
+            self.not_drawn += unseen as u64;
+        }
+        self.provisional.clone_from(&batch.provisional);
+        if !batch.frames.is_empty() || batch.provisional.is_some() {
+            self.read();
+        }
+    }
+
+    fn add(&mut self, frame: &Arc<Frame>) {
+        let largest = frame.values().iter().copied().fold(0.0, f64::max);
+        self.top = self.top.max(round_up(largest));
+        if let Some(held) = &mut self.held {
+            hold(Arc::make_mut(held), frame);
+        }
+        self.history.push(Arc::clone(frame));
+        self.add_to_tare(frame);
+    }
+
+    /// Adds one of the first frames to the tare that was asked for at the start.
+    fn add_to_tare(&mut self, frame: &Frame) {
+        let Some(mut first) = self.first.take() else {
+            return;
+        };
+        let mut seen = Matrix::filled(1, 1, f64::NAN);
+        let view = &self.processing.view;
+        let added = view.of(frame, &mut seen).and_then(|()| first.add(&seen));
+        match added {
+            Ok(()) if first.missing() == 0 => self.end_tare(first, frame),
+            Ok(()) => self.first = Some(first),
+            Err(error) => self.error = Some(error.to_string()),
+        }
+    }
+
+    fn end_tare(&mut self, frames: TareFrames, last: &Frame) {
+        match frames.finish() {
+            Ok(tare) => {
+                self.tare = Some(TareMark {
+                    frames: tare.frames(),
+                    number: last.number,
+                    time: last.time,
+                });
+                self.processing.tare = Some(tare);
+            }
+            Err(error) => self.error = Some(error.to_string()),
+        }
+    }
+
+    /// Takes off the median of the frames up to the one that is shown. Returns of how many; None before the first frame.
+    ///
+    /// # Errors
+    /// If these are of different sizes.
+    pub fn tare_now(&mut self) -> Result<Option<u64>, FrameError> {
+        let Some(shown) = self.frozen.or(self.history.newest()) else {
+            return Ok(None);
+        };
+        let frames: Vec<_> = self.history.back_from(shown, TARED).cloned().collect();
+        let Some(last) = frames.first().cloned() else {
+            return Ok(None);
+        };
+        let mut tare = TareFrames::new(frames.len() as u64);
+        let mut seen = Matrix::filled(1, 1, f64::NAN);
+        for frame in frames.iter().rev() {
+            self.processing.view.of(frame, &mut seen)?;
+            tare.add(&seen)?;
+        }
+        self.first = None;
+        self.end_tare(tare, &last);
+        self.read();
+        Ok(Some(frames.len() as u64))
+    }
+
+    /// Takes nothing off any more; `false` if there was no tare.
+    pub fn drop_tare(&mut self) -> bool {
+        self.first = None;
+        self.processing.tare = None;
+        let any = self.tare.take().is_some();
+        self.read();
+        any
+    }
+
+    fn set_rule(&mut self, rule: Option<SetRule>) {
+        self.rule = rule;
+        self.processing.rule = rule.map(|set| set.rule);
+        self.processing.least = rule.map_or(0, |set| set.least);
+    }
+
+    fn choose(&mut self, rule: Result<Rule, FrameError>) {
+        if let Ok(rule) = rule {
+            let (least, from) = (self.processing.least, "key");
+            self.set_rule(Some(SetRule { rule, least, from }));
+            self.read();
+        }
+    }
+
+    /// The threshold up or down by a step; without one, a tenth of the range.
+    pub fn step_threshold(&mut self, direction: i8) {
+        let by = f64::from(direction);
+        let step = round_up(self.top / 100.0) * by;
+        let rule = match self.rule.map(|set| set.rule) {
+            None => Rule::at_least(round_up(self.top / 20.0)),
+            Some(Rule::Percent(percent)) => Rule::percent((percent + 5.0 * by).clamp(5.0, 100.0)),
+            Some(Rule::Hysteresis { low, high }) => {
+                Rule::hysteresis(tidy(low + step), tidy(high + step))
+            }
+            Some(Rule::Noise(deviations)) => Rule::noise((deviations + by).max(1.0)),
+            Some(Rule::AtLeast(threshold)) => Rule::at_least(tidy(threshold + step)),
+        };
+        self.choose(rule);
+    }
+
+    /// A threshold in percent in place of one in the sensor's unit, or the other way round: one that gives about the same
+    /// imprint of the frame that is shown.
+    pub fn switch_unit(&mut self) {
+        let largest = self.reading.as_ref().and_then(|reading| reading.max);
+        let largest = largest.map_or(self.top, |(largest, _)| largest);
+        let rule = match self.rule.map(|set| set.rule) {
+            Some(Rule::Percent(percent)) => Rule::at_least(tidy(percent / 100.0 * largest)),
+            Some(Rule::AtLeast(threshold)) if largest > 0.0 => {
+                Rule::percent((100.0 * threshold / largest).round().clamp(1.0, 100.0))
+            }
+            _ => Rule::percent(50.0),
+        };
+        self.choose(rule);
+    }
+
+    /// Stays at the frame that is shown, or follows the source again. Returns whether it stays.
+    pub fn freeze(&mut self) -> bool {
+        self.frozen = match self.frozen {
+            Some(_) => None,
+            None => self.history.newest(),
+        };
+        self.read();
+        self.frozen.is_some()
+    }
+
+    /// Goes to another frame of the history and stays there.
+    pub fn scrub(&mut self, by: i64) {
+        if let (Some(oldest), Some(newest)) = (self.history.oldest(), self.history.newest()) {
+            let shown = self.frozen.unwrap_or(newest).saturating_add_signed(by);
+            self.frozen = Some(shown.clamp(oldest, newest));
+            self.read();
+        }
+    }
+
+    /// Goes to the oldest frame of the history and stays there.
+    pub fn to_oldest(&mut self) {
+        self.frozen = self.history.oldest();
+        self.read();
+    }
+
+    /// Follows the source.
+    pub fn to_newest(&mut self) {
+        self.frozen = None;
+        self.read();
+    }
+
+    /// Shows the largest value that each cell has from now on, or the present values again. Returns whether it does.
+    pub fn hold_peak(&mut self) -> bool {
+        self.held = match self.held {
+            Some(_) => None,
+            None => self.shown(),
+        };
+        self.read();
+        self.held.is_some()
+    }
+
+    /// Shows the next of raw values, tared values and imprint.
+    pub fn next_layer(&mut self) -> HeatLayer {
+        self.layer = match self.layer {
+            HeatLayer::Raw => HeatLayer::Tared,
+            HeatLayer::Tared => HeatLayer::Imprint,
+            HeatLayer::Imprint => HeatLayer::Raw,
+        };
+        self.read();
+        self.layer
+    }
+
+    /// Shows numbers in place of shades, or the other way round.
+    pub fn switch_numbers(&mut self) {
+        self.numbers = !self.numbers;
+    }
+
+    /// Spreads shades over the values of the frame, or over a fixed range. Returns whether over those of the frame.
+    pub fn switch_range(&mut self) -> bool {
+        self.own_range = !self.own_range;
+        self.own_range
+    }
+
+    /// Notes that a recording has begun, or ended.
+    pub fn set_recording(&mut self, name: Option<String>) {
+        self.recording = name;
+    }
+
+    /// Notes that no more frames are taken.
+    pub fn stop(&mut self) {
+        self.stopped = true;
+        self.recording = None;
+    }
+
+    /// Takes frames again, those of a piece of work of this number; the history stays.
+    pub fn restart(&mut self, number: u64) {
+        self.number = number;
+        self.stopped = false;
+        self.frozen = None;
+        self.status.state = SourceState::Waiting;
+    }
+
+    /// The frame that is shown, before anything is done with it.
+    fn shown(&self) -> Option<Arc<Frame>> {
+        let newest = || self.provisional.as_ref().filter(|_| self.frozen.is_none());
+        let number = self.frozen.or(self.history.newest());
+        let frame = newest().or_else(|| self.history.get(number?));
+        // One that has left the history stays as long as it is looked at.
+        let kept = || self.reading.as_ref().map(|reading| &reading.frame);
+        frame.or_else(kept).cloned()
+    }
+
+    /// Reads the frame that is shown anew.
+    fn read(&mut self) {
+        let shown = match &self.held {
+            Some(held) if self.frozen.is_none() => Some(Arc::clone(held)),
+            _ => self.shown(),
+        };
+        let Some(frame) = shown else { return };
+        let processed = match self.processing.run(&frame) {
+            Ok(processed) => processed,
+            Err(error) => {
+                self.error = Some(error.to_string());
+                self.reading = None;
+                return;
+            }
+        };
+        let values = match self.layer {
+            HeatLayer::Raw => processed.raw,
+            HeatLayer::Tared | HeatLayer::Imprint => processed.tared,
+        };
+        let imprint = processed.imprint;
+        let found = imprint.as_ref().map_or_else(Vec::new, regions);
+        let main = main_region(&found).and_then(|main| found.get(main));
+        let empty = || Imprint::empty(values.columns(), values.rows());
+        self.reading = Some(LiveReading {
+            max: largest(values),
+            values: values.clone(),
+            sum: processed.sum,
+            imprint,
+            main: main.map_or_else(empty, |region| *region.taxels()),
+            description: main.map(Description::of),
+            regions: found.len(),
+            frame,
+        });
+        self.error = None;
+    }
+}
+
+/// The largest value and where it is, the first of equals; None without cells.
+fn largest(values: &Matrix<f64>) -> Option<(f64, (u8, u8))> {
+    let mut largest: Option<(f64, (u8, u8))> = None;
+    for row in 0..values.rows() {
+        for (column, &value) in (0..values.columns()).zip(values.row(row)) {
+            let is_more = largest.is_none_or(|(most, _)| value > most);
+            if !value.is_nan() && is_more {
+                largest = Some((value, (column, row)));
+            }
+        }
+    }
+    largest
+}
+
+/// Lifts the values of a frame to those of another one where these are larger; takes the other one if its size differs.
+fn hold(held: &mut Frame, frame: &Frame) {
+    if (held.columns(), held.rows()) == (frame.columns(), frame.rows()) {
+        for (own, &other) in held.values_mut().iter_mut().zip(frame.values()) {
+            *own = own.max(other);
+        }
+        held.number = frame.number;
+        held.label = frame.label;
+        held.time = frame.time;
+    } else {
+        held.copy_from(frame);
+    }
+}
+
+/// The least of 1, 2, 5, 10, 20, 50 … and their tenths, hundredths … that is not below a value; 1 for none above 0.
+fn round_up(value: f64) -> f64 {
+    if value <= 0.0 || !value.is_finite() {
+        return 1.0;
+    }
+    let unit = 10_f64.powf(value.log10().floor());
+    let steps = [1.0, 2.0, 5.0, 10.0];
+    let fits = steps.map(|step| step * unit).into_iter();
+    // What rounding has made a little too large is not rounded up once more.
+    let mut fits = fits.filter(|step| *step >= value * (1.0 - 1e-12));
+    fits.next().map_or(10.0 * unit, tidy)
+}
+
+/// Rounds to nine digits, so that steps do not drift.
+fn tidy(value: f64) -> f64 {
+    let text = format!("{value:.8e}");
+    text.parse::<f64>().map_or(value, |value| value + 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_end_at_round_numbers() {
+        let rounded = [0.0, 0.03, 1.0, 1.2, 45.0, 100.0, 255.0, 1e300].map(round_up);
+        assert_eq!(rounded, [1.0, 0.05, 1.0, 2.0, 50.0, 100.0, 500.0, 1e300]);
+        assert_eq!(tidy(0.1 + 0.2), 0.3);
+    }
+}

@@ -1,0 +1,234 @@
+//! What messages do on the live page, and what its source reports. The source goes on while the imprint is on the matrix,
+//! and ends when the page is closed.
+
+use std::sync::Arc;
+
+use crate::acquire::RecordingMetadata;
+use crate::formats::value::counted;
+use crate::parameter::Parameter;
+use crate::sensor::Sensor;
+use crate::tui::app::change::{begin, inform, refuse};
+use crate::tui::app::dialog::Dialog;
+use crate::tui::app::document::Document;
+use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::app::state::App;
+use crate::tui::keys::action;
+use crate::tui::keys::binding::Context;
+use crate::tui::live::message::{LiveEvent, LiveMessage};
+use crate::tui::live::request::WatchRequest;
+use crate::tui::live::state::Live;
+use crate::tui::runtime::effect::{Effect, Work};
+
+/// Handles what is asked for over the matrix.
+pub(in crate::tui) fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> {
+    match asked {
+        LiveMessage::Watch(request) => Some(watch(app, Arc::clone(request))),
+        LiveMessage::Open => open(app),
+        _ => None,
+    }
+}
+
+/// Opens a page for a source, in place of the one before.
+fn watch(app: &mut App, request: Arc<WatchRequest>) -> Effect {
+    app.works += 1;
+    let mut page = Live::new(Arc::clone(&request), app.works);
+    page.set_recording(
+        request
+            .write
+            .as_ref()
+            .map(|(path, _)| path.to_string_lossy().into_owned()),
+    );
+    app.live = None;
+    app.dialogs.push(Dialog::Live(Box::new(page)));
+    Effect::Work(Work::Watch(app.works, request))
+}
+
+/// Opens the page of the last source, which is watched again if it was left.
+fn open(app: &mut App) -> Option<Effect> {
+    let Some(mut page) = app.live.take() else {
+        refuse(
+            app,
+            "no source yet: ':watch SOURCE' watches a sensor or plays a recording",
+        );
+        return None;
+    };
+    let mut effect = None;
+    if page.stopped() {
+        app.works += 1;
+        page.restart(app.works);
+        effect = Some(Effect::Work(Work::Watch(
+            app.works,
+            Arc::clone(page.request()),
+        )));
+    }
+    app.dialogs.push(Dialog::Live(page));
+    effect
+}
+
+/// Handles a message over the page.
+pub(in crate::tui) fn in_live(
+    app: &mut App,
+    mut page: Box<Live>,
+    message: Message,
+) -> Option<Effect> {
+    let mut effect = None;
+    match message {
+        Message::Cancel | Message::Quit => {
+            page.stop();
+            app.live = Some(page);
+            return Some(Effect::Work(Work::StopWatching));
+        }
+        Message::Accept => match document(&page) {
+            Some(document) => {
+                return take(app, page, document);
+            }
+            None => refuse_imprint(app, &page),
+        },
+        Message::Scroll(by) => page.scrub(by.into()),
+        Message::ScrollTo(Endpoint::First) => page.to_oldest(),
+        Message::ScrollTo(Endpoint::Last) => page.to_newest(),
+        Message::Live(asked) => effect = adjust(app, &mut page, &asked),
+        _ => {}
+    }
+    app.dialogs.push(Dialog::Live(page));
+    effect
+}
+
+/// The imprint that is shown, as if it were drawn; None without one.
+fn document(page: &Live) -> Option<Document> {
+    let imprint = page.reading()?.imprint?;
+    let sensor = Sensor::new(imprint.columns(), imprint.rows()).ok()?;
+    let pitch = page
+        .status()
+        .channel
+        .as_deref()
+        .and_then(|channel| channel.pitch_mm);
+    let sensor = match pitch {
+        // A sensor has one pitch only.
+        Some([x, y]) if (x - y).abs() < f64::EPSILON => {
+            let scaled = sensor.with(Parameter::Pitch, x);
+            scaled.map_or(sensor, |sensor| sensor)
+        }
+        _ => sensor,
+    };
+    let mut document = Document::empty(sensor);
+    document.edits = imprint;
+    Some(document)
+}
+
+/// Puts the imprint onto the matrix; the source goes on meanwhile.
+fn take(app: &mut App, page: Box<Live>, document: Document) -> Option<Effect> {
+    let number = page.reading().map(|reading| reading.frame.number);
+    app.live = Some(page);
+    begin(app, document, None);
+    let back = app.key_of(&action::WATCH);
+    if let Some(number) = number {
+        inform(
+            app,
+            format!("the imprint of frame {number}; {back} goes back to the source"),
+        );
+    }
+    None
+}
+
+fn refuse_imprint(app: &mut App, page: &Live) {
+    let key = app.keymap().label(Context::Live, &action::THRESHOLD_UP);
+    let text = match page.reading() {
+        None => "no frame yet".to_owned(),
+        Some(_) => format!("no threshold, so no imprint; {key} sets one"),
+    };
+    refuse(app, text);
+}
+
+/// Changes how frames are looked at, or begins and ends a recording.
+fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect> {
+    match asked {
+        LiveMessage::Tare => match page.tare_now() {
+            Ok(Some(frames)) => {
+                let frames = counted(frames, "frame");
+                inform(app, format!("tare of the last {frames}"));
+            }
+            Ok(None) => refuse(app, "no frame yet"),
+            Err(error) => refuse(app, error.to_string()),
+        },
+        LiveMessage::NoTare => {
+            let text = if page.drop_tare() {
+                "no tare"
+            } else {
+                "there is no tare"
+            };
+            inform(app, text);
+        }
+        LiveMessage::Threshold(direction) => page.step_threshold(*direction),
+        LiveMessage::Percent => page.switch_unit(),
+        LiveMessage::Freeze => {
+            page.freeze();
+        }
+        LiveMessage::PeakHold => {
+            page.hold_peak();
+        }
+        LiveMessage::NextLayer => {
+            page.next_layer();
+        }
+        LiveMessage::Numbers => page.switch_numbers(),
+        LiveMessage::OwnRange => {
+            page.switch_range();
+        }
+        LiveMessage::Record => return Some(record(page)),
+        LiveMessage::Open | LiveMessage::Watch(_) => {}
+    }
+    None
+}
+
+/// Begins a recording, or ends it.
+fn record(page: &Live) -> Effect {
+    if page.recording().is_some() {
+        return Effect::Work(Work::StopRecording);
+    }
+    let channel = page.status().channel.as_deref();
+    let metadata = RecordingMetadata {
+        source: page.request().source.to_string_lossy().into_owned(),
+        unit: channel.and_then(|channel| channel.unit.clone()),
+        pitch_mm: channel.and_then(|channel| channel.pitch_mm),
+        rule: page.rule(),
+        ..RecordingMetadata::default()
+    };
+    Effect::Work(Work::Record(Box::new(match page.tare_values() {
+        Some(tare) => metadata.with_tare(tare),
+        None => metadata,
+    })))
+}
+
+/// The page, open or not.
+fn page(app: &mut App) -> Option<&mut Live> {
+    let mut dialogs = app.dialogs.iter_mut().rev();
+    let open = dialogs.find_map(|dialog| match dialog {
+        Dialog::Live(page) => Some(page),
+        _ => None,
+    });
+    open.or(app.live.as_mut()).map(|page| &mut **page)
+}
+
+/// Takes what the source reports.
+pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
+    let Some(page) = page(app).filter(|page| page.number() == number && !page.stopped()) else {
+        return;
+    };
+    match event {
+        LiveEvent::Waiting => {}
+        LiveEvent::Arrived(batch) => page.take(batch),
+        LiveEvent::Recording(name) => {
+            page.set_recording(Some(name.clone()));
+            inform(app, format!("recording in {name}"));
+        }
+        LiveEvent::Recorded(name, frames) => {
+            page.set_recording(None);
+            let frames = counted(*frames, "frame");
+            inform(app, format!("{name}: {frames} recorded"));
+        }
+        LiveEvent::NotRecorded(reason) => {
+            page.set_recording(None);
+            refuse(app, reason.clone());
+        }
+    }
+}

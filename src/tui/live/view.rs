@@ -1,0 +1,234 @@
+//! How the live page looks.
+//!
+//! ```text
+//! mat.csv  frame 65 (label 66)  6.5 s  frozen, 3 before the newest
+//! ░░▒▒▓▓██          range      0 ░▒▓█ 100 kPa
+//! ░░▒▒▓▓••          sum        1234 kPa
+//!                   NA, NAE, P, F, CG …
+//! ```
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::description::Descriptor;
+use crate::formats::value::{self, counted, fitting, grouped};
+use crate::frame::Rule;
+use crate::tui::app::page::{Page, Slot};
+use crate::tui::keys::action;
+use crate::tui::keys::binding::Context;
+use crate::tui::keys::keymap::Keymap;
+use crate::tui::live::heat::{HeatMap, cells, scale};
+use crate::tui::live::layout::LivePanes;
+use crate::tui::live::message::SourceState;
+use crate::tui::live::state::{Live, LiveReading};
+use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::write;
+
+/// Columns of the names of numbers.
+const LABEL: usize = 11;
+
+/// The descriptors that are shown.
+const SHOWN: [&str; 5] = ["na", "nae", "p", "f", "cg"];
+
+impl Page for Live {
+    fn context(&self) -> Context {
+        Context::Live
+    }
+
+    fn slot(&self) -> Slot {
+        Slot::Screen
+    }
+
+    fn cancels_itself(&self) -> bool {
+        true
+    }
+
+    fn scrolls(&self) -> bool {
+        true
+    }
+
+    fn draw(
+        &self,
+        theme: &Theme,
+        keymap: &Keymap,
+        buffer: &mut Buffer,
+        area: Rect,
+    ) -> Option<Position> {
+        let reading = self.reading();
+        let size = reading.map_or((1, 1), |reading| {
+            (reading.values.columns(), reading.values.rows())
+        });
+        let panes = LivePanes::of(area, size, self.numbers());
+        let title = title(self);
+        let pieces = title.iter().map(|(text, role)| (text.as_str(), *role));
+        write::line(buffer, panes.title, theme, pieces);
+        if let Some(reading) = reading {
+            HeatMap::of(self, reading, theme, panes.map).draw(buffer, panes.map);
+        }
+        let lines = lines(self, theme, keymap);
+        draw_lines(&lines, theme, buffer, panes.panel);
+        None
+    }
+
+    fn remark(&self, _: &Keymap, _: Rect) -> Option<(String, Role)> {
+        let status = self.status();
+        let trouble = self.error().or(status.record_error.as_deref());
+        if let Some(trouble) = trouble {
+            return Some((format!("! {trouble}"), Role::Error));
+        }
+        match &status.state {
+            SourceState::Silent(why) | SourceState::Lost(why) | SourceState::Failed(why) => {
+                Some((format!("! {why}"), Role::Error))
+            }
+            SourceState::Waiting | SourceState::Live | SourceState::Ended => None,
+        }
+    }
+}
+
+/// What is shown, and how.
+fn title(live: &Live) -> Vec<(String, Role)> {
+    let mut pieces = vec![(live.request().name(), Role::Title)];
+    let mut say = |text: String, role| pieces.push((format!("  {text}"), role));
+    let status = live.status();
+    if let Some(name) = status
+        .channel
+        .as_deref()
+        .and_then(|own| own.name.as_deref())
+        && status.channels > 1
+    {
+        say(format!("channel {name}"), Role::Text);
+    }
+    match live.reading() {
+        Some(LiveReading { frame, .. }) => {
+            let label = frame
+                .label
+                .map_or(String::new(), |label| format!(" (label {label})"));
+            say(format!("frame {}{label}", frame.number), Role::Text);
+            if let Some(time) = frame.time {
+                say(format!("{} s", value::decimal(time, 3)), Role::Text);
+            }
+        }
+        None => say("no frame yet".to_owned(), Role::Quiet),
+    }
+    say(live.layer().name().to_owned(), Role::Quiet);
+    if live.holds_peak() {
+        say("peak held".to_owned(), Role::Focus);
+    }
+    match live.frozen() {
+        Some(0) => say("frozen".to_owned(), Role::Focus),
+        Some(back) => say(format!("frozen, {} back", grouped(back)), Role::Focus),
+        None => {}
+    }
+    match (&status.state, live.stopped()) {
+        (_, true) => say("stopped".to_owned(), Role::Quiet),
+        (SourceState::Ended, _) => say("ended".to_owned(), Role::Quiet),
+        _ => {}
+    }
+    pieces
+}
+
+/// A number with its name.
+struct PanelLine {
+    label: &'static str,
+    text: String,
+}
+
+/// All numbers, the most important ones first.
+fn lines(live: &Live, theme: &Theme, keymap: &Keymap) -> Vec<PanelLine> {
+    let mut lines = Vec::new();
+    let mut say = |label, text: String| lines.push(PanelLine { label, text });
+    let unit = live.unit();
+    if let Some(reading) = live.reading() {
+        for key in SHOWN {
+            if let Some(descriptor) = Descriptor::from_key(key) {
+                let measured = reading.description.as_ref().map(descriptor.measure);
+                let text =
+                    measured.and_then(|measured| value::text(measured, descriptor.dimension));
+                let text = text.unwrap_or_else(|| theme.none().to_owned());
+                say(descriptor.symbol, text);
+            }
+        }
+        say("regions", reading.regions.to_string());
+    }
+    say("threshold", threshold(live, keymap));
+    say("tare", tare(live));
+    if let Some(reading) = live.reading() {
+        say("range", scale(theme, live.range(), &unit));
+        say("sum", format!("{}{unit}", fitting(reading.sum, 9)));
+        let peak = reading.max.map(|(largest, (column, row))| {
+            format!("{}{unit} at {column}, {row}", fitting(largest, 9))
+        });
+        say("peak", peak.unwrap_or_else(|| theme.none().to_owned()));
+        let cells = counted(cells(&reading.values) as u64, "cell");
+        let (columns, rows) = (reading.values.columns(), reading.values.rows());
+        say("size", format!("{columns} × {rows}, {cells}"));
+    }
+    let rate = live.rate().map(|rate| format!("{}/s", fitting(rate, 6)));
+    say("rate", rate.unwrap_or_else(|| theme.none().to_owned()));
+    say("lost", lost(live));
+    say("not drawn", grouped(live.not_drawn()));
+    if let Some(name) = live.recording() {
+        let frames = counted(live.status().recorded.into_iter().sum(), "frame");
+        say("recording", format!("{name}, {frames}"));
+    }
+    lines
+}
+
+/// The rule of the imprint, and where it is from.
+fn threshold(live: &Live, keymap: &Keymap) -> String {
+    let Some(set) = live.rule() else {
+        let key = keymap.label(Context::Live, &action::THRESHOLD_UP);
+        return format!("none; {key} sets one");
+    };
+    let unit = live.unit();
+    let text = match set.rule {
+        Rule::AtLeast(threshold) => format!("{}{unit}", fitting(threshold, 7)),
+        Rule::Percent(percent) => format!("{} % of the peak", fitting(percent, 5)),
+        Rule::Hysteresis { low, high } => {
+            format!("{} to {}{unit}", fitting(low, 7), fitting(high, 7))
+        }
+        Rule::Noise(deviations) => format!("{} x noise", fitting(deviations, 5)),
+    };
+    match set.from {
+        "file" => format!("{text}, of the file"),
+        _ => text,
+    }
+}
+
+/// How many frames the tare was made of, and how long ago.
+fn tare(live: &Live) -> String {
+    let Some(mark) = live.tare() else {
+        return "none".to_owned();
+    };
+    let frames = counted(mark.frames, "frame");
+    let shown = live.reading().map(|reading| &reading.frame);
+    let age = shown.and_then(|frame| match (frame.time, mark.time) {
+        (Some(now), Some(then)) if now > then => {
+            Some(format!(", {} s ago", value::decimal(now - then, 1)))
+        }
+        (Some(_), Some(_)) => None,
+        _ => {
+            let frames = frame.number.checked_sub(mark.number)?;
+            Some(format!(", {} ago", counted(frames, "frame")))
+        }
+    });
+    age.map_or(frames.clone(), |age| frames + &age)
+}
+
+/// How many frames were lost, and what the last one looked like.
+fn lost(live: &Live) -> String {
+    let status = live.status();
+    let lost = grouped(status.lost);
+    match &status.sample {
+        Some(sample) if status.lost > 0 => format!("{lost}, the last: {sample}"),
+        _ => lost,
+    }
+}
+
+fn draw_lines(lines: &[PanelLine], theme: &Theme, buffer: &mut Buffer, area: Rect) {
+    for (index, line) in lines.iter().enumerate() {
+        let label = format!("{:LABEL$}", line.label);
+        let pieces = [(&*label, Role::Key), (&*line.text, Role::Text)];
+        write::line(buffer, write::row(area, index), theme, pieces);
+    }
+}

@@ -1,0 +1,127 @@
+//! How values look: shades of characters, and colours of even steps from dark to light.
+//!
+//! The colours are those of a perceptual palette: each step is as much lighter as the one before, so that nothing looks
+//! like an edge that is none. On a light background they go the other way. Shades say the same without colours.
+
+use ratatui::style::{Color, Style};
+
+use crate::tui::widget::theme::{ColorDepth, Palette, Theme};
+
+/// Colours from dark to light: of the sixteen, of the 256, and as red, green, blue.
+const TONES: [(Color, u8, [u8; 3]); 9] = [
+    (Color::Blue, 53, [68, 1, 84]),
+    (Color::Blue, 54, [71, 45, 123]),
+    (Color::Blue, 24, [59, 82, 139]),
+    (Color::Cyan, 30, [44, 114, 142]),
+    (Color::Cyan, 36, [33, 145, 140]),
+    (Color::Green, 71, [40, 174, 128]),
+    (Color::Green, 77, [94, 201, 98]),
+    (Color::Yellow, 148, [173, 220, 48]),
+    (Color::Yellow, 220, [253, 231, 37]),
+];
+
+/// The shades, that of nothing first.
+pub(in crate::tui) fn shades(theme: &Theme) -> &'static [char] {
+    if theme.ascii {
+        &[' ', '.', ':', '-', '=', '+', '*', '#', '%', '@']
+    } else {
+        &['·', '░', '▒', '▓', '█']
+    }
+}
+
+/// Which of a number of steps a share of the range has: the first up to 0, the others part the rest evenly.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "a share above 0, up to 1, and few steps"
+)]
+fn step(share: f64, steps: usize) -> usize {
+    if share > 0.0 {
+        let last = steps - 1;
+        ((share.min(1.0) * last as f64).ceil() as usize).clamp(1, last)
+    } else {
+        0
+    }
+}
+
+/// The character of a share of the range; a blank for a cell that does not exist.
+pub(in crate::tui) fn shade(theme: &Theme, share: f64) -> char {
+    let shades = shades(theme);
+    if share.is_nan() {
+        ' '
+    } else {
+        shades[step(share, shades.len())]
+    }
+}
+
+/// Whether halves of a character can have colours of their own.
+pub(in crate::tui) fn has_halves(theme: &Theme) -> bool {
+    let many = matches!(theme.depth, ColorDepth::TwoFiftySix | ColorDepth::True);
+    many && !theme.ascii && theme.palette != Palette::Mono
+}
+
+/// The colour of a share of the range; None for nothing and where there are no colours.
+pub(in crate::tui) fn color(theme: &Theme, share: f64) -> Option<Color> {
+    let step = step(share, TONES.len() + 1).checked_sub(1)?;
+    let (named, index, [red, green, blue]) = match theme.palette {
+        Palette::Dark => TONES[step],
+        Palette::Light => TONES[TONES.len() - 1 - step],
+        Palette::Mono => return None,
+    };
+    match theme.depth {
+        ColorDepth::Never => None,
+        ColorDepth::Sixteen => Some(named),
+        ColorDepth::TwoFiftySix => Some(Color::Indexed(index)),
+        ColorDepth::True => Some(Color::Rgb(red, green, blue)),
+    }
+}
+
+/// The style of a share of the range.
+pub(in crate::tui) fn style(theme: &Theme, share: f64) -> Style {
+    color(theme, share).map_or(Style::new(), |color| Style::new().fg(color))
+}
+
+/// What marks the edge of the imprint.
+pub(in crate::tui) fn edge(theme: &Theme) -> char {
+    if theme.ascii { 'o' } else { '•' }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Relative luminance, from 0 to 1.
+    fn luminance(rgb: [u8; 3]) -> f64 {
+        let linear = rgb.map(|part| (f64::from(part) / 255.0).powf(2.2));
+        0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+    }
+
+    fn of_index(index: u8) -> [u8; 3] {
+        let level = |place: u8| [0, 95, 135, 175, 215, 255][usize::from((index - 16) / place % 6)];
+        [level(36), level(6), level(1)]
+    }
+
+    #[test]
+    fn each_step_is_lighter_than_the_one_before() {
+        for pair in TONES.windows(2) {
+            assert!(luminance(pair[0].2) < luminance(pair[1].2), "{pair:?}");
+            let [dark, light] = [pair[0].1, pair[1].1].map(of_index).map(luminance);
+            assert!(dark < light, "{pair:?}");
+        }
+    }
+
+    #[test]
+    fn shades_part_the_range_evenly() {
+        let shown = |ascii| {
+            let theme = Theme::plain(ascii);
+            let shares = [f64::NAN, -1.0, 0.0, 0.01, 0.25, 0.26, 0.75, 0.76, 1.0, 9.0];
+            shares
+                .map(|share| shade(&theme, share))
+                .iter()
+                .collect::<String>()
+        };
+        assert_eq!(shown(false), " ··░░▒▓███");
+        assert_eq!(shown(true), "   .:-##@@");
+    }
+}
