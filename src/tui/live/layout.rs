@@ -58,10 +58,12 @@ impl HeatGrid {
             let (wide, high) = form.size();
             u16::from(columns) * wide <= area.width && u16::from(rows).div_ceil(high) <= area.height
         };
-        let form = match numbers {
-            true => CellForm::Number,
-            false if fits(CellForm::Wide) => CellForm::Wide,
-            false => CellForm::Half,
+        let form = if numbers {
+            CellForm::Number
+        } else if fits(CellForm::Wide) {
+            CellForm::Wide
+        } else {
+            CellForm::Half
         };
         let (wide, high) = form.size();
         let columns = AxisWindow::new(columns, area.width / wide, near.0);

@@ -59,7 +59,7 @@ impl WatchRequest {
         match &*name {
             "-" => "standard input".to_owned(),
             tcp if tcp.starts_with("tcp://") => tcp.to_owned(),
-            path => path.rsplit('/').next().map_or(path, |last| last).to_owned(),
+            path => path.rsplit('/').next().unwrap_or(path).to_owned(),
         }
     }
 }

@@ -73,7 +73,6 @@ pub struct TareMark {
 
 /// The state of the page.
 #[derive(Clone, Debug)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub struct Live {
     /// What is watched.
     request: Arc<WatchRequest>,

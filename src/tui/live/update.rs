@@ -80,7 +80,8 @@ pub(in crate::tui) fn in_live(
         }
         Message::Accept => match document(&page) {
             Some(document) => {
-                return take(app, page, document);
+                take(app, page, document);
+                return None;
             }
             None => refuse_imprint(app, &page),
         },
@@ -107,7 +108,7 @@ fn document(page: &Live) -> Option<Document> {
         // A sensor has one pitch only.
         Some([x, y]) if (x - y).abs() < f64::EPSILON => {
             let scaled = sensor.with(Parameter::Pitch, x);
-            scaled.map_or(sensor, |sensor| sensor)
+            scaled.unwrap_or(sensor)
         }
         _ => sensor,
     };
@@ -117,7 +118,7 @@ fn document(page: &Live) -> Option<Document> {
 }
 
 /// Puts the imprint onto the matrix; the source goes on meanwhile.
-fn take(app: &mut App, page: Box<Live>, document: Document) -> Option<Effect> {
+fn take(app: &mut App, page: Box<Live>, document: Document) {
     let number = page.reading().map(|reading| reading.frame.number);
     app.live = Some(page);
     begin(app, document, None);
@@ -128,7 +129,6 @@ fn take(app: &mut App, page: Box<Live>, document: Document) -> Option<Effect> {
             format!("the imprint of frame {number}; {back} goes back to the source"),
         );
     }
-    None
 }
 
 fn refuse_imprint(app: &mut App, page: &Live) {
