@@ -350,8 +350,8 @@ impl Live {
         self.processing.least = rule.map_or(0, |set| set.least);
     }
 
-    fn choose(&mut self, rule: Result<Rule, FrameError>) {
-        if let Ok(rule) = rule {
+    fn choose(&mut self, rule: &Result<Rule, FrameError>) {
+        if let &Ok(rule) = rule {
             let (least, from) = (self.processing.least, "key");
             self.set_rule(Some(SetRule { rule, least, from }));
             self.read();
@@ -371,7 +371,7 @@ impl Live {
             Some(Rule::Noise(deviations)) => Rule::noise((deviations + by).max(1.0)),
             Some(Rule::AtLeast(threshold)) => Rule::at_least(tidy(threshold + step)),
         };
-        self.choose(rule);
+        self.choose(&rule);
     }
 
     /// A threshold in percent in place of one in the sensor's unit, or the other way round: one that gives about the same
@@ -386,7 +386,7 @@ impl Live {
             }
             _ => Rule::percent(50.0),
         };
-        self.choose(rule);
+        self.choose(&rule);
     }
 
     /// Stays at the frame that is shown, or follows the source again. Returns whether it stays.
