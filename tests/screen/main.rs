@@ -9,6 +9,8 @@ mod keys;
 
 mod library;
 
+mod live;
+
 mod prompt;
 
 mod screens;

@@ -1,0 +1,81 @@
+//! What the keys of the live page do, on a recording with a clock that stands still.
+
+use taxel::tui::script::Session;
+
+use crate::session::{hides, session, shows, then};
+
+/// The page after so many frames, and then these keys.
+fn watched(frames: usize, keys: &str) -> Session {
+    let mut session = session(":watch tests/scripts/touch.csv<Enter>");
+    session.frames(frames);
+    then(&mut session, keys, &[]);
+    session
+}
+
+#[test]
+fn a_source_is_shown_frame_by_frame() {
+    shows(&watched(0, ""), &["touch.csv", "no frame yet"]);
+    shows(
+        &watched(6, ""),
+        &["frame 5  0.5 s", "rate       10/s", "none; + sets one"],
+    );
+    shows(&watched(20, ""), &["frame 7  0.7 s", "ended"]);
+}
+
+#[test]
+fn the_threshold_goes_up_and_down_and_changes_its_unit() {
+    shows(&watched(6, "+"), &["threshold  5", "NA         91"]);
+    shows(&watched(6, "++"), &["threshold  6"]);
+    shows(&watched(6, "+-"), &["threshold  4"]);
+    shows(&watched(6, "+%"), &["threshold  6 % of the peak"]);
+    shows(&watched(6, "+%+"), &["threshold  11 % of the peak"]);
+}
+
+#[test]
+fn a_tare_is_taken_off_and_given_up() {
+    shows(
+        &watched(6, "t"),
+        &["tare of the last 6 frames", "tare       6 frames"],
+    );
+    shows(&watched(6, "tT"), &["tare       none"]);
+    shows(&watched(6, "T"), &["there is no tare"]);
+    shows(&watched(0, "t"), &["! no frame yet"]);
+}
+
+#[test]
+fn the_history_is_scrubbed_while_frames_come() {
+    shows(&watched(6, "<Left><Left>"), &["frame 3", "frozen, 2 back"]);
+    shows(&watched(6, "<Home>"), &["frame 0", "frozen, 5 back"]);
+    let mut page = watched(4, "<Space>");
+    page.frames(2);
+    shows(&page, &["frame 3", "frozen, 2 back"]);
+    then(&mut page, "<Space>", &["frame 5"]);
+    hides(&page, &["frozen"]);
+    then(&mut page, "<Left><End>", &["frame 5"]);
+}
+
+#[test]
+fn the_peak_of_each_cell_is_held() {
+    let mut page = watched(1, "p");
+    page.frames(7);
+    shows(&page, &["peak held", "frame 7"]);
+    then(&mut page, "p", &["frame 7"]);
+    hides(&page, &["peak held"]);
+}
+
+#[test]
+fn the_imprint_goes_to_the_matrix_and_the_source_stays() {
+    shows(
+        &watched(6, "<Enter>"),
+        &["! no threshold, so no imprint; + sets one"],
+    );
+    shows(&watched(0, "<Enter>"), &["! no frame yet"]);
+    let mut page = watched(6, "+<Enter>");
+    shows(
+        &page,
+        &["the imprint of frame 5; w goes back", "drawn by hand"],
+    );
+    then(&mut page, "w", &["frame 5", "threshold  5"]);
+    then(&mut page, "<Esc>w", &["frame 5"]);
+    shows("w", &["! no source yet: ':watch SOURCE'"]);
+}
