@@ -194,6 +194,6 @@ fn sizes_that_fit_on_no_sensor_are_refused_before_the_work() {
     misused("model separate a.npz", "the following required arguments");
     misused(
         "model separate a.npz --scale 1 --pitch 1",
-        "the argument '--scale <START:END:STEP>' cannot be used with '--pitch",
+        "the argument '--scale <RANGE>' cannot be used with '--pitch",
     );
 }

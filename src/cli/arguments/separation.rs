@@ -51,7 +51,7 @@ pub(super) fn separate() -> Command {
     let of_sizes = |name: &'static str, long: &'static str, help: &'static str| {
         Arg::new(name)
             .long(long)
-            .value_name("START:END:STEP")
+            .value_name("RANGE")
             .value_parser(parse_range)
             .help(help)
     };
