@@ -166,10 +166,9 @@ impl Comparison {
 fn signs(theme: &Theme, view: ComparedView, active: (bool, bool)) -> ([char; 2], Role) {
     let role = |on: bool| if on { Role::Chosen } else { Role::Inactive };
     match (view, active) {
-        (First, (on, _)) | (Second, (_, on)) => (theme.taxel(role(on)), role(on)),
         (Difference, (true, false)) => (['a', 'a'], Role::Key),
         (Difference, (false, true)) => (['b', 'b'], Role::Key),
-        (Difference, (on, _)) => (theme.taxel(role(on)), role(on)),
+        (First | Difference, (on, _)) | (Second, (_, on)) => (theme.taxel(role(on)), role(on)),
     }
 }
 

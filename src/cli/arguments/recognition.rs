@@ -214,6 +214,9 @@ fn train() -> Command {
         .action(ArgAction::SetTrue)
         .help("Take poses that the sensor cuts off, too");
     Command::new("train")
+        .override_usage(
+            "taxel model train [OPTIONS] <--out FILE.npz|--name NAME> [FILE.jsonl|NAME]...",
+        )
         .about("Learn every imprint of a set of shapes")
         .override_usage("taxel model train [OPTIONS] <--out FILE|--name NAME> [FILE|NAME]...")
         .after_help(MODEL_TRAIN_EXAMPLES)
