@@ -410,5 +410,5 @@ at every moment. What the values are is in a .json of the same name.
 
 Examples:
   taxel watch recording.csv --once --at-least 10
-  taxel watch - --format lines --rows 2 --columns 2 --write touch.npy < rows.txt
+  taxel watch - --format lines --percent 50 --write touch.npy < rows.txt
   taxel watch touch.npy --speed 10 --at-least 9";
