@@ -69,7 +69,7 @@ pub fn fitting(number: f64, width: usize) -> String {
 ///
 /// ```
 /// use taxel::formats::value::grouped;
-/// assert_eq!([7, 999, 1000, 3_600_000].map(grouped), ["7", "999", "1,000", "3,600,000"]);
+/// assert_eq!([7_u32, 999, 1000, 3_600_000].map(grouped), ["7", "999", "1,000", "3,600,000"]);
 /// ```
 pub fn grouped(count: impl Into<u128>) -> String {
     let digits = count.into().to_string();

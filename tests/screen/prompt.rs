@@ -20,7 +20,9 @@ fn every_action_has_a_command() {
         .iter()
         .filter(|binding| places.contains(&binding.context))
         .flat_map(|binding| binding.keys.iter());
-    for (key, action) in bound {
+    // The digits of a count belong to the key that follows them.
+    let counts = |action: &Action| action.name.starts_with("count-");
+    for (key, action) in bound.filter(|(_, action)| !counts(action)) {
         assert!(said.contains(action), "{key}: {action:?}");
         let found = find(action.name).expect("its name is a command");
         assert!(found.words.contains(&("", *action)), "{}", action.name);

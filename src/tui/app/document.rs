@@ -1,20 +1,15 @@
 //! What is on the matrix, what can be read off it, and its history.
 //!
 //! A [`Document`] is a sensor, what touched it, and the taxels set by hand since then. Everything else follows from it
-//! and is a [`Reading`]. The [`History`] is a list of documents; it also knows where each came from, so that going back
-//! restores the name, too.
+//! and is a [`Reading`].
 //!
 //! ```
 //! use taxel::prelude::*;
 //! use taxel::tui::app::document::{Document, Reading};
 //!
-//! let mut history = History::new(Document::empty(Sensor::default()));
-//! let mut drawn = history.present().clone();
+//! let mut drawn = Document::empty(Sensor::default());
 //! drawn.edits.toggle(3, 4);
-//! history.push(drawn);
-//! assert_eq!(Reading::of(history.present()).imprint.count(), 1);
-//! assert!(history.undo() && history.present().edits.is_empty());
-//! assert!(!history.undo(), "there is nothing before the first document");
+//! assert_eq!(Reading::of(&drawn).imprint.count(), 1);
 //! ```
 
 use crate::description::{Description, Region, main_region, regions};

@@ -122,6 +122,6 @@ mod tests {
                 .collect::<String>()
         };
         assert_eq!(shown(false), " ··░░▒▓███");
-        assert_eq!(shown(true), "   .:-##@@");
+        assert_eq!(shown(true), "   .--##@@");
     }
 }

@@ -11,7 +11,8 @@ fn the_cursor_is_on_the_sensor_that_a_form_shows() {
     body("session")(&[0, 0x07, b'S', b'1']);
     let session = session_of("f<Enter>S8<Tab>8");
     assert_eq!(session.app().cursor(), (7, 7));
-    assert!(session.screen().contains("column 7, row 7"));
+    let accepted = session_of("f<Enter>S8<Tab>8<Enter>");
+    assert!(accepted.screen().contains("column 7, row 7"));
 }
 
 /// Two decimals of 16 digits can be one `f64`: they were taken, and written as another range.
