@@ -149,7 +149,7 @@ fn union(one: Extent, other: Extent) -> Extent {
 }
 
 /// Returns the ranges of a sweep of `source` where not all of them are given: in x0 and y0 the cell that the shape lies
-/// in if no pose is cut off there, otherwise one around the middle (see [the module](self)).
+/// in if no pose is cut off there, otherwise one around the middle.
 ///
 /// The shape's own position counts; its angle and zooms only if they are in the ranges. Given ranges stay as they are.
 ///
