@@ -1,6 +1,6 @@
 //! Where frames come from: a serial line, a pipe, a network connection, a growing file, or a recording played back.
 //!
-//! [`acquire`] reads a source until it ends or is told to stop, and reports frames and what goes wrong, one after the
+//! [`acquire`] reads a source until it ends or is stopped, and reports frames and what goes wrong, one after the
 //! other, on the thread that calls it. A consumer that must see every frame, such as a [`FrameRecorder`], stands there; one
 //! that only shows the newest takes it from a [`LatestFrame`], which never waits for it.
 //!

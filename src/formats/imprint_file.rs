@@ -1,6 +1,6 @@
 //! The forms in which an imprint alone goes to other programs and comes from them.
 //!
-//! Which form a file has is told by its content when it is read, by the ending of its name when it is written.
+//! The content of a file decides its form when it is read, the ending of its name when it is written.
 //!
 //! ```
 //! use taxel::formats::imprint_file::{ImprintFormat, read};

@@ -15,7 +15,7 @@
 //! the observed imprint are made once. A distance then is a few words of `and` and popcount. Keys stand in groups of one
 //! box and one number of taxels. How many of the observed taxels lie inside of a box in a place bounds the distance of the
 //! whole group there: those outside differ, and so does what the numbers inside differ by. Most places are never looked
-//! at.
+//! at. Noise, scan and bounds stand in one file, longer than most, because each is correct only beside the others.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 

@@ -218,7 +218,7 @@ A line of JSON is a shape with a name, as for 'taxel batch' without a pose:
 Without ranges, every shape is touched at 100 x 100 positions inside one cell
 and at every whole degree, on the smallest sensor that holds all of them: at
 least 16 x 16, and printed. Poses that the sensor cuts off are refused, since a
-cut imprint tells of the rim. Shards are put together by 'taxel merge'.
+cut imprint depends on the rim. 'taxel merge' puts shards together.
 
 Examples:
   taxel model train parts.jsonl --name parts
@@ -405,8 +405,8 @@ found by looking. A recording is played at its own rate. A serial line or a
 connection that is lost is tried again each second. Torn, short, long and
 garbled frames are dropped and counted.
 
---write records every frame, also those that nobody reads: numpy opens the file
-at every moment. What the values are is in a .json of the same name.
+--write records every frame, read or not; numpy can open the file at any moment.
+A .json of the same name says what the values are.
 
 Examples:
   taxel watch recording.csv --once --at-least 10

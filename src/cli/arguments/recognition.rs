@@ -1,4 +1,5 @@
-//! `taxel model` and `taxel recognise`: their flags, and what these ask for.
+//! `taxel model` and `taxel recognise`: their flags, and what these ask for. Longer than most files, so that a flag and
+//! the field that it fills stand together.
 
 use std::ffi::OsString;
 use std::path::PathBuf;

@@ -10,7 +10,7 @@ use crate::formats::drawing::svg;
 /// Width and height of the plane, in points.
 const PLANE: Position = (324.0, 200.0);
 
-/// Curves are told apart by their dashes, which repeat after these.
+/// Each curve has its own dashes; after these they repeat.
 const DASHES: [Option<[f64; 2]>; 4] = [None, Some([6.0, 3.0]), Some([1.0, 3.0]), Some([12.0, 4.0])];
 
 const GRID: Stroke = Stroke {

@@ -304,7 +304,7 @@ fn with_header(
 }
 
 /// The arrangement of lines without names: the cells alone; a number or a time before them, or both; or a number and
-/// milliseconds behind them. Which of these is told by what grows from the first line to the second.
+/// milliseconds behind them. The part that grows from the first line to the second says which it is.
 fn without_header(
     (rows, columns): (u16, u16),
     first: &[f64],
