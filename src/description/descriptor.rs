@@ -87,13 +87,8 @@ impl Description {
 
     /// The sides of the rectangle, across and down.
     fn whole_sides(&self) -> [i64; 2] {
-        let Bounds {
-            left,
-            top,
-            right,
-            bottom,
-        } = self.rect;
-        [right - left, bottom - top].map(i64::from)
+        let rect = self.rect;
+        [rect.right - rect.left, rect.bottom - rect.top].map(i64::from)
     }
 
     /// Twice the sums of the coordinates, which are whole.
@@ -107,13 +102,9 @@ impl Description {
 
     /// Twice the coordinates of the rectangle's centre, which are whole.
     fn doubled_centre(&self) -> [i64; 2] {
-        let Bounds {
-            left,
-            top,
-            right,
-            bottom,
-        } = self.rect;
-        [(left, right), (top, bottom)].map(|(low, high)| i64::from(low) + i64::from(high))
+        let rect = self.rect;
+        [(rect.left, rect.right), (rect.top, rect.bottom)]
+            .map(|(low, high)| i64::from(low) + i64::from(high))
     }
 
     /// The way from the centre of gravity to the rectangle's centre, in units of 1/(2 NA).
@@ -458,13 +449,8 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         Dimension::Length,
         |d| Value::Rect(d.rect),
         |d| {
-            let Bounds {
-                left,
-                top,
-                right,
-                bottom,
-            } = d.rect;
-            Some(whole([left, top, right, bottom].map(u32::from)))
+            let sides = [d.rect.left, d.rect.top, d.rect.right, d.rect.bottom];
+            Some(whole(sides.map(u32::from)))
         },
     )
     .of_place(),
