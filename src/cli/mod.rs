@@ -1,11 +1,10 @@
-//! The command line: `taxel figure`, `picture`, `describe`, `export`, `batch`, `sweep`, `merge` and `library`; the
-//! screen if no command is given; and `script`, `config`, `completions` and `man`.
+//! The command line: `taxel COMMAND`, of which [`arguments`] has the list; the screen if no command is given.
 //!
 //! The way of a command through the folders of this room, which are listed below in this order:
 //! ```text
 //! arguments -> clap (arguments/definitions) -> Request (arguments/request)
 //!   + settings: flag, environment, file, default (settings/)
-//!   -> perform(), below -> commands/*.rs, one file each; shapes and files come from input/
+//!   -> Surroundings::run, below -> commands/*.rs, one file each; shapes and files come from input/
 //!   -> text or JSON (output/) -> standard output
 //! CliError (error.rs) -> message on standard error, exit status
 //! ```
@@ -40,13 +39,14 @@ mod commands;
 
 use std::ffi::OsString;
 use std::io::{self, BufWriter, IsTerminal, Write};
+use std::path::PathBuf;
 
 use arguments::definitions;
-use arguments::recognition::ModelRequest;
-use arguments::request::{self, Asked, Chore, Request, Swept};
+use arguments::frames::FramesArguments;
+use arguments::model::ModelRequest;
+use arguments::request::{self, Asked, Chore, Form, Kept, Request, SweepArguments, Swept};
 use commands::export::Exported;
 use commands::frames::FramesOutput;
-use commands::touch::Touched;
 use commands::{
     batch, completions, confusion, describe, export, frames, library, man, model, noise, recognise,
     screen, script, separate, sweep, touch, watch,
@@ -54,6 +54,11 @@ use commands::{
 use error::CliError;
 use input::shapes::Shelf;
 use output::charset::Charset;
+use settings::resolved::Effective;
+
+use crate::sensor::Sensor;
+use crate::source::Source;
+use crate::tui::live::request::WatchRequest;
 
 /// Runs the program with the given arguments and returns its exit status. The first argument is the program's own name.
 ///
@@ -73,7 +78,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     failure.status()
 }
 
-/// Reads the arguments and runs the command that they ask for.
+/// Reads the arguments and runs the command that they ask for. Returns the exit status.
 ///
 /// `characters` is the character set for messages: at first that of the locale, then that of the settings, which are
 /// known only once the arguments are read.
@@ -86,128 +91,175 @@ fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, Cli
     let charset = settings.charset(*characters);
     *characters = charset;
     let shelf = Shelf::new(settings.library().cloned(), library_named);
-    match request {
-        Request::Settings => print(&settings.text(charset))?,
-        Request::Help(text) => print(&charset.lines(&text))?,
-        Request::Screen(size, record) => {
-            return screen::screen(&settings, size, record, &shelf, charset, None);
-        }
-        Request::Script(asked) => script::run(&asked, &settings, &shelf, charset)?,
-        Request::Figure(figure, sensor, form, kept) => {
-            let touched = touch::touch(*figure, sensor, form, kept, &shelf, charset)?;
-            answer(&touched, charset)?;
-        }
-        Request::Picture(what, given, form, kept) => {
-            let (picture, sensor) = touch::picture(&what, &given, &shelf)?;
-            let touched = touch::touch(picture, sensor, form, kept, &shelf, charset)?;
-            answer(&touched, charset)?;
-        }
-        Request::Describe(what, form) => {
-            print(&describe::content(&shelf.find(&what)?, form, charset))?;
-        }
-        Request::Export(what, export, pitch) => {
-            match export::export(&shelf, &what, &export, pitch)? {
-                Exported::Content(content) => write(&content)?,
-                Exported::Said(said) => print(&(charset.line(&said).into_owned() + "\n"))?,
+    let surroundings = Surroundings {
+        settings,
+        shelf,
+        charset,
+    };
+    surroundings.run(request)
+}
+
+/// What every command may use, whatever its arguments are.
+struct Surroundings {
+    /// The settings in effect.
+    settings: Effective,
+    /// The library, files and standard input, where shapes are found by name.
+    shelf: Shelf,
+    /// The characters that the answer may consist of.
+    charset: Charset,
+}
+
+impl Surroundings {
+    /// Runs a command, prints its answer and returns the exit status: 0 unless the command has another one of its own.
+    fn run(&self, request: Request) -> Result<u8, CliError> {
+        let (shelf, charset) = (&self.shelf, self.charset);
+        match request {
+            Request::Screen(size, record) => return self.screen(size, record, None),
+            // On a terminal the frames are looked at; in a pipeline they are answered.
+            Request::Watch(asked) if !asked.json && io::stdout().is_terminal() => {
+                return self.screen(None, None, Some(watch::request(&asked)?));
             }
-        }
-        Request::Batch(sensor) => {
-            let by_name = |name: &str| shelf.imprint(name).map_err(|error| error.to_string());
-            batch::answer_lines(sensor, &by_name, io::stdin().lock(), io::stdout().lock())?;
-        }
-        Request::Sweep(asked) => {
-            let (source, sensor) = match asked.what {
-                Swept::Figure(figure, sensor) => (figure, sensor),
-                Swept::Picture(what, given) => touch::picture(&what, &given, &shelf)?,
-            };
-            let (grid, taken) = sweep::grid(source, sensor, asked.anchor, &asked.ranges)?;
-            if !asked.wanted.quiet {
-                for note in &taken {
-                    self::note(note, charset);
+            Request::Watch(asked) => {
+                return watch::watch(&asked, &mut |text| note(text, charset));
+            }
+            Request::Recognise(asked) => {
+                return recognise::recognise(&asked, shelf, charset, &mut io::stdout().lock());
+            }
+            Request::Figure(figure, sensor, form, kept) => {
+                self.touch(*figure, sensor, form, kept)?;
+            }
+            Request::Picture(what, given, form, kept) => {
+                let (picture, sensor) = touch::picture(&what, &given, shelf)?;
+                self.touch(picture, sensor, form, kept)?;
+            }
+            Request::Describe(what, form) => {
+                print(&describe::content(&shelf.find(&what)?, form, charset))?;
+            }
+            Request::Export(what, export, pitch) => {
+                match export::export(shelf, &what, &export, pitch)? {
+                    Exported::Content(content) => write(&content)?,
+                    Exported::Said(said) => print(&(charset.line(&said).into_owned() + "\n"))?,
                 }
             }
-            let (shard, jobs) = (asked.shard, asked.jobs);
-            print(&sweep::sweep(&grid, shard, jobs, &asked.wanted, charset)?)?;
-        }
-        Request::Completions(shell) => write(&completions::script(shell, definitions::all()))?,
-        Request::Man(None) => write(&man::main_page()?)?,
-        Request::Man(Some(folder)) => man::write(&folder)?,
-        Request::Merge(files, wanted) => print(&sweep::merge(&files, &wanted, charset)?)?,
-        Request::Model(request) => run_model(request, &shelf, charset)?,
-        Request::Recognise(asked) => {
-            return recognise::recognise(&asked, &shelf, charset, &mut io::stdout().lock());
-        }
-        // On a terminal the frames are looked at; in a pipeline they are answered.
-        Request::Watch(asked) if !asked.json && io::stdout().is_terminal() => {
-            let watched = watch::request(&asked)?;
-            return screen::screen(&settings, None, None, &shelf, charset, Some(watched));
-        }
-        Request::Watch(asked) => {
-            return watch::watch(&asked, &mut |text| note(text, charset));
-        }
-        Request::Frames(asked, form, kept) => {
-            let mut answers = BufWriter::new(io::stdout().lock());
-            let output = FramesOutput {
-                form,
-                kept,
-                shelf: &shelf,
-                charset,
-                answers: &mut answers,
-                notes: &mut |text| note(text, charset),
-            };
-            let done = frames::frames(&asked, output);
-            answers.flush().map_err(CliError::Write)?;
-            done?;
-        }
-        Request::Library(chore) => self::chore(chore, &shelf, charset)?,
-    }
-    Ok(0)
-}
-
-/// Runs a subcommand of `taxel model`.
-fn run_model(request: ModelRequest, shelf: &Shelf, charset: Charset) -> Result<(), CliError> {
-    let text = match request {
-        ModelRequest::Train(asked) => model::train(&asked, shelf, charset)?,
-        ModelRequest::Show(which, json) => model::show(&which, json, shelf, charset)?,
-        ModelRequest::List(json) => model::list(json, shelf, charset)?,
-        ModelRequest::Delete(name) => charset.lines(&model::delete(&name, shelf)?),
-        ModelRequest::Confusion(asked) => confusion::confusion(&asked, shelf, charset)?,
-        ModelRequest::Touches(asked) => noise::touches(&asked, shelf, charset)?,
-        ModelRequest::Separate(asked) => separate::separate(&asked, shelf, charset)?,
-    };
-    print(&text)
-}
-
-/// Runs a subcommand of `taxel library`.
-fn chore(chore: Chore, shelf: &Shelf, charset: Charset) -> Result<(), CliError> {
-    match chore {
-        Chore::Names => print(&library::names(shelf)?),
-        Chore::List(json) => print(&library::list(shelf, json, charset)?),
-        Chore::Show(name, form) => print(&library::show(shelf, name.as_str(), form, charset)?),
-        Chore::Save(saving, what) => print(&charset.lines(&library::save(shelf, saving, &what)?)),
-        Chore::Delete(name) => print(&charset.lines(&library::delete(shelf, name.as_str())?)),
-        Chore::Restore(name) => print(&charset.lines(&library::restore(shelf, name.as_str())?)),
-        Chore::Path => {
-            // As the system has it, so that other programs find it whatever its bytes are.
-            let folder = shelf.library()?.folder().to_owned();
-            write(&[folder.as_os_str().as_encoded_bytes(), b"\n"].concat())
-        }
-        Chore::Check => {
-            let (text, broken, shapes) = library::check(shelf, charset)?;
-            print(&text)?;
-            match broken {
-                0 => Ok(()),
-                _ => Err(CliError::Shapes { broken, shapes }),
+            Request::Batch(sensor) => {
+                let by_name = |name: &str| shelf.imprint(name).map_err(|error| error.to_string());
+                batch::answer_lines(sensor, &by_name, io::stdin().lock(), io::stdout().lock())?;
             }
+            Request::Sweep(asked) => self.sweep(*asked)?,
+            Request::Merge(files, wanted) => print(&sweep::merge(&files, &wanted, charset)?)?,
+            Request::Model(request) => self.model(request)?,
+            Request::Frames(asked, form, kept) => self.frames(&asked, form, kept)?,
+            Request::Library(chore) => self.library(chore)?,
+            Request::Help(text) => print(&charset.lines(&text))?,
+            Request::Settings => print(&self.settings.text(charset))?,
+            Request::Script(asked) => script::run(&asked, &self.settings, shelf, charset)?,
+            Request::Completions(shell) => write(&completions::script(shell, definitions::all()))?,
+            Request::Man(None) => write(&man::main_page()?)?,
+            Request::Man(Some(folder)) => man::write(&folder)?,
         }
+        Ok(0)
     }
-}
 
-/// Prints what a touch answers, and its notes to standard error.
-fn answer(touched: &Touched, charset: Charset) -> Result<(), CliError> {
-    write(&touched.answer)?;
-    touched.notes.iter().for_each(|text| note(text, charset));
-    Ok(())
+    /// Opens the screen, on the page of a source of frames if one is given.
+    fn screen(
+        &self,
+        size: Option<(u16, u16)>,
+        record: Option<PathBuf>,
+        watched: Option<WatchRequest>,
+    ) -> Result<u8, CliError> {
+        let (shelf, charset) = (&self.shelf, self.charset);
+        screen::screen(&self.settings, size, record, shelf, charset, watched)
+    }
+
+    /// Touches a figure or a picture and prints what there is to say about its imprint.
+    fn touch(
+        &self,
+        source: Source,
+        sensor: Sensor,
+        form: Form,
+        kept: Kept,
+    ) -> Result<(), CliError> {
+        let touched = touch::touch(source, sensor, form, kept, &self.shelf, self.charset)?;
+        write(&touched.answer)?;
+        let notes = &touched.notes;
+        notes.iter().for_each(|text| note(text, self.charset));
+        Ok(())
+    }
+
+    /// Runs `taxel sweep`. What was chosen because it was not given is a note on standard error.
+    fn sweep(&self, asked: SweepArguments) -> Result<(), CliError> {
+        let (source, sensor) = match asked.what {
+            Swept::Figure(figure, sensor) => (figure, sensor),
+            Swept::Picture(what, given) => touch::picture(&what, &given, &self.shelf)?,
+        };
+        let (grid, taken) = sweep::grid(source, sensor, asked.anchor, &asked.ranges)?;
+        if !asked.wanted.quiet {
+            taken.iter().for_each(|text| note(text, self.charset));
+        }
+        let text = sweep::sweep(&grid, asked.shard, asked.jobs, &asked.wanted, self.charset)?;
+        print(&text)
+    }
+
+    /// Runs `taxel frames`. Answers that were made before an error are printed.
+    fn frames(&self, asked: &FramesArguments, form: Form, kept: Kept) -> Result<(), CliError> {
+        let mut answers = BufWriter::new(io::stdout().lock());
+        let output = FramesOutput {
+            form,
+            kept,
+            shelf: &self.shelf,
+            charset: self.charset,
+            answers: &mut answers,
+            notes: &mut |text| note(text, self.charset),
+        };
+        let done = frames::frames(asked, output);
+        answers.flush().map_err(CliError::Write)?;
+        done
+    }
+
+    /// Runs a subcommand of `taxel model`.
+    fn model(&self, request: ModelRequest) -> Result<(), CliError> {
+        let (shelf, charset) = (&self.shelf, self.charset);
+        let text = match request {
+            ModelRequest::Train(asked) => model::train(&asked, shelf, charset)?,
+            ModelRequest::Show(which, json) => model::show(&which, json, shelf, charset)?,
+            ModelRequest::List(json) => model::list(json, shelf, charset)?,
+            ModelRequest::Delete(name) => charset.lines(&model::delete(&name, shelf)?),
+            ModelRequest::Confusion(asked) => confusion::confusion(&asked, shelf, charset)?,
+            ModelRequest::Touches(asked) => noise::touches(&asked, shelf, charset)?,
+            ModelRequest::Separate(asked) => separate::separate(&asked, shelf, charset)?,
+        };
+        print(&text)
+    }
+
+    /// Runs a subcommand of `taxel library`.
+    ///
+    /// # Errors
+    /// [`CliError::Shapes`] if `check` finds a damaged file, after all of them are printed.
+    fn library(&self, chore: Chore) -> Result<(), CliError> {
+        let (shelf, charset) = (&self.shelf, self.charset);
+        let text = match chore {
+            Chore::Names => library::names(shelf)?,
+            Chore::List(json) => library::list(shelf, json, charset)?,
+            Chore::Show(name, form) => library::show(shelf, name.as_str(), form, charset)?,
+            Chore::Save(saving, what) => charset.lines(&library::save(shelf, saving, &what)?),
+            Chore::Delete(name) => charset.lines(&library::delete(shelf, name.as_str())?),
+            Chore::Restore(name) => charset.lines(&library::restore(shelf, name.as_str())?),
+            Chore::Path => {
+                // As the system has it, so that other programs find it whatever its bytes are.
+                let folder = shelf.library()?.folder().to_owned();
+                return write(&[folder.as_os_str().as_encoded_bytes(), b"\n"].concat());
+            }
+            Chore::Check => {
+                let (text, broken, shapes) = library::check(shelf, charset)?;
+                print(&text)?;
+                return match broken {
+                    0 => Ok(()),
+                    _ => Err(CliError::Shapes { broken, shapes }),
+                };
+            }
+        };
+        print(&text)
+    }
 }
 
 /// Writes a note to standard error. A note that cannot be written is dropped: it is not part of the answer.

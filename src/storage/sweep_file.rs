@@ -139,9 +139,10 @@ impl AtlasFile {
     }
 }
 
-/// Whether a file of that name can hold the atlas number of every pose.
-pub fn is_poses(name: &Path) -> bool {
-    name.extension()
+/// Whether a file of that name can hold the atlas number of every pose: it ends in `.npy`, in capitals or not.
+pub fn is_poses(name: impl AsRef<Path>) -> bool {
+    name.as_ref()
+        .extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("npy"))
 }
 

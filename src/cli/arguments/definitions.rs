@@ -9,32 +9,29 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
-use clap::{Arg, ArgAction, ArgGroup, Command, value_parser};
+use clap::{Arg, ArgGroup, Command, value_parser};
 
 use crate::cli::arguments::flags::{
-    anchor, force, jobs, json, name, of_sensor, parse_name, quiet, range, replace, sensor,
-    sensor_of_imprints, shard, what,
+    anchor, force, jobs, json, name, of_sensor, option, parse_name, parse_npy, quiet, range,
+    replace, sensor, sensor_of_imprints, shard, switch, what,
 };
-use crate::cli::arguments::frames;
 use crate::cli::arguments::help::{
     ABOUT, BATCH_EXAMPLES, CHECK_EXAMPLES, DELETE_EXAMPLES, DESCRIBE_EXAMPLES, EXAMPLES,
     EXPORT_EXAMPLES, FIGURE_EXAMPLES, LIBRARY_EXAMPLES, LIST_EXAMPLES, MERGE_EXAMPLES,
     PATH_EXAMPLES, PICTURE_EXAMPLES, RESTORE_EXAMPLES, SAVE_EXAMPLES, SHOW_EXAMPLES,
     SWEEP_EXAMPLES,
 };
-use crate::cli::arguments::parameters;
 use crate::cli::arguments::program::{
     ascii, completions, config, config_file, look, man, record, script, size,
 };
-use crate::cli::arguments::recognition;
-use crate::cli::arguments::watch;
+use crate::cli::arguments::{frames, model, parameters, recognise, watch};
 use crate::cli::commands::export;
 use crate::figure::FigureKind;
 use crate::parameter::Parameter;
 use crate::picture::PICTURE_PARAMETERS;
 use crate::pose::Axis;
 use crate::sensor::SENSOR_PARAMETERS;
-use crate::storage::{AtlasFile, is_poses};
+use crate::storage::AtlasFile;
 
 /// The program with all its commands.
 pub(crate) fn all() -> Command {
@@ -53,8 +50,8 @@ pub(crate) fn all() -> Command {
         .subcommand(batch())
         .subcommand(sweep())
         .subcommand(merge())
-        .subcommand(recognition::model())
-        .subcommand(recognition::recognise())
+        .subcommand(model::command())
+        .subcommand(recognise::command())
         .subcommand(frames())
         .subcommand(watch::command())
         .subcommand(library())
@@ -177,19 +174,17 @@ fn sweep() -> Command {
         ))
         .hide_possible_values(true)
         .help("Kind of figure, as of 'taxel figure'");
-    let picture = Arg::new("picture")
-        .long("picture")
-        .value_name("NAME|FILE")
-        .value_parser(value_parser!(OsString))
-        .help("Sweep a stored shape instead");
+    let picture = option("picture", "NAME|FILE", "Sweep a stored shape instead")
+        .value_parser(value_parser!(OsString));
     let sizes = parameters::figure_parameters()
         .filter(|&parameter| Axis::ALL.iter().all(|axis| axis.parameter() != parameter));
-    let poses = Arg::new("poses")
-        .long("poses")
-        .value_name("FILE.npy")
-        .value_parser(parse_poses)
-        .conflicts_with("shard")
-        .help("Write the number of each pose's imprint");
+    let poses = option(
+        "poses",
+        "FILE.npy",
+        "Write the number of each pose's imprint",
+    )
+    .value_parser(parse_npy)
+    .conflicts_with("shard");
     Command::new("sweep")
         .about("Find every imprint that a shape can leave")
         .after_help(SWEEP_EXAMPLES)
@@ -227,24 +222,12 @@ fn merge() -> Command {
 
 /// `--atlas`, the file that a sweep or a merge writes.
 fn atlas() -> Arg {
-    Arg::new("atlas")
-        .long("atlas")
-        .value_name("FILE")
-        .value_parser(parse_atlas)
-        .help("Write the atlas, as .csv, .jsonl or .npz")
+    option("atlas", "FILE", "Write the atlas, as .csv, .jsonl or .npz").value_parser(parse_atlas)
 }
 
 /// The file of an atlas; its ending must be that of one of the forms.
 fn parse_atlas(text: &str) -> Result<AtlasFile, &'static str> {
     AtlasFile::new(text)
-}
-
-/// The file of all poses, which must end in `.npy`.
-fn parse_poses(text: &str) -> Result<PathBuf, &'static str> {
-    let path = PathBuf::from(text);
-    let fits = is_poses(&path);
-    fits.then_some(path)
-        .ok_or("expected a name that ends in .npy")
 }
 
 /// `taxel frames FILE`.
@@ -269,11 +252,7 @@ fn library() -> Command {
     let command = |name: &'static str, about: &'static str, examples: &'static str| {
         Command::new(name).about(about).after_help(examples)
     };
-    let names = Arg::new("names")
-        .long("names")
-        .action(ArgAction::SetTrue)
-        .conflicts_with("json")
-        .help("Print the names alone, one a line");
+    let names = switch("names", "Print the names alone, one a line").conflicts_with("json");
     let list = command("list", "List all shapes", LIST_EXAMPLES).args([names, json()]);
     let show = command("show", "Show a shape and describe it", SHOW_EXAMPLES)
         .arg(name("Which shape"))
@@ -309,12 +288,9 @@ fn kept() -> ArgGroup {
 
 /// What to keep of a touch: `--save`, `--export` with `--format`, and `--force`.
 fn keeping() -> [Arg; 4] {
-    let save = Arg::new("save")
-        .long("save")
-        .value_name("NAME")
+    let save = option("save", "NAME", "Store the shape in the library too")
         .value_parser(parse_name)
-        .help_heading("Library")
-        .help("Store the shape in the library too");
+        .help_heading("Library");
     let export = Arg::new("export")
         .long("export")
         .value_name("FILE")
@@ -338,12 +314,9 @@ pub(crate) const WITHOUT_LIBRARY: [&str; 3] = ["merge", "completions", "man"];
 
 /// `--library`, which every command takes but those of [`WITHOUT_LIBRARY`].
 fn folder() -> Arg {
-    Arg::new("library")
-        .long("library")
-        .value_name("DIR")
+    option("library", "DIR", "The library's folder")
         .value_parser(value_parser!(PathBuf))
         .help_heading("Library")
-        .help("The library's folder")
 }
 
 /// Joins names as in a sentence: `a, b or c`, with `word` before the last.

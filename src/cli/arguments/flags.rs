@@ -1,4 +1,7 @@
-//! Flags that several commands have.
+//! Flags that several commands have: how they are defined, how their text is parsed, and how their values are read back.
+//!
+//! A parser here returns its reason as a text; clap puts the flag and the given text before it:
+//! `error: invalid value '7' for '--positions <N>': expected 1, 2, 4, …`.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -8,9 +11,23 @@ use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use crate::cli::arguments::parameters;
 use crate::formats::{Name, NameError};
 use crate::parameter::Parameter;
-use crate::pose::{Anchor, Axis, DecimalRange, RangeError, Ranges};
+use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, RangeError, Ranges};
 use crate::sensor::SENSOR_PARAMETERS;
+use crate::storage::is_poses;
 use crate::sweep::{Shard, ShardError};
+
+/// A flag without a value, `--NAME`.
+pub(super) fn switch(name: &'static str, help: &'static str) -> Arg {
+    Arg::new(name)
+        .long(name)
+        .action(ArgAction::SetTrue)
+        .help(help)
+}
+
+/// A flag with a value, `--NAME VALUE`. Without a parser of its own the value is a text.
+pub(super) fn option(name: &'static str, value: &'static str, help: &'static str) -> Arg {
+    Arg::new(name).long(name).value_name(value).help(help)
+}
 
 /// The flag of an axis of the grid, which takes a range. `default` says what is taken without it; empty for the range of
 /// the paper.
@@ -31,33 +48,43 @@ pub(super) fn range(axis: Axis, default: &str) -> Arg {
         .help(parameters::wrapped(&help, 46))
 }
 
+/// The axes of the grid whose flags, made by [`range`], are given.
+pub(super) fn ranges_of(matches: &ArgMatches) -> GivenRanges {
+    GivenRanges::from_fn(|axis| {
+        let range = matches.get_one(&format!("range_{}", axis.name()));
+        range.copied()
+    })
+}
+
 /// `--anchor`, the point of a shape that the ranges of x0 and y0 place.
 pub(super) fn anchor() -> Arg {
-    Arg::new("anchor")
-        .long("anchor")
-        .value_name("POINT")
+    option("anchor", "POINT", "What x0 and y0 place: corner or centre")
         .value_parser(parameters::one_of(Anchor::NAMES, Anchor::from_name))
         .hide_possible_values(true)
         .help_heading("Grid")
-        .help("What x0 and y0 place: corner or centre")
 }
 
 /// `--jobs`, the number of threads.
 pub(super) fn jobs() -> Arg {
-    Arg::new("jobs")
-        .long("jobs")
-        .value_name("N")
+    option("jobs", "N", "Threads; default all cores")
         .value_parser(value_parser!(u16).range(1..=1024))
-        .help("Threads; default all cores")
+}
+
+/// The value of [`jobs`]; 0, which means a thread for each core, if it is not given.
+pub(super) fn jobs_of(matches: &ArgMatches) -> usize {
+    matches
+        .get_one::<u16>("jobs")
+        .map_or(0, |&jobs| jobs.into())
 }
 
 /// `--shard`, for work that several machines share.
 pub(super) fn shard() -> Arg {
-    Arg::new("shard")
-        .long("shard")
-        .value_name("K/N")
-        .value_parser(parse_shard)
-        .help("Do this piece of the grid only")
+    option("shard", "K/N", "Do this piece of the grid only").value_parser(parse_shard)
+}
+
+/// The value of [`shard`]; the whole grid if it is not given.
+pub(super) fn shard_of(matches: &ArgMatches) -> Shard {
+    matches.get_one("shard").copied().unwrap_or(Shard::WHOLE)
 }
 
 /// A range of the grid, such as `5:5.99:0.01`.
@@ -77,18 +104,12 @@ pub(super) fn replace() -> Arg {
 
 /// `--quiet`.
 pub(super) fn quiet() -> Arg {
-    Arg::new("quiet")
-        .long("quiet")
-        .action(ArgAction::SetTrue)
-        .help("Show no progress")
+    switch("quiet", "Show no progress")
 }
 
 /// `--force`, for commands that store a shape.
 pub(super) fn force() -> Arg {
-    Arg::new("force")
-        .long("force")
-        .action(ArgAction::SetTrue)
-        .help("Replace a shape that has the name already")
+    switch("force", "Replace a shape that has the name already")
 }
 
 /// All flags of the sensor.
@@ -123,6 +144,13 @@ pub(super) fn parse_name(text: &str) -> Result<Name, NameError> {
     Name::new(text)
 }
 
+/// The name or the file that an argument gives, whatever its bytes are. Empty if it is not given: an argument that
+/// clap requires is always there.
+pub(super) fn word(matches: &ArgMatches, id: &str) -> OsString {
+    let word = matches.get_one::<OsString>(id);
+    word.map_or_else(OsString::new, Clone::clone)
+}
+
 /// A positional argument that is a name or a file; [`Shelf::find`](crate::cli::input::shapes::Shelf::find) tells which.
 pub(super) fn what(help: &'static str) -> Arg {
     Arg::new("what")
@@ -134,28 +162,28 @@ pub(super) fn what(help: &'static str) -> Arg {
 
 /// `--json`.
 pub(super) fn json() -> Arg {
-    Arg::new("json")
-        .long("json")
-        .action(ArgAction::SetTrue)
-        .help("Answer in one line of JSON")
+    switch("json", "Answer in one line of JSON")
 }
 
 /// How an evaluation is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum EvaluationForm {
+    /// Tables and bars for people.
     Text,
+    /// A table of commas with a first row of names: `--csv`.
     Csv,
+    /// One line of JSON: `--json`.
     Json,
 }
 
-/// How an evaluation is printed.
-pub(super) fn form_of(matches: &ArgMatches) -> EvaluationForm {
-    if matches.get_flag("json") {
-        EvaluationForm::Json
-    } else if matches.get_flag("csv") {
-        EvaluationForm::Csv
-    } else {
-        EvaluationForm::Text
+impl EvaluationForm {
+    /// The form that `--json` or `--csv` asks for; these exclude each other.
+    pub(super) fn of(matches: &ArgMatches) -> Self {
+        match (matches.get_flag("json"), matches.get_flag("csv")) {
+            (true, _) => Self::Json,
+            (false, true) => Self::Csv,
+            (false, false) => Self::Text,
+        }
     }
 }
 
@@ -167,14 +195,20 @@ pub(super) fn parse_probability(text: &str) -> Result<f64, &'static str> {
         .ok_or("expected a number from 0 to 1")
 }
 
-/// A file of numbers or of a drawing, which its ending tells.
+/// A file of numbers or of a drawing, which its ending tells, in capitals or not.
 pub(super) fn parse_report(text: &str) -> Result<PathBuf, &'static str> {
     let path = PathBuf::from(text);
-    let ending = path.extension().and_then(|ending| ending.to_str());
-    let known = ending.is_some_and(|ending| {
-        ["csv", "svg", "png"].contains(&ending.to_ascii_lowercase().as_str())
-    });
-    known
+    let ending = path.extension().unwrap_or_default();
+    ["csv", "svg", "png"]
+        .iter()
+        .any(|known| ending.eq_ignore_ascii_case(known))
         .then_some(path)
         .ok_or("expected a name that ends in .csv, .svg or .png")
+}
+
+/// A file that numpy reads: all poses of a sweep, or recorded frames.
+pub(super) fn parse_npy(text: &str) -> Result<PathBuf, &'static str> {
+    is_poses(text)
+        .then(|| PathBuf::from(text))
+        .ok_or("expected a name that ends in .npy")
 }

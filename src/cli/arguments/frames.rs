@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
 
+use crate::cli::arguments::flags::{option, switch};
 use crate::cli::arguments::help::FRAMES_EXAMPLES;
 use crate::cli::error::CliError;
 use crate::frame::{Crop, FrameError, Rule};
@@ -57,25 +58,13 @@ pub(crate) fn command() -> Command {
         .required(true)
         .value_parser(value_parser!(PathBuf))
         .help("Recording; '-' for standard input");
-    let frame = Arg::new("frame")
-        .long("frame")
-        .value_name("N")
-        .value_parser(value_parser!(u64))
-        .help("This frame of its channel, from 0");
-    let label = Arg::new("label")
-        .long("label")
-        .value_name("L")
+    let frame =
+        option("frame", "N", "This frame of its channel, from 0").value_parser(value_parser!(u64));
+    let label = option("label", "L", "What the recording itself calls L")
         .allow_hyphen_values(true)
-        .value_parser(value_parser!(i64))
-        .help("What the recording itself calls L");
-    let peak = Arg::new("peak")
-        .long("peak")
-        .action(ArgAction::SetTrue)
-        .help("The frame with the greatest sum of values");
-    let every = Arg::new("all")
-        .long("all")
-        .action(ArgAction::SetTrue)
-        .help("All frames, one after the other");
+        .value_parser(value_parser!(i64));
+    let peak = switch("peak", "The frame with the greatest sum of values");
+    let every = switch("all", "All frames, one after the other");
     let choices = ["frame", "label", "peak", "all"];
     Command::new("frames")
         .about("List a recording of a real sensor, or describe its frames")
@@ -89,11 +78,7 @@ pub(crate) fn command() -> Command {
 
 /// The flag that shows values.
 pub(crate) fn heat() -> Arg {
-    Arg::new("heat")
-        .long("heat")
-        .action(ArgAction::SetTrue)
-        .requires("choice")
-        .help("Show the values in shades, in drawings too")
+    switch("heat", "Show the values in shades, in drawings too").requires("choice")
 }
 
 /// The flags that say how frames are looked at.

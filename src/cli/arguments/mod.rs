@@ -6,9 +6,10 @@
 //! | `program` | the same for `script`, `config`, `completions`, `man` and the screen's own flags |
 //! | `flags` | flags that several commands have |
 //! | `parameters` | flags made from the table of parameters, and their values |
-//! | `shape_set` | the shapes of a model, for the next two |
-//! | `separation` | the same for `model separate` |
-//! | `recognition` | the same for the rest of `model`, and for `recognise` |
+//! | `frames`, `watch` | the same for `frames` and `watch`, which share the flags of processing |
+//! | `model/` | the same for `model`, a file for each subcommand |
+//! | `recognise` | the same for `recognise` |
+//! | `groups` | the commands by what they are for, as the help lists them |
 //! | `help` | the longer texts of the help |
 //! | `request` | from what clap has read to a `Request` |
 //!
@@ -28,12 +29,10 @@ pub(super) mod watch;
 
 pub(super) mod groups;
 
-pub(super) mod shape_set;
-
-pub(super) mod separation;
-
 pub(super) mod definitions;
 
 pub(super) mod request;
 
-pub(super) mod recognition;
+pub(super) mod model;
+
+pub(super) mod recognise;

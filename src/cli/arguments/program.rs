@@ -4,8 +4,9 @@
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
-use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgMatches, Command, value_parser};
 
+use crate::cli::arguments::flags::{option, switch};
 use crate::cli::arguments::help::{
     COMPLETIONS_EXAMPLES, CONFIG_EXAMPLES, MAN_EXAMPLES, SCRIPT_EXAMPLES,
 };
@@ -74,24 +75,15 @@ pub(crate) fn script() -> Command {
         .short('k')
         .value_name("KEYS")
         .help("Keys to press first; without a script the screen follows");
-    let styles = Arg::new("styles")
-        .long("styles")
-        .action(ArgAction::SetTrue)
-        .help("Screens with a grid of style letters");
-    let json = Arg::new("json")
-        .long("json")
-        .action(ArgAction::SetTrue)
-        .help("Screens as lines of JSON");
-    let svg = Arg::new("svg")
-        .long("svg")
-        .value_name("DIR")
-        .value_parser(value_parser!(PathBuf))
-        .help("Draw each screen into this folder too, as NAME.svg");
-    let force = Arg::new("force")
-        .long("force")
-        .action(ArgAction::SetTrue)
-        .requires("svg")
-        .help("Replace drawings that are there already");
+    let styles = switch("styles", "Screens with a grid of style letters");
+    let json = switch("json", "Screens as lines of JSON");
+    let svg = option(
+        "svg",
+        "DIR",
+        "Draw each screen into this folder too, as NAME.svg",
+    )
+    .value_parser(value_parser!(PathBuf));
+    let force = switch("force", "Replace drawings that are there already").requires("svg");
     Command::new("script")
         .about("Drive the screen without a terminal")
         .after_help(SCRIPT_EXAMPLES)
@@ -138,10 +130,7 @@ pub(crate) fn look() -> [Arg; 3] {
             .hide_possible_values(true)
             .help(help)
     };
-    let no_mouse = Arg::new("no-mouse")
-        .long("no-mouse")
-        .action(ArgAction::SetTrue)
-        .help("Leave the mouse to the terminal");
+    let no_mouse = switch("no-mouse", "Leave the mouse to the terminal");
     let (depths, palettes) = (ColorDepth::NAMES, Palette::NAMES);
     [
         choice(
@@ -161,11 +150,12 @@ pub(crate) fn look() -> [Arg; 3] {
 
 /// `--record`.
 pub(crate) fn record() -> Arg {
-    Arg::new("record")
-        .long("record")
-        .value_name("FILE")
-        .value_parser(value_parser!(PathBuf))
-        .help("Write what is typed as a script, to a new file")
+    option(
+        "record",
+        "FILE",
+        "Write what is typed as a script, to a new file",
+    )
+    .value_parser(value_parser!(PathBuf))
 }
 
 /// `taxel config`. It takes the flags of settings too, to show what they would change.
@@ -178,20 +168,12 @@ pub(crate) fn config() -> Command {
 
 /// `--config`, which every command takes.
 pub(crate) fn config_file() -> Arg {
-    Arg::new("config")
-        .long("config")
-        .value_name("FILE")
-        .value_parser(value_parser!(PathBuf))
-        .help("Settings in place of your own")
+    option("config", "FILE", "Settings in place of your own").value_parser(value_parser!(PathBuf))
 }
 
 /// `--size`, for the screen and for scripts.
 pub(crate) fn size() -> Arg {
-    Arg::new("size")
-        .long("size")
-        .value_name("CxR")
-        .value_parser(parse_size)
-        .help("Columns and rows of the screen")
+    option("size", "CxR", "Columns and rows of the screen").value_parser(parse_size)
 }
 
 /// Columns and rows, such as `80x24`.
@@ -202,8 +184,5 @@ fn parse_size(text: &str) -> Result<(u16, u16), String> {
 /// `--ascii`. [`Charset`](crate::cli::output::charset::Charset) has looked for it before clap does, because messages
 /// about wrong arguments need it; this declares it for the help and for the screen.
 pub(crate) fn ascii() -> Arg {
-    Arg::new("ascii")
-        .long("ascii")
-        .action(ArgAction::SetTrue)
-        .help("Keep to ASCII, as where the locale is not UTF-8")
+    switch("ascii", "Keep to ASCII, as where the locale is not UTF-8")
 }

@@ -11,12 +11,14 @@ use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 
 use crate::cli::arguments::definitions;
+use crate::cli::arguments::flags;
 use crate::cli::arguments::frames::FramesArguments;
 use crate::cli::arguments::groups;
+use crate::cli::arguments::model::ModelRequest;
 use crate::cli::arguments::parameters;
 use crate::cli::arguments::parameters::Given;
 use crate::cli::arguments::program::Script;
-use crate::cli::arguments::recognition::{self, ModelRequest, RecogniseArguments};
+use crate::cli::arguments::recognise::RecogniseArguments;
 use crate::cli::arguments::watch::WatchArguments;
 use crate::cli::commands::completions::Shell;
 use crate::cli::commands::export::Export;
@@ -270,8 +272,8 @@ fn request(
             let files = own.get_many::<PathBuf>("files").into_iter().flatten();
             Request::Merge(files.cloned().collect(), wanted(own))
         }
-        "model" => Request::Model(recognition::model_request(own)?),
-        "recognise" => Request::Recognise(Box::new(recognition::recognise_arguments(
+        "model" => Request::Model(ModelRequest::of(own)?),
+        "recognise" => Request::Recognise(Box::new(RecogniseArguments::of(
             own,
             pitch(own, settings)?.of(None),
         ))),
@@ -289,10 +291,6 @@ fn sweep(
     settings: &Effective,
 ) -> Result<SweepArguments, CliError> {
     let given = Given::of(matches);
-    let ranges = GivenRanges::from_fn(|axis| {
-        let range = matches.get_one(&format!("range_{}", axis.name()));
-        range.copied()
-    });
     let what = if let Some(picture) = matches.get_one::<OsString>("picture") {
         let size = parameters::figure_parameters().find(|&parameter| given.has(parameter));
         if let Some(size) = size {
@@ -308,11 +306,9 @@ fn sweep(
     Ok(SweepArguments {
         what,
         anchor: anchor.unwrap_or_default(),
-        ranges,
-        shard: matches.get_one("shard").copied().unwrap_or(Shard::WHOLE),
-        jobs: matches
-            .get_one::<u16>("jobs")
-            .map_or(0, |&jobs| jobs.into()),
+        ranges: flags::ranges_of(matches),
+        shard: flags::shard_of(matches),
+        jobs: flags::jobs_of(matches),
         wanted: wanted(matches),
     })
 }

@@ -4,10 +4,10 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
-use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgMatches, Command, value_parser};
 
 use crate::acquire::AcquireOptions;
-use crate::cli::arguments::flags;
+use crate::cli::arguments::flags::{self, option, switch};
 use crate::cli::arguments::frames::{self, ProcessingArguments};
 use crate::cli::arguments::help::WATCH_EXAMPLES;
 use crate::cli::arguments::parameters;
@@ -47,30 +47,19 @@ pub(crate) fn command() -> Command {
             &format!("Form of the stream: auto, {}", names.join(", ")),
             52,
         ));
-    let baud = Arg::new("baud")
-        .long("baud")
-        .value_name("BAUD")
-        .value_parser(value_parser!(u32).range(50..=20_000_000))
-        .help("Speed of a serial line; default 115200");
-    let once = Arg::new("once")
-        .long("once")
-        .action(ArgAction::SetTrue)
-        .conflicts_with_all(["loop", "speed"])
-        .help("Read to the end, as fast as it goes, and stop");
-    let again = Arg::new("loop")
-        .long("loop")
-        .action(ArgAction::SetTrue)
-        .help("Begin a recording again at its end");
-    let speed = Arg::new("speed")
-        .long("speed")
-        .value_name("FACTOR")
-        .value_parser(parse_speed)
-        .help("Play a recording so many times as fast");
-    let write = Arg::new("write")
-        .long("write")
-        .value_name("FILE.npy")
-        .value_parser(parse_npy)
-        .help("Record all frames, for numpy and 'taxel frames'");
+    let baud = option("baud", "BAUD", "Speed of a serial line; default 115200")
+        .value_parser(value_parser!(u32).range(50..=20_000_000));
+    let once = switch("once", "Read to the end, as fast as it goes, and stop")
+        .conflicts_with_all(["loop", "speed"]);
+    let again = switch("loop", "Begin a recording again at its end");
+    let speed = option("speed", "FACTOR", "Play a recording so many times as fast")
+        .value_parser(parse_speed);
+    let write = option(
+        "write",
+        "FILE.npy",
+        "Record all frames, for numpy and 'taxel frames'",
+    )
+    .value_parser(flags::parse_npy);
     Command::new("watch")
         .about("Answer the frames of a sensor, live or played back")
         .after_help(WATCH_EXAMPLES)
@@ -81,21 +70,12 @@ pub(crate) fn command() -> Command {
         .args([write, flags::replace().requires("write"), flags::json()])
 }
 
+/// A factor above 0: 2 plays twice as fast, 0.5 at half the speed.
 fn parse_speed(text: &str) -> Result<f64, String> {
     let speed = number::read(text).ok_or_else(|| number::complaint(text))?;
     (speed > 0.0 && speed <= 1e6)
         .then_some(speed)
         .ok_or_else(|| "expected a number above 0, up to 1000000".to_owned())
-}
-
-fn parse_npy(text: &str) -> Result<PathBuf, &'static str> {
-    let path = PathBuf::from(text);
-    let is_npy = path
-        .extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("npy"));
-    is_npy
-        .then_some(path)
-        .ok_or("expected a name that ends in .npy")
 }
 
 impl WatchArguments {

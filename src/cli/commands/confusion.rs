@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::json;
 
 use crate::cli::arguments::flags::EvaluationForm;
-use crate::cli::arguments::recognition::{ConfusionArguments, Evaluated};
+use crate::cli::arguments::model::confusion::{ConfusionArguments, Evaluated};
 use crate::cli::commands::export::put;
 use crate::cli::commands::model;
 use crate::cli::commands::noise;

@@ -7,7 +7,8 @@ use std::sync::atomic::Ordering;
 
 use serde_json::json;
 
-use crate::cli::arguments::recognition::{DEFAULT_MODEL, ModelTarget, TrainArguments};
+use crate::cli::arguments::model::DEFAULT_MODEL;
+use crate::cli::arguments::model::train::{ModelTarget, TrainArguments};
 use crate::cli::error::CliError;
 use crate::cli::input::shape_set;
 use crate::cli::input::shapes::Shelf;

@@ -6,7 +6,8 @@ use std::sync::atomic::Ordering;
 use serde_json::json;
 
 use crate::cli::arguments::flags::EvaluationForm;
-use crate::cli::arguments::recognition::{NoiseArguments, TouchesArguments};
+use crate::cli::arguments::model::confusion::NoiseArguments;
+use crate::cli::arguments::model::touches::TouchesArguments;
 use crate::cli::commands::model;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;

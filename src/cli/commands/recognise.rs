@@ -6,7 +6,7 @@ use std::io::{self, BufRead, BufReader, Cursor, Read, Write};
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
-use crate::cli::arguments::recognition::RecogniseArguments;
+use crate::cli::arguments::recognise::RecogniseArguments;
 use crate::cli::commands::model;
 use crate::cli::error::CliError;
 use crate::cli::input::content::{self, Content};

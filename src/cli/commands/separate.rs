@@ -6,8 +6,8 @@ use std::path::Path;
 use std::sync::atomic::Ordering;
 
 use crate::cli::arguments::flags::EvaluationForm;
-use crate::cli::arguments::recognition::DEFAULT_MODEL;
-use crate::cli::arguments::separation::SeparateArguments;
+use crate::cli::arguments::model::DEFAULT_MODEL;
+use crate::cli::arguments::model::separate::SeparateArguments;
 use crate::cli::commands::confusion::ending;
 use crate::cli::commands::export::put;
 use crate::cli::commands::model;

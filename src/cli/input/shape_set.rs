@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 
-use crate::cli::arguments::shape_set::SetArguments;
+use crate::cli::arguments::model::shape_set::SetArguments;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::formats::{ShapeLookup, named_shape, named_shape_of_words};

@@ -4,7 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::quote::shortened;
-use crate::storage::AtlasFile;
+use crate::storage::{AtlasFile, is_poses};
 use crate::tui::app::page::{Page, Slot};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
@@ -87,13 +87,6 @@ impl Page for ExportDialog {
             &endings,
         ))
     }
-}
-
-/// Whether a file of that name holds the atlas number of every pose.
-pub fn is_poses(name: &str) -> bool {
-    std::path::Path::new(name)
-        .extension()
-        .is_some_and(|ending| ending == "npy")
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@
 use ratatui::layout::Rect;
 
 use crate::formats::value::{counted, grouped};
-use crate::storage::Existing;
+use crate::storage::{Existing, is_poses};
 use crate::touch::Plane;
 use crate::tui::app::change::{change, compare_with, inform, refuse};
 use crate::tui::app::dialog::Dialog;
@@ -14,7 +14,7 @@ use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Page;
 use crate::tui::app::state::App;
-use crate::tui::explore::export::{ExportDialog, is_poses};
+use crate::tui::explore::export::ExportDialog;
 use crate::tui::explore::message::{ExploreMessage, ExplorePage, name_of};
 use crate::tui::explore::pages;
 use crate::tui::explore::results::Results;

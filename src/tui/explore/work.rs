@@ -10,12 +10,12 @@ use std::sync::Arc;
 
 use crate::formats::value::grouped;
 use crate::pose::PoseGrid;
-use crate::storage::Existing;
+use crate::storage::{Existing, is_poses};
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Mode};
-use crate::tui::explore::export::{ExportDialog, is_poses};
+use crate::tui::explore::export::ExportDialog;
 use crate::tui::explore::message::{ExploreMessage, Findings, WorkerEvent};
 use crate::tui::explore::ranges::state::{RangesForm, explored};
 use crate::tui::explore::results::Results;

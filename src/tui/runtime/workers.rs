@@ -16,9 +16,10 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crate::pose::PoseGrid;
-use crate::storage::{ArchiveFileError, AtlasFile, Existing, ModelCache, PoseFile, location};
+use crate::storage::{
+    ArchiveFileError, AtlasFile, Existing, ModelCache, PoseFile, is_poses, location,
+};
 use crate::sweep::{Sweep, SweepResult, TimingSample};
-use crate::tui::explore::export::is_poses;
 use crate::tui::explore::message::{Findings, WorkerEvent};
 use crate::tui::runtime::effect::Work;
 use crate::tui::runtime::frames::FrameWatcher;

@@ -1,0 +1,296 @@
+//! `taxel model confusion`: its flags, and what they ask for.
+//!
+//! The command has one subject, a model, and several questions about it ([`Evaluated`]), of which one can be asked at a
+//! time:
+//! ```text
+//! taxel model confusion figures                        from the whole imprint: the limit of any method
+//! taxel model confusion figures --given na,p           as if only these descriptors were known
+//! taxel model confusion figures --greedy | --pairs     which descriptors; which two shapes
+//! taxel model confusion figures --classifier knn       by another method
+//! taxel model confusion figures --noise 0:0.1:0.02     from touches whose taxels flip
+//! taxel model confusion figures --test half-step       from touches between the learned poses
+//! ```
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::builder::PossibleValuesParser;
+use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
+
+use crate::cli::arguments::flags::{
+    self, EvaluationForm, json, option, parse_report, quiet, replace, switch,
+};
+use crate::cli::arguments::help::MODEL_CONFUSION_EXAMPLES;
+use crate::cli::arguments::model::{number, seed, which_model};
+use crate::cli::arguments::parameters;
+use crate::index::wide;
+use crate::pose::{DecimalRange, RangeError};
+use crate::recognition::{GivenDescriptors, GivenError, Noise, Peer, PeerSettings, Rounding};
+use crate::storage::Existing;
+
+/// What is evaluated of a model, and how it is shown.
+#[derive(Clone, Debug)]
+pub(crate) struct ConfusionArguments {
+    /// Name or file of the model.
+    pub(crate) model: OsString,
+    /// The question.
+    pub(crate) of: Evaluated,
+    /// The steps in which descriptors are measured, for `--given` and `--greedy`.
+    pub(crate) roundings: Vec<Rounding>,
+    /// Neighbours, samples, templates and seed of the other methods.
+    pub(crate) peers: PeerSettings,
+    /// How the answer is printed.
+    pub(crate) form: EvaluationForm,
+    /// The file for the matrix: `.csv`, `.svg` or `.png`.
+    pub(crate) export: Option<PathBuf>,
+    /// Whether that file may exist already.
+    pub(crate) existing: Existing,
+}
+
+/// Who names the shapes, and from what.
+#[derive(Clone, Debug)]
+pub(crate) enum Evaluated {
+    /// The best classifier, from the whole imprint.
+    Imprints,
+    /// The best one from some descriptors.
+    Given(GivenDescriptors),
+    /// The same, with descriptors chosen one by one.
+    Greedy,
+    /// The best one, for each pair of shapes.
+    Pairs,
+    /// One of the methods in use, from its own features.
+    Peer(Peer),
+    /// All of these methods, in a table.
+    AllPeers,
+    /// The best one, from noisy touches.
+    Noise(NoiseArguments),
+    /// The best one, from touches between the poses of the model.
+    HalfStep,
+}
+
+/// Noisy touches to simulate.
+#[derive(Clone, Debug)]
+pub(crate) struct NoiseArguments {
+    /// The probabilities that a taxel flips, each 0 or more and below 0.5; one row of the answer each.
+    pub(crate) noise: DecimalRange,
+    /// Numbers of dead taxels; for each the whole range of noise is simulated.
+    pub(crate) dead: Vec<u32>,
+    /// Touches of each shape.
+    pub(crate) touches: u64,
+    /// Seed of the poses, flips and dead taxels that are drawn.
+    pub(crate) seed: u64,
+    /// Columns and rows of the matrix; those of the model's sensor if not given.
+    pub(crate) size: Option<(u8, u8)>,
+    /// Whether no progress is shown.
+    pub(crate) quiet: bool,
+}
+
+/// `taxel model confusion`.
+pub(super) fn command() -> Command {
+    Command::new("confusion")
+        .about("Show which shapes one touch confuses, and the limit of any method")
+        .after_help(MODEL_CONFUSION_EXAMPLES)
+        .arg(which_model())
+        .args(questions())
+        .group(ArgGroup::new("descriptors").args(["given", "greedy"]))
+        .group(ArgGroup::new("of").args([
+            "given",
+            "greedy",
+            "pairs",
+            "classifier",
+            "noise",
+            "test",
+        ]))
+        .arg(
+            option(
+                "round",
+                "KEY=STEP",
+                "Measure a descriptor in steps: cg_cd=0.01",
+            )
+            .action(ArgAction::Append)
+            .value_parser(parse_rounding)
+            .requires("descriptors"),
+        )
+        .args(of_classifiers())
+        .arg(seed())
+        .args(output())
+        .args(noisy())
+}
+
+/// `--given`, `--greedy`, `--pairs` and `--classifier`: what is asked, other than about noise.
+fn questions() -> [Arg; 4] {
+    let classifiers = Peer::ALL.map(Peer::name).into_iter().chain(["all"]);
+    [
+        option(
+            "given",
+            "KEY,...",
+            "As if only these descriptors were known: na,p",
+        )
+        .value_parser(parse_given),
+        switch("greedy", "Choose descriptors one by one until none helps"),
+        switch("pairs", "The error for each pair of shapes alone"),
+        option(
+            "classifier",
+            "NAME",
+            "Another way to name shapes: z, diagonal, lda, qda,\nknn, template, or all of them in a table",
+        )
+        .value_parser(PossibleValuesParser::new(classifiers))
+        .hide_possible_values(true),
+    ]
+}
+
+/// `--neighbours`, `--sample` and `--templates`, which some classifiers need.
+fn of_classifiers() -> [Arg; 3] {
+    [
+        ("neighbours", "Neighbours that vote in knn; default 1"),
+        ("sample", "Poses of each shape that knn draws; default 2000"),
+        (
+            "templates",
+            "Imprints of each shape for template; default 100",
+        ),
+    ]
+    .map(|(name, help)| {
+        option(name, "N", help)
+            .value_parser(value_parser!(u32).range(1..))
+            .requires("classifier")
+    })
+}
+
+/// `--export`, `--force`, `--json`, `--quiet` and `--csv`. Only a matrix of confusions can be exported.
+fn output() -> [Arg; 5] {
+    let export = option("export", "FILE", "Write the matrix as .csv, .svg or .png")
+        .value_parser(parse_report)
+        .conflicts_with_all(["greedy", "pairs", "noise", "test"]);
+    let csv =
+        switch("csv", "Print a table of commas").conflicts_with_all(["json", "greedy", "pairs"]);
+    [export, replace(), json(), quiet(), csv]
+}
+
+/// The flags of noisy touches.
+fn noisy() -> [Arg; 5] {
+    let noise = option(
+        "noise",
+        "START:END:STEP",
+        "Touches whose taxels flip this often",
+    )
+    .value_parser(parse_noise_range);
+    let dead = option("dead", "N,...", "With so many dead taxels; default 0")
+        .value_delimiter(',')
+        .value_parser(value_parser!(u32).range(..4096))
+        .requires("noise");
+    let touches = option("touches", "N", "Noisy touches of each shape; default 1000")
+        .value_parser(value_parser!(u64).range(1..=1_000_000_000))
+        .default_value("1000")
+        .hide_default_value(true);
+    let matrix = option("matrix", "CxR", "Size of the matrix; default the model's")
+        .value_parser(parse_matrix)
+        .requires("noise");
+    let test = option(
+        "test",
+        "half-step",
+        "Touches between the poses of the model",
+    )
+    .value_parser(["half-step"])
+    .hide_possible_values(true);
+    [noise, dead, touches, matrix, test].map(|arg| arg.help_heading("Noise"))
+}
+
+/// Probabilities that a taxel flips, such as `0:0.1:0.02`. Both ends must be a noise that [`Noise::new`] accepts.
+fn parse_noise_range(text: &str) -> Result<DecimalRange, String> {
+    let range: DecimalRange = text
+        .parse()
+        .map_err(|error: RangeError| error.to_string())?;
+    for value in [range.value(0), range.last()] {
+        Noise::new(value).map_err(|error| error.to_string())?;
+    }
+    Ok(range)
+}
+
+/// Columns and rows, such as `16x16`.
+fn parse_matrix(text: &str) -> Result<(u8, u8), &'static str> {
+    let expected = "expected columns and rows from 1 to 64, such as 16x16";
+    let (columns, rows) = text.split_once('x').ok_or(expected)?;
+    let side = |text: &str| {
+        let side = text.trim().parse::<u8>().ok();
+        side.filter(|side| (1..=64).contains(side)).ok_or(expected)
+    };
+    Ok((side(columns)?, side(rows)?))
+}
+
+/// A list of descriptors, such as `na,p`.
+fn parse_given(text: &str) -> Result<GivenDescriptors, GivenError> {
+    text.parse()
+}
+
+/// A descriptor and a step, such as `cg_cd=0.01`.
+fn parse_rounding(text: &str) -> Result<Rounding, GivenError> {
+    text.parse()
+}
+
+impl ConfusionArguments {
+    /// What the arguments of [`command`] ask for.
+    pub(super) fn of(matches: &ArgMatches) -> Self {
+        let roundings = matches.get_many::<Rounding>("round").into_iter().flatten();
+        Self {
+            model: flags::word(matches, "model"),
+            of: Evaluated::of(matches),
+            roundings: roundings.copied().collect(),
+            peers: peers(matches),
+            form: EvaluationForm::of(matches),
+            export: matches.get_one::<PathBuf>("export").cloned(),
+            existing: parameters::existing(matches),
+        }
+    }
+}
+
+impl Evaluated {
+    /// The question that is asked. clap has made sure that there is at most one; without one it is about whole imprints.
+    fn of(matches: &ArgMatches) -> Self {
+        if matches.contains_id("test") {
+            return Self::HalfStep;
+        }
+        if let Some(name) = matches.get_one::<String>("classifier") {
+            return Peer::from_name(name).map_or(Self::AllPeers, Self::Peer);
+        }
+        if let Some(given) = matches.get_one::<GivenDescriptors>("given") {
+            return Self::Given(given.clone());
+        }
+        if let Some(&noise) = matches.get_one::<DecimalRange>("noise") {
+            return Self::Noise(NoiseArguments::of(matches, noise));
+        }
+        match (matches.get_flag("greedy"), matches.get_flag("pairs")) {
+            (true, _) => Self::Greedy,
+            (false, true) => Self::Pairs,
+            (false, false) => Self::Imprints,
+        }
+    }
+}
+
+impl NoiseArguments {
+    /// The touches that the flags of [`noisy`] ask for.
+    fn of(matches: &ArgMatches, noise: DecimalRange) -> Self {
+        let dead = matches.get_many::<u32>("dead");
+        Self {
+            noise,
+            dead: dead.map_or_else(|| vec![0], |dead| dead.copied().collect()),
+            touches: number(matches, "touches", 1000),
+            seed: number(matches, "seed", 0),
+            size: matches.get_one("matrix").copied(),
+            quiet: matches.get_flag("quiet"),
+        }
+    }
+}
+
+/// The settings of the other classifiers; those that are not given keep their defaults.
+fn peers(matches: &ArgMatches) -> PeerSettings {
+    let mut peers = PeerSettings::default();
+    let limit = |id: &str, usual: usize| {
+        let own = matches.get_one::<u32>(id);
+        own.map_or(usual, |&number| wide(number))
+    };
+    peers.neighbours = limit("neighbours", peers.neighbours);
+    peers.sample = limit("sample", peers.sample);
+    peers.templates = limit("templates", peers.templates);
+    peers.seed = number(matches, "seed", peers.seed);
+    peers
+}

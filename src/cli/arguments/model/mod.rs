@@ -1,0 +1,129 @@
+//! `taxel model`: its subcommands, a file each with the flags and what they ask for.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `shape_set` | the shapes to train on, for the next two |
+//! | `train` | `taxel model train` |
+//! | `separate` | `taxel model separate` |
+//! | `confusion` | `taxel model confusion` |
+//! | `touches` | `taxel model touches` |
+//!
+//! `show`, `list` and `delete` are small enough to stand here. A model is named as in `taxel recognise --model`: a name
+//! beside the library goes before a file, and `figures` stands for the seven figures ([`DEFAULT_MODEL`]).
+
+use std::ffi::OsString;
+
+use clap::{Arg, ArgMatches, Command, value_parser};
+
+use crate::cli::arguments::flags::{self, json, option};
+use crate::cli::arguments::help::{
+    MODEL_DELETE_EXAMPLES, MODEL_EXAMPLES, MODEL_LIST_EXAMPLES, MODEL_SHOW_EXAMPLES,
+};
+use crate::cli::error::CliError;
+use crate::formats::Name;
+
+pub(in crate::cli) mod shape_set;
+
+pub(in crate::cli) mod train;
+
+pub(in crate::cli) mod separate;
+
+pub(in crate::cli) mod confusion;
+
+pub(in crate::cli) mod touches;
+
+/// The model that is used if none is named: the seven figures at their default sizes.
+pub(crate) const DEFAULT_MODEL: &str = "figures";
+
+/// A subcommand of `taxel model` with its arguments.
+#[derive(Clone, Debug)]
+pub(crate) enum ModelRequest {
+    /// Train a model and write it.
+    Train(Box<train::TrainArguments>),
+    /// Show what a model was trained on and how well it tells its shapes apart; whether as JSON.
+    Show(OsString, bool),
+    /// List the models beside the library; whether as JSON.
+    List(bool),
+    /// Delete a model beside the library.
+    Delete(Name),
+    /// Evaluate a model: which shapes one touch confuses.
+    Confusion(Box<confusion::ConfusionArguments>),
+    /// Simulate how many touches it takes to name a shape.
+    Touches(touches::TouchesArguments),
+    /// Compute the error of a set against the size of its shapes and the threshold of the sensor.
+    Separate(Box<separate::SeparateArguments>),
+}
+
+impl ModelRequest {
+    /// What the arguments of [`command`] ask for.
+    ///
+    /// # Errors
+    /// [`CliError::Range`] for a value of the sensor out of range.
+    pub(super) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
+        let Some((command, own)) = matches.subcommand() else {
+            // Required: there is always one.
+            return Ok(Self::List(false));
+        };
+        Ok(match command {
+            "train" => Self::Train(Box::new(train::TrainArguments::of(own)?)),
+            "show" => Self::Show(flags::word(own, "model"), own.get_flag("json")),
+            "delete" => match own.get_one::<Name>("name") {
+                Some(name) => Self::Delete(name.clone()),
+                None => Self::List(false),
+            },
+            "touches" => Self::Touches(touches::TouchesArguments::of(own)),
+            "confusion" => Self::Confusion(Box::new(confusion::ConfusionArguments::of(own))),
+            "separate" => Self::Separate(Box::new(separate::SeparateArguments::of(own))),
+            _ => Self::List(own.get_flag("json")),
+        })
+    }
+}
+
+/// `taxel model` with its subcommands.
+pub(super) fn command() -> Command {
+    let show = Command::new("show")
+        .about("Show the card of a model")
+        .after_help(MODEL_SHOW_EXAMPLES)
+        .args([which_model(), json()]);
+    let list = Command::new("list")
+        .about("List the models")
+        .after_help(MODEL_LIST_EXAMPLES)
+        .arg(json());
+    let delete = Command::new("delete")
+        .about("Delete a model")
+        .after_help(MODEL_DELETE_EXAMPLES)
+        .arg(flags::name("Which model"));
+    Command::new("model")
+        .about("Train models of shapes, and see what one touch can tell")
+        .after_help(MODEL_EXAMPLES)
+        .subcommand_required(true)
+        .subcommand(train::command())
+        .subcommand(show)
+        .subcommand(list)
+        .subcommand(delete)
+        .subcommand(confusion::command())
+        .subcommand(touches::command())
+        .subcommand(separate::command())
+}
+
+/// `MODEL`, a required argument: the name of a model beside the library, or its file.
+fn which_model() -> Arg {
+    Arg::new("model")
+        .value_name("MODEL")
+        .required(true)
+        .value_parser(value_parser!(OsString))
+        .help("Name of a model, or its file")
+}
+
+/// `--seed`: the same seed draws the same touches, whatever the number of threads.
+fn seed() -> Arg {
+    option("seed", "N", "Seed of what is drawn at random; default 0")
+        .value_parser(value_parser!(u64))
+        .default_value("0")
+        .hide_default_value(true)
+}
+
+/// The value of a flag that has a default.
+fn number<T: Copy + Send + Sync + 'static>(matches: &ArgMatches, id: &str, default: T) -> T {
+    matches.get_one(id).copied().unwrap_or(default)
+}

@@ -1,0 +1,143 @@
+//! `taxel model separate`: its flags, and what they ask for.
+//!
+//! The error of a set against two things: how large the shapes are on the matrix, and the threshold of a taxel. The
+//! first is one of `--scale` (all lengths times a factor, in cells) and `--pitch` (lengths in mm over cells of this many
+//! mm), the second is `--threshold`. Each is a range, `START:END:STEP`, or a single number:
+//! ```text
+//! taxel model separate figures --scale 0.5:1.5:0.1 --want 0.01
+//! taxel model separate shapes.jsonl --pitch 1:4:0.5 --threshold 0.3:0.7:0.2
+//! ```
+
+use std::path::PathBuf;
+
+use clap::{Arg, ArgGroup, ArgMatches, Command};
+
+use crate::cli::arguments::flags::{
+    self, EvaluationForm, jobs, json, option, parse_probability, parse_range, parse_report, quiet,
+    range, replace, switch,
+};
+use crate::cli::arguments::help::MODEL_SEPARATE_EXAMPLES;
+use crate::cli::arguments::model::shape_set::{self, SetArguments};
+use crate::cli::arguments::parameters;
+use crate::pose::{Axis, DecimalRange};
+use crate::recognition::SizeAxis;
+use crate::storage::Existing;
+
+/// A set of shapes, and the sizes and thresholds to look at.
+#[derive(Clone, Debug)]
+pub(crate) struct SeparateArguments {
+    /// A model, or shapes as for training.
+    pub(crate) set: SetArguments,
+    /// What `sizes` are.
+    pub(crate) axis: SizeAxis,
+    /// Scales, or pitches in mm; a scale of 1 if neither is given.
+    pub(crate) sizes: DecimalRange,
+    /// Coverages from which on a taxel is active; None for the threshold of the model, else of the default sensor.
+    pub(crate) thresholds: Option<DecimalRange>,
+    /// Angles in degrees; None for those of the model, else a whole turn in steps of 1.
+    pub(crate) angles: Option<DecimalRange>,
+    /// Positions of a cell in each direction; None for those of the model, else 100.
+    pub(crate) positions: Option<u8>,
+    /// The error (0 to 1) to reach; the smallest size that does is searched for.
+    pub(crate) wanted: Option<f64>,
+    /// Threads; 0 for as many as there are cores.
+    pub(crate) jobs: usize,
+    /// How the answer is printed.
+    pub(crate) form: EvaluationForm,
+    /// The file for the numbers (`.csv`) or the curves (`.svg`, `.png`).
+    pub(crate) export: Option<PathBuf>,
+    /// Whether that file may exist already.
+    pub(crate) existing: Existing,
+    /// Whether no progress is shown.
+    pub(crate) quiet: bool,
+}
+
+/// `taxel model separate`.
+pub(super) fn command() -> Command {
+    let want = option("want", "ERROR", "Find the smallest size with this error")
+        .value_parser(parse_probability);
+    let export = option(
+        "export",
+        "FILE",
+        "Write the numbers (.csv) or the curves\n(.svg, .png)",
+    )
+    .value_parser(parse_report);
+    let csv = switch("csv", "Print a table of commas").conflicts_with("json");
+    let axes = ["range_scale", "range_pitch", "range_threshold"];
+    Command::new("separate")
+        .about("Find the sensor that tells the shapes apart")
+        .override_usage("taxel model separate [OPTIONS] [MODEL|FILE.jsonl|NAME]...")
+        .after_help(MODEL_SEPARATE_EXAMPLES)
+        .args(shape_set::args(
+            "MODEL|FILE.jsonl|NAME",
+            "A model, or shapes as for 'taxel model train'",
+        ))
+        .group(shape_set::group())
+        .args(sizes())
+        .args([
+            range(Axis::Angle, "that of the model, or 0:359:1"),
+            shape_set::positions(),
+            want,
+        ])
+        .group(
+            ArgGroup::new("axes")
+                .args(axes)
+                .multiple(true)
+                .required(true),
+        )
+        .args([export, replace(), jobs(), json(), csv, quiet()])
+}
+
+/// `--scale`, `--pitch` and `--threshold`. Their ids are not those of the sensor's own flags, which take a number.
+fn sizes() -> [Arg; 3] {
+    let flag = |id: &'static str, long: &'static str, help: &'static str| {
+        Arg::new(id)
+            .long(long)
+            .value_name("RANGE")
+            .value_parser(parse_range)
+            .help(help)
+    };
+    [
+        flag(
+            "range_scale",
+            "scale",
+            "Multiply all lengths by this; default 1",
+        ),
+        flag(
+            "range_pitch",
+            "pitch",
+            "Pitch in mm; lengths are in mm, too",
+        )
+        .conflicts_with("range_scale"),
+        flag(
+            "range_threshold",
+            "threshold",
+            "Threshold; default the model's, or 0.5",
+        ),
+    ]
+}
+
+impl SeparateArguments {
+    /// What the arguments of [`command`] ask for.
+    pub(super) fn of(matches: &ArgMatches) -> Self {
+        let range = |id: &str| matches.get_one::<DecimalRange>(id).copied();
+        let (axis, sizes) = match range("range_pitch") {
+            Some(pitch) => (SizeAxis::Pitch, Some(pitch)),
+            None => (SizeAxis::Scale, range("range_scale")),
+        };
+        Self {
+            set: SetArguments::of(matches),
+            axis,
+            sizes: sizes.unwrap_or(DecimalRange::whole(1)),
+            thresholds: range("range_threshold"),
+            angles: range("range_angle"),
+            positions: matches.get_one::<u8>("positions").copied(),
+            wanted: matches.get_one("want").copied(),
+            jobs: flags::jobs_of(matches),
+            form: EvaluationForm::of(matches),
+            export: matches.get_one::<PathBuf>("export").cloned(),
+            existing: parameters::existing(matches),
+            quiet: matches.get_flag("quiet"),
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! The shapes of a set and their positions, for `model train` and `model separate`.
+//!
+//! A set is put together from three places; at least one of them must be given:
+//! ```text
+//! taxel model train shapes.jsonl washer      lines of JSON, '-' for standard input; names of the library
+//!                   --shape 'disc=ellipse radius_x=3 radius_y=3'
+//!                   --library-all            all shapes of the library
+//! ```
+//! [`input::shape_set`](crate::cli::input::shape_set) reads them.
+
+use std::ffi::OsString;
+
+use clap::{Arg, ArgAction, ArgGroup, ArgMatches, value_parser};
+
+use crate::cli::arguments::flags::{option, switch};
+
+/// A set of shapes, not read yet.
+#[derive(Clone, Debug)]
+pub(crate) struct SetArguments {
+    /// Files of JSON lines, or names of the library.
+    pub(crate) what: Vec<OsString>,
+    /// Shapes in words: `disc=ellipse radius_x=3`.
+    pub(crate) shapes: Vec<String>,
+    /// Whether all shapes of the library belong to the set.
+    pub(crate) library_all: bool,
+}
+
+impl SetArguments {
+    /// The values of the flags of [`args`].
+    pub(super) fn of(matches: &ArgMatches) -> Self {
+        let what = matches.get_many::<OsString>("set").into_iter().flatten();
+        let shapes = matches.get_many::<String>("shape").into_iter().flatten();
+        Self {
+            what: what.cloned().collect(),
+            shapes: shapes.cloned().collect(),
+            library_all: matches.get_flag("library-all"),
+        }
+    }
+}
+
+/// The arguments that name shapes: those without a flag, shown in the usage as `value`; `--shape` and `--library-all`.
+pub(super) fn args(value: &'static str, help: &'static str) -> [Arg; 3] {
+    let what = Arg::new("set")
+        .value_name(value)
+        .num_args(0..)
+        .value_parser(value_parser!(OsString))
+        .help(help);
+    let shape = option(
+        "shape",
+        "NAME=KIND...",
+        "A shape: 'disc=ellipse radius_x=3 radius_y=3'",
+    );
+    let all = switch("library-all", "All shapes of the library");
+    [what, shape.action(ArgAction::Append), all]
+}
+
+/// Makes sure that at least one of [`args`] is given: an empty set is a usage error.
+pub(super) fn group() -> ArgGroup {
+    ArgGroup::new("shapes")
+        .args(["set", "shape", "library-all"])
+        .multiple(true)
+        .required(true)
+}
+
+/// `--positions`, for a coarser grid without naming a cell.
+pub(super) fn positions() -> Arg {
+    option(
+        "positions",
+        "N",
+        "Positions of a cell each way; default 100",
+    )
+    .value_parser(parse_positions)
+    .help_heading("Grid")
+}
+
+/// A number of positions whose step is a whole number of hundredths of a cell, as ranges are exact in hundredths.
+fn parse_positions(text: &str) -> Result<u8, &'static str> {
+    let number = text.trim().parse::<u8>().ok();
+    number
+        .filter(|&number| number > 0 && 100_u8.is_multiple_of(number))
+        .ok_or("expected 1, 2, 4, 5, 10, 20, 25, 50 or 100")
+}

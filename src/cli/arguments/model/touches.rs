@@ -1,0 +1,54 @@
+//! `taxel model touches`: its flags, and what they ask for.
+
+use std::ffi::OsString;
+
+use clap::{ArgMatches, Command, value_parser};
+
+use crate::cli::arguments::flags::{self, json, option, parse_probability, quiet};
+use crate::cli::arguments::help::MODEL_TOUCHES_EXAMPLES;
+use crate::cli::arguments::model::{number, seed, which_model};
+
+/// How many touches it takes until a shape is probable enough.
+#[derive(Clone, Debug)]
+pub(crate) struct TouchesArguments {
+    /// Name or file of the model.
+    pub(crate) model: OsString,
+    /// The probability (0 to 1) at which a run ends.
+    pub(crate) until: f64,
+    /// Runs of each shape.
+    pub(crate) runs: u64,
+    /// Seed of the poses that are drawn.
+    pub(crate) seed: u64,
+    /// Whether the answer is a line of JSON.
+    pub(crate) json: bool,
+    /// Whether no progress is shown.
+    pub(crate) quiet: bool,
+}
+
+/// `taxel model touches`.
+pub(super) fn command() -> Command {
+    let until = option("until", "P", "How probable one shape must be (0 to 1)")
+        .value_parser(parse_probability)
+        .default_value("0.99");
+    let runs = option("runs", "N", "Runs of each shape")
+        .value_parser(value_parser!(u64).range(1..=1_000_000_000))
+        .default_value("1000");
+    Command::new("touches")
+        .about("Simulate how many touches it takes to name a shape")
+        .after_help(MODEL_TOUCHES_EXAMPLES)
+        .args([which_model(), until, runs, seed(), json(), quiet()])
+}
+
+impl TouchesArguments {
+    /// What the arguments of [`command`] ask for.
+    pub(super) fn of(matches: &ArgMatches) -> Self {
+        Self {
+            model: flags::word(matches, "model"),
+            until: number(matches, "until", 0.99),
+            runs: number(matches, "runs", 1000),
+            seed: number(matches, "seed", 0),
+            json: matches.get_flag("json"),
+            quiet: matches.get_flag("quiet"),
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! `taxel model train`: its flags, and what they ask for.
+
+use std::path::PathBuf;
+
+use clap::{ArgGroup, ArgMatches, Command, value_parser};
+
+use crate::cli::arguments::flags::{
+    self, anchor, jobs, json, option, parse_name, quiet, range, replace, sensor_of_imprints, shard,
+    switch,
+};
+use crate::cli::arguments::help::MODEL_TRAIN_EXAMPLES;
+use crate::cli::arguments::model::shape_set::{self, SetArguments};
+use crate::cli::arguments::parameters::{self, Given};
+use crate::cli::error::CliError;
+use crate::formats::Name;
+use crate::parameter::Parameter;
+use crate::pose::{Anchor, Axis, GivenRanges};
+use crate::sensor::Sensor;
+use crate::storage::Existing;
+use crate::sweep::Shard;
+
+/// A set of shapes, how to train it, and where the model goes.
+#[derive(Clone, Debug)]
+pub(crate) struct TrainArguments {
+    /// The shapes to learn.
+    pub(crate) set: SetArguments,
+    /// The point of a shape that x0 and y0 place; if not given, the corner where x0 or y0 is given, else the centre.
+    pub(crate) anchor: Option<Anchor>,
+    /// The given axes of the grid. Those not given are chosen so that the sensor cuts no shape off.
+    pub(crate) ranges: GivenRanges,
+    /// Positions of a cell in each direction, where its range is not given.
+    pub(crate) positions: Option<u8>,
+    /// The sensor, if its columns or rows are given; otherwise the smallest one, changed by the other values.
+    pub(crate) sensor: Option<Sensor>,
+    /// The values of the sensor's flags.
+    pub(crate) given: Given,
+    /// The part of the grid to train on; `taxel merge` puts the parts together.
+    pub(crate) shard: Shard,
+    /// Threads; 0 for as many as there are cores.
+    pub(crate) jobs: usize,
+    /// Whether poses at which the sensor cuts a shape off are learned too; otherwise they are an error.
+    pub(crate) allow_cut: bool,
+    /// Where the model is written.
+    pub(crate) to: ModelTarget,
+    /// Whether a model of that name is replaced.
+    pub(crate) existing: Existing,
+    /// Whether the answer is a line of JSON.
+    pub(crate) json: bool,
+    /// Whether the chosen grid and the progress are left out.
+    pub(crate) quiet: bool,
+}
+
+/// Where a model goes.
+#[derive(Clone, Debug)]
+pub(crate) enum ModelTarget {
+    /// Into a file: `--out FILE.npz`.
+    File(PathBuf),
+    /// Beside the library, under a name: `--name NAME`.
+    Named(Name),
+}
+
+/// `taxel model train`.
+pub(super) fn command() -> Command {
+    let out = option("out", "FILE.npz", "Write the model to this file")
+        .value_parser(value_parser!(PathBuf));
+    let name = option(
+        "name",
+        "NAME",
+        "Keep the model under this name, beside the library",
+    )
+    .value_parser(parse_name);
+    let allow_cut = switch("allow-cut", "Take poses that the sensor cuts off, too");
+    let anchor = anchor().help(
+        "What x0 and y0 place: corner or centre; default\n\
+         corner where one of them is given, else centre",
+    );
+    Command::new("train")
+        .about("Learn every imprint of a set of shapes")
+        .override_usage("taxel model train [OPTIONS] <--out FILE|--name NAME> [FILE|NAME]...")
+        .after_help(MODEL_TRAIN_EXAMPLES)
+        .args(shape_set::args(
+            "FILE.jsonl|NAME",
+            "Shapes: lines of JSON, '-' for standard input, or names\nof the library",
+        ))
+        .args([out, name])
+        .group(shape_set::group())
+        .group(ArgGroup::new("target").args(["out", "name"]).required(true))
+        .args(Axis::ALL.map(|axis| match axis {
+            Axis::X0 | Axis::Y0 => range(axis, "one cell in which no shape is cut off"),
+            _ => range(axis, ""),
+        }))
+        .arg(shape_set::positions())
+        .arg(anchor)
+        .args(sensor_of_imprints())
+        .args([allow_cut, jobs(), shard(), replace(), json(), quiet()])
+}
+
+impl TrainArguments {
+    /// What the arguments of [`command`] ask for.
+    ///
+    /// # Errors
+    /// [`CliError::Range`] for a value of the sensor out of range.
+    pub(super) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
+        let given = Given::of(matches);
+        let sensor = given.sensor(Sensor::default())?;
+        let sized = given.has(Parameter::Columns) || given.has(Parameter::Rows);
+        let to = match matches.get_one::<Name>("name") {
+            Some(name) => ModelTarget::Named(name.clone()),
+            None => ModelTarget::File(matches.get_one("out").cloned().unwrap_or_default()),
+        };
+        Ok(Self {
+            set: SetArguments::of(matches),
+            anchor: matches.get_one::<Anchor>("anchor").copied(),
+            ranges: flags::ranges_of(matches),
+            positions: matches.get_one::<u8>("positions").copied(),
+            sensor: sized.then_some(sensor),
+            given,
+            shard: flags::shard_of(matches),
+            jobs: flags::jobs_of(matches),
+            allow_cut: matches.get_flag("allow-cut"),
+            to,
+            existing: parameters::existing(matches),
+            json: matches.get_flag("json"),
+            quiet: matches.get_flag("quiet"),
+        })
+    }
+}

@@ -1,0 +1,121 @@
+//! `taxel recognise NAME|FILE`: its flags, and what they ask for.
+//!
+//! What is recognised is one imprint, or lines of JSON with a touch or several each, which are answered line by line:
+//! ```text
+//! taxel recognise imprint.txt --model mine --top 3
+//! taxel frames grip.csv --all --at-least 20 --json | taxel recognise - --reject 0.9 --json
+//! ```
+
+use std::ffi::OsString;
+
+use clap::{ArgMatches, Command, value_parser};
+
+use crate::cli::arguments::flags::{
+    self, json, of_sensor, option, parse_probability, switch, what,
+};
+use crate::cli::arguments::help::RECOGNISE_EXAMPLES;
+use crate::cli::arguments::model::DEFAULT_MODEL;
+use crate::index::wide;
+use crate::parameter::Parameter;
+use crate::recognition::{Noise, NoiseError};
+
+/// What is to be recognised, and how.
+#[derive(Clone, Debug)]
+pub(crate) struct RecogniseArguments {
+    /// An imprint, or lines of touches: a shape of the library, a file, or `-`.
+    pub(crate) what: OsString,
+    /// Name or file of the model.
+    pub(crate) model: OsString,
+    /// How many shapes of the ranking are shown; if not given, eight in a text, all in JSON.
+    pub(crate) top: Option<usize>,
+    /// The least probability of an answer (0 to 1); below it the touch is rejected.
+    pub(crate) reject: Option<f64>,
+    /// The answer that is expected; another one ends with status 3.
+    pub(crate) expect: Option<String>,
+    /// The probability that a taxel flips.
+    pub(crate) noise: Option<Noise>,
+    /// An imprint of the dead taxels. They say nothing about the shape.
+    pub(crate) mask: Option<OsString>,
+    /// Whether to say where the shape lies.
+    pub(crate) pose: bool,
+    /// In mm; the place of the shape is then given in mm too.
+    pub(crate) pitch_mm: Option<f64>,
+    /// Whether the answer is a line of JSON; lines of touches are answered so anyway.
+    pub(crate) json: bool,
+}
+
+/// `taxel recognise NAME|FILE`.
+pub(super) fn command() -> Command {
+    let model = option(
+        "model",
+        "MODEL",
+        "Name or file of a model; default the seven figures",
+    )
+    .value_parser(value_parser!(OsString))
+    .default_value(DEFAULT_MODEL)
+    .hide_default_value(true);
+    let top = option("top", "K", "Show the K likeliest shapes only")
+        .value_parser(value_parser!(u32).range(1..));
+    let reject = option(
+        "reject",
+        "P",
+        "Give no answer that is less probable (0 to 1)",
+    )
+    .value_parser(parse_probability);
+    let expect = option(
+        "expect",
+        "NAME",
+        "Exit with status 3 if this is not the answer",
+    );
+    let noise = option(
+        "noise",
+        "E",
+        "Each taxel flips with this probability (below 0.5)",
+    )
+    .value_parser(parse_noise);
+    let mask = option(
+        "mask",
+        "NAME|FILE",
+        "Imprint whose active taxels are dead, stuck on or off",
+    )
+    .value_parser(value_parser!(OsString))
+    .requires("noise");
+    let pose = switch("pose", "Say where the shape lies and how it is turned");
+    Command::new("recognise")
+        .alias("recognize")
+        .about("Name the shape that left an imprint")
+        .after_help(RECOGNISE_EXAMPLES)
+        .arg(what(
+            "Imprint: shape of the library, or file; '-' for standard input",
+        ))
+        .args([model, top, reject, expect, noise, mask, pose])
+        .args(of_sensor(&[Parameter::Pitch]))
+        .arg(json())
+}
+
+/// The probability that a taxel flips: 0 or more, below 0.5.
+fn parse_noise(text: &str) -> Result<Noise, String> {
+    let number = text
+        .trim()
+        .parse()
+        .map_err(|_| "expected a number".to_owned())?;
+    Noise::new(number).map_err(|error: NoiseError| error.to_string())
+}
+
+impl RecogniseArguments {
+    /// What the arguments of [`command`] ask for; `pitch_mm` is that of the flag, else of the settings.
+    pub(super) fn of(matches: &ArgMatches, pitch_mm: Option<f64>) -> Self {
+        Self {
+            what: flags::word(matches, "what"),
+            model: flags::word(matches, "model"),
+            top: matches.get_one::<u32>("top").map(|&top| wide(top)),
+            reject: matches.get_one("reject").copied(),
+            expect: matches.get_one::<String>("expect").cloned(),
+            noise: matches.get_one::<Noise>("noise").copied(),
+            mask: matches.get_one::<OsString>("mask").cloned(),
+            pose: matches.get_flag("pose"),
+            pitch_mm,
+            json: matches.get_flag("json"),
+        }
+    }
+}
