@@ -2,14 +2,16 @@
 
 use std::fmt;
 
+use crate::quote::is_invisible;
+
 /// The longest name.
 pub const LONGEST: usize = 64;
 
 /// The most bytes of a name: file systems take 255, and `.json` and a number in the trash come to them.
 const MOST_BYTES: usize = 200;
 
-/// A name that can be a file's on every system: 1 to 64 letters, digits, spaces, `-`, `_`, `.`; not starting with
-/// `.` or a space, not ending with a space.
+/// A name that can be a file's on every system: 1 to 64 visible letters, digits, spaces, `-`, `_`, `.`; not starting
+/// with `.` or a space, not ending with a space.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Name(String);
 
@@ -62,7 +64,8 @@ impl Name {
     /// The first rule that it breaks.
     pub fn new(text: &str) -> Result<Self, NameError> {
         let first = text.chars().next().ok_or(NameError::Empty)?;
-        let fits = |c: char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_' | '.');
+        let fits =
+            |c: char| matches!(c, ' ' | '-' | '_' | '.') || c.is_alphanumeric() && !is_invisible(c);
         if let Some(character) = text.chars().find(|&character| !fits(character)) {
             return Err(NameError::Character(character));
         }

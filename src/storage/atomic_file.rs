@@ -3,18 +3,16 @@
 //!
 //! Whenever the program dies or the power fails, the old file or the new one is there whole. The stages are types:
 //! content goes into an [`UnfinishedFile`]; a [`FinishedFile`] is on disk and lacks only its name. Either one removes
-//! its temporary file when it is dropped, so an error or an early return leaves nothing behind. A program that is
-//! killed does leave it, under one of two names:
-//! - `.taxel-XXXXXX`, a random name, from [`UnfinishedFile::new`];
-//! - the name given to [`UnfinishedFile::with_temporary`], by a caller that holds a lock; the next one removes it.
+//! its temporary file when it is dropped, so an error or an early return leaves nothing behind. Of a program that is
+//! killed the next writer removes what is left: see [`crate::storage::temporary`] for files from
+//! [`UnfinishedFile::new`]; the name given to [`UnfinishedFile::with_temporary`] is taken over by the next caller.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::{NamedTempFile, TempPath};
-
 use crate::storage::error::FileError;
+use crate::storage::temporary::TemporaryFile;
 
 /// What happens to a file that is there already.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,27 +30,17 @@ pub struct UnfinishedFile {
     path: PathBuf,
     existing: Existing,
     /// Takes the content.
-    pub output: BufWriter<NamedTempFile>,
+    pub output: BufWriter<TemporaryFile>,
 }
 
 impl UnfinishedFile {
-    /// Begins the file at `path` under a random temporary name.
+    /// Begins the file at `path`, without a name or under a random one.
     ///
     /// # Errors
     /// [`ErrorKind::AlreadyExists`] if there is a file and it is to be kept; [`ErrorKind::Other`] if what is there is
     /// no regular file; else what the system reports.
     pub fn new(path: &Path, existing: Existing) -> Result<Self, FileError> {
-        Self::begin(path, existing, || {
-            let mut builder = tempfile::Builder::new();
-            builder.prefix(".taxel-");
-            // Readable as the user's other files are; the default for temporary files is tighter.
-            #[cfg(unix)]
-            builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-            builder
-                .tempfile_in(folder_of(path))
-                // Its own message would name the temporary file.
-                .map_err(|error| error.kind().into())
-        })
+        Self::begin(path, existing, || TemporaryFile::new(folder_of(path)))
     }
 
     /// Begins a file that replaces `path`, under a temporary name that only the holder of a lock uses. A file of that
@@ -61,26 +49,21 @@ impl UnfinishedFile {
     /// # Errors
     /// As for [`UnfinishedFile::new`].
     pub fn with_temporary(path: &Path, temporary: &Path) -> Result<Self, FileError> {
-        let create = || {
-            let mut options = File::options();
-            options.write(true).create_new(true).open(temporary)
-        };
         Self::begin(path, Existing::Replaced, || {
-            let file = match create() {
+            match TemporaryFile::at(temporary) {
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => {
-                    fs::remove_file(temporary).and_then(|()| create())
+                    fs::remove_file(temporary)?;
+                    TemporaryFile::at(temporary)
                 }
-                file => file,
-            }?;
-            let temporary = TempPath::try_from_path(temporary)?;
-            Ok(NamedTempFile::from_parts(file, temporary))
+                made => made,
+            }
         })
     }
 
     fn begin(
         path: &Path,
         existing: Existing,
-        create: impl FnOnce() -> io::Result<NamedTempFile>,
+        create: impl FnOnce() -> io::Result<TemporaryFile>,
     ) -> Result<Self, FileError> {
         let refuse = |doing| move |error| FileError::new(doing, path, error);
         let old = path.symlink_metadata().ok();
@@ -102,7 +85,7 @@ impl UnfinishedFile {
         let file = create().map_err(refuse("write into its folder"))?;
         // The new file keeps the permissions of the old one: it must not become readable for others.
         if let Some(old) = old {
-            file.as_file()
+            file.file()
                 .set_permissions(old.permissions())
                 .map_err(refuse("give it its permissions"))?;
         }
@@ -139,7 +122,7 @@ impl UnfinishedFile {
             .into_inner()
             .map_err(io::IntoInnerError::into_error);
         let file = file.map_err(refuse("write it"))?;
-        file.as_file().sync_all().map_err(refuse("sync it"))?;
+        file.file().sync_all().map_err(refuse("sync it"))?;
         Ok(FinishedFile {
             path: self.path,
             existing: self.existing,
@@ -153,7 +136,7 @@ impl UnfinishedFile {
 pub struct FinishedFile {
     path: PathBuf,
     existing: Existing,
-    file: NamedTempFile,
+    file: TemporaryFile,
 }
 
 impl FinishedFile {
@@ -168,23 +151,29 @@ impl FinishedFile {
     /// [`ErrorKind::AlreadyExists`] if a file that is to be kept has come meanwhile; else what the system reports. The
     /// old file is there as before, unless syncing the folder failed ([`FileError::is_in_place`]).
     pub fn persist(self) -> Result<(), FileError> {
-        let named = match self.existing {
-            Existing::Replaced => self.file.persist(&self.path),
-            Existing::Kept => self.file.persist_noclobber(&self.path),
-        };
-        let refuse = |error| FileError::new("put it in its place", &self.path, error);
-        named.map_err(|failed| refuse(failed.error))?;
-        sync_folder(folder_of(&self.path))
+        let folder = folder_of(&self.path);
+        let replace = self.existing == Existing::Replaced;
+        let named = self.file.persist(folder, &self.path, replace);
+        named.map_err(|error| FileError::new("put it in its place", &self.path, error))?;
+        sync_folder(folder)
     }
 }
 
-/// Writes a file that replaces `path`, under a temporary name that only the holder of a lock uses.
+/// Writes a file that replaces `path`: under a temporary name that only the holder of a lock uses, or without a lock
+/// under a name of its own.
 ///
 /// # Errors
-/// As for [`UnfinishedFile::with_temporary`] and [`FinishedFile::persist`].
+/// As for [`UnfinishedFile::new`] and [`FinishedFile::persist`].
 #[cfg(feature = "library")]
-pub(crate) fn write(path: &Path, temporary: &Path, content: &[u8]) -> Result<(), FileError> {
-    let mut file = UnfinishedFile::with_temporary(path, temporary)?;
+pub(crate) fn write(
+    path: &Path,
+    temporary: Option<&Path>,
+    content: &[u8],
+) -> Result<(), FileError> {
+    let mut file = match temporary {
+        Some(temporary) => UnfinishedFile::with_temporary(path, temporary)?,
+        None => UnfinishedFile::new(path, Existing::Replaced)?,
+    };
     file.write(content)?;
     file.finish()?.persist()
 }

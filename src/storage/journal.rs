@@ -15,6 +15,10 @@ use crate::storage::folder;
 use crate::storage::library::Library;
 use crate::storage::lock::{Lock, LockAttempt};
 
+/// How many journals are offered at once. Each keeps a file open, and a program may have about a thousand; the others
+/// wait for the next start.
+const MOST_ORPHANS: usize = 100;
+
 /// The name of unsaved work that has none.
 pub const UNNAMED: &str = "unsaved";
 
@@ -56,7 +60,7 @@ impl Journal {
         let content = shape.write();
         Ok(atomic_file::write(
             &path,
-            &temporary_of(&path),
+            Some(&temporary_of(&path)),
             content.as_bytes(),
         )?)
     }
@@ -106,7 +110,7 @@ pub struct Orphan {
 }
 
 impl Orphan {
-    /// All that wait in a library. Work that is saved under its name just so is cleared away. A journal that cannot be
+    /// Those that wait in a library, at most 100. Work that is saved under its name just so is cleared away. A journal that cannot be
     /// read is left alone: it may be one of a later version.
     pub fn all(library: &Library) -> Vec<Self> {
         let journals = folder_in(library);
@@ -134,6 +138,7 @@ impl Orphan {
                     _ => None,
                 }
             })
+            .take(MOST_ORPHANS)
             .collect()
     }
 

@@ -5,6 +5,7 @@ use std::ffi::OsString;
 use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::formats::name::{Name, folded};
 use crate::formats::shape::StoredShape;
@@ -15,6 +16,7 @@ use crate::storage::folder;
 use crate::storage::folder::stamp;
 use crate::storage::lock;
 use crate::storage::lock::Lock;
+use crate::storage::name_index::NameIndex;
 use crate::storage::shipped;
 use crate::storage::trash::Trash;
 
@@ -67,6 +69,7 @@ const TEMPORARY: &str = ".taxel-tmp";
 #[derive(Clone, Debug)]
 pub struct Library {
     folder: PathBuf,
+    names: Arc<NameIndex>,
 }
 
 impl Library {
@@ -79,7 +82,10 @@ impl Library {
             // If this fails it does no harm, and the next start tries again.
             let _ = fs::remove_file(temporary);
         }
-        Self { folder }
+        Self {
+            folder,
+            names: Arc::default(),
+        }
     }
 
     /// Its folder.
@@ -131,7 +137,7 @@ impl Library {
                 if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {}
             Err(error) => return Err(FileError::new("look at it", &path, error).into()),
         }
-        Ok(self.own_names()?.into_iter().find(|own| name.same(own)))
+        self.names.find(&self.folder, name, || self.own_names())
     }
 
     /// The path of the user's shape of that name. A name cannot lead out of the folder.
@@ -199,12 +205,9 @@ impl Library {
         let name = own.map_or_else(|| Ok(name.clone()), |own| Name::new(&own))?;
         let path = self.path(name.as_str());
         let content = shape.clone().renamed(name).write();
-        let temporary = match lock {
-            Some(_) => TEMPORARY.to_owned(),
-            // Without locks, another program may be writing too.
-            None => format!("{TEMPORARY}-{}", std::process::id()),
-        };
-        atomic_file::write(&path, &self.folder.join(temporary), content.as_bytes())?;
+        // Without locks, another program may be writing too.
+        let temporary = lock.as_ref().map(|_| self.folder.join(TEMPORARY));
+        atomic_file::write(&path, temporary.as_deref(), content.as_bytes())?;
         Ok(stamp(content.as_bytes()))
     }
 
@@ -247,8 +250,8 @@ impl Library {
         let path = self.path(&own);
         folder::regular(&path)?;
         folder::make_inner(&self.trash())?;
-        let trash = Trash::read(self.trash())?;
-        fs::rename(&path, trash.next_path(&own))
+        let mut trash = Trash::read(self.trash())?;
+        fs::rename(&path, trash.next_path(&own)?)
             .map_err(|error| FileError::new("move it into the trash", &path, error))?;
         sync_folder(&self.trash())?;
         sync_folder(&self.folder)?;
@@ -265,7 +268,7 @@ impl Library {
         folder::make(&self.folder)?;
         let _lock = Lock::wait(&self.folder)?;
         folder::make_inner(&self.trash())?;
-        let trash = Trash::read(self.trash())?;
+        let mut trash = Trash::read(self.trash())?;
         let free = |name: &Name| {
             let thrown = trash.newest_first().any(|thrown| name.same(&thrown.name));
             !thrown && matches!(self.own_name(name), Ok(None))
@@ -278,9 +281,9 @@ impl Library {
         let name = numbered.find(free);
         let name = name.unwrap_or_else(|| shape.name.clone());
         let thrown = shape.clone().renamed(name.clone());
-        let path = trash.next_path(name.as_str());
+        let path = trash.next_path(name.as_str())?;
         let temporary = self.trash().join(TEMPORARY);
-        atomic_file::write(&path, &temporary, thrown.write().as_bytes())?;
+        atomic_file::write(&path, Some(&temporary), thrown.write().as_bytes())?;
         trash.forget_oldest();
         Ok(name.to_string())
     }

@@ -92,11 +92,17 @@ fn try_lock(file: &File, path: &Path) -> Result<Option<bool>, FileError> {
     }
 }
 
-/// Whether the file system has no locks. NFS without its lock daemon reports that none are left.
+/// Whether the file system has no locks. NFS without its lock daemon reports that none are left (`ENOLCK`); some that are
+/// mounted by a program of the user's report that it is not permitted (`EPERM`) or makes no sense (`EINVAL`). That the
+/// user may not open the file is another error, and reported before.
 fn is_unsupported(error: &io::Error) -> bool {
-    // ENOLCK, for which the standard library has no kind.
+    // The standard library has no kind for it.
     let none_left = if cfg!(target_os = "macos") { 77 } else { 37 };
-    error.kind() == ErrorKind::Unsupported || error.raw_os_error() == Some(none_left)
+    error.raw_os_error() == Some(none_left)
+        || matches!(
+            error.kind(),
+            ErrorKind::Unsupported | ErrorKind::PermissionDenied | ErrorKind::InvalidInput
+        )
 }
 
 /// The path of a folder's lock.

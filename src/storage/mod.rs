@@ -21,6 +21,8 @@ mod error;
 
 mod atomic_file;
 
+mod temporary;
+
 #[cfg(feature = "library")]
 pub mod location;
 
@@ -29,6 +31,9 @@ mod folder;
 
 #[cfg(feature = "library")]
 mod lock;
+
+#[cfg(feature = "library")]
+mod name_index;
 
 #[cfg(feature = "library")]
 pub mod shipped;

@@ -10,6 +10,10 @@ use crate::storage::folder;
 /// The number of deleted shapes that are kept; older ones are removed for good.
 pub const TRASH_KEPT: usize = 50;
 
+/// The highest number of a deleted shape: ten digits, so that names sort by number. No trash comes near it, but anyone
+/// can put a file there.
+const LAST_NUMBER: u64 = 9_999_999_999;
+
 /// A deleted shape's file.
 pub(crate) struct DeletedShape {
     number: u64,
@@ -41,10 +45,38 @@ impl Trash {
         self.shapes.iter().rev()
     }
 
-    /// The path for the next shape.
-    pub(crate) fn next_path(&self, name: &str) -> PathBuf {
+    /// The path for the next shape. If the highest number is taken, the shapes are numbered anew from 1.
+    ///
+    /// # Errors
+    /// What the system reports of a file that could not be renamed.
+    pub(crate) fn next_path(&mut self, name: &str) -> Result<PathBuf, FileError> {
+        let last = self.shapes.last().map_or(0, |last| last.number);
+        if last >= LAST_NUMBER {
+            self.renumber()?;
+        }
         let number = self.shapes.last().map_or(1, |last| last.number + 1);
+        Ok(self.path(number, name))
+    }
+
+    fn path(&self, number: u64, name: &str) -> PathBuf {
         self.folder.join(format!("{number:010} {name}.json"))
+    }
+
+    /// Numbers the shapes from 1, the oldest first.
+    fn renumber(&mut self) -> Result<(), FileError> {
+        let paths: Vec<PathBuf> = (1..)
+            .zip(&self.shapes)
+            .map(|(number, shape)| self.path(number, &shape.name))
+            .collect();
+        for ((number, shape), path) in (1..).zip(&mut self.shapes).zip(paths) {
+            // In this order no file is replaced: a number never rises, and lower ones have moved already.
+            if shape.number > number {
+                fs::rename(&shape.path, &path)
+                    .map_err(|error| FileError::new("number it anew", &shape.path, error))?;
+                (shape.number, shape.path) = (number, path);
+            }
+        }
+        Ok(())
     }
 
     /// Removes the oldest shapes, so that with the one just added [`TRASH_KEPT`] are left.
@@ -63,8 +95,10 @@ impl DeletedShape {
         let name = path.file_name()?.to_str()?.strip_suffix(".json")?;
         let (number, name) = name.split_once(' ')?;
         Some(Self {
-            // There is always a next number.
-            number: number.parse().ok().filter(|&number| number < u64::MAX)?,
+            number: number
+                .parse()
+                .ok()
+                .filter(|number| *number <= LAST_NUMBER)?,
             name: Name::new(name).ok()?.to_string(),
             path: path.to_owned(),
         })

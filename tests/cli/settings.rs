@@ -237,3 +237,21 @@ fn flags_of_the_screen_do_not_stand_before_a_command() {
         assert!(run.stderr.contains(&expected), "{flag}: {}", run.stderr);
     }
 }
+
+/// Opening a pipe would wait for a writer.
+#[test]
+fn a_settings_file_that_is_a_pipe_is_refused_at_once() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pipe = folder.path().join("pipe");
+    let made = Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.is_ok_and(|status| status.success()));
+    let mut command = taxel("config");
+    let run = run(command.arg("--config").arg(&pipe));
+    assert_eq!(run.status, Some(2));
+    assert!(
+        run.stderr
+            .ends_with("cannot read: a pipe, expected a regular file\n"),
+        "{}",
+        run.stderr
+    );
+}

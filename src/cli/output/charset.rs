@@ -7,6 +7,7 @@
 use std::borrow::Cow;
 use std::ffi::OsString;
 
+use crate::quote::is_invisible;
 use crate::tui::widget::theme::spelling;
 
 /// The characters that may be written.
@@ -84,14 +85,9 @@ impl Charset {
     fn has(self, character: char) -> bool {
         match self {
             Self::Ascii => matches!(character, ' '..='~'),
-            Self::Unicode => !character.is_control() && !is_unseen(character),
+            Self::Unicode => !character.is_control() && !is_invisible(character),
         }
     }
-}
-
-/// Whether a character is invisible but reorders or breaks the text around it, such as a bidirectional override.
-fn is_unseen(character: char) -> bool {
-    matches!(character, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}')
 }
 
 #[cfg(test)]
@@ -138,6 +134,10 @@ mod tests {
         assert_eq!(
             Charset::Unicode.line("é°\u{1b}\u{202e}\n"),
             "é°\\u{1b}\\u{202e}\\u{a}"
+        );
+        assert_eq!(
+            Charset::Unicode.line("a\u{61c}\u{ad}\u{206e}\u{fff9}\u{e0041}\u{3164}"),
+            "a\\u{61c}\\u{ad}\\u{206e}\\u{fff9}\\u{e0041}\\u{3164}"
         );
         assert_eq!(Charset::Ascii.lines("a\nb…\n"), "a\nb...\n");
     }

@@ -12,8 +12,8 @@
 use std::ffi::OsString;
 use std::fmt;
 use std::fs::File;
-use std::io::{ErrorKind, Read};
-use std::path::PathBuf;
+use std::io::{self, ErrorKind, Read};
+use std::path::{Path, PathBuf};
 
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
@@ -66,7 +66,7 @@ impl Loaded {
         };
         let mut bytes = Vec::new();
         let limit = MAX_BYTES as u64;
-        let read = File::open(&path).and_then(|file| file.take(limit + 1).read_to_end(&mut bytes));
+        let read = open(&path).and_then(|file| file.take(limit + 1).read_to_end(&mut bytes));
         let there = match read {
             Err(error) if error.kind() == ErrorKind::NotFound && may_be_missing => false,
             Err(error) => return Err(failure(format!("cannot read: {error}"))),
@@ -86,6 +86,18 @@ impl Loaded {
             config,
         })
     }
+}
+
+/// Opens the settings file. A pipe is refused: opening one waits for a writer, and there may never be one.
+fn open(path: &Path) -> io::Result<File> {
+    let kind = path.metadata()?.file_type();
+    #[cfg(unix)]
+    if std::os::unix::fs::FileTypeExt::is_fifo(&kind) {
+        return Err(io::Error::other("a pipe, expected a regular file"));
+    }
+    #[cfg(not(unix))]
+    let _ = kind;
+    File::open(path)
 }
 
 /// Where a value comes from, as `taxel config` shows it.

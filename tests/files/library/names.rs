@@ -27,6 +27,12 @@ fn no_name_leads_out_of_the_folder() {
         "o\u{301}ne",
         "*",
         "~",
+        // Letters and format characters that show nothing.
+        "\u{3164}",
+        "a\u{115f}\u{1160}",
+        "\u{ffa0}b",
+        "a\u{ad}b",
+        "a\u{202e}b",
     ] {
         assert!(Name::new(name).is_err(), "{name:?}");
         for refused in [

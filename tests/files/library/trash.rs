@@ -115,6 +115,39 @@ fn a_trash_with_anything_in_it_is_used_all_the_same() {
     );
 }
 
+#[test]
+fn a_trash_whose_last_number_is_taken_is_numbered_anew() {
+    let scratch = Scratch::with(&["old", "new"]);
+    let trash = scratch.path(".trash");
+    std::fs::create_dir(&trash).expect("made");
+    let crafted = [
+        "9999999999 z.json",
+        "9999999998 y.json",
+        "99999999999 x.json",
+    ];
+    for file in crafted {
+        std::fs::write(trash.join(file), shape("z", 7).write()).expect("written");
+    }
+    scratch.library.delete("old").expect("deleted");
+    scratch.library.delete("new").expect("deleted");
+    let expected = [
+        "0000000001 y.json",
+        "0000000002 z.json",
+        "0000000003 old.json",
+        "0000000004 new.json",
+        "99999999999 x.json",
+    ];
+    assert_eq!(files(&trash), expected);
+    for (name, number) in [("new", 2), ("old", 1), ("z", 7)] {
+        scratch.library.restore(name).expect("restored");
+        assert_eq!(scratch.number(name), Some(number));
+    }
+    assert!(
+        scratch.library.restore("x").is_err(),
+        "not one of its numbers"
+    );
+}
+
 /// Under a name that is in the way of nothing, here and in the trash.
 #[test]
 fn what_was_never_stored_is_thrown_away_and_comes_back() {

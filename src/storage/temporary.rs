@@ -1,0 +1,334 @@
+//! A file on its way to its name.
+//!
+//! Where the file system has files without a name (`O_TMPFILE`, on Linux), it has none until it is whole: a program that
+//! is killed leaves nothing behind. Elsewhere it is `.taxel-XXXXXX`, with a random ending, in the folder that it is for,
+//! and its writer holds a lock on it. Such a file without a lock is one of a program that died; the next program that
+//! writes into the folder removes it ([`remove_left_over`]).
+
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
+use std::path::Path;
+use std::time::{Duration, SystemTime};
+
+use tempfile::{Builder, NamedTempFile, TempPath};
+
+/// What the name of a temporary file begins with.
+const PREFIX: &str = ".taxel-";
+
+/// How many random characters follow it.
+const RANDOM: usize = 6;
+
+/// A file without a lock may be one that was made just now: it is removed only when nothing was written to it for so
+/// long.
+const FRESH: Duration = Duration::from_secs(60);
+
+/// The same where the file system has no locks, so that nothing tells whether its writer still runs.
+const FRESH_WITHOUT_LOCKS: Duration = Duration::from_secs(24 * 60 * 60);
+
+/// A file that lacks its name. Dropped, nothing is left of it.
+#[derive(Debug)]
+pub struct TemporaryFile {
+    file: File,
+    /// Its temporary name; None while it has none.
+    path: Option<TempPath>,
+}
+
+impl TemporaryFile {
+    /// A new file in a folder, readable for whom the user's other files are.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub(crate) fn new(folder: &Path) -> io::Result<Self> {
+        remove_left_over(folder);
+        let made = match unnamed(folder) {
+            Some(file) => Self { file, path: None },
+            None => Self::named(folder)?,
+        };
+        // Where there are no locks it goes without.
+        let _ = made.file.try_lock();
+        Ok(made)
+    }
+
+    /// A new file of this path. Only for a caller who holds a lock on the folder.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub(crate) fn at(path: &Path) -> io::Result<Self> {
+        Ok(Self {
+            file: File::options().write(true).create_new(true).open(path)?,
+            path: Some(TempPath::try_from_path(path)?),
+        })
+    }
+
+    /// A new file under a random name.
+    fn named(folder: &Path) -> io::Result<Self> {
+        let mut builder = builder();
+        // The default for temporary files is tighter.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let made = builder.tempfile_in(folder);
+        // Its own message would name the temporary file.
+        let (file, path) = made.map_err(|error| plain(&error))?.into_parts();
+        Ok(Self {
+            file,
+            path: Some(path),
+        })
+    }
+
+    /// The open file.
+    pub(crate) fn file(&self) -> &File {
+        &self.file
+    }
+
+    /// Gives the file its name, in place of the file that has it if `replace`.
+    ///
+    /// # Errors
+    /// [`ErrorKind::AlreadyExists`] if there is a file of that name and it is to be kept; else what the system reports.
+    pub(crate) fn persist(self, folder: &Path, path: &Path, replace: bool) -> io::Result<()> {
+        match self.path {
+            Some(named) => rename(named, path, replace),
+            None if !replace => match link(&self.file, path) {
+                Err(error) if error.kind() != ErrorKind::AlreadyExists => {
+                    rename(copied(self.file, folder)?, path, replace)
+                }
+                linked => linked,
+            },
+            None => {
+                // A link cannot replace a file; renaming can.
+                let linked = builder().make_in(folder, |path| link(&self.file, path));
+                let named = match linked {
+                    Ok(linked) => NamedTempFile::into_parts(linked).1,
+                    Err(_) => copied(self.file, folder)?,
+                };
+                rename(named, path, replace)
+            }
+        }
+    }
+}
+
+impl Write for TemporaryFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Seek for TemporaryFile {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
+    }
+}
+
+/// Random names for temporary files.
+fn builder() -> Builder<'static, 'static> {
+    let mut builder = Builder::new();
+    builder.prefix(PREFIX).rand_bytes(RANDOM);
+    builder
+}
+
+/// The system's own message, without the path that a library adds.
+fn plain(error: &io::Error) -> io::Error {
+    match error.raw_os_error() {
+        Some(code) => io::Error::from_raw_os_error(code),
+        None => error.kind().into(),
+    }
+}
+
+/// Renames a file over `path`, or to `path` if nothing is there.
+fn rename(from: TempPath, path: &Path, replace: bool) -> io::Result<()> {
+    let renamed = if replace {
+        from.persist(path)
+    } else {
+        from.persist_noclobber(path)
+    };
+    let Err(failed) = renamed else {
+        return Ok(());
+    };
+    // A file system with neither links nor a renaming that keeps the other file: an empty file takes the name first.
+    let unsupported = !replace
+        && matches!(
+            failed.error.kind(),
+            ErrorKind::PermissionDenied | ErrorKind::Unsupported | ErrorKind::InvalidInput
+        );
+    if !unsupported {
+        return Err(plain(&failed.error));
+    }
+    File::options().write(true).create_new(true).open(path)?;
+    failed.path.persist(path).map_err(|failed| {
+        let _ = fs::remove_file(path);
+        plain(&failed.error)
+    })
+}
+
+/// The content under a random name, for a file system that does not link a file without a name.
+fn copied(mut file: File, folder: &Path) -> io::Result<TempPath> {
+    let mut copy = TemporaryFile::named(folder)?;
+    file.rewind()?;
+    let permissions = file.metadata()?.permissions();
+    io::copy(&mut Read::by_ref(&mut file), &mut copy.file)?;
+    copy.file.set_permissions(permissions)?;
+    copy.file.sync_all()?;
+    copy.path.ok_or_else(|| ErrorKind::NotFound.into())
+}
+
+/// A file without a name; None where the system has no such files, or could not name it later.
+#[cfg(target_os = "linux")]
+fn unnamed(folder: &Path) -> Option<File> {
+    use rustix::fs::{Mode, OFlags, open};
+    let flags = OFlags::RDWR | OFlags::TMPFILE | OFlags::CLOEXEC;
+    let file: File = open(folder, flags, Mode::from_raw_mode(0o666)).ok()?.into();
+    // Without /proc it would stay without a name.
+    fs::symlink_metadata(of_descriptor(&file)).ok()?;
+    Some(file)
+}
+
+/// Gives a file without a name one that is free.
+#[cfg(target_os = "linux")]
+fn link(file: &File, path: &Path) -> io::Result<()> {
+    use rustix::fs::{AtFlags, CWD, linkat};
+    Ok(linkat(
+        CWD,
+        of_descriptor(file),
+        CWD,
+        path,
+        AtFlags::SYMLINK_FOLLOW,
+    )?)
+}
+
+/// Where the system lists an open file.
+#[cfg(target_os = "linux")]
+fn of_descriptor(file: &File) -> String {
+    use std::os::fd::AsRawFd;
+    format!("/proc/self/fd/{}", file.as_raw_fd())
+}
+
+/// Elsewhere every file has a name.
+#[cfg(not(target_os = "linux"))]
+fn unnamed(_: &Path) -> Option<File> {
+    None
+}
+
+/// Never called: there is no file without a name.
+#[cfg(not(target_os = "linux"))]
+fn link(_: &File, _: &Path) -> io::Result<()> {
+    Err(ErrorKind::Unsupported.into())
+}
+
+/// Removes the temporary files that programs have left in a folder when they died. What cannot be removed stays.
+fn remove_left_over(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if entry.file_name().to_str().is_some_and(is_temporary) {
+            let path = entry.path();
+            if is_left_over(&path).unwrap_or(false) {
+                let _ = fs::remove_file(path);
+            }
+        }
+    }
+}
+
+/// Whether a file's name is one of ours: `.taxel-` and six letters or digits.
+fn is_temporary(name: &str) -> bool {
+    let random = name.strip_prefix(PREFIX);
+    random.is_some_and(|random| {
+        random.len() == RANDOM && random.bytes().all(|byte| byte.is_ascii_alphanumeric())
+    })
+}
+
+/// Whether the writer of a temporary file has died.
+fn is_left_over(path: &Path) -> io::Result<bool> {
+    let found = path.symlink_metadata()?;
+    if !found.file_type().is_file() {
+        return Ok(false);
+    }
+    let age = SystemTime::now().duration_since(found.modified()?);
+    // One from the future: a clock was changed.
+    let Ok(age) = age else { return Ok(false) };
+    Ok(age > FRESH
+        && match File::open(path)?.try_lock() {
+            Ok(()) => true,
+            Err(fs::TryLockError::WouldBlock) => false,
+            Err(fs::TryLockError::Error(_)) => age > FRESH_WITHOUT_LOCKS,
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Makes a file with a name and an age.
+    fn aged(folder: &Path, name: &str, age: Duration) -> File {
+        let file = File::create(folder.join(name)).expect("made");
+        file.set_modified(SystemTime::now() - age).expect("aged");
+        file
+    }
+
+    #[test]
+    fn the_next_writer_removes_what_dead_programs_left() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let hour = Duration::from_secs(3600);
+        for name in [
+            ".taxel-tmp",
+            ".taxel-a b c d",
+            "taxel-AbC123",
+            ".taxel-toolong",
+        ] {
+            aged(folder.path(), name, hour);
+        }
+        aged(folder.path(), ".taxel-AbC123", hour);
+        aged(folder.path(), ".taxel-Fresh1", Duration::ZERO);
+        let held = aged(folder.path(), ".taxel-Held01", hour);
+        held.lock().expect("locked");
+        drop(TemporaryFile::new(folder.path()).expect("made"));
+        let mut left: Vec<String> = fs::read_dir(folder.path())
+            .expect("read")
+            .map(|entry| {
+                entry
+                    .expect("read")
+                    .file_name()
+                    .into_string()
+                    .expect("text")
+            })
+            .collect();
+        left.sort();
+        let stays = [
+            ".taxel-Fresh1",
+            ".taxel-Held01",
+            ".taxel-a b c d",
+            ".taxel-tmp",
+            ".taxel-toolong",
+            "taxel-AbC123",
+        ];
+        assert_eq!(left, stays);
+    }
+
+    #[test]
+    fn a_file_has_its_name_whichever_way_it_was_made() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a");
+        let ways: [fn(&Path) -> io::Result<TemporaryFile>; 2] =
+            [TemporaryFile::new, TemporaryFile::named];
+        for make in ways {
+            for (replace, content) in [(false, "one"), (true, "two")] {
+                let mut file = make(folder.path()).expect("made");
+                file.write_all(content.as_bytes()).expect("written");
+                file.persist(folder.path(), &path, replace).expect("named");
+                assert_eq!(fs::read_to_string(&path).ok().as_deref(), Some(content));
+            }
+            let file = make(folder.path()).expect("made");
+            let kept = file
+                .persist(folder.path(), &path, false)
+                .expect_err("it is there");
+            assert_eq!(kept.kind(), ErrorKind::AlreadyExists);
+            fs::remove_file(&path).expect("removed");
+        }
+        let mut file = TemporaryFile::new(folder.path()).expect("made");
+        file.write_all(b"three").expect("written");
+        let copy = copied(file.file, folder.path()).expect("copied");
+        assert_eq!(fs::read_to_string(&copy).ok().as_deref(), Some("three"));
+        drop(copy);
+        assert_eq!(fs::read_dir(folder.path()).expect("read").count(), 0);
+    }
+}
