@@ -181,8 +181,9 @@ impl Surroundings {
     ) -> Result<(), CliError> {
         let touched = touch::touch(source, sensor, form, kept, &self.shelf, self.charset)?;
         write(&touched.answer)?;
-        let notes = &touched.notes;
-        notes.iter().for_each(|text| note(text, self.charset));
+        for text in &touched.notes {
+            note(text, self.charset);
+        }
         Ok(())
     }
 
@@ -194,7 +195,9 @@ impl Surroundings {
         };
         let (grid, taken) = sweep::grid(source, sensor, asked.anchor, &asked.ranges)?;
         if !asked.wanted.quiet {
-            taken.iter().for_each(|text| note(text, self.charset));
+            for text in &taken {
+                note(text, self.charset);
+            }
         }
         let text = sweep::sweep(&grid, asked.shard, asked.jobs, &asked.wanted, self.charset)?;
         print(&text)

@@ -15,92 +15,89 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, EvaluationJson};
 use crate::cli::output::report;
 use crate::formats::{ConfusionMap, json};
-use crate::recognition::{Evaluation, Peer, greedy};
+use crate::recognition::{Evaluation, Model, Peer, PeerEvaluation, greedy};
 
-/// Evaluates a model.
+/// Evaluates a model. Returns what is printed.
+///
+/// # Errors
+/// If there is no such model, if the file of the matrix cannot be written, or if a signal ends a simulation.
 pub(crate) fn confusion(
     asked: &ConfusionArguments,
     shelf: &Shelf,
     charset: Charset,
 ) -> Result<String, CliError> {
     let model = model::find(&asked.model, shelf)?;
-    let text = match &asked.of {
-        Evaluated::Imprints => shown(asked, &Evaluation::of(&model), charset)?,
+    let as_json = asked.form == EvaluationForm::Json;
+    match &asked.of {
+        Evaluated::Imprints => shown(asked, &Evaluation::of(&model), None, charset),
         Evaluated::Given(given) => {
             let given = given.clone().rounded(asked.roundings.clone());
-            shown(asked, &given.evaluate(&model), charset)?
-        }
-        Evaluated::Greedy => {
-            let (chosen, limit) = (greedy(&model, &asked.roundings), Evaluation::of(&model));
-            match asked.form {
-                EvaluationForm::Json => {
-                    let steps = chosen.iter().map(|(descriptor, reached)| {
-                        json!({
-                            "descriptor": descriptor.key(),
-                            "right": evaluation::number(reached.right),
-                            "error": reached.error(),
-                            "values": reached.keys,
-                        })
-                    });
-                    let steps: Vec<_> = steps.collect();
-                    json!({"chosen": steps, "limit": limit.error()}).to_string() + "\n"
-                }
-                _ => evaluation::greedy(&chosen, &limit, charset),
-            }
-        }
-        Evaluated::Pairs => {
-            let errors = model.pair_errors();
-            let names = model.shapes().iter().map(|shape| shape.name.clone());
-            let labels: Vec<String> = names.collect();
-            match asked.form {
-                EvaluationForm::Json => {
-                    let line = json!({"labels": labels, "errors": errors}).to_string();
-                    report::ascii_json(&line) + "\n"
-                }
-                _ => evaluation::pairs(&labels, &errors, charset),
-            }
+            shown(asked, &given.evaluate(&model), None, charset)
         }
         Evaluated::Peer(peer) => {
             let reached = peer.evaluate(&model, &asked.peers);
-            if asked.form == EvaluationForm::Json {
-                let line = json::text(&EvaluationJson {
-                    evaluation: &reached.evaluation,
-                    peer: Some(&reached),
-                });
-                report::ascii_json(&line) + "\n"
-            } else {
-                let text = shown(asked, &reached.evaluation, charset)?;
-                text + &charset.lines(&evaluation::features(Some(&reached)))
-            }
+            shown(asked, &reached.evaluation, Some(&reached), charset)
         }
-        Evaluated::Noise(noise) => noise::degradation(&model, noise, asked.form, charset)?,
-        Evaluated::HalfStep => {
-            noise::half_step(&model, asked.form == EvaluationForm::Json, charset)?
-        }
-        Evaluated::AllPeers => {
-            let all = Peer::ALL.map(|peer| peer.evaluate(&model, &asked.peers));
-            let limit = Evaluation::of(&model);
-            match asked.form {
-                EvaluationForm::Json => {
-                    let mut table = serde_json::Map::new();
-                    for reached in &all {
-                        let error = json!(reached.evaluation.error());
-                        table.insert(reached.peer.name().to_owned(), error);
-                    }
-                    table.insert("limit".to_owned(), json!(limit.error()));
-                    json::text(&table) + "\n"
-                }
-                _ => evaluation::peers(&all, &limit, charset),
-            }
-        }
-    };
-    Ok(text)
+        Evaluated::Greedy => Ok(chosen(&model, asked, charset)),
+        Evaluated::Pairs => Ok(pairs(&model, as_json, charset)),
+        Evaluated::AllPeers => Ok(all_peers(&model, asked, charset)),
+        Evaluated::Noise(noise) => noise::degradation(&model, noise, asked.form, charset),
+        Evaluated::HalfStep => noise::half_step(&model, as_json, charset),
+    }
 }
 
-/// One evaluation, in the form that is asked for.
+/// The descriptors that [`greedy`] chooses one by one, and what each step reaches.
+fn chosen(model: &Model, asked: &ConfusionArguments, charset: Charset) -> String {
+    let (chosen, limit) = (greedy(model, &asked.roundings), Evaluation::of(model));
+    if asked.form != EvaluationForm::Json {
+        return evaluation::greedy(&chosen, &limit, charset);
+    }
+    let steps = chosen.iter().map(|(descriptor, reached)| {
+        json!({
+            "descriptor": descriptor.key(),
+            "right": evaluation::number(reached.right),
+            "error": reached.error(),
+            "values": reached.keys,
+        })
+    });
+    let steps: Vec<_> = steps.collect();
+    json!({"chosen": steps, "limit": limit.error()}).to_string() + "\n"
+}
+
+/// The error of the best classifier for each pair of shapes, as if there were no others.
+fn pairs(model: &Model, as_json: bool, charset: Charset) -> String {
+    let errors = model.pair_errors();
+    let names = model.shapes().iter().map(|shape| shape.name.clone());
+    let labels: Vec<String> = names.collect();
+    if !as_json {
+        return evaluation::pairs(&labels, &errors, charset);
+    }
+    let line = json!({"labels": labels, "errors": errors}).to_string();
+    report::ascii_json(&line) + "\n"
+}
+
+/// The errors of all other classifiers beside the limit.
+fn all_peers(model: &Model, asked: &ConfusionArguments, charset: Charset) -> String {
+    let all = Peer::ALL.map(|peer| peer.evaluate(model, &asked.peers));
+    let limit = Evaluation::of(model);
+    if asked.form != EvaluationForm::Json {
+        return evaluation::peers(&all, &limit, charset);
+    }
+    let errors = all.iter().map(|reached| {
+        let error = json!(reached.evaluation.error());
+        (reached.peer.name().to_owned(), error)
+    });
+    let limit = ("limit".to_owned(), json!(limit.error()));
+    let table: serde_json::Map<_, _> = errors.chain([limit]).collect();
+    json::text(&table) + "\n"
+}
+
+/// One evaluation, in the form that is asked for; `peer` is the classifier, if it is not the best one. Writes the file
+/// of its matrix too, if one is asked for.
 fn shown(
     asked: &ConfusionArguments,
     own: &Evaluation,
+    peer: Option<&PeerEvaluation>,
     charset: Charset,
 ) -> Result<String, CliError> {
     if let Some(path) = &asked.export {
@@ -110,7 +107,7 @@ fn shown(
         EvaluationForm::Json => {
             let line = json::text(&EvaluationJson {
                 evaluation: own,
-                peer: None,
+                peer,
             });
             report::ascii_json(&line) + "\n"
         }
@@ -118,7 +115,9 @@ fn shown(
         EvaluationForm::Text => {
             let matrix = evaluation::matrix(own, charset);
             let worst = evaluation::worst_pairs(own, charset);
-            format!("{}\n{matrix}{worst}", evaluation::summary(own, charset))
+            let features = charset.lines(&evaluation::features(peer));
+            let summary = evaluation::summary(own, charset);
+            format!("{summary}\n{matrix}{worst}{features}")
         }
     })
 }

@@ -125,6 +125,15 @@ pub(crate) struct FramesOutput<'a> {
     pub(crate) notes: &'a mut dyn FnMut(&str),
 }
 
+impl FramesOutput<'_> {
+    /// Writes an answer, or a part of it.
+    fn write(&mut self, text: &str) -> Result<(), CliError> {
+        self.answers
+            .write_all(text.as_bytes())
+            .map_err(CliError::Write)
+    }
+}
+
 /// Lists a recording, or answers the frames that are asked for.
 ///
 /// # Errors
@@ -139,7 +148,7 @@ pub(crate) fn frames(
         options = options.with_shape(rows, columns);
     }
     let mut recording = RecordingFile::open(&asked.file, options)?;
-    let mut processing = processing(&asked.processing)?;
+    let processing = processing(&asked.processing)?;
     let mut scan = Scan::of(&mut recording, &processing.view);
     for warning in scan.warnings(recording.name()) {
         (output.notes)(&format!("warning: {warning}"));
@@ -153,53 +162,29 @@ pub(crate) fn frames(
             Form::Json(_) => recording_list::json(scan.format, &scan.channels),
             Form::Table(_) => recording_list::text(scan.format, &scan.channels, output.charset),
         };
-        output
-            .answers
-            .write_all(text.as_bytes())
-            .map_err(CliError::Write)?;
+        output.write(&text)?;
         return damage.map_or(Ok(()), Err);
     };
     let channel = scan.channel(&recording, asked.processing.channel.as_deref())?;
     let listed = &scan.channels[channel];
-    if listed.info.shape.is_none() {
-        let values = listed.values;
-        return Err(recording.damaged(RecordingError::Shape { values }));
-    }
-    let rule = rule(&recording, &asked.processing, &listed.info)?;
-    processing.rule = Some(rule.rule);
-    processing.least = rule.least;
-    if asked.processing.tare > 0 {
-        tare(
-            &mut recording,
-            channel,
-            asked.processing.tare,
-            &mut processing,
-        )?;
-    }
-    let number = match choice {
-        FrameChoice::Peak => peak(&mut recording, channel, listed, &mut processing)?,
-        FrameChoice::Number(number) => Some(number),
-        _ => None,
-    };
-    let selection = Selection {
-        choice,
-        number,
-        channel,
-        rule,
-        tare: asked.processing.tare,
-        heat: asked.heat,
-    };
+    let (selection, mut processing) =
+        Selection::new(asked, choice, processing, &mut recording, (channel, listed))?;
     let answered = selection.answer(&mut recording, listed, &mut processing, &mut output)?;
-    match (damage, answered) {
-        (Some(damage), _) => Err(damage),
-        (None, true) => Ok(()),
-        (None, false) => Err(recording.refused(&match choice {
-            FrameChoice::Label(label) => format!("no frame is labelled {label}"),
-            FrameChoice::Number(number) if listed.frames > 0 => {
-                format!("no frame {number}, expected 0 to {}", listed.frames - 1)
-            }
-            _ => "no frames".to_owned(),
-        })),
+    match damage {
+        Some(damage) => Err(damage),
+        None if answered => Ok(()),
+        None => Err(recording.refused(&missing(choice, listed))),
+    }
+}
+
+/// Why there is no frame as asked for in an undamaged recording.
+fn missing(choice: FrameChoice, listed: &ListedChannel) -> String {
+    match choice {
+        FrameChoice::Label(label) => format!("no frame is labelled {label}"),
+        FrameChoice::Number(number) if listed.frames > 0 => {
+            format!("no frame {number}, expected 0 to {}", listed.frames - 1)
+        }
+        _ => "no frames".to_owned(),
     }
 }
 
@@ -336,6 +321,46 @@ struct Selection {
 }
 
 impl Selection {
+    /// The frames that are asked for, and how they become imprints: with the rule, and with the tare and the peak, for
+    /// which the recording is read again.
+    ///
+    /// # Errors
+    /// If the recording does not say rows and columns, if there is no rule, or too few frames for the tare.
+    fn new(
+        asked: &FramesArguments,
+        choice: FrameChoice,
+        mut processing: Processing,
+        recording: &mut RecordingFile,
+        (channel, listed): (usize, &ListedChannel),
+    ) -> Result<(Self, Processing), CliError> {
+        if listed.info.shape.is_none() {
+            let values = listed.values;
+            return Err(recording.damaged(RecordingError::Shape { values }));
+        }
+        let rule = rule(recording, &asked.processing, &listed.info)?;
+        processing.rule = Some(rule.rule);
+        processing.least = rule.least;
+        let tare = asked.processing.tare;
+        if tare > 0 {
+            self::tare(recording, channel, tare, &mut processing)?;
+        }
+        let number = match choice {
+            FrameChoice::Peak => peak(recording, channel, listed, &mut processing)?,
+            FrameChoice::Number(number) => Some(number),
+            FrameChoice::Label(_) | FrameChoice::All => None,
+        };
+        let selection = Self {
+            choice,
+            number,
+            channel,
+            rule,
+            tare,
+            heat: asked.heat,
+        };
+        Ok((selection, processing))
+    }
+
+    /// Whether this frame is to be answered.
     fn has(&self, frame: &Frame) -> bool {
         frame.channel == self.channel
             && match self.choice {
@@ -432,10 +457,7 @@ impl Selection {
                 [gap, map.as_deref().unwrap_or(""), &table].concat()
             }
         };
-        output
-            .answers
-            .write_all(text.as_bytes())
-            .map_err(CliError::Write)
+        output.write(&text)
     }
 
     /// What the frame is, in lines: `iscan.csv, frame 65 (label 66), 6.5 s`, and sum, maximum and threshold.

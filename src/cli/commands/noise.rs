@@ -17,7 +17,9 @@ use crate::cli::output::progress::Progress;
 use crate::cli::output::report;
 use crate::cli::signals::Signals;
 use crate::formats::json;
-use crate::recognition::{Model, Noise, RecognitionRate, TrainingError, random_taxels};
+use crate::recognition::{
+    Model, Noise, RecognitionRate, TouchesUntil, TrainingError, random_taxels,
+};
 
 /// A line of the table: the noise, the number of dead taxels, and what was reached.
 struct NoiseRow {
@@ -174,7 +176,10 @@ fn percent_fine(share: f64) -> String {
     format!("{:.3} %", 100.0 * share)
 }
 
-/// How many touches of one shape it takes until it is as probable as wanted.
+/// How many touches of one shape it takes until it is as probable as wanted. Returns what is printed.
+///
+/// # Errors
+/// If there is no such model, or a signal ends the simulation.
 pub(crate) fn touches(
     asked: &TouchesArguments,
     shelf: &Shelf,
@@ -191,56 +196,79 @@ pub(crate) fn touches(
     let results = model.touches_until(asked.until, asked.runs, asked.seed, &tell);
     let results = results.ok_or_else(|| signals.failure())?;
     progress.finish();
+    let names = model.shapes().iter().map(|shape| shape.name.as_str());
+    let shapes: Vec<_> = names.zip(&results).collect();
+    let all = mean(&results);
+    Ok(if asked.json {
+        report::ascii_json(&touches_json(asked, &shapes, all)) + "\n"
+    } else {
+        charset.lines(&touches_text(asked, &shapes, all))
+    })
+}
+
+/// The mean of the shapes' means, each shape counted once, and its standard error. Their runs are independent, so the
+/// variances add up.
+fn mean(results: &[TouchesUntil]) -> (f64, f64) {
     #[expect(clippy::cast_precision_loss, reason = "the number of shapes is small")]
     let shapes = results.len() as f64;
     let mean = results.iter().map(|own| own.mean).sum::<f64>() / shapes;
     let variance: f64 = results.iter().map(|own| own.standard_error.powi(2)).sum();
-    let error = variance.sqrt() / shapes;
-    let named = model.shapes().iter().zip(&results);
-    if asked.json {
-        let shapes: Vec<_> = named
-            .map(|(shape, own)| {
-                json!({
-                    "name": shape.name,
-                    "mean": own.mean,
-                    "standard_error": own.standard_error,
-                    "reached": own.reached,
-                    "runs": own.runs,
-                    "right": own.right,
-                })
-            })
-            .collect();
-        let answer = json!({
-            "until": asked.until,
-            "seed": asked.seed,
-            "mean": mean,
-            "standard_error": error,
-            "shapes": shapes,
-        });
-        return Ok(report::ascii_json(&answer.to_string()) + "\n");
-    }
-    let width = model
-        .shapes()
+    (mean, variance.sqrt() / shapes)
+}
+
+/// One line of JSON: what was asked, the mean of all shapes, and each shape.
+fn touches_json(
+    asked: &TouchesArguments,
+    shapes: &[(&str, &TouchesUntil)],
+    (mean, error): (f64, f64),
+) -> String {
+    let shapes: Vec<_> = shapes
         .iter()
-        .map(|shape| shape.name.chars().count());
-    let width = width.fold(10, usize::max);
+        .map(|(name, own)| {
+            json!({
+                "name": name,
+                "mean": own.mean,
+                "standard_error": own.standard_error,
+                "reached": own.reached,
+                "runs": own.runs,
+                "right": own.right,
+            })
+        })
+        .collect();
+    let answer = json!({
+        "until": asked.until,
+        "seed": asked.seed,
+        "mean": mean,
+        "standard_error": error,
+        "shapes": shapes,
+    });
+    answer.to_string()
+}
+
+/// A line for each shape, the mean and its standard error, with the number of runs that did not get there; and one for
+/// all of them.
+fn touches_text(
+    asked: &TouchesArguments,
+    shapes: &[(&str, &TouchesUntil)],
+    (mean, error): (f64, f64),
+) -> String {
+    let widths = shapes.iter().map(|(name, _)| name.chars().count());
+    let width = widths.fold("all shapes".len(), usize::max);
     let mut text = format!(
         "touches until a shape is {} probable; {} runs each, seed {}\n",
         percent(asked.until),
         asked.runs,
         asked.seed
     );
-    for (shape, own) in named {
+    for (name, own) in shapes {
         let left = match own.runs - own.reached {
             0 => String::new(),
             never => format!("  {never} runs never"),
         };
-        let _ = writeln!(
-            text,
-            "  {:<width$}  {:>7.2} ± {:.2}{left}",
-            shape.name, own.mean, own.standard_error
-        );
+        let (mean, error) = (own.mean, own.standard_error);
+        // Cannot fail: the text is kept in memory.
+        let _ = writeln!(text, "  {name:<width$}  {mean:>7.2} ± {error:.2}{left}");
     }
     let _ = writeln!(text, "  {:<width$}  {mean:>7.2} ± {error:.2}", "all shapes");
-    Ok(charset.lines(&text))
+    text
 }

@@ -12,7 +12,7 @@ use crate::cli::error::CliError;
 use crate::cli::input::content::{self, Content};
 use crate::cli::input::lines::{self, MAX_LINE};
 use crate::cli::input::shapes::{Located, Shelf};
-use crate::cli::output::answer::{self, AnswerJson};
+use crate::cli::output::answer::{AnswerJson, AnswerText};
 use crate::cli::output::charset::Charset;
 use crate::cli::output::pose::PoseReport;
 use crate::cli::output::report;
@@ -24,7 +24,12 @@ use crate::recognition::{Answer, AnswerState, Evidence, Method, Model, NoisyReco
 /// The exit status if the answer is not the expected one.
 const UNEXPECTED: u8 = 3;
 
-/// Answers what is asked, on `output`, and returns the exit status.
+/// Answers what is asked, on `output`, and returns the exit status: 0, or [`UNEXPECTED`] if `--expect` names another
+/// shape than one of the answers.
+///
+/// # Errors
+/// [`CliError::NoModel`] and [`CliError::NotInModel`] for names that do not exist; [`CliError::Mask`] for dead taxels of
+/// another size than the touch; and those of reading files. A line that is wrong is answered by its error instead.
 pub(crate) fn recognise(
     asked: &RecogniseArguments,
     shelf: &Shelf,
@@ -32,72 +37,12 @@ pub(crate) fn recognise(
     output: &mut dyn Write,
 ) -> Result<u8, CliError> {
     let model = model::find(&asked.model, shelf)?;
-    let noise = match &asked.mask {
-        Some(mask) => asked
-            .noise
-            .map(|noise| Ok(noise.without(imprint_of(mask, shelf)?))),
-        None => asked.noise.map(Ok::<_, CliError>),
+    let mut recogniser = Recogniser::new(asked, &model, shelf)?;
+    let expected = match input(&asked.what, shelf)? {
+        Asked::Imprint(imprint) => recogniser.answer_imprint(imprint, charset, output)?,
+        Asked::Lines(input) => recogniser.answer_lines(input, output)?,
     };
-    let noisy = noise
-        .transpose()?
-        .map(|noise| NoisyRecogniser::new(&model, noise));
-    let mut recogniser = Recogniser {
-        asked,
-        model: &model,
-        noisy,
-    };
-    if let Some(name) = &asked.expect
-        && recogniser
-            .model
-            .shapes()
-            .iter()
-            .all(|shape| shape.name != *name)
-    {
-        return Err(CliError::NotInModel { name: name.clone() });
-    }
-    match input(&asked.what, shelf)? {
-        Asked::Imprint(imprint) => {
-            let touches = [imprint];
-            let (answer, method) = recogniser.answer(&touches)?;
-            let text = if asked.json {
-                let line = json::text(&recogniser.json(&touches, (&answer, method), None));
-                report::ascii_json(&line) + "\n"
-            } else {
-                let mut text = answer::text(
-                    &model,
-                    &touches[0],
-                    &answer,
-                    (asked.top, asked.noise),
-                    charset,
-                );
-                if let Some(pose) = recogniser.pose(&touches, &answer) {
-                    text += &pose.text(&touches[0], charset);
-                }
-                text
-            };
-            output.write_all(text.as_bytes()).map_err(CliError::Write)?;
-            output.flush().map_err(CliError::Write)?;
-            Ok(if recogniser.expected(&answer) {
-                0
-            } else {
-                UNEXPECTED
-            })
-        }
-        Asked::Lines(input) => {
-            let mut expected = true;
-            lines::answer_each(input, output, "touch", |line, text| {
-                let line = Line::read(line)?;
-                let answered = recogniser.answer(&line.touches);
-                let (answer, method) = answered.map_err(|error| error.to_string())?;
-                expected &= recogniser.expected(&answer);
-                let own =
-                    json::text(&recogniser.json(&line.touches, (&answer, method), Some(&line)));
-                text.extend(report::ascii_json(&own).bytes());
-                Ok(())
-            })?;
-            Ok(if expected { 0 } else { UNEXPECTED })
-        }
-    }
+    Ok(if expected { 0 } else { UNEXPECTED })
 }
 
 /// A model, and how it is asked.
@@ -108,7 +53,85 @@ struct Recogniser<'a> {
     noisy: Option<NoisyRecogniser<'a>>,
 }
 
-impl Recogniser<'_> {
+impl<'a> Recogniser<'a> {
+    /// Prepares a model for the noise that is asked for.
+    ///
+    /// # Errors
+    /// If the model has no shape of the expected name, or the mask cannot be read.
+    fn new(
+        asked: &'a RecogniseArguments,
+        model: &'a Model,
+        shelf: &Shelf,
+    ) -> Result<Self, CliError> {
+        let noise = match (asked.noise, &asked.mask) {
+            (Some(noise), Some(mask)) => Some(noise.without(imprint_of(mask, shelf)?)),
+            (noise, _) => noise,
+        };
+        if let Some(name) = &asked.expect
+            && model.shapes().iter().all(|shape| shape.name != *name)
+        {
+            return Err(CliError::NotInModel { name: name.clone() });
+        }
+        let noisy = noise.map(|noise| NoisyRecogniser::new(model, noise));
+        Ok(Self {
+            asked,
+            model,
+            noisy,
+        })
+    }
+
+    /// Answers one imprint, as text or JSON. Returns whether the answer is the expected one.
+    fn answer_imprint(
+        &mut self,
+        imprint: Imprint,
+        charset: Charset,
+        output: &mut dyn Write,
+    ) -> Result<bool, CliError> {
+        let touches = [imprint];
+        let (answer, method) = self.answer(&touches)?;
+        let text = if self.asked.json {
+            let line = json::text(&self.json(&touches, (&answer, method), None));
+            report::ascii_json(&line) + "\n"
+        } else {
+            let text = AnswerText {
+                model: self.model,
+                touch: &imprint,
+                answer: &answer,
+                top: self.asked.top,
+                noise: self.asked.noise,
+            };
+            let pose = self.pose(&touches, &answer);
+            let pose = pose.map_or_else(String::new, |pose| pose.text(&imprint, charset));
+            text.text(charset) + &pose
+        };
+        output.write_all(text.as_bytes()).map_err(CliError::Write)?;
+        output.flush().map_err(CliError::Write)?;
+        Ok(self.expected(&answer))
+    }
+
+    /// Answers each line by a line of JSON. Returns whether all answers are the expected one.
+    fn answer_lines(
+        &mut self,
+        input: Box<dyn Read>,
+        output: &mut dyn Write,
+    ) -> Result<bool, CliError> {
+        let mut expected = true;
+        lines::answer_each(input, output, "touch", |line, text| {
+            let line = Line::read(line)?;
+            let answered = self.answer(&line.touches);
+            let (answer, method) = answered.map_err(|error| error.to_string())?;
+            expected &= self.expected(&answer);
+            let own = json::text(&self.json(&line.touches, (&answer, method), Some(&line)));
+            text.extend(report::ascii_json(&own).bytes());
+            Ok(())
+        })?;
+        Ok(expected)
+    }
+
+    /// Names the shape that left all these touches, and says by which method.
+    ///
+    /// # Errors
+    /// [`CliError::Mask`] if the mask of dead taxels has another size than a touch.
     fn answer(&mut self, touches: &[Imprint]) -> Result<(Answer, Method), CliError> {
         if let Some(noisy) = &mut self.noisy {
             for touch in touches {
@@ -132,12 +155,13 @@ impl Recogniser<'_> {
         Ok((answer, Method::Exact))
     }
 
-    fn json<'a>(
-        &'a self,
+    /// An answer as JSON; `line` is the question, if it was one of many.
+    fn json<'b>(
+        &'b self,
         touches: &[Imprint],
-        (answer, method): (&'a Answer, Method),
-        line: Option<&'a Line>,
-    ) -> AnswerJson<'a> {
+        (answer, method): (&'b Answer, Method),
+        line: Option<&'b Line>,
+    ) -> AnswerJson<'b> {
         AnswerJson {
             model: self.model,
             answer,

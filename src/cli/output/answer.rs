@@ -86,71 +86,107 @@ struct Ranked<'a> {
 }
 
 /// An answer for people: the name and how far it can be trusted, bars, and the nearest imprint.
-pub(crate) fn text(
-    model: &Model,
-    touch: &Imprint,
-    answer: &Answer,
-    (top, noise): (Option<usize>, Option<Noise>),
-    charset: Charset,
-) -> String {
-    let name = |shape: usize| model.shapes()[shape].name.as_str();
-    let mut text = match (answer.state, answer.shape) {
-        (AnswerState::Tied, _) => {
-            let tied: Vec<&str> = answer.tied.iter().map(|&shape| name(shape)).collect();
-            format!("{}: tied\n", tied.join(" or "))
+/// ```text
+/// ellipse: probable
+///   ellipse  ##########################         87.3 %
+///   hexagon  ####                               12.7 %
+/// nearest: ellipse, 2 taxels differ
+///   ..##+...
+///   ..##-...
+///   # both   + only in the touch   - only in the nearest imprint
+/// ```
+pub(crate) struct AnswerText<'a> {
+    pub(crate) model: &'a Model,
+    /// The last touch, which is compared with the nearest imprint.
+    pub(crate) touch: &'a Imprint,
+    pub(crate) answer: &'a Answer,
+    /// How many shapes of the ranking are shown; eight if not given.
+    pub(crate) top: Option<usize>,
+    pub(crate) noise: Option<Noise>,
+}
+
+impl AnswerText<'_> {
+    /// The whole text.
+    pub(crate) fn text(&self, charset: Charset) -> String {
+        let mut text = self.verdict();
+        if let Some(noise) = self.noise {
+            let flip = noise.flip();
+            text += &format!("noise {flip}: every key in every place is compared\n");
         }
-        (AnswerState::Rejected, _) => "rejected: no shape is as probable as asked for\n".to_owned(),
-        (state, Some(shape)) => format!("{}: {}\n", name(shape), state.name()),
-        (_, None) => "unknown: no shape of the model leaves this imprint\n".to_owned(),
-    };
-    if let Some(noise) = noise {
-        let _ = writeln!(
-            text,
-            "noise {}: every key in every place is compared",
-            noise.flip()
-        );
+        if self.answer.at_rim {
+            text += "the imprint reaches the rim of the matrix: it may be cut off\n";
+        }
+        text += &self.ranking(charset);
+        text += &self.nearest();
+        charset.lines(&text)
     }
-    if answer.at_rim {
-        text += "the imprint reaches the rim of the matrix: it may be cut off\n";
+
+    /// The name of a shape of the model.
+    fn name(&self, shape: usize) -> &str {
+        &self.model.shapes()[shape].name
     }
-    let shown = answer.ranking.iter().take(top.unwrap_or(SHOWN));
-    let width = shown.clone().map(|&(shape, _)| name(shape).chars().count());
-    let width = width.max().unwrap_or_default();
-    for &(shape, probability) in shown {
-        let _ = writeln!(
-            text,
-            "  {:<width$}  {:<BAR$}  {:>7}",
-            name(shape),
-            bar(probability, BAR, charset),
-            percent(probability)
-        );
+
+    /// The first line: which shape it is and how certain that is, or why there is none.
+    fn verdict(&self) -> String {
+        match (self.answer.state, self.answer.shape) {
+            (AnswerState::Tied, _) => {
+                let tied = self.answer.tied.iter().map(|&shape| self.name(shape));
+                let tied: Vec<&str> = tied.collect();
+                format!("{}: tied\n", tied.join(" or "))
+            }
+            (AnswerState::Rejected, _) => {
+                "rejected: no shape is as probable as asked for\n".to_owned()
+            }
+            (state, Some(shape)) => format!("{}: {}\n", self.name(shape), state.name()),
+            (_, None) => "unknown: no shape of the model leaves this imprint\n".to_owned(),
+        }
     }
-    let rest = answer.ranking.len().saturating_sub(top.unwrap_or(SHOWN));
-    if rest > 0 {
-        let _ = writeln!(text, "  and {rest} more");
+
+    /// The likeliest shapes, each with a bar and its probability, and how many more there are.
+    fn ranking(&self, charset: Charset) -> String {
+        let top = self.top.unwrap_or(SHOWN);
+        let shown = self.answer.ranking.iter().take(top);
+        let width = shown
+            .clone()
+            .map(|&(shape, _)| self.name(shape).chars().count())
+            .max();
+        let width = width.unwrap_or(0);
+        let mut text = String::new();
+        for &(shape, probability) in shown {
+            let (name, percent) = (self.name(shape), percent(probability));
+            let bar = bar(probability, BAR, charset);
+            // Cannot fail: the text is kept in memory.
+            let _ = writeln!(text, "  {name:<width$}  {bar:<BAR$}  {percent:>7}");
+        }
+        let rest = self.answer.ranking.len().saturating_sub(top);
+        if rest > 0 {
+            let _ = writeln!(text, "  and {rest} more");
+        }
+        text
     }
-    let touches = [*touch];
-    if let Some(nearest) = model.nearest_of(Evidence::of(&touches))
-        && nearest.distance > 0
-    {
-        let noun = if nearest.distance == 1 {
+
+    /// The nearest imprint of the model and where it differs from the touch; nothing if it is the touch.
+    fn nearest(&self) -> String {
+        let touches = [*self.touch];
+        let nearest = self.model.nearest_of(Evidence::of(&touches));
+        let Some(nearest) = nearest.filter(|nearest| nearest.distance > 0) else {
+            return String::new();
+        };
+        let (name, distance) = (self.name(nearest.shape), nearest.distance);
+        let differ = if distance == 1 {
             "taxel differs"
         } else {
             "taxels differ"
         };
-        let _ = writeln!(
-            text,
-            "nearest: {}, {} {noun}",
-            name(nearest.shape),
-            nearest.distance
-        );
-        text += &differences(touch, &nearest.imprint);
-        text += "  # both   + only in the touch   - only in the nearest imprint\n";
+        format!(
+            "nearest: {name}, {distance} {differ}\n{}\
+             \x20 # both   + only in the touch   - only in the nearest imprint\n",
+            differences(self.touch, &nearest.imprint)
+        )
     }
-    charset.lines(&text)
 }
 
-/// Two imprints of one size in one matrix.
+/// Two imprints of one size in one matrix: `#` both, `+` only the touch, `-` only the nearest, `.` neither.
 fn differences(touch: &Imprint, nearest: &Imprint) -> String {
     let mut text = String::new();
     for row in 0..touch.rows() {
