@@ -39,7 +39,7 @@ pub(crate) fn recognise(
     let model = model::find(&asked.model, shelf)?;
     let mut recogniser = Recogniser::new(asked, &model, shelf)?;
     let expected = match input(&asked.what, shelf)? {
-        Asked::Imprint(imprint) => recogniser.answer_imprint(imprint, charset, output)?,
+        Asked::Imprint(imprint) => recogniser.answer_imprint(&imprint, charset, output)?,
         Asked::Lines(input) => recogniser.answer_lines(input, output)?,
     };
     Ok(if expected { 0 } else { UNEXPECTED })
@@ -83,11 +83,11 @@ impl<'a> Recogniser<'a> {
     /// Answers one imprint, as text or JSON. Returns whether the answer is the expected one.
     fn answer_imprint(
         &mut self,
-        imprint: Imprint,
+        imprint: &Imprint,
         charset: Charset,
         output: &mut dyn Write,
     ) -> Result<bool, CliError> {
-        let touches = [imprint];
+        let touches = [*imprint];
         let (answer, method) = self.answer(&touches)?;
         let text = if self.asked.json {
             let line = json::text(&self.json(&touches, (&answer, method), None));
@@ -95,13 +95,13 @@ impl<'a> Recogniser<'a> {
         } else {
             let text = AnswerText {
                 model: self.model,
-                touch: &imprint,
+                touch: imprint,
                 answer: &answer,
                 top: self.asked.top,
                 noise: self.asked.noise,
             };
             let pose = self.pose(&touches, &answer);
-            let pose = pose.map_or_else(String::new, |pose| pose.text(&imprint, charset));
+            let pose = pose.map_or_else(String::new, |pose| pose.text(imprint, charset));
             text.text(charset) + &pose
         };
         output.write_all(text.as_bytes()).map_err(CliError::Write)?;
