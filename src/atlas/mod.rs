@@ -26,9 +26,12 @@ mod order;
 
 mod histogram;
 
+mod filter;
+
 pub(crate) use counter::ImprintCounter;
 pub use distinct::{Atlas, AtlasEntry};
 pub use feature::{Feature, ImprintSummary, feature_values, features};
+pub use filter::{AtlasFilter, FilterError};
 pub use histogram::Histogram;
 pub use order::{SortKey, sorted};
 pub(crate) use packing::Layout;

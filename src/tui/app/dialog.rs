@@ -10,6 +10,8 @@ use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot};
 use crate::tui::compare::Comparison;
 use crate::tui::explore::export::ExportDialog;
+use crate::tui::explore::filter::FilterDialog;
+use crate::tui::explore::mark::MarkDialog;
 use crate::tui::explore::ranges::state::RangesForm;
 use crate::tui::explore::results::Results;
 use crate::tui::explore::running::Running;
@@ -54,6 +56,10 @@ pub enum Dialog {
     Results(Box<Results>),
     /// The name of the file to export to.
     Export(ExportDialog),
+    /// The filter of the list of imprints.
+    Filter(FilterDialog),
+    /// The letter of a mark.
+    Mark(MarkDialog),
     /// Recognition of the shape on the matrix.
     Recognition(Box<Recognition>),
     /// A random touch that is to be named.
@@ -80,6 +86,8 @@ impl Dialog {
             Self::Running(page) => page,
             Self::Results(page) => &**page,
             Self::Export(page) => page,
+            Self::Filter(page) => page,
+            Self::Mark(page) => page,
             Self::Recognition(page) => &**page,
             Self::Exercise(page) => &**page,
             Self::Confusion(page) => &**page,

@@ -133,6 +133,8 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
         Dialog::Running(running) => explore::work::in_running(app, running, &message),
         Dialog::Results(results) => explore::update::in_results(app, results, message),
         Dialog::Export(dialog) => explore::update::in_export(app, dialog, &message),
+        Dialog::Filter(dialog) => explore::prompts::in_filter(app, dialog, &message),
+        Dialog::Mark(dialog) => explore::prompts::in_mark(app, dialog, &message),
         Dialog::Recognition(page) => recognise::update::in_recognition(app, page, message),
         Dialog::Exercise(page) => recognise::update::in_exercise(app, page, message),
         Dialog::Confusion(page) => recognise::update::in_confusion(app, page, &message),

@@ -30,6 +30,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     page: ExplorePage::Histogram,
     title: "histogram",
     context: Context::Histogram,
+    sifted: false,
     draw,
     click: |_, _, _| None,
     update: choose_descriptor,

@@ -3,19 +3,23 @@
 //! ```text
 //!    #  ↓poses      %   x0   y0  p  h       na   >7      #12     headings, an arrow at what rows are sorted by
 //! >  7     366   0.47 5.00 5.00  1  0       36   ·▄▄·    ▄██▄    the selected row, thumbnails from it on
-//!   12     360   0.46 5.05 5.00  1  1       34   ·▀▀·    ·▀▀·
+//!  a12     360   0.46 5.05 5.00  1  1       34   ·▀▀·    ·▀▀·    a row that is marked by a letter
 //! imprint 7 at x0 5.00, y0 5.00; 1 piece, 0 holes, na 36         everything about the selected one
 //! ```
 //! A row has the number of the imprint, how many poses leave it and their share, its first pose, pieces and holes, and
 //! the value of the chosen descriptor. The first pose gives way first where there is little room, then the thumbnails.
+//! Left and right choose a heading, and `s` sorts by it; a click on a heading does both.
+
+use std::collections::BTreeMap;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::atlas::{AtlasEntry, SortKey};
+use crate::atlas::AtlasEntry;
 use crate::formats::value::{counted, fitting, grouped};
 use crate::pose::Axis;
 use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::explore::column::ListColumn;
 use crate::tui::explore::message::{ExploreMessage, ExplorePage};
 use crate::tui::explore::page::ResultsPage;
 use crate::tui::explore::results::Results;
@@ -36,14 +40,19 @@ pub static PAGE: ResultsPage = ResultsPage {
     page: ExplorePage::Imprints,
     title: "imprints",
     context: Context::Imprints,
+    sifted: true,
     draw,
     click,
     update,
 };
 
-/// A click selects a row, a click on the selected row takes it.
+/// A click selects a row, a click on the selected row takes it, and one on a heading sorts by it.
 fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
-    let row = ImprintList::of(page, results).row(at, results)?;
+    let list = ImprintList::of(page, results);
+    if let Some(column) = list.heading(at) {
+        return Some(Message::Explore(ExploreMessage::Sort(column)));
+    }
+    let row = list.row(at, results)?;
     Some(if row == results.selected() {
         Message::Accept
     } else {
@@ -51,8 +60,8 @@ fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
     })
 }
 
-/// Selects a row.
-fn update(results: &mut Results, message: &Message, _page: Rect) {
+/// Selects a row, or another heading.
+fn update(results: &mut Results, message: &Message, page: Rect) {
     match *message {
         Message::Scroll(lines) => {
             let by = isize::from(lines);
@@ -61,6 +70,11 @@ fn update(results: &mut Results, message: &Message, _page: Rect) {
         Message::ScrollTo(Endpoint::First) => results.select(0),
         Message::ScrollTo(Endpoint::Last) => results.select(usize::MAX),
         Message::Explore(ExploreMessage::Select(row)) => results.select(row),
+        Message::Explore(ExploreMessage::Columns(by)) => {
+            let shown = ImprintList::of(page, results).columns();
+            let shown: Vec<ListColumn> = shown.into_iter().map(|(column, _)| column).collect();
+            results.move_heading(by, &shown);
+        }
         _ => {}
     }
 }
@@ -146,6 +160,36 @@ impl ImprintList {
         }
     }
 
+    /// The columns that rows can be sorted by, from left to right, with the characters that each takes, those of the gap
+    /// before it among them.
+    pub fn columns(&self) -> Vec<(ListColumn, usize)> {
+        let place = self.place.iter();
+        let place = place.map(|&(axis, width)| (ListColumn::Place(axis), width + 1));
+        let first = [
+            (ListColumn::FirstPose, SIGN + self.id),
+            (ListColumn::Poses, 1 + self.poses + 1 + SHARE),
+        ];
+        let last = [
+            (ListColumn::Pieces, 3),
+            (ListColumn::Holes, 3),
+            (ListColumn::Value, 1 + VALUE),
+        ];
+        first.into_iter().chain(place).chain(last).collect()
+    }
+
+    /// The column whose heading is at a place of the screen.
+    fn heading(&self, place: Position) -> Option<ListColumn> {
+        if !self.head.contains(place) {
+            return None;
+        }
+        let mut rest = usize::from(place.x - self.head.x);
+        self.columns().into_iter().find_map(|(column, width)| {
+            let inside = rest < width;
+            rest = rest.saturating_sub(width);
+            inside.then_some(column)
+        })
+    }
+
     /// The row at a place of the screen.
     pub fn row(&self, place: Position, results: &Results) -> Option<usize> {
         let row = self.first + usize::from(place.y.checked_sub(self.rows.y)?);
@@ -156,20 +200,25 @@ impl ImprintList {
 /// Draws the page. Returns where the selected row is.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
     let list = ImprintList::of(page, results);
-    let head = heading(theme, results, &list);
-    write::line(buffer, list.head, theme, [(head.as_str(), Role::Title)]);
+    draw_headings(theme, results, &list, buffer);
+    if results.row_count() == 0 {
+        let text = format!("no imprint fits {}", results.filter());
+        write::line(buffer, list.rows, theme, [(text.as_str(), Role::Quiet)]);
+    }
     let visible = usize::from(list.rows.height);
+    let marks = marked(results);
     let mut cursor = None;
     for (index, entry) in results.rows_from(list.first).take(visible) {
         let row = write::row(list.rows, index - list.first);
         let selected = index == results.selected();
         let (sign, role) = if selected {
-            ("> ", Role::Focus)
+            ('>', Role::Focus)
         } else {
-            ("  ", Role::Text)
+            (' ', Role::Text)
         };
+        let sign = format!("{sign}{}", marks.get(&entry.id).unwrap_or(&' '));
         let text = row_text(theme, results, &list, &entry);
-        let pieces = [(sign, Role::Key), (text.as_str(), role)];
+        let pieces = [(sign.as_str(), Role::Key), (text.as_str(), role)];
         write::line(buffer, row, theme, pieces);
         if selected {
             cursor = Some(Position::new(row.x, row.y));
@@ -183,31 +232,53 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
     cursor
 }
 
-/// The headings, an arrow at what the rows are sorted by.
-fn heading(theme: &Theme, results: &Results, list: &ImprintList) -> String {
+/// The headings, an arrow at what the rows are sorted by. The chosen one looks like the selected row.
+fn draw_headings(theme: &Theme, results: &Results, list: &ImprintList, buffer: &mut Buffer) {
     let (by, descending) = results.sort_key();
-    let marked = |title: &str, key: SortKey| {
-        let arrow = (by == key).then(|| theme.sorted(descending));
-        arrow.into_iter().chain(title.chars()).collect::<String>()
-    };
-    let (id, poses) = (list.id, list.poses);
-    let mut text = format!(
-        "  {:>id$} {:>poses$} {:>SHARE$}",
-        marked("#", SortKey::FirstPose),
-        marked("poses", SortKey::Poses),
-        "%"
-    );
-    for &(axis, width) in &list.place {
-        text += &format!(" {:>width$}", axis.parameter().row().short);
-    }
     let key: String = results.feature().key.chars().take(VALUE - 1).collect();
-    text += &format!(
-        " {:>2} {:>2} {:>VALUE$}",
-        marked("p", SortKey::Pieces),
-        marked("h", SortKey::Holes),
-        marked(&key, SortKey::Value)
-    );
-    text
+    let mut pieces: Vec<(String, Role)> = Vec::new();
+    for (column, width) in list.columns() {
+        let title = match column {
+            ListColumn::FirstPose => "#",
+            ListColumn::Poses => "poses",
+            ListColumn::Place(axis) => axis.parameter().row().short,
+            ListColumn::Pieces => "p",
+            ListColumn::Holes => "h",
+            ListColumn::Value => &key,
+        };
+        let arrow = (by == column).then(|| theme.sorted(descending));
+        let title: String = arrow.into_iter().chain(title.chars()).collect();
+        let behind = if column == ListColumn::Poses {
+            1 + SHARE
+        } else {
+            0
+        };
+        let room = width - behind;
+        let gap = room.saturating_sub(write::width(&title));
+        let role = if column == results.heading() {
+            Role::Focus
+        } else {
+            Role::Title
+        };
+        pieces.push((" ".repeat(gap), Role::Title));
+        pieces.push((title, role));
+        if behind > 0 {
+            pieces.push((format!("{:>behind$}", "%"), Role::Title));
+        }
+    }
+    let pieces = pieces.iter().map(|(text, role)| (text.as_str(), *role));
+    write::line(buffer, list.head, theme, pieces);
+}
+
+/// The letters of the imprints that are marked, by number; of several the first one.
+fn marked(results: &Results) -> BTreeMap<u32, char> {
+    let mut marked = BTreeMap::new();
+    for (&letter, &pose) in results.marks() {
+        if let Some(id) = results.id_at(pose) {
+            marked.entry(id).or_insert(letter);
+        }
+    }
+    marked
 }
 
 /// The text of a row, without the sign of the selected one.

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::atlas::SortKey;
 use crate::figure::FigureKind;
 use crate::pose::PoseGrid;
 use crate::source::Source;
 use crate::storage::Existing;
 use crate::sweep::SweepResult;
+use crate::tui::explore::column::ListColumn;
 use crate::tui::live::message::LiveEvent;
 use crate::tui::recognise::message::RecognitionEvent;
 
@@ -77,10 +77,18 @@ pub enum ExploreMessage {
     NextPage(i8),
     /// The descriptor this many further on; negative goes back.
     Feature(i8),
-    /// Scroll the columns of the statistics by this many.
+    /// Scroll the columns of the statistics by this many; choose another heading of the list.
     Columns(i8),
-    /// Sort the imprints by a key; again by the same key, reversed.
-    Sort(SortKey),
+    /// Sort the imprints by a column; again by the same column, reversed.
+    Sort(ListColumn),
+    /// The same by the column that is chosen in the headings.
+    SortHere,
+    /// Ask for an expression that imprints of the list have to fulfil.
+    Filter,
+    /// Ask for a letter to mark what is selected with.
+    Mark,
+    /// Ask for the letter of a mark to go to.
+    Jump,
     /// Select the imprint that is on the matrix.
     Find,
     /// Go from an imprint of the list to the map, or back.

@@ -3,7 +3,8 @@
 //! ```text
 //! message    what is asked for, and what workers answer
 //! ranges     the form                                     running: work in progress
-//! results    what was found and what is looked at         export: the name of a file
+//! results    what was found and what is looked at         column: what its list is sorted by
+//! export  filter  mark       prompts: a file, a condition, a letter     prompts: what keys do in the last two
 //! page       what the results know of a page of theirs    pages: the table of pages
 //! imprints  statistics  histogram  map                    the pages
 //! work       from the form to the results                 update: what keys do over the results
@@ -15,9 +16,15 @@ pub mod ranges;
 
 pub mod running;
 
+pub mod column;
+
 pub mod results;
 
 pub mod export;
+
+pub mod filter;
+
+pub mod mark;
 
 pub mod page;
 
@@ -34,5 +41,7 @@ pub mod pages;
 pub mod view;
 
 pub mod work;
+
+pub mod prompts;
 
 pub mod update;

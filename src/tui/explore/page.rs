@@ -21,6 +21,8 @@ pub struct ResultsPage {
     pub title: &'static str,
     /// The place where its keys are looked up.
     pub context: Context,
+    /// Whether it shows only the imprints that the filter keeps.
+    pub sifted: bool,
     /// Draws it. Returns where the cursor is, None if the page has none.
     pub draw: fn(&Results, &Theme, &mut Buffer, Rect) -> Option<Position>,
     /// What a click at a position means.

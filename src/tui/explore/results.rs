@@ -3,12 +3,16 @@
 //! What was found never changes and is shared with workers that write it to files. All pages look at the same
 //! descriptor, and the list and the map lead to each other.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::atlas::{AtlasEntry, Feature, SortKey, features, sorted};
+use crate::atlas::{AtlasEntry, AtlasFilter, Feature, features};
 use crate::imprint::Imprint;
+use crate::index::wide;
 use crate::pose::{Axis, Pose, PoseIndex};
 use crate::sweep::SweepResult;
+use crate::touch::Plane;
+use crate::tui::explore::column::ListColumn;
 use crate::tui::explore::message::{ExplorePage, Findings, Zoom};
 use crate::tui::keys::key::Arrow;
 use crate::tui::widget::number::around;
@@ -25,8 +29,14 @@ pub struct Results {
     /// Its value for each imprint.
     values: Vec<Option<f64>>,
     /// What rows are sorted by, and whether the largest comes first.
-    sort: (SortKey, bool),
-    /// The imprints' numbers, sorted.
+    sort: (ListColumn, bool),
+    /// The heading that is chosen to sort by.
+    heading: ListColumn,
+    /// What rows have to fulfil, as it was typed; empty for nothing.
+    filter: String,
+    /// Whether it keeps each imprint, by number; empty if it keeps all.
+    kept: Vec<bool>,
+    /// The numbers of the imprints that it keeps, sorted.
     rows: Vec<u32>,
     /// The index of the selected row.
     selected: usize,
@@ -34,6 +44,8 @@ pub struct Results {
     column: usize,
     /// Where the cursor of the map is.
     place: PoseIndex,
+    /// The poses that were marked, by letter.
+    marks: BTreeMap<char, u64>,
 }
 
 impl Results {
@@ -44,11 +56,15 @@ impl Results {
             feature: 0,
             values: findings.sweep.atlas.values(0),
             findings,
-            sort: (SortKey::Poses, true),
+            sort: (ListColumn::Poses, true),
+            heading: ListColumn::Poses,
+            filter: String::new(),
+            kept: Vec::new(),
             rows: Vec::new(),
             selected: 0,
             column: 0,
             place: PoseIndex::new([0; 5]),
+            marks: BTreeMap::new(),
         };
         results.arrange();
         results
@@ -104,34 +120,85 @@ impl Results {
     pub fn choose_feature(&mut self, number: usize) {
         self.feature = number.min(features().len() - 1);
         self.values = self.sweep().atlas.values(self.feature);
-        if self.sort.0 == SortKey::Value {
+        if self.sort.0 == ListColumn::Value {
             self.arrange();
         }
     }
 
     /// What the imprints are sorted by, and whether from the largest on.
-    pub fn sort_key(&self) -> (SortKey, bool) {
+    pub fn sort_key(&self) -> (ListColumn, bool) {
         self.sort
     }
 
-    /// Sorts by something, the largest first but for the first poses; again, the other way. The imprint that is selected
-    /// stays selected.
-    pub fn sort(&mut self, by: SortKey) {
+    /// Sorts by a column, which becomes the chosen heading; again, the other way. The imprint that is selected stays
+    /// selected.
+    pub fn sort(&mut self, by: ListColumn) {
         self.sort = if self.sort.0 == by {
             (by, !self.sort.1)
         } else {
-            (by, by != SortKey::FirstPose)
+            (by, by.largest_first())
+        };
+        self.heading = by;
+        self.arrange();
+    }
+
+    /// The heading that is chosen to sort by.
+    pub fn heading(&self) -> ListColumn {
+        self.heading
+    }
+
+    /// Chooses a heading, the one `by` further on among those that are shown; at the ends it stays.
+    pub fn move_heading(&mut self, by: i8, shown: &[ListColumn]) {
+        let now = shown.iter().position(|&column| column == self.heading);
+        let next = now.map_or(0, |now| now.saturating_add_signed(isize::from(by)));
+        if let Some(&column) = shown.get(next.min(shown.len().saturating_sub(1))) {
+            self.heading = column;
+        }
+    }
+
+    /// What rows have to fulfil, as it was typed; empty for nothing.
+    pub fn filter(&self) -> &str {
+        &self.filter
+    }
+
+    /// Keeps only the rows that fulfil an expression, given as it was typed and as it was read. The selected imprint stays
+    /// selected if it is kept.
+    pub fn keep(&mut self, typed: &str, filter: &AtlasFilter) {
+        typed.trim().clone_into(&mut self.filter);
+        self.kept = if filter.is_empty() {
+            Vec::new()
+        } else {
+            filter.keeps(&self.sweep().atlas)
         };
         self.arrange();
     }
 
-    /// Sorts, and keeps the selected imprint selected.
+    /// Whether the filter keeps an imprint.
+    pub fn keeps(&self, id: u32) -> bool {
+        let kept = self.kept.get(wide(id));
+        kept.is_none_or(|&kept| kept)
+    }
+
+    /// Marks the pose that is looked at with a letter; false where there is none.
+    pub fn mark(&mut self, letter: char) -> bool {
+        let pose = self.pose();
+        self.marks.extend(pose.map(|pose| (letter, pose)));
+        pose.is_some()
+    }
+
+    /// The marked poses with their letters, in the order of these.
+    pub fn marks(&self) -> &BTreeMap<char, u64> {
+        &self.marks
+    }
+
+    /// Sorts and sifts, and keeps the selected imprint selected; where the filter took it, another one near the same row.
     fn arrange(&mut self) {
         let selected = self.rows.get(self.selected).copied();
         let (by, descending) = self.sort;
-        self.rows = sorted(&self.sweep().atlas, &self.values, by, descending);
-        if let Some(id) = selected {
-            self.find(id);
+        let rows = by.order(self.sweep(), &self.values, descending);
+        self.rows = rows.into_iter().filter(|&id| self.keeps(id)).collect();
+        if !selected.is_some_and(|id| self.find(id)) {
+            self.select(self.selected);
         }
     }
 
@@ -156,7 +223,7 @@ impl Results {
         self.selected = row.min(self.rows.len().saturating_sub(1));
     }
 
-    /// Selects an imprint; false where there is none of that number.
+    /// Selects an imprint; false where the list has none of that number.
     pub fn find(&mut self, id: u32) -> bool {
         let row = self.rows.iter().position(|&row| row == id);
         self.selected = row.unwrap_or(self.selected);
@@ -252,6 +319,13 @@ impl Results {
             .fold(parameter.row().short.len(), usize::max)
     }
 
+    /// The number of the imprint that a pose leaves, None if the pose was not swept.
+    pub fn id_at(&self, pose: u64) -> Option<u32> {
+        let grid = &self.sweep().grid;
+        let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(grid.pose(pose)));
+        self.id(&imprint)
+    }
+
     /// The number of an imprint in the atlas.
     pub fn id(&self, imprint: &Imprint) -> Option<u32> {
         self.sweep().atlas.find(imprint)
@@ -285,13 +359,13 @@ mod tests {
     #[test]
     fn the_selected_imprint_stays_selected_when_the_descriptor_changes() {
         let mut results = results();
-        results.sort(SortKey::Value);
+        results.sort(ListColumn::Value);
         results.select(7);
         let selected = |results: &Results| results.rows_from(results.selected()).next();
         let before = selected(&results).map(|(_, entry)| entry.id);
         results.next_feature(3);
         assert_eq!(selected(&results).map(|(_, entry)| entry.id), before);
-        results.sort(SortKey::Poses);
+        results.sort(ListColumn::Poses);
         assert_eq!(selected(&results).map(|(_, entry)| entry.id), before);
         let (_, most) = results.rows_from(0).next().expect("a row");
         assert!(
@@ -299,8 +373,62 @@ mod tests {
                 .rows_from(0)
                 .all(|(_, entry)| entry.count <= most.count)
         );
-        results.sort(SortKey::Poses);
-        assert_eq!(results.sort_key(), (SortKey::Poses, false));
+        results.sort(ListColumn::Poses);
+        assert_eq!(results.sort_key(), (ListColumn::Poses, false));
+    }
+
+    #[test]
+    fn a_filter_and_marks_keep_to_the_imprints_they_name() {
+        let mut results = results();
+        let all = results.row_count();
+        results.select(7);
+        let ids = |results: &Results| {
+            let rows = results.rows_from(0);
+            rows.map(|(_, entry)| entry.id).collect::<Vec<_>>()
+        };
+        let before = ids(&results);
+        assert!(results.mark('a'));
+        let kept = before[7];
+        let typed = format!("id<={kept}");
+        results.keep(&typed, &typed.parse().expect("an expression"));
+        assert!(results.row_count() < all && results.filter() == typed);
+        assert_eq!(ids(&results)[results.selected()], kept);
+        assert!(results.keeps(kept) && !results.keeps(kept + 1));
+        assert!(!results.find(kept + 1));
+        results.keep("id<0", &"id<0".parse().expect("an expression"));
+        assert_eq!((results.row_count(), results.selected()), (0, 0));
+        assert!(results.pose().is_none() && !results.mark('b'));
+        results.keep("", &AtlasFilter::default());
+        assert_eq!(ids(&results), before);
+        let entry = results.sweep().atlas.entry(kept).expect("it is there");
+        assert_eq!(results.marks().get(&'a'), Some(&entry.first_pose));
+        assert_eq!(results.marks().len(), 1);
+    }
+
+    #[test]
+    fn rows_are_sorted_by_any_heading_that_is_shown() {
+        let mut results = results();
+        let shown = [
+            ListColumn::FirstPose,
+            ListColumn::Place(Axis::X0),
+            ListColumn::Place(Axis::Angle),
+        ];
+        results.move_heading(1, &shown);
+        assert_eq!(results.heading(), shown[0], "that of poses is not shown");
+        results.move_heading(1, &shown);
+        results.sort(results.heading());
+        let places = |results: &Results, axis| {
+            let grid = results.sweep().grid.clone();
+            let rows = results.rows_from(0);
+            rows.map(|(_, entry)| grid.pose(entry.first_pose)[axis])
+                .collect::<Vec<f64>>()
+        };
+        assert!(places(&results, Axis::X0).is_sorted());
+        results.move_heading(9, &shown);
+        results.sort(results.heading());
+        results.sort(results.heading());
+        let angles = places(&results, Axis::Angle);
+        assert!(angles.iter().rev().is_sorted(), "{angles:?}");
     }
 
     #[test]

@@ -27,6 +27,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     page: ExplorePage::Statistics,
     title: "statistics",
     context: Context::Statistics,
+    sifted: false,
     draw,
     click: |results, page, at| {
         let row = StatisticsTable::of(page, results).row(at)?;

@@ -1,4 +1,5 @@
-//! What messages do over the results of a sweep, and in the prompt for the name of an export.
+//! What messages do over the results of a sweep, and in the prompt for the name of an export. The other prompts have
+//! [`crate::tui::explore::prompts`].
 //!
 //! Messages that mean the same on all pages are handled here: the page, the descriptor, the order, the map's angle and
 //! zoom. Scrolling and selecting are left to the page's own row in [`crate::tui::explore::pages`].
@@ -15,8 +16,11 @@ use crate::tui::app::message::Message;
 use crate::tui::app::page::Page;
 use crate::tui::app::state::App;
 use crate::tui::explore::export::ExportDialog;
+use crate::tui::explore::filter::FilterDialog;
+use crate::tui::explore::mark::MarkPurpose;
 use crate::tui::explore::message::{ExploreMessage, ExplorePage, name_of};
 use crate::tui::explore::pages;
+use crate::tui::explore::prompts::mark_dialog;
 use crate::tui::explore::results::Results;
 use crate::tui::explore::view::ResultPanes;
 use crate::tui::explore::work::act;
@@ -40,7 +44,7 @@ pub(crate) fn in_results(
             let entry = results.rows_from(row).next();
             app.dialogs.push(Dialog::Results(results));
             if let Some((_, entry)) = entry {
-                compare_with(app, &format!("imprint {}", row + 1), &entry.imprint);
+                compare_with(app, &format!("imprint {}", entry.id), &entry.imprint);
             }
             return None;
         }
@@ -51,6 +55,22 @@ pub(crate) fn in_results(
             app.dialogs.push(Dialog::Results(results));
             let dialog = ExportDialog::proposing(&name);
             app.dialogs.push(Dialog::Export(dialog));
+            return None;
+        }
+        Message::Explore(ExploreMessage::Filter) => {
+            let dialog = FilterDialog::new(&results);
+            app.dialogs.push(Dialog::Results(results));
+            app.dialogs.push(Dialog::Filter(dialog));
+            return None;
+        }
+        Message::Explore(asked @ (ExploreMessage::Mark | ExploreMessage::Jump)) => {
+            let purpose = match asked {
+                ExploreMessage::Jump => MarkPurpose::Jump,
+                _ => MarkPurpose::Set,
+            };
+            let dialog = mark_dialog(app, &results, purpose);
+            app.dialogs.push(Dialog::Results(results));
+            app.dialogs.extend(dialog.map(Dialog::Mark));
             return None;
         }
         Message::Explore(ExploreMessage::Ranges) => {
@@ -77,6 +97,7 @@ fn look(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
         ExploreMessage::NextPage(by) => results.next_page(by),
         ExploreMessage::Feature(by) => results.next_feature(by),
         ExploreMessage::Sort(by) => results.sort(by),
+        ExploreMessage::SortHere => results.sort(results.heading()),
         ExploreMessage::Find => find(app, results),
         ExploreMessage::Follow => follow(app, results),
         ExploreMessage::Point(x0, y0) => results.point(x0, y0),
@@ -90,12 +111,14 @@ fn look(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
 fn find(app: &mut App, results: &mut Results) {
     let imprint = app.reading().imprint;
     if let Some(id) = results.id(&imprint) {
-        results.find(id);
+        select(app, results, id);
         return;
     }
     match results.sweep().atlas.find_shifted(&imprint) {
         Some((id, right, down)) => {
-            results.find(id);
+            if !select(app, results, id) {
+                return;
+            }
             let way = |by: i8, noun: &str, [less, more]: [&str; 2]| {
                 let count = counted(by.unsigned_abs().into(), noun);
                 let towards = if by < 0 { less } else { more };
@@ -116,6 +139,18 @@ fn find(app: &mut App, results: &mut Results) {
     }
 }
 
+/// Selects an imprint in the list; where the filter hides it, says so and returns false.
+fn select(app: &mut App, results: &mut Results, id: u32) -> bool {
+    let found = results.find(id);
+    if !found {
+        refuse(
+            app,
+            format!("the filter hides imprint {id}: {}", results.filter()),
+        );
+    }
+    found
+}
+
 /// From the list to the first pose on the map, from the map to the imprint in the list.
 fn follow(app: &mut App, results: &mut Results) {
     let Some(pose) = results.pose() else { return };
@@ -123,12 +158,11 @@ fn follow(app: &mut App, results: &mut Results) {
         results.go_to_pose(pose);
         return results.turn_to(ExplorePage::Map);
     }
-    let grid = &results.sweep().grid;
-    let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(grid.pose(pose)));
-    match results.id(&imprint) {
+    match results.id_at(pose) {
         Some(id) => {
-            results.find(id);
-            results.turn_to(ExplorePage::Imprints);
+            if select(app, results, id) {
+                results.turn_to(ExplorePage::Imprints);
+            }
         }
         None => refuse(app, "this pose was not swept: the sweep was stopped"),
     }
@@ -138,6 +172,7 @@ fn follow(app: &mut App, results: &mut Results) {
 fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
     let grid = &results.sweep().grid;
     let Some(pose) = results.pose().map(|number| grid.pose(number)) else {
+        refuse(app, "nothing is selected here");
         app.dialogs.push(Dialog::Results(results));
         return None;
     };

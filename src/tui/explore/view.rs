@@ -13,6 +13,7 @@ use ratatui::layout::{Position, Rect};
 use crate::formats::value::{counted, grouped};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot};
+use crate::tui::explore::filter::kept_of_all;
 use crate::tui::explore::message::{ExploreMessage, ExplorePage, name_of};
 use crate::tui::explore::pages;
 use crate::tui::explore::results::Results;
@@ -140,7 +141,7 @@ impl ResultPanes {
     }
 }
 
-/// How much there is; first of all, whether it is all.
+/// How much there is; first of all, whether it is all. On the pages that follow the filter, how many imprints it keeps.
 fn summary(results: &Results) -> String {
     let result = results.sweep();
     let poses = if result.complete() {
@@ -154,5 +155,12 @@ fn summary(results: &Results) -> String {
     };
     let what = name_of(result.grid.source());
     let distinct = counted(result.atlas.len() as u64, "distinct imprint");
-    format!("{what}: {poses}, {distinct}")
+    if results.filter().is_empty() || !pages::row(results.page()).sifted {
+        return format!("{what}: {poses}, {distinct}");
+    }
+    let kept = kept_of_all(results);
+    format!(
+        "{what}: {poses}, {kept} distinct imprints: {}",
+        results.filter()
+    )
 }

@@ -10,9 +10,9 @@
 //! help for each place; a settings file gives them other keys, by name; and [`crate::tui::prompt::commands`] makes the
 //! `:` commands of them.
 
-use crate::atlas::SortKey;
 use crate::tui::app::message::Purpose;
 use crate::tui::app::message::{Copied, Endpoint, Erase, Layer, Message};
+use crate::tui::explore::column::ListColumn;
 use crate::tui::explore::message::{ExploreMessage, ExplorePage, Zoom};
 use crate::tui::keys::key::Arrow;
 use crate::tui::live::message::LiveMessage;
@@ -255,11 +255,15 @@ actions! {
         PREVIOUS_DESCRIPTOR "previous-descriptor" [] Explore(Feature(-1));
         LATER_COLUMNS "later-columns" [] Explore(Columns(1));
         EARLIER_COLUMNS "earlier-columns" [] Explore(Columns(-1));
-        SORT_BY_POSES "sort-by-poses" [] Explore(Sort(SortKey::Poses));
-        SORT_BY_FIRST_POSE "sort-by-first-pose" [] Explore(Sort(SortKey::FirstPose));
-        SORT_BY_VALUE "sort-by-value" [] Explore(Sort(SortKey::Value));
-        SORT_BY_PIECES "sort-by-pieces" [] Explore(Sort(SortKey::Pieces));
-        SORT_BY_HOLES "sort-by-holes" [] Explore(Sort(SortKey::Holes));
+        SORT "sort" [] Explore(ExploreMessage::SortHere);
+        SORT_BY_POSES "sort-by-poses" [] Explore(Sort(ListColumn::Poses));
+        SORT_BY_FIRST_POSE "sort-by-first-pose" [] Explore(Sort(ListColumn::FirstPose));
+        SORT_BY_VALUE "sort-by-value" [] Explore(Sort(ListColumn::Value));
+        SORT_BY_PIECES "sort-by-pieces" [] Explore(Sort(ListColumn::Pieces));
+        SORT_BY_HOLES "sort-by-holes" [] Explore(Sort(ListColumn::Holes));
+        FILTER "filter" [] Explore(ExploreMessage::Filter);
+        MARK "mark" [] Explore(ExploreMessage::Mark);
+        JUMP "jump" [] Explore(ExploreMessage::Jump);
         FIND "find" [] Explore(ExploreMessage::Find);
         FOLLOW "follow" [] Explore(ExploreMessage::Follow);
         EXPORT "export" [] Explore(ExploreMessage::Export);

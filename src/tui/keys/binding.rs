@@ -97,6 +97,10 @@ contexts! {
     Histogram "histogram" "At the histogram" Ignored, EXPLORE;
     /// On its map page.
     Map "map" "On the map" Ignored, EXPLORE;
+    /// In the field for a filter of the list of imprints.
+    Filter "filter" "Filtering the list of imprints" Typed, EVERYWHERE;
+    /// Where a letter is asked for, to mark something or to go to a mark.
+    Mark "mark" "Choosing the letter of a mark" Typed, EVERYWHERE;
     /// In the field for the name of an exported file.
     Export "export" "Exporting" Typed, EVERYWHERE;
     /// On the matrix, with recognition beside it.

@@ -193,6 +193,8 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "page" "next, previous page";
         [Char('d') => NEXT_DESCRIPTOR, Char('D') => PREVIOUS_DESCRIPTOR]
             "descriptor" "next, previous descriptor";
+        [Char('m') => MARK, Char('\'') => JUMP]
+            "" "mark what is selected by a letter; go to a mark";
         [Char('x') => EXPORT]
             "export" "write a file: .csv .jsonl .npz imprints, .npy poses";
         [Char('e') => RANGES] "ranges" "explore other ranges";
@@ -206,11 +208,15 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten imprints back, on";
         [Home => FIRST, End => LAST] "" "first, last imprint";
         [Enter => ACCEPT] "to matrix" "put it onto the matrix, in its first pose";
-        [Char('n') => SORT_BY_POSES,
-            Char('f') => SORT_BY_FIRST_POSE,
-            Char('v') => SORT_BY_VALUE,
-            Char('c') => SORT_BY_PIECES, Char('h') => SORT_BY_HOLES]
-            "sort" "poses, 1st pose, value, pieces, holes; again: reversed";
+        [Char('/') => FILTER, Char('f') => FILTER]
+            "filter" "show only imprints that fit, such as na>=40 holes=0";
+        [Char('s') => SORT] "sort" "sort by the chosen heading; again: reversed";
+        [LEFT => EARLIER_COLUMNS, RIGHT => LATER_COLUMNS]
+            "" "choose a heading to sort by";
+        [Char('#') => SORT_BY_FIRST_POSE, Char('n') => SORT_BY_POSES,
+            Char('c') => SORT_BY_PIECES, Char('h') => SORT_BY_HOLES,
+            Char('v') => SORT_BY_VALUE]
+            "" "sort by 1st pose, poses, pieces, holes, value";
         [Char('=') => COMPARE] "compare" "compare it with the imprint on the matrix";
         [Char('j') => FIND] "find" "jump to the imprint that is on the matrix";
         [Char('g') => FOLLOW] "map" "go to its first pose on the map";
@@ -245,6 +251,21 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "" "next, previous zoom x, zoom y of a picture";
         [Enter => ACCEPT] "to matrix" "put this pose onto the matrix";
         [Char('g') => FOLLOW] "list" "go to its imprint in the list";
+    }
+
+    Filter {
+        [Enter => ACCEPT] "keep" "keep the filter; an empty one shows all imprints";
+        [LEFT => LEFT, RIGHT => RIGHT] "" "move in the line";
+        [Home => TO_START, End => TO_END] "" "to its start, its end";
+        [Backspace => ERASE_BEFORE, Delete => ERASE_UNDER] "" "delete a character";
+        [Ctrl('u') => ERASE_ALL] "clear" "clear the line";
+        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "leave the list as it was";
+        [F1 => HELP] "help" "these keys";
+    }
+
+    Mark {
+        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "no letter now; any letter marks, or goes there";
+        [F1 => HELP] "help" "these keys";
     }
 
     Export {

@@ -27,6 +27,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     page: ExplorePage::Map,
     title: "map",
     context: Context::Map,
+    sifted: false,
     draw: view::draw,
     click,
     update,

@@ -1,0 +1,373 @@
+//! Which imprints of an atlas fit an expression that somebody typed: `na>=40 holes=0 f<12`.
+//!
+//! ```text
+//! na>=40 holes=0      every condition has to hold; blanks around the sign do not matter
+//!  |  |  40           a number; the signs are = != < <= > >=
+//!  |  sign
+//!  a descriptor as in JSON and CSV, or id, count (also: poses), pieces, holes
+//! ```
+//! `=` and `!=` compare as many decimals as were typed: `f=12.3` holds for 12.26 and for 12.34. An imprint for which a
+//! descriptor does not exist fulfils no condition on it.
+
+use rayon::prelude::*;
+
+use crate::atlas::distinct::Atlas;
+use crate::atlas::feature::{ImprintSummary, feature_values, features};
+use crate::quote::shortened;
+
+/// Conditions that all have to hold.
+///
+/// ```
+/// # use taxel::prelude::*;
+/// use taxel::atlas::AtlasFilter;
+/// let square = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
+/// let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
+/// let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
+/// let atlas = Sweep::new(&grid).run().atlas;
+/// // At angle 0 a rectangle 6 × 3 leaves 18 taxels, or 21 and more where it lies between them.
+/// let filter: AtlasFilter = "na>18 holes=0".parse()?;
+/// let kept = filter.keeps(&atlas).into_iter().filter(|&kept| kept).count();
+/// assert!(0 < kept && kept < atlas.len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct AtlasFilter {
+    conditions: Vec<Condition>,
+}
+
+/// Why an expression is none.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FilterError {
+    /// A word that names nothing.
+    #[error("{found:?} is not known here; possible are {}", names().join(", "))]
+    Unknown {
+        /// The word.
+        found: String,
+    },
+    /// No sign after a name.
+    #[error("{name}: expected = != < <= > or >= after it")]
+    Sign {
+        /// The name.
+        name: String,
+    },
+    /// No number after a sign.
+    #[error("{before}: expected a number after it, found {found:?}")]
+    Number {
+        /// The name and the sign.
+        before: String,
+        /// What stands there.
+        found: String,
+    },
+}
+
+/// What a condition is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Quantity {
+    Id,
+    Count,
+    Pieces,
+    Holes,
+    /// By its index in [`features`].
+    Feature(usize),
+}
+
+/// A sign between a quantity and a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Relation {
+    Equal,
+    Unequal,
+    Less,
+    AtMost,
+    Greater,
+    AtLeast,
+}
+
+/// The signs; of two that begin alike the longer one comes first.
+const SIGNS: [(&str, Relation); 7] = [
+    ("!=", Relation::Unequal),
+    ("<=", Relation::AtMost),
+    (">=", Relation::AtLeast),
+    ("==", Relation::Equal),
+    ("=", Relation::Equal),
+    ("<", Relation::Less),
+    (">", Relation::Greater),
+];
+
+/// The names beside those of the features; the last one is another word for `count`.
+const OWN_NAMES: [(&str, Quantity); 5] = [
+    ("id", Quantity::Id),
+    ("count", Quantity::Count),
+    ("pieces", Quantity::Pieces),
+    ("holes", Quantity::Holes),
+    ("poses", Quantity::Count),
+];
+
+/// A quantity compared with a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Condition {
+    quantity: Quantity,
+    relation: Relation,
+    number: f64,
+    /// Half of the last decimal that was typed: so far a value may lie from the number and still be equal to it.
+    half: f64,
+}
+
+/// All names that a condition can begin with.
+fn names() -> Vec<&'static str> {
+    let features = features().iter().map(|feature| feature.key.as_str());
+    features.chain(OWN_NAMES.map(|(name, _)| name)).collect()
+}
+
+impl Condition {
+    /// Whether a value of the quantity fulfils it.
+    fn holds(&self, value: f64) -> bool {
+        let equal = (value - self.number).abs() <= self.half;
+        match self.relation {
+            Relation::Equal => equal,
+            Relation::Unequal => !equal,
+            Relation::Less => value < self.number,
+            Relation::AtMost => value <= self.number,
+            Relation::Greater => value > self.number,
+            Relation::AtLeast => value >= self.number,
+        }
+    }
+}
+
+impl std::str::FromStr for AtlasFilter {
+    type Err = FilterError;
+
+    /// Reads an expression; an empty one has no condition.
+    fn from_str(text: &str) -> Result<Self, FilterError> {
+        let mut conditions = Vec::new();
+        let mut rest = text.trim();
+        while !rest.is_empty() {
+            let (condition, after) = condition(rest)?;
+            conditions.push(condition);
+            rest = after.trim_start();
+        }
+        Ok(Self { conditions })
+    }
+}
+
+impl AtlasFilter {
+    /// Whether it has no condition, and so keeps everything.
+    pub fn is_empty(&self) -> bool {
+        self.conditions.is_empty()
+    }
+
+    /// Whether each imprint of an atlas fulfils it, in their order.
+    pub fn keeps(&self, atlas: &Atlas) -> Vec<bool> {
+        let counts: Vec<u64> = atlas.counts().collect();
+        let rows = atlas.summaries().par_iter().zip(counts).enumerate();
+        rows.with_min_len(1024)
+            .map(|(id, (summary, count))| self.fits(id, count, summary))
+            .collect()
+    }
+
+    /// Whether an imprint fulfils all conditions.
+    #[expect(clippy::cast_precision_loss, reason = "compared with a typed number")]
+    fn fits(&self, id: usize, count: u64, summary: &ImprintSummary) -> bool {
+        let mut met = 0;
+        for condition in &self.conditions {
+            let value = match condition.quantity {
+                Quantity::Id => id as f64,
+                Quantity::Count => count as f64,
+                Quantity::Pieces => summary.pieces.into(),
+                Quantity::Holes => summary.holes.into(),
+                Quantity::Feature(_) => continue,
+            };
+            met += usize::from(condition.holds(value));
+        }
+        if let Some(description) = &summary.description {
+            feature_values(description, |index, value| {
+                let own = self.conditions.iter();
+                let own = own.filter(|own| own.quantity == Quantity::Feature(index));
+                met += own.filter(|own| own.holds(value)).count();
+            });
+        }
+        met == self.conditions.len()
+    }
+}
+
+/// The condition that a text begins with, and the text behind it.
+fn condition(text: &str) -> Result<(Condition, &str), FilterError> {
+    let in_name = |c: char| c.is_alphanumeric() || c == '_';
+    let end = text
+        .find(|c: char| !in_name(c))
+        .map_or(text.len(), |end| end);
+    let (name, rest) = text.split_at(end);
+    let Some(quantity) = quantity(name) else {
+        let end = text.find(char::is_whitespace).map_or(text.len(), |end| end);
+        let found = if name.is_empty() { &text[..end] } else { name };
+        let found = shortened(found);
+        return Err(FilterError::Unknown { found });
+    };
+    let rest = rest.trim_start();
+    let signs = SIGNS.iter();
+    let sign = signs
+        .copied()
+        .find_map(|(sign, relation)| Some((sign, relation, rest.strip_prefix(sign)?)));
+    let Some((sign, relation, rest)) = sign else {
+        let name = name.to_owned();
+        return Err(FilterError::Sign { name });
+    };
+    let rest = rest.trim_start();
+    let end = rest.find(char::is_whitespace).map_or(rest.len(), |end| end);
+    let (number, rest) = rest.split_at(end);
+    let value = number.parse().ok().filter(|value: &f64| value.is_finite());
+    let Some(value) = value else {
+        let (before, found) = (format!("{name}{sign}"), shortened(number));
+        return Err(FilterError::Number { before, found });
+    };
+    let condition = Condition {
+        quantity,
+        relation,
+        number: value,
+        half: half_a_unit(number),
+    };
+    Ok((condition, rest))
+}
+
+/// What a name stands for, in small or large letters.
+fn quantity(name: &str) -> Option<Quantity> {
+    let own = OWN_NAMES.iter();
+    let mut own = own
+        .filter(|(own, _)| own.eq_ignore_ascii_case(name))
+        .map(|&(_, quantity)| quantity);
+    let mut features = features().iter();
+    let feature = features.position(|feature| feature.key.eq_ignore_ascii_case(name));
+    feature.map(Quantity::Feature).or(own.next())
+}
+
+/// Half of the last decimal of a number as it was typed; 0 where it has an exponent.
+fn half_a_unit(number: &str) -> f64 {
+    if number.contains(['e', 'E']) {
+        return 0.0;
+    }
+    let decimals = number
+        .split_once('.')
+        .map_or(0, |(_, decimals)| decimals.len());
+    // A hair more, as ends are decimals that f64 cannot hold.
+    let decimals = i32::try_from(decimals).map_or(i32::MAX, |decimals| decimals);
+    0.5 * 10_f64.powi(-decimals) * (1.0 + 1e-9)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Figure, FigureKind};
+    use crate::pose::{Anchor, Axis, PoseGrid, Ranges};
+    use crate::sensor::Sensor;
+    use crate::source::Source;
+    use crate::sweep::Sweep;
+
+    /// Whether a value and a number stand to each other as a sign says.
+    type Rule = fn(f64, f64) -> bool;
+
+    fn filter(text: &str) -> AtlasFilter {
+        text.parse()
+            .unwrap_or_else(|error| panic!("{text}: {error}"))
+    }
+
+    /// A rectangle that leaves the sensor: some imprints are empty.
+    fn atlas() -> Atlas {
+        let figure = Figure::default_of(FigureKind::Rectangle, &Sensor::default());
+        let range = |text: &str| text.parse().expect("a range");
+        let ranges = Ranges::default()
+            .with(Axis::X0, range("-8:15:0.5"))
+            .with(Axis::Y0, range("7:8:0.25"))
+            .with(Axis::Angle, range("0:30:30"));
+        let source = Source::Figure(figure);
+        let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
+        Sweep::new(&grid.expect("in range")).run().atlas
+    }
+
+    #[test]
+    fn every_sign_keeps_what_it_says() {
+        let atlas = atlas();
+        for (index, feature) in features().iter().enumerate() {
+            let values = atlas.values(index);
+            let middle = values.iter().copied().flatten().nth(7).expect("a value");
+            let middle = format!("{middle:.1}");
+            let number: f64 = middle.parse().expect("a number");
+            let rules: [(&str, Rule); 6] = [
+                ("=", |value, number| (value - number).abs() <= 0.05),
+                ("!=", |value, number| (value - number).abs() > 0.05),
+                ("<", |value, number| value < number),
+                ("<=", |value, number| value <= number),
+                (">", |value, number| value > number),
+                (">=", |value, number| value >= number),
+            ];
+            for (sign, rule) in rules {
+                let text = format!("{}{sign}{middle}", feature.key);
+                let kept = filter(&text).keeps(&atlas);
+                for (value, kept) in values.iter().zip(kept) {
+                    // Ends of an interval are decided by a hair.
+                    let at_end =
+                        value.is_some_and(|value| ((value - number).abs() - 0.05).abs() < 1e-6);
+                    let expected = value.is_some_and(|value| rule(value, number));
+                    assert!(at_end || kept == expected, "{text}: {value:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn all_conditions_have_to_hold_and_none_keeps_everything() {
+        let atlas = atlas();
+        let count = |text: &str| {
+            filter(text)
+                .keeps(&atlas)
+                .iter()
+                .filter(|kept| **kept)
+                .count()
+        };
+        assert_eq!(count(""), atlas.len());
+        assert_eq!(count(" \t "), atlas.len());
+        assert!(filter("  ").is_empty() && !filter("na=1").is_empty());
+        assert_eq!(count("id=3"), 1);
+        assert_eq!(count("ID < 3  id>=1"), 2);
+        assert_eq!(count("pieces=0"), 1, "the empty imprint");
+        assert_eq!(count("pieces=0 na!=7"), 0, "it has no NA at all");
+        assert_eq!(count("holes=0"), atlas.len());
+        assert_eq!(count("count>1"), count("poses > 1"));
+        let [low, high] = [count("na<15"), count("na >= 15")];
+        assert_eq!(low + high + 1, atlas.len());
+    }
+
+    #[test]
+    fn an_error_names_the_word_and_what_is_possible() {
+        let error = |text: &str| text.parse::<AtlasFilter>().expect_err(text).to_string();
+        let unknown = error("na>3 weight<5");
+        assert!(
+            unknown.starts_with("\"weight\" is not known here; possible are na, nae, ce, "),
+            "{unknown}"
+        );
+        assert!(
+            unknown.ends_with("id, count, pieces, holes, poses"),
+            "{unknown}"
+        );
+        assert!(error(">=3").starts_with("\">=3\" is not known"));
+        assert_eq!(error("na"), "na: expected = != < <= > or >= after it");
+        assert_eq!(
+            error("na>="),
+            "na>=: expected a number after it, found \"\""
+        );
+        assert_eq!(
+            error("na>=4holes=0"),
+            "na>=: expected a number after it, found \"4holes=0\""
+        );
+        for text in ["na=inf", "na=nan", "na=1e999"] {
+            assert!(error(text).contains("expected a number"), "{text}");
+        }
+    }
+
+    #[test]
+    fn equal_means_equal_in_the_decimals_that_were_typed() {
+        let holds = |text: &str, value: f64| filter(text).conditions[0].holds(value);
+        assert!(holds("f=12.3", 12.26) && holds("f=12.3", 12.34) && !holds("f=12.3", 12.36));
+        assert!(holds("f!=12.3", 12.36) && holds("f=12", 12.36) && !holds("f=12.300", 12.26));
+        assert!(holds("f=1e1", 10.0) && !holds("f=1e1", 10.01));
+    }
+}

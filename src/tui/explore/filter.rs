@@ -1,0 +1,134 @@
+//! The prompt for a filter: what imprints of the list have to fulfil. The list follows as one types.
+//!
+//! ```text
+//! Filter: na>=40 holes=0   312 of 4,102        how many it keeps
+//! Filter: na>=40 weight<3                      what is wrong with it stands above the line
+//! ```
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::atlas::{AtlasFilter, FilterError};
+use crate::formats::value::grouped;
+use crate::tui::app::page::{Page, Slot};
+use crate::tui::explore::results::Results;
+use crate::tui::keys::binding::Context;
+use crate::tui::keys::keymap::Keymap;
+use crate::tui::widget::text_field::TextField;
+use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::write;
+
+/// Nobody types a longer one.
+const LONGEST: usize = 200;
+
+/// The label of the field.
+const LABEL: &str = "Filter: ";
+
+/// What stands behind an empty field.
+const EXAMPLE: &str = "   such as na>=40 holes=0; empty shows all";
+
+/// The field, and what becomes of the list if it is left.
+#[derive(Clone, Debug)]
+pub struct FilterDialog {
+    /// What was typed.
+    pub field: TextField,
+    /// The filter before, and the imprint that was selected.
+    before: (String, Option<u32>),
+    /// How many imprints are kept, of how many; or what is wrong with what was typed.
+    kept: Result<(usize, usize), FilterError>,
+}
+
+/// How many imprints a list has and how many it had without a filter, as people read it: `312 of 4,102`.
+pub fn kept_of_all(results: &Results) -> String {
+    let count = |count: usize| grouped(count as u64);
+    let (kept, all) = (results.row_count(), results.sweep().atlas.len());
+    format!("{} of {}", count(kept), count(all))
+}
+
+impl FilterDialog {
+    /// A field that starts with the filter of a list.
+    pub fn new(results: &Results) -> Self {
+        let selected = results.rows_from(results.selected()).next();
+        let mut field = TextField::new(results.filter(), LONGEST);
+        if !results.filter().is_empty() {
+            field.enter();
+        }
+        Self {
+            field,
+            before: (
+                results.filter().to_owned(),
+                selected.map(|(_, entry)| entry.id),
+            ),
+            kept: Ok((results.row_count(), results.sweep().atlas.len())),
+        }
+    }
+
+    /// Applies what was typed to a list; one that cannot be read leaves it as it is.
+    pub fn apply(&mut self, results: &mut Results) {
+        let typed = self.field.text();
+        self.kept = typed.parse::<AtlasFilter>().map(|filter| {
+            results.keep(typed, &filter);
+            (results.row_count(), results.sweep().atlas.len())
+        });
+    }
+
+    /// What is wrong with what was typed, None if nothing is.
+    pub fn error(&self) -> Option<&FilterError> {
+        self.kept.as_ref().err()
+    }
+
+    /// Gives a list the filter and the selected imprint that it had before.
+    pub fn restore(&self, results: &mut Results) {
+        let (typed, selected) = &self.before;
+        if let Ok(filter) = typed.parse() {
+            results.keep(typed, &filter);
+        }
+        if let Some(id) = selected {
+            results.find(*id);
+        }
+    }
+}
+
+impl Page for FilterDialog {
+    fn context(&self) -> Context {
+        Context::Filter
+    }
+
+    fn slot(&self) -> Slot {
+        Slot::Prompt
+    }
+
+    fn draw(
+        &self,
+        theme: &Theme,
+        _keymap: &Keymap,
+        buffer: &mut Buffer,
+        area: Rect,
+    ) -> Option<Position> {
+        let count = |count: usize| grouped(count as u64);
+        let remark = match self.kept {
+            _ if self.field.text().trim().is_empty() => EXAMPLE.to_owned(),
+            Ok((kept, all)) => format!("   {} of {}", count(kept), count(all)),
+            Err(_) => String::new(),
+        };
+        Some(write::prompt(
+            buffer,
+            area,
+            theme,
+            LABEL,
+            &self.field,
+            &remark,
+        ))
+    }
+
+    /// Its update restores the list.
+    fn cancels_itself(&self) -> bool {
+        true
+    }
+
+    /// What is wrong with what was typed.
+    fn remark(&self, _keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
+        let error = self.error()?;
+        Some((format!("! {error}"), Role::Error))
+    }
+}

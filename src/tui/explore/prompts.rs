@@ -1,0 +1,143 @@
+//! What messages do in the prompts over the results: the filter of the list, and the letters of marks.
+
+use crate::tui::app::change::{inform, refuse};
+use crate::tui::app::dialog::Dialog;
+use crate::tui::app::message::Message;
+use crate::tui::app::state::App;
+use crate::tui::explore::filter::{FilterDialog, kept_of_all};
+use crate::tui::explore::mark::{MarkDialog, MarkPurpose};
+use crate::tui::explore::message::ExplorePage;
+use crate::tui::explore::results::Results;
+use crate::tui::keys::action;
+use crate::tui::keys::binding::Context;
+use crate::tui::runtime::effect::Effect;
+
+/// The results that a prompt stands over.
+fn results(app: &mut App) -> Option<&mut Results> {
+    match app.dialogs.last_mut() {
+        Some(Dialog::Results(results)) => Some(results),
+        _ => None,
+    }
+}
+
+/// Handles a message in the prompt for a filter, which stays open until the filter can be read.
+pub(crate) fn in_filter(
+    app: &mut App,
+    mut dialog: FilterDialog,
+    message: &Message,
+) -> Option<Effect> {
+    let results = results(app)?;
+    match message {
+        Message::Cancel | Message::Quit => {
+            dialog.restore(results);
+            return None;
+        }
+        Message::Accept => {
+            dialog.apply(results);
+            let Some(error) = dialog.error() else {
+                let kept = kept_of_all(results);
+                inform(app, format!("{kept} imprints"));
+                return None;
+            };
+            let error = error.to_string();
+            refuse(app, error);
+        }
+        message => {
+            if dialog.field.take(message) {
+                dialog.apply(results);
+            }
+        }
+    }
+    app.dialogs.push(Dialog::Filter(dialog));
+    None
+}
+
+/// The prompt that asks for a letter; None, and a notice, where there is nothing to mark or to go to.
+pub(crate) fn mark_dialog(
+    app: &mut App,
+    results: &Results,
+    purpose: MarkPurpose,
+) -> Option<MarkDialog> {
+    let text = match purpose {
+        MarkPurpose::Set => {
+            let Some(pose) = results.pose() else {
+                refuse(app, "nothing is selected here");
+                return None;
+            };
+            format!("Mark {} by a letter:", what_lies_at(results, pose))
+        }
+        MarkPurpose::Jump if results.marks().is_empty() => {
+            let key = app.keymap().label(Context::Explore, &action::MARK);
+            refuse(app, format!("no marks yet: {key} and a letter set one"));
+            return None;
+        }
+        MarkPurpose::Jump => {
+            let marks = results.marks().iter();
+            let marks =
+                marks.map(|(letter, &pose)| format!("{letter} {}", what_lies_at(results, pose)));
+            format!("Go to the mark: {}", marks.collect::<Vec<_>>().join(", "))
+        }
+    };
+    Some(MarkDialog::new(purpose, text))
+}
+
+/// The imprint of a pose by its number, or the pose where that is not known.
+fn what_lies_at(results: &Results, pose: u64) -> String {
+    match results.id_at(pose) {
+        Some(id) => format!("imprint {id}"),
+        None => results.pose_text(&results.sweep().grid.pose(pose)),
+    }
+}
+
+/// Handles a message where a letter is asked for: the letter marks or leads to a mark, and anything else ends it.
+pub(crate) fn in_mark(app: &mut App, dialog: MarkDialog, message: &Message) -> Option<Effect> {
+    let Message::Type(letter) = *message else {
+        return None;
+    };
+    let results = results(app)?;
+    if !letter.is_alphabetic() {
+        app.dialogs.push(Dialog::Mark(dialog));
+        refuse(app, format!("{letter:?}: expected a letter"));
+        return None;
+    }
+    match dialog.purpose {
+        MarkPurpose::Set => {
+            results.mark(letter);
+            let key = app.keymap().label(Context::Explore, &action::JUMP);
+            inform(
+                app,
+                format!("marked by {letter}: {key} {letter} leads back"),
+            );
+        }
+        MarkPurpose::Jump => {
+            let Some(&pose) = results.marks().get(&letter) else {
+                refuse(app, format!("no mark {letter}"));
+                return None;
+            };
+            if let Err(error) = go_to(results, pose) {
+                refuse(app, error);
+            }
+        }
+    }
+    None
+}
+
+/// Goes to a marked pose: on the map to the pose itself, elsewhere to its imprint in the list.
+fn go_to(results: &mut Results, pose: u64) -> Result<(), String> {
+    if results.page() == ExplorePage::Map {
+        results.go_to_pose(pose);
+        return Ok(());
+    }
+    let id = results.id_at(pose);
+    let id = id.ok_or("this pose was not swept: the sweep was stopped")?;
+    if !results.find(id) {
+        return Err(format!(
+            "the filter hides imprint {id}: {}",
+            results.filter()
+        ));
+    }
+    if results.page() != ExplorePage::Imprints {
+        results.turn_to(ExplorePage::Imprints);
+    }
+    Ok(())
+}
