@@ -4,6 +4,10 @@
 //! made from the table of parameters ([`parameters`]), so their ranges and defaults are written nowhere else. Values
 //! are parsed here into their types: a file name that is not an atlas, or a range that goes backwards, is a usage
 //! error.
+//!
+//! A command is defined here if its flags are few. Larger ones are in files of their own, see the list of this folder.
+//! The order of the calls is the order in the help; headings (`Figure`, `Sensor`, `Grid`, …) part longer lists of
+//! flags.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -34,6 +38,7 @@ use crate::sensor::SENSOR_PARAMETERS;
 use crate::storage::AtlasFile;
 
 /// The program with all its commands.
+/// Also the source of completions and manual pages, so a new command appears there by itself.
 pub(crate) fn all() -> Command {
     let program = Command::new("taxel")
         .version(env!("TAXEL_VERSION"))
@@ -67,6 +72,7 @@ pub(crate) fn all() -> Command {
 
 /// `taxel figure KIND`: a flag for each parameter that some kind has; [`Given::foreign`](parameters::Given::foreign)
 /// refuses those of another kind.
+/// `taxel figure ellipse --x0 1.99 --radius-x 4`. Angles are degrees clockwise as seen, lengths sides of a cell.
 fn figure() -> Command {
     let kinds = FigureKind::ALL
         .into_iter()
@@ -93,6 +99,7 @@ fn figure() -> Command {
 }
 
 /// `taxel picture NAME|FILE`.
+/// `taxel picture washer --x0 6 --angle 30`. A flag that is not given leaves the picture as it was stored.
 fn picture() -> Command {
     let own = |parameter: Parameter| parameters::arg_with_own(parameter);
     Command::new("picture")
@@ -109,6 +116,7 @@ fn picture() -> Command {
 }
 
 /// `taxel describe NAME|FILE`.
+/// `taxel describe imprint.txt --pitch 2.5`.
 fn describe() -> Command {
     Command::new("describe")
         .about("Describe an imprint or a stored shape")
@@ -121,6 +129,7 @@ fn describe() -> Command {
 }
 
 /// `taxel export NAME|FILE TO`.
+/// `taxel export washer washer.svg`; `-` and `--format` for standard output.
 fn export() -> Command {
     let to = Arg::new("to")
         .value_name("TO")
@@ -155,6 +164,8 @@ fn format() -> Arg {
 }
 
 /// `taxel batch`.
+/// It takes no file: `taxel batch < poses.jsonl > answers.jsonl`. Lines may set a sensor; the flags are for those that
+/// do not.
 fn batch() -> Command {
     Command::new("batch")
         .about("Answer poses, one JSON object a line, on standard input")
@@ -163,6 +174,8 @@ fn batch() -> Command {
 }
 
 /// `taxel sweep KIND`, or `taxel sweep --picture NAME|FILE`.
+/// Axes are ranges here, not numbers: `--x0 5:5.99:0.01`. Their flags have the names of the parameters, which are
+/// therefore left out of the flags of sizes.
 fn sweep() -> Command {
     let kind = Arg::new("kind")
         .value_name("KIND")
@@ -201,6 +214,8 @@ fn sweep() -> Command {
 }
 
 /// `taxel merge FILE.npz…`.
+/// `taxel merge part-*.npz --atlas whole.npz`. Shards of a training are merged by the same command: the content of the
+/// files tells.
 fn merge() -> Command {
     let files = Arg::new("files")
         .value_name("FILE.npz")
@@ -221,6 +236,7 @@ fn merge() -> Command {
 }
 
 /// `--atlas`, the file that a sweep or a merge writes.
+/// Its ending tells the form, and there is no flag for it: only `.npz` can be read again.
 fn atlas() -> Arg {
     option("atlas", "FILE", "Write the atlas, as .csv, .jsonl or .npz").value_parser(parse_atlas)
 }
@@ -231,6 +247,7 @@ fn parse_atlas(text: &str) -> Result<AtlasFile, &'static str> {
 }
 
 /// `taxel frames FILE`.
+/// With `--export` each frame has a file of its own; a single shape can be saved, so not with `--all`.
 fn frames() -> Command {
     let keeping = keeping().map(|arg| match arg.get_id().as_str() {
         "save" => arg.requires("choice").conflicts_with("all"),
@@ -248,6 +265,7 @@ fn frames() -> Command {
 }
 
 /// `taxel library` with its own subcommands.
+/// `taxel library list --json`, `taxel library save NAME FILE` and so on; a subcommand is required.
 fn library() -> Command {
     let command = |name: &'static str, about: &'static str, examples: &'static str| {
         Command::new(name).about(about).after_help(examples)
@@ -287,6 +305,7 @@ fn kept() -> ArgGroup {
 }
 
 /// What to keep of a touch: `--save`, `--export` with `--format`, and `--force`.
+/// For commands that answer with one imprint: `figure`, `picture` and `frames`.
 fn keeping() -> [Arg; 4] {
     let save = option("save", "NAME", "Store the shape in the library too")
         .value_parser(parse_name)

@@ -1,4 +1,5 @@
-//! Flags that several commands have: how they are defined, how their text is parsed, and how their values are read back.
+//! Flags that several commands have: how they are defined, how their text is parsed, and how their values are read
+//! back.
 //!
 //! A parser here returns its reason as a text; clap puts the flag and the given text before it:
 //! `error: invalid value '7' for '--positions <N>': expected 1, 2, 4, …`.
@@ -29,8 +30,8 @@ pub(super) fn option(name: &'static str, value: &'static str, help: &'static str
     Arg::new(name).long(name).value_name(value).help(help)
 }
 
-/// The flag of an axis of the grid, which takes a range. `default` says what is taken without it; empty for the range of
-/// the paper.
+/// The flag of an axis of the grid, which takes a range. `default` says what is taken without it; empty for the range
+/// of the paper.
 pub(super) fn range(axis: Axis, default: &str) -> Arg {
     let (row, flag) = (axis.parameter().row(), axis.parameter().flag());
     let paper = Ranges::default()[axis].to_string();

@@ -1,4 +1,12 @@
 //! The arguments of `taxel frames`, and those about processing that `taxel watch` has too.
+//!
+//! The flags come in three groups, and frames go through them in this order:
+//! ```text
+//! --frame N | --label L | --peak | --all             which frames; none of them: a listing
+//! --crop --flip --turn --mask --tare --gain          from the recording's values to those that count
+//! --at-least | --percent | --low --high | --noise    from values to active taxels; --least drops small pieces
+//! ```
+//! Only one rule can be given. Values are in the recording's own unit.
 
 use std::path::PathBuf;
 
@@ -28,16 +36,25 @@ pub(crate) enum FrameChoice {
 pub(crate) struct ProcessingArguments {
     /// Rows and columns, of what does not say them.
     pub(crate) shape: Option<(u16, u16)>,
+    /// The channel of a recording that has several.
     pub(crate) channel: Option<String>,
+    /// The part of the frame that is kept, before it is flipped and turned.
     pub(crate) crop: Option<Crop>,
+    /// Whether columns are reversed.
     pub(crate) flip_x: bool,
+    /// Whether rows are reversed.
     pub(crate) flip_y: bool,
+    /// 0 to 3, clockwise as seen.
     pub(crate) quarter_turns: u8,
+    /// A file with an imprint whose active taxels are the cells without a value, as the frame is seen after the turn.
     pub(crate) mask: Option<PathBuf>,
     /// Frames that the tare is made of; 0 for none.
     pub(crate) tare: u64,
+    /// A recording of one frame: what each cell is multiplied by after the tare.
     pub(crate) gain: Option<PathBuf>,
+    /// The threshold; None for that of the recording.
     pub(crate) rule: Option<Rule>,
+    /// The smallest 8-connected piece that is kept, in taxels; 0 keeps all.
     pub(crate) least: u32,
 }
 
@@ -48,10 +65,13 @@ pub(crate) struct FramesArguments {
     pub(crate) file: PathBuf,
     /// All channels are listed where there is none.
     pub(crate) choice: Option<FrameChoice>,
+    /// From values to the imprint.
     pub(crate) processing: ProcessingArguments,
+    /// Whether values are shown in shades.
     pub(crate) heat: bool,
 }
 
+/// `taxel frames FILE`, without the flags about answers that [`definitions`](super::definitions) adds.
 pub(crate) fn command() -> Command {
     let file = Arg::new("file")
         .value_name("FILE")
@@ -77,11 +97,13 @@ pub(crate) fn command() -> Command {
 }
 
 /// The flag that shows values.
+/// Not with `--json`, which has no place for values.
 pub(crate) fn heat() -> Arg {
     switch("heat", "Show the values in shades, in drawings too").requires("choice")
 }
 
 /// The flags that say how frames are looked at.
+/// `--rows` and `--columns` have ids of their own: they are not those of a sensor, and go up to 512.
 pub(crate) fn processing() -> [Arg; 9] {
     let side = |id: &'static str, flag: &'static str, help: &'static str| {
         Arg::new(id)
@@ -137,6 +159,8 @@ pub(crate) fn processing() -> [Arg; 9] {
 }
 
 /// The flags that say which values are active.
+/// `--high` is no rule by itself: it goes with `--low`. `--noise` needs a tare, whose frames show the noise of each
+/// cell.
 pub(crate) fn rules() -> [Arg; 6] {
     let value = |flag: &'static str, value: &'static str, help: &'static str| {
         Arg::new(flag)
@@ -182,11 +206,13 @@ pub(crate) fn rules() -> [Arg; 6] {
     .map(|arg| arg.help_heading("Threshold"))
 }
 
+/// A finite number, with a point as the decimal sign.
 fn parse_number(text: &str) -> Result<f64, String> {
     number::read(text).ok_or_else(|| number::complaint(text))
 }
 
 /// Reads `12,12,16x16`.
+/// First the left column and the top row, from 0, then columns × rows. Whether it fits the frames is seen later.
 fn parse_crop(text: &str) -> Result<Crop, &'static str> {
     let parts = || {
         let (left, rest) = text.split_once(',')?;
@@ -257,6 +283,10 @@ impl ProcessingArguments {
     }
 }
 
+/// The rule of the flags; None if there is none.
+///
+/// # Errors
+/// [`CliError::Range`] for a value that the rule does not allow: `expected a number above 0, up to 100`.
 fn rule(matches: &ArgMatches) -> Result<Option<Rule>, CliError> {
     let value = |id: &str| matches.get_one::<f64>(id).copied();
     let out_of_range = |flag: &str, value: f64| {

@@ -25,8 +25,8 @@ const COLUMN: usize = 13;
 /// What is left of 80 columns.
 const WIDTH: usize = 65;
 
-/// The commands with a help that lists them by groups; for reading arguments only, since completions and the manual list
-/// what is not hidden.
+/// The commands with a help that lists them by groups; for reading arguments only, since completions and the manual
+/// list what is not hidden.
 pub(crate) fn grouped(mut all: Command) -> Command {
     let mut template = String::from("{about-with-newline}\n{usage-heading} {usage}\n");
     all.build();

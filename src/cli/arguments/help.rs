@@ -3,6 +3,10 @@
 //! A text may begin with some lines of explanation; then comes `Examples:` with one command per line, indented. Man
 //! pages are made from the same texts. No line is wider than 80 columns. A test runs every example
 //! (`tests/cli/shell.rs`).
+//!
+//! What belongs here: what a value means and what happens if it is missing, the forms of input, one line each on what
+//! may surprise; not what a flag's own help says. Commands are indented by two spaces, and long ones continue after a
+//! `\`.
 
 /// What the program is for: the first lines of `taxel --help`.
 pub(crate) const ABOUT: &str = "\
@@ -235,14 +239,14 @@ Examples:
   taxel model show parts
   taxel model show ./parts.npz --json";
 
-/// `taxel model list`.
+/// `taxel model list`: where models are.
 pub(crate) const MODEL_LIST_EXAMPLES: &str = "\
 Models are files in the folder 'models' beside the library.
 
 Examples:
   taxel model list --json";
 
-/// `taxel model delete`.
+/// `taxel model delete`: unlike a deleted shape, a deleted model does not come back.
 pub(crate) const MODEL_DELETE_EXAMPLES: &str = "\
 The file is removed for good; it can be trained again.
 
@@ -379,6 +383,7 @@ Examples:
   taxel library check
   taxel library check --library ./shapes";
 
+/// `taxel frames`: the forms of recordings, the order of processing, and what happens to a damaged one.
 pub(crate) const FRAMES_EXAMPLES: &str = "\
 A recording is a file of Tekscan, XSENSOR, emed or zebris, PoPu, MCAP, NPY, NPZ,
 JSON lines, what 'ros2 topic echo' prints, or a table of numbers; its content
@@ -397,6 +402,7 @@ Examples:
   taxel frames recording.csv --peak --at-least 10 --heat --export touch.svg
   taxel frames plain.csv --rows 4 --columns 5 --crop 1,0,3x3 --json";
 
+/// `taxel watch`: what is answered, what a stream may be, and what is recorded.
 pub(crate) const WATCH_EXAMPLES: &str = "\
 Each frame is answered by one line, as of 'taxel frames --all --json'; without a
 threshold its imprint is null. Streams are numbers in lines, JSON lines, what

@@ -21,7 +21,9 @@ const HELP_WIDTH: usize = 52;
 /// A number, with its text for messages.
 #[derive(Clone, Debug)]
 struct Number {
+    /// As it was typed, without blanks around it.
     text: String,
+    /// What it means; finite.
     value: f64,
 }
 

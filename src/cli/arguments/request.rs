@@ -94,11 +94,13 @@ pub(crate) struct SweepArguments {
     pub(crate) what: Swept,
     /// The point of the shape that x0 and y0 place.
     pub(crate) anchor: Anchor,
+    /// The axes that are given. Others take the range of the paper, or for x0 and y0 a cell that suits the shape.
     pub(crate) ranges: GivenRanges,
     /// The part of the grid to sweep.
     pub(crate) shard: Shard,
     /// The number of threads; 0 means one per core.
     pub(crate) jobs: usize,
+    /// Files to write, and how the summary is printed.
     pub(crate) wanted: Wanted,
 }
 

@@ -1,4 +1,11 @@
 //! The arguments of `taxel watch`.
+//!
+//! The flags of `taxel frames` about processing and thresholds, and those of the source:
+//! ```text
+//! taxel watch /dev/ttyACM0 --baud 921600 --at-least 20     a serial line
+//! taxel watch tcp://10.0.0.7:5000 --format lines           a connection
+//! taxel watch grip.npy --speed 0.5 --loop                  a recording, played at its own rate
+//! ```
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -19,16 +26,21 @@ use crate::storage::Existing;
 /// What `taxel watch` is to do.
 #[derive(Clone, Debug)]
 pub(crate) struct WatchArguments {
+    /// A serial line, a FIFO, `tcp://HOST:PORT`, a recording, or `-` for standard input; told apart when it is opened.
     pub(crate) source: OsString,
+    /// How it is read: format, rows and columns, baud rate, speed and repetition.
     pub(crate) options: AcquireOptions,
+    /// From values to the imprint.
     pub(crate) processing: ProcessingArguments,
     /// The file that frames are recorded in.
     pub(crate) write: Option<PathBuf>,
+    /// Whether that file may exist already.
     pub(crate) existing: Existing,
     /// A line of JSON for each frame, also on a terminal.
     pub(crate) json: bool,
 }
 
+/// `taxel watch SOURCE`. Without `--format` the first bytes tell the form of a stream.
 pub(crate) fn command() -> Command {
     let source = Arg::new("source")
         .value_name("SOURCE")

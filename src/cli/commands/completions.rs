@@ -1,6 +1,6 @@
 //! `taxel completions`: writes a shell's completions for `taxel`, made from the definitions of the commands. Names of
-//! shapes come from `taxel library list --names` at the moment when they are asked for; where no name fits, shells offer
-//! files.
+//! shapes come from `taxel library list --names` at the moment when they are asked for; where no name fits, shells
+//! offer files.
 
 use clap::Command;
 use clap::builder::PossibleValue;
@@ -10,8 +10,11 @@ use clap_complete::shells::{Bash, Fish, Zsh};
 /// A shell with completions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shell {
+    /// Its script is the one of clap, wrapped: names are added where a command takes one.
     Bash,
+    /// Its script is changed line by line, see [`NAMES_OF_ZSH`].
     Zsh,
+    /// Lines are added behind clap's script.
     Fish,
 }
 
@@ -34,8 +37,8 @@ impl Shell {
     }
 }
 
-/// For bash: what clap wrote, and names of shapes where a command takes one. A blank in a name is escaped, unless the word
-/// was begun with a quotation mark: that is no part of what bash replaces.
+/// For bash: what clap wrote, and names of shapes where a command takes one. A blank in a name is escaped, unless the
+/// word was begun with a quotation mark: that is no part of what bash replaces.
 const SHAPES_OF_BASH: &str = r#"
 _taxel_shapes() {
     _taxel "$@"

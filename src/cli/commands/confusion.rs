@@ -1,4 +1,7 @@
 //! `taxel model confusion`: how well one touch tells the shapes of a model apart.
+//!
+//! The best classifier is counted from all touches of the model, so its error is the limit of every method that sees
+//! one touch. Each question of `Evaluated` has a function here; what is printed is made in `output/evaluation`.
 
 use std::path::Path;
 
@@ -123,6 +126,8 @@ fn shown(
 }
 
 /// The matrix as the file that an ending asks for.
+/// # Errors
+/// [`CliError::TooManyShapes`] for a drawing whose matrix would not be legible.
 fn file(path: &Path, own: &Evaluation) -> Result<Vec<u8>, CliError> {
     let map = || {
         let map = ConfusionMap::new(&own.labels, &own.confusion);

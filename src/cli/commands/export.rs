@@ -59,7 +59,9 @@ pub(crate) fn names() -> Vec<&'static str> {
 pub(crate) struct Export {
     /// Its path; None for standard output.
     path: Option<PathBuf>,
+    /// What is written.
     format: Format,
+    /// Whether a file of that name is replaced.
     existing: Existing,
 }
 
@@ -155,6 +157,8 @@ impl Export {
         })
     }
 
+    /// Makes the content and begins the file, which has its name only after [`Begun::end`]. `draw` is called for
+    /// drawings only.
     fn begin_with(&self, imprint: &Imprint, draw: impl Fn() -> Drawing) -> Result<Begun, CliError> {
         let content = match self.format {
             Format::Imprint(format) => format.write(imprint),

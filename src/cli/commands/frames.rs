@@ -1,7 +1,23 @@
 //! `taxel frames`: what is in a recording, and its frames as imprints.
 //!
-//! A recording is read once to list it, and again for each thing that needs all frames first: the tare, and the peak after a
-//! tare. So memory does not grow with its length.
+//! A recording is read once to list it, and again for each thing that needs all frames first: the tare, and the peak
+//! after a tare. So memory does not grow with its length.
+//!
+//! A listing names what the recording says of each channel; an answer is an imprint with what was measured:
+//! ```text
+//! $ taxel frames plain.csv --rows 4 --columns 5          $ taxel frames plain.csv … --peak --at-least 3
+//! csv, 1 channel                                             0   2   4
+//!                                                         0  · · · · ·
+//! frames    1                                             1  · ██████·
+//! size      4 rows × 5 columns, 20 cells                  2  · · ████·
+//! peak      frame 0                                       3  · · · · ·
+//!
+//!                                                        plain.csv, frame 0
+//!                                                        sum 42, max 9
+//!                                                        active: 3 or more (by flag)
+//! ```
+//! Damage does not stop it at once: what is whole before the damage is listed or answered, then the damage is the
+//! error.
 
 use std::io::Write;
 use std::ops::ControlFlow;
@@ -35,9 +51,13 @@ const MOST_WARNINGS: usize = 20;
 /// What one reading of a recording finds.
 #[derive(Debug, Default)]
 pub(crate) struct Scan {
+    /// None if damage came before the form was certain.
     format: Option<RecordingFormat>,
+    /// In the order in which the recording names them; a frame's channel is an index here.
     channels: Vec<ListedChannel>,
+    /// The first [`MOST_WARNINGS`] oddities that are no damage, such as a line of the wrong length.
     notes: Vec<RecordingNote>,
+    /// How many more there were.
     more_notes: u64,
     /// The damage at which it ended.
     error: Option<RecordingError>,
@@ -88,6 +108,10 @@ impl Scan {
     }
 
     /// The number of the channel that is asked for.
+    /// Without `--channel` there must be one only; a channel without a name is called `unnamed`.
+    ///
+    /// # Errors
+    /// If there is none of that name, or none is named and there are several. The message lists the names.
     fn channel(&self, recording: &RecordingFile, asked: Option<&str>) -> Result<usize, CliError> {
         let names: Vec<&str> = self
             .channels
@@ -116,12 +140,18 @@ impl Scan {
 
 /// Where answers and notes go.
 pub(crate) struct FramesOutput<'a> {
+    /// One line of JSON a frame, or a matrix and a table.
     pub(crate) form: Form,
+    /// `--save` and `--export`, besides the answer.
     pub(crate) kept: Kept,
+    /// Where imprints are saved.
     pub(crate) shelf: &'a Shelf,
+    /// For texts; JSON is always ASCII.
     pub(crate) charset: Charset,
+    /// Standard output.
     pub(crate) answers: &'a mut dyn Write,
     /// A line each.
+    /// Standard error.
     pub(crate) notes: &'a mut dyn FnMut(&str),
 }
 
@@ -137,8 +167,8 @@ impl FramesOutput<'_> {
 /// Lists a recording, or answers the frames that are asked for.
 ///
 /// # Errors
-/// If the recording is damaged, after all whole frames before the damage were answered; or if channel, frame, threshold or
-/// size do not fit.
+/// If the recording is damaged, after all whole frames before the damage were answered; or if channel, frame, threshold
+/// or size do not fit.
 pub(crate) fn frames(
     asked: &FramesArguments,
     mut output: FramesOutput<'_>,
@@ -189,6 +219,10 @@ fn missing(choice: FrameChoice, listed: &ListedChannel) -> String {
 }
 
 /// How frames are looked at; without tare and rule, which need the recording.
+/// Crop, flips, turn and mask are applied in this order, then the tare, then the gain.
+///
+/// # Errors
+/// If the mask or the gain cannot be read.
 pub(crate) fn processing(asked: &ProcessingArguments) -> Result<Processing, CliError> {
     let mut processing = Processing::default();
     processing.view = View {
@@ -205,6 +239,11 @@ pub(crate) fn processing(asked: &ProcessingArguments) -> Result<Processing, CliE
 }
 
 /// A table of factors, in any form that a recording of one frame may have.
+/// The first frame counts; further ones are not read. Its size must be that of the cropped frames, which is checked
+/// when the first of them is processed.
+///
+/// # Errors
+/// If the file is damaged or has no frame.
 fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
     let mut file = RecordingFile::open(path, ReadOptions::default())?;
     let mut gain = Matrix::filled(1, 1, 1.0);
@@ -225,6 +264,10 @@ fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
 }
 
 /// The rule of the flags, else that of the recording.
+/// A threshold of the recording is the one that its maker's program would draw its pictures with; it counts from it on.
+///
+/// # Errors
+/// If neither gives one. There is no default: what a value means differs from sensor to sensor.
 fn rule(
     recording: &RecordingFile,
     asked: &ProcessingArguments,
@@ -249,6 +292,10 @@ fn rule(
 }
 
 /// Gathers the tare of the channel's first frames.
+/// The median of each cell over these frames is its value at rest, and is taken off from then on.
+///
+/// # Errors
+/// If the channel has fewer frames than wanted: `a tare of 5 frames, but there are 3: …`.
 fn tare(
     recording: &mut RecordingFile,
     channel: usize,
@@ -278,6 +325,8 @@ fn tare(
 }
 
 /// The frame with the greatest sum of tared values.
+/// Without tare and gain the listing knows it already; with them the recording is read once more. Of several such
+/// frames the first one counts. None if no frame has a value.
 fn peak(
     recording: &mut RecordingFile,
     channel: usize,
@@ -311,12 +360,17 @@ fn peak(
 
 /// Which frames are answered, and how.
 struct Selection {
+    /// What was asked for.
     choice: FrameChoice,
     /// The only one, where its number is known.
     number: Option<u64>,
+    /// The index of the channel; frames of others are passed over.
     channel: usize,
+    /// The threshold, and whether it is the flag's or the recording's.
     rule: SetRule,
+    /// How many frames the tare is made of, 0 without one; for the answers only.
     tare: u64,
+    /// Whether values are shown in shades, above the imprint and in drawings.
     heat: bool,
 }
 
@@ -371,6 +425,7 @@ impl Selection {
     }
 
     /// Answers the frames; true if there was one.
+    /// The recording is read from its beginning again, and no further than to the frame whose number is known.
     fn answer(
         &self,
         recording: &mut RecordingFile,
@@ -406,6 +461,13 @@ impl Selection {
     }
 
     /// Answers a frame.
+    /// Notes about it are lines below the matrix, or with JSON on standard error. An export to standard output takes
+    /// the place of the answer. `again`: whether it is not the first, so that an empty line parts it from the one
+    /// before.
+    ///
+    /// # Errors
+    /// [`CliError::Frames`] for a `--pitch` given for cells that are not square, and those of saving, exporting and
+    /// writing.
     fn give(
         &self,
         name: &str,
@@ -489,6 +551,7 @@ impl Selection {
         vec![title, values, self.rule_text(&unit)]
     }
 
+    /// The threshold in words, with its source: `active: 20 kPa or more, in pieces of 3 taxels or more (by flag)`.
     fn rule_text(&self, unit: &str) -> String {
         let mut text = match self.rule.rule {
             Rule::AtLeast(threshold) => format!("active: {}{unit} or more", short(threshold)),
@@ -512,6 +575,10 @@ impl Selection {
 }
 
 /// The side of a cell in mm, and a line if the recording's cells are not square.
+/// `--pitch` goes before the recording, and the recording before the settings.
+///
+/// # Errors
+/// [`CliError::Frames`] if `--pitch` is given although the recording says that its cells are not square.
 fn cell_size(
     name: &str,
     pitch: Pitch,
@@ -538,6 +605,11 @@ fn cell_size(
 }
 
 /// Stores and exports an imprint as wanted; what is for standard output in place of the answer. Notes go to `lines`.
+/// The file is begun before the shape is saved, so that nothing is saved if the file cannot be written, and gets its
+/// name after it.
+///
+/// # Errors
+/// Those of the library and of the file.
 fn keep(
     imprint: &Imprint,
     heat: Option<&Matrix<f64>>,

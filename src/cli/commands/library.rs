@@ -1,7 +1,7 @@
 //! `taxel library`: lists, shows, stores, deletes, restores and checks shapes.
 //!
-//! `list` prints a line per shape, with `--names` its name alone. A damaged one is listed with the reason instead of its
-//! numbers:
+//! `list` prints a line per shape, with `--names` its name alone. A damaged one is listed with the reason instead of
+//! its numbers:
 //! ```text
 //! name           origin      size   NA  pieces  holes
 //! oval ring      shipped  16 × 16   52       1      1
@@ -29,7 +29,9 @@ use crate::storage::{Library, LibraryEntry, ShapeOrigin};
 
 /// A line of the list: a shape of the library.
 struct ListLine {
+    /// Its name.
     name: String,
+    /// Whether the user stored it, or it comes with the program.
     origin: ShapeOrigin,
     /// What the list shows of it, or why it cannot be read.
     found: Result<ShapeSummary, String>,
@@ -37,10 +39,15 @@ struct ListLine {
 
 /// What the list shows of a shape that can be read.
 struct ShapeSummary {
+    /// Columns of its matrix.
     columns: u8,
+    /// Rows of its matrix.
     rows: u8,
+    /// Active taxels, in all pieces.
     na: u32,
+    /// Connected regions of active taxels.
     pieces: usize,
+    /// Regions of inactive taxels that these enclose.
     holes: usize,
 }
 

@@ -1,4 +1,16 @@
 //! `taxel model`: trains, shows, lists and deletes models of shapes.
+//!
+//! A model is the file of a training: every imprint that some shapes leave on a grid of poses, and how often each shape
+//! leaves it. `show` prints its card:
+//! ```text
+//! 16 x 16 sensor, threshold 0.5, centre at x0 7:7.8:0.2, y0 7:7.8:0.2, angle 0:355:5
+//!   disc: ellipse radius_x 2.40, radius_y 2.40, recognised in 96.0 %
+//!   block: rectangle length 4.50, width 4.30, recognised in 99.1 %
+//! 1800 poses each
+//! …
+//! hash 2888dcc5d50ce3389fbcb40d256ae2ab, taxel 0.1.0
+//! ```
+//! The hash is that of the content, so two trainings of one set on one grid have the same one, on any machine.
 
 use std::ffi::OsStr;
 use std::io;
@@ -29,6 +41,11 @@ use crate::storage::{ModelCache, ModelFolder, UnfinishedFile, load_model, model_
 const LEAST_SIDE: u8 = 16;
 
 /// Trains a model and writes it. Returns what is printed.
+/// The path is tried before the work begins. A signal stops the training and leaves no file.
+///
+/// # Errors
+/// Those of the shapes; [`CliError`] of a grid on which the sensor cuts shapes off, unless `--allow-cut` is given; of a
+/// file that exists, unless `--force` is; [`CliError::Stopped`] after a signal.
 pub(crate) fn train(
     asked: &TrainArguments,
     shelf: &Shelf,
@@ -90,6 +107,8 @@ pub(crate) fn train(
 }
 
 /// What was chosen for a training, in a line.
+/// `16 x 16 sensor, threshold 0.5, centre at x0 7:7.8:0.2, y0 7:7.8:0.2, angle 0:355:5`. Zooms are left out: a training
+/// has one of each.
 fn grid_text(sensor: &Sensor, anchor: Anchor, ranges: &Ranges) -> String {
     let axes = Axis::ALL.into_iter().filter(|axis| !axis.is_zoom());
     let axes = axes.map(|axis| format!("{} {}", axis.name(), ranges[axis]));
@@ -104,6 +123,11 @@ fn grid_text(sensor: &Sensor, anchor: Anchor, ranges: &Ranges) -> String {
 }
 
 /// The sensor and the poses of a training: the given ones, otherwise those on which no shape is cut off.
+/// Where neither x0 nor y0 is given the anchor is the centre, since that of a shape stays where it is when the shape
+/// turns: one cell is then enough for all positions. `--positions` sets the step of ranges that are not given.
+///
+/// # Errors
+/// If no sensor of up to 64 × 64 holds all shapes in these poses, or a given value is out of range.
 fn grid(
     asked: &TrainArguments,
     shapes: &[NamedShape],
@@ -139,6 +163,8 @@ fn grid(
 }
 
 /// The given sensor, or the smallest, and the ranges in which it cuts no shape off, as far as that can be.
+/// The smallest sensor is square, with sides of [`LEAST_SIDE`] or more. Where not even the largest one holds the
+/// shapes, training says which poses are cut off.
 fn fitting(
     shapes: &[NamedShape],
     sensor: Option<Sensor>,
@@ -156,16 +182,21 @@ fn fitting(
 }
 
 /// The folder of the models beside the library.
+/// # Errors
+/// If there is no folder for a library, and so none beside it.
 fn folder(shelf: &Shelf) -> Result<ModelFolder, CliError> {
     Ok(ModelFolder::beside(shelf.library()?.folder()))
 }
 
 /// Whether there is a model of that name beside the library.
+/// A file of the folder is not opened: a damaged model counts too.
 pub(crate) fn is_kept(name: &Name, shelf: &Shelf) -> bool {
     folder(shelf).is_ok_and(|models| models.file(name).exists())
 }
 
 /// Finds a model: one beside the library, then a file, then the seven figures if they are asked for.
+/// # Errors
+/// [`CliError::NoModel`] if nothing has that name; otherwise why the file cannot be read.
 pub(crate) fn find(which: &OsStr, shelf: &Shelf) -> Result<Model, CliError> {
     let own = which
         .to_str()
@@ -186,6 +217,8 @@ pub(crate) fn find(which: &OsStr, shelf: &Shelf) -> Result<Model, CliError> {
 }
 
 /// The model of the seven figures at their default sizes, from the cache or trained now.
+/// Training takes some seconds, so the model is kept in the user's cache, under a name made of shapes, grid and
+/// version. Without a cache, or if it cannot be written, the model is trained each time; that is not an error.
 pub(crate) fn figures() -> Result<Model, CliError> {
     let training = || Training::fitting(default_figures(), GridSteps::FINE);
     let Some(cache) = ModelCache::of_user() else {
@@ -201,6 +234,7 @@ pub(crate) fn figures() -> Result<Model, CliError> {
 }
 
 /// Shows the card of a model.
+/// The card in words, or as an object of JSON. Both end with the evaluation of one touch ([`evaluation::summary`]).
 pub(crate) fn show(
     which: &OsStr,
     json: bool,
@@ -255,6 +289,7 @@ pub(crate) fn show(
 }
 
 /// What a shape of a set is, in a few words.
+/// `rectangle length 4.50, width 4.30` for a figure, without its pose, which the grid sets; `picture of 36 taxels`.
 fn described(shape: &NamedShape) -> String {
     match (&shape.source.kind(), &shape.source) {
         (Some(kind), source) => {
@@ -280,6 +315,7 @@ fn described(shape: &NamedShape) -> String {
 }
 
 /// The card of a model as JSON: what was trained, and its evaluation.
+/// Keys are sorted by name. Ranges are `START:END:STEP` texts, as in flags; counts beyond 64 bits are texts.
 fn card_json(
     model: &Model,
     limit: &Evaluation,
@@ -327,6 +363,10 @@ fn card_json(
 }
 
 /// Lists the models beside the library.
+/// A line each, by name; a model that cannot be read has its reason in place of the numbers:
+/// ```text
+/// parts: 3 shapes, 845 keys, error 1.6 %
+/// ```
 pub(crate) fn list(json: bool, shelf: &Shelf, charset: Charset) -> Result<String, CliError> {
     let models = folder(shelf)?;
     let mut text = String::new();
@@ -362,6 +402,10 @@ pub(crate) fn list(json: bool, shelf: &Shelf, charset: Charset) -> Result<String
 }
 
 /// Deletes a model.
+/// The file is removed at once: unlike a shape of the library, a model can be trained again.
+///
+/// # Errors
+/// [`CliError::NoModel`] if there is none of that name.
 pub(crate) fn delete(name: &Name, shelf: &Shelf) -> Result<String, CliError> {
     match folder(shelf)?.delete(name) {
         Err(error) if error.is_missing() => Err(CliError::NoModel {

@@ -1,4 +1,17 @@
 //! What noise costs: `taxel model confusion --noise`, `--test half-step` and `taxel model touches`.
+//!
+//! Noise flips each taxel on its own with the same probability, and dead taxels are stuck, on or off. The tables:
+//! ```text
+//!   noise  dead     right            held   claimed
+//!    0.05     0    89.3 % ± 2.5     0.0 %    90.9 %  ███████████████████████████
+//!
+//! touches until a shape is 99.0 % probable; 20 runs each, seed 0
+//!   disc           1.40 ± 0.11
+//!   all shapes     1.15 ± 0.04
+//! ```
+//! `held` are noisy imprints that some shape leaves without noise; `claimed` is the mean probability of the names
+//! given, which is close to `right` if the probabilities can be trusted. Both are simulated, with the standard error
+//! behind `±`. The same seed gives the same numbers, whatever the number of threads.
 
 use std::fmt::Write;
 use std::sync::atomic::Ordering;
@@ -23,12 +36,20 @@ use crate::recognition::{
 
 /// A line of the table: the noise, the number of dead taxels, and what was reached.
 struct NoiseRow {
+    /// The probability that a taxel flips, 0 to below ½.
     noise: f64,
+    /// How many taxels are stuck.
     dead: u32,
+    /// The touches that were drawn, and those named right.
     rate: RecognitionRate,
 }
 
 /// How often noisy touches are named right, for each noise and each number of dead taxels.
+/// For a number of dead taxels the same ones are dead at every noise, so that rows can be compared. The classifier
+/// knows the noise and which taxels are dead.
+///
+/// # Errors
+/// [`CliError::Stopped`] after a signal; of a noise out of range.
 pub(crate) fn degradation(
     model: &Model,
     asked: &NoiseArguments,
@@ -75,6 +96,7 @@ pub(crate) fn degradation(
     })
 }
 
+/// One line of JSON: size of the matrix, seed, and a list of the rows, with all digits.
 fn noise_json(table: &[NoiseRow], (columns, rows): (u8, u8), seed: u64) -> String {
     let rows_json: Vec<_> = table
         .iter()
@@ -95,6 +117,7 @@ fn noise_json(table: &[NoiseRow], (columns, rows): (u8, u8), seed: u64) -> Strin
     json::text(&answer) + "\n"
 }
 
+/// The same rows as a table of commas, with a row of names.
 fn noise_csv(table: &[NoiseRow]) -> String {
     let mut text = String::from("noise,dead,touches,right,accuracy,standard_error,claimed,held\n");
     for row in table {
@@ -118,6 +141,7 @@ fn noise_csv(table: &[NoiseRow]) -> String {
 
 /// The table with a bar per row.
 fn noise_text(table: &[NoiseRow], seed: u64, charset: Charset) -> String {
+    /// Characters of a bar for 100 %.
     const BAR: usize = 30;
     let mut text = String::from("  noise  dead     right            held   claimed\n");
     for row in table {
@@ -143,6 +167,18 @@ fn noise_text(table: &[NoiseRow], seed: u64, charset: Charset) -> String {
 }
 
 /// What touches half a step off the grid cost.
+/// Touches halfway between the learned poses leave other imprints; how many, and what they cost, says whether the grid
+/// of the model is fine enough. Nothing is drawn: all such touches are counted.
+/// ```text
+/// touches half a step off the grid, in x0, y0 and angle
+/// not held by the model    36.741 %
+/// wrong, with these        48.000 %
+/// wrong, with the nearest  12.148 %
+/// ```
+/// The second counts a touch that the model does not hold as wrong; the third names it by the nearest imprint.
+///
+/// # Errors
+/// [`CliError::Stopped`] after a signal; of a grid whose half steps have too many decimals.
 pub(crate) fn half_step(model: &Model, json: bool, charset: Charset) -> Result<String, CliError> {
     let signals = Signals::heard().map_err(CliError::System)?;
     let going = |_| !signals.stopped.load(Ordering::Relaxed);

@@ -1,4 +1,13 @@
 //! `taxel recognise`: names the shape that left an imprint, or each of many.
+//!
+//! An imprint is answered in words or by an object of JSON; lines of JSON are answered by a line each, whether or not
+//! `--json` is given. Keys that tell where a touch comes from are copied in front of the answer:
+//! ```text
+//! {"imprint":["....",".##.",".##.","...."],"frame":3}
+//! {"frame":3,"answer":null,"state":"unknown","method":"exact","noise":null,"at_rim":false,"ranking":[],…}
+//! {"imprint":["##","#"]}
+//! {"error":"line 2: imprint: row 2 has 1 character, expected 2 as in the first row"}
+//! ```
 
 use std::ffi::OsStr;
 use std::io::{self, BufRead, BufReader, Cursor, Read, Write};
@@ -28,8 +37,8 @@ const UNEXPECTED: u8 = 3;
 /// shape than one of the answers.
 ///
 /// # Errors
-/// [`CliError::NoModel`] and [`CliError::NotInModel`] for names that do not exist; [`CliError::Mask`] for dead taxels of
-/// another size than the touch; and those of reading files. A line that is wrong is answered by its error instead.
+/// [`CliError::NoModel`] and [`CliError::NotInModel`] for names that do not exist; [`CliError::Mask`] for dead taxels
+/// of another size than the touch; and those of reading files. A line that is wrong is answered by its error instead.
 pub(crate) fn recognise(
     asked: &RecogniseArguments,
     shelf: &Shelf,
@@ -47,7 +56,9 @@ pub(crate) fn recognise(
 
 /// A model, and how it is asked.
 struct Recogniser<'a> {
+    /// The flags.
     asked: &'a RecogniseArguments,
+    /// The shapes to choose from.
     model: &'a Model,
     /// The same under a noise, if one is given.
     noisy: Option<NoisyRecogniser<'a>>,
@@ -175,8 +186,8 @@ impl<'a> Recogniser<'a> {
         }
     }
 
-    /// Where the shape of an answer lies in the last touch, if that is asked for. None without an answer, and if the shape
-    /// does not leave that imprint.
+    /// Where the shape of an answer lies in the last touch, if that is asked for. None without an answer, and if the
+    /// shape does not leave that imprint.
     fn pose(&self, touches: &[Imprint], answer: &Answer) -> Option<PoseReport> {
         if !self.asked.pose {
             return None;
@@ -207,7 +218,9 @@ fn imprint_of(what: &OsStr, shelf: &Shelf) -> Result<Imprint, CliError> {
 /// What is to be recognised.
 #[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
 enum Asked {
+    /// One touch.
     Imprint(Imprint),
+    /// Lines of JSON, not read yet.
     Lines(Box<dyn Read>),
 }
 
@@ -245,6 +258,7 @@ fn input(what: &OsStr, shelf: &Shelf) -> Result<Asked, CliError> {
 
 /// Whether a text is a whole object of JSON that is not a stored shape, or would be if its one line were not wrong.
 fn is_line(text: &[u8]) -> bool {
+    /// The only key that matters here; stored shapes have it.
     #[derive(Deserialize)]
     struct Keys {
         format: Option<serde::de::IgnoredAny>,
@@ -263,23 +277,35 @@ fn is_line(text: &[u8]) -> bool {
 /// A line: one touch or several, and what is copied into its answer.
 #[derive(Deserialize)]
 struct Keys<'a> {
+    /// One touch: a text for each row, `#` for an active taxel.
     #[serde(borrow)]
     imprint: Option<Vec<std::borrow::Cow<'a, str>>>,
+    /// Several touches of one shape.
     #[serde(borrow)]
     touches: Option<Vec<Vec<std::borrow::Cow<'a, str>>>>,
+    /// The number of a frame, as `taxel frames --json` writes it.
     frame: Option<Box<RawValue>>,
+    /// What the recording calls that frame.
     label: Option<Box<RawValue>>,
+    /// Its time in seconds.
     time: Option<Box<RawValue>>,
+    /// Its channel.
     channel: Option<Box<RawValue>>,
 }
 
+/// A question, read and checked.
 struct Line {
+    /// One or more imprints, each in a matrix of its own size.
     touches: Vec<Imprint>,
     /// Keys and values that the answer repeats.
     copied: Vec<(&'static str, Box<RawValue>)>,
 }
 
 impl Line {
+    /// Other keys are ignored, so that answers of `taxel frames` can be asked about as they are.
+    ///
+    /// # Errors
+    /// What is wrong with the line, with the key and the row.
     fn read(line: &[u8]) -> Result<Self, String> {
         let keys: Keys<'_> = serde_json::from_slice(line).map_err(|error| {
             format!(
@@ -318,6 +344,7 @@ impl Line {
         })
     }
 
+    /// In the order frame, label, time, channel, whatever their order in the line.
     fn copied(&self) -> Vec<(&'static str, &RawValue)> {
         self.copied
             .iter()

@@ -84,9 +84,11 @@ pub(crate) fn screen(
 
 /// A record being written.
 struct ScreenRecord {
+    /// Its file, for messages.
     path: PathBuf,
     /// The file, or the error that ended the record.
     file: io::Result<File>,
+    /// Turns what happens into lines of a script.
     recorder: Recorder,
     /// Whether anything has been written.
     begun: bool,

@@ -3,6 +3,13 @@
 //! The program under test is the same as on a terminal, except that keys come from the script, nothing is drawn but
 //! what it asks for, and the library is an empty one of its own unless `--library` names one. So scripts are tests
 //! (those in `tests/scripts`), demonstrations, and records of `taxel --record`.
+//!
+//! ```text
+//! $ taxel script -k 'f<Enter>' rest.taxel            keys first, then the script
+//! $ taxel script demo.taxel --svg pictures           pictures/NAME.svg for each 'Screen NAME'
+//! ```
+//! A script ends at its first error; what was printed before stays. Its commands are those of
+//! [`command`](crate::tui::script::command).
 
 use std::fs::{self, File};
 use std::io::{self, Read, Write};

@@ -1,4 +1,9 @@
 //! `taxel model separate`: the error of a set against the size of its shapes and the threshold of the sensor.
+//!
+//! Sizes are tried from the smallest on, each for every threshold; each is a training of its own, so the work grows
+//! with their product. With `--want ERROR` the first size that reaches it is then searched between the last one that
+//! does not and itself. Everything that can be refused is refused before the first training: a set of one shape, a size
+//! at which no sensor holds the shapes, a file that exists.
 
 use std::ffi::OsStr;
 use std::io;
@@ -28,6 +33,8 @@ use crate::storage::UnfinishedFile;
 const REFINED: u64 = 9;
 
 /// Looks at all sizes and thresholds. Returns what is printed.
+/// # Errors
+/// Those of the set and of the file; [`CliError::Stopped`] after a signal.
 pub(crate) fn separate(
     asked: &SeparateArguments,
     shelf: &Shelf,
@@ -148,6 +155,7 @@ fn set(asked: &SeparateArguments, shelf: &Shelf) -> Result<(Separation, f64), Cl
 }
 
 /// Whether an argument is a model, rather than a shape or a file of shapes.
+/// A kept model goes before a shape of the library of the same name; a file is a model if it ends in `.npz`.
 fn is_model(what: &OsStr, shelf: &Shelf) -> bool {
     let path = Path::new(what);
     let name = what.to_str().and_then(|name| Name::new(name).ok());
@@ -160,6 +168,7 @@ fn is_model(what: &OsStr, shelf: &Shelf) -> bool {
 }
 
 /// The positions of a model's cell in each direction; 100 where it has another grid than one cell.
+/// Only a grid of one cell has a number of positions: `7:7.8:0.2` are 5.
 fn positions(model: &Model) -> u8 {
     let of = |range: &DecimalRange| {
         let count = u8::try_from(range.count()).ok()?;

@@ -7,6 +7,10 @@
 //! SIGINT, SIGTERM and, on a terminal, SIGHUP stop a sweep within a few thousand poses and a file at its next block.
 //! Incomplete files are removed, and the exit status is 128 and the number of the signal. A second signal ends the
 //! program at once.
+//!
+//! The ways of a sweep's result: `--atlas` writes every distinct imprint with its number of poses, `--poses` for each
+//! pose the number of its imprint, and standard output gets a summary. `merge` reads shards of atlases or of models and
+//! checks that they are of one grid and complete.
 
 use std::fs::File;
 use std::io;

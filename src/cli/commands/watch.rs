@@ -1,7 +1,18 @@
 //! `taxel watch`: a line of JSON for each frame of a source, and a recording of all of them if one is wanted.
 //!
 //! Every frame is recorded before it is answered. A live source that is recorded is never held up: if whoever reads the
-//! answers is slow, frames are left unanswered, and their number is reported. Otherwise answers wait, as in any pipeline.
+//! answers is slow, frames are left unanswered, and their number is reported. Otherwise answers wait, as in any
+//! pipeline.
+//!
+//! ```text
+//! $ taxel watch /dev/ttyUSB0 --at-least 20 --write grip.npy | jq .na
+//! $ taxel watch - --format lines --percent 50 < rows.txt
+//! {"frame":0,"label":null,"time":null,"channel":null,"sum":42,"max":9,"rule":{"at_least":3,"from":"flag"},"imprint":[…
+//! ```
+//! Without a threshold frames are answered all the same, with `"imprint":null`. With a tare the first frames wait until
+//! it is complete and are then answered together. What is odd goes to standard error, a line each, headed by the
+//! source: `/dev/ttyUSB0: 12 torn, short, long or garbled frames so far, the last: \x00\x07\xff`. On a terminal the
+//! screen's live page opens instead ([`request`]).
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -28,24 +39,37 @@ const REPORT: Duration = Duration::from_secs(1);
 
 /// What is done with frames as they come.
 struct Watcher<'a> {
+    /// The flags.
     asked: &'a WatchArguments,
+    /// The source, as it heads notes and errors.
     name: String,
+    /// From values to the imprint; the tare and the rule of the recording are set as they become known.
     processing: Processing,
+    /// The threshold in use; None as long as there is neither a flag nor a recording that has one.
     rule: Option<SetRule>,
     /// Frames of the tare, and those that wait for it.
     tare: Option<(TareFrames, Vec<Frame>)>,
+    /// The file of `--write`.
     recorder: Option<FrameRecorder>,
+    /// What the `.json` beside that file says; written again whenever something of it becomes known.
     metadata: RecordingMetadata,
+    /// All channels so far, in the order in which they came.
     channels: Vec<ChannelInfo>,
     /// The number of the channel that is answered.
     channel: Option<usize>,
+    /// Standard output, in a thread of its own.
     lines: LineWriter,
+    /// A frame's memory, used again for the next one.
     frame: Frame,
     /// Whether a frame may be left unanswered.
     live: bool,
+    /// How many dropped frames have been reported.
     dropped: u64,
+    /// When that was.
     reported: Option<Instant>,
+    /// Writes a line on standard error.
     note: &'a mut dyn FnMut(&str),
+    /// The first error; it ends the reading and is returned at the end.
     failure: Option<CliError>,
 }
 
@@ -120,12 +144,14 @@ pub(crate) fn request(asked: &WatchArguments) -> Result<WatchRequest, CliError> 
 }
 
 impl Watcher<'_> {
+    /// Sets the threshold for the answers to come; None to answer without imprints.
     fn set_rule(&mut self, rule: Option<SetRule>) {
         self.rule = rule;
         self.processing.rule = rule.map(|set| set.rule);
         self.processing.least = rule.map_or(0, |set| set.least);
     }
 
+    /// Handles one event of the source. After an error nothing more is read.
     fn on(&mut self, event: AcquireEvent<'_>) -> ControlFlow<()> {
         let done = match event {
             AcquireEvent::Channel(info) => self.add_channel(info),
@@ -163,11 +189,13 @@ impl Watcher<'_> {
         }
     }
 
+    /// Notes a line about the source.
     fn say(&mut self, text: &str) {
         let line = format!("{}: {text}", self.name);
         (self.note)(&line);
     }
 
+    /// An error of the source with this reason.
     fn refused(&self, message: &str) -> CliError {
         CliError::Frames {
             name: self.name.clone(),
@@ -176,6 +204,8 @@ impl Watcher<'_> {
     }
 
     /// Another channel of a recording. With its first one come unit and threshold.
+    /// # Errors
+    /// If there are several channels and none is chosen: unlike a file, a stream cannot be read again to list them.
     fn add_channel(&mut self, info: &ChannelInfo) -> Result<(), CliError> {
         self.channels.push(info.clone());
         let names: Vec<&str> = self
@@ -209,6 +239,7 @@ impl Watcher<'_> {
         self.describe()
     }
 
+    /// Writes the description beside the recording, if there is one.
     fn describe(&self) -> Result<(), CliError> {
         let recorder = self.recorder.as_ref();
         let described = recorder.map(|recorder| recorder.describe(&self.metadata));
@@ -253,6 +284,10 @@ impl Watcher<'_> {
         waiting.iter().try_for_each(|frame| self.answer(frame))
     }
 
+    /// Processes a frame and sends its line.
+    ///
+    /// # Errors
+    /// If it does not fit gain, mask or crop; [`CliError::Write`] once standard output is closed.
     fn answer(&mut self, frame: &Frame) -> Result<(), CliError> {
         let processed = match self.processing.run(frame) {
             Ok(processed) => processed,
@@ -279,6 +314,7 @@ impl Watcher<'_> {
         Err(CliError::Write(std::io::ErrorKind::BrokenPipe.into()))
     }
 
+    /// Called ten times a second, frames or not: writes out what is recorded, and reports what was dropped.
     fn tick(&mut self, counts: &StreamCounts) -> Result<(), CliError> {
         if let Some(recorder) = &mut self.recorder {
             recorder.tick().map_err(CliError::Recorder)?;
@@ -307,6 +343,7 @@ impl Watcher<'_> {
         }
     }
 
+    /// Notes how many frames have been dropped if there are more than at the last time, with the bytes of the last one.
     fn report_dropped(&mut self, counts: &StreamCounts) {
         if counts.dropped <= self.dropped {
             return;
@@ -320,6 +357,10 @@ impl Watcher<'_> {
         self.say(&text);
     }
 
+    /// The end of a source that has one.
+    ///
+    /// # Errors
+    /// If there was no frame in all of it, which means that the format, or rows and columns, are wrong.
     fn ended(&mut self, counts: &StreamCounts) -> Result<(), CliError> {
         self.shaped(counts)?;
         self.report_dropped(counts);
@@ -333,6 +374,8 @@ impl Watcher<'_> {
     }
 
     /// Writes out everything.
+    /// The first error in this order is returned: of recording, of writing answers, of the frames, of the source. A
+    /// tare that lacks frames is an error of the frames: nothing was answered.
     fn finish(mut self, acquired: Result<(), AcquireError>) -> Result<(), CliError> {
         let mut failure = self.failure.take();
         if let (None, Some((tare, _))) = (&failure, &self.tare) {

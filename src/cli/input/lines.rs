@@ -1,8 +1,8 @@
 //! Lines answered one by one, as `taxel batch` and `taxel recognise` do.
 //!
-//! Memory does not grow with the number of lines: only one line and its answer are held at a time. Answers are buffered, but
-//! all of them are written out before any read that may have to wait for more input: so a program that sends a line and waits
-//! for its answer gets it. Blank lines are skipped, but count in line numbers.
+//! Memory does not grow with the number of lines: only one line and its answer are held at a time. Answers are
+//! buffered, but all of them are written out before any read that may have to wait for more input: so a program that
+//! sends a line and waits for its answer gets it. Blank lines are skipped, but count in line numbers.
 
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 
@@ -65,7 +65,9 @@ fn refuse(answer: &mut Vec<u8>, message: &str) {
 
 /// Reads lines of any bytes, one by one.
 struct Lines<R> {
+    /// Where bytes come from, in large pieces.
     input: BufReader<R>,
+    /// The line being read; its memory is used again.
     line: Vec<u8>,
 }
 
@@ -78,6 +80,7 @@ enum Line<'a> {
 }
 
 impl<R: Read> Lines<R> {
+    /// Reads nothing yet.
     fn new(input: R) -> Self {
         Self {
             input: BufReader::with_capacity(CHUNK, input),

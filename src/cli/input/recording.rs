@@ -15,8 +15,11 @@ use crate::imprint::Imprint;
 /// A recording that can be read again and again.
 #[derive(Debug)]
 pub(crate) struct RecordingFile {
+    /// The path, or `standard input`; for messages.
     name: String,
+    /// A file that can be read from its beginning again.
     file: File,
+    /// Rows and columns, for forms that do not say them.
     options: ReadOptions,
 }
 

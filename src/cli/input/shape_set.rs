@@ -1,4 +1,13 @@
 //! The shapes of a set: from files of lines, from the library, and in words.
+//!
+//! A line is an object of JSON with a name and either a figure with its sizes, a stored shape, or an imprint; the same
+//! in words is an argument of `--shape`:
+//! ```text
+//! {"name":"disc","figure":"ellipse","radius_x":3,"radius_y":3}
+//! --shape 'disc=ellipse radius_x=3 radius_y=3'
+//! ```
+//! An argument is a file if it ends in `.jsonl` or `.json`, has a `/`, or is a file while no shape has that name;
+//! otherwise it is the name of a shape, which is taken as it was stored.
 
 use std::ffi::OsStr;
 use std::fs::File;
@@ -16,6 +25,9 @@ use crate::recognition::NamedShape;
 const MAX_SET: u64 = 64 << 20;
 
 /// The shapes of a set, in the order of the arguments.
+/// # Errors
+/// [`CliError::Set`] with the place of a shape that cannot be read: `parts.jsonl, line 3`; those of files and the
+/// library.
 pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
     let lookup = |name: &str| shelf.imprint(name).map_err(|error| error.to_string());
     let mut shapes = Vec::new();
@@ -54,6 +66,8 @@ pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape
 }
 
 /// All shapes of the library, in its order.
+/// # Errors
+/// If one of them is damaged.
 fn library_shapes(shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
     let library = shelf.library()?;
     let mut shapes = Vec::new();
@@ -79,6 +93,9 @@ fn file_of_lines(what: &OsStr, shelf: &Shelf) -> Option<PathBuf> {
 }
 
 /// Reads a set of shapes, a line of JSON each. Blank lines are skipped.
+/// # Errors
+/// If the text is larger than [`MAX_SET`], or a line is no shape. A wrong line ends it: a set with a shape missing
+/// would give another limit.
 fn lines(
     input: &mut dyn Read,
     name: &str,

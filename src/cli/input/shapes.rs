@@ -20,9 +20,11 @@ use crate::storage::{Expected, Library, LibraryError};
 /// The library, opened when it is first used: most commands never need it.
 #[derive(Debug)]
 pub(crate) struct Shelf {
+    /// The folder of the library; None if the user has no home.
     folder: Option<PathBuf>,
     /// Whether `--library` names the folder.
     asked: bool,
+    /// The library once it has been opened.
     library: RefCell<Option<Library>>,
     /// What [`Shelf::imprint`] has found. A batch keeps using a shape as it was when it was first looked up.
     found: RefCell<HashMap<String, Imprint>>,
@@ -87,7 +89,8 @@ impl Shelf {
     /// Looks up a `NAME|FILE` argument: `-`, then a name, then a file.
     ///
     /// # Errors
-    /// [`CliError::Nowhere`] if it is neither; otherwise what is wrong with the shape, or why the file cannot be opened.
+    /// [`CliError::Nowhere`] if it is neither; otherwise what is wrong with the shape, or why the file cannot be
+    /// opened.
     pub(crate) fn locate(&self, what: &OsStr) -> Result<Located, CliError> {
         if what == "-" {
             return Ok(Located::Standard);

@@ -19,20 +19,30 @@ const SHOWN: usize = 8;
 const BAR: usize = 30;
 
 /// The nearest imprint as an object of JSON.
+/// Of several imprints at one distance it is the one that occurs most often.
 #[derive(Serialize)]
 struct NearestJson<'a> {
+    /// The shape that leaves it most often.
     name: &'a str,
+    /// How many taxels differ in the best position.
     distance: u32,
+    /// Its rows, in the matrix of the touch.
     imprint: Vec<String>,
 }
 
 /// An answer as an object of JSON, its keys in the order of the documentation.
 pub(crate) struct AnswerJson<'a> {
+    /// The model that was asked; for the names of shapes.
     pub(crate) model: &'a Model,
+    /// The posterior, and what follows from it.
     pub(crate) answer: &'a Answer,
+    /// How the posterior was found: from equal imprints, or compared under noise.
     pub(crate) method: Method,
+    /// The noise that was assumed.
     pub(crate) noise: Option<Noise>,
+    /// The nearest imprint of the model; None if all are larger than the matrix.
     pub(crate) nearest: Option<Nearest>,
+    /// How many shapes of the ranking are written; all if not given.
     pub(crate) top: Option<usize>,
     /// Whether it was asked where the shape lies.
     pub(crate) asks_pose: bool,
@@ -81,7 +91,9 @@ impl Serialize for AnswerJson<'_> {
 /// A shape of the ranking.
 #[derive(Serialize)]
 struct Ranked<'a> {
+    /// Its name.
     name: &'a str,
+    /// Its posterior, 0 to 1.
     probability: f64,
 }
 
@@ -96,12 +108,15 @@ struct Ranked<'a> {
 ///   # both   + only in the touch   - only in the nearest imprint
 /// ```
 pub(crate) struct AnswerText<'a> {
+    /// The model that was asked.
     pub(crate) model: &'a Model,
-    /// The last touch, which is compared with the nearest imprint.
+    /// The touch, which is compared with the nearest imprint.
     pub(crate) touch: &'a Imprint,
+    /// The posterior, and what follows from it.
     pub(crate) answer: &'a Answer,
     /// How many shapes of the ranking are shown; eight if not given.
     pub(crate) top: Option<usize>,
+    /// The noise that was assumed.
     pub(crate) noise: Option<Noise>,
 }
 

@@ -1,4 +1,19 @@
 //! Evaluations of models: as a table for people, as commas, as one line of JSON.
+//!
+//! What a text of `taxel model confusion` consists of, above the matrix and below it:
+//! ```text
+//! 5400 touches of 3 shapes, 845 distinct
+//! right                    5312   98.4 %
+//! wrong                      88    1.6 %  the limit: no method errs less
+//! …
+//!             1      2      3    recall
+//! 1 bar   [1800]     ·      ·   100.0 %
+//! 2 disc      ·  [1728]    72    96.0 %
+//! 3 block     ·     16  [1784]   99.1 %
+//!   precision 100%    99%    96%
+//! most confused: disc and block (1.6 %)
+//! ```
+//! Rows are true shapes, columns the names that they are given. All numbers are counted touches, not estimates.
 
 use std::fmt::Write;
 
@@ -10,6 +25,7 @@ use crate::recognition::{Evaluation, Peer, PeerEvaluation, ShapeDescriptor};
 
 /// An evaluation as an object of JSON, its keys in the order of the documentation.
 pub(crate) struct EvaluationJson<'a> {
+    /// What is shown.
     pub(crate) evaluation: &'a Evaluation,
     /// Of a peer: `certain` is null, since it does not know when it is, and so is `keys_of_one_shape`.
     pub(crate) peer: Option<&'a PeerEvaluation>,
@@ -55,6 +71,7 @@ pub(crate) fn number(count: u128) -> serde_json::Value {
 }
 
 /// A number with a narrow space between its thousands; a plain one in ASCII.
+/// Numbers of four digits stay as they are, as usual in print.
 fn grouped(number: u128, charset: Charset) -> String {
     let digits = number.to_string();
     let mut text = String::new();
@@ -71,11 +88,13 @@ fn grouped(number: u128, charset: Charset) -> String {
 }
 
 /// A share as percent.
+/// One decimal: `98.4 %`. A share of 0.99999 is shown as `100.0 %`.
 pub(crate) fn percent(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)
 }
 
 /// A bar for a share, of at most `width` characters.
+/// Rounded to whole characters, so a small share may have none.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -140,8 +159,10 @@ pub(crate) fn ratio(part: u128, whole: u128) -> f64 {
     }
 }
 
-/// The matrix: a row per true shape, a column per name; the diagonal in brackets, zero as a dot. Columns are numbered if
-/// their names do not fit; recall on the right, precision below.
+/// The matrix: a row per true shape, a column per name; the diagonal in brackets, zero as a dot. Columns are numbered
+/// if their names do not fit; recall on the right, precision below. The first column begins behind the longest name. A
+/// column is as wide as its largest number, whose brackets are counted, so that the diagonal does not shift its row.
+/// Precision is `-` for a name that is never given.
 pub(crate) fn matrix(evaluation: &Evaluation, charset: Charset) -> String {
     let labels = &evaluation.labels;
     let dot = match charset {
@@ -197,6 +218,8 @@ pub(crate) fn matrix(evaluation: &Evaluation, charset: Charset) -> String {
 }
 
 /// The worst pairs, in a sentence; empty if no shape is taken for another.
+/// At most three: `most confused: disc and block (1.6 %)`. Both directions of a pair are added; the share is that of
+/// all touches.
 pub(crate) fn worst_pairs(evaluation: &Evaluation, charset: Charset) -> String {
     let pairs = evaluation.worst_pairs();
     let said = pairs.iter().take(3).map(|&(one, other, touches)| {
@@ -214,6 +237,12 @@ pub(crate) fn worst_pairs(evaluation: &Evaluation, charset: Charset) -> String {
 }
 
 /// The matrix as commas: a heading row of names, then a row per true shape.
+/// Names with a comma, a quotation mark or a line end are quoted, quotation marks doubled (RFC 4180):
+/// ```text
+/// true,bar,disc
+/// bar,1800,0
+/// disc,0,1728
+/// ```
 pub(crate) fn csv(evaluation: &Evaluation) -> String {
     let quoted = |label: &String| {
         if label.contains([',', '"', '\n', '\r']) {
@@ -232,6 +261,13 @@ pub(crate) fn csv(evaluation: &Evaluation) -> String {
 }
 
 /// Descriptors chosen one after the other, and the limit in the last row.
+/// The error falls from row to row, to that of the whole imprint at best; `values` are the distinct combinations:
+/// ```text
+/// descriptors chosen one by one    error   values
+/// + f                              5.6 %       61
+/// + cg_cd                          2.1 %      118
+/// limit: the whole imprint         1.6 %      845
+/// ```
 pub(crate) fn greedy(
     chosen: &[(ShapeDescriptor, Evaluation)],
     limit: &Evaluation,
@@ -258,6 +294,11 @@ pub(crate) fn greedy(
 }
 
 /// Peers in a table, and the limit in the last row.
+/// ```text
+/// classifier             error  top two  information
+/// lda                    8.4 %   99.9 %   1.179 bits
+/// limit of one touch     1.6 %  100.0 %   1.538 bits
+/// ```
 pub(crate) fn peers(reached: &[PeerEvaluation], limit: &Evaluation, charset: Charset) -> String {
     let mut text = String::from("classifier             error  top two  information\n");
     let mut line = |name: &str, evaluation: &Evaluation| {
@@ -277,6 +318,8 @@ pub(crate) fn peers(reached: &[PeerEvaluation], limit: &Evaluation, charset: Cha
 }
 
 /// The features that a peer used, and those that it left out.
+/// Empty without a peer, and for templates, which compare imprints. A feature is left out if it has one value only or
+/// copies another one.
 pub(crate) fn features(peer: Option<&PeerEvaluation>) -> String {
     let Some(peer) = peer.filter(|peer| peer.peer != Peer::Template) else {
         return String::new();
@@ -289,6 +332,7 @@ pub(crate) fn features(peer: Option<&PeerEvaluation>) -> String {
 }
 
 /// The errors of pairs, in percent; the worst is said below.
+/// The matrix is symmetric: each entry is the error of the best classifier if there were only these two shapes.
 pub(crate) fn pairs(labels: &[String], errors: &[Vec<f64>], charset: Charset) -> String {
     let name = labels
         .iter()

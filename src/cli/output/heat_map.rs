@@ -1,4 +1,11 @@
 //! Values in shades, two characters a cell, without colours.
+//! ```text
+//!     0   2   4
+//!  0  · · ░░░░·
+//!  1  · ▒▒████░░
+//!  2  · ░░████·
+//! 0 ░▒▓█ 9 kPa
+//! ```
 
 use crate::cli::output::charset::Charset;
 use crate::formats::value::fitting;
@@ -12,8 +19,8 @@ fn shades(charset: Charset) -> &'static [char] {
     }
 }
 
-/// The values of all cells, a line a row, with numbers of columns and rows as beside imprints, and what the shades mean.
-/// A cell of 0 or less is a dot; where there is no cell there is nothing.
+/// The values of all cells, a line a row, with numbers of columns and rows as beside imprints, and what the shades
+/// mean. A cell of 0 or less is a dot; where there is no cell there is nothing.
 pub(crate) fn heat_map(values: &Matrix<f64>, unit: &str, charset: Charset) -> String {
     let largest = values.values().iter().copied().fold(0.0, f64::max);
     let shades = shades(charset);
@@ -46,6 +53,7 @@ pub(crate) fn heat_map(values: &Matrix<f64>, unit: &str, charset: Charset) -> St
 }
 
 /// Which shade a share of the largest value has.
+/// The range from 0 to the largest value is parted evenly, upper bounds included: the largest value has the last shade.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

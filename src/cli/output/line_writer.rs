@@ -1,4 +1,5 @@
-//! Lines on standard output, written by a thread of their own, so that a reader that is slow does not hold up a recording.
+//! Lines on standard output, written by a thread of their own, so that a reader that is slow does not hold up a
+//! recording.
 
 use std::io::{self, Write};
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, sync_channel};
@@ -10,7 +11,9 @@ const WAITING: usize = 1000;
 /// The sending end.
 #[derive(Debug)]
 pub(crate) struct LineWriter {
+    /// To the thread. Sending fails once the thread has ended because of an error.
     lines: SyncSender<Vec<u8>>,
+    /// Returns the error of writing, if there was one.
     thread: JoinHandle<io::Result<()>>,
     /// Lines that were given up because too many were waiting.
     pub(crate) given_up: u64,
@@ -27,7 +30,8 @@ impl LineWriter {
         }
     }
 
-    /// Sends a line; waits if too many are waiting, or gives it up if that is allowed. False once nothing can be written.
+    /// Sends a line; waits if too many are waiting, or gives it up if that is allowed. False once nothing can be
+    /// written.
     pub(crate) fn send(&mut self, line: Vec<u8>, may_give_up: bool) -> bool {
         if !may_give_up {
             return self.lines.send(line).is_ok();

@@ -1,4 +1,12 @@
 //! Where a recognised shape lies: in words, as JSON, and its outline over the touch.
+//!
+//! ```text
+//! centre at 3, 3 ± 0.13, 0.13 cells
+//! angle 30.2° ± 1.4° (modulo 180°); 95 % in 6°, from 27° to 32°
+//! ```
+//! Positions are those of the centre about which the shape turns, in cells of the touch, x to the right, y down. All
+//! poses of the model that leave the imprint count alike; `±` is their standard deviation. Angles are degrees as of
+//! flags, modulo the angle after which the shape looks the same.
 
 use serde::Serialize;
 
@@ -21,15 +29,23 @@ const PIECES: u16 = 128;
 /// A pose as an object of JSON, its keys in the order of the documentation.
 #[derive(Serialize)]
 pub(crate) struct PoseJson<'a> {
+    /// The shape.
     name: &'a str,
+    /// How many poses of the model leave the imprint.
     poses: u64,
+    /// Mean x and y of its centre, in cells of the touch.
     centre: [f64; 2],
+    /// The same from the top left corner of the imprint's box.
     centre_in_box: [f64; 2],
+    /// Standard deviations of x and y, in cells.
     centre_sd: [f64; 2],
+    /// `centre` times the pitch, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     centre_mm: Option<[f64; 2]>,
+    /// `centre_sd` times the pitch.
     #[serde(skip_serializing_if = "Option::is_none")]
     centre_sd_mm: Option<[f64; 2]>,
+    /// Null for a shape that looks the same at every angle.
     angle: Option<AngleJson>,
 }
 
@@ -37,26 +53,35 @@ pub(crate) struct PoseJson<'a> {
 /// degrees that hold 95 %.
 #[derive(Serialize)]
 struct AngleJson {
+    /// The circular mean; null if the angles point in all directions alike.
     mean: Option<f64>,
+    /// The circular standard deviation; null where the mean is.
     sd: Option<f64>,
+    /// After so many degrees the shape looks the same.
     period: u32,
+    /// The first of the neighbouring degrees.
     from: u32,
+    /// How many these are; they may pass the period and begin again at 0.
     degrees: u32,
 }
 
 /// A shape's pose, as far as one touch tells it.
 pub(crate) struct PoseReport {
+    /// The shape.
     name: String,
+    /// The poses that leave the imprint.
     estimate: PoseEstimate,
     /// The top left corner of the imprint's box, in cells.
     corner: [f64; 2],
     /// The shape in the mean pose.
     placed: Placed,
+    /// The side of a cell in mm, if lengths are given in mm too.
     pitch_mm: Option<f64>,
 }
 
 impl PoseReport {
     /// The pose of a shape of a model on an imprint; None of an empty one.
+    /// Without a mean angle the outline is drawn in the middle of the likeliest degrees.
     pub(crate) fn new(
         model: &Model,
         shape: usize,
@@ -187,6 +212,7 @@ impl PoseReport {
 struct Outline(DotCanvas);
 
 impl Outline {
+    /// A line between two points given in cells.
     fn line(&mut self, from: (f64, f64), to: (f64, f64)) {
         let place = |(x, y): (f64, f64)| (x * DOTS, y * DOTS);
         self.0.line(place(from), place(to));
@@ -198,6 +224,7 @@ impl Pen<f64> for Outline {
         self.line((from.x, from.y), (to.x, to.y));
     }
 
+    /// Drawn as [`PIECES`] chords: they differ from it by less than a dot.
     fn ellipse(&mut self, ellipse: &Ellipse<f64>, _material: Side) {
         let at = |piece: u16| {
             let turn = std::f64::consts::TAU * f64::from(piece) / f64::from(PIECES);

@@ -21,8 +21,11 @@ const PAUSE: Duration = Duration::from_secs(10);
 
 /// Shows how many poses of a sweep are done. It is shared by all threads of the sweep.
 pub(crate) struct Progress {
+    /// Poses of the whole work.
     all: u64,
+    /// Poses that are done.
     done: AtomicU64,
+    /// Where it is shown.
     shown: Shown,
 }
 

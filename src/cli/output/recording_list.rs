@@ -1,4 +1,16 @@
 //! What is in a recording: its channels, each with what the recording says of it.
+//!
+//! ```text
+//! csv, 1 channel
+//!
+//! frames    1
+//! size      4 rows × 5 columns, 20 cells
+//! peak      frame 0
+//! ```
+//! A line is there only if the recording says something of it. As JSON, one object for the recording:
+//! ```text
+//! {"format":"csv","channels":[{"name":null,"frames":1,"rows":4,"columns":5,"cells":20,"unit":null,…,"peak":0}]}
+//! ```
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
@@ -13,8 +25,11 @@ use crate::parameter::number::short;
 /// A channel of a recording.
 #[derive(Debug, Default)]
 pub(crate) struct ListedChannel {
+    /// What the recording says of it.
     pub(crate) info: ChannelInfo,
+    /// How many frames it has.
     pub(crate) frames: u64,
+    /// The frame with the greatest sum of values.
     pub(crate) peak: Peak,
     /// How many values a frame has, with those of cells that do not exist.
     pub(crate) values: u64,
@@ -67,6 +82,7 @@ impl Serialize for ListedChannel {
     }
 }
 
+/// The recording as an object of JSON; `format` is null if damage came before it was certain.
 struct ListedRecording<'a>(Option<RecordingFormat>, &'a [ListedChannel]);
 
 impl Serialize for ListedRecording<'_> {
@@ -102,6 +118,7 @@ pub(crate) fn text(
         .collect()
 }
 
+/// A name in ten columns, then the value; lines without a value are left out.
 fn channel_lines(channel: &ListedChannel) -> Vec<String> {
     let info = &channel.info;
     let row = |name: &str, value: Option<String>| value.map(|value| format!("{name:<10}{value}"));

@@ -128,12 +128,16 @@ fn line(text: &mut String, line: &str) {
 /// A line of the table: a descriptor, the factor from its values to those shown (the pitch, or 100 for percent), and
 /// the label on the left.
 struct TableRow {
+    /// What is measured.
     descriptor: &'static Descriptor,
+    /// From its values to those shown.
     factor: f64,
+    /// Symbol, a few words, unit.
     label: String,
 }
 
-/// The lines of the table; `holes`: whether a region is one, whose taxels are not the active ones. With a pitch, each length is followed by the same in mm and each area by the same in mm².
+/// The lines of the table; `holes`: whether a region is one, whose taxels are not the active ones. With a pitch, each
+/// length is followed by the same in mm and each area by the same in mm².
 fn table_rows(pitch: Option<f64>, holes: bool) -> Vec<TableRow> {
     let mut all = Vec::new();
     for descriptor in DESCRIPTORS {

@@ -1,4 +1,13 @@
 //! Errors against sizes: as a table and a plot for people, as commas, as JSON, and as curves to draw.
+//!
+//! ```text
+//! scale     threshold    error  certain       keys  sensor
+//! 0.5             0.5   44.9 %   12.5 %         20  16 x 16
+//! 1               0.5    6.0 %   77.3 %        117  16 x 16
+//! ```
+//! Each row is a training of its own: all shapes at that scale, or in cells of that pitch, on the smallest sensor that
+//! holds them. Plots have the size on the x axis, or the threshold where there is one size only, and the error on the
+//! other, from 0.
 
 use std::fmt::Write;
 
@@ -15,13 +24,16 @@ use crate::recognition::{SeparationPoint, SizeAxis, SmallestSize};
 
 /// The points of one threshold.
 pub(crate) struct Curve {
+    /// The coverage from which on a taxel is active, 0 to 1.
     pub(crate) threshold: f64,
+    /// By size, the smallest shapes first.
     pub(crate) points: Vec<SeparationPoint>,
     /// The smallest size that reaches the wanted error; None if none does, or none is wanted.
     pub(crate) smallest: Option<SmallestSize>,
 }
 
 /// A value as short as it can be written.
+/// At most six decimals, so that 0.1 + 0.2 is shown as 0.3.
 fn short(value: f64) -> String {
     decimal(value, 6)
 }
@@ -43,6 +55,7 @@ fn said(axis: SizeAxis, value: f64) -> String {
 }
 
 /// A table and a plot for each threshold, and what was searched for.
+/// `wanted` is the error of `--want`; what was found for it comes last, in a sentence for each threshold.
 pub(crate) fn text(
     axis: SizeAxis,
     sizes: &DecimalRange,
@@ -99,6 +112,8 @@ pub(crate) fn text(
 }
 
 /// What a search has found, and how it looked.
+/// The sentence names the steps, because the error is not monotonous in the size: a size between two that were tried
+/// may reach the wanted error as well.
 fn found(axis: SizeAxis, sizes: &DecimalRange, curve: &Curve, wanted: f64) -> String {
     let wanted = short(wanted);
     let coarse = short(sizes.step());
@@ -150,6 +165,11 @@ fn percent_fine(share: f64) -> String {
 }
 
 /// A row of names, then a row for each size and threshold.
+/// Shares are written with all digits, counts as whole numbers:
+/// ```text
+/// scale,threshold,error,touches,right,certain,keys,side
+/// 0.5,0.5,0.44907407407407407,864,476,108,20,16
+/// ```
 pub(crate) fn csv(axis: SizeAxis, curves: &[Curve]) -> String {
     let mut text = format!(
         "{},threshold,error,touches,right,certain,keys,side\n",
@@ -173,6 +193,7 @@ pub(crate) fn csv(axis: SizeAxis, curves: &[Curve]) -> String {
 }
 
 /// One object: the axis, the points, and with `--want` what was found for each threshold.
+/// `want` is only there if an error was asked for, with an entry for each threshold, null where no size reaches it.
 pub(crate) fn json_text(axis: SizeAxis, curves: &[Curve], wanted: Option<f64>) -> String {
     let point = |point: &SeparationPoint| PointJson {
         pitch_mm: (axis == SizeAxis::Pitch).then_some(point.value),
@@ -204,8 +225,11 @@ pub(crate) fn json_text(axis: SizeAxis, curves: &[Curve], wanted: Option<f64>) -
 /// All points, and with `--want` what was found for each threshold.
 #[derive(Serialize)]
 struct CurvesJson {
+    /// `scale` or `pitch`.
     axis: &'static str,
+    /// All points, threshold by threshold.
     points: Vec<PointJson>,
+    /// What `--want` found.
     #[serde(skip_serializing_if = "Option::is_none")]
     want: Option<Vec<FoundJson>>,
 }
@@ -213,25 +237,39 @@ struct CurvesJson {
 /// A point as an object of JSON, its keys in the order of the documentation.
 #[derive(Serialize)]
 struct PointJson {
+    /// Only if pitches were asked for, in mm; `scale` follows from it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pitch_mm: Option<f64>,
+    /// What lengths are multiplied by to be in cells.
     scale: f64,
+    /// The coverage from which on a taxel is active.
     threshold: f64,
+    /// The share of touches that the best classifier names wrong.
     error: f64,
+    /// All touches: poses times shapes.
     touches: Value,
+    /// Those that are named right.
     right: Value,
+    /// Those that only one shape can leave.
     certain: Value,
+    /// Distinct imprints, wherever they lie.
     keys: usize,
+    /// Columns and rows of the sensor.
     side: u8,
 }
 
 /// The smallest size that was found; null where there is none.
 #[derive(Serialize)]
 struct FoundJson {
+    /// As of the curve.
     threshold: f64,
+    /// The error that was asked for.
     error: f64,
+    /// The smallest size that has it.
     smallest: Option<PointJson>,
+    /// The step of the search there; 0 if the first size that was tried has it: smaller ones may have it, too.
     step: Option<f64>,
+    /// How many larger sizes have a greater error again.
     missed_again: Option<usize>,
 }
 

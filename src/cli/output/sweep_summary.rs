@@ -25,8 +25,11 @@ use crate::sweep::SweepResult;
 
 /// The result of a sweep, and how long it took.
 pub(crate) struct SweepSummary<'a> {
+    /// What was found.
     result: &'a SweepResult,
+    /// Distinct imprints up to shifts; and up to quarter turns and mirror images too.
     classes: (usize, usize),
+    /// The time of the sweep, without that of writing files.
     took: Duration,
 }
 

@@ -67,9 +67,13 @@ pub struct Config {
     pub(crate) mouse: Option<Written<bool>>,
     /// An absolute path, or one below the user's home that starts with `~/`.
     pub(crate) library: Option<Written<String>>,
+    /// The default sensor, changed as the file says.
     sensor: Sensor,
+    /// The parameters of the sensor that the file sets, and in which line.
     sensor_entries: Vec<Written<Parameter>>,
+    /// The keys that the file binds or unbinds, in its order.
     changes: Vec<Written<Change>>,
+    /// The default keys with these changes.
     keymap: Keymap,
 }
 

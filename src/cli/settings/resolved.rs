@@ -8,6 +8,10 @@
 //! color = "never"                        # environment, NO_COLOR
 //! mouse = true                           # default
 //! ```
+//!
+//! Empty environment variables count as unset, as programs that follow `NO_COLOR` do it. What stands in the user's own
+//! file is read for every command whose output depends on it; an error in the file is an error of the command, with its
+//! place: `/home/ana/.config/taxel/config.toml:3:9: …`.
 
 use std::ffi::OsString;
 use std::fmt;
@@ -36,6 +40,7 @@ pub(crate) struct Loaded {
     path: Option<PathBuf>,
     /// Whether the file exists.
     there: bool,
+    /// What it says; nothing if there is no file.
     config: Config,
 }
 
@@ -127,7 +132,9 @@ impl fmt::Display for SettingOrigin {
 /// A value and where it comes from.
 #[derive(Clone, Debug)]
 struct Settled<T> {
+    /// The value in effect.
     value: T,
+    /// Where it was found.
     origin: SettingOrigin,
 }
 
@@ -152,12 +159,19 @@ fn settled<T: Clone>(
 /// All settings in effect. For a choice None means `auto`.
 #[derive(Clone, Debug)]
 pub(crate) struct Effective {
+    /// The settings file.
     loaded: Loaded,
+    /// The palette of the screen.
     theme: Settled<Option<Palette>>,
+    /// How many colours the screen uses; `NO_COLOR` means none.
     color: Settled<Option<ColorDepth>>,
+    /// Whether text is ASCII only; for `auto` the locale tells.
     charset: Settled<Option<bool>>,
+    /// Whether the screen reacts to the mouse.
     mouse: Settled<bool>,
+    /// The folder of the library; None if the user has no home.
     library: Settled<Option<PathBuf>>,
+    /// The sensor of figures that are given without one.
     sensor: Sensor,
     /// The parameters of the sensor, each with the name of its flag.
     of_sensor: [(&'static str, Parameter, SettingOrigin); SENSOR.len()],

@@ -244,7 +244,8 @@ impl ConfusionArguments {
 }
 
 impl Evaluated {
-    /// The question that is asked. clap has made sure that there is at most one; without one it is about whole imprints.
+    /// The question that is asked. clap has made sure that there is at most one; without one it is about whole
+    /// imprints.
     fn of(matches: &ArgMatches) -> Self {
         if matches.contains_id("test") {
             return Self::HalfStep;

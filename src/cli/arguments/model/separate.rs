@@ -1,8 +1,8 @@
 //! `taxel model separate`: its flags, and what they ask for.
 //!
 //! The error of a set against two things: how large the shapes are on the matrix, and the threshold of a taxel. The
-//! first is one of `--scale` (all lengths times a factor, in cells) and `--pitch` (lengths in mm over cells of this many
-//! mm), the second is `--threshold`. Each is a range, `START:END:STEP`, or a single number:
+//! first is one of `--scale` (all lengths times a factor, in cells) and `--pitch` (lengths in mm over cells of this
+//! many mm), the second is `--threshold`. Each is a range, `START:END:STEP`, or a single number:
 //! ```text
 //! taxel model separate figures --scale 0.5:1.5:0.1 --want 0.01
 //! taxel model separate shapes.jsonl --pitch 1:4:0.5 --threshold 0.3:0.7:0.2
