@@ -62,6 +62,9 @@ mod model;
 #[cfg(feature = "recognition")]
 mod named_shape;
 
+#[cfg(feature = "tui")]
+pub(crate) mod separation;
+
 pub use described::DescribedImprint;
 pub use drawing::{ConfusionMap, Drawing, LinePlot};
 pub use imprint_file::{ImprintFormat, ImprintFormatError, read as read_imprint};

@@ -8,7 +8,7 @@ use crate::figure::Figure;
 use crate::parameter::Parameter;
 use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, PoseGrid, smallest_sensor};
 use crate::recognition::evaluation::Evaluation;
-use crate::recognition::model::{NamedShape, check_shapes, share};
+use crate::recognition::model::{Model, NamedShape, check_shapes, share};
 use crate::recognition::training::{Training, TrainingError};
 use crate::sensor::Sensor;
 use crate::source::Source;
@@ -36,6 +36,15 @@ impl SizeAxis {
             Self::Scale => "scale",
             Self::Pitch => "pitch_mm",
         }
+    }
+
+    /// Returns the values of a range, the smallest size first: of pitches the last one.
+    pub fn smallest_first(self, values: &DecimalRange) -> Vec<f64> {
+        let mut values: Vec<f64> = values.values().collect();
+        if self == Self::Pitch {
+            values.reverse();
+        }
+        values
     }
 
     /// Returns the scale that a value stands for; a value above 0.
@@ -242,12 +251,28 @@ impl Separation {
         threshold: f64,
         progress: &(dyn Fn(u64) -> bool + Sync),
     ) -> Result<SeparationPoint, TrainingError> {
+        let (point, ..) = self.model_at(axis, value, threshold, progress)?;
+        Ok(point)
+    }
+
+    /// Returns the same with the model that it was counted from, and the evaluation of that.
+    ///
+    /// # Errors
+    /// Those of [`Self::at`].
+    pub fn model_at(
+        &self,
+        axis: SizeAxis,
+        value: f64,
+        threshold: f64,
+        progress: &(dyn Fn(u64) -> bool + Sync),
+    ) -> Result<(SeparationPoint, Model, Evaluation), TrainingError> {
         let scale = axis.scale(value);
         let training = self.training(scale, threshold)?;
         let sides = training.grids().iter().map(|grid| grid.sensor().side());
         let side = sides.max().unwrap_or(LEAST_SIDE);
-        let limit = Evaluation::of(&training.progress(progress).run()?);
-        Ok(SeparationPoint {
+        let model = training.progress(progress).run()?;
+        let limit = Evaluation::of(&model);
+        let point = SeparationPoint {
             value,
             scale,
             threshold,
@@ -256,7 +281,8 @@ impl Separation {
             right: limit.right,
             certain: limit.certain,
             keys: limit.keys,
-        })
+        };
+        Ok((point, model, limit))
     }
 
     /// Returns the limit for every value of a range, the smallest size first: of pitches the last one.
@@ -270,10 +296,7 @@ impl Separation {
         threshold: f64,
         progress: &(dyn Fn(u64) -> bool + Sync),
     ) -> Result<Vec<SeparationPoint>, TrainingError> {
-        let mut values: Vec<f64> = values.values().collect();
-        if axis == SizeAxis::Pitch {
-            values.reverse();
-        }
+        let values = axis.smallest_first(values);
         let points = values.into_iter();
         points
             .map(|value| self.at(axis, value, threshold, progress))
@@ -352,7 +375,6 @@ mod tests {
     use super::*;
     use crate::picture::Picture;
     use crate::pose::Ranges;
-    use crate::recognition::model::Model;
     use crate::recognition::sets::equal_figures;
 
     fn coarse(shapes: Vec<NamedShape>) -> Separation {

@@ -21,9 +21,10 @@ use crate::cli::input::shape_set;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::progress::Progress;
-use crate::cli::output::separation::{self, Curve};
+use crate::cli::output::separation;
 use crate::cli::signals::Signals;
 use crate::formats::Name;
+use crate::formats::separation::{SeparationCurve, csv, drawing};
 use crate::pose::{Axis, DecimalRange, Ranges};
 use crate::recognition::{Model, Separation, TrainingError};
 use crate::sensor::Sensor;
@@ -69,18 +70,20 @@ pub(crate) fn separate(
     })?;
     if let Some(path) = &asked.export {
         let content = match ending(path).as_str() {
-            "svg" => separation::drawing(asked.axis, &curves).svg().into_bytes(),
+            "svg" => drawing(asked.axis, &curves, asked.wanted)
+                .svg()
+                .into_bytes(),
             "png" => {
-                let drawing = separation::drawing(asked.axis, &curves);
+                let drawing = drawing(asked.axis, &curves, asked.wanted);
                 drawing.png().map_err(CliError::Write)?
             }
-            _ => separation::csv(asked.axis, &curves).into_bytes(),
+            _ => csv(asked.axis, &curves).into_bytes(),
         };
         put(path, &content, asked.existing)?;
     }
     Ok(match asked.form {
         EvaluationForm::Json => separation::json_text(asked.axis, &curves, asked.wanted),
-        EvaluationForm::Csv => separation::csv(asked.axis, &curves),
+        EvaluationForm::Csv => csv(asked.axis, &curves),
         EvaluationForm::Text => {
             separation::text(asked.axis, &asked.sizes, &curves, asked.wanted, charset)
         }
@@ -93,7 +96,7 @@ fn curves(
     separation: &Separation,
     thresholds: &[f64],
     tell: &(dyn Fn(u64) -> bool + Sync),
-) -> Result<Vec<Curve>, TrainingError> {
+) -> Result<Vec<SeparationCurve>, TrainingError> {
     let mut curves = Vec::with_capacity(thresholds.len());
     for &threshold in thresholds {
         let points = separation.scan(asked.axis, &asked.sizes, threshold, tell)?;
@@ -101,7 +104,7 @@ fn curves(
             Some(error) => separation.smallest(asked.axis, &points, error, tell)?,
             None => None,
         };
-        curves.push(Curve {
+        curves.push(SeparationCurve {
             threshold,
             points,
             smallest,

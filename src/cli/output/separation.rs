@@ -1,4 +1,4 @@
-//! Errors against sizes: as a table and a plot for people, as commas, as JSON, and as curves to draw.
+//! Errors against sizes: as a table and a plot for people, and as JSON.
 //!
 //! ```text
 //! scale     threshold    error  certain       keys  sensor
@@ -17,26 +17,11 @@ use serde_json::Value;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{number, percent};
 use crate::cli::output::plot;
+use crate::formats::json;
+use crate::formats::separation::{SeparationCurve, said, short};
 use crate::formats::value::decimal;
-use crate::formats::{LinePlot, json};
 use crate::pose::DecimalRange;
-use crate::recognition::{SeparationPoint, SizeAxis, SmallestSize};
-
-/// The points of one threshold.
-pub(crate) struct Curve {
-    /// The coverage from which on a taxel is active, 0 to 1.
-    pub(crate) threshold: f64,
-    /// By size, the smallest shapes first.
-    pub(crate) points: Vec<SeparationPoint>,
-    /// The smallest size that reaches the wanted error; None if none does, or none is wanted.
-    pub(crate) smallest: Option<SmallestSize>,
-}
-
-/// A value as short as it can be written.
-/// At most six decimals, so that 0.1 + 0.2 is shown as 0.3.
-fn short(value: f64) -> String {
-    decimal(value, 6)
-}
+use crate::recognition::{SeparationPoint, SizeAxis};
 
 /// The name of an axis in a sentence.
 fn noun(axis: SizeAxis) -> &'static str {
@@ -46,20 +31,12 @@ fn noun(axis: SizeAxis) -> &'static str {
     }
 }
 
-/// A value of the axis with its unit.
-fn said(axis: SizeAxis, value: f64) -> String {
-    match axis {
-        SizeAxis::Pitch => format!("pitch {} mm", short(value)),
-        _ => format!("scale {}", short(value)),
-    }
-}
-
 /// A table and a plot for each threshold, and what was searched for.
 /// `wanted` is the error of `--want`; what was found for it comes last, in a sentence for each threshold.
 pub(crate) fn text(
     axis: SizeAxis,
     sizes: &DecimalRange,
-    curves: &[Curve],
+    curves: &[SeparationCurve],
     wanted: Option<f64>,
     charset: Charset,
 ) -> String {
@@ -114,7 +91,7 @@ pub(crate) fn text(
 /// What a search has found, and how it looked.
 /// The sentence names the steps, because the error is not monotonous in the size: a size between two that were tried
 /// may reach the wanted error as well.
-fn found(axis: SizeAxis, sizes: &DecimalRange, curve: &Curve, wanted: f64) -> String {
+fn found(axis: SizeAxis, sizes: &DecimalRange, curve: &SeparationCurve, wanted: f64) -> String {
     let wanted = short(wanted);
     let coarse = short(sizes.step());
     let Some(smallest) = &curve.smallest else {
@@ -164,37 +141,9 @@ fn percent_fine(share: f64) -> String {
     format!("{} %", decimal(100.0 * share, 3))
 }
 
-/// A row of names, then a row for each size and threshold.
-/// Shares are written with all digits, counts as whole numbers:
-/// ```text
-/// scale,threshold,error,touches,right,certain,keys,side
-/// 0.5,0.5,0.44907407407407407,864,476,108,20,16
-/// ```
-pub(crate) fn csv(axis: SizeAxis, curves: &[Curve]) -> String {
-    let mut text = format!(
-        "{},threshold,error,touches,right,certain,keys,side\n",
-        axis.name()
-    );
-    for point in curves.iter().flat_map(|curve| &curve.points) {
-        let _ = writeln!(
-            text,
-            "{},{},{},{},{},{},{},{}",
-            short(point.value),
-            short(point.threshold),
-            point.error(),
-            point.touches,
-            point.right,
-            point.certain,
-            point.keys,
-            point.side
-        );
-    }
-    text
-}
-
 /// One object: the axis, the points, and with `--want` what was found for each threshold.
 /// `want` is only there if an error was asked for, with an entry for each threshold, null where no size reaches it.
-pub(crate) fn json_text(axis: SizeAxis, curves: &[Curve], wanted: Option<f64>) -> String {
+pub(crate) fn json_text(axis: SizeAxis, curves: &[SeparationCurve], wanted: Option<f64>) -> String {
     let point = |point: &SeparationPoint| PointJson {
         pitch_mm: (axis == SizeAxis::Pitch).then_some(point.value),
         scale: point.scale,
@@ -207,7 +156,7 @@ pub(crate) fn json_text(axis: SizeAxis, curves: &[Curve], wanted: Option<f64>) -
         side: point.side,
     };
     let points = curves.iter().flat_map(|curve| &curve.points);
-    let found = |error: f64, curve: &Curve| FoundJson {
+    let found = |error: f64, curve: &SeparationCurve| FoundJson {
         threshold: curve.threshold,
         error,
         smallest: curve.smallest.as_ref().map(|it| point(&it.point)),
@@ -271,28 +220,4 @@ struct FoundJson {
     step: Option<f64>,
     /// How many larger sizes have a greater error again.
     missed_again: Option<usize>,
-}
-
-/// The curves, over the sizes, or over the thresholds where there is one size only.
-pub(crate) fn drawing(axis: SizeAxis, curves: &[Curve]) -> LinePlot {
-    let one_size = curves.iter().all(|curve| curve.points.len() == 1);
-    if one_size && curves.len() > 1 {
-        let points = curves.iter().flat_map(|curve| &curve.points);
-        let points: Vec<_> = points
-            .map(|point| (point.threshold, point.error()))
-            .collect();
-        let size = curves[0].points[0].value;
-        return LinePlot::new("threshold", "error").with_curve(&said(axis, size), &points);
-    }
-    let label = match axis {
-        SizeAxis::Pitch => "pitch / mm",
-        _ => "scale",
-    };
-    curves
-        .iter()
-        .fold(LinePlot::new(label, "error"), |plot, curve| {
-            let points = curve.points.iter();
-            let points: Vec<_> = points.map(|point| (point.value, point.error())).collect();
-            plot.with_curve(&format!("threshold {}", short(curve.threshold)), &points)
-        })
 }

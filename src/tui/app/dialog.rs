@@ -25,6 +25,7 @@ use crate::tui::live::state::Live;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::recognise::confusion::Confusion;
 use crate::tui::recognise::exercise::Exercise;
+use crate::tui::recognise::separate::state::Separate;
 use crate::tui::recognise::state::Recognition;
 use crate::tui::shapes::state::ListDialog;
 use crate::tui::widget::theme::{Role, Theme};
@@ -66,6 +67,8 @@ pub enum Dialog {
     Exercise(Box<Exercise>),
     /// The confusion matrix of a model.
     Confusion(Box<Confusion>),
+    /// The limit of a set against the size of its shapes.
+    Separate(Box<Separate>),
     /// The frames of a sensor.
     Live(Box<Live>),
 }
@@ -91,6 +94,7 @@ impl Dialog {
             Self::Recognition(page) => &**page,
             Self::Exercise(page) => &**page,
             Self::Confusion(page) => &**page,
+            Self::Separate(page) => &**page,
             Self::Live(page) => &**page,
         }
     }

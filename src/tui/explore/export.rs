@@ -18,14 +18,43 @@ const LONGEST: usize = 4096;
 /// The label of the field.
 const LABEL: &str = "Export to: ";
 
-/// What a name can end in.
-const ENDINGS: &str = ".csv, .jsonl, .npz or .npy";
+/// What is exported.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExportKind {
+    /// The imprints and poses of a sweep.
+    Imprints,
+    /// The error of a set against size.
+    Curve,
+}
+
+impl ExportKind {
+    /// What a name can end in.
+    fn endings(self) -> &'static str {
+        match self {
+            Self::Imprints => ".csv, .jsonl, .npz or .npy",
+            Self::Curve => ".csv, .svg or .png",
+        }
+    }
+
+    /// Whether a name ends so.
+    fn takes(self, name: &str) -> bool {
+        match self {
+            Self::Imprints => is_poses(name) || AtlasFile::new(name).is_ok(),
+            Self::Curve => {
+                let ending = std::path::Path::new(name).extension();
+                ending.is_some_and(|ending| ["csv", "svg", "png"].iter().any(|own| ending == *own))
+            }
+        }
+    }
+}
 
 /// The field.
 #[derive(Clone, Debug)]
 pub struct ExportDialog {
     /// What was typed.
     pub field: TextField,
+    /// What is exported.
+    pub what: ExportKind,
 }
 
 impl ExportDialog {
@@ -40,6 +69,15 @@ impl ExportDialog {
     pub fn new(name: &str) -> Self {
         Self {
             field: TextField::new(name, LONGEST),
+            what: ExportKind::Imprints,
+        }
+    }
+
+    /// A field for the file of a curve, which proposes a name.
+    pub fn of_curves(name: &str) -> Self {
+        Self {
+            what: ExportKind::Curve,
+            ..Self::proposing(name)
         }
     }
 
@@ -49,7 +87,7 @@ impl ExportDialog {
     /// What is wrong with it, and what was expected.
     pub fn name(&self) -> Result<String, String> {
         let name = self.field.text().trim();
-        if is_poses(name) || AtlasFile::new(name).is_ok() {
+        if self.what.takes(name) {
             return Ok(name.to_owned());
         }
         let found = if name.is_empty() {
@@ -57,7 +95,8 @@ impl ExportDialog {
         } else {
             format!("{:?}: ", shortened(name))
         };
-        Err(format!("{found}expected a name that ends in {ENDINGS}"))
+        let endings = self.what.endings();
+        Err(format!("{found}expected a name that ends in {endings}"))
     }
 }
 
@@ -77,7 +116,7 @@ impl Page for ExportDialog {
         buffer: &mut Buffer,
         area: Rect,
     ) -> Option<Position> {
-        let endings = format!("   ({ENDINGS})");
+        let endings = format!("   ({})", self.what.endings());
         Some(write::prompt(
             buffer,
             area,

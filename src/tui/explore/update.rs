@@ -15,7 +15,7 @@ use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Page;
 use crate::tui::app::state::App;
-use crate::tui::explore::export::ExportDialog;
+use crate::tui::explore::export::{ExportDialog, ExportKind};
 use crate::tui::explore::filter::FilterDialog;
 use crate::tui::explore::mark::MarkPurpose;
 use crate::tui::explore::message::{ExploreMessage, ExplorePage, name_of};
@@ -25,6 +25,8 @@ use crate::tui::explore::results::Results;
 use crate::tui::explore::view::ResultPanes;
 use crate::tui::explore::work::act;
 use crate::tui::keys::action;
+use crate::tui::recognise;
+use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::runtime::effect::Effect;
 
 /// Does what a message says over the results.
@@ -210,6 +212,9 @@ pub(crate) fn in_export(
 ) -> Option<Effect> {
     if *message == Message::Accept {
         match dialog.name() {
+            Ok(name) if dialog.what == ExportKind::Curve => {
+                return recognise::update::act(app, RecogniseMessage::WriteSizes(name));
+            }
             Ok(name) => match missing(app, &name) {
                 None => return act(app, ExploreMessage::Write(name, Existing::Kept)),
                 Some(missing) => refuse(app, missing),

@@ -17,6 +17,7 @@ use crate::tui::explore::message::{ExploreMessage, ExplorePage, Zoom};
 use crate::tui::keys::key::Arrow;
 use crate::tui::live::message::LiveMessage;
 use crate::tui::recognise::message::RecogniseMessage;
+use crate::tui::recognise::separate::request::SeparationFlags;
 
 /// Something that a user can ask for.
 #[derive(Debug, PartialEq)]
@@ -63,6 +64,8 @@ pub enum Arguments {
     Distance,
     /// The name of a set of shapes.
     Model,
+    /// Sizes of a set.
+    Sizes,
     /// A whole number.
     Seed,
     /// A source of frames.
@@ -114,6 +117,7 @@ impl Arguments {
             Self::Taxel => "COLUMN ROW",
             Self::Distance => "DX DY",
             Self::Model => "SET",
+            Self::Sizes => "--scale 0.5:3:0.1 ...",
             Self::Seed => "NUMBER",
             Self::FrameSource => "SOURCE",
         }
@@ -282,6 +286,9 @@ actions! {
         NEXT_SET "next-set" [] Recognise(RecogniseMessage::NextSet(1));
         PREVIOUS_SET "previous-set" [] Recognise(RecogniseMessage::NextSet(-1));
         CONFUSION "confusion" [] Recognise(RecogniseMessage::Confusion);
+        SEPARATE "separate" [] Recognise(RecogniseMessage::Separate(SeparationFlags::NONE));
+        LOWER_ERROR "lower-error" [] Recognise(RecogniseMessage::Want(-1));
+        HIGHER_ERROR "higher-error" [] Recognise(RecogniseMessage::Want(1));
         WATCH "watch" [] Message::Live(LiveMessage::Open);
         TARE "tare" [] Message::Live(LiveMessage::Tare);
         NO_TARE "no-tare" [] Message::Live(LiveMessage::NoTare);
@@ -314,6 +321,7 @@ actions! {
         "save" Arguments::Name;
         "seed" Arguments::Seed;
         "sensor" Arguments::Sensor;
+        "separate" Arguments::Sizes;
         "turn" Arguments::Degrees;
         "watch" Arguments::FrameSource;
         "write" Arguments::File(FilePurpose::Write);

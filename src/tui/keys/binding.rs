@@ -109,6 +109,8 @@ contexts! {
     Guess "guess" "Naming a random touch" Typed, EVERYWHERE;
     /// On the confusion matrix.
     Confusion "confusion" "At the confusion matrix" Ignored, EVERYWHERE;
+    /// On the page of sizes.
+    Separate "separate" "At the sizes of a set" Ignored, EVERYWHERE;
     /// At the frames of a sensor.
     Live "live" "Watching a sensor" Ignored, EVERYWHERE;
     /// At a yes-or-no question.

@@ -285,6 +285,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('o') => NEXT_SET, Char('O') => PREVIOUS_SET]
             "set" "next, previous set of shapes";
         [Char('v') => CONFUSION] "confusion" "which shapes are taken for which";
+        [Char('V') => SEPARATE] "" "the error against the size of the shapes";
         [Enter => ACCEPT] "" "train the set, after that was stopped";
         [Esc => CANCEL, Char('r') => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]
             "close" "stop training; back to the descriptors";
@@ -309,6 +310,20 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Enter => ACCEPT] "to matrix" "put the imprint of the cell onto the matrix";
         [Char('?') => HELP] "help" "these keys";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL] "close" "back to the matrix";
+    }
+
+    Separate {
+        [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "size" "previous, next size";
+        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten sizes back, on";
+        [Home => FIRST, End => LAST] "" "first, last size";
+        [Char('+') => HIGHER_ERROR, Char('=') => HIGHER_ERROR, Char('-') => LOWER_ERROR]
+            "error" "look for a larger, a smaller error";
+        [Char('x') => EXPORT] "export" "write a file: .csv numbers, .svg .png curve";
+        [Enter => ACCEPT] "to matrix" "put the imprint that is confused onto the matrix";
+        [Char('V') => SEPARATE] "" "go on after that was stopped";
+        [Char('?') => HELP] "help" "these keys";
+        [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]
+            "close" "stop the work; back to the matrix";
     }
 
     Live {

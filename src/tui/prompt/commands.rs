@@ -21,6 +21,8 @@ use crate::tui::app::message::Message;
 use crate::tui::keys::action::{ACTIONS, Action, Arguments};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::default_keys::DEFAULT_KEYS;
+use crate::tui::recognise::message::RecogniseMessage;
+use crate::tui::recognise::separate::request::SeparationFlags;
 use crate::tui::recognise::sets::ModelChoice;
 
 /// A command: all lines that begin with one word.
@@ -70,9 +72,12 @@ pub fn actions() -> impl Iterator<Item = &'static Action> {
     })
 }
 
-/// Whether it belongs to recognition, whose page leaves the prompt to the matrix.
+/// Whether it belongs to recognition, whose page leaves the prompt to the matrix; that of sizes does not.
 fn recognises(action: &Action) -> bool {
-    matches!(action.message(), Some(Message::Recognise(_)))
+    match action.message() {
+        Some(Message::Recognise(asked)) => !matches!(asked, RecogniseMessage::Want(_)),
+        _ => false,
+    }
 }
 
 /// All commands by name.
@@ -221,6 +226,9 @@ fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
         (Some(Arguments::Ranges), said) => {
             let ranges = Axis::ALL.map(|axis| format!("--{}", axis.parameter().flag()));
             words([&ranges[..], &["--anchor".to_owned()]].concat(), said)
+        }
+        (Some(Arguments::Sizes), said) => {
+            words(SeparationFlags::NAMES.map(str::to_owned).to_vec(), said)
         }
         (Some(Arguments::Model), []) => {
             let sets = ModelChoice::BUILT_IN;

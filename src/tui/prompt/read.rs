@@ -31,6 +31,7 @@ use crate::tui::live::message::LiveMessage;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::prompt::commands::{PromptCommand, find};
 use crate::tui::recognise::message::RecogniseMessage;
+use crate::tui::recognise::separate::request::SeparationFlags;
 use crate::tui::recognise::sets::ModelChoice;
 
 /// The message of a line.
@@ -90,6 +91,10 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
         (Arguments::Model, _) => {
             let choice = ModelChoice::from_name(name_of(rest)?);
             Ok(Message::Recognise(RecogniseMessage::Choose(choice)))
+        }
+        (Arguments::Sizes, words) => {
+            let flags = SeparationFlags::read(words)?;
+            Ok(Message::Recognise(RecogniseMessage::Separate(flags)))
         }
         (Arguments::Seed, _) => seed(rest),
         (Arguments::FrameSource, _) => {

@@ -6,15 +6,15 @@ use std::sync::Arc;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::formats::value::{counted, grouped};
+use crate::formats::value::grouped;
 use crate::imprint::Imprint;
-use crate::recognition::{Model, ShapeCount};
 use crate::sensor::Sensor;
 use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::page::{Page, Slot};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::Keymap;
+use crate::tui::recognise::confused::{Example, worst_cell};
 use crate::tui::recognise::exercise::onto;
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::sets::TrainedModel;
@@ -34,15 +34,6 @@ pub struct Confusion {
     example: Option<Example>,
 }
 
-/// An imprint of a cell, the most frequent one.
-#[derive(Clone, Debug, PartialEq)]
-struct Example {
-    /// The imprint, cut to its box; None of a touch that leaves nothing.
-    imprint: Option<Imprint>,
-    /// The shapes that leave it.
-    counts: Vec<ShapeCount>,
-}
-
 /// Columns of a cell.
 const CELL: u16 = 7;
 
@@ -52,14 +43,7 @@ const NAME: usize = 12;
 impl Confusion {
     /// The matrix of a model, the cursor on the pair of shapes that is confused most.
     pub fn new(trained: Arc<TrainedModel>) -> Self {
-        let confusion = &trained.evaluation.confusion;
-        let cells = (0..confusion.len())
-            .flat_map(|row| (0..confusion.len()).map(move |column| (row, column)));
-        let wrong = cells.filter(|(row, column)| row != column);
-        // Of equals the first.
-        let worst = wrong
-            .rev()
-            .max_by_key(|&(row, column)| confusion[row][column]);
+        let worst = worst_cell(&trained.evaluation);
         let mut page = Self {
             trained,
             cell: (0, 0),
@@ -85,7 +69,7 @@ impl Confusion {
     fn go_to(&mut self, (row, column): (usize, usize)) {
         let last = self.count() - 1;
         self.cell = (row.min(last), column.min(last));
-        self.example = example(&self.trained.model, self.cell);
+        self.example = Example::of(&self.trained.model, self.cell);
     }
 
     /// Moves the cursor.
@@ -104,33 +88,6 @@ impl Confusion {
         };
         self.go_to(cell);
     }
-}
-
-/// The imprint that a shape leaves in the most poses among those that are named as another one; the first of equals.
-fn example(model: &Model, (touched, named): (usize, usize)) -> Option<Example> {
-    let poses_of = |key: usize| {
-        let counts = model.counts(key);
-        let own = counts
-            .iter()
-            .find(|count| usize::from(count.shape) == touched)?;
-        (name_of(model, counts) == Some(named)).then_some(own.poses)
-    };
-    let found = (0..model.keys().len()).filter_map(|key| Some((poses_of(key)?, key)));
-    let (_, key) = found.rev().max_by_key(|(poses, _)| *poses)?;
-    Some(Example {
-        imprint: model.keys().imprint(key),
-        counts: model.counts(key).to_vec(),
-    })
-}
-
-/// The shape that the best classifier names: the most frequent one, of equals the first.
-fn name_of(model: &Model, counts: &[ShapeCount]) -> Option<usize> {
-    let weighted = |count: &&ShapeCount| {
-        let weight = model.shapes().get(usize::from(count.shape));
-        u128::from(count.poses) * u128::from(weight.map_or(0, |shape| shape.weight))
-    };
-    let most = counts.iter().rev().max_by_key(weighted);
-    most.map(|count| usize::from(count.shape))
 }
 
 /// Where the parts of the page are.
@@ -322,14 +279,7 @@ impl Confusion {
         );
         write::line(buffer, layout.detail, theme, [(text.as_str(), Role::Text)]);
         let Some(example) = &self.example else { return };
-        let leaves = example.counts.iter().map(|own| {
-            let name = self.trained.name(own.shape.into());
-            format!("{name} in {}", counted(own.poses, "pose"))
-        });
-        let text = format!(
-            "one imprint of it: {}",
-            leaves.collect::<Vec<_>>().join(", ")
-        );
+        let text = example.in_words(|shape| self.trained.name(shape));
         write::line(
             buffer,
             write::row(layout.detail, 1),

@@ -5,6 +5,8 @@ use std::sync::Arc;
 use crate::formats::Name;
 use crate::imprint::Imprint;
 use crate::recognition::{Nearest, PoseEstimate};
+use crate::tui::recognise::separate::found::SizesFound;
+use crate::tui::recognise::separate::request::SeparationFlags;
 use crate::tui::recognise::sets::{ModelChoice, TrainedModel};
 
 /// What a key or a command asks for.
@@ -24,10 +26,16 @@ pub enum RecogniseMessage {
     Forget,
     /// The confusion matrix.
     Confusion,
+    /// The limit of the set against the size of its shapes.
+    Separate(SeparationFlags),
+    /// Another wanted error there: a smaller one below 0.
+    Want(i8),
     /// Random touches from this seed on.
     Seed(u64),
     /// To select a row of a list, counted from 0.
     Select(usize),
+    /// To write the sizes into a file of that name.
+    WriteSizes(String),
     /// To select a cell of the confusion matrix: row, column.
     SelectCell(usize, usize),
 }
@@ -66,4 +74,6 @@ pub enum RecognitionEvent {
     Prepared(Box<Prepared>),
     /// A search is over.
     Looked(Box<Look>),
+    /// Sizes were looked at.
+    Sizes(Box<SizesFound>),
 }

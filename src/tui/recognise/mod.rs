@@ -2,15 +2,20 @@
 //!
 //! ```text
 //! sets        the sets of shapes that can be chosen, and how they are trained
+//! confused    pairs of shapes that are confused, with an imprint
 //! message     what keys ask for, and what the worker reports
 //! state       the set, its model, the touches, the answer
 //! view        the panel beside the matrix: shapes with bars, the nearest imprint, the pose
 //! update      what messages do; the answer follows the matrix
 //! exercise    a random touch to name, and the score
 //! confusion   which shapes are taken for which, with an imprint that two share
+//! separate    the limit of the set against the size of its shapes
+//! reach       the state wherever it is; imprints onto the matrix
 //! ```
 
 pub mod sets;
+
+pub mod confused;
 
 pub mod message;
 
@@ -21,5 +26,9 @@ pub mod view;
 pub mod exercise;
 
 pub mod confusion;
+
+pub mod separate;
+
+mod reach;
 
 pub mod update;

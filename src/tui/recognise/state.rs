@@ -10,6 +10,7 @@ use crate::imprint::Imprint;
 use crate::recognition::{Answer, Evidence};
 use crate::tui::explore::message::SweepProgress;
 use crate::tui::recognise::message::{Look, Prepared};
+use crate::tui::recognise::separate::state::Separate;
 use crate::tui::recognise::sets::{ModelChoice, TrainedModel};
 use crate::tui::widget::number::around;
 
@@ -69,6 +70,8 @@ pub struct Recognition {
     look: Option<Box<Look>>,
     /// Whether a search is under way.
     looking: bool,
+    /// The page of sizes, while it is closed.
+    pub(super) separate: Option<Box<Separate>>,
     /// The score of the exercise.
     pub(super) score: Score,
     /// Where random touches come from.
@@ -88,6 +91,7 @@ impl Recognition {
             answer: None,
             look: None,
             looking: false,
+            separate: None,
             score: Score::default(),
             random: Pcg64::seed_from_u64(seed),
         }

@@ -6,11 +6,8 @@ use std::sync::Arc;
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64;
 
-use crate::imprint::Imprint;
-use crate::sensor::Sensor;
-use crate::tui::app::change::{begin, inform, let_go, refuse};
+use crate::tui::app::change::{inform, let_go, refuse};
 use crate::tui::app::dialog::Dialog;
-use crate::tui::app::document::Document;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, NarrowPage};
 use crate::tui::explore::message::SweepProgress;
@@ -19,6 +16,8 @@ use crate::tui::matrix;
 use crate::tui::recognise::confusion::Confusion;
 use crate::tui::recognise::exercise::Exercise;
 use crate::tui::recognise::message::{Prepared, RecogniseMessage, RecognitionEvent};
+use crate::tui::recognise::reach::{put, state};
+use crate::tui::recognise::separate;
 use crate::tui::recognise::sets::ModelChoice;
 use crate::tui::recognise::state::{ModelState, Recognition};
 use crate::tui::runtime::effect::{Effect, Work};
@@ -68,22 +67,22 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
             }
             None
         }
+        RecogniseMessage::Separate(flags) => {
+            match state(app)?.trained().cloned() {
+                Some(trained) => separate::update::open(app, flags.request(trained)),
+                None => not_trained(app),
+            }
+            None
+        }
+        RecogniseMessage::WriteSizes(name) => separate::update::write(app, name),
         RecogniseMessage::Seed(seed) => {
             state(app)?.random = Pcg64::seed_from_u64(seed);
             None
         }
-        RecogniseMessage::Select(_) | RecogniseMessage::SelectCell(..) => None,
+        RecogniseMessage::Select(_)
+        | RecogniseMessage::SelectCell(..)
+        | RecogniseMessage::Want(_) => None,
     }
-}
-
-/// The state, wherever it is: on the page, or kept while that is closed.
-fn state(app: &mut App) -> Option<&mut Recognition> {
-    let mut dialogs = app.dialogs.iter_mut().rev();
-    let open = dialogs.find_map(|dialog| match dialog {
-        Dialog::Recognition(page) => Some(page),
-        _ => None,
-    });
-    open.or(app.recognition.as_mut()).map(|page| &mut **page)
 }
 
 /// Opens the page, if it is not open, and has the model prepared, of another set or where there is none.
@@ -128,13 +127,6 @@ fn touch_again(app: &mut App, mut exercise: Exercise) {
     }
     let_go(app);
     app.dialogs.push(Dialog::Exercise(Box::new(exercise)));
-}
-
-/// Puts an imprint onto the matrix as if it were drawn: nothing says what made it.
-fn put(app: &mut App, sensor: Sensor, imprint: &Imprint) {
-    let mut document = Document::empty(sensor);
-    document.edits = *imprint;
-    begin(app, document, None);
 }
 
 /// Keeps the touch on the matrix.
@@ -259,11 +251,13 @@ pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) {
             }
         }
         RecognitionEvent::Looked(look) => page.take_look(*look),
+        RecognitionEvent::Sizes(found) => separate::update::on_found(app, *found),
     }
 }
 
 /// Takes that a training failed for a reason that nobody expected.
 pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) {
+    separate::update::on_failure(app, number, reason);
     let prepared = Prepared {
         number,
         stored: Vec::new(),
@@ -276,13 +270,20 @@ pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) {
 
 /// Takes how far a training is.
 pub(in crate::tui) fn on_progress(app: &mut App, number: u64, progress: SweepProgress) {
+    separate::update::on_progress(app, number, progress.poses);
     if let Some(page) = state(app) {
         page.take_progress(number, progress);
     }
 }
 
-/// Lets the answer follow the matrix. Returns a search for what it does not know at once.
+/// Lets the answer follow the matrix. Returns a search for what it does not know at once, or the work of the page of
+/// sizes.
 pub(in crate::tui) fn follow(app: &mut App) -> Option<Effect> {
+    separate::update::follow(app).or_else(|| look(app))
+}
+
+/// Lets the answer follow the matrix.
+fn look(app: &mut App) -> Option<Effect> {
     let imprint = app.reading().imprint;
     let mut dialogs = app.dialogs.iter_mut();
     let page = dialogs.find_map(|dialog| match dialog {

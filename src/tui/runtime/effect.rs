@@ -6,10 +6,12 @@ use crate::acquire::RecordingMetadata;
 use crate::formats::StoredShape;
 use crate::imprint::Imprint;
 use crate::pose::PoseGrid;
+use crate::recognition::SeparationPoint;
 use crate::storage::{Existing, Expected};
 use crate::tui::app::message::Purpose;
 use crate::tui::explore::message::Findings;
 use crate::tui::live::request::WatchRequest;
+use crate::tui::recognise::separate::request::SeparationRequest;
 use crate::tui::recognise::sets::{ModelChoice, TrainedModel};
 
 /// An effect.
@@ -64,6 +66,10 @@ pub enum Work {
     Prepare(u64, ModelChoice),
     /// Stop that.
     StopPreparing,
+    /// Look at a set in several sizes, of which the first are known.
+    Separate(u64, Arc<SeparationRequest>, Vec<SeparationPoint>),
+    /// Stop that.
+    StopSeparating,
     /// Watch a source of frames.
     Watch(u64, Arc<WatchRequest>),
     /// Stop that.

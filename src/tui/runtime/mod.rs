@@ -7,6 +7,7 @@
 //! workers          sweeps and exports, each on a thread of its own
 //! progress         how workers report
 //! models           models for recognition: trained, read, searched
+//! sizes            the limit of a set in several sizes
 //! frames           a source of frames: watched, recorded
 //! journal_writer   unsaved work, written beside the program
 //! mailbox          messages from the workers, which wake the event loop
@@ -19,6 +20,8 @@ pub mod files;
 pub mod workers;
 
 mod models;
+
+mod sizes;
 
 mod frames;
 

@@ -25,6 +25,7 @@ use crate::tui::runtime::effect::Work;
 use crate::tui::runtime::frames::FrameWatcher;
 use crate::tui::runtime::models::{self, ModelStore, ModelWorker};
 use crate::tui::runtime::progress::{ProgressReporter, WorkerEventSink, guarded, proceed};
+use crate::tui::runtime::sizes::SizeWorker;
 
 /// An estimate is the best of all runs within this time.
 const MEASURED: Duration = Duration::from_millis(30);
@@ -42,6 +43,8 @@ pub(in crate::tui) struct Workers {
     writing: Option<JoinHandle<()>>,
     /// Prepares models.
     models: ModelWorker,
+    /// Looks at sizes of a set.
+    sizes: SizeWorker,
     /// Watches a source of frames.
     pub(super) frames: FrameWatcher,
 }
@@ -121,6 +124,13 @@ impl Workers {
             Work::Prepare(number, choice) => self.models.prepare(number, choice, self.post.clone()),
             Work::StopPreparing => {
                 self.models.stop();
+                None
+            }
+            Work::Separate(number, request, known) => {
+                self.sizes.look(number, request, known, self.post.clone())
+            }
+            Work::StopSeparating => {
+                self.sizes.stop();
                 None
             }
             Work::Watch(number, request) => self.frames.watch(number, request, self.post.clone()),

@@ -3,6 +3,7 @@
 //! ```text
 //! text_field   a line of text that is edited         theme       styles and characters
 //! number       numbers of columns, lines, taxels     write       text into the buffer
+//! curve        a curve with axes
 //! columns      widths and word wrap                  thumbnail   a small imprint
 //! ```
 
@@ -17,6 +18,8 @@ pub mod theme;
 pub mod heat;
 
 pub mod dots;
+
+pub mod curve;
 
 pub mod write;
 

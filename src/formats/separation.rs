@@ -1,0 +1,96 @@
+//! Errors against sizes in files: a table of commas, and curves to draw.
+
+use std::fmt::Write;
+
+use crate::formats::LinePlot;
+use crate::formats::value::decimal;
+use crate::recognition::{SeparationPoint, SizeAxis, SmallestSize};
+
+/// The points of one threshold.
+#[derive(Clone, Debug)]
+pub(crate) struct SeparationCurve {
+    /// The threshold.
+    pub(crate) threshold: f64,
+    /// The limit in each size.
+    pub(crate) points: Vec<SeparationPoint>,
+    /// The smallest size that reaches the wanted error; None if none does, or none is wanted.
+    pub(crate) smallest: Option<SmallestSize>,
+}
+
+/// A value as short as it can be written.
+pub(crate) fn short(value: f64) -> String {
+    decimal(value, 6)
+}
+
+/// A value of the axis with its unit.
+pub(crate) fn said(axis: SizeAxis, value: f64) -> String {
+    match axis {
+        SizeAxis::Pitch => format!("pitch {} mm", short(value)),
+        _ => format!("scale {}", short(value)),
+    }
+}
+
+/// A row of names, then a row for each size and threshold.
+/// Shares are written with all digits, counts as whole numbers:
+/// ```text
+/// scale,threshold,error,touches,right,certain,keys,side
+/// 0.5,0.5,0.44907407407407407,864,476,108,20,16
+/// ```
+pub(crate) fn csv(axis: SizeAxis, curves: &[SeparationCurve]) -> String {
+    let mut text = format!(
+        "{},threshold,error,touches,right,certain,keys,side\n",
+        axis.name()
+    );
+    for point in curves.iter().flat_map(|curve| &curve.points) {
+        let _ = writeln!(
+            text,
+            "{},{},{},{},{},{},{},{}",
+            short(point.value),
+            short(point.threshold),
+            point.error(),
+            point.touches,
+            point.right,
+            point.certain,
+            point.keys,
+            point.side
+        );
+    }
+    text
+}
+
+/// The curves, over the sizes, or over the thresholds where there is one size only; and the wanted error.
+pub(crate) fn drawing(axis: SizeAxis, curves: &[SeparationCurve], wanted: Option<f64>) -> LinePlot {
+    let one_size = curves.iter().all(|curve| curve.points.len() == 1);
+    if one_size && curves.len() > 1 {
+        let points = curves.iter().flat_map(|curve| &curve.points);
+        let points: Vec<_> = points
+            .map(|point| (point.threshold, point.error()))
+            .collect();
+        let size = curves[0].points[0].value;
+        let plot = LinePlot::new("threshold", "error").with_curve(&said(axis, size), &points);
+        return with_wanted(plot, wanted, &points);
+    }
+    let label = match axis {
+        SizeAxis::Pitch => "pitch / mm",
+        _ => "scale",
+    };
+    let mut plot = LinePlot::new(label, "error");
+    let mut all = Vec::new();
+    for curve in curves {
+        let points = curve.points.iter();
+        let points: Vec<_> = points.map(|point| (point.value, point.error())).collect();
+        plot = plot.with_curve(&format!("threshold {}", short(curve.threshold)), &points);
+        all.extend(points);
+    }
+    with_wanted(plot, wanted, &all)
+}
+
+/// With a line at the wanted error, as long as the curves.
+fn with_wanted(plot: LinePlot, wanted: Option<f64>, points: &[(f64, f64)]) -> LinePlot {
+    let Some(wanted) = wanted else { return plot };
+    let values = || points.iter().map(|point| point.0);
+    let first = values().fold(f64::INFINITY, f64::min);
+    let last = values().fold(0.0, f64::max);
+    let line = [(first, wanted), (last, wanted)];
+    plot.with_curve(&format!("wanted {}", short(wanted)), &line)
+}

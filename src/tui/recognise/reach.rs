@@ -1,0 +1,26 @@
+//! Where recognition is, on its page or kept while that is closed; and the way of an imprint onto the matrix.
+
+use crate::imprint::Imprint;
+use crate::sensor::Sensor;
+use crate::tui::app::change::begin;
+use crate::tui::app::dialog::Dialog;
+use crate::tui::app::document::Document;
+use crate::tui::app::state::App;
+use crate::tui::recognise::state::Recognition;
+
+/// The state, wherever it is: on the page, or kept while that is closed.
+pub(super) fn state(app: &mut App) -> Option<&mut Recognition> {
+    let mut dialogs = app.dialogs.iter_mut().rev();
+    let open = dialogs.find_map(|dialog| match dialog {
+        Dialog::Recognition(page) => Some(page),
+        _ => None,
+    });
+    open.or(app.recognition.as_mut()).map(|page| &mut **page)
+}
+
+/// Puts an imprint onto the matrix as if it were drawn: nothing says what made it.
+pub(super) fn put(app: &mut App, sensor: Sensor, imprint: &Imprint) {
+    let mut document = Document::empty(sensor);
+    document.edits = *imprint;
+    begin(app, document, None);
+}

@@ -1,0 +1,19 @@
+//! Which sensor tells the shapes of a set apart: the limit of one touch against their size, as a curve and a table.
+//!
+//! ```text
+//! request   the set, the sizes and the steps to touch in, and what may follow `:separate`
+//! found     what the worker finds of a size
+//! state     what was found so far, the size under the cursor, the wanted error
+//! view      the curve, the table, and the pair that is confused most
+//! update    what messages do
+//! ```
+
+pub mod request;
+
+pub mod found;
+
+pub mod state;
+
+pub mod view;
+
+pub mod update;

@@ -1,0 +1,233 @@
+//! What is asked of the page of sizes: a set, sizes, and the steps in which each shape touches.
+
+use std::sync::Arc;
+
+use crate::formats::separation::short;
+use crate::pose::{Axis, DecimalRange, RangeError};
+use crate::quote::shortened;
+use crate::recognition::{Separation, SizeAxis, TrainingError};
+use crate::tui::recognise::sets::TrainedModel;
+
+/// The sizes that are looked at unless others are asked for: half as large to three times as large.
+const SIZES: &str = "0.5:3:0.1";
+
+/// Steps of a cell and degrees between angles, unless others are asked for. Finer ones show more kinds of imprints,
+/// and take longer.
+const POSITIONS: u8 = 10;
+const DEGREES: u32 = 2;
+
+/// The error that is looked for unless another one is asked for.
+const WANTED: f64 = 0.01;
+
+/// What is looked at.
+#[derive(Clone, Debug)]
+pub struct SeparationRequest {
+    /// The set.
+    pub trained: Arc<TrainedModel>,
+    /// What sizes are measured against.
+    pub axis: SizeAxis,
+    /// The sizes.
+    pub sizes: DecimalRange,
+    /// The threshold of the sensor.
+    pub threshold: f64,
+    /// Steps of a cell in each direction.
+    pub positions: u8,
+    /// The angles.
+    pub angles: DecimalRange,
+    /// The error to reach.
+    pub wanted: f64,
+}
+
+impl PartialEq for SeparationRequest {
+    /// Whether the same points answer both; the wanted error is only looked up in them.
+    fn eq(&self, other: &Self) -> bool {
+        let key = |own: &Self| (own.axis, own.sizes, own.positions, own.angles);
+        self.trained == other.trained
+            && key(self) == key(other)
+            && self.threshold == other.threshold
+    }
+}
+
+/// What may follow `:separate`. None for what is not given.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SeparationFlags {
+    /// What sizes are measured against, and the sizes.
+    sizes: Option<(SizeAxis, DecimalRange)>,
+    /// The threshold.
+    threshold: Option<f64>,
+    /// Steps of a cell.
+    positions: Option<u8>,
+    /// The angles.
+    angles: Option<DecimalRange>,
+    /// The error to reach.
+    wanted: Option<f64>,
+}
+
+impl SeparationFlags {
+    /// Nothing in particular.
+    pub const NONE: Self = Self {
+        sizes: None,
+        threshold: None,
+        positions: None,
+        angles: None,
+        wanted: None,
+    };
+
+    /// The flags, for completion.
+    pub const NAMES: [&'static str; 6] = [
+        "--scale",
+        "--pitch",
+        "--threshold",
+        "--positions",
+        "--angle",
+        "--want",
+    ];
+
+    /// Reads flags, each followed by its value.
+    ///
+    /// # Errors
+    /// What is wrong with them, in a sentence.
+    pub fn read(words: &[&str]) -> Result<Self, String> {
+        let mut flags = Self::NONE;
+        let mut given: Vec<&str> = Vec::new();
+        for pair in words.chunks(2) {
+            let flag = pair[0];
+            if !Self::NAMES.contains(&flag) {
+                let expected = Self::NAMES.join(", ");
+                let found = shortened(flag);
+                return Err(format!("{found} is unknown, expected {expected}"));
+            }
+            let text = pair.get(1).ok_or_else(|| format!("{flag} needs a value"))?;
+            if given.contains(&flag) {
+                return Err(format!("{flag} is given twice"));
+            }
+            given.push(flag);
+            flags.take(flag, text)?;
+        }
+        if given.contains(&"--scale") && given.contains(&"--pitch") {
+            return Err("--scale and --pitch do not go together".to_owned());
+        }
+        Ok(flags)
+    }
+
+    /// Takes the value of one flag.
+    fn take(&mut self, flag: &str, text: &str) -> Result<(), String> {
+        let range = || {
+            let range = text.parse();
+            range.map_err(|error: RangeError| format!("{flag}: {error}"))
+        };
+        let share = || {
+            let number: Option<f64> = text.parse().ok();
+            let number = number.filter(|number| (0.0..=1.0).contains(number));
+            let found = shortened(text);
+            number.ok_or_else(|| format!("{flag} takes a number from 0 to 1, found {found}"))
+        };
+        match flag {
+            "--scale" | "--pitch" => {
+                let axis = match flag {
+                    "--pitch" => SizeAxis::Pitch,
+                    _ => SizeAxis::Scale,
+                };
+                let sizes: DecimalRange = range()?;
+                if sizes.value(0) <= 0.0 {
+                    return Err(format!("{flag} takes numbers above 0"));
+                }
+                self.sizes = Some((axis, sizes));
+            }
+            "--threshold" => self.threshold = Some(share()?),
+            "--want" => self.wanted = Some(share()?),
+            "--angle" => self.angles = Some(range()?),
+            _ => {
+                let steps = text.parse().ok().filter(|steps: &u8| *steps > 0);
+                let steps = steps.filter(|&steps| 100_u8.is_multiple_of(steps));
+                let found = shortened(text);
+                let steps =
+                    steps.ok_or_else(|| format!("{flag} takes a divisor of 100, found {found}"))?;
+                self.positions = Some(steps);
+            }
+        }
+        Ok(())
+    }
+
+    /// What they ask of a set; what is not given is as usual.
+    pub fn request(&self, trained: Arc<TrainedModel>) -> SeparationRequest {
+        let scales = || Some((SizeAxis::Scale, SIZES.parse().ok()?));
+        let (axis, sizes) = self
+            .sizes
+            .or_else(scales)
+            .unwrap_or((SizeAxis::Scale, DecimalRange::whole(1)));
+        let ranges = trained.model.ranges();
+        let own = &ranges[Axis::Angle];
+        // A model in coarser steps of its own is touched in these.
+        let coarse = format!("0:{}:{DEGREES}", 360 - DEGREES).parse().ok();
+        let usual = coarse.filter(|_| own.count() == 360);
+        let threshold = trained.model.sensor().threshold();
+        SeparationRequest {
+            axis,
+            sizes,
+            threshold: self.threshold.unwrap_or(threshold),
+            positions: self.positions.unwrap_or(POSITIONS),
+            angles: self.angles.or(usual).unwrap_or(*own),
+            wanted: self.wanted.unwrap_or(WANTED),
+            trained,
+        }
+    }
+}
+
+impl SeparationRequest {
+    /// The set in these steps.
+    ///
+    /// # Errors
+    /// Those of [`Separation::new`], which a trained set has none of.
+    pub fn separation(&self) -> Result<Separation, TrainingError> {
+        let separation = Separation::new(self.trained.model.shapes().to_vec())?;
+        Ok(separation.positions(self.positions).angles(self.angles))
+    }
+
+    /// The sizes, the smallest first.
+    pub fn values(&self) -> Vec<f64> {
+        self.axis.smallest_first(&self.sizes)
+    }
+
+    /// The steps in words.
+    pub fn steps(&self) -> String {
+        let positions = match self.positions {
+            1 => "one position".to_owned(),
+            count => format!("{count} × {count} positions"),
+        };
+        format!(
+            "{positions} of a cell, angle {}; threshold {}",
+            self.angles,
+            short(self.threshold)
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flags_are_read_or_say_what_is_wrong() {
+        let read = |line: &str| {
+            let words: Vec<&str> = line.split_whitespace().collect();
+            SeparationFlags::read(&words)
+        };
+        let flags = read("--pitch 1:4:0.5 --want 0.05 --positions 20").expect("flags");
+        assert_eq!(flags.sizes.map(|(axis, _)| axis), Some(SizeAxis::Pitch));
+        assert_eq!((flags.wanted, flags.positions), (Some(0.05), Some(20)));
+        assert_eq!(read(""), Ok(SeparationFlags::NONE));
+        for (line, part) in [
+            ("--scale", "--scale needs a value"),
+            ("--scale 0:1:0.1", "above 0"),
+            ("--scale 1 --pitch 1", "do not go together"),
+            ("--scale 1 --scale 2", "twice"),
+            ("--want 2", "from 0 to 1, found 2"),
+            ("--positions 7", "a divisor of 100, found 7"),
+            ("--size 3", "--size is unknown, expected --scale"),
+        ] {
+            let error = read(line).expect_err(line);
+            assert!(error.contains(part), "{line}: {error}");
+        }
+    }
+}

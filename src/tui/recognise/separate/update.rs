@@ -1,0 +1,145 @@
+//! What messages do on the page of sizes.
+
+use crate::storage::Existing;
+use crate::tui::app::change::{inform, refuse};
+use crate::tui::app::dialog::Dialog;
+use crate::tui::app::message::Message;
+use crate::tui::app::state::App;
+use crate::tui::explore::export::ExportDialog;
+use crate::tui::explore::message::ExploreMessage;
+use crate::tui::recognise::exercise::onto;
+use crate::tui::recognise::message::RecogniseMessage;
+use crate::tui::recognise::reach::{put, state};
+use crate::tui::recognise::separate::found::SizesFound;
+use crate::tui::recognise::separate::request::SeparationRequest;
+use crate::tui::recognise::separate::state::Separate;
+use crate::tui::runtime::effect::{Effect, FileRequest, Work};
+
+/// Opens the page. What was found of the same sizes before is there again.
+pub(in crate::tui::recognise) fn open(app: &mut App, request: SeparationRequest) {
+    let known = state(app).and_then(|page| page.separate.take());
+    let page = match known {
+        Some(mut page) if **page.request() == request => {
+            page.want_as(request);
+            page.go_on();
+            page
+        }
+        _ => Box::new(Separate::new(request)),
+    };
+    app.dialogs.push(Dialog::Separate(page));
+}
+
+/// Begins what is left of the work of an open page.
+pub(in crate::tui::recognise) fn follow(app: &mut App) -> Option<Effect> {
+    let number = app.works + 1;
+    let (request, known) = page(app)?.begin(number)?;
+    app.works = number;
+    Some(Effect::Work(Work::Separate(number, request, known)))
+}
+
+/// Handles a message over the page.
+pub(in crate::tui) fn in_separate(
+    app: &mut App,
+    mut page: Box<Separate>,
+    message: &Message,
+) -> Option<Effect> {
+    let mut effect = None;
+    match message {
+        Message::Cancel | Message::Quit => {
+            if page.stop() {
+                inform(app, "stopping");
+                effect = Some(Effect::Work(Work::StopSeparating));
+            } else if page.work().is_none() {
+                if let Some(state) = state(app) {
+                    state.separate = Some(page);
+                }
+                return None;
+            }
+        }
+        Message::Accept => {
+            if put_example(app, &page) {
+                if let Some(state) = state(app) {
+                    state.separate = Some(page);
+                }
+                return None;
+            }
+        }
+        Message::Recognise(RecogniseMessage::Want(by)) => page.want(*by),
+        Message::Recognise(RecogniseMessage::Separate(_)) => page.go_on(),
+        Message::Explore(ExploreMessage::Export) if !page.found().is_empty() => {
+            let name = format!("{}.svg", page.request().trained.choice.name());
+            app.dialogs.push(Dialog::Separate(page));
+            let dialog = ExportDialog::of_curves(&name);
+            app.dialogs.push(Dialog::Export(dialog));
+            return None;
+        }
+        message => page.take(message),
+    }
+    app.dialogs.push(Dialog::Separate(page));
+    effect
+}
+
+/// Puts the imprint at the cursor onto the matrix; `false` if there is none. The work ends.
+fn put_example(app: &mut App, page: &Separate) -> bool {
+    if page.work().is_some() {
+        refuse(app, "the sizes are still being looked at");
+        return false;
+    }
+    let example = page.selected().and_then(|size| size.worst.as_ref());
+    let example = example.and_then(|worst| worst.example.as_ref());
+    let Some(imprint) = example.and_then(|example| example.imprint) else {
+        refuse(app, "nothing is confused in this size");
+        return false;
+    };
+    let own = *page.request().trained.model.sensor();
+    let (sensor, imprint) = onto(&imprint, app.history.present().sensor, own);
+    put(app, sensor, &imprint);
+    true
+}
+
+/// The page, if it is open.
+fn page(app: &mut App) -> Option<&mut Separate> {
+    let mut dialogs = app.dialogs.iter_mut().rev();
+    dialogs.find_map(|dialog| match dialog {
+        Dialog::Separate(page) => Some(&mut **page),
+        _ => None,
+    })
+}
+
+/// Takes what was found.
+pub(in crate::tui::recognise) fn on_found(app: &mut App, found: SizesFound) {
+    if let Some(reason) = page(app).and_then(|page| page.take_found(found)) {
+        refuse(app, reason);
+    }
+}
+
+/// Takes that the work of a number failed for a reason that nobody expected.
+pub(in crate::tui::recognise) fn on_failure(app: &mut App, number: u64, reason: &str) {
+    let found = SizesFound {
+        number,
+        sizes: Vec::new(),
+        end: Some(Err(reason.to_owned())),
+    };
+    on_found(app, found);
+}
+
+/// Takes how far the work of a number is.
+pub(in crate::tui::recognise) fn on_progress(app: &mut App, number: u64, done: u64) {
+    if let Some(page) = page(app) {
+        page.take_progress(number, done);
+    }
+}
+
+/// Writes the sizes into a file, unless there is one of that name.
+pub(in crate::tui::recognise) fn write(app: &mut App, name: String) -> Option<Effect> {
+    match page(app)?.file(&name) {
+        Ok(content) => {
+            let request = FileRequest::Write(name, content, Existing::Kept);
+            Some(Effect::File(request))
+        }
+        Err(reason) => {
+            refuse(app, reason);
+            None
+        }
+    }
+}

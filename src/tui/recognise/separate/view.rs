@@ -1,0 +1,277 @@
+//! The page of sizes.
+//!
+//! ```text
+//! Separate: the seven figures of 30 cells    the set
+//! 10 × 10 positions of a cell, angle 0:358:2 its steps; while it works, a gauge
+//!  70 % |⠉⠢⢄                                  the error against the size; dots at the wanted one
+//!   0 % |....⠈⠉⠒⠤
+//!        0.5   1   1.5   2
+//! scale    error  certain     keys  sensor    what was found of each size
+//! 0.5     62.1 %    5.2 %      310  16 × 16
+//! at most 1 % from scale 2.3 on               what was looked for
+//! scale 1: octagon named ellipse in 52.4 %    the pair that is confused most, with an imprint
+//! ```
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::formats::separation::{said, short};
+use crate::formats::value::{decimal, grouped};
+use crate::recognition::{SizeAxis, SmallestSize};
+use crate::tui::app::message::Message;
+use crate::tui::app::page::{Page, Slot};
+use crate::tui::explore::running::gauge;
+use crate::tui::keys::action;
+use crate::tui::keys::binding::Context;
+use crate::tui::keys::keymap::Keymap;
+use crate::tui::recognise::message::RecogniseMessage;
+use crate::tui::recognise::separate::found::SizeFound;
+use crate::tui::recognise::separate::state::{Separate, SizeWork};
+use crate::tui::recognise::view::percent;
+use crate::tui::widget::curve::Curve;
+use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::{thumbnail, write};
+
+/// Columns of the table.
+const TABLE: u16 = 48;
+
+/// Lines below the table: what was looked for, the worst pair, its imprint.
+const DETAIL: u16 = 3;
+
+/// Where the parts of the page are.
+struct Layout {
+    /// The curve; empty where there is no room.
+    curve: Rect,
+    /// The heading of the table.
+    head: Rect,
+    /// Its rows.
+    rows: Rect,
+    /// The first visible row.
+    first: usize,
+    /// The imprint, beside the table.
+    picture: Rect,
+    /// What stands below.
+    detail: Rect,
+}
+
+impl Layout {
+    fn of(area: Rect, page: &Separate) -> Self {
+        let body = write::below(area, 2);
+        let body = Rect {
+            height: body.height.saturating_sub(DETAIL),
+            ..body
+        };
+        // The curve has more than half, the table at least four rows and no more than it needs.
+        let wanted = u16::try_from(page.found().len().max(4)).unwrap_or(u16::MAX);
+        let least = body.height.saturating_sub(wanted.saturating_add(1));
+        let curve = (body.height * 3 / 5).max(least);
+        let curve = if body.height < 10 { 0 } else { curve };
+        let table = write::below(body, curve);
+        let rows = write::below(table, 1);
+        Self {
+            curve: Rect {
+                height: curve,
+                ..body
+            },
+            head: write::row(table, 0),
+            rows,
+            first: write::first_of(rows.height, page.found().len(), page.cursor()),
+            picture: write::right_of(table, table.x.saturating_add(TABLE)),
+            detail: write::below(area, area.height.saturating_sub(DETAIL)),
+        }
+    }
+}
+
+impl Page for Separate {
+    fn context(&self) -> Context {
+        Context::Separate
+    }
+
+    fn slot(&self) -> Slot {
+        Slot::Screen
+    }
+
+    fn draw(
+        &self,
+        theme: &Theme,
+        keymap: &Keymap,
+        buffer: &mut Buffer,
+        area: Rect,
+    ) -> Option<Position> {
+        write::clear(buffer, area);
+        let layout = Layout::of(area, self);
+        let request = self.request();
+        let title = format!("Separate: {}", request.trained.choice);
+        let what = match request.axis {
+            SizeAxis::Pitch => "  error against pitch",
+            _ => "  error against size",
+        };
+        let pieces = [(title.as_str(), Role::Title), (what, Role::Text)];
+        write::line(buffer, area, theme, pieces);
+        let second = write::row(area, 1);
+        if let Some(work) = self.work() {
+            self.draw_work(theme, keymap, work, buffer, second);
+        } else {
+            let steps = request.steps();
+            write::line(buffer, second, theme, [(steps.as_str(), Role::Quiet)]);
+        }
+        self.draw_curve(theme, buffer, layout.curve);
+        let cursor = self.draw_table(theme, &layout, buffer);
+        self.draw_detail(theme, keymap, &layout, buffer);
+        cursor
+    }
+
+    fn click(&self, area: Rect, at: Position) -> Option<Message> {
+        let layout = Layout::of(area, self);
+        let inside = layout.rows.contains(at) && at.x < layout.picture.x;
+        let row = layout.first + usize::from(at.y.checked_sub(layout.rows.y)?);
+        (inside && row < self.found().len())
+            .then_some(Message::Recognise(RecogniseMessage::Select(row)))
+    }
+
+    fn scrolls(&self) -> bool {
+        true
+    }
+
+    fn cancels_itself(&self) -> bool {
+        true
+    }
+}
+
+impl Separate {
+    /// How far the work is.
+    fn draw_work(
+        &self,
+        theme: &Theme,
+        keymap: &Keymap,
+        work: &SizeWork,
+        buffer: &mut Buffer,
+        row: Rect,
+    ) {
+        let stop = keymap.label(Context::Separate, &action::CANCEL);
+        let (found, all) = (self.found().len(), self.request().values().len());
+        let text = match (work.stopping, found < all) {
+            (true, _) => "stopping ".to_owned(),
+            (false, true) => format!("{found} of {all} sizes; {stop} stops "),
+            (false, false) => format!("searching between sizes; {stop} stops "),
+        };
+        let end = write::line(buffer, row, theme, [(text.as_str(), Role::Text)]);
+        let place = write::right_of(row, end);
+        gauge(theme, work.done.min(work.all), work.all, buffer, place);
+    }
+
+    /// The error against the size.
+    fn draw_curve(&self, theme: &Theme, buffer: &mut Buffer, area: Rect) {
+        let points = self.found().iter().map(|size| &size.point);
+        let points: Vec<_> = points.map(|point| (point.value, point.error())).collect();
+        let values: Vec<f64> = self.request().sizes.values().collect();
+        let curve = Curve {
+            points: &points,
+            values: &values,
+            level: self.request().wanted,
+            at: self.selected().map(|size| size.point.value),
+        };
+        curve.draw(theme, buffer, area);
+    }
+
+    /// What was found of each size. Returns where the cursor is.
+    fn draw_table(&self, theme: &Theme, layout: &Layout, buffer: &mut Buffer) -> Option<Position> {
+        let name = match self.request().axis {
+            SizeAxis::Pitch => "pitch/mm",
+            _ => "scale",
+        };
+        let head = format!("{name:<8}    error   certain       keys  sensor");
+        write::line(buffer, layout.head, theme, [(head.as_str(), Role::Title)]);
+        let mut cursor = None;
+        let rows = self.found().iter().enumerate().skip(layout.first);
+        for (line, (row, size)) in rows.take(layout.rows.height.into()).enumerate() {
+            let place = write::row(layout.rows, line);
+            let here = row == self.cursor();
+            let role = match (here, size.point.error() <= self.request().wanted) {
+                (true, _) => Role::Focus,
+                (_, true) => Role::Key,
+                _ => Role::Text,
+            };
+            let text = row_text(size);
+            write::line(buffer, place, theme, [(text.as_str(), role)]);
+            if here {
+                cursor = Some(Position::new(place.x, place.y));
+            }
+        }
+        cursor
+    }
+
+    /// What was looked for, and the pair that is confused most at the cursor.
+    fn draw_detail(&self, theme: &Theme, keymap: &Keymap, layout: &Layout, buffer: &mut Buffer) {
+        let wanted = self.wanted_text(keymap);
+        let line = |index| write::row(layout.detail, index);
+        write::line(buffer, line(0), theme, [(wanted.as_str(), Role::Title)]);
+        let Some(size) = self.selected() else { return };
+        let place = said(self.request().axis, size.point.value);
+        let Some(worst) = &size.worst else {
+            let text = format!("{place}: no shape is taken for another one");
+            write::line(buffer, line(1), theme, [(text.as_str(), Role::Text)]);
+            return;
+        };
+        let name = |shape| self.request().trained.name(shape);
+        let (touched, named) = (name(worst.touched), name(worst.named));
+        let share = percent(worst.share);
+        let text = format!(
+            "{place}: {touched} named {named} in {} of its touches",
+            share.trim_start()
+        );
+        write::line(buffer, line(1), theme, [(text.as_str(), Role::Text)]);
+        if let Some(example) = &worst.example {
+            let text = example.in_words(name);
+            write::line(buffer, line(2), theme, [(text.as_str(), Role::Quiet)]);
+            if let Some(imprint) = &example.imprint {
+                thumbnail::draw(theme, imprint, buffer, layout.picture);
+            }
+        }
+    }
+
+    /// What was looked for, and what was found.
+    fn wanted_text(&self, keymap: &Keymap) -> String {
+        let wanted = format!("{} %", decimal(100.0 * self.request().wanted, 3));
+        let axis = self.request().axis;
+        match self.smallest() {
+            None if self.work().is_some() => format!("looking for an error of at most {wanted}"),
+            None => {
+                let go_on = keymap.label(Context::Separate, &action::SEPARATE);
+                format!("stopped; {go_on} goes on")
+            }
+            Some(None) => format!("no size that was tried has an error of at most {wanted}"),
+            Some(Some(smallest)) => {
+                let place = said(axis, smallest.point.value);
+                let found = format!("at most {wanted} first at {place}{}", tried(smallest));
+                match smallest.missed_again {
+                    0 => found,
+                    1 => format!("{found}; 1 larger size misses it"),
+                    more => format!("{found}; {more} larger sizes miss it"),
+                }
+            }
+        }
+    }
+}
+
+/// How a size was searched.
+fn tried(smallest: &SmallestSize) -> String {
+    if smallest.step > 0.0 {
+        format!(", in steps of {}", short(smallest.step))
+    } else {
+        ", the first that was tried".to_owned()
+    }
+}
+
+/// A row of the table.
+fn row_text(size: &SizeFound) -> String {
+    let point = &size.point;
+    format!(
+        "{:<8}{}{} {:>10}  {side} × {side}",
+        short(point.value),
+        percent(point.error()),
+        percent(point.certain()),
+        grouped(point.keys as u128),
+        side = point.side
+    )
+}

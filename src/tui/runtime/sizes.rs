@@ -1,0 +1,104 @@
+//! Looks at sizes of a set: the limit of one touch in each, the smallest first, then the smallest that reaches an error.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::formats::separation::said;
+use crate::recognition::{SeparationPoint, SmallestSize, TrainingError};
+use crate::tui::explore::message::WorkerEvent;
+use crate::tui::recognise::confused::ConfusedPair;
+use crate::tui::recognise::message::RecognitionEvent;
+use crate::tui::recognise::separate::found::{SizeFound, SizesFound};
+use crate::tui::recognise::separate::request::SeparationRequest;
+use crate::tui::runtime::progress::{ProgressReporter, WorkerEventSink, guarded, proceed};
+
+/// The work in progress.
+#[derive(Debug, Default)]
+pub(super) struct SizeWorker {
+    /// Set to stop it.
+    stop: Arc<AtomicBool>,
+}
+
+impl SizeWorker {
+    /// Looks at the sizes that are not known yet, on a thread of its own, or at once if there is no receiver; then the
+    /// event is returned.
+    pub(super) fn look(
+        &mut self,
+        number: u64,
+        request: Arc<SeparationRequest>,
+        known: Vec<SeparationPoint>,
+        post: Option<WorkerEventSink>,
+    ) -> Option<WorkerEvent> {
+        self.stop();
+        self.stop = Arc::default();
+        let Some(post) = post else {
+            let mut sizes = Vec::new();
+            let end = scan(&request, known, &mut |size| sizes.push(size), &|_| true);
+            return Some(event(number, sizes, Some(end)));
+        };
+        let stop = Arc::clone(&self.stop);
+        std::thread::spawn(move || {
+            let clock = ProgressReporter::new(number, &post);
+            let progress = |poses| proceed(poses, &stop, Some(&clock));
+            let last = guarded(number, || {
+                let mut take = |size| post(event(number, vec![size], None));
+                let end = scan(&request, known, &mut take, &progress);
+                event(number, Vec::new(), Some(end))
+            });
+            post(last);
+        });
+        None
+    }
+
+    /// Stops the work in progress.
+    pub(super) fn stop(&self) {
+        self.stop.store(true, Ordering::Relaxed);
+    }
+}
+
+impl Drop for SizeWorker {
+    fn drop(&mut self) {
+        self.stop();
+    }
+}
+
+/// Some sizes, or the end.
+fn event(
+    number: u64,
+    sizes: Vec<SizeFound>,
+    end: Option<Result<Option<SmallestSize>, String>>,
+) -> WorkerEvent {
+    let found = SizesFound { number, sizes, end };
+    WorkerEvent::Recognition(RecognitionEvent::Sizes(Box::new(found)))
+}
+
+/// Looks at the sizes after those that are known, then searches for the wanted error.
+fn scan(
+    request: &SeparationRequest,
+    known: Vec<SeparationPoint>,
+    take: &mut dyn FnMut(SizeFound),
+    progress: &(dyn Fn(u64) -> bool + Sync),
+) -> Result<Option<SmallestSize>, String> {
+    let sentence = |place: String| {
+        move |error: TrainingError| match error {
+            TrainingError::Stopped => "stopped; what was found stays".to_owned(),
+            error => format!("{place}: {error}"),
+        }
+    };
+    let place = |value| sentence(said(request.axis, value));
+    let set = request
+        .separation()
+        .map_err(sentence("the set".to_owned()))?;
+    let mut points = known;
+    for value in request.values().into_iter().skip(points.len()) {
+        let looked = set.model_at(request.axis, value, request.threshold, progress);
+        let (point, model, evaluation) = looked.map_err(place(value))?;
+        points.push(point.clone());
+        take(SizeFound {
+            point,
+            worst: ConfusedPair::worst(&model, &evaluation),
+        });
+    }
+    let smallest = set.smallest(request.axis, &points, request.wanted, progress);
+    smallest.map_err(sentence("between the sizes".to_owned()))
+}
