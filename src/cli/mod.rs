@@ -1,4 +1,4 @@
-//! The command line: `taxel COMMAND`, of which [`arguments`] has the list; the screen if no command is given.
+//! The command line: `taxel COMMAND`, defined in `arguments`; the screen if no command is given.
 //!
 //! The way of a command through the folders of this room, which are listed below in this order:
 //! ```text

@@ -1,10 +1,26 @@
 //! Tables of numbers: a frame a line, with or without a header and other columns, or a row a line with an empty line
 //! between frames.
+//! ```text
+//! frame,time,r0c0,r0c1,r1c0,r1c1          0 12  7
+//! 0,0.00,1,2,3,4                          3  9 NaN
+//! 1,0.05,1,,3,4
+//!                                         0 11  8
+//!                                         2  9  1
+//! ```
+//! Fields are parted by semicolons (then a comma is the decimal sign), commas, tabs or spaces; the first line tells.
+//! Quotes around a field do not count. An empty field, `NaN`, `null`, `none` and `NA` are no cell. Lines that begin with
+//! `#` are passed over.
 //!
-//! Fields are parted by semicolons (then a comma is the decimal sign), commas, tabs or spaces. An empty field and `NaN`
-//! are no cell. How the fields are arranged is found from the first lines; the file is then read from its beginning.
+//! How the fields are arranged is found from the first lines; the file is then read from its beginning. A header names
+//! the cells, see [`cell_names`](super::cell_names). Without one, rows and columns have to be known beforehand, unless
+//! the table is in blocks of a row a line; numbers before or behind the cells are then told by how they grow from the
+//! first line to the second ([`without_header`]).
+//!
+//! Refused, with line and field: words where numbers are expected, and lines or blocks of another length. Nothing is
+//! padded, since a value that is missing in the middle would shift all that follow.
 
 use std::io::{BufRead, Seek};
+use std::ops::ControlFlow;
 
 use crate::formats::recording::cell_names::{FieldRole, NamedCells, cells, role};
 use crate::formats::recording::error::RecordingError;
@@ -12,17 +28,21 @@ use crate::formats::recording::event::{
     ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
 };
 use crate::formats::recording::lines::{TextLines, is_blank, text};
+use crate::formats::recording::side::side;
 use crate::formats::recording::text_row::{self, Field};
 use crate::frame::{Frame, MAX_FRAME_SIDE};
 
 /// What parts the fields of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Separator {
+    /// This byte; between two of them is an empty field.
     Byte(u8),
+    /// Any number of blanks; there are no empty fields.
     Spaces,
 }
 
 impl Separator {
+    /// That of a line: the first of semicolon, comma and tab which it has, otherwise blanks.
     fn of(line: &[u8]) -> Self {
         let marks = *b";,\t";
         let found = marks.into_iter().find(|mark| line.contains(mark));
@@ -50,6 +70,7 @@ impl Separator {
         fields.filter(move |field| self != Self::Spaces || !field.is_empty())
     }
 
+    /// What a field says of its cell. A decimal comma is read as a point, in numbers of up to 32 characters.
     fn value(self, field: &[u8]) -> Field {
         let is_none = field.is_empty()
             || [&b"nan"[..], b"null", b"none", b"na"]
@@ -75,36 +96,59 @@ impl Separator {
         }
     }
 
+    /// Whether a field may be a cell's: a number, or a word for none.
     fn is_numeric(self, field: &[u8]) -> bool {
         !matches!(self.value(field), Field::Wrong)
+    }
+
+    /// The numbers of a line; NaN for fields that are none.
+    fn numbers(self, line: &[u8]) -> Vec<f64> {
+        let value = |field| match self.value(field) {
+            Field::Value(value) => value,
+            _ => f64::NAN,
+        };
+        self.fields(line).map(value).collect()
     }
 }
 
 /// How a table is arranged.
 #[derive(Debug)]
 struct TableLayout {
+    /// What parts fields, in all lines.
     separator: Separator,
-    rows: u16,
-    columns: u16,
+    /// Rows and columns of a frame.
+    shape: (u16, u16),
+    /// What a line holds.
     lines: LineLayout,
+    /// What was assumed, if anything.
     note: Option<RecordingNote>,
 }
 
+/// What a line of a table holds.
 #[derive(Debug)]
 enum LineLayout {
-    /// A line is a frame.
-    Frame {
-        /// How many fields a line has.
-        fields: usize,
-        /// The line with the names.
-        header: Option<u64>,
-        /// The field of each cell.
-        cells: Vec<usize>,
-        label: Option<usize>,
-        time: Option<(usize, f64)>,
+    /// A frame.
+    Frame(FrameFields),
+    /// A row; whether an empty line ends a frame.
+    Row {
+        /// If not, the next frame begins after as many rows as a frame has.
+        parted: bool,
     },
-    /// A line is a row; whether an empty line ends a frame.
-    Row { parted: bool },
+}
+
+/// The fields of a line that is a frame.
+#[derive(Debug)]
+struct FrameFields {
+    /// How many fields a line has.
+    count: usize,
+    /// The line with the names.
+    header: Option<u64>,
+    /// The field of each cell, row by row.
+    cells: Vec<usize>,
+    /// The field with what the recording calls the frame.
+    label: Option<usize>,
+    /// The field with the time, and what makes seconds of it.
+    time: Option<(usize, f64)>,
 }
 
 /// Reads a recording.
@@ -116,7 +160,7 @@ pub(super) fn read(
     let layout = layout(&mut TextLines::new(&mut input), options)?;
     input.rewind()?;
     let info = ChannelInfo {
-        shape: Some((layout.rows, layout.columns)),
+        shape: Some(layout.shape),
         ..ChannelInfo::default()
     };
     if sink(RecordingEvent::Channel(&info)).is_break() {
@@ -128,18 +172,30 @@ pub(super) fn read(
         return Ok(());
     }
     let mut lines = TextLines::new(input);
-    match layout.lines {
-        LineLayout::Row { parted } => rows(&mut lines, &layout, parted, sink),
-        LineLayout::Frame { .. } => frames(&mut lines, &layout, sink),
+    match &layout.lines {
+        LineLayout::Row { parted } => {
+            let (rows, columns) = layout.shape;
+            let block = RowBlock {
+                separator: layout.separator,
+                frame: Frame::new(columns, rows),
+                found: 0,
+                parted: *parted,
+            };
+            block.read(&mut lines, sink)
+        }
+        LineLayout::Frame(fields) => frames(&mut lines, &layout, fields, sink),
     }
 }
 
-/// A line of words or comments before the numbers.
+/// Whether a line is a comment, wherever it stands.
 fn is_comment(line: &[u8]) -> bool {
     line.trim_ascii_start().starts_with(b"#")
 }
 
 /// Finds out how the table is arranged, from its first lines.
+///
+/// # Errors
+/// [`RecordingError::Unknown`] of what is no table; [`RecordingError::Shape`] if rows and columns have to be named.
 fn layout(
     lines: &mut TextLines<impl BufRead>,
     options: ReadOptions,
@@ -152,81 +208,77 @@ fn layout(
     let separator = Separator::of(&first);
     let names: Vec<String> = separator.fields(&first).map(text).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let is_header = separator
+    let has_words = separator
         .fields(&first)
-        .any(|field| !separator.is_numeric(field))
+        .any(|field| !separator.is_numeric(field));
+    let counts =
         || matches!(cells(&names), Some(NamedCells::Counted(0, length)) if length == names.len());
-    if is_header {
-        let number = lines.number();
-        let layout = with_header(&names, separator, number, options);
-        // Words above words are no table.
-        let numbers = lines.advance_to_content()? && {
-            let (mut all, mut numeric) = (0, 0);
-            for field in separator.fields(lines.line()) {
-                all += 1;
-                numeric += usize::from(separator.is_numeric(field));
-            }
-            numeric > 0 && 2 * numeric >= all
-        };
-        return if numbers {
-            layout
-        } else {
-            Err(RecordingError::Unknown)
-        };
+    if !has_words && !counts() {
+        return of_numbers(lines, separator, &first, options);
     }
-    let fields = names.len();
-    let mut block = 1_u16;
-    let mut second = None;
-    let mut parted = false;
-    while lines.advance()? {
+    let layout = with_header(&names, separator, lines.number(), options);
+    // Words above words are no table.
+    if lines.advance_to_content()? && is_mostly_numeric(separator, lines.line()) {
+        layout
+    } else {
+        Err(RecordingError::Unknown)
+    }
+}
+
+/// Whether a line has numbers in half of its fields or more.
+fn is_mostly_numeric(separator: Separator, line: &[u8]) -> bool {
+    let (mut all, mut numeric) = (0, 0);
+    for field in separator.fields(line) {
+        all += 1;
+        numeric += usize::from(separator.is_numeric(field));
+    }
+    numeric > 0 && 2 * numeric >= all
+}
+
+/// The arrangement of a table without names, whose first line is `first`.
+///
+/// A line is a row if it has as many fields as a frame has columns, or if nothing is known beforehand and an empty line
+/// ends the first block. Otherwise it is a frame.
+fn of_numbers(
+    lines: &mut TextLines<impl BufRead>,
+    separator: Separator,
+    first: &[u8],
+    options: ReadOptions,
+) -> Result<TableLayout, RecordingError> {
+    let numbers = separator.numbers(first);
+    let (mut block, mut second, mut parted) = (1_u16, None, false);
+    while block <= MAX_FRAME_SIDE && lines.advance()? {
         if is_blank(lines.line()) {
             parted = true;
             break;
         }
-        second.get_or_insert_with(|| lines.line().to_owned());
+        second.get_or_insert_with(|| separator.numbers(lines.line()));
         block += 1;
-        if block > MAX_FRAME_SIDE {
-            break;
-        }
     }
-    let arranged = |rows, columns, lines| TableLayout {
+    let values = numbers.len() as u64;
+    let (shape, lines) = match (options.shape, side(numbers.len())) {
+        (Some(shape), Some(width)) if width == shape.1 && shape.0 > 1 => {
+            (shape, LineLayout::Row { parted })
+        }
+        (Some(shape), _) => {
+            let fields = without_header(shape, &numbers, second.as_deref())?;
+            (shape, LineLayout::Frame(fields))
+        }
+        (None, Some(width)) if parted && block > 1 => ((block, width), LineLayout::Row { parted }),
+        (None, _) => return Err(RecordingError::Shape { values }),
+    };
+    Ok(TableLayout {
         separator,
-        rows,
-        columns,
+        shape,
         lines,
         note: None,
-    };
-    let width = u16::try_from(fields)
-        .ok()
-        .filter(|width| *width <= MAX_FRAME_SIDE);
-    match (options.shape, width) {
-        (Some((rows, columns)), Some(width)) if width == columns && rows > 1 => {
-            Ok(arranged(rows, columns, LineLayout::Row { parted }))
-        }
-        (Some((rows, columns)), _) => {
-            let second: Option<Vec<f64>> = second.map(|line| numbers(separator, &line));
-            let first = numbers(separator, &first);
-            let lines = without_header((rows, columns), &first, second.as_deref())?;
-            Ok(arranged(rows, columns, lines))
-        }
-        (None, Some(width)) if parted && block > 1 => {
-            Ok(arranged(block, width, LineLayout::Row { parted }))
-        }
-        (None, _) => Err(RecordingError::Shape {
-            values: fields as u64,
-        }),
-    }
+    })
 }
 
-fn numbers(separator: Separator, line: &[u8]) -> Vec<f64> {
-    let value = |field| match separator.value(field) {
-        Field::Value(value) => value,
-        _ => f64::NAN,
-    };
-    separator.fields(line).map(value).collect()
-}
-
-/// The arrangement that names describe.
+/// The arrangement that the names in line `number` describe.
+///
+/// # Errors
+/// If the names are those of another number of rows and columns than was asked for.
 fn with_header(
     names: &[&str],
     separator: Separator,
@@ -234,54 +286,14 @@ fn with_header(
     options: ReadOptions,
 ) -> Result<TableLayout, RecordingError> {
     let roles: Vec<Option<FieldRole>> = names.iter().map(|name| role(name)).collect();
-    let mut note = None;
-    let ((rows, columns), fields) = match (cells(names), options.shape) {
-        (Some(NamedCells::Grid(rows, columns, fields)), shape) => {
-            if let Some((asked_rows, asked_columns)) = shape.filter(|own| *own != (rows, columns)) {
-                let message = format!(
-                    "the header names {rows} rows of {columns} cells, not {asked_rows} of {asked_columns}"
-                );
-                return Err(RecordingError::in_line(number, message));
-            }
-            ((rows, columns), fields)
-        }
-        (Some(NamedCells::Counted(start, length)), shape) => {
-            let side = (1..=MAX_FRAME_SIDE).find(|side| usize::from(*side).pow(2) == length);
-            let shape = match (shape, side) {
-                (Some(shape), _) => shape,
-                (None, Some(side)) => {
-                    note = Some(RecordingNote::Square { side });
-                    (side, side)
-                }
-                (None, None) => {
-                    return Err(RecordingError::Shape {
-                        values: length as u64,
-                    });
-                }
-            };
-            (shape, (start..start + length).collect())
-        }
-        (None, shape) => {
-            let leading = roles.iter().take_while(|role| role.is_some()).count();
-            let trailing = roles.iter().rev().take_while(|role| role.is_some()).count();
-            let end = names.len().saturating_sub(trailing).max(leading);
-            let fields: Vec<usize> = (leading..end).collect();
-            let values = fields.len() as u64;
-            (shape.ok_or(RecordingError::Shape { values })?, fields)
-        }
-    };
-    if fields.len() != usize::from(rows) * usize::from(columns) {
-        return Err(text_row::count(
-            number,
-            fields.len(),
-            usize::from(rows) * usize::from(columns),
-        ));
+    let (shape, cells, note) = named_cells(names, &roles, number, options)?;
+    let expected = usize::from(shape.0) * usize::from(shape.1);
+    if cells.len() != expected {
+        return Err(text_row::count(number, cells.len(), expected));
     }
     let others = || {
-        roles
-            .iter()
-            .enumerate()
-            .filter(|(field, _)| !fields.contains(field))
+        let roles = roles.iter().enumerate();
+        roles.filter(|(field, _)| !cells.contains(field))
     };
     let label = others().find(|(_, role)| **role == Some(FieldRole::Label));
     let time = others().find_map(|(field, role)| match role {
@@ -290,30 +302,77 @@ fn with_header(
     });
     Ok(TableLayout {
         separator,
-        rows,
-        columns,
+        shape,
         note,
-        lines: LineLayout::Frame {
-            fields: names.len(),
+        lines: LineLayout::Frame(FrameFields {
+            count: names.len(),
             header: Some(number),
             label: label.map(|(field, _)| field),
             time,
-            cells: fields,
-        },
+            cells,
+        }),
     })
+}
+
+/// Rows and columns, the field of each cell, and what was assumed to find them.
+type CellFields = ((u16, u16), Vec<usize>, Option<RecordingNote>);
+
+/// The cells that names describe.
+///
+/// - Names of rows and columns say all. Rows and columns that are asked for must be the same.
+/// - Names that only count are taken as the rows and columns that are asked for, else as a square, which is noted.
+/// - Other names: all fields between those at the beginning and at the end which have a known role.
+fn named_cells(
+    names: &[&str],
+    roles: &[Option<FieldRole>],
+    number: u64,
+    options: ReadOptions,
+) -> Result<CellFields, RecordingError> {
+    match cells(names) {
+        Some(NamedCells::Grid(rows, columns, fields)) => match options.shape {
+            Some((asked_rows, asked_columns)) if (asked_rows, asked_columns) != (rows, columns) => {
+                let message = format!(
+                    "the header names {rows} rows of {columns} cells, not {asked_rows} of {asked_columns}"
+                );
+                Err(RecordingError::in_line(number, message))
+            }
+            _ => Ok(((rows, columns), fields, None)),
+        },
+        Some(NamedCells::Counted(start, length)) => {
+            let fields = (start..start + length).collect();
+            if let Some(shape) = options.shape {
+                return Ok((shape, fields, None));
+            }
+            let side = (1..=MAX_FRAME_SIDE).find(|side| usize::from(*side).pow(2) == length);
+            let values = length as u64;
+            let side = side.ok_or(RecordingError::Shape { values })?;
+            Ok(((side, side), fields, Some(RecordingNote::Square { side })))
+        }
+        None => {
+            let leading = roles.iter().take_while(|role| role.is_some()).count();
+            let trailing = roles.iter().rev().take_while(|role| role.is_some()).count();
+            let end = names.len().saturating_sub(trailing).max(leading);
+            let values = (end - leading) as u64;
+            let shape = options.shape.ok_or(RecordingError::Shape { values })?;
+            Ok((shape, (leading..end).collect(), None))
+        }
+    }
 }
 
 /// The arrangement of lines without names: the cells alone; a number or a time before them, or both; or a number and
 /// milliseconds behind them. The part that grows from the first line to the second says which it is.
+///
+/// # Errors
+/// If the line has fewer fields than a frame has cells, or others that are none of these.
 fn without_header(
     (rows, columns): (u16, u16),
     first: &[f64],
     second: Option<&[f64]>,
-) -> Result<LineLayout, RecordingError> {
+) -> Result<FrameFields, RecordingError> {
     let cells = usize::from(rows) * usize::from(columns);
     let arranged = |start: usize, label, time| {
-        Ok(LineLayout::Frame {
-            fields: first.len(),
+        Ok(FrameFields {
+            count: first.len(),
             header: None,
             cells: (start..start + cells).collect(),
             label,
@@ -346,58 +405,26 @@ fn without_header(
 fn frames(
     lines: &mut TextLines<impl BufRead>,
     layout: &TableLayout,
+    fields: &FrameFields,
     sink: &mut Sink<'_>,
 ) -> Result<(), RecordingError> {
-    let LineLayout::Frame {
-        fields,
-        header,
-        cells,
-        label,
-        time,
-    } = &layout.lines
-    else {
-        return Ok(());
-    };
     // The slot of each field: that of a cell, or none.
-    let mut slots = vec![None; *fields];
-    for (slot, &field) in cells.iter().enumerate() {
+    let mut slots = vec![None; fields.count];
+    for (slot, &field) in fields.cells.iter().enumerate() {
         slots[field] = Some(slot);
     }
-    let mut frame = Frame::new(layout.columns, layout.rows);
+    let (rows, columns) = layout.shape;
+    let mut frame = Frame::new(columns, rows);
     let mut start = None;
     while lines.advance_to_content()? {
-        let number = lines.number();
-        if *header == Some(number) || is_comment(lines.line()) {
+        let (line, number) = (lines.line(), lines.number());
+        if fields.header == Some(number) || is_comment(line) {
             continue;
         }
-        (frame.label, frame.time) = (None, None);
-        let values = frame.values_mut();
-        let (mut found, mut own_label, mut own_time) = (0, None, None);
-        for field in layout.separator.fields(lines.line()) {
-            let index = found;
-            found += 1;
-            let Some(slot) = slots.get(index) else {
-                continue;
-            };
-            match (slot, layout.separator.value(field)) {
-                (Some(slot), Field::Value(value)) => values[*slot] = value,
-                (Some(slot), Field::NoCell) => values[*slot] = f64::NAN,
-                (Some(_), Field::Wrong) => return Err(text_row::wrong(number, found, field)),
-                (None, Field::Value(value)) if *label == Some(index) => own_label = whole(value),
-                (None, Field::Value(value)) if time.is_some_and(|(own, _)| own == index) => {
-                    own_time = Some(value);
-                }
-                (None, _) => {}
-            }
-        }
-        if found != *fields {
-            return Err(text_row::count(number, found, *fields));
-        }
-        frame.label = own_label;
-        if let (Some(time), Some((_, factor))) = (own_time, time) {
-            let start = *start.get_or_insert(time);
-            frame.time = Some((time - start) * factor);
-        }
+        let time = fields.fill(&slots, &mut frame, layout.separator, (line, number))?;
+        frame.time = time
+            .zip(fields.time)
+            .map(|(time, (_, factor))| (time - *start.get_or_insert(time)) * factor);
         if sink(RecordingEvent::Frame(&frame)).is_break() {
             break;
         }
@@ -406,59 +433,134 @@ fn frames(
     Ok(())
 }
 
-/// A number without a fraction, as labels are.
+impl FrameFields {
+    /// Fills the values and the label of a frame from a line. Returns its time, in the unit of the table.
+    ///
+    /// Text in a field that is neither cell nor label nor time is not looked at.
+    ///
+    /// # Errors
+    /// If the line has another number of fields, or something else than a number for a cell.
+    fn fill(
+        &self,
+        slots: &[Option<usize>],
+        frame: &mut Frame,
+        separator: Separator,
+        (line, number): (&[u8], u64),
+    ) -> Result<Option<f64>, RecordingError> {
+        let (mut found, mut label, mut time) = (0, None, None);
+        let values = frame.values_mut();
+        for field in separator.fields(line) {
+            let index = found;
+            found += 1;
+            let Some(slot) = slots.get(index) else {
+                continue;
+            };
+            match (slot, separator.value(field)) {
+                (Some(slot), Field::Value(value)) => values[*slot] = value,
+                (Some(slot), Field::NoCell) => values[*slot] = f64::NAN,
+                (Some(_), Field::Wrong) => return Err(text_row::wrong(number, found, field)),
+                (None, Field::Value(value)) if self.label == Some(index) => label = whole(value),
+                (None, Field::Value(value)) if self.time.is_some_and(|(own, _)| own == index) => {
+                    time = Some(value);
+                }
+                (None, _) => {}
+            }
+        }
+        if found != self.count {
+            return Err(text_row::count(number, found, self.count));
+        }
+        frame.label = label;
+        Ok(time)
+    }
+}
+
+/// A number without a fraction, as labels are; None of any other, and beyond what a float counts exactly.
 #[expect(clippy::cast_possible_truncation, reason = "checked")]
 fn whole(value: f64) -> Option<i64> {
     (value.fract() == 0.0 && value.abs() < 9e15).then_some(value as i64)
 }
 
-/// Reads frames of several lines.
-fn rows(
-    lines: &mut TextLines<impl BufRead>,
-    layout: &TableLayout,
+/// A frame of several lines, of which some have been read.
+struct RowBlock {
+    /// What parts fields.
+    separator: Separator,
+    /// The frame that is being filled.
+    frame: Frame,
+    /// How many of its rows are there.
+    found: u16,
+    /// Whether an empty line ends a frame.
     parted: bool,
-    sink: &mut Sink<'_>,
-) -> Result<(), RecordingError> {
-    let (rows, columns) = (layout.rows, usize::from(layout.columns));
-    let mut frame = Frame::new(layout.columns, rows);
-    let mut found = 0;
-    let short = |number: u64, found: u16| {
-        let message = format!("the frame ends after {found} rows, expected {rows}");
-        RecordingError::in_line(number, message)
-    };
-    loop {
-        let ended = !lines.advance()?;
-        let number = lines.number();
-        if ended || is_blank(lines.line()) {
-            if found == rows && parted {
-                if sink(RecordingEvent::Frame(&frame)).is_break() {
-                    return Ok(());
+}
+
+impl RowBlock {
+    /// Reads all frames.
+    ///
+    /// # Errors
+    /// If a row has another number of values, or a frame another number of rows.
+    fn read(
+        mut self,
+        lines: &mut TextLines<impl BufRead>,
+        sink: &mut Sink<'_>,
+    ) -> Result<(), RecordingError> {
+        loop {
+            let ended = !lines.advance()?;
+            let (line, number) = (lines.line(), lines.number());
+            let given = if ended || is_blank(line) {
+                self.end(number + u64::from(ended), sink)?
+            } else if is_comment(line) {
+                continue;
+            } else {
+                self.row(line, number)?;
+                // Without empty lines, the number of rows alone parts the frames.
+                if self.parted {
+                    continue;
                 }
-                frame.number += 1;
-                found = 0;
-            }
-            match (found, ended) {
-                (0, true) => return Ok(()),
-                (0, false) => continue,
-                _ => return Err(short(number + u64::from(ended), found)),
+                self.give(sink)
+            };
+            if ended || given.is_break() {
+                return Ok(());
             }
         }
-        if is_comment(lines.line()) {
-            continue;
+    }
+
+    /// Ends the frame at an empty line or at the end of the file. Between frames there may be any number of them.
+    fn end(&mut self, number: u64, sink: &mut Sink<'_>) -> Result<ControlFlow<()>, RecordingError> {
+        let given = self.give(sink);
+        if given.is_break() || self.found == 0 {
+            return Ok(given);
         }
-        if found == rows {
+        let (found, rows) = (self.found, self.frame.rows());
+        let message = format!("the frame ends after {found} rows, expected {rows}");
+        Err(RecordingError::in_line(number, message))
+    }
+
+    /// Reports the frame if all of its rows are there.
+    fn give(&mut self, sink: &mut Sink<'_>) -> ControlFlow<()> {
+        if self.found < self.frame.rows() {
+            return ControlFlow::Continue(());
+        }
+        sink(RecordingEvent::Frame(&self.frame))?;
+        self.frame.number += 1;
+        self.found = 0;
+        ControlFlow::Continue(())
+    }
+
+    /// Reads the next row.
+    fn row(&mut self, line: &[u8], number: u64) -> Result<(), RecordingError> {
+        let (rows, columns) = (self.frame.rows(), usize::from(self.frame.columns()));
+        if self.found == rows {
             let message = format!("another row, expected an empty line after {rows} of them");
             return Err(RecordingError::in_line(number, message));
         }
-        let start = usize::from(found) * columns;
-        let slots = &mut frame.values_mut()[start..start + columns];
+        let start = usize::from(self.found) * columns;
+        let slots = &mut self.frame.values_mut()[start..start + columns];
         let mut count = 0;
-        for field in layout.separator.fields(lines.line()) {
+        for field in self.separator.fields(line) {
             count += 1;
             let Some(slot) = slots.get_mut(count - 1) else {
                 continue;
             };
-            *slot = match layout.separator.value(field) {
+            *slot = match self.separator.value(field) {
                 Field::Value(value) => value,
                 Field::NoCell => f64::NAN,
                 Field::Wrong => return Err(text_row::wrong(number, count, field)),
@@ -467,13 +569,7 @@ fn rows(
         if count != columns {
             return Err(text_row::count(number, count, columns));
         }
-        found += 1;
-        if found == rows && !parted {
-            if sink(RecordingEvent::Frame(&frame)).is_break() {
-                return Ok(());
-            }
-            frame.number += 1;
-            found = 0;
-        }
+        self.found += 1;
+        Ok(())
     }
 }

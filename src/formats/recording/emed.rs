@@ -9,6 +9,7 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, RecordingEvent, RecordingNote, Sink};
 use crate::formats::recording::lines::{TextLines, text};
 use crate::formats::recording::number;
+use crate::formats::recording::side::side;
 use crate::formats::recording::text_row::{self, Field};
 use crate::frame::{Frame, MAX_FRAME_SIDE};
 
@@ -56,6 +57,67 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
     Ok(())
 }
 
+/// The line above a window: the numbers of its columns, and `Force` if each row ends in its sum.
+/// ```text
+///          21      22      23     Force
+/// 45     0.00   12.50    7.50      2.00
+/// Force  0.00    1.25    0.75      2.00
+/// ```
+struct EmedHeading {
+    /// The column of the whole sensor that the window begins at.
+    first_column: u32,
+    /// Columns of the window.
+    columns: u16,
+    /// Whether rows have a sum, and a line of sums follows them.
+    has_force: bool,
+}
+
+impl EmedHeading {
+    /// Reads the heading in line `number`.
+    ///
+    /// # Errors
+    /// If its numbers do not follow one another, or are more than a frame has columns.
+    fn of(line: &str, number: u64) -> Result<Self, RecordingError> {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let has_force = words.last() == Some(&"Force");
+        let numbers = &words[..words.len() - usize::from(has_force)];
+        let first = numbers.first().and_then(|first| first.parse::<u32>().ok());
+        let first = first.filter(|&first| {
+            let mut expected = (first..).zip(numbers);
+            expected.all(|(number, word)| word.parse() == Ok(number))
+        });
+        let Some((first_column, columns)) = first.zip(side(numbers.len())) else {
+            let message = "expected the numbers of columns, one after the other";
+            return Err(RecordingError::in_line(number, message));
+        };
+        Ok(Self {
+            first_column,
+            columns,
+            has_force,
+        })
+    }
+
+    /// Goes to the next row of the window; false at its end: the line of forces, or without them an empty line.
+    ///
+    /// # Errors
+    /// If the window ends before its first row, or without its line of forces.
+    fn next_row(
+        &self,
+        lines: &mut TextLines<impl BufRead>,
+        rows: u16,
+    ) -> Result<bool, RecordingError> {
+        let content = lines.advance()? && !lines.line().trim_ascii().is_empty();
+        if content && !lines.line().starts_with(b"Force") {
+            return Ok(true);
+        }
+        if self.has_force && !content || rows == 0 {
+            let message = "the picture ends here, expected more rows, then their Force";
+            return Err(RecordingError::in_line(lines.number(), message));
+        }
+        Ok(false)
+    }
+}
+
 /// The number that follows a word.
 fn after(line: &str, word: &str) -> Option<f64> {
     let rest = line.split_once(word)?.1.trim_start();
@@ -89,42 +151,23 @@ impl EmedState {
     }
 
     /// Reads the window below the line of column numbers. Returns sums that do not hold.
+    ///
+    /// # Errors
+    /// If columns or rows are not numbered one after the other, or the window ends before the line of forces.
     fn window(
         &self,
         lines: &mut TextLines<impl BufRead>,
         frame: &mut Frame,
     ) -> Result<Vec<RecordingNote>, RecordingError> {
-        let heading = text(lines.line());
-        let heading_line = lines.number();
-        let words: Vec<&str> = heading.split_whitespace().collect();
-        let has_force = words.last() == Some(&"Force");
-        let numbers = &words[..words.len() - usize::from(has_force)];
-        let counted =
-            (numbers.first().and_then(|first| first.parse::<u32>().ok())).filter(|&first| {
-                let mut expected = (first..).zip(numbers);
-                expected.all(|(number, word)| word.parse() == Ok(number))
-            });
-        let columns = u16::try_from(numbers.len()).ok();
-        let columns = columns.filter(|columns| (1..=MAX_FRAME_SIDE).contains(columns));
-        let (Some(first_column), Some(columns)) = (counted, columns) else {
-            let message = "expected the numbers of columns, one after the other";
-            return Err(RecordingError::in_line(heading_line, message));
-        };
-        let mut values = vec![0.0; usize::from(columns) + 1 + usize::from(has_force)];
-        let (mut all, mut stated, mut first_row) = (Vec::new(), Vec::new(), 0);
+        let heading = EmedHeading::of(&text(lines.line()), lines.number())?;
+        let columns = usize::from(heading.columns);
+        let mut fields = vec![0.0; columns + 1 + usize::from(heading.has_force)];
+        let (mut values, mut forces, mut first_row) = (Vec::new(), Vec::new(), 0);
         let mut rows = 0_u16;
-        loop {
-            let content = lines.advance()? && !lines.line().trim_ascii().is_empty();
-            if !content || lines.line().starts_with(b"Force") {
-                if has_force && !content || rows == 0 {
-                    let message = "the picture ends here, expected more rows, then their Force";
-                    return Err(RecordingError::in_line(lines.number(), message));
-                }
-                break;
-            }
+        while heading.next_row(lines, rows)? {
             let (line, number) = (lines.line(), lines.number());
             text_row::fill(
-                &mut values,
+                &mut fields,
                 line,
                 number,
                 b'\t',
@@ -139,15 +182,12 @@ impl EmedState {
                     clippy::cast_sign_loss,
                     reason = "saturates; the next row would not follow it"
                 )]
-                let first = values[0] as u32;
+                let first = fields[0] as u32;
                 first_row = first;
             }
-            if values[0] != f64::from(first_row) + f64::from(rows) {
-                let message = format!(
-                    "found row {}, expected row {}",
-                    values[0],
-                    f64::from(first_row) + f64::from(rows)
-                );
+            let (found, expected) = (fields[0], f64::from(first_row) + f64::from(rows));
+            if found != expected {
+                let message = format!("found row {found}, expected row {expected}");
                 return Err(RecordingError::in_field(number, 1, message));
             }
             if rows == MAX_FRAME_SIDE {
@@ -155,15 +195,15 @@ impl EmedState {
                 return Err(RecordingError::in_line(number, message));
             }
             rows += 1;
-            all.extend_from_slice(&values[1..=usize::from(columns)]);
-            stated.extend(values.get(usize::from(columns) + 1).copied());
+            values.extend_from_slice(&fields[1..=columns]);
+            forces.extend(fields.get(columns + 1).copied());
         }
-        frame.reset(columns, rows);
-        frame.values_mut().copy_from_slice(&all);
-        frame.first = Some((first_row, first_column));
+        frame.reset(heading.columns, rows);
+        frame.values_mut().copy_from_slice(&values);
+        frame.first = Some((first_row, heading.first_column));
         frame.number = self.frames;
         frame.label = self.label;
-        Ok(self.sums(frame, &stated))
+        Ok(self.sums(frame, &forces))
     }
 
     /// The forces of rows that are not those of the values.

@@ -9,7 +9,8 @@ use crate::formats::json;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
 use crate::formats::recording::lines::TextLines;
-use crate::frame::{Frame, LARGEST_VALUE, MAX_FRAME_SIDE};
+use crate::formats::recording::side::shape;
+use crate::frame::{Frame, LARGEST_VALUE};
 use crate::quote::shortened;
 
 /// Reads a recording.
@@ -117,12 +118,7 @@ impl FrameLine {
         let values = self.values.len();
         let wrong = |message: String| Err(FrameLineError::Json(1, message));
         if let Some(columns) = values.checked_div(rows) {
-            let side = |side: usize| {
-                u16::try_from(side)
-                    .ok()
-                    .filter(|side| (1..=MAX_FRAME_SIDE).contains(side))
-            };
-            let Some(shape) = side(rows).zip(side(columns)) else {
+            let Some(shape) = shape(rows, columns) else {
                 return wrong(format!(
                     "{rows} rows of {columns}, expected 1 to 512 of each"
                 ));

@@ -8,7 +8,8 @@ use std::io::{self, BufRead, Read};
 use crate::formats::recording::cdr::CdrReader;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
-use crate::frame::{Frame, LARGEST_VALUE, MAX_FRAME_SIDE};
+use crate::formats::recording::side::shape;
+use crate::frame::{Frame, LARGEST_VALUE};
 
 pub(super) const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
@@ -241,13 +242,8 @@ impl McapState<'_, '_> {
                 self.values.clear();
                 cdr.numbers(kind, size, &mut self.values)?;
                 self.values.drain(..offset.min(self.values.len()));
-                let side = |side: u32| {
-                    u16::try_from(side)
-                        .ok()
-                        .filter(|side| (1..=MAX_FRAME_SIDE).contains(side))
-                };
                 let shape = match sizes[..] {
-                    [rows, columns] | [rows, columns, 1] => side(rows).zip(side(columns)),
+                    [rows, columns] | [rows, columns, 1] => shape(rows, columns),
                     _ => None,
                 };
                 Some(self.give(topic, shape))
@@ -346,12 +342,7 @@ fn image(cdr: &mut CdrReader<'_>, values: &mut Vec<f64>) -> Option<(u16, u16)> {
     let big_endian = cdr.byte()? != 0;
     let step = usize::try_from(cdr.word()?).ok()?;
     let data = cdr.bytes()?;
-    let side = |side: u32| {
-        u16::try_from(side)
-            .ok()
-            .filter(|side| (1..=MAX_FRAME_SIDE).contains(side))
-    };
-    let (rows, columns) = (side(height)?, side(width)?);
+    let (rows, columns) = shape(height, width)?;
     let line = usize::from(columns) * size;
     values.clear();
     for row in 0..usize::from(rows) {

@@ -29,6 +29,8 @@ pub(crate) mod number;
 
 mod lines;
 
+mod side;
+
 mod text_row;
 
 mod tekscan;

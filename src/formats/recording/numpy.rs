@@ -9,7 +9,8 @@ use crate::formats::npy;
 use crate::formats::npy::Header;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
-use crate::frame::{Frame, LARGEST_VALUE, MAX_FRAME_SIDE};
+use crate::formats::recording::side::shape;
+use crate::frame::{Frame, LARGEST_VALUE};
 use crate::quote::shortened;
 
 /// A longer header is none.
@@ -163,7 +164,7 @@ impl ArrayLayout {
             let found = shortened(&header.code);
             RecordingError::damaged(format!("numbers of type {found:?}, expected real ones"))
         })?;
-        let (frames, rows, columns) = shape(&header.shape, options)?;
+        let (frames, rows, columns) = axes_shape(&header.shape, options)?;
         Ok(Self {
             number,
             frames,
@@ -202,17 +203,12 @@ impl ArrayLayout {
 }
 
 /// Frames, rows and columns of an array of that shape.
-fn shape(axes: &[u64], options: ReadOptions) -> Result<(u64, u16, u16), RecordingError> {
-    let side = |length: u64| {
-        u16::try_from(length)
-            .ok()
-            .filter(|side| (1..=MAX_FRAME_SIDE).contains(side))
-    };
+fn axes_shape(axes: &[u64], options: ReadOptions) -> Result<(u64, u16, u16), RecordingError> {
     let asked = options.shape;
     let cells = asked.map(|(rows, columns)| u64::from(rows) * u64::from(columns));
     let found = match *axes {
-        [frames, rows, columns] => side(rows).zip(side(columns)).map(|(r, c)| (frames, r, c)),
-        [rows, columns] => match (asked, side(rows).zip(side(columns))) {
+        [frames, rows, columns] => shape(rows, columns).map(|(r, c)| (frames, r, c)),
+        [rows, columns] => match (asked, shape(rows, columns)) {
             (Some(asked), Some(own)) if asked == own => Some((1, own.0, own.1)),
             (Some((r, c)), _) if cells == Some(columns) => Some((rows, r, c)),
             (None, Some((r, c))) => Some((1, r, c)),
@@ -290,8 +286,7 @@ impl RecordLayout {
             rest = after.strip_prefix(',').unwrap_or(after).trim_start();
         }
         let (values, number, rows, columns) = values?;
-        let fits = |side: u16| (1..=MAX_FRAME_SIDE).contains(&side);
-        (rest.is_empty() && fits(rows) && fits(columns) && size < 1 << 24).then_some(Self {
+        (rest.is_empty() && shape(rows, columns).is_some() && size < 1 << 24).then_some(Self {
             size,
             time,
             label,

@@ -10,6 +10,7 @@ use crate::formats::json;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, RecordingEvent, Sink};
 use crate::formats::recording::json_lines::CellsSeed;
+use crate::formats::recording::side::side;
 use crate::frame::{Frame, MAX_FRAME_SIDE};
 
 /// Stands in an error of serde's for a sink that wants no more.
@@ -93,11 +94,9 @@ impl<'de> Visitor<'de> for PopuSeed<'_, '_, '_> {
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
         while let Some(key) = map.next_key::<Cow<'de, str>>()? {
-            let side = |side: u16| {
-                let fits = (1..=MAX_FRAME_SIDE).contains(&side);
-                fits.then_some(side).ok_or_else(|| {
-                    A::Error::custom(format!("{side}: expected 1 to {MAX_FRAME_SIDE}"))
-                })
+            let side = |length: u16| {
+                let message = || format!("{length}: expected 1 to {MAX_FRAME_SIDE}");
+                side(length).ok_or_else(|| A::Error::custom(message()))
             };
             if key == "snapshots" {
                 map.next_value_seed(SnapshotsSeed(&mut *self.0))?;

@@ -7,8 +7,9 @@ use std::io::BufRead;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
 use crate::formats::recording::lines::TextLines;
+use crate::formats::recording::side::shape;
 use crate::formats::recording::text_row::{self, Field};
-use crate::frame::{Frame, MAX_FRAME_SIDE};
+use crate::frame::Frame;
 
 /// The values of a message, and the sizes of its layout, in memory that is used again.
 #[derive(Debug, Default)]
@@ -150,14 +151,9 @@ impl RosMessage {
         let &[rows, columns, ref rest @ ..] = &self.sizes[..] else {
             return None;
         };
-        let side = |side: u32| {
-            u16::try_from(side)
-                .ok()
-                .filter(|side| (1..=MAX_FRAME_SIDE).contains(side))
-        };
         rest.iter()
             .all(|&size| size == 1)
-            .then(|| side(rows).zip(side(columns)))?
+            .then(|| shape(rows, columns))?
     }
 }
 

@@ -5,14 +5,14 @@
 //! where the sensor has no cell.
 
 use std::io::BufRead;
-use std::ops::ControlFlow;
 
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, RecordingEvent, RecordingNote, Sink};
 use crate::formats::recording::lines::{TextLines, is_blank, text, unpadded};
 use crate::formats::recording::number;
+use crate::formats::recording::side::stated;
 use crate::formats::recording::text_row::{self, Field};
-use crate::frame::{Frame, MAX_FRAME_SIDE};
+use crate::frame::Frame;
 use crate::quote::shortened;
 
 /// The largest difference of a sum that is no error.
@@ -34,18 +34,7 @@ impl TekscanHeader {
         let end = line.iter().position(is_end);
         let (key, value) = line.split_at(end.unwrap_or(line.len()));
         let value = value.trim_ascii();
-        let side = || {
-            let side = str::from_utf8(value)
-                .ok()
-                .and_then(|text| text.parse().ok());
-            side.filter(|side| (1..=MAX_FRAME_SIDE).contains(side))
-                .ok_or_else(|| {
-                    let found = shortened(&text(value));
-                    let key = text(key);
-                    let message = format!("{key} {found}: expected 1 to {MAX_FRAME_SIDE}");
-                    RecordingError::in_line(number, message)
-                })
-        };
+        let side = || stated(&text(key), ' ', &text(value), number);
         match key {
             b"ROWS" if self.rows.is_none() => self.rows = Some(side()?),
             b"COLS" if self.columns.is_none() => self.columns = Some(side()?),
@@ -112,6 +101,10 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
     frames(&mut lines, (rows, columns), &info, sink)
 }
 
+/// Reads the frames below the header, up to `@@`.
+///
+/// # Errors
+/// If the file ends before that, or a frame before its last row: Tekscan's programs always write the `@@`.
 fn frames(
     lines: &mut TextLines<impl BufRead>,
     (rows, columns): (u16, u16),
@@ -135,45 +128,56 @@ fn frames(
         frame.label = Some(title.label);
         let by_number = info.seconds_per_frame.map(|step| step * f64::from(number));
         frame.time = title.time.or(by_number);
-        for row in frame.values_mut().chunks_mut(columns.into()) {
-            let content = lines.advance()? && !is_blank(lines.line());
-            if !content {
-                let message = format!("the frame ends here, expected {rows} rows");
-                let number = lines.number() + u64::from(lines.line().is_empty());
-                return Err(RecordingError::in_line(number, message));
-            }
-            text_row::fill(
-                row,
-                lines.line(),
-                lines.number(),
-                b',',
-                |field| match field {
-                    b"B" | b"b" => Field::NoCell,
-                    field => text_row::value(field),
-                },
-            )?;
+        values(lines, &mut frame)?;
+        if let Some(note) = title
+            .sum
+            .filter(|_| is_raw)
+            .and_then(|sum| odd_sum(&frame, sum))
+            && sink(RecordingEvent::Note(&note)).is_break()
+        {
+            break;
         }
-        if let Some(stated) = title.sum.filter(|_| is_raw) {
-            let values = frame.values().iter().filter(|value| !value.is_nan());
-            let found: f64 = values.sum();
-            if (found - stated).abs() > ROUNDING {
-                let note = RecordingNote::Checksum {
-                    frame: frame.number,
-                    label: frame.label,
-                    what: "Raw Sum",
-                    stated,
-                    found,
-                };
-                if sink(RecordingEvent::Note(&note)).is_break() {
-                    break;
-                }
-            }
-        }
-        if sink(RecordingEvent::Frame(&frame)) == ControlFlow::Break(()) {
+        if sink(RecordingEvent::Frame(&frame)).is_break() {
             break;
         }
     }
     Ok(())
+}
+
+/// Reads the rows of a frame, which follow its title without an empty line. `B` and `b` are no cell.
+///
+/// # Errors
+/// If there are fewer rows, or one has another number of fields than `COLS`.
+fn values(lines: &mut TextLines<impl BufRead>, frame: &mut Frame) -> Result<(), RecordingError> {
+    let (rows, columns) = (frame.rows(), frame.columns());
+    for row in frame.values_mut().chunks_mut(columns.into()) {
+        let content = lines.advance()? && !is_blank(lines.line());
+        if !content {
+            let message = format!("the frame ends here, expected {rows} rows");
+            let number = lines.number() + u64::from(lines.line().is_empty());
+            return Err(RecordingError::in_line(number, message));
+        }
+        let (line, number) = (lines.line(), lines.number());
+        text_row::fill(row, line, number, b',', |field| match field {
+            b"B" | b"b" => Field::NoCell,
+            field => text_row::value(field),
+        })?;
+    }
+    Ok(())
+}
+
+/// What is odd about a frame whose title states another sum than that of its values. Only raw values can be compared:
+/// the sum is that of the sensor's own numbers, whatever the unit of the export is.
+fn odd_sum(frame: &Frame, stated: f64) -> Option<RecordingNote> {
+    let values = frame.values().iter().filter(|value| !value.is_nan());
+    let found: f64 = values.sum();
+    ((found - stated).abs() > ROUNDING).then_some(RecordingNote::Checksum {
+        frame: frame.number,
+        label: frame.label,
+        what: "Raw Sum",
+        stated,
+        found,
+    })
 }
 
 /// The first line of a frame.

@@ -9,9 +9,9 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, RecordingEvent, Sink};
 use crate::formats::recording::lines::{TextLines, text, unpadded};
 use crate::formats::recording::number;
+use crate::formats::recording::side::stated;
 use crate::formats::recording::text_row;
-use crate::frame::{Frame, MAX_FRAME_SIDE};
-use crate::quote::shortened;
+use crate::frame::Frame;
 
 /// No file has more sensors: each has a name of its own.
 const MOST_CHANNELS: usize = 64;
@@ -77,15 +77,7 @@ fn pair(line: &[u8]) -> (String, String) {
 impl XsensorState {
     fn line(&mut self, key: &str, value: &str, number: u64) -> Result<(), RecordingError> {
         let positive = || number::read(value.as_bytes()).filter(|&value| value > 0.0);
-        let side = || {
-            let side = value.parse().ok();
-            let side = side.filter(|side| (1..=MAX_FRAME_SIDE).contains(side));
-            side.ok_or_else(|| {
-                let found = shortened(value);
-                let message = format!("{key} {found}: expected 1 to {MAX_FRAME_SIDE}");
-                RecordingError::in_line(number, message)
-            })
-        };
+        let side = || stated(key, ' ', value, number);
         match key {
             "Units:" | "Units" => self.unit = Some(value.to_owned()),
             "Threshold:" | "Threshold" => self.threshold = number::read(value.as_bytes()),

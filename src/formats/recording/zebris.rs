@@ -8,9 +8,9 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, RecordingEvent, Sink};
 use crate::formats::recording::lines::{TextLines, text};
 use crate::formats::recording::number;
+use crate::formats::recording::side::stated;
 use crate::formats::recording::text_row::{self, Field};
-use crate::frame::{Frame, MAX_FRAME_SIDE};
-use crate::quote::shortened;
+use crate::frame::Frame;
 
 #[derive(Default)]
 struct ZebrisHeader {
@@ -31,14 +31,7 @@ impl ZebrisHeader {
             return Ok(());
         };
         let value = value.trim();
-        let side = || {
-            let side = value.parse().ok();
-            let side = side.filter(|side| (1..=MAX_FRAME_SIDE).contains(side));
-            side.ok_or_else(|| {
-                let message = format!("{key}={}: expected 1 to {MAX_FRAME_SIDE}", shortened(value));
-                RecordingError::in_line(number, message)
-            })
-        };
+        let side = || stated(key, '=', value, number);
         let positive = || number::read(value.as_bytes()).filter(|&value| value > 0.0);
         match key.trim() {
             "SensCountX" => self.rows = Some(side()?),
