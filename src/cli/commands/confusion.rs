@@ -126,6 +126,8 @@ fn shown(
 }
 
 /// The matrix as the file that an ending asks for.
+
+///
 /// # Errors
 /// [`CliError::TooManyShapes`] for a drawing whose matrix would not be legible.
 fn file(path: &Path, own: &Evaluation) -> Result<Vec<u8>, CliError> {

@@ -182,6 +182,8 @@ fn fitting(
 }
 
 /// The folder of the models beside the library.
+
+///
 /// # Errors
 /// If there is no folder for a library, and so none beside it.
 fn folder(shelf: &Shelf) -> Result<ModelFolder, CliError> {
@@ -195,6 +197,8 @@ pub(crate) fn is_kept(name: &Name, shelf: &Shelf) -> bool {
 }
 
 /// Finds a model: one beside the library, then a file, then the seven figures if they are asked for.
+
+///
 /// # Errors
 /// [`CliError::NoModel`] if nothing has that name; otherwise why the file cannot be read.
 pub(crate) fn find(which: &OsStr, shelf: &Shelf) -> Result<Model, CliError> {

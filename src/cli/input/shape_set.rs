@@ -25,6 +25,8 @@ use crate::recognition::NamedShape;
 const MAX_SET: u64 = 64 << 20;
 
 /// The shapes of a set, in the order of the arguments.
+
+///
 /// # Errors
 /// [`CliError::Set`] with the place of a shape that cannot be read: `parts.jsonl, line 3`; those of files and the
 /// library.
@@ -66,6 +68,8 @@ pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape
 }
 
 /// All shapes of the library, in its order.
+
+///
 /// # Errors
 /// If one of them is damaged.
 fn library_shapes(shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
@@ -93,6 +97,8 @@ fn file_of_lines(what: &OsStr, shelf: &Shelf) -> Option<PathBuf> {
 }
 
 /// Reads a set of shapes, a line of JSON each. Blank lines are skipped.
+
+///
 /// # Errors
 /// If the text is larger than [`MAX_SET`], or a line is no shape. A wrong line ends it: a set with a shape missing
 /// would give another limit.

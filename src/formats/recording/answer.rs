@@ -1,4 +1,10 @@
 //! A frame with its imprint and descriptors as JSON: a line of `taxel frames --json` and of `taxel watch`.
+//! ```text
+//! {"frame":65,"label":66,"time":6.5,"channel":null,"sum":42,"max":9,
+//!  "rule":{"at_least":10,"from":"flag"},"imprint":[".###.",…],"na":5,"regions":[{"kind":"exterior",…}]}
+//! ```
+//! Sum and maximum are those of the values as recorded, in the recording's unit, before tare and gain; the imprint is
+//! that after both.
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 

@@ -1,13 +1,22 @@
-//! Common data representation, as ROS 2 writes messages: numbers at multiples of their size, counted from behind a header
-//! of four bytes that says their byte order.
+//! Common data representation, as ROS 2 writes messages: numbers at multiples of their size, counted from behind a
+//! header of four bytes that says their byte order.
+//! ```text
+//! 00 01 00 00   header: little endian
+//! 05 00 00 00   the length of a text, with its zero
+//! 61 62 63 64 00   "abcd", then three bytes of padding before the next word
+//! ```
+//! Source: the OMG's DDS-RTPS specification, encapsulation `CDR_BE` and `CDR_LE`.
 
 use crate::formats::recording::numpy::NumberType;
 
 /// Reads a message field by field; None where it ends too early.
 #[derive(Debug)]
 pub(super) struct CdrReader<'a> {
+    /// The message behind the header.
     bytes: &'a [u8],
+    /// How many of them have been read.
     at: usize,
+    /// The byte order that the header names.
     big_endian: bool,
 }
 
@@ -27,6 +36,7 @@ impl<'a> CdrReader<'a> {
         })
     }
 
+    /// The next bytes at a multiple of the alignment.
     fn take(&mut self, length: usize, alignment: usize) -> Option<&'a [u8]> {
         let start = self.at.next_multiple_of(alignment);
         let end = start.checked_add(length)?;

@@ -1,4 +1,13 @@
 //! Which fields of a table are cells, by the names in its header: `S0_0`, `r3c12`, or counted 0, 1, 2 and so on.
+//!
+//! | names | are |
+//! |---|---|
+//! | `r0c0,r0c1,r1c0,r1c1`, `S3_12`, `pad2[0][1]` | rows and columns: the last two numbers of a name, the rest being the same in all |
+//! | `0,1,2,3`, `v1,v2,v3` | cells one after the other, of which rows and columns are not known |
+//! | `frame`, `index`, `id`, … | what the recording calls the frame |
+//! | `time`, `t_ns`, `Time (ms)`, … | its time, with its unit |
+//!
+//! Numbers of rows and columns may begin anywhere, but none may be missing: otherwise the names describe no cells.
 
 /// What the header of a table says of its cells.
 #[derive(Debug, PartialEq)]
@@ -24,6 +33,7 @@ pub(crate) fn cells(names: &[&str]) -> Option<NamedCells> {
 }
 
 /// A name's text around its last numbers, and these.
+/// `pad2[0][1]` split for two numbers is `pad2[#][#]` and 0, 1. None if there are fewer.
 fn split<const N: usize>(name: &str) -> Option<(String, [u32; N])> {
     let mut numbers = [0; N];
     let mut skeleton = String::new();
@@ -41,6 +51,7 @@ fn split<const N: usize>(name: &str) -> Option<(String, [u32; N])> {
     Some((format!("{rest}{skeleton}"), numbers))
 }
 
+/// Cells named by row and column, in the pattern of the last field's name; there must be exactly one for each.
 fn grid(names: &[&str]) -> Option<NamedCells> {
     let (last, _) = split::<2>(names.last()?)?;
     let named = names.iter().enumerate().filter_map(|(field, name)| {
@@ -72,6 +83,7 @@ fn grid(names: &[&str]) -> Option<NamedCells> {
     Some(NamedCells::Grid(rows, columns, fields?))
 }
 
+/// The longest run of names that count up from 0 or 1; three or more.
 fn counted(names: &[&str]) -> Option<NamedCells> {
     let named = |name: &&str| split::<1>(name);
     let mut best: Option<(usize, usize)> = None;

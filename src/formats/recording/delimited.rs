@@ -8,8 +8,8 @@
 //!                                         2  9  1
 //! ```
 //! Fields are parted by semicolons (then a comma is the decimal sign), commas, tabs or spaces; the first line tells.
-//! Quotes around a field do not count. An empty field, `NaN`, `null`, `none` and `NA` are no cell. Lines that begin with
-//! `#` are passed over.
+//! Quotes around a field do not count. An empty field, `NaN`, `null`, `none` and `NA` are no cell. Lines that begin
+//! with `#` are passed over.
 //!
 //! How the fields are arranged is found from the first lines; the file is then read from its beginning. A header names
 //! the cells, see [`cell_names`](super::cell_names). Without one, rows and columns have to be known beforehand, unless

@@ -1,4 +1,8 @@
 //! Which form a recording has, by its content.
+//!
+//! Tested in this order, from what cannot be mistaken to what is left: magic bytes, then JSON, then words that only one
+//! vendor writes, then ROS, then a table. A `.csv` of XSENSOR or Tekscan would pass for a table, and is therefore
+//! looked for before it.
 
 use std::io::{BufReader, Read, Seek, SeekFrom};
 
@@ -51,6 +55,7 @@ pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
     })
 }
 
+/// Whether a text is what `ros2 topic echo` prints; `first` is its first line.
 fn is_ros(text: &[u8], first: &[u8]) -> bool {
     text.starts_with(b"array(")
         || text.starts_with(b"layout:")
@@ -60,6 +65,7 @@ fn is_ros(text: &[u8], first: &[u8]) -> bool {
 }
 
 /// Whether a line may be the first of a table: it has a digit, and fields.
+/// A line of words alone may be the names of columns, if they are parted by commas or semicolons.
 fn is_table(line: &[u8]) -> bool {
     let is_text = line
         .iter()
@@ -72,8 +78,8 @@ fn is_table(line: &[u8]) -> bool {
 /// Reads a recording from its beginning to its end, and reports what is found to `sink`, which may break off.
 ///
 /// # Errors
-/// If it cannot be read, is no recording, is damaged, or does not say how its values are arranged. Whole frames before a
-/// damage have been reported.
+/// If it cannot be read, is no recording, is damaged, or does not say how its values are arranged. Whole frames before
+/// a damage have been reported.
 pub fn read(
     mut input: impl Read + Seek,
     options: ReadOptions,

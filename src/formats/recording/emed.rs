@@ -1,7 +1,24 @@
-//! novel's emed `.lst` export: pages with a header, the printed window of the matrix with its indices, and sums of forces.
+//! novel's emed `.lst` export: pages with a header, the printed window of the matrix with its indices, and sums of
+//! forces.
 //!
 //! The printed window is the frame; the numbers of its first row and column are reported with it. Pages without a
 //! `Pict-No.`, which summarise (MVP, MPP), are passed over.
+//! ```text
+//! 	Page 1
+//!
+//! 	File: …\2.dat 	Matrix: 64x95
+//! 	Sensor area: 0.25 cm²	Time/picture:10.0 ms
+//! 	Sensor size: 0.500x0.500 cm
+//! 	Pict-No.: 1  Force[N]=sum*sensor_area in row/column
+//!
+//! 	26	27	28	…	Force
+//! 30	0.00	0.00	15.00	…	0.38
+//! …
+//! Force	0.00	0.00	0.38	…
+//! ```
+//! `Matrix` counts columns × rows of the whole sensor, of which only the loaded part is printed. Values are kPa; each
+//! row ends in its force in N, which is checked. Time is the number of the picture times `Time/picture`. Source:
+//! exports of novel's emed software.
 
 use std::io::BufRead;
 
@@ -18,16 +35,26 @@ const NEWTON: f64 = 0.1;
 /// Values and forces have two decimals.
 const ROUNDING: f64 = 0.005;
 
+/// What the headers so far say; a value holds until another page says another.
 #[derive(Default)]
 struct EmedState {
+    /// The area of a cell, which makes forces of pressures.
     area_cm2: Option<f64>,
+    /// The size of a cell along x and along y.
     pitch_mm: Option<[f64; 2]>,
+    /// From a picture to the next.
     seconds: Option<f64>,
+    /// `Pict-No.` of the picture whose window comes next; None on other pages.
     label: Option<i64>,
+    /// Pictures so far.
     frames: u64,
 }
 
 /// Reads a recording.
+
+///
+/// # Errors
+/// If a picture has a header but no window; those of the window.
 pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), RecordingError> {
     let mut lines = TextLines::new(input);
     let mut state = EmedState::default();
@@ -119,6 +146,8 @@ impl EmedHeading {
 }
 
 /// The number that follows a word.
+/// `Time/picture:10.0 ms` has 10 behind `Time/picture:`; the number ends at the first character that is no digit or
+/// point.
 fn after(line: &str, word: &str) -> Option<f64> {
     let rest = line.split_once(word)?.1.trim_start();
     let end = rest.find(|character: char| !character.is_ascii_digit() && character != '.');
@@ -126,6 +155,7 @@ fn after(line: &str, word: &str) -> Option<f64> {
 }
 
 impl EmedState {
+    /// Takes from a header line what it says; there may be several things in one line.
     fn line(&mut self, line: &str) {
         if let Some(area) = after(line, "Sensor area:") {
             self.area_cm2 = Some(area);
@@ -207,6 +237,8 @@ impl EmedState {
     }
 
     /// The forces of rows that are not those of the values.
+    /// A force has two decimals, and so has each value it is the sum of: the difference may be half of the last digit
+    /// for each.
     fn sums(&self, frame: &Frame, stated: &[f64]) -> Vec<RecordingNote> {
         let Some(area) = self.area_cm2 else {
             return Vec::new();

@@ -23,6 +23,7 @@ pub enum RecordingError {
         message: String,
     },
     /// The file does not say how its values are arranged.
+    /// A list of cells, without rows. The numbers can be named with [`ReadOptions`](super::ReadOptions).
     #[error(
         "{values} values a frame, but not in how many rows and columns: name them with --rows and --columns"
     )]
@@ -32,9 +33,11 @@ pub enum RecordingError {
     },
 }
 
+/// The forms for a file whose content is none of them.
 const FORMS: &str = "Tekscan ASCII, XSENSOR CSV, emed .lst, zebris .apd, CSV, NPY, NPZ, JSON lines, PoPu JSON, MCAP, \
                      ros2 topic echo";
 
+/// `line 3, column 2: `; nothing in a file that has no lines.
 fn place(line: Option<u64>, column: Option<u64>) -> String {
     match (line, column) {
         (Some(line), Some(column)) => format!("line {line}, column {column}: "),

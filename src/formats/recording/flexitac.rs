@@ -1,4 +1,8 @@
 //! The bytes of a `FlexiTac` board in a file: `AA 55`, then a byte a cell.
+//!
+//! The same bytes as from the board itself, so the decoder of streams reads them. The file names no rows and columns;
+//! if they are not known, the error says how many cells the first frame has. Frames that are torn are dropped and
+//! counted in a note, as there is no checksum that would tell what is wrong with them.
 
 use std::io::Read;
 use std::ops::ControlFlow;
@@ -13,6 +17,10 @@ use crate::formats::stream::{StreamDecoder, StreamEvent, StreamFormat, StreamOpt
 const CHUNK: usize = 1 << 16;
 
 /// Reads a recording.
+
+///
+/// # Errors
+/// [`RecordingError::Shape`] if rows and columns are not named.
 pub(super) fn read(
     input: &mut impl Read,
     options: ReadOptions,

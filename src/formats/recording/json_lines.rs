@@ -1,4 +1,12 @@
 //! A JSON object a line: `{"t": 0.1, "frame": [[0, 12], [null, 3]]}`, null where there is no cell.
+//! ```text
+//! {"t": 0.00, "frame": [[0, 12], [null, 3]]}
+//! {"t": 0.05, "frame": [0, 13, null, 4], "label": 7}
+//! ```
+//! Frames are lists of rows, or lists of cells where rows and columns are known beforehand. `t` or `time` is in seconds
+//! and counts from the first one; `label` is a whole number; other keys are passed over. All frames have one size.
+//! Refused, with line and column: rows of different lengths, lists within cells, infinite values, two frames in one
+//! line.
 
 use std::fmt;
 use std::io::BufRead;
@@ -66,9 +74,13 @@ pub(super) fn read(
 pub(crate) struct FrameLine {
     /// Rows and columns, for lists of cells without rows.
     asked: Option<(u16, u16)>,
+    /// Rows and columns of the frame.
     pub(crate) shape: (u16, u16),
+    /// Its cells, row by row; NaN for null.
     pub(crate) values: Vec<f64>,
+    /// In seconds, as it is written.
     pub(crate) time: Option<f64>,
+    /// What the recording calls the frame.
     pub(crate) label: Option<i64>,
 }
 
@@ -92,6 +104,7 @@ impl FrameLineError {
 }
 
 impl FrameLine {
+    /// `asked` are rows and columns, if they are known beforehand.
     pub(crate) fn new(asked: Option<(u16, u16)>) -> Self {
         Self {
             asked,
@@ -194,6 +207,7 @@ pub(super) struct CellsSeed<'a>(
 );
 
 /// A frame of 512 × 512 has as many.
+/// A frame of more is refused before it takes memory.
 const MOST_CELLS: usize = 512 * 512;
 
 impl<'de> DeserializeSeed<'de> for CellsSeed<'_> {

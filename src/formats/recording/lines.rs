@@ -1,4 +1,6 @@
 //! Lines of a text of any length, one at a time in the same memory.
+//!
+//! Lines end in `\n` or `\r\n`. A byte order mark at the beginning of the text belongs to no line.
 
 use std::io::{self, BufRead};
 
@@ -10,12 +12,16 @@ const LONGEST: usize = 8 << 20;
 /// The lines of a text, counted from 1, without their ends and without a byte order mark.
 #[derive(Debug)]
 pub(crate) struct TextLines<R> {
+    /// Where bytes come from.
     input: R,
+    /// The line that was read last, without its end.
     line: Vec<u8>,
+    /// Its number; 0 before the first.
     number: u64,
 }
 
 impl<R: BufRead> TextLines<R> {
+    /// Before the first line.
     pub(crate) fn new(input: R) -> Self {
         Self {
             input,

@@ -1,7 +1,17 @@
-//! MCAP files of ROS 2: arrays, images and tactile states in CDR, a channel a topic, of a tactile state a channel a sensor.
+//! MCAP files of ROS 2: arrays, images and tactile states in CDR, a channel a topic, of a tactile state a channel a
+//! sensor.
 //!
 //! Records follow one another, those of chunks too, so the file is read from front to back in the same memory, and one
 //! that was never closed gives all its whole messages. Source: <https://mcap.dev/spec>.
+//!
+//! | message | its frames |
+//! |---|---|
+//! | `std_msgs/*MultiArray` | a frame; rows and columns from the layout's first two sizes, if it has them |
+//! | `sensor_msgs/Image` | a frame; `mono8`, `8UC1`, `mono16`, `16UC1` and `32FC1` |
+//! | `tactile_msgs/TactileState` | for each of its sensors a frame of `TOPIC#SENSOR` |
+//!
+//! Others are passed over. Time is that of the log, from the first message with a frame on. Refused: compressed chunks,
+//! which would need two more libraries; the message names the command that writes the file without.
 
 use std::io::{self, BufRead, Read};
 
@@ -11,6 +21,7 @@ use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent,
 use crate::formats::recording::side::shape;
 use crate::frame::{Frame, LARGEST_VALUE};
 
+/// The first bytes of every file; also its last ones, once it is closed.
 pub(super) const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
 /// No message of a frame is larger.
@@ -19,10 +30,15 @@ const LARGEST_RECORD: u64 = 1 << 24;
 /// No file has more topics or sensors with frames.
 const MOST_CHANNELS: usize = 256;
 
+/// Ends the records. What follows is the magic.
 const FOOTER: u8 = 2;
+/// A type of message: its number and name.
 const SCHEMA: u8 = 3;
+/// A topic: its number, that of its schema, its name and its encoding.
 const CHANNEL: u8 = 4;
+/// A message: the number of its channel, sequence, time of the log, time of publishing, data.
 const MESSAGE: u8 = 5;
+/// Records behind a head of their own.
 const CHUNK: u8 = 6;
 
 /// A kind of message that has frames.
@@ -30,7 +46,9 @@ const CHUNK: u8 = 6;
 enum MessageKind {
     /// A `MultiArray` of numbers: their kind, as of numpy, and bytes.
     Array(u8, usize),
+    /// Grey pixels, a row after the other, which may be padded.
     Image,
+    /// Lists of values, each with the name of its sensor.
     TactileState,
 }
 
@@ -64,22 +82,37 @@ impl MessageKind {
 
 /// A channel that was reported.
 struct GivenChannel {
+    /// The topic; behind `#` the sensor of a tactile state.
     name: String,
+    /// How many frames it has so far.
     frames: u64,
 }
 
+/// What the records so far have named, and the frame that is being filled.
 struct McapState<'a, 'b> {
+    /// Rows and columns for what does not say them.
     options: ReadOptions,
+    /// The schemas whose messages have frames, by number.
     schemas: Vec<(u16, MessageKind)>,
+    /// The channels of these schemas: number, name, kind of message.
     topics: Vec<(u16, String, MessageKind)>,
+    /// The channels that have been reported.
     given: Vec<GivenChannel>,
+    /// The time of the first message with a frame, in nanoseconds.
     start: Option<u64>,
+    /// The cells of a message.
     values: Vec<f64>,
+    /// The frame made of them.
     frame: Frame,
+    /// Takes channels and frames.
     sink: &'a mut Sink<'b>,
 }
 
 /// Reads a recording.
+
+///
+/// # Errors
+/// If the file was not closed, after all whole messages; if a record or a message is broken; if no message has frames.
 pub(super) fn read(
     input: &mut impl BufRead,
     options: ReadOptions,
@@ -135,10 +168,15 @@ pub(super) fn read(
     Ok(())
 }
 
+/// The error of a file that ends before its footer.
 fn torn() -> RecordingError {
     RecordingError::damaged("the file ends without a footer: it was not closed")
 }
 
+/// Fills all bytes.
+///
+/// # Errors
+/// [`torn`] if there are fewer.
 fn whole(input: &mut impl Read, bytes: &mut [u8]) -> Result<(), RecordingError> {
     input.read_exact(bytes).map_err(|error| match error.kind() {
         io::ErrorKind::UnexpectedEof => torn(),
@@ -147,6 +185,10 @@ fn whole(input: &mut impl Read, bytes: &mut [u8]) -> Result<(), RecordingError> 
 }
 
 /// Reads what stands before the records of a chunk, which follow like any others.
+
+///
+/// # Errors
+/// If its records are compressed.
 fn chunk(input: &mut impl Read) -> Result<(), RecordingError> {
     // Start, end, size, checksum.
     let mut head = [0; 32];
@@ -178,6 +220,10 @@ fn text(bytes: &[u8]) -> Option<(&str, &[u8])> {
 
 impl McapState<'_, '_> {
     /// Takes a record; true if no more is wanted.
+    /// A number that was named before keeps its meaning: the summary at the end repeats schemas and channels.
+    ///
+    /// # Errors
+    /// If the record is shorter than its fields.
     fn record(&mut self, kind: u8, record: &[u8]) -> Result<bool, RecordingError> {
         let broken = || RecordingError::damaged("a record is broken");
         let (id, rest) = record.split_first_chunk::<2>().ok_or_else(broken)?;
@@ -269,6 +315,11 @@ impl McapState<'_, '_> {
     }
 
     /// Gives the values as a frame of a channel; true if no more is wanted.
+
+    ///
+    /// # Errors
+    /// If there are too many channels, if a message of a channel has another number of values than its layout, or an
+    /// infinite one.
     fn give(&mut self, name: &str, shape: Option<(u16, u16)>) -> Result<bool, RecordingError> {
         let found = self.values.len();
         let cells = |(rows, columns): (u16, u16)| usize::from(rows) * usize::from(columns);
@@ -330,6 +381,8 @@ fn header(cdr: &mut CdrReader<'_>) -> Option<()> {
 }
 
 /// Reads an image; rows and columns.
+/// `step` is the number of bytes from a row to the next. None if it is broken, or in an encoding with more than one
+/// value a pixel.
 fn image(cdr: &mut CdrReader<'_>, values: &mut Vec<f64>) -> Option<(u16, u16)> {
     header(cdr)?;
     let (height, width) = (cdr.word()?, cdr.word()?);

@@ -1,5 +1,10 @@
 //! Frames as an archive of numpy arrays: each array of two or three axes is a channel, and a list named `t…` or `time…`
 //! gives the times of channels of its length.
+//!
+//! Its channels are named as the arrays, without `.npy`; a single one has no name. Times may be in s, ms, µs or ns,
+//! which their name tells (`time_ms`), and count from the first one. Whole nanoseconds since 1970 lose nothing: the
+//! difference is taken before they become floats. Only arrays
+//! without compression are read: what `numpy.savez` writes, not `numpy.savez_compressed`.
 
 use std::io::{Read, Seek};
 
@@ -18,6 +23,7 @@ const MOST_TIMES: u64 = 1 << 24;
 /// No archive has more arrays.
 const MOST_ARRAYS: usize = 256;
 
+/// What the archive's reader complains about.
 fn damaged(error: ZipError) -> RecordingError {
     match error {
         ZipError::Io(error) => RecordingError::Io(error),
@@ -27,12 +33,19 @@ fn damaged(error: ZipError) -> RecordingError {
 
 /// An array of the archive.
 struct ArchiveArray {
+    /// Its place in the archive.
     index: usize,
+    /// Its name without `.npy`.
     name: String,
+    /// Its type and shape.
     header: Header,
 }
 
 /// Reads a recording.
+
+///
+/// # Errors
+/// If there is no array that may be frames; those of each array, with its name.
 pub(super) fn read(
     input: impl Read + Seek,
     options: ReadOptions,

@@ -1,4 +1,6 @@
 //! Numbers in texts, read fast: most are whole and short.
+//!
+//! The bits are those that the standard library reads: a test compares them.
 
 /// Powers of ten that are exact in f64.
 const POWERS: [f64; 23] = [
@@ -42,6 +44,7 @@ pub(crate) fn read(text: &[u8]) -> Option<f64> {
     Some(if negative { -value } else { value })
 }
 
+/// By the standard library, which rounds any number of digits correctly.
 fn slow(text: &[u8]) -> Option<f64> {
     // The standard library also takes words: inf, nan, infinity.
     let is_number = text

@@ -2,6 +2,16 @@
 //!
 //! Any type of real number in either byte order, C or Fortran order. NaN is no cell. Source: that of
 //! [`crate::formats::npy`].
+//!
+//! | shape | means |
+//! |---|---|
+//! | (frames, rows, columns) | frames |
+//! | (rows, columns) | one frame; or frames × cells if rows and columns are known beforehand and fit the second |
+//! | (cells) | one frame, if rows and columns are known beforehand |
+//! | (records) of `time`, `number`, `values` | what `taxel watch --write` writes |
+//!
+//! Records end anywhere, since the file of a program that was killed is not complete: whole ones count. A file of any
+//! other array must have exactly the bytes that its header names.
 
 use std::io::{ErrorKind, Read};
 
@@ -22,8 +32,11 @@ const LARGEST_FORTRAN: u64 = 1 << 28;
 /// How a number stands in the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct NumberType {
+    /// `b` a truth value, `i` and `u` whole, `f` a float; as in numpy.
     kind: u8,
+    /// Bytes of a number: 1, 2, 4 or 8.
     size: usize,
+    /// Whether the highest byte comes first.
     big_endian: bool,
 }
 
@@ -85,6 +98,7 @@ impl NumberType {
     }
 
     /// The number, of the nearest float.
+    /// Whole numbers beyond 2^53 become the nearest float.
     #[expect(
         clippy::cast_precision_loss,
         clippy::cast_possible_truncation,
@@ -104,6 +118,7 @@ impl NumberType {
 }
 
 /// A number of IEEE 754's binary16.
+/// Sign, five bits of exponent with a bias of 15, ten of fraction; the smallest exponent has no leading 1.
 fn half(bits: u16) -> f64 {
     let (exponent, fraction) = (i32::from(bits >> 10 & 31), f64::from(bits & 1023));
     let value = match exponent {
@@ -116,6 +131,10 @@ fn half(bits: u16) -> f64 {
 }
 
 /// Reads what stands before the numbers.
+
+///
+/// # Errors
+/// If it is none of version 1 to 3, or longer than 1 MiB.
 pub(super) fn header(input: &mut impl Read) -> Result<Header, RecordingError> {
     let wrong = || RecordingError::damaged("no header of a numpy array, version 1 to 3");
     let mut start = [0; 8];
@@ -146,16 +165,25 @@ pub(super) fn header(input: &mut impl Read) -> Result<Header, RecordingError> {
 /// How the numbers of an array become frames.
 #[derive(Debug)]
 pub(super) struct ArrayLayout {
+    /// The type of a value.
     number: NumberType,
+    /// How many frames the header names.
     frames: u64,
+    /// Rows of a frame.
     rows: u16,
+    /// Columns of a frame.
     columns: u16,
+    /// Whether the first axis is the fastest.
     fortran: bool,
+    /// Where the fields are, in an array of records.
     record: Option<RecordLayout>,
 }
 
 impl ArrayLayout {
     /// That of a header.
+    ///
+    /// # Errors
+    /// If its numbers are not real, or its shape does not fit the rows and columns that are asked for.
     pub(super) fn of(header: &Header, options: ReadOptions) -> Result<Self, RecordingError> {
         if header.code.starts_with('[') {
             return Self::of_records(header);
@@ -175,6 +203,10 @@ impl ArrayLayout {
         })
     }
 
+    /// The layout of an array of records.
+    ///
+    /// # Errors
+    /// If they have no field `values` of two axes.
     fn of_records(header: &Header) -> Result<Self, RecordingError> {
         let record = RecordLayout::of(&header.code).filter(|_| header.shape.len() == 1);
         let record = record.ok_or_else(|| {
@@ -197,12 +229,17 @@ impl ArrayLayout {
         self.frames
     }
 
+    /// Rows and columns of a frame.
     pub(super) fn shape(&self) -> (u16, u16) {
         (self.rows, self.columns)
     }
 }
 
 /// Frames, rows and columns of an array of that shape.
+
+///
+/// # Errors
+/// [`RecordingError::Shape`] if rows and columns have to be named; a damage if they contradict those that are.
 fn axes_shape(axes: &[u64], options: ReadOptions) -> Result<(u64, u16, u16), RecordingError> {
     let asked = options.shape;
     let cells = asked.map(|(rows, columns)| u64::from(rows) * u64::from(columns));
@@ -235,12 +272,19 @@ fn axes_shape(axes: &[u64], options: ReadOptions) -> Result<(u64, u16, u16), Rec
 /// Where the fields of a record of taxel's own recordings are.
 #[derive(Debug)]
 struct RecordLayout {
+    /// Bytes of a record.
     size: usize,
+    /// Where in it the time is, in seconds, and its type.
     time: Option<(usize, NumberType)>,
+    /// The same of the number.
     label: Option<(usize, NumberType)>,
+    /// Where the values begin.
     values: usize,
+    /// Their type.
     number: NumberType,
+    /// Rows of a frame.
     rows: u16,
+    /// Columns of a frame.
     columns: u16,
 }
 
@@ -299,6 +343,10 @@ impl RecordLayout {
 }
 
 /// Reads a recording.
+
+///
+/// # Errors
+/// If there are fewer or more bytes than the header says; those of the header.
 pub(super) fn read(
     input: &mut impl Read,
     options: ReadOptions,
@@ -389,6 +437,7 @@ fn moment(
     (time, label.and_then(|label| i64::try_from(label).ok()))
 }
 
+/// The error of an array that is shorter than its header says.
 fn short(frame: u64, frames: u64) -> RecordingError {
     RecordingError::damaged(format!(
         "the file ends inside of frame {frame}, expected {frames} frames"
@@ -396,6 +445,10 @@ fn short(frame: u64, frames: u64) -> RecordingError {
 }
 
 /// Gives a frame whose values are finite or none; true if no more is wanted.
+
+///
+/// # Errors
+/// If a value is infinite, with its row and column.
 fn give(frame: &Frame, sink: &mut Sink<'_>) -> Result<bool, RecordingError> {
     let wrong = frame
         .values()

@@ -1,4 +1,11 @@
 //! JSON of the `PoPu` data set: one object with the size of the matrix and its snapshots, each a list of cells.
+//! ```text
+//! {"volunteer_id":"4",…,"tactilus_columns":27,"tactilus_rows":64,
+//!  "snapshots":{"0":{"id":"200410292003","tactilus_readings":[1,0,0,…]},"1":{…}}}
+//! ```
+//! Rows and columns, whose keys end in `_rows` and `_columns`, come before the snapshots. A key of a snapshot is its
+//! label, if it is a number. Cells stand row by row. Snapshots are reported while the text is read: a file may have
+//! thousands. Source: the data set itself (MDPI Data 2023, 8(7), 120).
 
 use std::borrow::Cow;
 use std::fmt;
@@ -17,6 +24,10 @@ use crate::frame::{Frame, MAX_FRAME_SIDE};
 const ENOUGH: &str = "no more is wanted";
 
 /// Reads a recording.
+
+///
+/// # Errors
+/// With line and column: of what is no JSON, of a snapshot of another size, and of one before its rows and columns.
 pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), RecordingError> {
     let mut content = serde_json::Deserializer::from_reader(input);
     let mut state = PopuState {
@@ -49,14 +60,21 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
     }
 }
 
+/// What is known so far, and where frames go.
 struct PopuState<'a, 'b> {
+    /// The key that ends in `_rows`.
     rows: Option<u16>,
+    /// The key that ends in `_columns`.
     columns: Option<u16>,
     /// Whether the channel was reported.
     begun: bool,
+    /// Whether the sink wants no more, so that the error that stops the parser is none.
     enough: bool,
+    /// The frame that is being filled.
     frame: Frame,
+    /// The cells of a snapshot, in memory that is used again.
     values: Vec<f64>,
+    /// Takes channel and frames.
     sink: &'a mut Sink<'b>,
 }
 

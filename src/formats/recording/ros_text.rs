@@ -1,6 +1,21 @@
 //! What `ros2 topic echo` prints of a message with an array: with `--csv`, as `array('H', [0, 1])`, or as YAML.
 //!
-//! Messages are parted by `---`. An echo without `--full-length` leaves out what is beyond 128 elements, and is refused.
+//! Messages are parted by `---`. An echo without `--full-length` leaves out what is beyond 128 elements, and is
+//! refused.
+//! ```text
+//! ,2,4,,2,2,0,0,12,7,3                --csv: label, size and stride of each dimension, the offset, the values
+//!
+//! layout:
+//!   dim:
+//!   - label: ''
+//!     size: 2
+//! data:
+//! - 0
+//! - 12
+//! ---
+//! ```
+//! Rows and columns are the first two sizes of the layout, if all others are 1; otherwise they have to be known
+//! beforehand. Source: what the program prints.
 
 use std::io::BufRead;
 
@@ -14,10 +29,13 @@ use crate::frame::Frame;
 /// The values of a message, and the sizes of its layout, in memory that is used again.
 #[derive(Debug, Default)]
 pub(crate) struct RosMessage {
+    /// The size of each dimension of the layout.
     pub(crate) sizes: Vec<u32>,
+    /// The elements, at most [`MOST_VALUES`] of them.
     pub(crate) values: Vec<f64>,
     /// Inside of the list of a YAML text, or of an array that goes on in the next line.
     open: bool,
+    /// Whether it has begun.
     any: bool,
 }
 
@@ -38,6 +56,7 @@ pub(crate) enum RosLine {
 const MOST_VALUES: usize = 512 * 512 + 1;
 
 impl RosMessage {
+    /// Makes ready for the next message.
     pub(crate) fn clear(&mut self) {
         self.sizes.clear();
         self.values.clear();
@@ -54,6 +73,7 @@ impl RosMessage {
         self.open && !self.values.is_empty()
     }
 
+    /// Adds a value; false if the field is no number. YAML writes `.nan`, arrays `nan`.
     fn push(&mut self, field: &[u8]) -> bool {
         let field = field.trim_ascii();
         let value = match text_row::value(field) {
@@ -157,10 +177,12 @@ impl RosMessage {
     }
 }
 
+/// A whole number from 0 up.
 fn whole(field: &[u8]) -> Option<u32> {
     str::from_utf8(field.trim_ascii()).ok()?.parse().ok()
 }
 
+/// Whether a field is a dimension's label, which may be empty: whatever is no number.
 fn is_label(field: &[u8]) -> bool {
     matches!(text_row::value(field.trim_ascii()), Field::Wrong)
 }

@@ -1,8 +1,26 @@
 //! Tekscan's ASCII export (I-Scan, F-Scan): a header of keys, then the frames, row by row.
 //!
-//! `COMMENTS` may run over several lines that look like keys or frames, so the first `ROWS` and `COLS` count, and frames
-//! begin only after `ASCII_DATA @@`. Spreadsheet programs add a byte order mark and pad lines with commas. `B` stands
-//! where the sensor has no cell.
+//! `COMMENTS` may run over several lines that look like keys or frames, so the first `ROWS` and `COLS` count, and
+//! frames begin only after `ASCII_DATA @@`. Spreadsheet programs add a byte order mark and pad lines with commas. `B`
+//! stands where the sensor has no cell.
+//! ```text
+//! DATA_TYPE MOVIE
+//! ROWS 28
+//! COLS 28
+//! ROW_SPACING 1.27 mm
+//! SECONDS_PER_FRAME 0.1
+//! UNITS kPa
+//! ASCII_DATA @@
+//! Frame 1
+//! 0,0,12,B,…
+//! …
+//!
+//! @@
+//! ```
+//! A frame's title may have more: `Frame 2, 0.1,, date time,,,Raw Sum=,,307` names its time in seconds and the sum of
+//! its raw values, which is checked where the values are raw. Keys that are not named here are passed over;
+//! `NOISE_THRESHOLD` is one of them, since it says what was cut off while recording, not what counts as touched.
+//! Source: exports of I-Scan and F-Scan.
 
 use std::io::BufRead;
 
@@ -18,17 +36,27 @@ use crate::quote::shortened;
 /// The largest difference of a sum that is no error.
 const ROUNDING: f64 = 0.5;
 
+/// What the header says; of each key the first value counts.
 #[derive(Default)]
 struct TekscanHeader {
+    /// `ROWS`.
     rows: Option<u16>,
+    /// `COLS`.
     columns: Option<u16>,
+    /// `ROW_SPACING` in mm: the distance along y.
     row_spacing: Option<f64>,
+    /// `COL_SPACING` in mm: the distance along x.
     column_spacing: Option<f64>,
+    /// Unit, beginning and step.
     info: ChannelInfo,
 }
 
 impl TekscanHeader {
     /// Reads a line `KEY value`.
+    /// The key ends at a blank or at a comma, which spreadsheet programs put there.
+    ///
+    /// # Errors
+    /// If rows or columns are none that a frame can have.
     fn line(&mut self, line: &[u8], number: u64) -> Result<(), RecordingError> {
         let is_end = |byte: &u8| byte.is_ascii_whitespace() || *byte == b',';
         let end = line.iter().position(is_end);
@@ -55,6 +83,7 @@ impl TekscanHeader {
 }
 
 /// A length with its unit, in mm; none without a unit.
+/// `1.27 mm`, `0.5 centimeters` or `0.05 inches`. Without a unit it may be any, so the pitch stays unknown.
 fn spacing(value: &[u8]) -> Option<f64> {
     let end = value.iter().position(u8::is_ascii_whitespace)?;
     let (length, unit) = value.split_at(end);
@@ -68,6 +97,10 @@ fn spacing(value: &[u8]) -> Option<f64> {
 }
 
 /// Reads a recording.
+
+///
+/// # Errors
+/// If the header does not end, or has no rows or columns; those of the frames.
 pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), RecordingError> {
     let mut lines = TextLines::new(input);
     let mut header = TekscanHeader::default();
@@ -182,12 +215,19 @@ fn odd_sum(frame: &Frame, stated: f64) -> Option<RecordingNote> {
 
 /// The first line of a frame.
 struct FrameTitle {
+    /// The number behind `Frame`, from 1.
     label: i64,
+    /// In seconds from the beginning, if it is there; otherwise the step of the header tells.
     time: Option<f64>,
+    /// `Raw Sum`: the sum of the sensor's own numbers.
     sum: Option<f64>,
 }
 
 /// Reads `Frame 2` or `Frame 2, 0.1,, date time,,,Raw Sum=,,307`.
+
+///
+/// # Errors
+/// If it is no title; the message names `@@`, which may be what is missing.
 fn title(line: &[u8], number: u64) -> Result<FrameTitle, RecordingError> {
     let line = unpadded(line);
     let mut fields = line.split(|&byte| byte == b',').map(<[u8]>::trim_ascii);

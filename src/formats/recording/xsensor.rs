@@ -1,7 +1,25 @@
 //! XSENSOR's CSV export: frames of one or several sensors, each a block of its own; groups of cells are passed over.
 //!
-//! Lines are padded with commas, and every second one has nothing else. A sensor's name is its channel. `GROUP` blocks list
-//! the cells of a part of a sensor, which are in the sensor's matrix already.
+//! Lines are padded with commas, and every second one has nothing else. A sensor's name is its channel. `GROUP` blocks
+//! list the cells of a part of a sensor, which are in the sensor's matrix already.
+//! ```text
+//! Units:,mmHg,,,,
+//! ,,,,,
+//! Threshold:,51.72,,,,
+//! FRAME,1464,,,,
+//! Date, 2022 Aug 16,,,,
+//! Time, 08:21:17.982,,,,
+//! SENSOR,HX210.11.31.M11-DFM-LF S0073,,,,
+//! Rows,31,,,,
+//! Columns,11,,,,
+//! Sensel Width (cm),0.86,,,,
+//! Sensel Height (cm),0.86,,,,
+//! SENSELS,,,,,
+//! 0,0,57.9,…
+//! ```
+//! Time is the difference of the clocks in seconds, also past midnight. `Threshold` is the value from which on
+//! XSENSOR's own software counts a cell as touched, so it is that of the recording. Averages and areas are passed over:
+//! they follow from the values. Source: an export of XSENSOR's software of 2022.
 
 use std::io::BufRead;
 
@@ -18,26 +36,38 @@ const MOST_CHANNELS: usize = 64;
 
 /// A sensor's frames so far.
 struct XsensorChannel {
+    /// What `SENSOR` names.
     name: String,
+    /// How many there are; the number of the next one.
     frames: u64,
 }
 
 /// What is known of the frame and of the sensor that are being read.
 #[derive(Default)]
 struct XsensorState {
+    /// `Units`, of all sensors.
     unit: Option<String>,
+    /// `Threshold`, in that unit.
     threshold: Option<f64>,
+    /// `FRAME`: what the recording calls the frame.
     label: Option<i64>,
+    /// `Date` of the frame, such as `2022 Aug 16`.
     date: Option<String>,
+    /// `Time` of the frame, such as `08:21:17.982`.
     clock: Option<String>,
     /// The first moment: day, and seconds of the day.
     start: Option<(i32, f64)>,
     /// The sensor whose block this is; none outside of one.
     sensor: Option<String>,
+    /// `Rows` of this sensor.
     rows: Option<u16>,
+    /// `Columns` of this sensor.
     columns: Option<u16>,
+    /// `Sensel Width`: the pitch along x.
     width_cm: Option<f64>,
+    /// `Sensel Height`: the pitch along y.
     height_cm: Option<f64>,
+    /// The sensors in the order in which they first came.
     channels: Vec<XsensorChannel>,
 }
 
@@ -75,6 +105,10 @@ fn pair(line: &[u8]) -> (String, String) {
 }
 
 impl XsensorState {
+    /// Takes what a line `key,value` says.
+    ///
+    /// # Errors
+    /// If rows or columns are none that a frame can have.
     fn line(&mut self, key: &str, value: &str, number: u64) -> Result<(), RecordingError> {
         let positive = || number::read(value.as_bytes()).filter(|&value| value > 0.0);
         let side = || stated(key, ' ', value, number);
@@ -103,6 +137,10 @@ impl XsensorState {
     }
 
     /// Reads the rows below `SENSELS`.
+
+    ///
+    /// # Errors
+    /// If rows or columns were not named before, or the rows end too early or have another length.
     fn matrix(
         &self,
         lines: &mut TextLines<impl BufRead>,
@@ -125,6 +163,10 @@ impl XsensorState {
     }
 
     /// Gives the frame, and its channel before the first one; true if no more is wanted.
+
+    ///
+    /// # Errors
+    /// If there are more sensors than any file has: names that change from frame to frame would fill the memory.
     fn give(
         &mut self,
         name: String,
@@ -180,6 +222,7 @@ impl XsensorState {
     }
 
     /// The moment of the frame: day, and seconds of the day.
+    /// None if the clock is not three numbers; a date that cannot be read counts as the same day.
     fn moment(&self) -> Option<(i32, f64)> {
         let mut parts = self.clock.as_ref()?.split(':');
         let mut part = || number::read(parts.next()?.trim().as_bytes());
@@ -197,6 +240,7 @@ fn rounded(seconds: f64) -> f64 {
 
 /// The number of a day such as `2022 Aug 16`, from an arbitrary one on.
 fn days(date: &str) -> Option<i32> {
+    /// The first three letters, so that full names do, too.
     const MONTHS: [&str; 12] = [
         "jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec",
     ];

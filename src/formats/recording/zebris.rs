@@ -1,6 +1,21 @@
 //! A zebris `.apd` picture: INI sections, then the values, parted by tabs; -1 where nothing was recorded.
 //!
 //! `SensCountX` counts the lines and `SensCountY` the values of a line, so the file's x is down and its y to the right.
+//! ```text
+//! [General]
+//! Date=25/04/2017
+//! UnitDistance=mm
+//! UnitPressure=N/cm2
+//! [Technical]
+//! SensCountX=32
+//! SensCountY=15
+//! LDistX=8.46591
+//! LDistY=8.46591
+//! [Data]
+//! -1	-1	1.0	3.0	…
+//! ```
+//! One file is one picture. Sections are not told apart: their keys differ. A value below 0 other than -1 is a value.
+//! Source: pedcad import files of zebris.
 
 use std::io::BufRead;
 
@@ -12,20 +27,32 @@ use crate::formats::recording::side::stated;
 use crate::formats::recording::text_row::{self, Field};
 use crate::frame::Frame;
 
+/// What stands above the values.
 #[derive(Default)]
 struct ZebrisHeader {
+    /// `SensCountX`.
     rows: Option<u16>,
+    /// `SensCountY`.
     columns: Option<u16>,
+    /// `LDistX`: from a line to the next.
     row_distance: Option<f64>,
+    /// `LDistY`: from a value of a line to the next.
     column_distance: Option<f64>,
     /// Millimetres a unit of distance.
     factor: Option<f64>,
+    /// `UnitPressure`.
     unit: Option<String>,
+    /// `Date`, as it is written.
     date: Option<String>,
+    /// `Time`, as it is written.
     time: Option<String>,
 }
 
 impl ZebrisHeader {
+    /// Takes what a line `key=value` says; other lines say nothing.
+    ///
+    /// # Errors
+    /// If a count is none that a frame can have.
     fn line(&mut self, line: &str, number: u64) -> Result<(), RecordingError> {
         let Some((key, value)) = line.split_once('=') else {
             return Ok(());
@@ -53,6 +80,7 @@ impl ZebrisHeader {
         Ok(())
     }
 
+    /// What the header says of the channel; without a unit of length there is no pitch.
     fn info(&self) -> ChannelInfo {
         let distances = self.column_distance.zip(self.row_distance);
         ChannelInfo {
@@ -71,6 +99,11 @@ impl ZebrisHeader {
 }
 
 /// Reads a recording, which has one frame.
+
+///
+/// # Errors
+/// If there are fewer or more lines of values than `SensCountX` says; the picture is reported before the second of
+/// these.
 pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), RecordingError> {
     let mut lines = TextLines::new(input);
     let mut header = ZebrisHeader::default();
