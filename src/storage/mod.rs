@@ -60,7 +60,10 @@ mod sweep_file;
 mod models;
 
 pub use atomic_file::{Existing, FinishedFile, UnfinishedFile};
+
 pub use error::FileError;
+#[cfg(feature = "library")]
+pub(crate) use temporary::ScratchFolder;
 
 #[cfg(feature = "library")]
 pub use error::LibraryError;

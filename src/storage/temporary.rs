@@ -7,7 +7,7 @@
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use tempfile::{Builder, NamedTempFile, TempPath};
@@ -217,16 +217,65 @@ fn link(_: &File, _: &Path) -> io::Result<()> {
     Err(ErrorKind::Unsupported.into())
 }
 
-/// Removes the temporary files that programs have left in a folder when they died. What cannot be removed stays.
-fn remove_left_over(folder: &Path) {
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        if entry.file_name().to_str().is_some_and(is_temporary) {
-            let path = entry.path();
-            if is_left_over(&path).unwrap_or(false) {
-                let _ = fs::remove_file(path);
+/// A folder that only its owner can look into, removed with this. Its program holds the lock on the file `.lock` in it:
+/// a folder whose lock is free was left by a program that died, and the next one removes it.
+#[cfg(feature = "library")]
+#[derive(Debug)]
+pub(crate) struct ScratchFolder {
+    folder: tempfile::TempDir,
+    /// Closing it releases the lock.
+    _lock: File,
+}
+
+#[cfg(feature = "library")]
+impl ScratchFolder {
+    /// A new folder where the system keeps temporary ones.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub(crate) fn new() -> io::Result<Self> {
+        let place = std::env::temp_dir();
+        for path in temporaries(&place) {
+            if path.is_dir() && is_left_over(&path.join(LOCK)).unwrap_or(false) {
+                let _ = fs::remove_dir_all(path);
             }
         }
+        let mut builder = builder();
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o700));
+        let folder = builder.tempdir_in(place)?;
+        let lock = File::create(folder.path().join(LOCK))?;
+        let _ = lock.try_lock();
+        Ok(Self {
+            folder,
+            _lock: lock,
+        })
     }
+
+    /// Its path.
+    pub(crate) fn path(&self) -> &Path {
+        self.folder.path()
+    }
+}
+
+/// The file in a temporary folder that its program holds the lock of.
+#[cfg(feature = "library")]
+const LOCK: &str = ".lock";
+
+/// Removes the temporary files that programs have left in a folder when they died. What cannot be removed stays.
+fn remove_left_over(folder: &Path) {
+    for path in temporaries(folder) {
+        if is_left_over(&path).unwrap_or(false) {
+            let _ = fs::remove_file(path);
+        }
+    }
+}
+
+/// The paths in a folder that have the name of something temporary.
+fn temporaries(folder: &Path) -> impl Iterator<Item = PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let named = entries.filter(|entry| entry.file_name().to_str().is_some_and(is_temporary));
+    named.map(|entry| entry.path())
 }
 
 /// Whether a file's name is one of ours: `.taxel-` and six letters or digits.
@@ -237,7 +286,7 @@ fn is_temporary(name: &str) -> bool {
     })
 }
 
-/// Whether the writer of a temporary file has died.
+/// Whether the program that held the lock of a regular file has died.
 fn is_left_over(path: &Path) -> io::Result<bool> {
     let found = path.symlink_metadata()?;
     if !found.file_type().is_file() {
@@ -302,6 +351,18 @@ mod tests {
             "taxel-AbC123",
         ];
         assert_eq!(left, stays);
+    }
+
+    #[cfg(all(unix, feature = "library"))]
+    #[test]
+    fn a_scratch_folder_is_its_owners_alone() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = ScratchFolder::new().expect("made");
+        let path = folder.path().to_owned();
+        let mode = path.metadata().expect("there").permissions().mode();
+        assert_eq!(mode & 0o777, 0o700);
+        drop(folder);
+        assert!(!path.exists());
     }
 
     #[test]

@@ -76,3 +76,105 @@ fn a_file_may_be_named_below_the_home() {
     assert!(screen.contains(&said), "{said}: {}", run.stdout);
     assert!(file.exists());
 }
+
+/// A script answers its own questions, so it must not reach what is the user's.
+#[test]
+fn a_script_changes_nothing_outside_its_folder() {
+    let place = tempfile::tempdir().expect("a folder");
+    let folder = place.path().join("scripts");
+    std::fs::create_dir(&folder).expect("made");
+    let theirs = folder.join("theirs.svg");
+    std::fs::write(&theirs, "theirs").expect("written");
+    let outside = place.path().join("outside.svg");
+    std::fs::write(&outside, "outside").expect("written");
+    let run = |name: &str, script: &str, flags: &[&str]| {
+        let file = folder.join(name);
+        std::fs::write(&file, script).expect("written");
+        let file = file.to_str().expect("text");
+        run_in("C.UTF-8", &[&["script", file][..], flags].concat(), b"")
+    };
+    let export = |path: &str, answer: &str| {
+        format!(
+            "Keys f<Enter>:export<Space>\nType \"{path}\"\nKeys <Enter>{answer}\nWait\nScreen\n"
+        )
+    };
+    // What is refused is said on the screen.
+    for (path, answer, refusal) in [
+        (
+            "../outside.svg",
+            "",
+            "a script writes only below its folder",
+        ),
+        (outside.to_str().expect("text"), "", "a script writes only"),
+        (".hidden.svg", "", "a script writes only below its folder"),
+        ("theirs.svg", "y", "was there before the script"),
+    ] {
+        let shown = run("a.taxel", &export(path, answer), &["--size", "200x24"]);
+        assert!(shown.stdout.contains(refusal), "{path}: {shown:?}");
+    }
+    assert_eq!(
+        std::fs::read_to_string(&outside).ok().as_deref(),
+        Some("outside")
+    );
+    assert_eq!(
+        std::fs::read_to_string(&theirs).ok().as_deref(),
+        Some("theirs")
+    );
+    assert!(!folder.join(".hidden.svg").exists());
+    // Its own files it may write and replace, also from another folder.
+    let twice = export("own.svg", "") + &export("own.svg", "y");
+    let own = run("b.taxel", &twice, &[]);
+    assert_eq!(own.status, Some(0), "{own:?}");
+    assert!(folder.join("own.svg").exists(), "{own:?}");
+    // A library is refused before anything is done.
+    let library = place.path().join("library");
+    let script = format!(
+        "Set library {:?}\nKeys f<Enter>sx<Enter>\n",
+        library.display().to_string()
+    );
+    let refused = run("c.taxel", &script, &[]);
+    assert_eq!(refused.status, Some(2), "{refused:?}");
+    assert!(
+        refused
+            .stderr
+            .contains("line 1: Set library needs --allow-outside"),
+        "{refused:?}"
+    );
+    assert!(!library.exists());
+    let allowed = run("c.taxel", &script, &["--allow-outside"]);
+    assert_eq!(allowed.status, Some(0), "{allowed:?}");
+    assert!(library.join("x.json").exists());
+    let allowed = run(
+        "a.taxel",
+        &export(outside.to_str().expect("text"), "y"),
+        &["--allow-outside"],
+    );
+    assert_eq!(allowed.status, Some(0), "{allowed:?}");
+    let written = std::fs::read_to_string(&outside).expect("there");
+    assert!(
+        written.starts_with("<svg") || written.starts_with("<?xml"),
+        "{written}"
+    );
+}
+
+#[test]
+fn the_folder_of_a_killed_script_is_removed_by_the_next() {
+    let place = tempfile::tempdir().expect("a folder");
+    let command = |script: &str| {
+        let mut command = super::program(&["script", "-"], "C.UTF-8");
+        command.env("TMPDIR", place.path());
+        super::finish(command.spawn().expect("it starts"), script.as_bytes())
+    };
+    let left = place.path().join(".taxel-Abc123");
+    std::fs::create_dir(&left).expect("made");
+    let lock = std::fs::File::create(left.join(".lock")).expect("made");
+    let old = std::time::SystemTime::now() - std::time::Duration::from_secs(600);
+    lock.set_modified(old).expect("set");
+    lock.lock().expect("locked");
+    assert_eq!(command("Keys f<Enter>\n").status, Some(0));
+    assert!(left.exists(), "its program still runs");
+    drop(lock);
+    assert_eq!(command("Keys f<Enter>\n").status, Some(0));
+    let files = std::fs::read_dir(place.path()).expect("read");
+    assert_eq!(files.count(), 0, "neither that nor its own");
+}

@@ -20,6 +20,7 @@ fn settings(styles: bool, json: bool) -> ScriptOptions {
         styles,
         json,
         keymap: Keymap::default(),
+        folder: None,
     }
 }
 

@@ -35,6 +35,8 @@ pub(crate) struct Script {
     pub(crate) drawings: Option<PathBuf>,
     /// What to do about drawings that exist.
     pub(crate) existing: Existing,
+    /// Whether it may use any library and write anywhere.
+    pub(crate) allow_outside: bool,
 }
 
 impl Script {
@@ -61,6 +63,7 @@ impl Script {
             json: matches.get_flag("json"),
             drawings: matches.get_one::<PathBuf>("svg").cloned(),
             existing: parameters::existing(matches),
+            allow_outside: matches.get_flag("allow-outside"),
         }
     }
 }
@@ -84,10 +87,14 @@ pub(crate) fn script() -> Command {
     )
     .value_parser(value_parser!(PathBuf));
     let force = switch("force", "Replace drawings that are there already").requires("svg");
+    let allow_outside = switch(
+        "allow-outside",
+        "Let it write outside its folder, and set a library",
+    );
     Command::new("script")
         .about("Drive the screen without a terminal")
         .after_help(SCRIPT_EXAMPLES)
-        .args([file, keys, size(), styles, json, svg, force])
+        .args([file, keys, size(), styles, json, svg, force, allow_outside])
 }
 
 /// `taxel completions SHELL`.
@@ -153,7 +160,7 @@ pub(crate) fn record() -> Arg {
     option(
         "record",
         "FILE",
-        "Write what is typed as a script, to a new file",
+        "Write what is typed as a script, to a new file, with\nthe shapes that are used",
     )
     .value_parser(value_parser!(PathBuf))
 }

@@ -1,20 +1,22 @@
 //! `taxel` without a command: opens the screen, and with `--record` writes what is typed as a script.
 //!
-//! A record is a script that does the same again (`taxel script`): first the sensor, the look and the user's shapes,
-//! then every key with the screen's size. It is written as it happens, so that it survives a crash, and never replaces
-//! a file.
+//! A record is a script that does the same again (`taxel script`): first the sensor, the look and unsaved work, then every
+//! key with the screen's size. A shape of the user's stands behind the key that used it; of shapes that were only listed
+//! the name is enough. It is written as it happens, so that it survives a crash, and never replaces a file.
 
+use std::cell::RefCell;
 use std::fs::{self, File};
 use std::hash::{BuildHasher, RandomState};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::sync::Arc;
 
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::settings::resolved::Effective;
-use crate::storage::{Library, ModelCache, Orphan, ShapeOrigin};
+use crate::storage::{Library, ModelCache, Orphan};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Options};
 use crate::tui::live::message::LiveMessage;
@@ -58,20 +60,31 @@ pub(crate) fn screen(
         seed: RandomState::new().hash_one(0),
     };
     let library = shelf.library()?;
-    let mut record = record
+    let record = record
         .map(|path| ScreenRecord::begin(path, &options, &library))
         .transpose()?;
+    // Inputs and shapes come from two places.
+    let record = Rc::new(RefCell::new(record));
     let mut watch = |input: &terminal::input::Input| {
-        if let Some(record) = &mut record {
+        if let Some(record) = &mut *record.borrow_mut() {
             let lines = record.recorder.lines(input);
             record.write(&lines);
         }
     };
     let app = App::new(&options).with_keymap(settings.keymap().clone());
-    let world = World::new(library).with_model_cache(ModelCache::of_user());
+    let mut world = World::new(library).with_model_cache(ModelCache::of_user());
+    if record.borrow().is_some() {
+        let record = Rc::clone(&record);
+        world = world.with_shape_log(Box::new(move |shape| {
+            if let Some(record) = &mut *record.borrow_mut() {
+                let line = record.recorder.shape(shape);
+                record.write(&line);
+            }
+        }));
+    }
     let first = watched.map(|request| Message::Live(LiveMessage::Watch(Arc::new(request))));
     let ended = terminal::run(app, first, world, &terminal, &mut watch);
-    if let Some(record) = record {
+    if let Some(record) = record.take() {
         let name = record.path.to_string_lossy().into_owned();
         if let Err(error) = record.end(ended.as_ref().ok().copied()) {
             // The screen itself did not fail, so its status stays.
@@ -102,7 +115,7 @@ impl ScreenRecord {
     fn begin(path: PathBuf, options: &Options, library: &Library) -> Result<Self, CliError> {
         // First whatever else may fail: a file left behind would be in the way of the next try.
         let mut start = of_options(options);
-        start.extend(found(library)?);
+        start.extend(found(library));
         let file = File::create_new(&path).map_err(|error| match error.kind() {
             ErrorKind::AlreadyExists => CliError::Recorded {
                 name: path.to_string_lossy().into_owned(),
@@ -149,15 +162,10 @@ impl ScreenRecord {
     }
 }
 
-/// What the program finds at its start, for the record: the user's shapes, except damaged ones, and unsaved work.
-fn found(library: &Library) -> Result<Vec<ScriptSetting>, CliError> {
-    let own = library.list()?;
-    let own = own.iter().filter(|entry| entry.origin == ShapeOrigin::Own);
-    let shapes = own.filter_map(|entry| library.load(&entry.name).ok());
-    let shapes = shapes.map(|loaded| ScriptSetting::Shape(Box::new(loaded.shape)));
+/// The unsaved work that the program finds at its start, for the record.
+fn found(library: &Library) -> impl Iterator<Item = ScriptSetting> {
     let left = Orphan::all(library).into_iter();
-    let left = left.map(|orphan| ScriptSetting::Leftover(Box::new(orphan.shape)));
-    Ok(shapes.chain(left).collect())
+    left.map(|orphan| ScriptSetting::Leftover(Box::new(orphan.shape)))
 }
 
 /// A similar name for a file that does not exist: `demo-2.taxel` for `demo.taxel`.

@@ -10,10 +10,14 @@
 //! ```
 //! A script ends at its first error; what was printed before stays. Its commands are those of
 //! [`command`](crate::tui::script::command).
+//!
+//! A script answers its own questions, and may come from a stranger. So it cannot choose a library of the user's, and
+//! writes only below its own folder, unless `--allow-outside` is given.
 
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
 
 use crate::cli::arguments::program::Script;
 use crate::cli::commands::export;
@@ -109,7 +113,20 @@ fn options(asked: &Script, settings: &Effective, charset: Charset) -> ScriptOpti
         styles: asked.styles,
         json: asked.json,
         keymap: settings.keymap().clone(),
+        folder: folder_of(asked),
     }
+}
+
+/// The folder that a script may write below: that of its file, or the current one for a script from standard input. None
+/// with `--allow-outside`, and for keys alone: these are the user's own.
+fn folder_of(asked: &Script) -> Option<PathBuf> {
+    let source = asked.source.as_ref().filter(|_| !asked.allow_outside)?;
+    let own = match source {
+        InputSource::File(path) => path.parent(),
+        InputSource::Standard => None,
+    };
+    let own = own.filter(|folder| !folder.as_os_str().is_empty());
+    Some(own.unwrap_or(Path::new(".")).to_owned())
 }
 
 /// Prints a text at once; draws a screen into the folder for drawings, if there is one.

@@ -2,12 +2,13 @@
 
 use std::fs::{self, File};
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::formats::{StoredShape, imprint_file};
 use crate::storage::{Existing, UnfinishedFile, location};
 use crate::tui::app::message::{FileEvent, OpenedFile};
 use crate::tui::runtime::effect::FileRequest;
+use crate::tui::runtime::write_access::WriteAccess;
 
 /// No file is read further than one byte after this: it is refused then.
 const MOST: u64 = imprint_file::MAX_BYTES as u64;
@@ -16,13 +17,16 @@ const MOST: u64 = imprint_file::MAX_BYTES as u64;
 const MOST_PATHS: usize = 500;
 
 /// Performs a request.
-pub(in crate::tui) fn perform(request: FileRequest) -> FileEvent {
+pub(in crate::tui) fn perform(request: FileRequest, access: &WriteAccess) -> FileEvent {
     match request {
         FileRequest::Open(name) => match open(&name) {
             Ok(file) => FileEvent::Opened(name, file),
             Err(reason) => FileEvent::Failed(format!("{name}: {reason}")),
         },
-        FileRequest::Write(name, content, existing) => write(name, content, existing),
+        FileRequest::Write(name, content, existing) => match access.path(&name, existing) {
+            Ok(path) => write(path, name, content, existing),
+            Err(refused) => FileEvent::Failed(refused),
+        },
         FileRequest::Paths(start) => FileEvent::Paths(paths(&start)),
     }
 }
@@ -53,11 +57,7 @@ fn open(name: &str) -> Result<OpenedFile, String> {
 }
 
 /// Writes a file as a whole or not at all.
-fn write(name: String, content: Vec<u8>, existing: Existing) -> FileEvent {
-    let Some(path) = location::below_home(&name) else {
-        let expected = "there is no home, expected a path without ~";
-        return FileEvent::Failed(format!("{name}: {expected}"));
-    };
+fn write(path: PathBuf, name: String, content: Vec<u8>, existing: Existing) -> FileEvent {
     let written = UnfinishedFile::new(&path, existing).and_then(|mut file| {
         file.write(&content)?;
         file.finish()?.persist()

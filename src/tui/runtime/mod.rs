@@ -10,6 +10,8 @@
 //! sizes            the limit of a set in several sizes
 //! frames           a source of frames: watched, recorded
 //! journal_writer   unsaved work, written beside the program
+//! write_access     where files may be written
+//! shape_log        which stored shapes were used, for a record
 //! mailbox          messages from the workers, which wake the event loop
 //! ```
 
@@ -31,20 +33,28 @@ pub mod journal_writer;
 
 pub mod mailbox;
 
+mod write_access;
+
+mod shape_log;
+
 pub use crate::tui::runtime::progress::WorkerEventSink;
 
 use std::io;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::tui::runtime::journal_writer::JournalWriter;
 use crate::tui::runtime::models::ModelStore;
+use crate::tui::runtime::shape_log::ShapeLog;
+pub use crate::tui::runtime::shape_log::ShapeSink;
 use crate::tui::runtime::workers::Workers;
-use tempfile::TempDir;
+use crate::tui::runtime::write_access::WriteAccess;
 
 use crate::formats::value::counted;
 use crate::formats::{Name, StoredShape};
 use crate::storage::{
-    CommandFile, Expected, Journal, Library, LibraryError, ModelCache, Orphan, UNNAMED,
+    CommandFile, Expected, Journal, Library, LibraryError, LoadedShape, ModelCache, Orphan,
+    ScratchFolder, UNNAMED,
 };
 use crate::tui::app::message::{Leftover, LibraryEvent, Message};
 use crate::tui::app::state::App;
@@ -64,10 +74,12 @@ pub struct World {
     commands: Option<CommandFile>,
     /// How many of them are.
     remembered: usize,
+    /// The stored shapes that were used.
+    log: ShapeLog,
     /// Sweeps and exports in progress.
     workers: Workers,
     /// The folder of a temporary library. The last field: it is dropped after the journal has been written.
-    _scratch: Option<TempDir>,
+    _scratch: Option<ScratchFolder>,
 }
 
 impl World {
@@ -77,6 +89,7 @@ impl World {
         let workers = Workers::with(ModelStore::beside(&library));
         let mut world = Self {
             commands: Some(CommandFile::of(&library)),
+            log: ShapeLog::default(),
             remembered: 0,
             library,
             orphan: None,
@@ -96,6 +109,7 @@ impl World {
             orphan: None,
             commands: None,
             remembered: 0,
+            log: ShapeLog::default(),
             journal: JournalWriter::idle(),
             workers,
             _scratch: None,
@@ -114,7 +128,7 @@ impl World {
     /// # Errors
     /// If the system gives no temporary folder.
     pub fn scratch() -> io::Result<Self> {
-        let folder = tempfile::tempdir()?;
+        let folder = ScratchFolder::new()?;
         let world = Self::new(Library::open(folder.path().join("library")));
         Ok(Self {
             _scratch: Some(folder),
@@ -126,8 +140,8 @@ impl World {
     ///
     /// # Errors
     /// What the system or the library refuses, in a sentence.
-    pub fn furnished(shapes: &[StoredShape], leftovers: &[StoredShape]) -> Result<Self, String> {
-        let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+    pub fn furnished(shapes: &[&StoredShape], leftovers: &[&StoredShape]) -> Result<Self, String> {
+        let folder = ScratchFolder::new().map_err(|error| error.to_string())?;
         let library = Library::open(folder.path().join("library"));
         let sentence = |error: LibraryError| error.to_string();
         for shape in shapes {
@@ -149,6 +163,21 @@ impl World {
     pub fn with_workers(mut self, post: WorkerEventSink) -> Self {
         self.journal.report_to(Arc::clone(&post));
         self.workers.post_to(post);
+        self
+    }
+
+    /// Gives each stored shape of the user's that is used to `sink`, before its answer is shown.
+    #[must_use]
+    pub fn with_shape_log(mut self, sink: ShapeSink) -> Self {
+        self.log = ShapeLog::of(sink);
+        self
+    }
+
+    /// Lets files be written below this folder only, as is right for a script: no hidden ones, and none is replaced that
+    /// was there before.
+    #[must_use]
+    pub fn confined_to(mut self, folder: PathBuf) -> Self {
+        self.workers.access = WriteAccess::below(folder);
         self
     }
 
@@ -193,7 +222,9 @@ impl World {
         let terminal = loop {
             match update(app, next) {
                 Some(Effect::Library(request)) => next = self.perform(request),
-                Some(Effect::File(request)) => next = Message::File(files::perform(request)),
+                Some(Effect::File(request)) => {
+                    next = Message::File(files::perform(request, &self.workers.access));
+                }
                 Some(Effect::Work(work)) => match self.workers.perform(work) {
                     Some(event) => next = Message::Worker(event),
                     None => break None,
@@ -237,28 +268,34 @@ impl World {
     fn perform(&mut self, request: LibraryRequest) -> Message {
         let answer = match request {
             LibraryRequest::List => {
-                LibraryEvent::List(self.library.list().map_err(|error| error.to_string()))
+                let listed = self.library.list();
+                if let Ok(entries) = &listed {
+                    self.log.list(entries);
+                }
+                LibraryEvent::List(listed.map_err(|error| error.to_string()))
             }
             LibraryRequest::Trash => {
                 LibraryEvent::Trash(self.library.in_trash().map_err(|error| error.to_string()))
             }
             LibraryRequest::Read(names) => {
-                let read = |name: &str| self.library.load(name).map_err(|error| error.to_string());
-                LibraryEvent::Read(
-                    names
-                        .iter()
-                        .map(|(index, name)| (*index, read(name)))
-                        .collect(),
-                )
+                let read = names
+                    .iter()
+                    .map(|(index, name)| (*index, self.load(name)))
+                    .collect();
+                LibraryEvent::Read(read)
             }
             LibraryRequest::Named(purpose, name) => {
-                let loaded = self.library.load(&name).map(Box::new);
-                LibraryEvent::Named(purpose, loaded.map_err(|error| error.to_string()))
+                LibraryEvent::Named(purpose, self.load(&name).map(Box::new))
             }
             LibraryRequest::Store(shape, expected) => match self.library.save(&shape, expected) {
-                Ok(stamp) => LibraryEvent::Stored(shape.name.to_string(), stamp),
+                Ok(stamp) => {
+                    self.log.stored(shape.name.as_str(), stamp);
+                    LibraryEvent::Stored(shape.name.to_string(), stamp)
+                }
                 Err(error) => match error {
                     LibraryError::Exists { stamp, .. } | LibraryError::Changed { stamp, .. } => {
+                        // A record needs what is in the way.
+                        let _ = self.load(shape.name.as_str());
                         LibraryEvent::Differs(shape, stamp, error.to_string())
                     }
                     _ => LibraryEvent::Failed(error.to_string()),
@@ -283,6 +320,15 @@ impl World {
             LibraryRequest::GiveUp => self.give_up(),
         };
         Message::Library(answer)
+    }
+
+    /// Loads a shape by name, and logs it.
+    fn load(&mut self, name: &str) -> Result<LoadedShape, String> {
+        let loaded = self.library.load(name);
+        if let Ok(loaded) = &loaded {
+            self.log.shape(loaded);
+        }
+        loaded.map_err(|error| error.to_string())
     }
 
     /// Moves unwanted work to the trash, like a deleted shape. Other work is offered only after this succeeds; otherwise

@@ -9,16 +9,14 @@
 //! When the program ends, a running sweep ends with it; an export is stopped first, so that no partial file stays. A
 //! panic of a worker becomes an event, too.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crate::pose::PoseGrid;
-use crate::storage::{
-    ArchiveFileError, AtlasFile, Existing, ModelCache, PoseFile, is_poses, location,
-};
+use crate::storage::{ArchiveFileError, AtlasFile, Existing, ModelCache, PoseFile, is_poses};
 use crate::sweep::{Sweep, SweepResult, TimingSample};
 use crate::tui::explore::message::{Findings, WorkerEvent};
 use crate::tui::runtime::effect::Work;
@@ -26,6 +24,7 @@ use crate::tui::runtime::frames::FrameWatcher;
 use crate::tui::runtime::models::{self, ModelStore, ModelWorker};
 use crate::tui::runtime::progress::{ProgressReporter, WorkerEventSink, guarded, proceed};
 use crate::tui::runtime::sizes::SizeWorker;
+use crate::tui::runtime::write_access::WriteAccess;
 
 /// An estimate is the best of all runs within this time.
 const MEASURED: Duration = Duration::from_millis(30);
@@ -47,6 +46,8 @@ pub(in crate::tui) struct Workers {
     sizes: SizeWorker,
     /// Watches a source of frames.
     pub(super) frames: FrameWatcher,
+    /// Where files may be written.
+    pub(super) access: WriteAccess,
 }
 
 impl std::fmt::Debug for Workers {
@@ -107,19 +108,10 @@ impl Workers {
                 None
             }
             Work::Write(number, findings, name, existing) => {
-                let stop = self.begin();
-                let Some(post) = self.post.clone() else {
-                    return Some(write(number, &findings, &name, existing, &stop, None));
-                };
-                let thread = std::thread::spawn(move || {
-                    let clock = ProgressReporter::new(number, &post);
-                    let event = guarded(number, || {
-                        write(number, &findings, &name, existing, &stop, Some(&clock))
-                    });
-                    post(event);
-                });
-                self.writing = Some(thread);
-                None
+                match self.access.path(&name, existing) {
+                    Ok(path) => self.write(number, findings, (name, path), existing),
+                    Err(refused) => Some(WorkerEvent::Failed(number, refused)),
+                }
             }
             Work::Prepare(number, choice) => self.models.prepare(number, choice, self.post.clone()),
             Work::StopPreparing => {
@@ -144,6 +136,30 @@ impl Workers {
                 models::look(trained, imprint, shape, self.post.clone())
             }
         }
+    }
+
+    /// Writes what was found to a file, on a thread of its own if there is a receiver.
+    fn write(
+        &mut self,
+        number: u64,
+        findings: Arc<Findings>,
+        (name, path): (String, PathBuf),
+        existing: Existing,
+    ) -> Option<WorkerEvent> {
+        let stop = self.begin();
+        let run = move |clock: Option<&ProgressReporter<'_>>| {
+            write(number, &findings, (&name, &path), existing, &stop, clock)
+        };
+        let Some(post) = self.post.clone() else {
+            return Some(run(None));
+        };
+        let thread = std::thread::spawn(move || {
+            let clock = ProgressReporter::new(number, &post);
+            let event = guarded(number, || run(Some(&clock)));
+            post(event);
+        });
+        self.writing = Some(thread);
+        None
     }
 
     /// Stops the work in progress and returns the stop flag of the next.
@@ -204,22 +220,16 @@ fn sweep(
 fn write(
     number: u64,
     findings: &Findings,
-    name: &str,
+    (name, path): (&str, &Path),
     existing: Existing,
     stop: &AtomicBool,
     clock: Option<&ProgressReporter<'_>>,
 ) -> WorkerEvent {
     let result = &findings.sweep;
-    let Some(path) = location::below_home(name) else {
-        return WorkerEvent::Failed(
-            number,
-            format!("{name}: there is no home, expected a path without ~"),
-        );
-    };
-    let written = if is_poses(name) {
-        write_poses(result, &path, existing, stop, clock)
+    let written = if is_poses(path) {
+        write_poses(result, path, existing, stop, clock)
     } else {
-        match AtlasFile::new(&path) {
+        match AtlasFile::new(path) {
             Ok(file) => file.write(result, existing, stop).map(|()| true),
             Err(expected) => return WorkerEvent::Failed(number, format!("{name}: {expected}")),
         }
@@ -227,7 +237,7 @@ fn write(
     match written {
         Ok(true) => {
             // Where that is not known, the path as it was given.
-            let whole = std::path::absolute(&path).unwrap_or(path);
+            let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
             WorkerEvent::Written(number, whole.to_string_lossy().into_owned())
         }
         Err(error) if error.exists() && existing == Existing::Kept => {

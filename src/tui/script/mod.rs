@@ -3,8 +3,9 @@
 //!
 //! ```text
 //! command   the lines of a script              runner    carries them out
-//! setting   those before the first screen      record    writes a script while a user works
+//! setting   those before the first screen      start     the world that they describe
 //! session   the program on a screen in memory  drawing   that screen as SVG
+//! record    writes a script while a user works
 //! ```
 
 mod drawing;
@@ -12,6 +13,8 @@ mod drawing;
 pub mod session;
 
 pub mod setting;
+
+mod start;
 
 pub mod command;
 

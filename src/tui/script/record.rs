@@ -5,6 +5,7 @@
 
 use std::fmt::Write;
 
+use crate::formats::StoredShape;
 use crate::tui::app::message::{Mouse, MouseKind};
 use crate::tui::script::setting::ScriptSetting;
 use crate::tui::terminal::Outcome;
@@ -52,6 +53,11 @@ impl Recorder {
             Input::Mouse(mouse) => lines += &self.mouse(*mouse),
         }
         lines
+    }
+
+    /// The line of a stored shape that the last input has used. It may stand anywhere in a script.
+    pub fn shape(&self, shape: StoredShape) -> String {
+        format!("{}\n", ScriptSetting::Shape(Box::new(shape)))
     }
 
     /// The lines of the end: what was under way, and the signal that ended it.

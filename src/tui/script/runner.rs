@@ -19,11 +19,9 @@ use serde_json::{Value, json};
 
 use crate::formats::DescribedImprint;
 use crate::quote::shortened;
-use crate::storage::Library;
 use crate::tui::app::message::{Message, Mouse, MouseKind};
-use crate::tui::app::state::{App, Options};
+use crate::tui::app::state::App;
 use crate::tui::keys::key::Key;
-use crate::tui::keys::keymap::Keymap;
 use crate::tui::live::message::LiveMessage;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::recognise::message::RecogniseMessage;
@@ -31,22 +29,9 @@ use crate::tui::runtime::World;
 use crate::tui::script::command::{ScreenPosition, ScriptCommand, ScriptError, read};
 use crate::tui::script::session::Session;
 use crate::tui::script::setting::ScriptSetting;
+pub use crate::tui::script::start::ScriptOptions;
+use crate::tui::script::start::ScriptStart;
 use crate::tui::widget::write;
-
-/// How a script is run.
-#[derive(Clone, Debug)]
-pub struct ScriptOptions {
-    /// How the program starts.
-    pub options: Options,
-    /// Columns and rows of the screen, unless the script says otherwise.
-    pub size: (u16, u16),
-    /// Screens with a grid of style letters.
-    pub styles: bool,
-    /// Screens and states as JSON lines.
-    pub json: bool,
-    /// What each key means.
-    pub keymap: Keymap,
-}
 
 /// How a script came to its end before the last line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -120,54 +105,20 @@ pub fn run_shown(
     show: &mut impl FnMut(ScriptOutput<'_>) -> ControlFlow<()>,
 ) -> Result<(), ScriptFailure> {
     let commands = read(script)?;
-    let (mut settings, mut world) = (settings.clone(), world);
-    // What describes the start comes before it.
-    let start = commands.iter().map_while(|(line, command)| match command {
-        ScriptCommand::Set(setting) => Some((*line, setting)),
-        _ => None,
-    });
-    let (mut shapes, mut leftovers) = (Vec::new(), Vec::new());
-    for (line, setting) in start.clone() {
-        let options = &mut settings.options;
-        match setting {
-            ScriptSetting::Size(columns, rows) => settings.size = (*columns, *rows),
-            ScriptSetting::Seed(seed) => options.seed = *seed,
-            ScriptSetting::Ascii(ascii) => options.theme.ascii = *ascii,
-            ScriptSetting::Color(depth) => options.theme.depth = *depth,
-            ScriptSetting::Theme(palette) => options.theme.palette = *palette,
-            ScriptSetting::Mouse(on) => options.mouse = *on,
-            ScriptSetting::Sensor(parameter, value) => {
-                let sensor = options.sensor.with(*parameter, *value);
-                options.sensor = sensor.map_err(|error| wrong(line, error.to_string()))?;
-            }
-            ScriptSetting::Library(folder) => world = World::quiet(Library::open(folder.clone())),
-            ScriptSetting::Shape(shape) => shapes.push(shape.as_ref().clone()),
-            ScriptSetting::Leftover(shape) => leftovers.push(shape.as_ref().clone()),
-        }
-    }
-    if !shapes.is_empty() || !leftovers.is_empty() {
-        let library = start
-            .clone()
-            .find(|(_, setting)| matches!(setting, ScriptSetting::Library(_)));
-        if let Some((line, _)) = library {
-            return Err(wrong(
-                line,
-                "Set library cannot stand beside Set shape or Set leftover".to_owned(),
-            ));
-        }
-        world = World::furnished(&shapes, &leftovers).map_err(ScriptFailure::World)?;
-    }
-    let rest = &commands[start.count()..];
+    let start = ScriptStart::of(&commands, settings)?;
+    let rest = &commands[start.lines..];
+    let world = start.world(world).map_err(ScriptFailure::World)?;
+    let settings = &start.settings;
     let app = App::new(&settings.options).with_keymap(settings.keymap.clone());
     let mut session = Session::of(app, world, settings.size.0, settings.size.1);
     for &key in keys {
         session.press(key);
     }
     if commands.is_empty() {
-        show_screen(&session, "", &settings, show)?;
+        show_screen(&session, "", settings, show)?;
     }
     for (line, command) in rest {
-        if !look(&session, *line, command, &settings, show)? {
+        if !look(&session, *line, command, settings, show)? {
             act(&mut session, *line, command)?;
         }
     }
@@ -236,6 +187,8 @@ fn act(session: &mut Session, line: usize, command: &ScriptCommand) -> Result<()
         ScriptCommand::Signal(name) if name == "TSTP" => session.send(Message::Redraw),
         // What is not saved is in the journal already; the program ends without a question.
         ScriptCommand::Signal(_) => session.send(Message::Terminate),
+        // They are in its library from the start.
+        ScriptCommand::Set(ScriptSetting::Shape(_)) => {}
         _ => {
             let message = "Size and Set come before all that needs a screen";
             return Err(wrong(line, message.to_owned()));

@@ -6,8 +6,9 @@
 //! Set mouse off      Seed 7
 //! Set library "DIR"   Set shape {...}     Set leftover {...}
 //! ```
-//! `shape` puts a shape into the user's library, given as the content of its file in one line; `leftover` is unsaved
-//! work of a program that crashed. Without `Set library` a script has a library of its own, which is removed after it.
+//! `shape` puts a shape into the user's library, given as the content of its file in one line; it may also stand between
+//! later commands, and of two of one name the last counts. `leftover` is unsaved work of a program that crashed. Without
+//! `Set library` a script has a library of its own, which is removed after it.
 
 use std::fmt;
 use std::path::PathBuf;

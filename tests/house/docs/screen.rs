@@ -34,6 +34,7 @@ fn last_screen(script: &str, title: &str) -> (String, String) {
         styles: false,
         json: false,
         keymap: Keymap::default(),
+        folder: None,
     };
     let world = World::scratch().expect("there is a folder for temporary files");
     let (mut text, mut drawn) = (String::new(), String::new());

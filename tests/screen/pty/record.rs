@@ -37,9 +37,10 @@ fn a_record_shows_the_same_screens() {
     let folder = tempfile::tempdir().expect("a folder");
     let place = folder.path().join("library");
     let library = Library::open(place.clone());
-    library
-        .save(&shape("a b", "..##........"), Expected::Nothing)
-        .expect("saved");
+    for (name, row) in [("a b", "..##........"), ("z secret", "######......")] {
+        let saved = library.save(&shape(name, row), Expected::Nothing);
+        saved.expect("saved");
+    }
     Journal::new(&library)
         .keep(&shape("lost", ".#.#.#......"))
         .expect("kept");
@@ -117,6 +118,10 @@ fn a_record_shows_the_same_screens() {
     }
     let output = replayed(&format!("{whole}Quit\n"), folder.path());
     assert!(output.status.success(), "{output:?}");
+    assert!(
+        whole.contains("..##........"),
+        "a shape that was loaded\n{whole}"
+    );
     // The library of the record is untouched by all that.
     assert_eq!(
         library

@@ -134,6 +134,7 @@ pub(crate) fn play(bytes: &[u8]) {
     }
     let settings = ScriptOptions {
         keymap: Keymap::default(),
+        folder: None,
         options: options(),
         size: (80, 24),
         styles: true,

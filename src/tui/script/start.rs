@@ -1,0 +1,148 @@
+//! How a script starts: the settings before its first other command, and the shapes that it finds.
+
+use std::path::PathBuf;
+
+use crate::formats::StoredShape;
+use crate::storage::{Library, location};
+use crate::tui::app::state::Options;
+use crate::tui::keys::keymap::Keymap;
+use crate::tui::runtime::World;
+use crate::tui::script::command::{ScriptCommand, ScriptError};
+use crate::tui::script::setting::ScriptSetting;
+
+/// How a script is run.
+#[derive(Clone, Debug)]
+pub struct ScriptOptions {
+    /// How the program starts.
+    pub options: Options,
+    /// Columns and rows of the screen, unless the script says otherwise.
+    pub size: (u16, u16),
+    /// Screens with a grid of style letters.
+    pub styles: bool,
+    /// Screens and states as JSON lines.
+    pub json: bool,
+    /// What each key means.
+    pub keymap: Keymap,
+    /// The folder that the script may write below; None for anywhere, and any library.
+    pub folder: Option<PathBuf>,
+}
+
+/// The start of a script.
+#[derive(Debug)]
+pub(super) struct ScriptStart<'a> {
+    /// How it is run.
+    pub(super) settings: ScriptOptions,
+    /// How many commands, from the first, describe only the start.
+    pub(super) lines: usize,
+    /// The line that names a library, and that library.
+    library: Option<(usize, Library)>,
+    /// The shapes of the user's library; of one name only the last.
+    shapes: Vec<&'a StoredShape>,
+    /// Unsaved work, the newest last.
+    leftovers: Vec<&'a StoredShape>,
+}
+
+impl<'a> ScriptStart<'a> {
+    /// Reads the start from the commands of a script, each with its line. `settings` hold where it sets nothing.
+    ///
+    /// `Set shape` may also stand later: a record learns only then which shapes are used. They are there from the start.
+    ///
+    /// # Errors
+    /// A setting that is wrong together with others, or that [`ScriptOptions::folder`] forbids.
+    pub(super) fn of(
+        commands: &'a [(usize, ScriptCommand)],
+        settings: &ScriptOptions,
+    ) -> Result<Self, ScriptError> {
+        let is_setting = |command: &ScriptCommand| matches!(command, ScriptCommand::Set(_));
+        let lines = commands
+            .iter()
+            .take_while(|(_, command)| is_setting(command));
+        let mut start = Self {
+            settings: settings.clone(),
+            lines: lines.count(),
+            library: None,
+            shapes: Vec::new(),
+            leftovers: Vec::new(),
+        };
+        for (index, (line, command)) in commands.iter().enumerate() {
+            match command {
+                ScriptCommand::Set(ScriptSetting::Shape(shape)) => start.put(shape),
+                ScriptCommand::Set(setting) if index < start.lines => {
+                    let set = start.set(*line, setting);
+                    set.map_err(|message| ScriptError {
+                        line: *line,
+                        message,
+                    })?;
+                }
+                _ => {}
+            }
+        }
+        match start.library {
+            Some((line, _)) if !start.shapes.is_empty() || !start.leftovers.is_empty() => {
+                let message = "Set library cannot stand beside Set shape or Set leftover";
+                Err(ScriptError {
+                    line,
+                    message: message.to_owned(),
+                })
+            }
+            _ => Ok(start),
+        }
+    }
+
+    /// Adds a shape, in place of one of the same name.
+    fn put(&mut self, shape: &'a StoredShape) {
+        let same = |own: &&StoredShape| own.name.same(shape.name.as_str());
+        match self.shapes.iter().position(same) {
+            Some(index) => self.shapes[index] = shape,
+            None => self.shapes.push(shape),
+        }
+    }
+
+    /// Takes a setting.
+    ///
+    /// # Errors
+    /// What is wrong with it, in a sentence.
+    fn set(&mut self, line: usize, setting: &'a ScriptSetting) -> Result<(), String> {
+        let options = &mut self.settings.options;
+        match setting {
+            ScriptSetting::Size(columns, rows) => self.settings.size = (*columns, *rows),
+            ScriptSetting::Seed(seed) => options.seed = *seed,
+            ScriptSetting::Ascii(ascii) => options.theme.ascii = *ascii,
+            ScriptSetting::Color(depth) => options.theme.depth = *depth,
+            ScriptSetting::Theme(palette) => options.theme.palette = *palette,
+            ScriptSetting::Mouse(on) => options.mouse = *on,
+            ScriptSetting::Sensor(parameter, value) => {
+                let sensor = options.sensor.with(*parameter, *value);
+                options.sensor = sensor.map_err(|error| error.to_string())?;
+            }
+            ScriptSetting::Library(_) if self.settings.folder.is_some() => {
+                return Err("Set library needs --allow-outside; without that line the script has a library of its own"
+                    .to_owned());
+            }
+            ScriptSetting::Library(folder) => {
+                let folder = location::below_home(&folder.to_string_lossy())
+                    .ok_or("there is no home, expected a path without ~")?;
+                self.library = Some((line, Library::open(folder)));
+            }
+            ScriptSetting::Shape(_) => {}
+            ScriptSetting::Leftover(shape) => self.leftovers.push(shape),
+        }
+        Ok(())
+    }
+
+    /// The world that the script finds: `own`, unless it sets a library or its shapes.
+    ///
+    /// # Errors
+    /// Why its shapes cannot be stored, in a sentence.
+    pub(super) fn world(&self, own: World) -> Result<World, String> {
+        let world = match &self.library {
+            Some((_, library)) => World::quiet(library.clone()),
+            None if self.shapes.is_empty() && self.leftovers.is_empty() => own,
+            None => World::furnished(&self.shapes, &self.leftovers)?,
+        };
+        Ok(match &self.settings.folder {
+            Some(folder) => world.confined_to(folder.clone()),
+            None => world,
+        })
+    }
+}
