@@ -27,17 +27,25 @@ pub const FORMAT: &str = "taxel-atlas/1";
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ArchiveHeader<Shape, Size> {
+    /// [`FORMAT`].
     format: String,
+    /// The shape that was swept.
     source: Shape,
+    /// The sensor.
     sensor: Size,
+    /// The point that x0 and y0 place: `corner` or `centre`.
     anchor: String,
+    /// Each axis is a range, `START:END:STEP`, or a single number.
     x0: String,
     y0: String,
     angle: String,
     zoom_x: String,
     zoom_y: String,
+    /// `1/1` of the whole grid.
     shard: String,
+    /// Poses of this shard.
     poses: u64,
+    /// Those in which the shape reaches beyond the sensor.
     partly_off: u64,
 }
 

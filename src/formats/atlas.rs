@@ -70,6 +70,7 @@ pub fn write_jsonl(result: &SweepResult, mut output: impl Write) -> io::Result<(
     output.flush()
 }
 
+/// An imprint of an atlas as a line of JSON.
 struct AtlasLine<'a>(&'a SweepResult, &'a AtlasEntry);
 
 impl Serialize for AtlasLine<'_> {
@@ -88,6 +89,7 @@ impl Serialize for AtlasLine<'_> {
     }
 }
 
+/// The first pose that leaves it: a value for each axis that the shape has.
 struct First<'a>(&'a PoseGrid, u64);
 
 impl Serialize for First<'_> {

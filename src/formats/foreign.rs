@@ -3,6 +3,7 @@
 /// The beginning of a file, where in it, and what such a file is.
 type Magic = (&'static [u8], usize, &'static str);
 
+/// Known kinds; the first that fits counts.
 const MAGIC: [Magic; 19] = [
     (b"\x89PNG\r\n\x1a\n", 0, "a PNG image"),
     (b"GIF8", 0, "a GIF image"),

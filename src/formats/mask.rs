@@ -2,11 +2,14 @@
 
 /// The values of a mask as they come: 0 for an inactive taxel, one other value for an active one.
 pub(crate) struct Mask<T> {
+    /// The value other than 0, once there was one.
     other: Option<T>,
+    /// Whether there was a 0.
     zero: bool,
 }
 
 impl<T: Copy + PartialEq> Mask<T> {
+    /// Nothing was seen yet.
     pub(crate) fn new() -> Self {
         Self {
             other: None,

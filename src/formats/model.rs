@@ -1,10 +1,14 @@
 //! A model of shapes as an archive of numpy arrays, which can be read back and merged.
 //!
-//! Per key, in order of height, width and taxels: `height` and `width` of its box, and `rows` (a word per row, bit `i` for
-//! column `i`; keys × rows of the highest, in the smallest unsigned type that holds the widest). Per shape and key that it
-//! leaves, key after key: `key` (its number), `shape` (its number in the header) and `count` (in how many poses). Before
-//! them `header`, JSON as bytes: format, shapes, sensor, anchor, ranges, shard, poses of each shape, and how many of them
-//! are cut off. Equal models are equal files.
+//! Per key, in order of height, width and taxels: `height` and `width` of its box, and `rows` (a word per row, bit `i`
+//! for column `i`; keys × rows of the highest, in the smallest unsigned type that holds the widest). Per shape and key
+//! that it leaves, key after key: `key` (its number), `shape` (its number in the header) and `count` (in how many
+//! poses). Before them `header`, JSON as bytes: format, shapes, sensor, anchor, ranges, shard, poses of each shape, and
+//! how many of them are cut off. Equal models are equal files.
+//!
+//! What is refused: another format or an unknown key of the header; arrays of other types or lengths; keys that are not
+//! cut to their boxes or are there twice; counts that are not in the order of the shapes, or whose sum is not that of
+//! the poses. So a model that can be read is one that training could have written.
 
 use std::io::{Read, Seek, Write};
 
@@ -29,16 +33,23 @@ pub const FORMAT: &str = "taxel-model/1";
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ModelHeader<Shape, Size> {
+    /// [`FORMAT`].
     format: String,
+    /// The set, in its order; ties go to the first.
     shapes: Vec<ShapeHeader<Shape>>,
+    /// Columns, rows and threshold of the sensor.
     sensor: Size,
+    /// The point that x0 and y0 place: `corner` or `centre`.
     anchor: String,
+    /// Each axis is a range, `START:END:STEP`, or a single number.
     x0: String,
     y0: String,
     angle: String,
     zoom_x: String,
     zoom_y: String,
+    /// `1/1` of the whole grid.
     shard: String,
+    /// Poses of each shape.
     poses: u64,
 }
 
@@ -46,9 +57,13 @@ struct ModelHeader<Shape, Size> {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ShapeHeader<Shape> {
+    /// Its name.
     name: String,
+    /// How often it is expected, compared with the others.
     weight: u32,
+    /// In how many poses the sensor cuts it off.
     cut: u64,
+    /// The figure or the imprint.
     source: Shape,
 }
 
@@ -110,6 +125,7 @@ fn row_type(columns: u8) -> Dtype {
     }
 }
 
+/// The header as JSON.
 fn header(model: &Model) -> Result<Vec<u8>, ArchiveError> {
     let ranges = model.ranges();
     let shapes = model.shapes().iter().zip(model.cut());
@@ -176,6 +192,7 @@ pub fn read(input: impl Read + Seek) -> Result<Model, ArchiveError> {
     Ok(Model::from_parts(parts)?)
 }
 
+/// Keys in the order of the file, each with the shapes that leave it; None is the empty imprint.
 type Keys = Vec<(Option<Imprint>, Vec<ShapeCount>)>;
 
 /// The keys with their counts.

@@ -60,7 +60,8 @@ pub enum NamedShapeError {
 /// Finds the imprint of a stored shape.
 pub type ShapeLookup<'a> = dyn Fn(&str) -> Result<Imprint, String> + 'a;
 
-/// Reads a shape of a set from a JSON object. A position or an angle may be there and does not matter; a sensor may not.
+/// Reads a shape of a set from a JSON object. A position or an angle may be there and does not matter; a sensor may
+/// not.
 ///
 /// # Errors
 /// What is wrong with it, in one sentence.
@@ -155,8 +156,11 @@ fn source(mut record: Record<'_>, lookup: &ShapeLookup<'_>) -> Result<Source, Re
 /// A line with its name.
 #[derive(Default)]
 struct Line<'a> {
+    /// Its name, which the set needs.
     name: Option<String>,
+    /// How often it is expected; 1 if not given.
     weight: Option<u32>,
+    /// The shape itself.
     record: Record<'a>,
 }
 

@@ -1,5 +1,5 @@
-//! Archives of numpy arrays (`numpy.load`): a zip without compression and without dates, so that equal contents are equal
-//! files.
+//! Archives of numpy arrays (`numpy.load`): a zip without compression and without dates, so that equal contents are
+//! equal files.
 
 use std::io::{Read, Seek, Write};
 

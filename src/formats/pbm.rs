@@ -1,8 +1,8 @@
 //! An imprint as a portable bitmap: plain (`P1`, digits) or raw (`P4`, bits), black for an active taxel.
 //!
 //! Source: <https://netpbm.sourceforge.net/doc/pbm.html>. A comment runs from `#` to the end of its line; the digits of
-//! a plain one need no spaces between them. A file holds one bitmap, of at most 64 × 64. Bits that fill up the last byte
-//! of a row do not count. Lines and columns of errors count from 1, a column is a byte.
+//! a plain one need no spaces between them. A file holds one bitmap, of at most 64 × 64. Bits that fill up the last
+//! byte of a row do not count. Lines and columns of errors count from 1, a column is a byte.
 //!
 //! Read are grey images of two shades, too (`P2`, `P5`): [`read`] says which shade is an active taxel.
 

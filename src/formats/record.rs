@@ -58,6 +58,7 @@ pub enum RecordError {
     Name(String),
 }
 
+/// `a` or `an`, by the first letter.
 fn article(noun: &str) -> &'static str {
     if noun.starts_with(['a', 'e', 'i', 'o', 'u']) {
         "an"
@@ -71,6 +72,7 @@ fn article(noun: &str) -> &'static str {
 pub(crate) struct Values([Option<f64>; PARAMETERS.len()]);
 
 impl Values {
+    /// The number of a parameter's row in the table.
     fn index(parameter: Parameter) -> Option<usize> {
         PARAMETERS.iter().position(|row| row.parameter == parameter)
     }
@@ -274,6 +276,10 @@ impl<'a> Record<'a> {
     }
 }
 
+/// Stores the value of a key.
+///
+/// # Errors
+/// If it was given before: neither value would be more right than the other.
 pub(crate) fn once<T, E: Error>(
     key: &'static str,
     slot: &mut Option<T>,

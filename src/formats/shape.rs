@@ -171,9 +171,13 @@ impl Serialize for StoredShape {
 struct File<'a> {
     /// Whether it says that it is one of [`FORMAT`].
     format: bool,
+    /// Its name.
     name: Option<String>,
+    /// The sensor that it was stored on.
     sensor: Option<Values>,
+    /// Its rows.
     imprint: Option<RowsOrName<'a>>,
+    /// What made it, if that is known.
     source: Option<Record<'a>>,
 }
 

@@ -268,7 +268,8 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Whether the fields of the first row are names: none of them is a number, or they count from 0 after an empty one.
+    /// Whether the fields of the first row are names: none of them is a number, or they count from 0 after an empty
+    /// one.
     fn are_names(&self, fields: &[&str]) -> bool {
         let words = fields
             .iter()

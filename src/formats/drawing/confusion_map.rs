@@ -17,6 +17,7 @@ const LONGEST: usize = 30;
 /// The grey of a whole row in one cell: black text on it is readable.
 const DARKEST: f64 = 160.0;
 
+/// The lines between cells.
 const CELL: Stroke = Stroke {
     width: 0.4,
     grey: 150,
@@ -32,14 +33,17 @@ const CELL: Stroke = Stroke {
 /// ```
 #[derive(Clone, Debug)]
 pub struct ConfusionMap {
+    /// The names of the shapes, as rows and as columns.
     labels: Vec<String>,
+    /// Touches by true shape and by the name given.
     counts: Vec<Vec<u128>>,
+    /// A line above the matrix.
     title: Option<String>,
 }
 
 impl ConfusionMap {
-    /// The matrix of some shapes: `counts[i][j]` touches of shape i are named j; missing ones are 0. None without a shape,
-    /// and for more than 64.
+    /// The matrix of some shapes: `counts[i][j]` touches of shape i are named j; missing ones are 0. None without a
+    /// shape, and for more than 64.
     pub fn new(labels: &[String], counts: &[Vec<u128>]) -> Option<Self> {
         if labels.is_empty() || labels.len() > MOST {
             return None;
@@ -73,11 +77,13 @@ impl ConfusionMap {
         crate::formats::drawing::png::write(&self.page())
     }
 
+    /// 0 where a row is shorter than the others.
     fn count(&self, row: usize, column: usize) -> u128 {
         let cell = self.counts.get(row).and_then(|row| row.get(column));
         cell.map_or(0, |&count| count)
     }
 
+    /// Lays the matrix out, with the names above and on the left.
     fn page(&self) -> DrawingPage {
         let longest = |texts: &mut dyn Iterator<Item = usize>| texts.max().unwrap_or_default();
         let names = longest(&mut self.labels.iter().map(|label| label.chars().count()));
@@ -264,6 +270,7 @@ fn percent(share: f64) -> String {
     format!("{} %", decimal(100.0 * share, 1))
 }
 
+/// White for a share of 0, the darkest grey for 1.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

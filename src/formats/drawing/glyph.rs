@@ -5,6 +5,7 @@ use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_wid
 use crate::formats::drawing::ink::Ink;
 use crate::formats::drawing::scene::{Position, TextAnchor};
 
+/// The only weight that is in the program.
 const WEIGHT: FontWeight = FontWeight::Regular;
 /// Eight points at four pixels.
 const HEIGHT: RasterHeight = RasterHeight::Size32;
@@ -41,10 +42,12 @@ pub(super) fn write(ink: &mut Ink, text: &str, place: Position, anchor: TextAnch
     }
 }
 
+/// A number of characters or pixels of a label; far below what would not fit.
 fn whole_of(count: usize) -> i32 {
     i32::try_from(count).unwrap_or(i32::MAX)
 }
 
+/// The nearest pixel.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "saturates far off the page"

@@ -1,4 +1,7 @@
 //! A heat map in greys: the shade of each cell, and the edge of the active taxels.
+//!
+//! A value has the grey of its share of the largest one, from white at 0 and below to black; where there is no cell the
+//! page stays white. Active taxels are not filled, which would hide their values, but edged.
 
 use crate::formats::drawing::scene::{Position, Segment};
 use crate::formats::value::fitting;

@@ -15,8 +15,11 @@ const PIECES: u8 = 32;
 /// A page, row by row: 0 is black, 255 white. Positions are in pixels from its top left corner.
 #[derive(Clone, Debug)]
 pub(super) struct Ink {
+    /// Greys, row by row.
     pixels: Vec<u8>,
+    /// Pixels of a row.
     width: u32,
+    /// Rows.
     height: u32,
 }
 
@@ -30,14 +33,17 @@ impl Ink {
         }
     }
 
+    /// All greys, row by row, as PNG stores them.
     pub(super) fn pixels(&self) -> &[u8] {
         &self.pixels
     }
 
+    /// Pixels of a row.
     pub(super) fn width(&self) -> u32 {
         self.width
     }
 
+    /// Rows.
     pub(super) fn height(&self) -> u32 {
         self.height
     }
@@ -104,6 +110,7 @@ impl Ink {
         self.blend(&shares, line.grey);
     }
 
+    /// Mixes a grey into each pixel by its share: 0 leaves it, 1 replaces it.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -126,6 +133,7 @@ fn index(x: u32, y: u32, width: u32) -> usize {
 struct Shares(Vec<f32>, u32);
 
 impl Shares {
+    /// No pixel is drawn on yet.
     fn new(page: &Ink) -> Self {
         Self(vec![0.0; page.pixels.len()], page.width)
     }

@@ -13,6 +13,7 @@ const PLANE: Position = (324.0, 200.0);
 /// Each curve has its own dashes; after these they repeat.
 const DASHES: [Option<[f64; 2]>; 4] = [None, Some([6.0, 3.0]), Some([1.0, 3.0]), Some([12.0, 4.0])];
 
+/// The lines behind the curves.
 const GRID: Stroke = Stroke {
     width: 0.4,
     grey: 200,
@@ -34,7 +35,9 @@ const LONGEST: usize = 60;
 /// ```
 #[derive(Clone, Debug)]
 pub struct LinePlot {
+    /// What the axes are, with their units: x, y.
     labels: [String; 2],
+    /// The name of each curve in the legend, and its points by x.
     curves: Vec<(String, Vec<Position>)>,
 }
 
@@ -89,6 +92,7 @@ impl LinePlot {
         (end(ends.0), end(ends.1))
     }
 
+    /// Lays out axes, grid, curves and legend.
     fn page(&self) -> DrawingPage {
         let (end_x, end_y) = self.ends();
         let (across, upwards) = (Ticks::new(end_x, 0.0), Ticks::new(end_y, 0.0));

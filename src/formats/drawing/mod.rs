@@ -106,8 +106,8 @@ impl Drawing {
         self
     }
 
-    /// With the values of all cells in shades, white for 0 and less, black for the largest, and a bold edge around active
-    /// taxels. A value that is NaN has no cell. Unchanged by values of another size.
+    /// With the values of all cells in shades, white for 0 and less, black for the largest, and a bold edge around
+    /// active taxels. A value that is NaN has no cell. Unchanged by values of another size.
     #[must_use]
     pub fn with_heat(mut self, values: &Matrix<f64>) -> Self {
         let size = (values.columns(), values.rows());

@@ -1,4 +1,15 @@
 //! Where everything stands on the page: the plane with its axes, what is described on it, the legend below.
+//! ```text
+//!  title
+//!             x / cells
+//!          0   4   8   12          the plane, its larger side 288 points, cells at most 24:
+//!        0 +---------------+       taxels in two greys, lines between cells, outline,
+//!  y /   4 |   ▒▒▒▒        |       rectangle, CG and CD of the region described
+//!  cells 8 +---------------+
+//!  ▒ active taxels: 36             a row of the legend for each of these that is there
+//! ```
+//! Lengths are points (1/72 inch), y down, from the page's top left corner. The page is as large as what is on it, and
+//! a margin. Marks are in the order in which they are drawn; SVG and PNG draw the same ones.
 
 use crate::description::{Description, RegionKind, Value};
 use crate::formats::drawing::axis::Ticks;
@@ -16,7 +27,9 @@ pub(super) const TEXT: f64 = 8.0;
 pub(super) const ADVANCE: f64 = 0.6;
 /// The larger side of the plane, unless its cells would be too large.
 const PLANE: f64 = 288.0;
+/// The largest side of a cell, for small matrices.
 const LARGEST_CELL: f64 = 24.0;
+/// Around everything.
 pub(super) const MARGIN: f64 = 8.0;
 /// A line of the title or the legend.
 pub(super) const ROW: f64 = 13.0;
@@ -25,7 +38,9 @@ const SWATCH: f64 = 16.0;
 
 /// Taxels of the region that is described, and others; the lines between cells.
 const DESCRIBED: u8 = 168;
+/// The grey of taxels of other regions.
 const OTHER: u8 = 220;
+/// The lines between cells.
 const CELLS: Stroke = Stroke {
     width: 0.4,
     grey: 150,
@@ -37,24 +52,30 @@ const HATCH: Stroke = Stroke {
     grey: 110,
     dash: None,
 };
+/// The true outline of the shape.
 const OUTLINE: Stroke = Stroke::black(1.3);
 /// Around active taxels where shades tell values.
 const EDGE: Stroke = Stroke::black(2.0);
+/// The rectangle around the region.
 const RECTANGLE: Stroke = Stroke {
     width: 0.9,
     grey: 0,
     dash: Some([4.0, 2.5]),
 };
+/// The signs of CG and CD.
 const POINT: Stroke = Stroke::black(1.1);
 
 /// What a page shows.
 pub(super) struct Subject<'a> {
+    /// The active taxels.
     pub(super) imprint: &'a Imprint,
     /// The taxels of a region and its description.
     pub(super) described: Option<(&'a Imprint, Description)>,
     /// In cell sides.
     pub(super) outline: &'a [Segment],
+    /// The side of a cell; with it axes and legend are in mm.
     pub(super) pitch_mm: Option<f64>,
+    /// The line above the plane.
     pub(super) title: Option<&'a str>,
     /// The values of all cells.
     pub(super) heat: Option<&'a Matrix<f64>>,
@@ -62,18 +83,25 @@ pub(super) struct Subject<'a> {
 
 /// A page: its size in points, where the plane is on it, and what it shows.
 pub(super) struct DrawingPage {
+    /// Width and height.
     pub(super) size: Position,
     /// Top left and bottom right corner of the sensory plane.
     pub(super) plane: (Position, Position),
+    /// What the drawing is called where it is not seen, as by screen readers.
     pub(super) title: String,
+    /// What is drawn, in this order.
     pub(super) marks: Vec<Element>,
 }
 
 /// The page while it is laid out.
 struct PageLayout<'a> {
+    /// What is shown.
     subject: &'a Subject<'a>,
+    /// What is drawn so far.
     marks: Vec<Element>,
+    /// The top left corner of the plane.
     corner: Position,
+    /// The side of a cell.
     cell: f64,
     /// How far down and to the right something stands.
     end: Position,
@@ -132,6 +160,7 @@ impl PageLayout<'_> {
         (self.corner.0 + x * self.cell, self.corner.1 + y * self.cell)
     }
 
+    /// A horizontal text, whose end widens the page if it begins at `place`.
     fn text(&mut self, text: &str, place: Position, anchor: TextAnchor) {
         if anchor == TextAnchor::Start {
             let end = place.0 + advance(text.chars().count());
@@ -145,6 +174,7 @@ impl PageLayout<'_> {
         });
     }
 
+    /// Rectangles in one grey; `what` is the class of the group in SVG.
     fn filled(&mut self, what: &'static str, rectangles: Vec<(Position, Position)>, grey: u8) {
         self.marks.push(Element::Fill {
             what,
@@ -153,6 +183,7 @@ impl PageLayout<'_> {
         });
     }
 
+    /// A path with a line of that width, grey and dashes.
     fn line(&mut self, what: &'static str, steps: Vec<Segment>, line: Stroke) {
         self.marks.push(Element::Line {
             what,
@@ -252,6 +283,7 @@ impl PageLayout<'_> {
         });
     }
 
+    /// The outline of the shape, cut off at the rim of the plane; nothing for imprints of unknown shapes.
     fn outline(&mut self) {
         let place = |place| self.place(place);
         let steps = self.subject.outline.iter().map(|step| step.map(place));
@@ -266,6 +298,7 @@ impl PageLayout<'_> {
         }
     }
 
+    /// The rectangle of the region described, a circle at its CD and a cross at its CG.
     fn described(&mut self) {
         let subject = self.subject;
         let Some((_, description)) = &subject.described else {
@@ -281,6 +314,7 @@ impl PageLayout<'_> {
         self.line("cg", cross(cg, 3.5), POINT);
     }
 
+    /// The unit of axes and legend.
     fn unit(&self) -> &'static str {
         self.subject.pitch_mm.map_or("cells", |_| "mm")
     }

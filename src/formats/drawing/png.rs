@@ -54,6 +54,7 @@ pub(super) fn write(page: &DrawingPage) -> io::Result<Vec<u8>> {
     encode(&ink)
 }
 
+/// Eight-bit grey, compressed; with the resolution, so that it is printed at the size of the SVG.
 fn encode(ink: &Ink) -> io::Result<Vec<u8>> {
     let mut file = Vec::new();
     let mut encoder = Encoder::new(&mut file, ink.width(), ink.height());
@@ -70,6 +71,7 @@ fn encode(ink: &Ink) -> io::Result<Vec<u8>> {
     Ok(file)
 }
 
+/// Points as pixels, rounded up so that nothing at the rim is lost.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

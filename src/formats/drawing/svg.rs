@@ -1,4 +1,8 @@
 //! A page as SVG: one element a mark, text as text.
+//!
+//! Each kind of mark is a group with a class (`outline`, `cg`, `legend`, …), so that a style sheet can find it. Colours
+//! are greys, and dashes and hatching tell things apart as well: a drawing can be printed in black. Equal subjects give
+//! equal bytes.
 
 use crate::formats::drawing::page::{DrawingPage, TEXT};
 use crate::formats::drawing::scene::{Element, Position, Segment, Stroke, TextAnchor, rectangle};
@@ -67,6 +71,7 @@ fn cut_off(inner: &str, ((left, top), (right, bottom)): (Position, Position)) ->
     )
 }
 
+/// A text, rotated by a quarter turn counter-clockwise if it is upright. Special characters are escaped.
 fn label(text: &str, (x, y): Position, anchor: TextAnchor, upright: bool) -> String {
     let (x, y) = (number(x), number(y));
     let anchor = match anchor {
@@ -83,6 +88,7 @@ fn label(text: &str, (x, y): Position, anchor: TextAnchor, upright: bool) -> Str
     format!("<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\"{turned}>{text}</text>\n")
 }
 
+/// The attribute `d` of a path, in points with at most three decimals.
 fn data(steps: &[Segment]) -> String {
     let at = |(x, y): Position| format!("{} {}", number(x), number(y));
     let steps = steps.iter().map(|step| match step {
@@ -94,6 +100,7 @@ fn data(steps: &[Segment]) -> String {
     steps.collect()
 }
 
+/// The attributes of a line.
 fn stroke(line: Stroke) -> String {
     let dash = line.dash.map_or(String::new(), |[dash, gap]| {
         format!(" stroke-dasharray=\"{dash} {gap}\"")
@@ -102,6 +109,7 @@ fn stroke(line: Stroke) -> String {
     format!(" stroke=\"{grey}\" stroke-width=\"{width}\"{dash}")
 }
 
+/// A grey as `#rrggbb`.
 fn paint(grey: u8) -> String {
     format!("#{grey:02x}{grey:02x}{grey:02x}")
 }

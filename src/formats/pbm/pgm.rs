@@ -1,5 +1,5 @@
-//! The shades of a portable greymap, plain (`P2`, numbers) or raw (`P5`, bytes): two of them, the brighter for an active
-//! taxel.
+//! The shades of a portable greymap, plain (`P2`, numbers) or raw (`P5`, bytes): two of them, the brighter for an
+//! active taxel.
 //!
 //! Source: <https://netpbm.sourceforge.net/doc/pgm.html>. A raw shade takes two bytes, the higher one first, where the
 //! brightest is above 255.
@@ -41,6 +41,10 @@ pub(super) fn shades(
     Ok(cursor.at)
 }
 
+/// Decimal numbers, parted by blanks and comments.
+///
+/// # Errors
+/// If there are fewer than expected, or one is above the brightest.
 fn plain_shades(
     cursor: &mut Cursor<'_>,
     brightest: u32,
@@ -66,6 +70,10 @@ fn plain_shades(
     Ok(shades)
 }
 
+/// One or two bytes each.
+///
+/// # Errors
+/// As for plain ones; and if a comment stands where the one space must.
 fn raw_shades(
     cursor: &mut Cursor<'_>,
     brightest: u32,

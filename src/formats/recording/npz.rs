@@ -3,8 +3,7 @@
 //!
 //! Its channels are named as the arrays, without `.npy`; a single one has no name. Times may be in s, ms, µs or ns,
 //! which their name tells (`time_ms`), and count from the first one. Whole nanoseconds since 1970 lose nothing: the
-//! difference is taken before they become floats. Only arrays
-//! without compression are read: what `numpy.savez` writes, not `numpy.savez_compressed`.
+//! difference is taken before they become floats. What `numpy.savez` and `numpy.savez_compressed` write is read.
 
 use std::io::{Read, Seek};
 

@@ -1,4 +1,10 @@
 //! A decoder of any stream; which form it has, it finds from the first bytes.
+//! ```text
+//! bytes -> State::Looking until the form is certain -> the decoder of that form -> frames
+//! ```
+//! Forms of text are decoded line by line, and a line that is not ended is never read. Bytes come in pieces of any
+//! size: the frames are the same however the stream is cut. What is dropped is counted in [`StreamCounts`], with a
+//! sample of it.
 
 use crate::formats::recording::ros_text;
 use crate::formats::stream::documents::{JsonDecoder, RosDecoder};
@@ -16,8 +22,11 @@ const LOOKED_AT: usize = 1 << 16;
 /// Decodes a stream, piece by piece.
 #[derive(Debug)]
 pub struct StreamDecoder {
+    /// What is known of the stream.
     options: StreamOptions,
+    /// What has come so far.
     counts: StreamCounts,
+    /// The decoder in use.
     state: State,
     /// What is not decoded yet: the beginning, until the form is known, and then the line that is not ended.
     bytes: Vec<u8>,
@@ -27,13 +36,20 @@ pub struct StreamDecoder {
     torn: bool,
 }
 
+/// What decodes the next bytes.
 #[derive(Debug)]
 enum State {
+    /// Nothing yet: the form is not certain.
     Looking,
+    /// Numbers in lines.
     Lines(LinesDecoder),
+    /// JSON lines.
     Json(JsonDecoder),
+    /// What `ros2 topic echo` prints.
     Ros(RosDecoder),
+    /// Bytes behind markers.
     Flexitac(FlexitacDecoder),
+    /// Bytes with an end.
     Matsense(MatsenseDecoder),
     /// Bytes without rows and columns, which cannot be decoded.
     Unshaped,
@@ -85,6 +101,7 @@ impl StreamDecoder {
         }
     }
 
+    /// Starts the decoder of a form. `from_start`: whether the first byte to come begins a frame.
     fn begin(&mut self, format: StreamFormat, from_start: bool) {
         let shape = self.options.shape;
         self.state = match (format, shape) {
@@ -168,6 +185,7 @@ impl StreamDecoder {
         }
     }
 
+    /// Decodes a line without its end; the first one of a stream that was joined late is passed over.
     fn line(&mut self, line: &[u8], sink: &mut StreamSink<'_>) {
         if std::mem::take(&mut self.torn) {
             return;
@@ -194,6 +212,8 @@ impl StreamDecoder {
 }
 
 /// The form of what begins with these bytes; None if more are needed.
+/// Bytes that are no text are `FlexiTac` if two markers are a frame apart, otherwise `MatSense`. Of text the first line
+/// that only one form can have tells; what has none is numbers.
 fn form(bytes: &[u8], shape: Option<(u16, u16)>, ended: bool) -> Option<StreamFormat> {
     let is_binary = |byte: &u8| !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c | b' '..=b'~');
     let enough = ended || bytes.len() >= LOOKED_AT;

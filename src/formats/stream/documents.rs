@@ -1,4 +1,7 @@
 //! Messages in text: a JSON object a line, and what `ros2 topic echo` prints.
+//!
+//! Unlike a recording, a stream goes on after a line or a message that is wrong: it is dropped and counted. Rows and
+//! columns may change from frame to frame.
 
 use crate::formats::recording::json_lines::FrameLine;
 use crate::formats::recording::ros_text::{self, RosLine, RosMessage};
@@ -8,12 +11,16 @@ use crate::frame::Frame;
 /// A decoder of JSON lines.
 #[derive(Debug)]
 pub(super) struct JsonDecoder {
+    /// The line that was read last.
     line: FrameLine,
+    /// The time of the first frame, from which all others count.
     start: Option<f64>,
+    /// The frame made of it.
     frame: Frame,
 }
 
 impl JsonDecoder {
+    /// `shape` is for lists of cells without rows.
     pub(super) fn new(shape: Option<(u16, u16)>) -> Self {
         Self {
             line: FrameLine::new(shape),
@@ -55,10 +62,15 @@ impl JsonDecoder {
 /// A decoder of what `ros2 topic echo` prints.
 #[derive(Debug)]
 pub(super) struct RosDecoder {
+    /// Rows and columns of messages that do not say them.
     shape: Option<(u16, u16)>,
+    /// The message so far.
     message: RosMessage,
+    /// Whether its beginning was seen; a stream may be joined in the middle of one.
     begun: bool,
+    /// Whether something in it is wrong.
     broken: bool,
+    /// The frame made of it.
     frame: Frame,
 }
 

@@ -1,28 +1,40 @@
 //! `AA 55`, then a byte a cell, without a checksum: the two bytes also occur inside of frames.
 //!
-//! So a frame counts once the marker behind it has arrived, or if the input ends exactly at its last byte. Where a marker is
-//! not where it was due, the one is taken that is nearest to that place among those that the next marker confirms.
-//! Taking the first one instead would read frames from their middle.
+//! So a frame counts once the marker behind it has arrived, or if the input ends exactly at its last byte. Where a
+//! marker is not where it was due, the one is taken that is nearest to that place among those that the next marker
+//! confirms. Taking the first one instead would read frames from their middle.
+//! ```text
+//! AA 55  00 0C 07 03  AA 55  00 0D …        2 rows of 2 columns, 0 to 255
+//! ```
+//! Frames have no number and no time; rows and columns have to be known. A frame is shown as provisional as soon as its
+//! last byte is there, so that the live page does not lag a frame behind, and is confirmed or withdrawn by what
+//! follows.
 
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::frame::Frame;
 
+/// What stands before each frame.
 const MARKER: [u8; 2] = [0xaa, 0x55];
 
 /// A decoder of frames behind markers.
 #[derive(Debug)]
 pub(super) struct FlexitacDecoder {
+    /// Rows of a frame.
     rows: u16,
+    /// Columns of a frame.
     columns: u16,
+    /// What has come and is not decided: at most a few frames.
     bytes: Vec<u8>,
     /// Whether the bytes begin with a marker that is taken for one.
     in_step: bool,
     /// Whether the frame in the bytes was shown already.
     shown: bool,
+    /// The frame that is given.
     frame: Frame,
 }
 
 impl FlexitacDecoder {
+    /// For frames of these rows and columns.
     pub(super) fn new((rows, columns): (u16, u16)) -> Self {
         Self {
             rows,
@@ -39,6 +51,7 @@ impl FlexitacDecoder {
         MARKER.len() + usize::from(self.rows) * usize::from(self.columns)
     }
 
+    /// Whether the two bytes from here on are those of a marker.
     fn has_marker(&self, at: usize) -> bool {
         self.bytes.get(at..at + MARKER.len()) == Some(&MARKER[..])
     }
@@ -99,13 +112,15 @@ impl FlexitacDecoder {
         self.search(ended, counts)
     }
 
+    /// Takes back a frame that was shown and is none.
     fn withdraw(&mut self, sink: &mut StreamSink<'_>) {
         if std::mem::take(&mut self.shown) {
             sink(StreamEvent::Withdrawn);
         }
     }
 
-    /// Looks for the marker that is nearest to where it was due and confirmed by the next; false if more bytes are needed.
+    /// Looks for the marker that is nearest to where it was due and confirmed by the next; false if more bytes are
+    /// needed.
     fn search(&mut self, ended: bool, counts: &mut StreamCounts) -> bool {
         let period = self.period();
         let due = if self.in_step { period } else { 0 };
@@ -148,6 +163,7 @@ impl FlexitacDecoder {
         true
     }
 
+    /// Copies the cells behind the marker into the frame.
     fn fill(&mut self) {
         let values = &self.bytes[MARKER.len()..];
         for (slot, &byte) in self.frame.values_mut().iter_mut().zip(values) {

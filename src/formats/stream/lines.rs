@@ -1,6 +1,14 @@
 //! Lines of numbers: a frame a line, or a row a line with an empty line between frames.
 //!
 //! A line that is not ended is never read: its last number may be torn.
+//! ```text
+//! 0 12 7 3        a frame a line, if rows and columns are known
+//!
+//! 0 12            or a row a line; an empty line ends the frame, and tells its rows and columns
+//! 7 3
+//! ```
+//! A frame with a row of another length is dropped as a whole, up to the next empty line: rows of two frames are never
+//! joined.
 
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::formats::stream::numbers;
@@ -12,11 +20,13 @@ const MOST: usize = 512 * 512;
 /// A decoder of lines of numbers.
 #[derive(Debug)]
 pub(super) struct LinesDecoder {
+    /// Rows and columns: as named, else those of the first whole frame.
     shape: Option<(u16, u16)>,
     /// Whether a boundary was seen, so that a frame may begin.
     begun: bool,
     /// The rows of the frame so far.
     values: Vec<f64>,
+    /// How many rows that is.
     rows: u16,
     /// Whether a row of it is wrong.
     broken: bool,
@@ -24,10 +34,12 @@ pub(super) struct LinesDecoder {
     broken_row: Vec<u8>,
     /// Whether there was an empty line.
     parted: bool,
+    /// The frame that is given.
     frame: Frame,
 }
 
 impl LinesDecoder {
+    /// Where the stream is joined in the middle, nothing counts before the first boundary.
     pub(super) fn new(shape: Option<(u16, u16)>, from_start: bool) -> Self {
         Self {
             shape,
@@ -137,6 +149,7 @@ impl LinesDecoder {
         sink(StreamEvent::Frame(&self.frame));
     }
 
+    /// Forgets the frame so far.
     fn clear(&mut self) {
         self.values.clear();
         self.rows = 0;
@@ -165,6 +178,7 @@ impl LinesDecoder {
     }
 }
 
+/// A number of columns; one too many for any frame where there are more than fit.
 fn width(count: usize) -> u16 {
     // A frame of more is refused.
     u16::try_from(count).map_or(MAX_FRAME_SIDE + 1, |width| width)

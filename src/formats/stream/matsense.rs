@@ -1,13 +1,21 @@
 //! Bytes with an end: a byte a cell, then `FF`; or `5B`, the cells with escapes, `5D`.
 //!
 //! Which of the two it is, the first two frames of the right length tell. Frames of another length are dropped.
+//! ```text
+//! 00 0C 07 03 FF          cells are 0 to 254; FF ends the frame
+//! 5B 00 0C 07 03 5D       cells are 0 to 255; 5B, 5C and 5D among them are 5C 01, 5C 00 and 5C 02
+//! ```
 
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::frame::Frame;
 
+/// Ends a frame of the first form; no cell has this value there.
 const END: u8 = 0xff;
+/// Begins a frame of the second form.
 const OPEN: u8 = 0x5b;
+/// Ends it.
 const CLOSE: u8 = 0x5d;
+/// Stands before the number of a byte that would otherwise begin, end or escape.
 const ESCAPE: u8 = 0x5c;
 
 /// So many frames of the right length tell the form.
@@ -16,19 +24,26 @@ const SURE: usize = 2;
 /// How frames are parted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Framing {
+    /// By [`END`].
     Ended,
+    /// By [`OPEN`] and [`CLOSE`].
     Bracketed,
 }
 
 /// Parts bytes into frames of one form.
 #[derive(Debug)]
 struct Parts {
+    /// The form.
     framing: Framing,
+    /// How many cells a frame has.
     cells: usize,
+    /// The cells so far.
     values: Vec<u8>,
     /// Inside of a frame.
     inside: bool,
+    /// Behind an [`ESCAPE`].
     escaped: bool,
+    /// Whether the frame has more cells or an unknown escape.
     broken: bool,
     /// Frames of another length, counted as soon as the form is known.
     dropped: u64,
@@ -37,12 +52,16 @@ struct Parts {
 /// What a byte makes of a frame.
 #[derive(PartialEq)]
 enum Part {
+    /// It goes on, or has not begun.
     More,
+    /// It has all of its cells.
     Whole,
+    /// It ended with another number of cells, or broken.
     Dropped,
 }
 
 impl Parts {
+    /// `from_start`: whether the first byte begins a frame. A bracketed one says so itself.
     fn new(framing: Framing, cells: usize, from_start: bool) -> Self {
         Self {
             framing,
@@ -55,6 +74,7 @@ impl Parts {
         }
     }
 
+    /// Takes the next byte.
     fn byte(&mut self, byte: u8) -> Part {
         match self.framing {
             Framing::Ended if byte == END => {
@@ -66,6 +86,7 @@ impl Parts {
         }
     }
 
+    /// The same for a frame between brackets. One that is opened again before it was closed is torn.
     fn bracketed(&mut self, byte: u8) -> Part {
         match byte {
             OPEN => {
@@ -97,6 +118,7 @@ impl Parts {
         }
     }
 
+    /// Adds a cell, if the beginning of the frame was seen.
     fn value(&mut self, byte: u8) -> Part {
         if self.inside {
             if self.values.len() < self.cells {
@@ -125,10 +147,12 @@ impl Parts {
 pub(super) struct MatsenseDecoder {
     /// Those that it may still be.
     candidates: Vec<(Parts, Vec<Vec<u8>>)>,
+    /// The frame that is given.
     frame: Frame,
 }
 
 impl MatsenseDecoder {
+    /// Either form is still possible.
     pub(super) fn new((rows, columns): (u16, u16), from_start: bool) -> Self {
         let cells = usize::from(rows) * usize::from(columns);
         let of = |framing| (Parts::new(framing, cells, from_start), Vec::new());
@@ -173,6 +197,7 @@ impl MatsenseDecoder {
         }
     }
 
+    /// Gives the frames that were waiting for the decision, and forgets the other form.
     fn decide(&mut self, index: usize, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         let (parts, waiting) = self.candidates.swap_remove(index);
         if parts.dropped > 0 {
@@ -202,6 +227,7 @@ impl MatsenseDecoder {
     }
 }
 
+/// Gives the values as the next frame.
 fn give(frame: &mut Frame, values: &[u8], counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
     for (slot, &value) in frame.values_mut().iter_mut().zip(values) {
         *slot = f64::from(value);

@@ -1,8 +1,8 @@
 //! Live streams of frames: bytes in, whole frames out, and what was broken counted, with a sample.
 //!
 //! A decoder takes any bytes in pieces of any size, waits for nothing and keeps at most a few frames. What precedes the
-//! first boundary between frames is dropped, unless the stream is known to begin with one. Torn, short, long and garbled
-//! frames are dropped and counted; they are never joined or padded.
+//! first boundary between frames is dropped, unless the stream is known to begin with one. Torn, short, long and
+//! garbled frames are dropped and counted; they are never joined or padded.
 //!
 //! ```
 //! use taxel::formats::stream::{StreamDecoder, StreamEvent, StreamOptions};

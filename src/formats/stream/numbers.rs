@@ -6,12 +6,13 @@ use crate::frame::LARGEST_VALUE;
 /// More digits than these are left to the general reader.
 const FAST_DIGITS: usize = 9;
 
+/// Spaces, tabs, commas, semicolons, and the carriage return before a line's end.
 fn is_separator(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | b',' | b'\r' | b';')
 }
 
-/// Adds the numbers of a line, parted by spaces, tabs, commas or semicolons; `nan` is no cell. None if there is anything
-/// else, or more than `most`.
+/// Adds the numbers of a line, parted by spaces, tabs, commas or semicolons; `nan` is no cell. None if there is
+/// anything else, or more than `most`.
 pub(super) fn read(line: &[u8], values: &mut Vec<f64>, most: usize) -> Option<()> {
     let mut at = 0;
     let mut count = 0;
