@@ -126,7 +126,6 @@ fn shown(
 }
 
 /// The matrix as the file that an ending asks for.
-
 ///
 /// # Errors
 /// [`CliError::TooManyShapes`] for a drawing whose matrix would not be legible.

@@ -182,7 +182,6 @@ fn fitting(
 }
 
 /// The folder of the models beside the library.
-
 ///
 /// # Errors
 /// If there is no folder for a library, and so none beside it.
@@ -197,7 +196,6 @@ pub(crate) fn is_kept(name: &Name, shelf: &Shelf) -> bool {
 }
 
 /// Finds a model: one beside the library, then a file, then the seven figures if they are asked for.
-
 ///
 /// # Errors
 /// [`CliError::NoModel`] if nothing has that name; otherwise why the file cannot be read.

@@ -34,7 +34,6 @@ use crate::storage::UnfinishedFile;
 const REFINED: u64 = 9;
 
 /// Looks at all sizes and thresholds. Returns what is printed.
-
 ///
 /// # Errors
 /// Those of the set and of the file; [`CliError::Stopped`] after a signal.

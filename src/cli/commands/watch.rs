@@ -204,7 +204,6 @@ impl Watcher<'_> {
     }
 
     /// Another channel of a recording. With its first one come unit and threshold.
-
     ///
     /// # Errors
     /// If there are several channels and none is chosen: unlike a file, a stream cannot be read again to list them.

@@ -25,7 +25,6 @@ use crate::recognition::NamedShape;
 const MAX_SET: u64 = 64 << 20;
 
 /// The shapes of a set, in the order of the arguments.
-
 ///
 /// # Errors
 /// [`CliError::Set`] with the place of a shape that cannot be read: `parts.jsonl, line 3`; those of files and the
@@ -68,7 +67,6 @@ pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape
 }
 
 /// All shapes of the library, in its order.
-
 ///
 /// # Errors
 /// If one of them is damaged.
@@ -97,7 +95,6 @@ fn file_of_lines(what: &OsStr, shelf: &Shelf) -> Option<PathBuf> {
 }
 
 /// Reads a set of shapes, a line of JSON each. Blank lines are skipped.
-
 ///
 /// # Errors
 /// If the text is larger than [`MAX_SET`], or a line is no shape. A wrong line ends it: a set with a shape missing

@@ -4,17 +4,18 @@
 //! The printed window is the frame; the numbers of its first row and column are reported with it. Pages without a
 //! `Pict-No.`, which summarise (MVP, MPP), are passed over.
 //! ```text
-//! 	Page 1
+//! (fields are parted by tabs)
+//!     Page 1
 //!
-//! 	File: …\2.dat 	Matrix: 64x95
-//! 	Sensor area: 0.25 cm²	Time/picture:10.0 ms
-//! 	Sensor size: 0.500x0.500 cm
-//! 	Pict-No.: 1  Force[N]=sum*sensor_area in row/column
+//!     File: …\2.dat     Matrix: 64x95
+//!     Sensor area: 0.25 cm²    Time/picture:10.0 ms
+//!     Sensor size: 0.500x0.500 cm
+//!     Pict-No.: 1  Force[N]=sum*sensor_area in row/column
 //!
-//! 	26	27	28	…	Force
-//! 30	0.00	0.00	15.00	…	0.38
+//!     26    27    28    …    Force
+//! 30    0.00    0.00    15.00    …    0.38
 //! …
-//! Force	0.00	0.00	0.38	…
+//! Force    0.00    0.00    0.38    …
 //! ```
 //! `Matrix` counts columns × rows of the whole sensor, of which only the loaded part is printed. Values are kPa; each
 //! row ends in its force in N, which is checked. Time is the number of the picture times `Time/picture`. Source:
@@ -51,7 +52,6 @@ struct EmedState {
 }
 
 /// Reads a recording.
-
 ///
 /// # Errors
 /// If a picture has a header but no window; those of the window.

@@ -17,7 +17,6 @@ use crate::formats::stream::{StreamDecoder, StreamEvent, StreamFormat, StreamOpt
 const CHUNK: usize = 1 << 16;
 
 /// Reads a recording.
-
 ///
 /// # Errors
 /// [`RecordingError::Shape`] if rows and columns are not named.

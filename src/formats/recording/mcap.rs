@@ -109,7 +109,6 @@ struct McapState<'a, 'b> {
 }
 
 /// Reads a recording.
-
 ///
 /// # Errors
 /// If the file was not closed, after all whole messages; if a record or a message is broken; if no message has frames.
@@ -185,7 +184,6 @@ fn whole(input: &mut impl Read, bytes: &mut [u8]) -> Result<(), RecordingError> 
 }
 
 /// Reads what stands before the records of a chunk, which follow like any others.
-
 ///
 /// # Errors
 /// If its records are compressed.
@@ -315,7 +313,6 @@ impl McapState<'_, '_> {
     }
 
     /// Gives the values as a frame of a channel; true if no more is wanted.
-
     ///
     /// # Errors
     /// If there are too many channels, if a message of a channel has another number of values than its layout, or an

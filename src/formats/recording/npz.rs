@@ -41,7 +41,6 @@ struct ArchiveArray {
 }
 
 /// Reads a recording.
-
 ///
 /// # Errors
 /// If there is no array that may be frames; those of each array, with its name.

@@ -131,7 +131,6 @@ fn half(bits: u16) -> f64 {
 }
 
 /// Reads what stands before the numbers.
-
 ///
 /// # Errors
 /// If it is none of version 1 to 3, or longer than 1 MiB.
@@ -236,7 +235,6 @@ impl ArrayLayout {
 }
 
 /// Frames, rows and columns of an array of that shape.
-
 ///
 /// # Errors
 /// [`RecordingError::Shape`] if rows and columns have to be named; a damage if they contradict those that are.
@@ -343,7 +341,6 @@ impl RecordLayout {
 }
 
 /// Reads a recording.
-
 ///
 /// # Errors
 /// If there are fewer or more bytes than the header says; those of the header.
@@ -445,7 +442,6 @@ fn short(frame: u64, frames: u64) -> RecordingError {
 }
 
 /// Gives a frame whose values are finite or none; true if no more is wanted.
-
 ///
 /// # Errors
 /// If a value is infinite, with its row and column.

@@ -24,7 +24,6 @@ use crate::frame::{Frame, MAX_FRAME_SIDE};
 const ENOUGH: &str = "no more is wanted";
 
 /// Reads a recording.
-
 ///
 /// # Errors
 /// With line and column: of what is no JSON, of a snapshot of another size, and of one before its rows and columns.

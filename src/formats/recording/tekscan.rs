@@ -97,7 +97,6 @@ fn spacing(value: &[u8]) -> Option<f64> {
 }
 
 /// Reads a recording.
-
 ///
 /// # Errors
 /// If the header does not end, or has no rows or columns; those of the frames.
@@ -224,7 +223,6 @@ struct FrameTitle {
 }
 
 /// Reads `Frame 2` or `Frame 2, 0.1,, date time,,,Raw Sum=,,307`.
-
 ///
 /// # Errors
 /// If it is no title; the message names `@@`, which may be what is missing.

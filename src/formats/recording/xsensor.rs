@@ -137,7 +137,6 @@ impl XsensorState {
     }
 
     /// Reads the rows below `SENSELS`.
-
     ///
     /// # Errors
     /// If rows or columns were not named before, or the rows end too early or have another length.
@@ -163,7 +162,6 @@ impl XsensorState {
     }
 
     /// Gives the frame, and its channel before the first one; true if no more is wanted.
-
     ///
     /// # Errors
     /// If there are more sensors than any file has: names that change from frame to frame would fill the memory.

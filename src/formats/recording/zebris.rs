@@ -12,7 +12,7 @@
 //! LDistX=8.46591
 //! LDistY=8.46591
 //! [Data]
-//! -1	-1	1.0	3.0	…
+//! -1    -1    1.0    3.0    …
 //! ```
 //! One file is one picture. Sections are not told apart: their keys differ. A value below 0 other than -1 is a value.
 //! Source: pedcad import files of zebris.
@@ -99,7 +99,6 @@ impl ZebrisHeader {
 }
 
 /// Reads a recording, which has one frame.
-
 ///
 /// # Errors
 /// If there are fewer or more lines of values than `SensCountX` says; the picture is reported before the second of
