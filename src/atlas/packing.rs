@@ -2,10 +2,18 @@
 //!
 //! Each row takes 8, 16, 32 or 64 bits, whichever is the first to hold the sensor's columns. A key's hash is the
 //! exclusive or of one random number per active taxel (A. L. Zobrist, *A new hashing method with application for game
-//! playing*, 1970), so toggling a taxel changes it in one step. Keys with equal hashes are still compared in full.
+//! playing*, 1970), so toggling a taxel changes it in one step. Keys with equal hashes are still compared in full, and no
+//! result depends on the hashes. The numbers are others in each run: with known ones, anybody could make an atlas of
+//! imprints with equal hashes, which would take minutes to merge.
+
+use std::hash::{BuildHasher, RandomState};
+use std::sync::OnceLock;
 
 use crate::imprint::Imprint;
 use crate::index::from_first;
+
+/// What the random numbers are made from: one for the whole run, since hashes of one sweep are compared with those of another.
+static SEED: OnceLock<u64> = OnceLock::new();
 
 /// How the imprints of a sensor are packed.
 #[derive(Clone, Debug)]
@@ -22,7 +30,7 @@ pub(crate) struct Layout {
 impl Layout {
     pub(crate) fn new(columns: u8, rows: u8) -> Self {
         let width = usize::from(columns).next_power_of_two().clamp(8, 64);
-        let mut seed = 0_u64;
+        let mut seed = *SEED.get_or_init(|| RandomState::new().hash_one(0));
         let numbers = (0..usize::from(columns) * usize::from(rows))
             .map(|_| split_mix(&mut seed))
             .collect();
