@@ -8,7 +8,9 @@ use crate::index::index;
 /// How often a key occurred, and the number of the first pose with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Tally {
+    /// How often it was counted.
     pub(crate) count: u64,
+    /// The number of the pose that left it first.
     pub(crate) first: u64,
 }
 
@@ -17,6 +19,7 @@ pub(crate) struct Tally {
 pub(crate) struct ImprintCounter {
     /// Words in a key.
     length: usize,
+    /// All keys, one behind the other, in the order in which they came.
     keys: Vec<u64>,
     hashes: Vec<u64>,
     tallies: Vec<Tally>,

@@ -18,10 +18,13 @@ static SEED: OnceLock<u64> = OnceLock::new();
 /// How the imprints of a sensor are packed.
 #[derive(Clone, Debug)]
 pub(crate) struct Layout {
+    /// Columns of the sensor.
     columns: u8,
+    /// Rows of the sensor.
     rows: u8,
     /// Bits that a row takes, and rows that a word holds.
     width: usize,
+    /// How many rows a word holds.
     per_word: usize,
     /// One number per taxel, in reading order.
     numbers: Vec<u64>,

@@ -21,7 +21,9 @@ type Tracks = [Track; 4];
 /// An ellipse, perhaps with a hole.
 #[derive(Clone, Debug)]
 pub(crate) struct Elliptic {
+    /// The ellipses, cut to the band at hand.
     ring: Ring,
+    /// For each row of the sensor where the passages were in the rows of the grid before.
     tracks: Box<[Tracks]>,
 }
 
@@ -76,8 +78,11 @@ impl Elliptic {
 
 /// A span of activity, and the gap in it that the hole makes.
 struct Passages {
+    /// Where it begins: x of the shape's anchor, in cell sides.
     from: f64,
+    /// Where it ends.
     to: f64,
+    /// From where to where the hole makes the taxel inactive.
     hole: Option<(f64, f64)>,
 }
 

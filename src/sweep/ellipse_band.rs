@@ -14,29 +14,41 @@ const SLACK: f64 = 1e-12;
 /// An ellipse prepared for bands; see `geometry::curve` for the formulas.
 #[derive(Clone, Debug)]
 pub(crate) struct EllipseBand {
+    /// x of the centre.
     pub(crate) x: f64,
+    /// y of the centre.
     y: f64,
+    /// Half of the extent along x.
     pub(crate) reach_x: f64,
+    /// Half of the extent along y.
     reach_y: f64,
     /// Slopes of the lines through the middles of the vertical and of the horizontal sections.
     middle_y: f64,
+    /// The second of these: x by y.
     middle_x: f64,
+    /// Half of the vertical section at distance d from the centre is this times the root of reach_x² − d².
     scale_y: f64,
+    /// The same of horizontal sections.
     scale_x: f64,
     /// The band, relative to the centre, and what is known of it.
     top: f64,
+    /// The closed forms from left to right, of which `count` are in use.
     stretches: [EllipseStretch; 5],
+    /// At most five: the band's lines cross the ellipse at up to four places.
     count: usize,
     /// From where to where the section is highest, and how high.
     peak: (f64, f64),
     highest: f64,
+    /// The area of the ellipse in the band.
     total: f64,
 }
 
 /// `W = area + linear·d + square·d² + round·Φ(d)` between two places, relative to the centre.
 #[derive(Clone, Copy, Debug, Default)]
 struct EllipseStretch {
+    /// Where it begins.
     left: f64,
+    /// Where it ends.
     right: f64,
     area: f64,
     linear: f64,
@@ -47,7 +59,9 @@ struct EllipseStretch {
 /// The section at a place: its height, the area on the left of it, and half of the ellipse's own section.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Section {
+    /// How high the shape is here, inside of the band.
     pub(crate) height: f64,
+    /// The area on the left of it.
     area: f64,
     half: f64,
     /// The stretch that it lies in; None outside the ellipse.
@@ -55,6 +69,7 @@ pub(crate) struct Section {
 }
 
 impl EllipseBand {
+    /// Prepares an ellipse; no band is chosen yet.
     pub(crate) fn new(ellipse: &Ellipse<f64>) -> Self {
         let (centre, reach) = (ellipse.centre, ellipse.reach());
         let (x_square, y_square) = (reach.x * reach.x, reach.y * reach.y);

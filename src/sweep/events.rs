@@ -10,27 +10,37 @@ use crate::index::{index, narrow, wide};
 #[derive(Clone, Debug)]
 pub(crate) struct Events<'a> {
     pub(crate) layout: &'a Layout,
+    /// How many steps the row has.
     count: u64,
+    /// The imprint at the first step, packed.
     key: Vec<u64>,
+    /// Its hash.
     hash: u64,
     /// A bit per step, whether something happens there, and then the last event of it.
     marked: Vec<u64>,
     last: Vec<u32>,
+    /// All events; those of a step are chained.
     list: Vec<Event>,
 }
 
+/// A taxel that turns over.
 #[derive(Clone, Copy, Debug)]
 struct Event {
+    /// Its bit.
     mask: u64,
+    /// The hash of that taxel alone: the hash of an imprint is that of its taxels, joined by exclusive or.
     number: u64,
+    /// The word of the key that the bit is in.
     word: u32,
     /// The one before it at the same step, or none.
     before: u32,
 }
 
+/// No event.
 const NONE: u32 = u32::MAX;
 
 impl<'a> Events<'a> {
+    /// A row in which nothing happens yet.
     pub(crate) fn new(layout: &'a Layout, count: u64) -> Self {
         let steps = index(count);
         Self {
@@ -44,6 +54,7 @@ impl<'a> Events<'a> {
         }
     }
 
+    /// Begins another row. The marks were taken away when this one was played back.
     pub(crate) fn clear(&mut self) {
         self.key.fill(0);
         self.hash = 0;

@@ -17,12 +17,17 @@ const REMEMBERED: usize = 128;
 /// The shape of one turn, ready for exact decisions.
 #[derive(Debug)]
 pub(crate) struct Exact<'a> {
+    /// The grid.
     grid: &'a PoseGrid,
+    /// The number of the orientation.
     turn: u64,
+    /// Drawn when it is asked for first: in most orientations nothing is in doubt.
     boundary: Option<Boundary<Double>>,
     /// Where the anchor lies for the values of x0 and of y0 asked for last.
     places: Box<[(Option<u64>, Double)]>,
+    /// Adds up the area in one cell.
     cell: Overlap<Double>,
+    /// The coverage that counts as the threshold.
     least: Double,
 }
 

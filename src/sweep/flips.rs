@@ -12,8 +12,11 @@ use crate::sweep::span::{NEAR, Span, Spans};
 /// The values of x0 as places in the plane: `first + k / per_cell`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Steps {
+    /// The place of the first value, in cell sides.
     pub(crate) first: f64,
+    /// How many steps a cell has.
     pub(crate) per_cell: f64,
+    /// How many values there are.
     pub(crate) count: i32,
 }
 
@@ -24,10 +27,15 @@ fn floor(place: f64) -> i32 {
 
 /// Turns the spans of one row of the sensor into events.
 pub(crate) struct Marker<'s, 'e, 'a> {
+    /// The values of x0.
     pub(crate) steps: Steps,
+    /// The row of the sensor.
     pub(crate) row: usize,
+    /// The number of the value of y0.
     pub(crate) y: u64,
+    /// Where events go.
     pub(crate) events: &'s mut Events<'e>,
+    /// Decides for taxels in doubt.
     pub(crate) exact: &'s mut Exact<'a>,
 }
 
@@ -44,6 +52,7 @@ impl Marker<'_, '_, '_> {
         }
     }
 
+    /// Marks what a span that is sharp at both ends does to all columns.
     fn span(&mut self, span: &Span) {
         let left = self.end(span.from, false);
         let right = self.end(span.to, true);
@@ -146,8 +155,11 @@ impl Marker<'_, '_, '_> {
 
 /// A taxel on its way along the range of x0.
 struct Taxel {
+    /// Its row.
     row: usize,
+    /// Its column.
     column: usize,
+    /// Whether it is active, as far as is decided.
     active: bool,
     /// Steps below this one are done.
     next: i32,

@@ -19,8 +19,11 @@ const NARROW: f64 = 1e-6;
 /// An ellipse and perhaps a hole, both cut to the band.
 #[derive(Clone, Debug)]
 pub(crate) struct Ring {
+    /// The coverage from which on a taxel is active, above 0, up to 1.
     pub(crate) threshold: f64,
+    /// The ellipse.
     pub(crate) outer: EllipseBand,
+    /// Its hole.
     pub(crate) inner: Option<EllipseBand>,
 }
 

@@ -16,18 +16,24 @@ use crate::sweep::span::{DOUBT, Level, STEEP, Spans};
 /// An edge, from its upper end.
 #[derive(Clone, Copy, Debug)]
 struct Edge {
+    /// y of the upper end. All lengths are cell sides, y down, the anchor at the origin.
     top: f64,
+    /// y of the lower end.
     bottom: f64,
     /// x at the upper end, and by how much it grows downwards.
     x: f64,
+    /// By how much x grows a cell downwards.
     slope: f64,
+    /// The smaller x of both ends.
     low: f64,
+    /// The larger x.
     high: f64,
     /// +1 upwards.
     sign: f64,
 }
 
 impl Edge {
+    /// Where the edge is at a height between its ends.
     fn x_at(&self, y: f64) -> f64 {
         // Kept between the ends: the slope of an edge that is horizontal up to a rounding means nothing.
         (self.x + (y - self.top) * self.slope)
@@ -36,21 +42,29 @@ impl Edge {
     }
 }
 
+/// A part of an edge inside of the band.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
+    /// Where it begins.
     left: f64,
+    /// Where it ends; `left` for one that is upright.
     right: f64,
+    /// How far it climbs, -1 to 1; positive where the material is on its right.
     rise: f64,
+    /// The slope of `w` that it adds between its ends: the rise over the width.
     steepness: f64,
 }
 
 /// The section's height between two corners of `w`, and its integral.
 #[derive(Clone, Copy, Debug)]
 struct Stretch {
+    /// Where it begins.
     left: f64,
+    /// Where it ends.
     right: f64,
     /// `w` at the left end, and by how much it grows to the right.
     from: f64,
+    /// By how much `w` grows a cell to the right.
     slope: f64,
     /// `W` at `left`.
     area: f64,
@@ -59,6 +73,7 @@ struct Stretch {
 }
 
 impl Stretch {
+    /// Left of the shape, where `area` is 0, or right of it, where it is all there is.
     fn far(left: f64, right: f64, area: f64) -> Self {
         Self {
             left,
@@ -81,15 +96,20 @@ impl Stretch {
 /// A shape of straight edges, and room to work in.
 #[derive(Clone, Debug)]
 pub(crate) struct Polygonal {
+    /// All edges that are not level, by their upper ends.
     edges: Vec<Edge>,
     /// Where edges lie that are level, which cut nothing.
     levels: Vec<f64>,
+    /// Those of this band.
     pieces: Vec<Piece>,
+    /// Where `w` has a corner, from left to right.
     corners: Vec<f64>,
+    /// What lies between these.
     stretches: Vec<Stretch>,
 }
 
 impl Polygonal {
+    /// Prepares the edges of a boundary.
     pub(crate) fn new(edges: &[(Point<f64>, Point<f64>)]) -> Self {
         let edge = |&(from, to): &(Point<f64>, Point<f64>)| {
             let (upper, lower, sign) = if to.y < from.y {

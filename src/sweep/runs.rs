@@ -92,11 +92,14 @@ pub(crate) fn go(
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "one per task")]
 enum Shape {
+    /// Straight edges only.
     Polygonal(Polygonal),
+    /// One ellipse, with or without a hole.
     Elliptic(Elliptic),
 }
 
 impl Shape {
+    /// Takes the way for one ellipse, with or without a hole, else that for straight edges.
     fn new(boundary: &Boundary<f64>) -> Self {
         match Elliptic::new(&boundary.ellipses) {
             Some(elliptic) => Self::Elliptic(elliptic),
@@ -104,6 +107,7 @@ impl Shape {
         }
     }
 
+    /// Notes where taxels in a row of the sensor turn over, for the band that begins at `top`.
     fn band(&mut self, top: f64, row: usize, threshold: f64, spans: &mut Spans) {
         match self {
             Self::Polygonal(shape) => shape.band(top, threshold, spans),
@@ -112,21 +116,29 @@ impl Shape {
     }
 }
 
+/// One orientation of a grid on its way through the values of y0.
 struct Sweeper<'a> {
+    /// The grid.
     grid: &'a PoseGrid,
+    /// The number of the orientation.
     turn: u64,
+    /// The shape in this orientation, at the origin.
     shape: Shape,
     /// The number of poses between two reports of progress.
     told: u64,
     /// The extent of the shape at the origin; None if it has no boundary.
     extent: Option<Extent>,
+    /// The values of x0.
     steps: Steps,
     /// The number of values of x0 for which the shape reaches beyond the left or right side.
     beyond: u64,
     /// The values of y0, by number, that put it beyond neither the upper nor the lower side.
     rows_inside: std::ops::Range<u64>,
+    /// Those of the band at hand, in memory that is used again.
     spans: Spans,
+    /// What happens along the row at hand.
     events: Events<'a>,
+    /// Decides where `f64` cannot.
     exact: Exact<'a>,
 }
 
