@@ -26,7 +26,7 @@ pub(crate) struct EllipseBand {
     middle_y: f64,
     /// The second of these: x by y.
     middle_x: f64,
-    /// Half of the vertical section at distance d from the centre is this times the root of reach_x² − d².
+    /// Half of the vertical section at distance d from the centre is this times the root of `reach_x`² − d².
     scale_y: f64,
     /// The same of horizontal sections.
     scale_x: f64,
