@@ -8,6 +8,8 @@ mod laws;
 
 mod source;
 
+mod measure;
+
 #[cfg(feature = "sweep")]
 mod examples;
 

@@ -1,0 +1,170 @@
+//! Two measures of the source: lines of documentation for each line of code, room by room, and the length of functions.
+//!
+//! Both are taken of the text. A line of documentation begins with `///` or `//!`; other comments and empty lines count
+//! for nothing, and all else is code. Unit tests at the end of a file are left out. A function ends at the first line
+//! that closes it at its own indentation, which is where rustfmt puts it.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use crate::source::read;
+
+/// Lines of documentation for a hundred lines of code, at least, in every folder below `src/`.
+const LEAST_DOCS: usize = 20;
+
+/// Rooms that are not there yet, with what they have. The list only shrinks, and the numbers only grow.
+const FEWER_DOCS: [(&str, usize); 1] = [("tui", 19)];
+
+/// The most lines of a function, from `fn` to its closing brace. A longer one usually hides two.
+const LONGEST: usize = 60;
+
+/// Functions that are still longer. The list only shrinks.
+const STILL_LONG: &str = "
+    src/tui/explore/update.rs in_results
+    src/tui/matrix/update.rs act
+    src/tui/prompt/read.rs read
+    src/tui/recognise/update.rs act
+    src/tui/script/runner.rs act
+";
+
+/// The lines of a file before its unit tests.
+fn shipped(text: &str) -> Vec<&str> {
+    let lines: Vec<&str> = text.lines().collect();
+    let is_tests = |pair: &[&str]| {
+        pair[0].trim() == "#[cfg(test)]" && pair[1].trim_start().starts_with("mod tests {")
+    };
+    let end = lines.windows(2).position(is_tests);
+    lines[..end.unwrap_or(lines.len())].to_vec()
+}
+
+/// The lines of documentation and of code of a file.
+fn counts(text: &str) -> (usize, usize) {
+    let (mut docs, mut code) = (0, 0);
+    for line in shipped(text) {
+        let line = line.trim();
+        if line.starts_with("///") || line.starts_with("//!") {
+            docs += 1;
+        } else if !line.is_empty() && !line.starts_with("//") {
+            code += 1;
+        }
+    }
+    (docs, code)
+}
+
+/// The functions of a file that are too long: their name and their length.
+fn long_functions(text: &str) -> Vec<(&str, usize)> {
+    let lines = shipped(text);
+    let mut found = Vec::new();
+    for (start, line) in lines.iter().enumerate() {
+        let item = line.trim_start();
+        let indent = &line[..line.len() - item.len()];
+        // One that is closed or only declared in its first line has no length.
+        let Some(name) = function(item).filter(|_| !item.ends_with([';', '}'])) else {
+            continue;
+        };
+        let closing = format!("{indent}}}");
+        let length = lines[start..]
+            .iter()
+            .position(|line| line.starts_with(&closing));
+        let length = length.map_or(lines.len() - start, |end| end + 1);
+        if length > LONGEST {
+            found.push((name, length));
+        }
+    }
+    found
+}
+
+/// The name of a function that a line begins, after its visibility and qualifiers.
+fn function(item: &str) -> Option<&str> {
+    let item = match item.strip_prefix("pub") {
+        Some(rest) if rest.starts_with('(') => rest.split_once(") ")?.1,
+        Some(rest) => rest,
+        None => item,
+    };
+    let mut words = item.split(' ').filter(|word| !word.is_empty());
+    words
+        .find(|word| !matches!(*word, "const" | "async"))
+        .filter(|word| *word == "fn")?;
+    words.next()?.split(['(', '<']).next()
+}
+
+/// The files of `src/`.
+fn files() -> Vec<(String, String)> {
+    let (root, mut files) = (Path::new(env!("CARGO_MANIFEST_DIR")), Vec::new());
+    read(root, &root.join("src"), &mut files);
+    // Unit tests in files of their own.
+    files.retain(|(name, _)| !name.ends_with("/tests.rs"));
+    assert!(files.len() > 300, "{}", files.len());
+    files
+}
+
+#[test]
+fn every_room_has_a_line_of_documentation_for_five_of_code() {
+    let mut rooms: BTreeMap<String, (usize, usize)> = BTreeMap::new();
+    for (name, text) in files() {
+        let inner = name.trim_start_matches("src/");
+        if let Some((room, _)) = inner.split_once('/') {
+            let (docs, code) = counts(&text);
+            let sum = rooms.entry(room.to_owned()).or_default();
+            *sum = (sum.0 + docs, sum.1 + code);
+        }
+    }
+    assert!(rooms.contains_key("tui") && rooms.contains_key("cli"));
+    for (room, (docs, code)) in rooms {
+        let fewer = FEWER_DOCS.iter().find(|(own, _)| *own == room);
+        let least = fewer.map_or(LEAST_DOCS, |(_, least)| *least);
+        let found = 100 * docs / code.max(1);
+        assert!(
+            found >= least,
+            "src/{room}: {docs} lines of documentation for {code} of code, expected {least} %"
+        );
+        assert!(
+            fewer.is_none() || found < LEAST_DOCS,
+            "src/{room} is there: take it off the list"
+        );
+    }
+}
+
+#[test]
+fn no_function_is_longer_than_sixty_lines() {
+    let mut found = Vec::new();
+    let mut still_long: BTreeSet<&str> = STILL_LONG.lines().map(str::trim).collect();
+    still_long.remove("");
+    for (name, text) in files() {
+        for (function, length) in long_functions(&text) {
+            if !still_long.remove(format!("{name} {function}").as_str()) {
+                found.push(format!("{name}: {function} has {length} lines"));
+            }
+        }
+    }
+    assert!(found.is_empty(), "expected {LONGEST} at most: {found:#?}");
+    assert!(
+        still_long.is_empty(),
+        "no longer long, take them off the list: {still_long:?}"
+    );
+}
+
+#[test]
+fn long_functions_and_lines_of_documentation_are_found() {
+    let body = "    work();\n".repeat(60);
+    for head in [
+        "fn long() {",
+        "pub(crate) const fn long() {",
+        "pub async fn long(",
+        "    fn long() {",
+    ] {
+        let indent = &head[..head.len() - head.trim_start().len()];
+        let text = format!("//! Purpose.\n\n{head}\n{body}{indent}}}\n");
+        assert_eq!(long_functions(&text), [("long", 62)], "{head}");
+    }
+    let short = format!(
+        "fn short() {{\n{}}}\nfn next() {{}}\nlet fn_like = 1;\n",
+        "    work();\n".repeat(58)
+    );
+    assert!(long_functions(&short).is_empty());
+    let of_tests = format!("#[cfg(test)]\nmod tests {{\n    fn long() {{\n{body}    }}\n}}\n");
+    assert!(long_functions(&of_tests).is_empty());
+    let text =
+        "//! Head.\n\n// A reason.\n/// An item.\nfn item() {}\n\n#[cfg(test)]\nmod tests {\n}\n";
+    assert_eq!(counts(text), (2, 1));
+}
