@@ -13,8 +13,10 @@ use crate::frame::Frame;
 pub struct AcquireOptions {
     /// The form of a stream; found by looking where there is none. With one a file is a stream, not a recording.
     pub format: Option<StreamFormat>,
-    /// Rows and columns.
+    /// Rows and columns, of streams and of recordings that do not say them.
     pub shape: Option<(u16, u16)>,
+    /// Those of streams, where `shape` does not say them; recordings say their own.
+    pub stream_shape: Option<(u16, u16)>,
     /// Bits per second of a serial line.
     pub baud: u32,
     /// Read to the end, as fast as it goes, and stop there.
@@ -30,6 +32,7 @@ impl Default for AcquireOptions {
         Self {
             format: None,
             shape: None,
+            stream_shape: None,
             baud: 115_200,
             once: false,
             repeat: false,

@@ -1,13 +1,12 @@
 //! Where frames come from: a serial line, a pipe, a network connection, a growing file, or a recording played back.
 //!
 //! [`acquire`] reads a source until it ends or is stopped, and reports frames and what goes wrong, one after the
-//! other, on the thread that calls it. A consumer that must see every frame, such as a [`FrameRecorder`], stands there; one
-//! that only shows the newest takes it from a [`LatestFrame`], which never waits for it.
+//! other, on the thread that calls it. A consumer that must see every frame, such as a [`FrameRecorder`], stands there; a
+//! screen takes what has come meanwhile when it draws, and nobody waits for it.
 //!
 //! ```text
 //! serial, tcp, FIFO, standard input, file -> StreamDecoder \
 //! recording -> formats::recording, at its own rate          -> AcquireEvent -> FrameRecorder (every frame)
-//!                                                                           -> LatestFrame   (the newest wins)
 //! ```
 
 mod source;
@@ -24,12 +23,9 @@ mod playback;
 
 mod run;
 
-mod latest;
-
 mod recorder;
 
 pub use event::{AcquireError, AcquireEvent, AcquireOptions};
-pub use latest::LatestFrame;
-pub use recorder::{FrameRecorder, RecorderError, RecordingMetadata};
+pub use recorder::{FrameRecorder, RecorderError, description_beside};
 pub use run::acquire;
 pub use source::FrameSource;

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions};
+use crate::acquire::recorder::description_beside;
 use crate::acquire::stream::Consumer;
 use crate::formats::recording::{ReadOptions, RecordingEvent, read};
 use crate::formats::stream::StreamCounts;
@@ -69,6 +70,7 @@ pub(super) fn run(
     let reading = ReadOptions {
         shape: options.shape,
     };
+    let description = description_beside(path).and_then(Result::ok);
     let mut round = 0;
     loop {
         let mut pace = Pace {
@@ -81,9 +83,13 @@ pub(super) fn run(
         read(&mut file, reading, &mut |event| {
             flow = match event {
                 RecordingEvent::Channel(info) => {
+                    let mut info = info.clone();
+                    if let Some(description) = &description {
+                        info.complete(description);
+                    }
                     pace.step = info.seconds_per_frame.unwrap_or(STEP);
                     match round {
-                        0 => consumer(AcquireEvent::Channel(info)),
+                        0 => consumer(AcquireEvent::Channel(&info)),
                         _ => ControlFlow::Continue(()),
                     }
                 }

@@ -1,18 +1,20 @@
 //! Frames into a file that numpy and taxel can open at every moment, also after the program was killed.
 //!
 //! An array of records: time in seconds (NaN where it is not known), number, values. The header has room to spare and
-//! counts the records that are in the file already: they are written first, the count after them, at least twice a second.
+//! counts the records that are in the file already: they are written first, the count after them, at least twice a second,
+//! so a killed program loses less than half a second. A thread syncs the file each second, so a power cut loses hardly more;
+//! it never holds up the frames. Values are f64, as every form of frame is read: nothing is rounded.
 //! Beside `touch.npy` lies `touch.json`, which says where the frames are from and how they were looked at.
 
 use std::fs::File;
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::{SyncSender, sync_channel};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use serde::Serialize;
-
-use crate::formats::recording::SetRule;
-use crate::frame::{Frame, Tare};
+use crate::formats::recording::{FrameMark, RecordingMetadata};
+use crate::frame::Frame;
 use crate::storage::{Existing, UnfinishedFile};
 
 /// Bytes of the header's text: with the ten before it, 256. The longest has about 150.
@@ -21,42 +23,11 @@ const HEADER_TEXT: u16 = 246;
 /// Records are written out after this time at the latest.
 const WRITTEN_OUT: Duration = Duration::from_millis(400);
 
+/// The file is synced after this time.
+const SYNCED: Duration = Duration::from_millis(900);
+
 /// Or when they are so many bytes.
 const BUFFER: usize = 1 << 18;
-
-/// What `touch.json` says.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct RecordingMetadata {
-    /// The source's name.
-    pub source: String,
-    /// The unit of the values.
-    pub unit: Option<String>,
-    /// The distance of two cells, in mm, along x and along y.
-    pub pitch_mm: Option<[f64; 2]>,
-    /// The rule of the imprints that were shown meanwhile.
-    pub rule: Option<SetRule>,
-    /// How many frames the tare was made of.
-    pub tare_frames: Option<u64>,
-    /// What it takes off, row by row; null where there is no cell.
-    pub tare: Option<Vec<Vec<Option<f64>>>>,
-}
-
-impl RecordingMetadata {
-    /// With a tare.
-    #[must_use]
-    pub fn with_tare(mut self, tare: &Tare) -> Self {
-        let baseline = tare.baseline();
-        let row = |row| {
-            let values = baseline.row(row).iter();
-            values
-                .map(|&value| (!value.is_nan()).then_some(value))
-                .collect()
-        };
-        self.tare_frames = Some(tare.frames());
-        self.tare = Some((0..baseline.rows()).map(row).collect());
-        self
-    }
-}
 
 /// Why frames cannot be recorded.
 #[derive(Debug, thiserror::Error)]
@@ -86,16 +57,70 @@ pub enum RecorderError {
     },
 }
 
+/// No description is longer.
+const LARGEST_DESCRIPTION: u64 = 1 << 22;
+
 /// Writes frames to a file.
 #[derive(Debug)]
 pub struct FrameRecorder {
     path: PathBuf,
+    metadata: RecordingMetadata,
     file: File,
     shape: Option<(u16, u16)>,
     buffer: Vec<u8>,
     /// Records in the file and in the buffer.
     records: u64,
     written: Instant,
+    /// The times of the first frame and of the last one.
+    times: Option<(f64, f64)>,
+    syncer: Syncer,
+}
+
+/// Syncs a file on a thread of its own.
+#[derive(Debug)]
+struct Syncer {
+    ask: Option<SyncSender<()>>,
+    thread: Option<JoinHandle<()>>,
+    last: Instant,
+}
+
+impl Syncer {
+    fn new(file: &File) -> Self {
+        let (ask, asked) = sync_channel::<()>(1);
+        let thread = file.try_clone().ok().map(|file| {
+            std::thread::spawn(move || {
+                while asked.recv().is_ok() {
+                    // What the disk refuses is reported by the next write, or at the end.
+                    let _ = file.sync_data();
+                }
+            })
+        });
+        Self {
+            ask: thread.is_some().then_some(ask),
+            thread,
+            last: Instant::now(),
+        }
+    }
+
+    /// Has the file synced if that was long ago, and does not wait for it.
+    fn tick(&mut self) {
+        if self.last.elapsed() >= SYNCED {
+            self.last = Instant::now();
+            let asked = self.ask.as_ref().map(|ask| ask.try_send(()));
+            // It is still at the last one.
+            let _ = asked;
+        }
+    }
+}
+
+impl Drop for Syncer {
+    fn drop(&mut self) {
+        self.ask = None;
+        if let Some(thread) = self.thread.take() {
+            // It does not panic.
+            let _ = thread.join();
+        }
+    }
 }
 
 impl FrameRecorder {
@@ -125,13 +150,16 @@ impl FrameRecorder {
         })?;
         let mut recorder = Self {
             path: path.to_owned(),
+            metadata: metadata.clone(),
+            syncer: Syncer::new(&file),
+            times: None,
             file,
             shape: None,
             buffer: Vec::new(),
             records: 0,
             written: Instant::now(),
         };
-        recorder.describe(metadata)?;
+        recorder.write_description()?;
         recorder.count()?;
         Ok(recorder)
     }
@@ -140,17 +168,27 @@ impl FrameRecorder {
     ///
     /// # Errors
     /// What the system reports.
-    pub fn describe(&self, metadata: &RecordingMetadata) -> Result<(), RecorderError> {
+    pub fn describe(&mut self, metadata: &RecordingMetadata) -> Result<(), RecorderError> {
+        self.metadata.clone_from(metadata);
+        self.write_description()
+    }
+
+    /// Replaces the marks in the description.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub fn mark(&mut self, marks: Vec<FrameMark>) -> Result<(), RecorderError> {
+        self.metadata.marks = marks;
+        self.write_description()
+    }
+
+    fn write_description(&self) -> Result<(), RecorderError> {
         let path = self.path.with_extension("json");
         let refuse = |error: io::Error| RecorderError::Io {
             path: path.clone(),
             error,
         };
-        let described = Described {
-            format: "taxel-touch/1",
-            metadata,
-        };
-        let json = serde_json::to_vec_pretty(&described).map_err(|error| refuse(error.into()))?;
+        let json = self.metadata.text().map_err(|error| refuse(error.into()))?;
         let write = || {
             let mut file = UnfinishedFile::new(&path, Existing::Replaced)?;
             file.write(&json)?;
@@ -176,6 +214,10 @@ impl FrameRecorder {
         }
         if let Some(expected) = self.shape.filter(|shape| *shape != found) {
             return Err(RecorderError::Size { found, expected });
+        }
+        if let Some(time) = time {
+            let first = self.times.map_or(time, |(first, _)| first);
+            self.times = Some((first, time));
         }
         let time = time.unwrap_or(f64::NAN);
         self.buffer.extend(time.to_le_bytes());
@@ -210,7 +252,9 @@ impl FrameRecorder {
         written.map_err(|error| self.refused(error))?;
         self.buffer.clear();
         self.written = Instant::now();
-        self.count()
+        self.count()?;
+        self.syncer.tick();
+        Ok(())
     }
 
     fn refused(&self, error: io::Error) -> RecorderError {
@@ -238,6 +282,14 @@ impl FrameRecorder {
         written.map_err(|error| self.refused(error))
     }
 
+    /// The mean time from a frame to the next.
+    fn step(&self) -> Option<f64> {
+        let (first, last) = self.times?;
+        #[expect(clippy::cast_precision_loss, reason = "a mean")]
+        let steps = self.records.checked_sub(1).filter(|&steps| steps > 0)? as f64;
+        Some((last - first) / steps).filter(|&step| step > 0.0)
+    }
+
     /// Writes out everything, and syncs the file.
     ///
     /// # Errors
@@ -245,13 +297,36 @@ impl FrameRecorder {
     pub fn finish(mut self) -> Result<u64, RecorderError> {
         self.write_out()?;
         self.file.sync_all().map_err(|error| self.refused(error))?;
+        if let Some(step) = self.step()
+            && self.metadata.seconds_per_frame.is_none()
+        {
+            self.metadata.seconds_per_frame = Some(step);
+            self.write_description()?;
+        }
         Ok(self.records)
     }
 }
 
-#[derive(Serialize)]
-struct Described<'a> {
-    format: &'static str,
-    #[serde(flatten)]
-    metadata: &'a RecordingMetadata,
+/// The description beside an array, `touch.json` of `touch.npy`. None where there is none, or the file is something else.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn description_beside(path: &Path) -> Option<Result<RecordingMetadata, String>> {
+    let is_array = path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("npy"));
+    if !is_array {
+        return None;
+    }
+    let beside = path.with_extension("json");
+    if !beside.metadata().ok()?.is_file() {
+        return None;
+    }
+    let mut bytes = Vec::new();
+    let file = File::open(&beside).ok()?;
+    file.take(LARGEST_DESCRIPTION)
+        .read_to_end(&mut bytes)
+        .ok()?;
+    let name = || beside.display().to_string();
+    Some(RecordingMetadata::read(&bytes)?.map_err(|error| format!("{}: {error}", name())))
 }

@@ -56,7 +56,7 @@ pub(super) fn run(
 ) -> Result<(), AcquireError> {
     let stream = StreamOptions {
         format: options.format,
-        shape: options.shape,
+        shape: options.shape.or(options.stream_shape),
         from_start: !source.comes_back(),
     };
     let mut decoder = StreamDecoder::new(stream);

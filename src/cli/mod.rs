@@ -47,6 +47,7 @@ use arguments::model::ModelRequest;
 use arguments::request::{self, Asked, Chore, Form, Kept, Request, SweepArguments, Swept};
 use commands::export::Exported;
 use commands::frames::FramesOutput;
+use commands::naming::FrameNamer;
 use commands::{
     batch, completions, confusion, describe, export, frames, library, man, model, noise, recognise,
     screen, script, separate, sweep, touch, watch,
@@ -117,10 +118,10 @@ impl Surroundings {
             Request::Screen(size, record) => return self.screen(size, record, None),
             // On a terminal the frames are looked at; in a pipeline they are answered.
             Request::Watch(asked) if !asked.json && io::stdout().is_terminal() => {
-                return self.screen(None, None, Some(watch::request(&asked)?));
+                return self.screen(None, None, Some(watch::request(&asked, shelf)?));
             }
             Request::Watch(asked) => {
-                return watch::watch(&asked, &mut |text| note(text, charset));
+                return watch::watch(&asked, shelf, &mut |text| note(text, charset));
             }
             Request::Recognise(asked) => {
                 return recognise::recognise(&asked, shelf, charset, &mut io::stdout().lock());
@@ -205,12 +206,15 @@ impl Surroundings {
 
     /// Runs `taxel frames`. Answers that were made before an error are printed.
     fn frames(&self, asked: &FramesArguments, form: Form, kept: Kept) -> Result<(), CliError> {
+        let model = asked.naming.load(&self.shelf)?;
+        let noise = asked.naming.noise_with(frames::mask(&asked.processing)?);
         let mut answers = BufWriter::new(io::stdout().lock());
         let output = FramesOutput {
             form,
             kept,
             shelf: &self.shelf,
             charset: self.charset,
+            namer: model.as_ref().map(|model| FrameNamer::new(model, noise)),
             answers: &mut answers,
             notes: &mut |text| note(text, self.charset),
         };

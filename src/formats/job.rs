@@ -1,7 +1,13 @@
-//! One line of `taxel batch`: a figure, a picture or a whole matrix, and perhaps a sensor of its own.
+//! One line of `taxel batch`: a figure, a picture or a whole matrix, and perhaps a sensor of its own; or the values of a real
+//! sensor with a threshold.
 
+use std::fmt;
+
+use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
+
+use crate::formats::framed::{FrameRows, RULE_KEYS, RuleRecord};
 use crate::formats::json::message;
-use crate::formats::record::{Record, RecordError};
+use crate::formats::record::{Record, RecordError, Text, once};
 use crate::imprint::Imprint;
 use crate::sensor::Sensor;
 use crate::source::Source;
@@ -32,6 +38,9 @@ pub enum JobError {
     /// A value without a meaning.
     #[error(transparent)]
     Record(#[from] RecordError),
+    /// A frame that gives no imprint; the message is one sentence.
+    #[error("{0}")]
+    Frame(String),
     /// An invalid sensor.
     #[error("sensor: {0}")]
     Sensor(RecordError),
@@ -48,10 +57,18 @@ impl Job {
         sensor: Sensor,
         lookup: &dyn Fn(&str) -> Result<Imprint, String>,
     ) -> Result<Self, JobError> {
-        let record: Record<'_> = serde_json::from_slice(line).map_err(|error| JobError::Json {
+        let line: JobLine<'_> = serde_json::from_slice(line).map_err(|error| JobError::Json {
             column: error.column().max(1),
             message: message(&error),
         })?;
+        if let Some(frame) = &line.frame {
+            return line.describe(frame).map(Self::Describe);
+        }
+        if line.rule != RuleRecord::default() {
+            let text = "a threshold belongs to a frame, and there is none";
+            return Err(JobError::Frame(text.to_owned()));
+        }
+        let record = line.record;
         let sensor = match &record.sensor {
             Some(own) => own.sensor(sensor).map_err(JobError::Sensor)?,
             None => sensor,
@@ -84,5 +101,77 @@ impl Job {
                 plane.touch(source)
             }
         }
+    }
+}
+
+/// A line as it stands.
+#[derive(Default)]
+struct JobLine<'a> {
+    record: Record<'a>,
+    frame: Option<FrameRows>,
+    rule: RuleRecord,
+}
+
+impl JobLine<'_> {
+    /// The imprint of a frame, beside which only the keys of its rule may stand.
+    fn describe(&self, frame: &FrameRows) -> Result<Imprint, JobError> {
+        let Record {
+            figure: None,
+            picture: None,
+            imprint: None,
+            sensor: None,
+            values,
+        } = &self.record
+        else {
+            return Err(RecordError::Which("figure, picture, imprint, frame").into());
+        };
+        values.only("frame", &[])?;
+        self.rule.imprint(frame).map_err(JobError::Frame)
+    }
+
+    /// Takes the value of a key of a frame's rule.
+    fn take_rule<'de, A: MapAccess<'de>>(
+        &mut self,
+        key: &'static str,
+        map: &mut A,
+    ) -> Result<(), A::Error> {
+        let rule = &mut self.rule;
+        match key {
+            "at_least" => once(key, &mut rule.at_least, map.next_value()?),
+            "percent" => once(key, &mut rule.percent, map.next_value()?),
+            "low" => once(key, &mut rule.low, map.next_value()?),
+            "high" => once(key, &mut rule.high, map.next_value()?),
+            _ => once(key, &mut rule.least, map.next_value()?),
+        }
+    }
+}
+
+impl<'de: 'a, 'a> Deserialize<'de> for JobLine<'a> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct JobVisitor;
+        impl<'de> Visitor<'de> for JobVisitor {
+            type Value = JobLine<'de>;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("an object with a figure, a picture, an imprint or a frame")
+            }
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+                let mut line = JobLine::default();
+                while let Some(Text(key)) = map.next_key()? {
+                    if let Some(key) = RULE_KEYS.into_iter().find(|own| *own == key) {
+                        line.take_rule(key, &mut map)?;
+                        continue;
+                    }
+                    match key.as_ref() {
+                        "frame" => once("frame", &mut line.frame, map.next_value()?)?,
+                        _ => {
+                            let expected = "figure, picture, imprint, frame, sensor or a parameter";
+                            line.record.take(&key, &mut map, expected)?;
+                        }
+                    }
+                }
+                Ok(line)
+            }
+        }
+        deserializer.deserialize_map(JobVisitor)
     }
 }

@@ -14,6 +14,9 @@ pub(crate) mod json;
 mod record;
 
 #[cfg(feature = "json")]
+pub(crate) mod framed;
+
+#[cfg(feature = "json")]
 mod job;
 
 pub mod name;

@@ -36,7 +36,10 @@ mod processing;
 
 mod peak;
 
+mod flips;
+
 pub use error::FrameError;
+pub use flips::{FlipCounter, FlipReport};
 pub use peak::Peak;
 pub use processing::{Processed, Processing};
 pub use recorded::{Frame, LARGEST_VALUE, MAX_FRAME_SIDE};

@@ -30,6 +30,11 @@ impl TareFrames {
         }
     }
 
+    /// Number of frames that it is to be made of.
+    pub fn wanted(&self) -> u64 {
+        self.wanted
+    }
+
     /// Number of frames that are still missing.
     pub fn missing(&self) -> u64 {
         self.wanted - self.frames
@@ -132,6 +137,45 @@ impl Tare {
     /// The median of each cell, in the sensor's unit; NaN where a cell never had a value.
     pub fn baseline(&self) -> &Matrix<f64> {
         &self.baseline
+    }
+
+    /// A tare that was made before: the median of each cell, its median absolute deviation, and one step of the values.
+    /// Without these two a rule by noise has only steps of 1 to go by.
+    ///
+    /// # Errors
+    /// If the sizes differ.
+    pub fn from_parts(
+        baseline: Matrix<f64>,
+        spread: Option<Matrix<f64>>,
+        step: Option<f64>,
+        frames: u64,
+    ) -> Result<Self, FrameError> {
+        let size = |of: &Matrix<f64>| (u16::from(of.columns()), u16::from(of.rows()));
+        let spread =
+            spread.unwrap_or_else(|| Matrix::filled(baseline.columns(), baseline.rows(), 0.0));
+        if size(&spread) != size(&baseline) {
+            return Err(FrameError::Size {
+                what: "tare",
+                found: size(&spread),
+                expected: size(&baseline),
+            });
+        }
+        Ok(Self {
+            baseline,
+            spread,
+            step: step.map_or(1.0, |step| step),
+            frames,
+        })
+    }
+
+    /// The median absolute deviation of each cell.
+    pub fn spread(&self) -> &Matrix<f64> {
+        &self.spread
+    }
+
+    /// The smallest difference between two of its values.
+    pub fn step(&self) -> f64 {
+        self.step
     }
 
     /// How many frames it was made of.

@@ -71,6 +71,18 @@ impl View {
         self.hide(seen)
     }
 
+    /// Columns and rows of what is seen of frames of that size; more than there may be are possible.
+    pub fn size(&self, columns: u16, rows: u16) -> (u16, u16) {
+        let (columns, rows) = self
+            .crop
+            .map_or((columns, rows), |crop| (crop.columns, crop.rows));
+        if self.quarter_turns.is_multiple_of(2) {
+            (columns, rows)
+        } else {
+            (rows, columns)
+        }
+    }
+
     fn copy(&self, frame: &Frame, crop: Crop, columns: u8, seen: &mut Matrix<f64>) {
         let width = usize::from(frame.columns());
         let from = usize::from(crop.top) * width + usize::from(crop.left);

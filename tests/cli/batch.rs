@@ -175,3 +175,32 @@ fn an_answer_does_not_wait_for_the_next_line() {
     assert_eq!(stdout.read_to_end(&mut Vec::new()).expect("the end"), 0);
     assert_eq!(child.wait().expect("the program ends").code(), Some(0));
 }
+
+/// The values of a real sensor, with the rule of their imprint.
+#[test]
+fn a_frame_with_a_threshold_is_described() {
+    let input = concat!(
+        "{\"frame\":[[0,30],[null,31]],\"at_least\":30}\n",
+        "{\"frame\":[[0,30],[null,31]]}\n",
+        "{\"frame\":[[0,30]],\"at_least\":30,\"imprint\":[\"#\"]}\n",
+        "{\"imprint\":[\"#\"],\"least\":2}\n",
+    );
+    let run = taxel("batch", input);
+    let lines: Vec<&str> = run.stdout.lines().collect();
+    assert!(
+        lines[0].starts_with("{\"imprint\":[\".#\",\".#\"],\"na\":2,"),
+        "{}",
+        lines[0]
+    );
+    assert!(lines[1].contains("expected one threshold"), "{}", lines[1]);
+    assert!(
+        lines[2].contains("expected exactly one of the keys"),
+        "{}",
+        lines[2]
+    );
+    assert!(
+        lines[3].contains("a threshold belongs to a frame"),
+        "{}",
+        lines[3]
+    );
+}

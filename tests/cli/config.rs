@@ -32,7 +32,7 @@ fn what_is_unknown_or_unfit_is_refused_with_its_place() {
     for (text, expected) in [
         (
             "# a comment\n  colour = 'never'\n",
-            "2:3: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, keys",
+            "2:3: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, source, frames, keys",
         ),
         (
             "theme = 'blue'",
@@ -49,6 +49,26 @@ fn what_is_unknown_or_unfit_is_refused_with_its_place() {
         (
             "[sensor]\ncolumns = 16\nzoom = 2\n",
             "3:1: unknown key \"zoom\", expected one of columns, rows, threshold, pitch",
+        ),
+        (
+            "[source]\nbaud = 12\n",
+            "2:8: expected a whole number, 50 to 20000000, found \"12\"",
+        ),
+        (
+            "[source]\nformat = 'csv'\n",
+            "2:10: expected one of \"auto\", \"lines\", \"jsonl\", \"ros2\", \"flexitac\", \"matsense\", found \"csv\"",
+        ),
+        (
+            "[source]\nrows = 16\n",
+            "2:1: expected rows and columns together, found rows",
+        ),
+        (
+            "[frames]\npercent = 5\nat_least = 9\n",
+            "2:1: expected one threshold: at_least, percent, or low and high, found percent",
+        ),
+        (
+            "[frames]\nlow = 5\nhigh = 4\n",
+            "2:1: expected a number at most that of high, found low",
         ),
         (
             "[sensor]\nrows = 65\n",

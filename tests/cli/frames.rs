@@ -126,7 +126,7 @@ fn rules_are_those_of_flags_or_of_the_recording() {
     refused(
         "tekscan.asf",
         "--peak",
-        "--at-least, --percent, --low and --high, or --noise",
+        "--at-least, --percent, --low and --high, or --deviations",
     );
     refused(
         "tekscan.asf",
@@ -143,7 +143,7 @@ fn rules_are_those_of_flags_or_of_the_recording() {
         "the following required",
     );
     misused(
-        &format!("frames {} --peak --noise 3", sample("u2.npy")),
+        &format!("frames {} --peak --deviations 3", sample("u2.npy")),
         "the following required",
     );
     misused(
@@ -271,4 +271,49 @@ fn cells_that_are_not_square_have_no_lengths_in_mm() {
     );
     let square = frames("tekscan.asf", "--peak --at-least 9").stdout;
     assert!(square.contains("in mm"), "{square}");
+}
+
+/// What a recording says of the taxels that flip, and of those that are stuck; and the mask of these.
+#[test]
+fn the_noise_of_a_recording_is_reported() {
+    // 30 frames of 5 x 5: one taxel is always on, one flips in every tenth frame.
+    let frame = |number: u32| {
+        let mut values = [0; 25];
+        values[24] = 9;
+        if number % 10 == 5 {
+            values[6] = 9;
+        }
+        let rows = values.chunks(5).map(|row| format!("{row:?}"));
+        format!("{{\"frame\":[{}]}}\n", rows.collect::<Vec<_>>().join(","))
+    };
+    let text: String = (0..30).map(frame).collect();
+    let run = taxel("frames - --noise-report --at-least 5 --json", text.clone());
+    let answer = &answers(&run)[0];
+    assert_eq!(
+        (
+            &answer["frames"],
+            &answer["cells"],
+            &answer["flips"],
+            &answer["repeated"]
+        ),
+        (&30.into(), &25.into(), &3.into(), &694.into())
+    );
+    let noise = answer["noise"].as_f64().expect("a number");
+    let share = noise * (1.0 - noise);
+    assert!(
+        (share / (1.0 - 2.0 * share) - 3.0 / 694.0).abs() < 1e-12,
+        "{noise}"
+    );
+    assert_eq!(answer["stuck_on"], serde_json::json!([[4, 4]]));
+    assert_eq!(answer["stuck_off"], serde_json::json!([]));
+    let folder = tempfile::tempdir().expect("a folder");
+    let mask = folder.path().join("mask.txt");
+    let line = format!(
+        "frames - --noise-report --at-least 5 --export {}",
+        mask.display()
+    );
+    let run = taxel(&line, text);
+    assert!(run.stdout.contains("stuck on: 4,4\n"), "{}", run.stdout);
+    let written = std::fs::read_to_string(&mask).expect("it is written");
+    assert_eq!(written, ".....\n.....\n.....\n.....\n....#\n");
 }

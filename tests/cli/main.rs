@@ -17,6 +17,8 @@ mod frames;
 
 mod watch;
 
+mod sensors;
+
 mod batch;
 
 mod library;

@@ -249,3 +249,61 @@ fn the_seven_figures_are_at_hand() {
     let card = place.done("model show figures");
     assert!(card.contains("hexagon: hexagon side 4.00"), "{card}");
 }
+
+/// Frames of which one has a square, with `--model` and through a pipe.
+#[test]
+fn frames_are_named_by_a_model() {
+    let place = place();
+    let row = |values: &str| format!("[{values}]");
+    let empty = row("0,0,0,0,0,0");
+    let full = row("0,9,9,9,9,0");
+    let frame = |rows: [&str; 6]| format!("{{\"frame\":[{}]}}\n", rows.join(","));
+    let square = frame([&empty, &full, &full, &full, &full, &empty]);
+    let nothing = frame([&empty; 6]);
+    place.write("touch.jsonl", &(nothing + &square));
+    let flags = "--at-least 5 --model r --noise 0.01";
+    let listed = place.done(&format!("frames touch.jsonl --all --json {flags}"));
+    let lines: Vec<Value> = listed
+        .lines()
+        .map(|line| serde_json::from_str(line).expect("JSON"))
+        .collect();
+    assert_eq!(lines[0]["recognition"], Value::Null);
+    let named = &lines[1]["recognition"];
+    assert_eq!(
+        (&named["answer"], &named["noise"]),
+        (&"d".into(), &0.01.into())
+    );
+    assert_eq!(named["nearest"]["distance"], 0);
+    // The same of a stream; and the answers of both are lines for recognise.
+    let watched = place.done(&format!("watch touch.jsonl --once {flags}"));
+    assert_eq!(watched, listed);
+    let piped = answer(&place.run(
+        "recognise - --model r --noise 0.01",
+        listed.lines().last().expect("a line"),
+    ));
+    assert_eq!(
+        (&piped["frame"], &piped["answer"]),
+        (&1.into(), &"d".into())
+    );
+    assert_eq!(piped["ranking"], named["ranking"]);
+    // The values themselves, with a threshold.
+    let line = square
+        .trim_end()
+        .replace('}', ",\"at_least\":5,\"label\":7}");
+    let framed = answer(&place.run("recognise - --model r", &line));
+    assert_eq!(
+        (&framed["label"], &framed["answer"]),
+        (&7.into(), &"d".into())
+    );
+    assert_eq!(framed["frame"], Value::Null);
+    let text = place.done("frames touch.jsonl --peak --at-least 5 --model r");
+    assert!(text.contains("d: certain"), "{text}");
+    for line in [
+        "watch touch.jsonl --once",
+        "frames touch.jsonl --peak --at-least 5",
+    ] {
+        let run = place.run(&format!("{line} --model nowhere"), "");
+        assert_eq!(run.status, Some(1), "{line}");
+        assert!(run.stderr.contains("nowhere"), "{}", run.stderr);
+    }
+}

@@ -170,7 +170,7 @@ fn a_broken_file_is_told_and_nothing_is_started() {
     let folder = home.path();
     let file = folder.join(".config/taxel/config.toml");
     let message = format!(
-        "error: {}:2:1: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, keys\n",
+        "error: {}:2:1: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, source, frames, keys\n",
         file.display()
     );
     for line in [
@@ -254,4 +254,50 @@ fn a_settings_file_that_is_a_pipe_is_refused_at_once() {
         "{}",
         run.stderr
     );
+}
+
+/// Settings of real sensors, for frames and watch; flags override them.
+#[test]
+fn frames_are_looked_at_as_the_file_says() {
+    let text =
+        "[source]\nrows = 4\ncolumns = 5\nformat = 'flexitac'\n[frames]\npercent = 40\ntare = 1\n";
+    let home = home(text);
+    shows(
+        &mut at_home("config", home.path()),
+        &[
+            ("format = \"flexitac\"", "file, line 4"),
+            ("baud = 115200", "default"),
+            ("rows = 4", "file, line 2"),
+            ("percent = 40", "file, line 6"),
+            ("# at_least is not set", "default"),
+            ("history_bytes = 33554432", "default"),
+        ],
+    );
+    let samples = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/files/frames/samples");
+    let answered = |line: String| {
+        let run = run(&mut at_home(&line, home.path()));
+        assert_eq!(run.status, Some(0), "{}", run.stderr);
+        run.stdout
+    };
+    let settings = answered(format!("frames {samples}/tekscan.asf --frame 2 --json"));
+    assert!(
+        settings.contains("\"tare\":1,\"rule\":{\"percent\":40,\"from\":\"settings\"}"),
+        "{settings}"
+    );
+    let flags = answered(format!(
+        "frames {samples}/tekscan.asf --frame 2 --json --at-least 9 --tare 0"
+    ));
+    assert!(
+        flags.contains("\"rule\":{\"at_least\":9,\"from\":\"flag\"}") && !flags.contains("tare"),
+        "{flags}"
+    );
+    // A stream has the rows and columns of the settings; a recording its own.
+    let stream = answered(format!(
+        "watch {samples}/flexitac.bin --once --format flexitac"
+    ));
+    assert_eq!(stream.lines().count(), 3, "{stream}");
+    let own = answered(format!(
+        "watch {samples}/tekscan.asf --once --format auto --tare 0"
+    ));
+    assert_eq!(own.lines().count(), 3, "{own}");
 }

@@ -18,7 +18,6 @@ const COMMANDS: [&str; 31] = [
     "batch",
     "sweep",
     "merge",
-    "frames",
     "model",
     "model train",
     "model show",
@@ -28,6 +27,7 @@ const COMMANDS: [&str; 31] = [
     "model touches",
     "model separate",
     "recognise",
+    "frames",
     "watch",
     "library",
     "library list",
@@ -200,7 +200,8 @@ fn every_example_of_every_help_does_what_it_says() {
         let folder = tempfile::tempdir().expect("a folder");
         let folder = folder.path();
         furnished(folder);
-        if command == "merge" || command.starts_with("model") || command == "recognise" {
+        let named = ["merge", "recognise", "frames", "watch"].contains(&command);
+        if named || command.starts_with("model") {
             with_models(folder, command);
         }
         if ["library delete", "library restore", "library path"].contains(&command) {

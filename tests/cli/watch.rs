@@ -266,3 +266,175 @@ fn a_serial_line_is_read_and_a_busy_one_is_said_to_be_busy() {
     socat.kill().expect("it is killed");
     socat.wait().expect("it ends");
 }
+
+#[test]
+fn of_several_channels_nothing_is_answered_before_one_is_named() {
+    let line = format!("watch --once --at-least 9 {}", sample("xsensor.csv"));
+    let run = taxel(&line, "");
+    assert_eq!((run.status, run.stdout.as_str()), (Some(1), ""));
+    assert!(
+        run.stderr
+            .contains("choose one with --channel: left, right"),
+        "{}",
+        run.stderr
+    );
+    let run = taxel(&format!("{line} --channel right"), "");
+    assert_eq!(run.status, Some(0), "{}", run.stderr);
+}
+
+/// What lies beside a recording holds when it is read again: threshold, unit and tare.
+#[test]
+fn the_description_of_a_recording_is_read_with_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("touch.npy");
+    let path = file.to_str().expect("UTF-8");
+    let flags = "--once --low 5 --high 12 --least 2 --tare 2";
+    let line = format!("watch {} {flags} --write {path}", sample("tekscan.asf"));
+    let watched = taxel(&line, "");
+    assert_eq!(watched.status, Some(0), "{}", watched.stderr);
+    let again = taxel(&format!("frames {path} --all --json"), "");
+    assert_eq!((again.status, again.stderr.as_str()), (Some(0), ""));
+    let pairs = lines(&watched.stdout).into_iter().zip(lines(&again.stdout));
+    let mut count = 0;
+    for (first, again) in pairs {
+        for key in ["imprint", "na", "tare", "sum"] {
+            assert_eq!(first[key], again[key], "{key}");
+        }
+        assert_eq!(again["rule"]["from"], "file");
+        assert_eq!(again["rule"]["low"], 5);
+        count += 1;
+    }
+    assert_eq!(count, 3);
+    let played = taxel(&format!("watch {path} --once"), "");
+    assert_eq!(played.stdout, again.stdout);
+    let listed = taxel(&format!("frames {path} --json"), "");
+    let channel = &lines(&listed.stdout)[0]["channels"][0];
+    assert_eq!(
+        (&channel["unit"], &channel["pitch_mm"]),
+        (&"raw".into(), &serde_json::json!([2.5, 2.5]))
+    );
+    // Flags come first.
+    let plain = taxel(
+        &format!("frames {path} --peak --json --at-least 9 --tare 0"),
+        "",
+    );
+    let plain = &lines(&plain.stdout)[0];
+    assert_eq!(
+        plain["rule"],
+        serde_json::json!({"at_least": 9, "from": "flag"})
+    );
+    assert_eq!(plain.get("tare"), None);
+    // A description that is broken is told, one of another program is not.
+    for (text, told) in [
+        (
+            "{\"format\":\"taxel-touch/1\",\"rule\":{\"percent\":0}}",
+            true,
+        ),
+        ("{\"format\":1}", false),
+    ] {
+        fs::write(file.with_extension("json"), text).expect("written");
+        let run = taxel(&format!("frames {path} --peak --at-least 9"), "");
+        assert_eq!(run.status, Some(0), "{}", run.stderr);
+        assert_eq!(
+            run.stderr.contains("touch.json: rule: "),
+            told,
+            "{}",
+            run.stderr
+        );
+    }
+}
+
+/// A connection that is cut is tried again each second; every whole frame of it counts.
+#[test]
+fn a_connection_that_is_lost_is_made_again() {
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let port = listener.local_addr().expect("an address").port();
+    let source = format!("tcp://127.0.0.1:{port}");
+    let mut child = started(&["watch", &source, "--format", "lines"]);
+    let mut output = BufReader::new(child.stdout.take().expect("piped"));
+    let mut number = |expected: u32| {
+        let mut answer = String::new();
+        output.read_line(&mut answer).expect("it answers");
+        assert_eq!(lines(&answer)[0]["sum"], 9 + expected);
+    };
+    let (mut first, _) = listener.accept().expect("it connects");
+    // What comes first may be torn.
+    first
+        .write_all(("3 4\n\n".to_owned() + &stream(0..5) + "1 ").as_bytes())
+        .expect("it reads");
+    (0..5).for_each(&mut number);
+    drop(first);
+    let (mut second, _) = listener.accept().expect("it connects again");
+    second
+        .write_all(("3 4\n\n".to_owned() + &stream(7..12)).as_bytes())
+        .expect("it reads");
+    (7..12).for_each(&mut number);
+    child.kill().expect("it is killed");
+    let ended = super::finish(child, b"");
+    assert!(
+        ended
+            .stderr
+            .contains("the other end has closed it; trying again each second")
+            && ended.stderr.contains("back after"),
+        "{}",
+        ended.stderr
+    );
+    // Nobody is there.
+    drop(listener);
+    let refused = taxel(&format!("watch {source}"), "");
+    assert_eq!(refused.status, Some(1));
+    assert!(
+        refused.stderr.contains("cannot open it"),
+        "{}",
+        refused.stderr
+    );
+}
+
+/// The same at a hundred random moments, with the figures: `cargo test --test cli a_hundred -- --ignored --nocapture`.
+#[test]
+#[ignore = "takes minutes"]
+fn a_hundred_kills_at_random_lose_at_most_a_second() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mut random, mut most, mut opened) = (7_u64, 0.0_f64, 0);
+    for round in 0..100 {
+        random = random
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        let life = Duration::from_millis(200 + (random >> 33) % 2500);
+        let file = folder.path().join(format!("touch-{round}.npy"));
+        let path = file.to_str().expect("UTF-8");
+        let mut child = started(&["watch", "-", "--format", "lines", "--write", path]);
+        let mut input = child.stdin.take().expect("piped");
+        let output = child.stdout.take().expect("piped");
+        let drained = std::thread::spawn(move || BufReader::new(output).lines().count());
+        let start = std::time::Instant::now();
+        let mut times = Vec::new();
+        while start.elapsed() < life {
+            let number = u32::try_from(times.len()).expect("few");
+            input
+                .write_all(stream(number..number + 1).as_bytes())
+                .expect("it reads");
+            times.push(start.elapsed());
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        child.kill().expect("it is killed");
+        let killed = start.elapsed();
+        child.wait().expect("it ends");
+        drained.join().expect("it is drained");
+        let run = taxel(&format!("frames {path} --all --at-least 1 --json"), "");
+        let frames = lines(&run.stdout);
+        for (number, frame) in frames.iter().enumerate() {
+            assert_eq!(frame["sum"], 9 + number, "{frame}");
+        }
+        // The last whole frame that is missing was sent so long before.
+        let lost = times
+            .get(frames.len())
+            .map_or(0.0, |sent| (killed - *sent).as_secs_f64());
+        most = most.max(lost);
+        opened += u32::from(numpy(&file).is_some());
+        assert!(lost <= 1.0, "round {round}: {lost} s lost");
+    }
+    println!(
+        "100 kills: numpy opened {opened}, taxel 100, at most {most:.2} s lost, no wrong frame"
+    );
+}

@@ -79,3 +79,44 @@ fn the_imprint_goes_to_the_matrix_and_the_source_stays() {
     then(&mut page, "<Esc>w", &["frame 5"]);
     shows("w", &["! no source yet: ':watch SOURCE'"]);
 }
+
+#[test]
+fn a_frame_is_marked_and_unmarked() {
+    shows(&watched(0, "m"), &["! no frame yet"]);
+    let mut page = watched(6, "m");
+    shows(&page, &["frame 5: marked", "marked", "marks      5"]);
+    then(&mut page, "<Left>m", &["marks      5, 4"]);
+    then(
+        &mut page,
+        "m",
+        &["frame 4: no mark any more", "marks      5"],
+    );
+    then(&mut page, "<End>", &["frame 5", "marked"]);
+}
+
+#[test]
+fn the_shape_is_named_by_sets_of_shapes_in_turn() {
+    let mut page = watched(6, "nnn");
+    shows(&page, &["shapes are named by the shapes that come with it"]);
+    then(&mut page, "n", &["shapes are not named"]);
+    hides(&page, &["nearest"]);
+    then(
+        &mut page,
+        "n",
+        &["shapes are named by the seven figures", "shape      –"],
+    );
+    // The ring of the recording is none of the figures: only the nearest of their imprints can be said.
+    then(
+        &mut page,
+        "+++++++",
+        &[
+            "shape      unknown",
+            "nearest    ",
+            " taxels differ",
+            "model      figures",
+        ],
+    );
+    page.frames(2);
+    shows(&page, &["frame 7", "nearest    "]);
+    hides(&page, &["…", "training or"]);
+}

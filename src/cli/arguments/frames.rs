@@ -8,15 +8,21 @@
 //! ```
 //! Only one rule can be given. Values are in the recording's own unit.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
 
 use crate::cli::arguments::flags::{option, switch};
 use crate::cli::arguments::help::FRAMES_EXAMPLES;
+use crate::cli::arguments::recognise::parse_noise;
+use crate::cli::commands::naming::NamingArguments;
 use crate::cli::error::CliError;
+use crate::cli::settings::sensors::SensorSettings;
+use crate::formats::recording::SetRule;
 use crate::frame::{Crop, FrameError, Rule};
 use crate::parameter::number;
+use crate::recognition::Noise;
 
 /// Which frames are answered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +35,8 @@ pub(crate) enum FrameChoice {
     Peak,
     /// All.
     All,
+    /// None by itself: how often taxels flip over all of them, and which are dead or stuck.
+    NoiseReport,
 }
 
 /// How frames become imprints.
@@ -48,12 +56,14 @@ pub(crate) struct ProcessingArguments {
     pub(crate) quarter_turns: u8,
     /// A file with an imprint whose active taxels are the cells without a value, as the frame is seen after the turn.
     pub(crate) mask: Option<PathBuf>,
-    /// Frames that the tare is made of; 0 for none.
-    pub(crate) tare: u64,
+    /// Frames that the tare is made of; 0 for none, not given for that of the recording.
+    pub(crate) tare: Option<u64>,
     /// A recording of one frame: what each cell is multiplied by after the tare.
     pub(crate) gain: Option<PathBuf>,
     /// The threshold; None for that of the recording.
     pub(crate) rule: Option<Rule>,
+    /// Where that is from: `flag` or `settings`.
+    pub(crate) rule_from: &'static str,
     /// The smallest 8-connected piece that is kept, in taxels; 0 keeps all.
     pub(crate) least: u32,
 }
@@ -69,6 +79,7 @@ pub(crate) struct FramesArguments {
     pub(crate) processing: ProcessingArguments,
     /// Whether values are shown in shades.
     pub(crate) heat: bool,
+    pub(crate) naming: NamingArguments,
 }
 
 /// `taxel frames FILE`, without the flags about answers that [`definitions`](super::definitions) adds.
@@ -85,15 +96,20 @@ pub(crate) fn command() -> Command {
         .value_parser(value_parser!(i64));
     let peak = switch("peak", "The frame with the greatest sum of values");
     let every = switch("all", "All frames, one after the other");
-    let choices = ["frame", "label", "peak", "all"];
+    let flips = switch(
+        "noise-report",
+        "How often taxels flip, and which are dead or stuck",
+    );
+    let choices = ["frame", "label", "peak", "all", "noise-report"];
     Command::new("frames")
         .about("List a recording of a real sensor, or describe its frames")
         .after_help(FRAMES_EXAMPLES)
         .arg(file)
-        .args([frame, label, peak, every].map(|arg| arg.help_heading("Frames")))
+        .args([frame, label, peak, every, flips].map(|arg| arg.help_heading("Frames")))
         .group(ArgGroup::new("choice").args(choices))
         .args(processing())
         .args(rules())
+        .args(naming().map(|arg| arg.requires("choice")))
 }
 
 /// The flag that shows values.
@@ -151,11 +167,27 @@ pub(crate) fn processing() -> [Arg; 9] {
             "N",
             "Take off the median of each cell over N frames",
         )
-        .value_parser(value_parser!(u64).range(1..)),
+        .value_parser(value_parser!(u64)),
         text("gain", "FILE", "Table of what each cell is multiplied by")
             .value_parser(value_parser!(PathBuf)),
     ]
     .map(|arg| arg.help_heading("Processing"))
+}
+
+/// The flags that name the shape of each imprint.
+pub(crate) fn naming() -> [Arg; 2] {
+    let model = Arg::new("model")
+        .long("model")
+        .value_name("MODEL")
+        .value_parser(value_parser!(OsString))
+        .help("Name the shape that left the imprint: a model's name\nor file, or 'figures'");
+    let noise = Arg::new("noise")
+        .long("noise")
+        .value_name("E")
+        .value_parser(parse_noise)
+        .requires("model")
+        .help("Each taxel flips with this probability (below 0.5)");
+    [model, noise].map(|arg| arg.help_heading("Recognition"))
 }
 
 /// The flags that say which values are active.
@@ -171,7 +203,7 @@ pub(crate) fn rules() -> [Arg; 6] {
             .help(help)
     };
     let others = |own: &'static str| {
-        ["at-least", "percent", "low", "noise"]
+        ["at-least", "percent", "low", "deviations"]
             .into_iter()
             .filter(move |other| *other != own)
     };
@@ -195,12 +227,12 @@ pub(crate) fn rules() -> [Arg; 6] {
             .conflicts_with_all(others("low")),
         value("high", "B", "Active from B on").requires("low"),
         value(
-            "noise",
+            "deviations",
             "K",
-            "Active from K deviations of noise on; needs a tare",
+            "Active from K deviations of a cell's noise on; needs\na tare",
         )
         .requires("tare")
-        .conflicts_with_all(others("noise")),
+        .conflicts_with_all(others("deviations")),
         least,
     ]
     .map(|arg| arg.help_heading("Threshold"))
@@ -234,29 +266,47 @@ impl FramesArguments {
     ///
     /// # Errors
     /// If a threshold is out of range.
-    pub(crate) fn of(matches: &ArgMatches, file: PathBuf) -> Result<Self, CliError> {
+    pub(crate) fn of(
+        matches: &ArgMatches,
+        file: PathBuf,
+        settings: &SensorSettings,
+    ) -> Result<Self, CliError> {
         let choice = match (matches.get_one("frame"), matches.get_one("label")) {
             (Some(&number), _) => Some(FrameChoice::Number(number)),
             (_, Some(&label)) => Some(FrameChoice::Label(label)),
             _ if matches.get_flag("peak") => Some(FrameChoice::Peak),
             _ if matches.get_flag("all") => Some(FrameChoice::All),
+            _ if matches.get_flag("noise-report") => Some(FrameChoice::NoiseReport),
             _ => None,
         };
         Ok(Self {
             file,
             choice,
-            processing: ProcessingArguments::of(matches)?,
+            processing: ProcessingArguments::of(matches, settings)?,
             heat: matches.get_flag("heat"),
+            naming: NamingArguments::of(matches),
         })
     }
 }
 
+impl NamingArguments {
+    /// What the arguments of [`naming`] ask for.
+    pub(crate) fn of(matches: &ArgMatches) -> Self {
+        Self {
+            model: matches.get_one::<OsString>("model").cloned(),
+            noise: matches.get_one::<Noise>("noise").copied(),
+        }
+    }
+}
+
 impl ProcessingArguments {
-    /// What the arguments of [`processing`] and [`rules`] ask for.
+    /// What the arguments of [`processing`] and [`rules`] ask for, or else the settings.
     ///
     /// # Errors
     /// If a threshold is out of range.
-    pub(crate) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
+    pub(crate) fn of(matches: &ArgMatches, settings: &SensorSettings) -> Result<Self, CliError> {
+        let asked = rule(matches)?;
+        let rule_from = if asked.is_some() { "flag" } else { "settings" };
         let side = |id| matches.get_one::<u16>(id).copied();
         let flip = matches.get_one::<String>("flip");
         let flips = |axis: char| flip.is_some_and(|flip| flip.contains(axis));
@@ -275,11 +325,22 @@ impl ProcessingArguments {
                 _ => 0,
             },
             mask: path("mask"),
-            tare: matches.get_one("tare").map_or(0, |&frames| frames),
+            tare: matches.get_one("tare").copied().or(settings.tare()),
             gain: path("gain"),
-            rule: rule(matches)?,
-            least: matches.get_one("least").map_or(0, |&taxels| taxels),
+            rule: asked.or_else(|| settings.rule()),
+            rule_from,
+            least: (matches.get_one("least").copied())
+                .or(settings.least())
+                .map_or(0, |taxels| taxels),
         })
+    }
+}
+
+impl ProcessingArguments {
+    /// The rule of the flags, else of the settings.
+    pub(crate) fn set_rule(&self) -> Option<SetRule> {
+        let (least, from) = (self.least, self.rule_from);
+        self.rule.map(|rule| SetRule { rule, least, from })
     }
 }
 
@@ -313,6 +374,6 @@ fn rule(matches: &ArgMatches) -> Result<Option<Rule>, CliError> {
     }
     made("at-least", Rule::at_least)
         .or_else(|| made("percent", Rule::percent))
-        .or_else(|| made("noise", Rule::noise))
+        .or_else(|| made("deviations", Rule::noise))
         .transpose()
 }

@@ -404,12 +404,15 @@ Examples:
   taxel frames recording.csv --all --percent 25 --tare 2 --json
   taxel frames recording.csv --frame 2 --low 5 --high 20 --heat --ascii
   taxel frames recording.csv --peak --at-least 10 --heat --export touch.svg
+  taxel frames recording.csv --peak --at-least 10 --model parts --noise 0.01
+  taxel frames recording.csv --noise-report --at-least 10 --export mask.txt
   taxel frames plain.csv --rows 4 --columns 5 --crop 1,0,3x3 --json";
 
 /// `taxel watch`: what is answered, what a stream may be, and what is recorded.
 pub(crate) const WATCH_EXAMPLES: &str = "\
-Each frame is answered by one line, as of 'taxel frames --all --json'; without a
-threshold its imprint is null. Streams are numbers in lines, JSON lines, what
+On a terminal the frames are shown. With --json, or in a pipeline, each frame is
+answered by one line, as of 'taxel frames --all --json'; without a threshold its
+imprint is null. Streams are numbers in lines, JSON lines, what
 'ros2 topic echo' prints, FlexiTac's and MatSense's bytes; what begins one is
 found by looking. A recording is played at its own rate. A serial line or a
 connection that is lost is tried again each second. Torn, short, long and
@@ -421,4 +424,6 @@ A .json of the same name says what the values are.
 Examples:
   taxel watch recording.csv --once --at-least 10
   taxel watch - --format lines --percent 50 --write touch.npy < rows.txt
-  taxel watch touch.npy --speed 10 --at-least 9";
+  taxel watch touch.npy --speed 10 --at-least 9
+  taxel watch recording.csv --once --percent 40 --model parts
+  taxel watch touch.npy --once --at-least 9 | taxel recognise - --model parts";

@@ -94,7 +94,7 @@ pub(super) fn command() -> Command {
 }
 
 /// The probability that a taxel flips: 0 or more, below 0.5.
-fn parse_noise(text: &str) -> Result<Noise, String> {
+pub(crate) fn parse_noise(text: &str) -> Result<Noise, String> {
     let number = text
         .trim()
         .parse()

@@ -257,12 +257,16 @@ fn request(
         }
         "watch" => {
             let source = required::<OsString>(own, "source")?;
-            Request::Watch(Box::new(WatchArguments::of(own, source)?))
+            Request::Watch(Box::new(WatchArguments::of(
+                own,
+                source,
+                settings.sensors(),
+            )?))
         }
         "frames" => {
             let file = required::<PathBuf>(own, "file")?;
             let kept = kept(own, command, "frames")?;
-            let asked = FramesArguments::of(own, file)?;
+            let asked = FramesArguments::of(own, file, settings.sensors())?;
             Request::Frames(Box::new(asked), form(own, settings)?, kept)
         }
         "library" => Request::Library(chore(own, settings)?),

@@ -18,7 +18,9 @@ use crate::cli::arguments::flags::{self, option, switch};
 use crate::cli::arguments::frames::{self, ProcessingArguments};
 use crate::cli::arguments::help::WATCH_EXAMPLES;
 use crate::cli::arguments::parameters;
+use crate::cli::commands::naming::NamingArguments;
 use crate::cli::error::CliError;
+use crate::cli::settings::sensors::SensorSettings;
 use crate::formats::stream::StreamFormat;
 use crate::parameter::number;
 use crate::storage::Existing;
@@ -32,10 +34,13 @@ pub(crate) struct WatchArguments {
     pub(crate) options: AcquireOptions,
     /// From values to the imprint.
     pub(crate) processing: ProcessingArguments,
+    pub(crate) naming: NamingArguments,
     /// The file that frames are recorded in.
     pub(crate) write: Option<PathBuf>,
     /// Whether that file may exist already.
     pub(crate) existing: Existing,
+    /// The memory for the history of the page, in bytes.
+    pub(crate) history_bytes: usize,
     /// A line of JSON for each frame, also on a terminal.
     pub(crate) json: bool,
 }
@@ -79,6 +84,7 @@ pub(crate) fn command() -> Command {
         .args([format, baud, once, again, speed].map(|arg| arg.help_heading("Source")))
         .args(frames::processing())
         .args(frames::rules())
+        .args(frames::naming())
         .args([write, flags::replace().requires("write"), flags::json()])
 }
 
@@ -95,11 +101,18 @@ impl WatchArguments {
     ///
     /// # Errors
     /// If a threshold is out of range.
-    pub(crate) fn of(matches: &ArgMatches, source: OsString) -> Result<Self, CliError> {
-        let processing = ProcessingArguments::of(matches)?;
+    pub(crate) fn of(
+        matches: &ArgMatches,
+        source: OsString,
+        settings: &SensorSettings,
+    ) -> Result<Self, CliError> {
+        let processing = ProcessingArguments::of(matches, settings)?;
         let format = matches.get_one::<String>("format");
         let mut options = AcquireOptions::default();
-        options.format = format.and_then(|name| StreamFormat::from_name(name));
+        settings.apply(&mut options);
+        if let Some(name) = format {
+            options.format = StreamFormat::from_name(name);
+        }
         options.shape = processing.shape;
         options.baud = matches.get_one("baud").copied().unwrap_or(options.baud);
         options.once = matches.get_flag("once");
@@ -109,8 +122,10 @@ impl WatchArguments {
             source,
             options,
             processing,
+            naming: NamingArguments::of(matches),
             write: matches.get_one::<PathBuf>("write").cloned(),
             existing: parameters::existing(matches),
+            history_bytes: settings.history_bytes(),
             json: matches.get_flag("json"),
         })
     }

@@ -25,6 +25,8 @@ use std::ops::ControlFlow;
 use crate::cli::arguments::frames::{FrameChoice, FramesArguments, ProcessingArguments};
 use crate::cli::arguments::request::{Form, Kept, Saving};
 use crate::cli::commands::export::{Begun, Export, Exported};
+use crate::cli::commands::naming::FrameNamer;
+use crate::cli::commands::noise_report;
 use crate::cli::error::CliError;
 use crate::cli::input::recording::{RecordingFile, dead_cells};
 use crate::cli::input::shapes::Shelf;
@@ -38,7 +40,9 @@ use crate::formats::recording::{
     RecordingNote, SetRule,
 };
 use crate::formats::{StoredShape, json};
-use crate::frame::{Frame, FrameError, Peak, Processed, Processing, Rule, TareFrames, View};
+use crate::frame::{
+    FlipReport, Frame, FrameError, Peak, Processed, Processing, Rule, Tare, TareFrames, View,
+};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::parameter::Parameter;
@@ -148,6 +152,8 @@ pub(crate) struct FramesOutput<'a> {
     pub(crate) shelf: &'a Shelf,
     /// For texts; JSON is always ASCII.
     pub(crate) charset: Charset,
+    /// Names the shapes that left the imprints.
+    pub(crate) namer: Option<FrameNamer<'a>>,
     /// Standard output.
     pub(crate) answers: &'a mut dyn Write,
     /// A line each.
@@ -157,9 +163,9 @@ pub(crate) struct FramesOutput<'a> {
 
 impl FramesOutput<'_> {
     /// Writes an answer, or a part of it.
-    fn write(&mut self, text: &str) -> Result<(), CliError> {
+    fn write(&mut self, text: impl AsRef<[u8]>) -> Result<(), CliError> {
         self.answers
-            .write_all(text.as_bytes())
+            .write_all(text.as_ref())
             .map_err(CliError::Write)
     }
 }
@@ -180,7 +186,12 @@ pub(crate) fn frames(
     let mut recording = RecordingFile::open(&asked.file, options)?;
     let processing = processing(&asked.processing)?;
     let mut scan = Scan::of(&mut recording, &processing.view);
-    for warning in scan.warnings(recording.name()) {
+    for warning in recording
+        .complaint()
+        .map(str::to_owned)
+        .into_iter()
+        .chain(scan.warnings(recording.name()))
+    {
         (output.notes)(&format!("warning: {warning}"));
     }
     let damage = scan.error.take().map(|error| recording.damaged(error));
@@ -199,12 +210,43 @@ pub(crate) fn frames(
     let listed = &scan.channels[channel];
     let (selection, mut processing) =
         Selection::new(asked, choice, processing, &mut recording, (channel, listed))?;
-    let answered = selection.answer(&mut recording, listed, &mut processing, &mut output)?;
+    let answered = if choice == FrameChoice::NoiseReport {
+        let found = noise_report::gather(&mut recording, channel, &mut processing)?;
+        let name = recording.name();
+        found
+            .map(|found| report_noise(&found, name, &mut output))
+            .transpose()?
+            .is_some()
+    } else {
+        selection.answer(&mut recording, listed, &mut processing, &mut output)?
+    };
     match damage {
         Some(damage) => Err(damage),
         None if answered => Ok(()),
         None => Err(recording.refused(&missing(choice, listed))),
     }
+}
+
+/// Answers which taxels flip or are stuck, and writes the mask of these if a file is named.
+fn report_noise(
+    found: &FlipReport,
+    name: &str,
+    output: &mut FramesOutput<'_>,
+) -> Result<(), CliError> {
+    let export = output.kept.export.as_ref();
+    let title = format!("{name}: dead and stuck taxels");
+    let begun = export.map(|export| export.begin_frame(&found.mask(), None, &title, None));
+    let said = match begun.transpose()?.map(Begun::end).transpose()? {
+        Some(Exported::Content(content)) => return output.write(content),
+        Some(Exported::Said(said)) => Some(said),
+        None => None,
+    };
+    if let Form::Json(_) = output.form {
+        said.iter().for_each(|said| (output.notes)(said));
+        return output.write(noise_report::json(found));
+    }
+    let text = noise_report::text(found) + &said.map_or(String::new(), |said| said + "\n");
+    output.write(output.charset.lines(&text))
 }
 
 /// Why there is no frame as asked for in an undamaged recording.
@@ -230,12 +272,17 @@ pub(crate) fn processing(asked: &ProcessingArguments) -> Result<Processing, CliE
         flip_x: asked.flip_x,
         flip_y: asked.flip_y,
         quarter_turns: asked.quarter_turns,
-        mask: asked.mask.as_deref().map(dead_cells).transpose()?,
+        mask: mask(asked)?,
     };
     if let Some(path) = &asked.gain {
         processing.gain = Some(gain(path)?);
     }
     Ok(processing)
+}
+
+/// The dead cells; None if no mask is given.
+pub(crate) fn mask(asked: &ProcessingArguments) -> Result<Option<Imprint>, CliError> {
+    asked.mask.as_deref().map(dead_cells).transpose()
 }
 
 /// A table of factors, in any form that a recording of one frame may have.
@@ -273,22 +320,22 @@ fn rule(
     asked: &ProcessingArguments,
     info: &ChannelInfo,
 ) -> Result<SetRule, CliError> {
-    let least = asked.least;
-    if let Some(rule) = asked.rule {
-        let from = "flag";
-        return Ok(SetRule { rule, least, from });
-    }
-    let own = info
-        .threshold
-        .and_then(|threshold| Rule::at_least(threshold).ok());
-    let rule = own.ok_or_else(|| {
+    let own = asked.set_rule().or_else(|| info.own_rule(asked.least));
+    own.ok_or_else(|| {
         recording.refused(
             "the recording has no threshold of its own: set one with --at-least, --percent, \
-             --low and --high, or --noise",
+             --low and --high, or --deviations",
         )
-    })?;
-    let from = "file";
-    Ok(SetRule { rule, least, from })
+    })
+}
+
+/// The tare that a recording's description names, if it is of the size of what is seen of the frames.
+pub(crate) fn own_tare(info: &ChannelInfo, view: &View) -> Option<Tare> {
+    let (rows, columns) = info.shape?;
+    let tare = info.tare.as_ref()?;
+    let baseline = tare.baseline();
+    let size = (baseline.columns().into(), baseline.rows().into());
+    (size == view.size(columns, rows)).then(|| tare.clone())
 }
 
 /// Gathers the tare of the channel's first frames.
@@ -394,21 +441,22 @@ impl Selection {
         let rule = rule(recording, &asked.processing, &listed.info)?;
         processing.rule = Some(rule.rule);
         processing.least = rule.least;
-        let tare = asked.processing.tare;
-        if tare > 0 {
-            self::tare(recording, channel, tare, &mut processing)?;
+        match asked.processing.tare {
+            Some(0) => {}
+            Some(wanted) => tare(recording, channel, wanted, &mut processing)?,
+            None => processing.tare = own_tare(&listed.info, &processing.view),
         }
         let number = match choice {
             FrameChoice::Peak => peak(recording, channel, listed, &mut processing)?,
             FrameChoice::Number(number) => Some(number),
-            FrameChoice::Label(_) | FrameChoice::All => None,
+            FrameChoice::Label(_) | FrameChoice::All | FrameChoice::NoiseReport => None,
         };
         let selection = Self {
             choice,
             number,
             channel,
             rule,
-            tare,
+            tare: processing.tare.as_ref().map_or(0, Tare::frames),
             heat: asked.heat,
         };
         Ok((selection, processing))
@@ -418,7 +466,7 @@ impl Selection {
     fn has(&self, frame: &Frame) -> bool {
         frame.channel == self.channel
             && match self.choice {
-                FrameChoice::All => true,
+                FrameChoice::All | FrameChoice::NoiseReport => true,
                 FrameChoice::Label(label) => frame.label == Some(label),
                 FrameChoice::Number(_) | FrameChoice::Peak => Some(frame.number) == self.number,
             }
@@ -505,7 +553,12 @@ impl Selection {
                     rule: Some(self.rule),
                     tare: self.tare,
                 };
-                report::ascii_json(&json::text(&answer)) + "\n"
+                let mut line = report::ascii_json(&json::text(&answer)).into_bytes();
+                match &mut output.namer {
+                    Some(namer) => namer.extend(&mut line, Some(&imprint)),
+                    None => line.push(b'\n'),
+                }
+                line
             }
             (None, Form::Table(_)) => {
                 lines.push(report::size(&imprint, None, pitch));
@@ -516,7 +569,21 @@ impl Selection {
                     heat_map(values, &output.charset.line(&unit), output.charset) + "\n"
                 });
                 let table = report::table(&imprint, &lines, pitch, output.charset);
-                [gap, map.as_deref().unwrap_or(""), &table].concat()
+                let named = output.namer.as_mut().map(|namer| {
+                    let answer = namer.text(&imprint, output.charset);
+                    if answer.is_empty() {
+                        answer
+                    } else {
+                        format!("\n{answer}")
+                    }
+                });
+                let parts = [
+                    gap,
+                    map.as_deref().unwrap_or(""),
+                    &table,
+                    named.as_deref().unwrap_or(""),
+                ];
+                parts.concat().into_bytes()
             }
         };
         output.write(&text)

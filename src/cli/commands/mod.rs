@@ -26,7 +26,11 @@ pub(super) mod separate;
 
 pub(super) mod recognise;
 
+pub(super) mod naming;
+
 pub(super) mod frames;
+
+pub(super) mod noise_report;
 
 pub(super) mod watch;
 

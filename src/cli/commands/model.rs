@@ -36,6 +36,7 @@ use crate::recognition::{
 };
 use crate::sensor::Sensor;
 use crate::storage::{ModelCache, ModelFolder, UnfinishedFile, load_model, model_hash, save_model};
+use crate::tui::recognise::sets::ModelChoice;
 
 /// The smallest side of a sensor that training chooses.
 const LEAST_SIDE: u8 = 16;
@@ -216,6 +217,27 @@ pub(crate) fn find(which: &OsStr, shelf: &Shelf) -> Result<Model, CliError> {
         }),
         loaded => Ok(loaded?),
     }
+}
+
+/// The set of shapes that a name or a file means on the screen, found as by [`find`] but not read yet.
+///
+/// # Errors
+/// If there is none.
+pub(crate) fn choice(which: &OsStr, shelf: &Shelf) -> Result<ModelChoice, CliError> {
+    let name = which.to_str().and_then(|name| Name::new(name).ok());
+    if let Some(name) = &name
+        && folder(shelf).is_ok_and(|models| models.file(name).exists())
+    {
+        return Ok(ModelChoice::Stored(name.clone()));
+    }
+    if Path::new(which).exists() {
+        return Ok(ModelChoice::File(which.into()));
+    }
+    let built_in = name.map(ModelChoice::from_name);
+    let built_in = built_in.filter(|own| ModelChoice::BUILT_IN.contains(own));
+    built_in.ok_or_else(|| CliError::NoModel {
+        name: which.to_string_lossy().into_owned(),
+    })
 }
 
 /// The model of the seven figures at their default sizes, from the cache or trained now.

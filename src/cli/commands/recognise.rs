@@ -25,6 +25,7 @@ use crate::cli::output::answer::{AnswerJson, AnswerText};
 use crate::cli::output::charset::Charset;
 use crate::cli::output::pose::PoseReport;
 use crate::cli::output::report;
+use crate::formats::framed::{FrameRows, RuleRecord};
 use crate::formats::json;
 use crate::imprint::Imprint;
 use crate::quote::legible;
@@ -293,6 +294,17 @@ struct Keys<'a> {
     channel: Option<Box<RawValue>>,
 }
 
+/// The values of a frame, in place of an imprint; then `frame` is no number.
+fn framed(line: &[u8], frame: Option<&RawValue>) -> Result<Option<Imprint>, String> {
+    let Some(frame) = frame.filter(|frame| frame.get().starts_with('[')) else {
+        return Ok(None);
+    };
+    let wrong = |error: serde_json::Error| format!("frame: {}", json::message(&error));
+    let rows: FrameRows = serde_json::from_str(frame.get()).map_err(wrong)?;
+    let rule: RuleRecord = serde_json::from_slice(line).map_err(|error| json::message(&error))?;
+    rule.imprint(&rows).map(Some)
+}
+
 /// A question, read and checked.
 struct Line {
     /// One or more imprints, each in a matrix of its own size.
@@ -318,7 +330,12 @@ impl Line {
             Imprint::from_rows(rows.iter().map(AsRef::as_ref))
                 .map_err(|error| legible(&format!("{key}: {error}")))
         };
+        let framed = framed(line, keys.frame.as_deref())?;
         let touches = match (&keys.imprint, &keys.touches) {
+            (None, None) if framed.is_some() => framed.into_iter().collect(),
+            _ if framed.is_some() => {
+                return Err("expected exactly one of the keys frame, imprint, touches".to_owned());
+            }
             (Some(rows), None) => vec![imprint("imprint", rows)?],
             (None, Some(touches)) if !touches.is_empty() => {
                 let numbered = touches.iter().enumerate();
@@ -329,8 +346,9 @@ impl Line {
             (None, Some(_)) => return Err("touches: empty, expected at least one".to_owned()),
             _ => return Err("expected exactly one of the keys imprint, touches".to_owned()),
         };
+        // Values are not repeated.
         let copied = [
-            ("frame", keys.frame),
+            ("frame", keys.frame.filter(|_| framed.is_none())),
             ("label", keys.label),
             ("time", keys.time),
             ("channel", keys.channel),

@@ -71,7 +71,9 @@ pub(crate) fn screen(
             record.write(&lines);
         }
     };
-    let app = App::new(&options).with_keymap(settings.keymap().clone());
+    let app = App::new(&options)
+        .with_keymap(settings.keymap().clone())
+        .with_watch_settings(settings.sensors().request());
     let mut world = World::new(library).with_model_cache(ModelCache::of_user());
     if record.borrow().is_some() {
         let record = Rc::clone(&record);

@@ -17,20 +17,23 @@
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use crate::acquire::{
-    AcquireError, AcquireEvent, FrameRecorder, FrameSource, RecordingMetadata, acquire,
-};
+use crate::acquire::{AcquireError, AcquireEvent, FrameRecorder, FrameSource, acquire};
 use crate::cli::arguments::watch::WatchArguments;
 use crate::cli::commands::frames;
+use crate::cli::commands::model;
+use crate::cli::commands::naming::FrameNamer;
 use crate::cli::error::CliError;
+use crate::cli::input::shapes::Shelf;
 use crate::cli::output::line_writer::LineWriter;
 use crate::cli::output::report;
 use crate::cli::signals::Signals;
 use crate::formats::json;
-use crate::formats::recording::{ChannelInfo, FrameAnswer, RecordingError, SetRule};
+use crate::formats::recording::{
+    ChannelInfo, FrameAnswer, RecordingError, RecordingMetadata, SetRule,
+};
 use crate::formats::stream::StreamCounts;
 use crate::formats::value::grouped;
-use crate::frame::{Frame, FrameError, Processing, Rule, TareFrames};
+use crate::frame::{Frame, FrameError, Processing, Tare, TareFrames};
 use crate::matrix::Matrix;
 use crate::tui::live::request::WatchRequest;
 
@@ -57,6 +60,9 @@ struct Watcher<'a> {
     channels: Vec<ChannelInfo>,
     /// The number of the channel that is answered.
     channel: Option<usize>,
+    /// The first frame of a recording, until it is clear that no other channel comes with it.
+    held: Option<(Frame, Option<f64>)>,
+    begun: bool,
     /// Standard output, in a thread of its own.
     lines: LineWriter,
     /// A frame's memory, used again for the next one.
@@ -77,15 +83,15 @@ struct Watcher<'a> {
 ///
 /// # Errors
 /// If the source, the recording or the answers fail.
-pub(crate) fn watch(asked: &WatchArguments, note: &mut dyn FnMut(&str)) -> Result<u8, CliError> {
+pub(crate) fn watch(
+    asked: &WatchArguments,
+    shelf: &Shelf,
+    note: &mut dyn FnMut(&str),
+) -> Result<u8, CliError> {
     let source = FrameSource::new(&asked.source);
     let signals = Signals::heard().map_err(CliError::System)?;
     let processing = frames::processing(&asked.processing)?;
-    let rule = asked.processing.rule.map(|rule| SetRule {
-        rule,
-        least: asked.processing.least,
-        from: "flag",
-    });
+    let rule = asked.processing.set_rule();
     let metadata = RecordingMetadata {
         source: source.name(),
         rule,
@@ -93,7 +99,7 @@ pub(crate) fn watch(asked: &WatchArguments, note: &mut dyn FnMut(&str)) -> Resul
     };
     let recorder = asked.write.as_ref();
     let recorder = recorder.map(|path| FrameRecorder::create(path, asked.existing, &metadata));
-    let tare = asked.processing.tare;
+    let tare = asked.processing.tare.map_or(0, |frames| frames);
     let mut watcher = Watcher {
         asked,
         name: source.name(),
@@ -104,7 +110,9 @@ pub(crate) fn watch(asked: &WatchArguments, note: &mut dyn FnMut(&str)) -> Resul
         metadata,
         channels: Vec::new(),
         channel: None,
-        lines: LineWriter::start(),
+        held: None,
+        begun: false,
+        lines: line_writer(asked, shelf)?,
         frame: Frame::new(1, 1),
         live: !asked.options.once && !matches!(source, FrameSource::File(_)),
         dropped: 0,
@@ -124,21 +132,38 @@ pub(crate) fn watch(asked: &WatchArguments, note: &mut dyn FnMut(&str)) -> Resul
     })
 }
 
+/// Writes the answers; with a model it names each imprint before, so that neither its training nor its search holds up a
+/// recording.
+fn line_writer(asked: &WatchArguments, shelf: &Shelf) -> Result<LineWriter, CliError> {
+    let naming = asked.naming.clone();
+    let noise = naming.noise_with(frames::mask(&asked.processing)?);
+    let shelf = shelf.clone();
+    Ok(LineWriter::start(move |lines| {
+        let Some(model) = naming.load(&shelf)? else {
+            return lines.write(&mut |_, _| ());
+        };
+        let mut namer = FrameNamer::new(&model, noise);
+        lines.write(&mut |line, imprint| namer.extend(line, imprint))
+    }))
+}
+
 /// The same as a page of the screen.
 ///
 /// # Errors
-/// If the mask or the gain cannot be read.
-pub(crate) fn request(asked: &WatchArguments) -> Result<WatchRequest, CliError> {
+/// If the mask or the gain cannot be read, or there is no such model.
+pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequest, CliError> {
     let mut request = WatchRequest::new(&asked.source);
     request.options = asked.options.clone();
     request.processing = frames::processing(&asked.processing)?;
-    request.rule = asked.processing.rule.map(|rule| SetRule {
-        rule,
-        least: asked.processing.least,
-        from: "flag",
-    });
-    request.tare = asked.processing.tare;
+    request.rule = asked.processing.set_rule();
+    request.history_bytes = asked.history_bytes;
+    request.processing.least = asked.processing.least;
+    request.tare = asked.processing.tare.map_or(0, |frames| frames);
+    request.own_tare = asked.processing.tare.is_none();
     request.channel.clone_from(&asked.processing.channel);
+    let model = asked.naming.model.as_ref();
+    request.model = model.map(|model| model::choice(model, shelf)).transpose()?;
+    request.noise = asked.naming.noise;
     request.write = asked.write.clone().map(|path| (path, asked.existing));
     Ok(request)
 }
@@ -224,16 +249,14 @@ impl Watcher<'_> {
             Some(asked) if info.name.as_deref() != Some(asked) => return Ok(()),
             _ => self.channel = Some(names.len() - 1),
         }
-        if self.rule.is_none()
-            && let Some(Ok(rule)) = info.threshold.map(Rule::at_least)
-        {
-            let least = self.asked.processing.least;
-            self.set_rule(Some(SetRule {
-                rule,
-                least,
-                from: "file",
-            }));
+        if self.rule.is_none() {
+            self.set_rule(info.own_rule(self.asked.processing.least));
         }
+        if self.asked.processing.tare.is_none() {
+            self.processing.tare = frames::own_tare(info, &self.processing.view);
+            self.metadata.tare.clone_from(&self.processing.tare);
+        }
+        self.metadata.seconds_per_frame = info.seconds_per_frame;
         self.metadata.unit.clone_from(&info.unit);
         self.metadata.pitch_mm = info.pitch_mm;
         self.metadata.rule = self.rule;
@@ -241,17 +264,35 @@ impl Watcher<'_> {
     }
 
     /// Writes the description beside the recording, if there is one.
-    fn describe(&self) -> Result<(), CliError> {
-        let recorder = self.recorder.as_ref();
+    fn describe(&mut self) -> Result<(), CliError> {
+        let recorder = self.recorder.as_mut();
         let described = recorder.map(|recorder| recorder.describe(&self.metadata));
         described.transpose().map(drop).map_err(CliError::Recorder)
     }
 
-    /// Records a frame, and answers it, at once or as soon as there is a tare.
+    /// Takes a frame of the channel that is watched: it is recorded, and answered at once or as soon as there is a tare.
     fn add_frame(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), CliError> {
         if self.channel.unwrap_or(frame.channel) != frame.channel {
             return Ok(());
         }
+        let is_first = !std::mem::replace(&mut self.begun, true);
+        if is_first && !self.channels.is_empty() && self.asked.processing.channel.is_none() {
+            self.held = Some((frame.clone(), time));
+            return Ok(());
+        }
+        self.release()?;
+        self.take(frame, time)
+    }
+
+    /// Takes the frame that was held back.
+    fn release(&mut self) -> Result<(), CliError> {
+        match self.held.take() {
+            Some((frame, time)) => self.take(&frame, time),
+            None => Ok(()),
+        }
+    }
+
+    fn take(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), CliError> {
         if let Some(recorder) = &mut self.recorder {
             recorder.add(frame, time).map_err(CliError::Recorder)?;
         }
@@ -279,7 +320,7 @@ impl Watcher<'_> {
         let tare = tare
             .finish()
             .map_err(|error| self.refused(&error.to_string()))?;
-        self.metadata = std::mem::take(&mut self.metadata).with_tare(&tare);
+        self.metadata.tare = Some(tare.clone());
         self.processing.tare = Some(tare);
         self.describe()?;
         waiting.iter().try_for_each(|frame| self.answer(frame))
@@ -290,6 +331,7 @@ impl Watcher<'_> {
     /// # Errors
     /// If it does not fit gain, mask or crop; [`CliError::Write`] once standard output is closed.
     fn answer(&mut self, frame: &Frame) -> Result<(), CliError> {
+        let tare = self.processing.tare.as_ref().map_or(0, Tare::frames);
         let processed = match self.processing.run(frame) {
             Ok(processed) => processed,
             Err(error) => {
@@ -305,11 +347,14 @@ impl Watcher<'_> {
             channel: channel.and_then(|channel| channel.name.as_deref()),
             processed,
             rule: self.rule,
-            tare: self.asked.processing.tare,
+            tare,
         };
         let line = report::ascii_json(&json::text(&answer)) + "\n";
         let may_give_up = self.live && self.recorder.is_some();
-        if self.lines.send(line.into_bytes(), may_give_up) {
+        if self
+            .lines
+            .send((line.into_bytes(), processed.imprint), may_give_up)
+        {
             return Ok(());
         }
         Err(CliError::Write(std::io::ErrorKind::BrokenPipe.into()))
@@ -321,6 +366,10 @@ impl Watcher<'_> {
             recorder.tick().map_err(CliError::Recorder)?;
         }
         self.shaped(counts)?;
+        // Whoever reads the answers has gone, or there is no model.
+        if self.lines.is_over() {
+            return Err(CliError::Write(std::io::ErrorKind::BrokenPipe.into()));
+        }
         if self.reported.is_none_or(|last| last.elapsed() >= REPORT) {
             self.report_dropped(counts);
         }
@@ -379,8 +428,11 @@ impl Watcher<'_> {
     /// tare that lacks frames is an error of the frames: nothing was answered.
     fn finish(mut self, acquired: Result<(), AcquireError>) -> Result<(), CliError> {
         let mut failure = self.failure.take();
+        if failure.is_none() {
+            failure = self.release().err();
+        }
         if let (None, Some((tare, _))) = (&failure, &self.tare) {
-            let wanted = self.asked.processing.tare;
+            let wanted = tare.wanted();
             let frames = wanted - tare.missing();
             failure = Some(self.refused(&FrameError::Tare { frames, wanted }.to_string()));
         }
@@ -403,7 +455,7 @@ impl Watcher<'_> {
             },
         });
         recorded.transpose().map_err(CliError::Recorder)?;
-        written.map_err(CliError::Write)?;
+        written?;
         failure.or(damage).map_or(Ok(()), Err)
     }
 }

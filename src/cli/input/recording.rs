@@ -4,11 +4,12 @@ use std::fs::File;
 use std::io::{self, Seek, SeekFrom};
 use std::path::Path;
 
+use crate::acquire::description_beside;
 use crate::cli::error::CliError;
 use crate::cli::input::content;
 use crate::cli::input::content::{Content, InputError};
 use crate::formats::recording::{
-    ReadOptions, RecordingError, RecordingEvent, RecordingFormat, read,
+    ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata, read,
 };
 use crate::imprint::Imprint;
 
@@ -21,6 +22,10 @@ pub(crate) struct RecordingFile {
     file: File,
     /// Rows and columns, for forms that do not say them.
     options: ReadOptions,
+    /// What lies beside it, of a recording of taxel's own.
+    description: Option<RecordingMetadata>,
+    /// What is wrong with that.
+    complaint: Option<String>,
 }
 
 impl RecordingFile {
@@ -47,11 +52,18 @@ impl RecordingFile {
                 spooled(&mut file)
             }
         };
+        let (description, complaint) = match description_beside(path) {
+            Some(Ok(description)) => (Some(description), None),
+            Some(Err(complaint)) => (None, Some(complaint)),
+            None => (None, None),
+        };
         match opened() {
             Ok(file) => Ok(Self {
                 name,
                 file,
                 options,
+                description,
+                complaint,
             }),
             Err(error) => Err(CliError::Input {
                 name,
@@ -65,6 +77,11 @@ impl RecordingFile {
         &self.name
     }
 
+    /// What is wrong with the description beside it.
+    pub(crate) fn complaint(&self) -> Option<&str> {
+        self.complaint.as_deref()
+    }
+
     /// Reads it from its beginning.
     ///
     /// # Errors
@@ -73,7 +90,15 @@ impl RecordingFile {
         &mut self,
         sink: &mut dyn FnMut(RecordingEvent<'_>) -> std::ops::ControlFlow<()>,
     ) -> Result<RecordingFormat, RecordingError> {
-        read(&mut self.file, self.options, sink)
+        let description = &self.description;
+        read(&mut self.file, self.options, &mut |event| {
+            let (RecordingEvent::Channel(info), Some(description)) = (event, description) else {
+                return sink(event);
+            };
+            let mut info = info.clone();
+            info.complete(description);
+            sink(RecordingEvent::Channel(&info))
+        })
     }
 
     /// The message about a damage.

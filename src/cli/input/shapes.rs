@@ -18,7 +18,7 @@ use crate::imprint::Imprint;
 use crate::storage::{Expected, Library, LibraryError};
 
 /// The library, opened when it is first used: most commands never need it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Shelf {
     /// The folder of the library; None if the user has no home.
     folder: Option<PathBuf>,

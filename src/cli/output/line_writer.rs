@@ -5,34 +5,49 @@ use std::io::{self, Write};
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, sync_channel};
 use std::thread::JoinHandle;
 
+use crate::cli::error::CliError;
+use crate::imprint::Imprint;
+
 /// So many lines may wait; those of 64 × 64 frames take about 5 MB.
 const WAITING: usize = 1000;
+
+/// A line, with its end unless something is still to be added, and the imprint that this is about.
+pub(crate) type Line = (Vec<u8>, Option<Imprint>);
+
+/// Adds to a line what takes longer, on the thread that writes.
+pub(crate) type Finish<'a> = dyn FnMut(&mut Vec<u8>, Option<&Imprint>) + 'a;
 
 /// The sending end.
 #[derive(Debug)]
 pub(crate) struct LineWriter {
     /// To the thread. Sending fails once the thread has ended because of an error.
-    lines: SyncSender<Vec<u8>>,
-    /// Returns the error of writing, if there was one.
-    thread: JoinHandle<io::Result<()>>,
+    lines: SyncSender<Line>,
+    /// Returns the error of writing, or of what else it does, if there was one.
+    thread: JoinHandle<Result<(), CliError>>,
     /// Lines that were given up because too many were waiting.
     pub(crate) given_up: u64,
 }
 
 impl LineWriter {
-    /// Starts the thread.
-    pub(crate) fn start() -> Self {
+    /// Starts the thread, which calls `run` once with what waits to be written.
+    pub(crate) fn start(
+        run: impl FnOnce(&WaitingLines) -> Result<(), CliError> + Send + 'static,
+    ) -> Self {
         let (lines, receiver) = sync_channel(WAITING);
         Self {
             lines,
-            thread: std::thread::spawn(move || write(&receiver)),
+            thread: std::thread::spawn(move || run(&WaitingLines(receiver))),
             given_up: 0,
         }
     }
 
-    /// Sends a line; waits if too many are waiting, or gives it up if that is allowed. False once nothing can be
-    /// written.
-    pub(crate) fn send(&mut self, line: Vec<u8>, may_give_up: bool) -> bool {
+    /// Whether nothing can be written any more.
+    pub(crate) fn is_over(&self) -> bool {
+        self.thread.is_finished()
+    }
+
+    /// Sends a line; waits if too many are waiting, or gives it up if that is allowed. False once nothing can be written.
+    pub(crate) fn send(&mut self, line: Line, may_give_up: bool) -> bool {
         if !may_give_up {
             return self.lines.send(line).is_ok();
         }
@@ -49,30 +64,47 @@ impl LineWriter {
     /// Waits until all lines are written.
     ///
     /// # Errors
-    /// Those of standard output.
-    pub(crate) fn finish(self) -> io::Result<()> {
+    /// Those of standard output, and of what the thread does besides.
+    pub(crate) fn finish(self) -> Result<(), CliError> {
         drop(self.lines);
-        self.thread
-            .join()
-            .unwrap_or_else(|_| Err(io::Error::other("the thread that writes has failed")))
+        self.thread.join().unwrap_or_else(|_| {
+            Err(CliError::Write(io::Error::other(
+                "the thread that writes has failed",
+            )))
+        })
     }
 }
 
-/// Writes lines, and holds none back while there are no more.
-fn write(lines: &Receiver<Vec<u8>>) -> io::Result<()> {
-    let mut output = io::BufWriter::with_capacity(1 << 16, io::stdout().lock());
-    loop {
-        let line = match lines.try_recv() {
-            Ok(line) => line,
-            Err(TryRecvError::Disconnected) => return output.flush(),
-            Err(TryRecvError::Empty) => {
-                output.flush()?;
-                match lines.recv() {
-                    Ok(line) => line,
-                    Err(_) => return Ok(()),
+/// The receiving end.
+#[derive(Debug)]
+pub(crate) struct WaitingLines(Receiver<Line>);
+
+impl WaitingLines {
+    /// Writes all lines that come, finished, and holds none back while there are no more.
+    ///
+    /// # Errors
+    /// Those of standard output.
+    pub(crate) fn write(&self, finish: &mut Finish<'_>) -> Result<(), CliError> {
+        self.write_to(io::stdout().lock(), finish)
+            .map_err(CliError::Write)
+    }
+
+    fn write_to(&self, output: impl Write, finish: &mut Finish<'_>) -> io::Result<()> {
+        let mut output = io::BufWriter::with_capacity(1 << 16, output);
+        loop {
+            let (mut line, imprint) = match self.0.try_recv() {
+                Ok(line) => line,
+                Err(TryRecvError::Disconnected) => return output.flush(),
+                Err(TryRecvError::Empty) => {
+                    output.flush()?;
+                    match self.0.recv() {
+                        Ok(line) => line,
+                        Err(_) => return Ok(()),
+                    }
                 }
-            }
-        };
-        output.write_all(&line)?;
+            };
+            finish(&mut line, imprint.as_ref());
+            output.write_all(&line)?;
+        }
     }
 }

@@ -74,6 +74,10 @@ impl Serialize for ListedChannel {
         map.serialize_entry("pitch_mm", &info.pitch_mm)?;
         map.serialize_entry("threshold", &info.threshold)?;
         map.serialize_entry("peak", &self.peak.number())?;
+        if !info.marks.is_empty() {
+            let numbers: Vec<u64> = info.marks.iter().map(|mark| mark.number).collect();
+            map.serialize_entry("marks", &numbers)?;
+        }
         if let Some((row, column)) = self.first {
             map.serialize_entry("first_row", &row)?;
             map.serialize_entry("first_column", &column)?;
@@ -139,6 +143,8 @@ fn channel_lines(channel: &ListedChannel) -> Vec<String> {
             format!("{} mm across, {} mm down", short(x), short(y))
         }
     });
+    let marks = info.marks.iter().map(|mark| mark.number.to_string());
+    let marks = (!info.marks.is_empty()).then(|| marks.collect::<Vec<_>>().join(", "));
     let unit = info.unit.clone();
     let in_unit = |value: f64| match &unit {
         Some(unit) => format!("{} {unit}", short(value)),
@@ -163,6 +169,7 @@ fn channel_lines(channel: &ListedChannel) -> Vec<String> {
         ),
         row("pitch", pitch),
         row("threshold", info.threshold.map(in_unit)),
+        row("marks", marks),
         row(
             "peak",
             channel

@@ -8,12 +8,16 @@
 //! assert_eq!(config.sensor_entries()[0].line, 3);
 //! let error = Config::read("theme = 'light'\ncolour = 'never'\n").unwrap_err();
 //! assert_eq!(error.to_string(),
-//!     "2:1: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, keys");
+//!     "2:1: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, source, frames, keys");
 //! ```
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use crate::cli::settings::sensors::{
+    SENSOR_SETTINGS, SensorSetting, SensorSettings, SettingKind, SettingValue, Written,
+};
+use crate::formats::stream::StreamFormat;
 use crate::parameter::{Parameter, ParameterError};
 use crate::quote::legible;
 use crate::sensor::Sensor;
@@ -27,8 +31,8 @@ use crate::tui::widget::theme::{ColorDepth, Palette};
 pub(crate) const AUTO: &str = "auto";
 
 /// The keys at the top level of the file, in the order in which messages list them.
-const TOP: [&str; 7] = [
-    "theme", "color", "charset", "mouse", "library", "sensor", "keys",
+const TOP: [&str; 9] = [
+    "theme", "color", "charset", "mouse", "library", "sensor", "source", "frames", "keys",
 ];
 
 /// The parameters of a sensor, each under the name of its flag.
@@ -41,15 +45,6 @@ pub(crate) const SENSOR: [(&str, Parameter); 4] = [
 
 /// The names of the character sets, and whether each is ASCII only.
 pub(crate) const CHARSETS: [(&str, bool); 2] = [("ascii", true), ("unicode", false)];
-
-/// A value in the file, and its line.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Written<T> {
-    /// The value.
-    pub value: T,
-    /// The line, from 1.
-    pub line: usize,
-}
 
 /// The largest settings file, in bytes. The parser may need seventy times the size of a hostile file.
 pub const MAX_BYTES: usize = 64 << 10;
@@ -71,6 +66,7 @@ pub struct Config {
     sensor: Sensor,
     /// The parameters of the sensor that the file sets, and in which line.
     sensor_entries: Vec<Written<Parameter>>,
+    sensors: SensorSettings,
     /// The keys that the file binds or unbinds, in its order.
     changes: Vec<Written<Change>>,
     /// The default keys with these changes.
@@ -158,6 +154,11 @@ impl Config {
         &self.sensor_entries
     }
 
+    /// What the file sets for real sensors.
+    pub(crate) fn sensors(&self) -> &SensorSettings {
+        &self.sensors
+    }
+
     /// The key bindings that the file changes.
     pub fn changes(&self) -> &[Written<Change>] {
         &self.changes
@@ -222,10 +223,40 @@ impl Config {
                     });
                 }
             }
+            "source" | "frames" => self.take_sensors(text, key, value)?,
             "keys" => self.bind_keys(text, value)?,
             _ => return Err(unknown(key, byte, &TOP)),
         }
         Ok(())
+    }
+
+    /// Takes a table of real sensors, `[source]` or `[frames]`.
+    fn take_sensors(
+        &mut self,
+        text: &str,
+        name: &str,
+        value: &Spanned<DeValue<'_>>,
+    ) -> Result<(), Refusal> {
+        let rows = || SENSOR_SETTINGS.iter().filter(|row| row.table == name);
+        let mut places = Vec::new();
+        for (key, byte, value) in entries(table(value)?) {
+            let row = rows().find(|row| row.name == key).ok_or_else(|| {
+                let names: Vec<&'static str> = rows().map(|row| row.name).collect();
+                unknown(key, byte, &names)
+            })?;
+            let line = place(text, byte).0;
+            let value = sensor_value(row, value)?;
+            self.sensors.add(row.key, Written { value, line });
+            places.push((row.key, byte));
+        }
+        let conflict = self.sensors.conflict();
+        let found = conflict.and_then(|(key, expected)| {
+            let place = places.iter().find(|(own, _)| *own == key)?;
+            let row = rows().find(|row| row.key == key)?;
+            let (expected, found) = (expected.to_owned(), row.name.to_owned());
+            Some((place.1, Wrong::Value { expected, found }))
+        });
+        found.map_or(Ok(()), Err)
     }
 
     /// Takes the table `[keys]`: a table per place, in which each key is given an action or `"none"`.
@@ -322,6 +353,24 @@ fn string<'t>(value: &'t Spanned<DeValue<'_>>) -> Result<&'t str, Refusal> {
 fn table<'t, 'i>(value: &'t Spanned<DeValue<'i>>) -> Result<&'t DeTable<'i>, Refusal> {
     let table = value.get_ref().as_table();
     table.ok_or_else(|| other_kind("a table", value))
+}
+
+/// The value of a setting of real sensors.
+fn sensor_value(
+    row: &SensorSetting,
+    value: &Spanned<DeValue<'_>>,
+) -> Result<SettingValue, Refusal> {
+    if row.kind == SettingKind::Format {
+        let text = string(value)?;
+        let format = StreamFormat::from_name(text);
+        if format.is_none() && text != AUTO {
+            return Err(unfit(row.kind.expected(), text, value));
+        }
+        return Ok(SettingValue::Format(format));
+    }
+    let found = number(value)?;
+    let wrong = || unfit(row.kind.expected(), &found.to_string(), value);
+    row.kind.value(found).ok_or_else(wrong)
 }
 
 /// A number in decimal notation. NaN and infinities pass here; the parameter's range refuses them.

@@ -9,6 +9,8 @@
 //!
 //! `resolved` puts them together, and remembers where each value comes from, for `taxel config`.
 
+pub(crate) mod sensors;
+
 pub mod file;
 
 pub(super) mod pitch;

@@ -21,8 +21,9 @@ use std::path::{Path, PathBuf};
 
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
-use crate::cli::settings::file::{AUTO, CHARSETS, Config, MAX_BYTES, SENSOR, Written, Wrong};
+use crate::cli::settings::file::{AUTO, CHARSETS, Config, MAX_BYTES, SENSOR, Wrong};
 use crate::cli::settings::flags::Chosen;
+use crate::cli::settings::sensors::{SENSOR_SETTINGS, SensorSettings, TABLES, Written};
 use crate::parameter::Parameter;
 use crate::sensor::Sensor;
 use crate::storage::location;
@@ -265,6 +266,11 @@ impl Effective {
         self.sensor
     }
 
+    /// What the file sets for real sensors.
+    pub(crate) fn sensors(&self) -> &SensorSettings {
+        self.loaded.config.sensors()
+    }
+
     /// The pitch in mm, if the file or a flag sets it. The default pitch is not shown in mm.
     pub(crate) fn pitch(&self) -> Option<f64> {
         let set = |(_, parameter, origin): &&(_, Parameter, SettingOrigin)| {
@@ -321,7 +327,10 @@ impl Effective {
             None => "# no library: there is no home".to_owned(),
         };
         line(&library, &self.library.origin);
-        text + "\n[sensor]\n" + &self.sensor_text() + &self.keys_text(&quoted)
+        text + "\n[sensor]\n"
+            + &self.sensor_text()
+            + &self.sensors_text()
+            + &self.keys_text(&quoted)
     }
 
     /// The table `[sensor]`.
@@ -341,6 +350,26 @@ impl Effective {
             told(&entry, origin)
         };
         self.of_sensor.iter().map(line).collect()
+    }
+
+    /// The tables of real sensors.
+    fn sensors_text(&self) -> String {
+        let sensors = self.sensors();
+        let mut text = String::new();
+        for table in TABLES {
+            text += &format!("\n[{table}]\n");
+            for setting in SENSOR_SETTINGS.iter().filter(|row| row.table == table) {
+                let entry = match sensors.text(setting) {
+                    Some(value) => format!("{} = {value}", setting.name),
+                    None => format!("# {} is not set", setting.name),
+                };
+                let written = sensors.get(setting.key);
+                let origin =
+                    written.map_or(SettingOrigin::Default, |own| SettingOrigin::File(own.line));
+                text += &told(&entry, &origin);
+            }
+        }
+        text
     }
 
     /// The tables `[keys.…]`: every key with its action, and those that the file has freed.

@@ -9,10 +9,14 @@ use std::io::{BufReader, Read, Seek, SeekFrom};
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingFormat, Sink};
 use crate::formats::recording::lines::is_blank;
+#[cfg(feature = "mcap")]
+use crate::formats::recording::mcap;
 use crate::formats::recording::{
-    delimited, emed, flexitac, json_lines, mcap, npz, numpy, popu, ros_text, tekscan, xsensor,
-    zebris,
+    delimited, emed, flexitac, json_lines, npz, numpy, popu, ros_text, tekscan, xsensor, zebris,
 };
+
+/// What an MCAP file begins with.
+const MCAP: &[u8] = b"\x89MCAP0\r\n";
 
 /// So many bytes tell the form.
 const LOOKED_AT: u64 = 1 << 16;
@@ -30,7 +34,7 @@ pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
         lines.any(|line| line.starts_with(word))
     };
     let first = trimmed.split(|&byte| byte == b'\n').next().unwrap_or(b"");
-    if start.starts_with(mcap::MAGIC) {
+    if start.starts_with(MCAP) {
         return Some(RecordingFormat::Mcap);
     }
     Some(match start {
@@ -103,7 +107,12 @@ pub fn read(
         RecordingFormat::Ros2 => ros_text::read(input, options, sink),
         RecordingFormat::Csv => delimited::read(input, options, sink),
         RecordingFormat::Flexitac => flexitac::read(&mut input, options, sink),
+        #[cfg(feature = "mcap")]
         RecordingFormat::Mcap => mcap::read(&mut input, options, sink),
+        #[cfg(not(feature = "mcap"))]
+        RecordingFormat::Mcap => Err(RecordingError::damaged(
+            "an MCAP file, which this build does not read: it was built without the feature mcap",
+        )),
     }?;
     Ok(format)
 }

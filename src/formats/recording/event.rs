@@ -3,7 +3,9 @@
 use std::fmt;
 use std::ops::ControlFlow;
 
-use crate::frame::Frame;
+use crate::formats::recording::answer::SetRule;
+use crate::formats::recording::description::{FrameMark, RecordingMetadata};
+use crate::frame::{Frame, Rule, Tare};
 
 /// The forms of recordings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -92,6 +94,32 @@ pub struct ChannelInfo {
     pub pitch_mm: Option<[f64; 2]>,
     /// The value from which on the recording's own software shows a cell as touched.
     pub threshold: Option<f64>,
+    /// The rule of the imprints while it was recorded.
+    pub rule: Option<SetRule>,
+    /// What was taken off each cell then, after crop, flip and turn; the values are those before that.
+    pub tare: Option<Tare>,
+    /// Frames that were marked then.
+    pub marks: Vec<FrameMark>,
+}
+
+impl ChannelInfo {
+    /// Fills in what the recording does not say itself, but the description beside it does.
+    pub fn complete(&mut self, description: &RecordingMetadata) {
+        self.unit = self.unit.take().or_else(|| description.unit.clone());
+        self.pitch_mm = self.pitch_mm.or(description.pitch_mm);
+        self.seconds_per_frame = self.seconds_per_frame.or(description.seconds_per_frame);
+        self.rule = self.rule.or(description.rule);
+        self.tare = self.tare.take().or_else(|| description.tare.clone());
+        self.marks.clone_from(&description.marks);
+    }
+
+    /// The rule of the recording itself: that of its description, else its threshold.
+    pub fn own_rule(&self, least: u32) -> Option<SetRule> {
+        let threshold = self.threshold.and_then(|own| Rule::at_least(own).ok());
+        let from = "file";
+        self.rule
+            .or_else(|| threshold.map(|rule| SetRule { rule, least, from }))
+    }
 }
 
 /// Something odd that does not stop a reader.

@@ -2,7 +2,9 @@
 //! sensor.
 //!
 //! Records follow one another, those of chunks too, so the file is read from front to back in the same memory, and one
-//! that was never closed gives all its whole messages. Source: <https://mcap.dev/spec>.
+//! that was never closed gives all its whole messages. Chunks packed by LZ4 or Zstandard are unpacked as they are read, by
+//! decoders in Rust. The records are read here, since the crate `mcap` needs 18 others, more than this project allows itself.
+//! Source: <https://mcap.dev/spec>.
 //!
 //! | message | its frames |
 //! |---|---|
@@ -10,22 +12,28 @@
 //! | `sensor_msgs/Image` | a frame; `mono8`, `8UC1`, `mono16`, `16UC1` and `32FC1` |
 //! | `tactile_msgs/TactileState` | for each of its sensors a frame of `TOPIC#SENSOR` |
 //!
-//! Others are passed over. Time is that of the log, from the first message with a frame on. Refused: compressed chunks,
-//! which would need two more libraries; the message names the command that writes the file without.
+//! Others are passed over. Time is that of the log, from the first message with a frame on.
 
-use std::io::{self, BufRead, Read};
+use std::io::{self, BufRead, BufReader, Read};
 
 use crate::formats::recording::cdr::CdrReader;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
 use crate::formats::recording::side::shape;
 use crate::frame::{Frame, LARGEST_VALUE};
+use crate::quote::legible;
 
-/// The first bytes of every file; also its last ones, once it is closed.
-pub(super) const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+/// Bytes of the magic number at the start, which was recognised already.
+const MAGIC: usize = 8;
 
 /// No message of a frame is larger.
 const LARGEST_RECORD: u64 = 1 << 24;
+
+/// What Zstandard may look back at, in bytes; its usual levels need 8 MiB at most.
+const LARGEST_WINDOW: u64 = 16 << 20;
+
+/// No chunk is larger, unpacked.
+const LARGEST_CHUNK: u64 = 1 << 30;
 
 /// No file has more topics or sensors with frames.
 const MOST_CHANNELS: usize = 256;
@@ -104,6 +112,8 @@ struct McapState<'a, 'b> {
     values: Vec<f64>,
     /// The frame made of them.
     frame: Frame,
+    /// The record that is read.
+    record: Vec<u8>,
     /// Takes channels and frames.
     sink: &'a mut Sink<'b>,
 }
@@ -125,46 +135,38 @@ pub(super) fn read(
         start: None,
         values: Vec::new(),
         frame: Frame::new(1, 1),
+        record: Vec::new(),
         sink,
     };
-    let mut magic = [0; MAGIC.len()];
+    let mut magic = [0; MAGIC];
     whole(input, &mut magic)?;
-    let mut record = Vec::new();
-    loop {
-        let mut head = [0; 9];
-        whole(input, &mut head)?;
-        let [kind, length @ ..] = head;
-        let length = u64::from_le_bytes(length);
-        match kind {
-            FOOTER => break,
-            CHUNK => chunk(input)?,
-            SCHEMA | CHANNEL | MESSAGE => {
-                if length > LARGEST_RECORD {
-                    return Err(RecordingError::damaged("a record of more than 16 MiB"));
-                }
-                record.clear();
-                let read = input.by_ref().take(length).read_to_end(&mut record)?;
-                if (read as u64) < length {
-                    return Err(torn());
-                }
-                if state.record(kind, &record)? {
-                    return Ok(());
-                }
-            }
-            _ => {
-                let skipped = io::copy(&mut input.by_ref().take(length), &mut io::sink())?;
-                if skipped < length {
-                    return Err(torn());
-                }
-            }
-        }
-    }
-    if state.given.is_empty() {
+    let ended = state.records(input, Place::File)?;
+    if state.given.is_empty() && ended == Ended::AtFooter {
         return Err(RecordingError::damaged(
             "no messages with frames, expected std_msgs/*MultiArray, sensor_msgs/Image or tactile_msgs/TactileState",
         ));
     }
     Ok(())
+}
+
+/// Where records stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Place {
+    /// In the file, up to its footer.
+    File,
+    /// In a chunk, up to its end.
+    Chunk,
+}
+
+/// Why no more records follow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Ended {
+    /// The footer of the file has come.
+    AtFooter,
+    /// The chunk is over.
+    OfChunk,
+    /// No more is wanted.
+    ByReader,
 }
 
 /// The error of a file that ends before its footer.
@@ -176,36 +178,54 @@ fn torn() -> RecordingError {
 ///
 /// # Errors
 /// [`torn`] if there are fewer.
-fn whole(input: &mut impl Read, bytes: &mut [u8]) -> Result<(), RecordingError> {
-    input.read_exact(bytes).map_err(|error| match error.kind() {
-        io::ErrorKind::UnexpectedEof => torn(),
-        _ => error.into(),
-    })
+fn whole(input: &mut dyn Read, bytes: &mut [u8]) -> Result<(), RecordingError> {
+    input.read_exact(bytes).map_err(refused)
 }
 
-/// Reads what stands before the records of a chunk, which follow like any others.
-///
-/// # Errors
-/// If its records are compressed.
-fn chunk(input: &mut impl Read) -> Result<(), RecordingError> {
-    // Start, end, size, checksum.
-    let mut head = [0; 32];
-    whole(input, &mut head)?;
-    let [.., a, b, c, d] = head;
-    let length = u32::from_le_bytes([a, b, c, d]);
-    if length > 0 {
-        let mut name = Vec::new();
-        input
-            .by_ref()
-            .take(u64::from(length.min(40)))
-            .read_to_end(&mut name)?;
-        let name = String::from_utf8_lossy(&name);
-        return Err(RecordingError::damaged(format!(
-            "chunks are compressed ({name}): write them without, as 'mcap compress --compression none' does"
-        )));
+/// The error of a reader, of the file itself or of what unpacks a chunk.
+fn refused(error: io::Error) -> RecordingError {
+    match error.kind() {
+        io::ErrorKind::UnexpectedEof => torn(),
+        io::ErrorKind::Other | io::ErrorKind::InvalidData => {
+            RecordingError::damaged("a chunk cannot be unpacked")
+        }
+        _ => error.into(),
     }
-    let mut records = [0; 8];
-    whole(input, &mut records)
+}
+
+/// What stands before the records of a chunk.
+struct ChunkHead {
+    /// Bytes of its records, unpacked.
+    size: u64,
+    /// How they are packed; empty where they are not.
+    compression: String,
+    /// Bytes that they take in the file.
+    length: u64,
+}
+
+impl ChunkHead {
+    fn read(input: &mut dyn Read) -> Result<Self, RecordingError> {
+        // Start, end, size, checksum, length of the name.
+        let mut head = [0; 32];
+        whole(input, &mut head)?;
+        let [_, _, size, _] = [&head[..8], &head[8..16], &head[16..24], &head[24..]];
+        let size = size.try_into().map_or(0, u64::from_le_bytes);
+        let [.., a, b, c, d] = head;
+        let length = u32::from_le_bytes([a, b, c, d]);
+        let mut name = vec![0; usize::try_from(length.min(40)).map_or(0, |length| length)];
+        whole(input, &mut name)?;
+        let mut records = [0; 8];
+        whole(input, &mut records)?;
+        let compression = String::from_utf8_lossy(&name).into_owned();
+        if size > LARGEST_CHUNK {
+            return Err(RecordingError::damaged("a chunk of more than 1 GiB"));
+        }
+        Ok(Self {
+            size,
+            compression,
+            length: u64::from_le_bytes(records),
+        })
+    }
 }
 
 /// A text behind its length, and what follows it.
@@ -216,7 +236,86 @@ fn text(bytes: &[u8]) -> Option<(&str, &[u8])> {
     Some((str::from_utf8(text).ok()?, rest))
 }
 
+/// Passes over so many bytes.
+fn pass_over(input: &mut dyn Read, length: u64) -> Result<(), RecordingError> {
+    let passed = io::copy(&mut Read::take(input, length), &mut io::sink()).map_err(refused)?;
+    if passed < length { Err(torn()) } else { Ok(()) }
+}
+
 impl McapState<'_, '_> {
+    /// Reads records, up to the footer or the end of a chunk.
+    fn records(&mut self, input: &mut dyn Read, place: Place) -> Result<Ended, RecordingError> {
+        loop {
+            let mut head = [0; 9];
+            if place == Place::Chunk && input.read(&mut head[..1]).map_err(refused)? == 0 {
+                return Ok(Ended::OfChunk);
+            }
+            let known = usize::from(place == Place::Chunk);
+            whole(input, &mut head[known..])?;
+            let [kind, length @ ..] = head;
+            let length = u64::from_le_bytes(length);
+            match kind {
+                FOOTER if place == Place::File => return Ok(Ended::AtFooter),
+                CHUNK if place == Place::File => {
+                    if self.chunk(input)? == Ended::ByReader {
+                        return Ok(Ended::ByReader);
+                    }
+                }
+                SCHEMA | CHANNEL | MESSAGE => {
+                    if length > LARGEST_RECORD {
+                        return Err(RecordingError::damaged("a record of more than 16 MiB"));
+                    }
+                    let mut record = std::mem::take(&mut self.record);
+                    record.clear();
+                    let read = Read::take(&mut *input, length)
+                        .read_to_end(&mut record)
+                        .map_err(refused)?;
+                    if (read as u64) < length {
+                        return Err(torn());
+                    }
+                    let is_enough = self.record(kind, &record)?;
+                    self.record = record;
+                    if is_enough {
+                        return Ok(Ended::ByReader);
+                    }
+                }
+                _ => pass_over(input, length)?,
+            }
+        }
+    }
+
+    /// Reads the records of a chunk, unpacked as they come.
+    fn chunk(&mut self, input: &mut dyn Read) -> Result<Ended, RecordingError> {
+        let head = ChunkHead::read(input)?;
+        let mut packed = Read::take(&mut *input, head.length);
+        let ended = match head.compression.as_str() {
+            "" => self.records(&mut packed, Place::Chunk)?,
+            "lz4" => {
+                let unpacked = lz4_flex::frame::FrameDecoder::new(&mut packed);
+                self.records(&mut BufReader::new(unpacked.take(head.size)), Place::Chunk)?
+            }
+            "zstd" => {
+                let unpacked = ruzstd::decoding::StreamingDecoder::new_with_max_window_size(
+                    &mut packed,
+                    LARGEST_WINDOW,
+                );
+                let unpacked =
+                    unpacked.map_err(|_| RecordingError::damaged("a chunk cannot be unpacked"))?;
+                self.records(&mut BufReader::new(unpacked.take(head.size)), Place::Chunk)?
+            }
+            other => {
+                let message =
+                    format!("chunks are packed as {other:?}, expected lz4, zstd or not at all");
+                return Err(RecordingError::damaged(legible(&message)));
+            }
+        };
+        if ended == Ended::OfChunk {
+            let left = packed.limit();
+            pass_over(&mut packed, left)?;
+        }
+        Ok(ended)
+    }
+
     /// Takes a record; true if no more is wanted.
     /// A number that was named before keeps its meaning: the summary at the end repeats schemas and channels.
     ///

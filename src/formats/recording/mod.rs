@@ -48,8 +48,10 @@ mod cell_names;
 
 mod numpy;
 
+#[cfg(feature = "mcap")]
 mod cdr;
 
+#[cfg(feature = "mcap")]
 mod mcap;
 
 mod npz;
@@ -66,7 +68,10 @@ mod detect;
 
 mod answer;
 
+mod description;
+
 pub use answer::{FrameAnswer, SetRule};
+pub use description::{FrameMark, RecordingMetadata};
 pub use detect::{read, recognised};
 pub use error::RecordingError;
 pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingFormat, RecordingNote};

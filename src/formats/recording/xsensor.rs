@@ -199,6 +199,7 @@ impl XsensorState {
                         .zip(self.height_cm)
                         .map(|(x, y)| [x * 10.0, y * 10.0]),
                     threshold: self.threshold,
+                    ..ChannelInfo::default()
                 };
                 self.channels.push(XsensorChannel { name, frames: 0 });
                 if sink(RecordingEvent::Channel(&info)).is_break() {

@@ -16,6 +16,7 @@ use crate::tui::keys::action::{self, Action};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Key;
 use crate::tui::keys::keymap::Keymap;
+use crate::tui::live::request::WatchRequest;
 use crate::tui::live::state::Live;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::recognise::state::Recognition;
@@ -176,6 +177,8 @@ pub struct App {
     pub(in crate::tui) results: Option<Box<Results>>,
     /// Recognition, while it is not looked at.
     pub(in crate::tui) recognition: Option<Box<Recognition>>,
+    /// What a source that is named at the prompt is watched with.
+    pub(in crate::tui) watch_settings: WatchRequest,
     /// The page of a source of frames, while it is not looked at.
     pub(in crate::tui) live: Option<Box<Live>>,
     /// How many sweeps and exports were begun; the number of the last one.
@@ -225,6 +228,7 @@ impl App {
             removed: None,
             results: None,
             recognition: Some(Box::new(Recognition::new(options.seed))),
+            watch_settings: WatchRequest::new(""),
             live: None,
             works: 0,
             commands: Vec::new(),
@@ -245,6 +249,15 @@ impl App {
     #[must_use]
     pub fn with_keymap(self, keymap: Keymap) -> Self {
         Self { keymap, ..self }
+    }
+
+    /// The same with other settings for sources that are named at the prompt.
+    #[must_use]
+    pub fn with_watch_settings(self, watch_settings: WatchRequest) -> Self {
+        Self {
+            watch_settings,
+            ..self
+        }
     }
 
     /// What each key means.

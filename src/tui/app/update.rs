@@ -26,7 +26,8 @@ pub fn update(app: &mut App, message: Message) -> Option<Effect> {
     let effect = handle(app, message);
     app.read();
     // A message that wants something else is followed by another one.
-    effect.or_else(|| recognise::update::follow(app))
+    let effect = effect.or_else(|| recognise::update::follow(app));
+    effect.or_else(|| live::update::follow(app))
 }
 
 /// Handles a message, without reading the document anew.

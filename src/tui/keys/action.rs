@@ -301,6 +301,8 @@ actions! {
         NUMBERS "numbers" [] Message::Live(LiveMessage::Numbers);
         OWN_RANGE "own-range" [] Message::Live(LiveMessage::OwnRange);
         RECORD "record" [] Message::Live(LiveMessage::Record);
+        MARK_FRAME "mark-frame" [] Message::Live(LiveMessage::Mark);
+        NEXT_MODEL "next-model" [] Message::Live(LiveMessage::NextModel);
         REDRAW "redraw" [] Message::Redraw;
         SUSPEND "suspend" [] Message::Suspend;
     }

@@ -342,6 +342,8 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('#') => NUMBERS] "" "values as numbers, or in shades";
         [Char('g') => OWN_RANGE] "" "shades over this frame's values, or a fixed range";
         [Char('r') => RECORD] "record" "record all frames in a file, or end that";
+        [Char('m') => MARK_FRAME] "" "mark this frame, or take its mark off";
+        [Char('n') => NEXT_MODEL] "name" "name the shape by the next set, or by none";
         [Enter => ACCEPT] "to matrix" "take the imprint to the matrix";
         [Char('?') => HELP] "help" "these keys";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]

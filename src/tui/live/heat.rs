@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! ░░▒▒▒•▓•        two columns a taxel: the second one of a taxel at the edge of the imprint has a mark
-//! ░▒•▓            half a character a taxel: the larger of two; with colours, each has its own
+//! ░▒▓•            half a character a taxel: the larger of two; with colours, each has its own. The mark stands beside the
+//!                 imprint, so that no value of a touch is hidden
 //!   12   45•      numbers
 //! ```
 
@@ -92,6 +93,26 @@ impl<'a> HeatMap<'a> {
             && imprint.is_some_and(|imprint| is_edge(imprint, column, row))
     }
 
+    /// Whether two taxels, one above the other, are not active but next to one that is.
+    fn is_beside(&self, column: u8, row: u8) -> bool {
+        let Some(imprint) = &self.reading.imprint else {
+            return false;
+        };
+        let active = |column: Option<u8>, row: Option<u8>| {
+            let inside = column
+                .zip(row)
+                .filter(|&(column, row)| column < imprint.columns() && row < imprint.rows());
+            inside.is_some_and(|(column, row)| imprint.get(column, row))
+        };
+        let both =
+            |column: Option<u8>| active(column, Some(row)) || active(column, row.checked_add(1));
+        let near = both(column.checked_sub(1))
+            || both(column.checked_add(1))
+            || active(Some(column), row.checked_sub(1))
+            || active(Some(column), row.checked_add(2));
+        near && !both(Some(column))
+    }
+
     fn wide(&self, buffer: &mut Buffer, area: Rect, at: (u16, u16), (column, row): (u8, u8)) {
         let (sign, style) = self.taxel(column, row);
         let second = match sign {
@@ -125,7 +146,7 @@ impl<'a> HeatMap<'a> {
             row
         };
         let (sign, style) = self.taxel(column, larger);
-        let marked = self.is_marked(column, row) || self.is_marked(column, row + 1);
+        let marked = self.is_beside(column, row);
         if self.layer == HeatLayer::Imprint && self.reading.imprint.is_some() {
             let active =
                 |row| (self.reading.imprint.as_ref()).is_some_and(|own| own.get(column, row));

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::frame::Frame;
 
-/// The memory for values, in bytes.
+/// The memory for values, in bytes, unless another one is set.
 pub const HISTORY_BYTES: usize = 32 << 20;
 
 /// The bytes that a frame counts for.
@@ -14,20 +14,32 @@ pub(in crate::tui) fn bytes_of(frame: &Frame) -> usize {
 }
 
 /// Frames, each with a number of its own that counts on over all that have come.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct FrameHistory {
     frames: VecDeque<Arc<Frame>>,
     /// The number of the first one that is still here.
     first: u64,
     bytes: usize,
+    /// No more than these are kept, but for the newest frame.
+    most: usize,
 }
 
 impl FrameHistory {
+    /// A history of frames of so many bytes at most.
+    pub fn new(most: usize) -> Self {
+        Self {
+            frames: VecDeque::new(),
+            first: 0,
+            bytes: 0,
+            most,
+        }
+    }
+
     /// Adds the newest frame; the oldest ones go where there is no memory for them. The newest one always stays.
     pub fn push(&mut self, frame: Arc<Frame>) {
         self.bytes += bytes_of(&frame);
         self.frames.push_back(frame);
-        while self.bytes > HISTORY_BYTES && self.frames.len() > 1 {
+        while self.bytes > self.most && self.frames.len() > 1 {
             if let Some(oldest) = self.frames.pop_front() {
                 self.bytes -= bytes_of(&oldest);
                 self.first += 1;
@@ -65,7 +77,7 @@ mod tests {
 
     #[test]
     fn the_oldest_frames_go_where_there_is_no_memory() {
-        let mut history = FrameHistory::default();
+        let mut history = FrameHistory::new(HISTORY_BYTES);
         assert_eq!((history.oldest(), history.newest()), (None, None));
         let each = bytes_of(&Frame::new(512, 512));
         let most = HISTORY_BYTES / each;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::formats::recording::ChannelInfo;
 use crate::frame::Frame;
+use crate::tui::live::naming::NamedImprint;
 use crate::tui::live::request::WatchRequest;
 
 /// What a key or a command asks for.
@@ -13,6 +14,8 @@ pub enum LiveMessage {
     Open,
     /// To watch a source.
     Watch(Arc<WatchRequest>),
+    /// To watch the source of that name, with the user's settings.
+    Source(String),
     /// To take off the median of the frames up to the one that is shown.
     Tare,
     /// To take nothing off.
@@ -33,6 +36,10 @@ pub enum LiveMessage {
     OwnRange,
     /// To begin a recording, or to end it.
     Record,
+    /// To mark the frame that is shown, or to take its mark off.
+    Mark,
+    /// To name shapes by the next set of shapes, or by none.
+    NextModel,
 }
 
 /// What the source reports.
@@ -48,6 +55,10 @@ pub enum LiveEvent {
     Recorded(String, u64),
     /// It cannot be begun, and why.
     NotRecorded(String),
+    /// What the model says of an imprint.
+    Named(Box<NamedImprint>),
+    /// There is no model, and why.
+    NotNamed(String),
 }
 
 /// Frames that have come, and how the source is.

@@ -4,6 +4,7 @@
 //! request    which source, and how its frames are looked at
 //! message    what keys ask for, and what the source reports
 //! history    the frames that have come, as many as fit into some memory
+//! naming     what a model says of the imprint
 //! state      which frame is shown and how; its imprint and descriptors
 //! layout     where taxels and numbers stand
 //! heat       the heat map, with the edge of the imprint
@@ -16,6 +17,8 @@ pub mod request;
 pub mod message;
 
 pub mod history;
+
+pub mod naming;
 
 pub mod state;
 

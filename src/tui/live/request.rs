@@ -6,7 +6,9 @@ use std::path::PathBuf;
 use crate::acquire::AcquireOptions;
 use crate::formats::recording::SetRule;
 use crate::frame::Processing;
+use crate::recognition::Noise;
 use crate::storage::Existing;
+use crate::tui::live::history::HISTORY_BYTES;
 use crate::tui::recognise::sets::ModelChoice;
 
 /// A source of frames and the settings that the page begins with.
@@ -23,12 +25,18 @@ pub struct WatchRequest {
     pub rule: Option<SetRule>,
     /// How many of the first frames a tare is made of; 0 for none.
     pub tare: u64,
+    /// Whether the tare of a recording's own description is taken, where `tare` is 0.
+    pub own_tare: bool,
     /// The channel of a recording; without a name the first one.
     pub channel: Option<String>,
     /// The file that all frames are recorded in from the start.
     pub write: Option<(PathBuf, Existing)>,
     /// The set of shapes that imprints are compared with.
     pub model: Option<ModelChoice>,
+    /// How often a taxel flips, for that.
+    pub noise: Option<Noise>,
+    /// The memory for the frames that can be scrubbed through, in bytes.
+    pub history_bytes: usize,
 }
 
 impl PartialEq for WatchRequest {
@@ -47,10 +55,31 @@ impl WatchRequest {
             processing: Processing::default(),
             rule: None,
             tare: 0,
+            own_tare: true,
             channel: None,
             write: None,
             model: None,
+            noise: None,
+            history_bytes: HISTORY_BYTES,
         }
+    }
+
+    /// The same settings for another source.
+    #[must_use]
+    pub fn for_source(&self, source: impl Into<OsString>) -> Self {
+        Self {
+            source: source.into(),
+            ..self.clone()
+        }
+    }
+
+    /// The noise, with the dead cells of the mask left out.
+    pub fn noise(&self) -> Option<Noise> {
+        let noise = self.noise?;
+        Some(match self.processing.view.mask {
+            Some(mask) => noise.without(mask),
+            None => noise,
+        })
     }
 
     /// The source's name for people, without the folders that it is in.

@@ -3,13 +3,15 @@
 use std::sync::Arc;
 
 use crate::description::{Description, main_region, regions};
-use crate::formats::recording::SetRule;
+use crate::formats::recording::{ChannelInfo, FrameMark, SetRule};
 use crate::frame::{Frame, FrameError, Processing, Rule, Tare, TareFrames};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::tui::live::history::FrameHistory;
 use crate::tui::live::message::{FeedStatus, FrameBatch, SourceState};
+use crate::tui::live::naming::{NamedImprint, Naming};
 use crate::tui::live::request::WatchRequest;
+use crate::tui::recognise::sets::ModelChoice;
 
 /// A tare that is asked for by a key is made of at most so many frames.
 const TARED: usize = 30;
@@ -50,6 +52,8 @@ pub struct LiveReading {
     pub sum: f64,
     /// The largest of the values that are shown, and its column and row; None without cells.
     pub max: Option<(f64, (u8, u8))>,
+    /// The least of them, at most 0.
+    pub least: f64,
     /// The active taxels; None without a threshold.
     pub imprint: Option<Imprint>,
     /// Those of the main region; empty where there is none.
@@ -97,8 +101,16 @@ pub struct Live {
     tare: Option<TareMark>,
     /// The upper end of the fixed range.
     top: f64,
+    /// The least value that was shown, at most 0.
+    bottom: f64,
     not_drawn: u64,
     recording: Option<String>,
+    /// The frames that were marked, in the order of their numbers.
+    marks: Vec<FrameMark>,
+    /// Those that the recording itself marks, by their labels.
+    marked: Vec<FrameMark>,
+    /// The model that names imprints, and its last answer.
+    naming: Option<Naming>,
     reading: Option<LiveReading>,
     /// Why the frame cannot be processed.
     error: Option<String>,
@@ -110,7 +122,7 @@ impl Live {
         let mut live = Self {
             processing: request.processing.clone(),
             rule: None,
-            history: FrameHistory::default(),
+            history: FrameHistory::new(request.history_bytes),
             frozen: None,
             provisional: None,
             status: FeedStatus::default(),
@@ -122,8 +134,12 @@ impl Live {
             first: (request.tare > 0).then(|| TareFrames::new(request.tare)),
             tare: None,
             top: 1.0,
+            bottom: 0.0,
             not_drawn: 0,
             recording: None,
+            marks: Vec::new(),
+            marked: Vec::new(),
+            naming: (request.model.clone()).map(|model| Naming::new(model, request.noise())),
             reading: None,
             error: None,
             request,
@@ -209,6 +225,72 @@ impl Live {
         self.recording.as_deref()
     }
 
+    /// The frames that were marked, in the order of their numbers.
+    pub fn marks(&self) -> &[FrameMark] {
+        &self.marks
+    }
+
+    /// Whether the frame that is shown is marked.
+    pub fn is_marked(&self) -> bool {
+        let Some(reading) = &self.reading else {
+            return false;
+        };
+        let label = reading
+            .frame
+            .label
+            .and_then(|label| u64::try_from(label).ok());
+        let is = |marks: &[FrameMark], number: u64| marks.iter().any(|mark| mark.number == number);
+        is(&self.marks, reading.frame.number) || label.is_some_and(|label| is(&self.marked, label))
+    }
+
+    /// Marks the frame that is shown, or takes its mark off. Returns its number and whether it is marked now; None before
+    /// the first frame.
+    pub fn mark(&mut self) -> Option<(u64, bool)> {
+        let frame = &self.reading.as_ref()?.frame;
+        let (number, time) = (frame.number, frame.time);
+        let index = self.marks.binary_search_by_key(&number, |mark| mark.number);
+        match index {
+            Ok(index) => drop(self.marks.remove(index)),
+            Err(index) => self.marks.insert(index, FrameMark { number, time }),
+        }
+        Some((number, index.is_err()))
+    }
+
+    /// The model that names imprints, and its last answer; None without one.
+    pub fn naming(&self) -> Option<&Naming> {
+        self.naming.as_ref()
+    }
+
+    /// Names imprints by the next set of shapes: the one that was asked for, those that need no file, then none.
+    pub fn next_model(&mut self) -> Option<&ModelChoice> {
+        let asked = self.request.model.iter();
+        let others = ModelChoice::BUILT_IN.iter();
+        let others = others.filter(|other| Some(*other) != self.request.model.as_ref());
+        let mut all = asked.chain(others);
+        let next = match &self.naming {
+            None => all.next(),
+            Some(naming) => all.skip_while(|own| **own != naming.choice).nth(1),
+        };
+        self.naming = next.map(|choice| Naming::new(choice.clone(), self.request.noise()));
+        self.naming.as_ref().map(|naming| &naming.choice)
+    }
+
+    /// The imprint that is to be named now; None while an answer is on its way, or where nothing is active. Notes that it is.
+    pub fn ask_name(&mut self) -> Option<Imprint> {
+        let imprint = self.reading.as_ref()?.imprint?;
+        self.naming.as_mut()?.ask(&imprint).then_some(imprint)
+    }
+
+    /// Takes what a model says, or why there is none.
+    pub fn take_name(&mut self, named: Result<NamedImprint, String>) {
+        if let Some(naming) = &mut self.naming {
+            match named {
+                Ok(named) => naming.take(named),
+                Err(reason) => naming.fail(reason),
+            }
+        }
+    }
+
     /// The unit of the values, with a space before it; empty if it is not known.
     pub fn unit(&self) -> String {
         let channel = self.status.channel.as_deref();
@@ -218,9 +300,17 @@ impl Live {
 
     /// The values between which shades are spread.
     pub fn range(&self) -> (f64, f64) {
-        let largest = self.reading.as_ref().and_then(|reading| reading.max);
+        let reading = self.reading.as_ref();
+        let largest = reading
+            .and_then(|reading| reading.max)
+            .map(|(largest, _)| largest);
+        let least = reading.map_or(0.0, |reading| reading.least);
         match largest {
-            Some((largest, _)) if self.own_range && largest > 0.0 => (0.0, largest),
+            Some(largest) if self.own_range && (largest > 0.0 || least < 0.0) => {
+                (least.min(0.0), largest.max(0.0))
+            }
+            // What little a tare leaves below 0 is noise.
+            _ if self.bottom < -self.top / 20.0 => (-round_up(-self.bottom), self.top),
             _ => (0.0, self.top),
         }
     }
@@ -251,13 +341,8 @@ impl Live {
             self.recording = None;
             self.error = Some(error.clone());
         }
-        let threshold = (self.status.channel.as_deref()).and_then(|channel| channel.threshold);
-        if !had_channel
-            && self.rule.is_none()
-            && let Some(Ok(rule)) = threshold.map(Rule::at_least)
-        {
-            let (least, from) = (self.processing.least, "file");
-            self.set_rule(Some(SetRule { rule, least, from }));
+        if !had_channel && let Some(channel) = self.status.channel.clone() {
+            self.take_channel(&channel);
         }
         for frame in &batch.frames {
             self.add(frame);
@@ -269,6 +354,27 @@ impl Live {
         self.provisional.clone_from(&batch.provisional);
         if !batch.frames.is_empty() || batch.provisional.is_some() {
             self.read();
+        }
+    }
+
+    /// Takes what a recording says of its channel: threshold, tare and marks.
+    fn take_channel(&mut self, channel: &ChannelInfo) {
+        if self.rule.is_none() {
+            self.set_rule(channel.own_rule(self.processing.least));
+        }
+        self.marked.clone_from(&channel.marks);
+        let baseline = channel.tare.as_ref().map(Tare::baseline);
+        let size = baseline.map(|own| (own.columns().into(), own.rows().into()));
+        let seen = channel
+            .shape
+            .map(|(rows, columns)| self.processing.view.size(columns, rows));
+        if self.request.own_tare && self.request.tare == 0 && size.is_some() && size == seen {
+            self.processing.tare.clone_from(&channel.tare);
+            self.tare = channel.tare.as_ref().map(|tare| TareMark {
+                frames: tare.frames(),
+                number: 0,
+                time: None,
+            });
         }
     }
 
@@ -504,8 +610,11 @@ impl Live {
         let found = imprint.as_ref().map_or_else(Vec::new, regions);
         let main = main_region(&found).and_then(|main| found.get(main));
         let empty = || Imprint::empty(values.columns(), values.rows());
+        let least = values.values().iter().copied().fold(0.0, f64::min);
+        self.bottom = self.bottom.min(least);
         self.reading = Some(LiveReading {
             max: largest(values),
+            least,
             values: values.clone(),
             sum: processed.sum,
             imprint,

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use crate::acquire::RecordingMetadata;
+use crate::formats::recording::RecordingMetadata;
 use crate::formats::value::counted;
 use crate::parameter::Parameter;
 use crate::sensor::Sensor;
@@ -23,6 +23,10 @@ use crate::tui::runtime::effect::{Effect, Work};
 pub(in crate::tui) fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> {
     match asked {
         LiveMessage::Watch(request) => Some(watch(app, Arc::clone(request))),
+        LiveMessage::Source(name) => {
+            let request = app.watch_settings.for_source(name);
+            Some(watch(app, Arc::new(request)))
+        }
         LiveMessage::Open => open(app),
         _ => None,
     }
@@ -175,9 +179,39 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
             page.switch_range();
         }
         LiveMessage::Record => return Some(record(page)),
-        LiveMessage::Open | LiveMessage::Watch(_) => {}
+        LiveMessage::Mark => return mark(app, page),
+        LiveMessage::NextModel => {
+            let model = page.next_model().cloned();
+            let text = match &model {
+                Some(model) => format!("shapes are named by {model}"),
+                None => "shapes are not named".to_owned(),
+            };
+            inform(app, text);
+            let model = model.map(|model| (model, page.request().noise()));
+            return Some(Effect::Work(Work::NameBy(page.number(), model)));
+        }
+        LiveMessage::Open | LiveMessage::Watch(_) | LiveMessage::Source(_) => {}
     }
     None
+}
+
+/// Marks the frame that is shown, in the description of a recording, too.
+fn mark(app: &mut App, page: &mut Live) -> Option<Effect> {
+    let Some((number, marked)) = page.mark() else {
+        refuse(app, "no frame yet");
+        return None;
+    };
+    let text = if marked { "marked" } else { "no mark any more" };
+    inform(app, format!("frame {number}: {text}"));
+    page.recording()?;
+    Some(Effect::Work(Work::Mark(page.marks().to_vec())))
+}
+
+/// Asks for the name of the imprint that is shown.
+pub(in crate::tui) fn follow(app: &mut App) -> Option<Effect> {
+    let page = page(app).filter(|page| !page.stopped())?;
+    let imprint = page.ask_name()?;
+    Some(Effect::Work(Work::Name(Box::new(imprint))))
 }
 
 /// Begins a recording, or ends it.
@@ -191,12 +225,12 @@ fn record(page: &Live) -> Effect {
         unit: channel.and_then(|channel| channel.unit.clone()),
         pitch_mm: channel.and_then(|channel| channel.pitch_mm),
         rule: page.rule(),
+        tare: page.tare_values().cloned(),
+        seconds_per_frame: channel.and_then(|channel| channel.seconds_per_frame),
+        marks: page.marks().to_vec(),
         ..RecordingMetadata::default()
     };
-    Effect::Work(Work::Record(Box::new(match page.tare_values() {
-        Some(tare) => metadata.with_tare(tare),
-        None => metadata,
-    })))
+    Effect::Work(Work::Record(Box::new(metadata)))
 }
 
 /// The page, open or not.
@@ -226,6 +260,8 @@ pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
             let frames = counted(*frames, "frame");
             inform(app, format!("{name}: {frames} recorded"));
         }
+        LiveEvent::Named(named) => page.take_name(Ok((**named).clone())),
+        LiveEvent::NotNamed(reason) => page.take_name(Err(reason.clone())),
         LiveEvent::NotRecorded(reason) => {
             page.set_recording(None);
             refuse(app, reason.clone());

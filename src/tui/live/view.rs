@@ -13,6 +13,8 @@ use ratatui::layout::{Position, Rect};
 use crate::description::Descriptor;
 use crate::formats::value::{self, counted, fitting, grouped};
 use crate::frame::Rule;
+use crate::imprint::Imprint;
+use crate::recognition::AnswerState;
 use crate::tui::app::page::{Page, Slot};
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
@@ -20,6 +22,7 @@ use crate::tui::keys::keymap::Keymap;
 use crate::tui::live::heat::{HeatMap, cells, scale};
 use crate::tui::live::layout::LivePanes;
 use crate::tui::live::message::SourceState;
+use crate::tui::live::naming::Naming;
 use crate::tui::live::state::{Live, LiveReading};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
@@ -114,6 +117,9 @@ fn title(live: &Live) -> Vec<(String, Role)> {
     if live.holds_peak() {
         say("peak held".to_owned(), Role::Focus);
     }
+    if live.is_marked() {
+        say("marked".to_owned(), Role::Focus);
+    }
     match live.frozen() {
         Some(0) => say("frozen".to_owned(), Role::Focus),
         Some(back) => say(format!("frozen, {} back", grouped(back)), Role::Focus),
@@ -150,6 +156,12 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap) -> Vec<PanelLine> {
         }
         say("regions", reading.regions.to_string());
     }
+    if let Some(naming) = live.naming() {
+        let shown = live.reading().and_then(|reading| reading.imprint);
+        for (label, text) in named(naming, shown.as_ref()) {
+            say(label, text.unwrap_or_else(|| theme.none().to_owned()));
+        }
+    }
     say("threshold", threshold(live, keymap));
     say("tare", tare(live));
     if let Some(reading) = live.reading() {
@@ -167,11 +179,66 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap) -> Vec<PanelLine> {
     say("rate", rate.unwrap_or_else(|| theme.none().to_owned()));
     say("lost", lost(live));
     say("not drawn", grouped(live.not_drawn()));
+    if !live.marks().is_empty() {
+        let numbers = live
+            .marks()
+            .iter()
+            .rev()
+            .map(|mark| mark.number.to_string());
+        let numbers: Vec<String> = numbers.take(20).collect();
+        say("marks", numbers.join(", "));
+    }
     if let Some(name) = live.recording() {
         let frames = counted(live.status().recorded.into_iter().sum(), "frame");
         say("recording", format!("{name}, {frames}"));
     }
     lines
+}
+
+/// The name of the shape, the nearest imprint, and by which model and noise; none where nothing is active. What is said
+/// of an earlier imprint ends in dots.
+fn named(naming: &Naming, shown: Option<&Imprint>) -> [(&'static str, Option<String>); 3] {
+    let noise = naming.noise;
+    let model = match noise {
+        Some(noise) => format!("{}, noise {}", naming.choice.name(), noise.flip()),
+        None => naming.choice.name().to_owned(),
+    };
+    let shown = shown.filter(|imprint| !imprint.is_empty());
+    let answer = naming.answer.as_ref().filter(|_| shown.is_some());
+    let late = |text: String| match answer {
+        Some(answer) if Some(&answer.imprint) != shown => text + " …",
+        _ => text,
+    };
+    let shape = match (&naming.failure, answer) {
+        (Some(reason), _) => Some(format!("! {reason}")),
+        (None, None) => shown.map(|_| "training or reading the model".to_owned()),
+        (None, Some(answer)) => Some(late(match answer.state {
+            AnswerState::Tied => format!("{}: tied", answer.names.join(" or ")),
+            AnswerState::Unknown => "unknown".to_owned(),
+            state => {
+                let name = answer.names.join(" or ");
+                let percent = answer.probability.map(|own| fitting(100.0 * own, 4));
+                format!(
+                    "{name} {} %, {}",
+                    percent.unwrap_or_else(String::new),
+                    state.name()
+                )
+            }
+        })),
+    };
+    let nearest = answer.and_then(|answer| answer.nearest.as_ref());
+    let nearest = nearest.map(|(name, distance)| {
+        late(match distance {
+            0 => format!("{name}, the same"),
+            1 => format!("{name}, 1 taxel differs"),
+            taxels => format!("{name}, {taxels} taxels differ"),
+        })
+    });
+    [
+        ("shape", shape),
+        ("nearest", nearest),
+        ("model", Some(model)),
+    ]
 }
 
 /// The rule of the imprint, and where it is from.

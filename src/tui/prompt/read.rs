@@ -11,8 +11,6 @@
 //! Names, flags and ranges are those of the program's own command line. Parameters of a figure that are not given have
 //! their defaults; those of the sensor keep their values.
 
-use std::sync::Arc;
-
 use crate::figure::{Figure, FigureKind};
 use crate::formats::Name;
 use crate::parameter::Parameter;
@@ -28,7 +26,6 @@ use crate::tui::explore::ranges::state::explored;
 use crate::tui::keys::action::{self, Arguments, FilePurpose};
 use crate::tui::keys::binding::Context;
 use crate::tui::live::message::LiveMessage;
-use crate::tui::live::request::WatchRequest;
 use crate::tui::prompt::commands::{PromptCommand, find};
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::separate::request::SeparationFlags;
@@ -97,10 +94,7 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
             Ok(Message::Recognise(RecogniseMessage::Separate(flags)))
         }
         (Arguments::Seed, _) => seed(rest),
-        (Arguments::FrameSource, _) => {
-            let request = Arc::new(WatchRequest::new(rest));
-            Ok(Message::Live(LiveMessage::Watch(request)))
-        }
+        (Arguments::FrameSource, _) => Ok(Message::Live(LiveMessage::Source(rest.to_owned()))),
         (Arguments::Degrees, _) => degrees(rest),
         (Arguments::Taxel, [column, row]) => taxel(column, row, &app.shown().sensor),
         (Arguments::Distance, [dx, dy]) => distance(dx, dy).ok_or_else(unexpected),

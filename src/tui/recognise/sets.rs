@@ -1,6 +1,8 @@
 //! The sets of shapes that can be chosen, and how each is trained.
 
+use std::ffi::OsStr;
 use std::fmt;
+use std::path::PathBuf;
 
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64;
@@ -26,6 +28,8 @@ pub enum ModelChoice {
     Shipped,
     /// A stored model.
     Stored(Name),
+    /// A model in a file.
+    File(PathBuf),
 }
 
 /// The steps of the grid of the shapes that come with the program. In hundredths and whole degrees they leave 5.2
@@ -52,6 +56,7 @@ impl ModelChoice {
             Self::EqualFigures => "figures-30",
             Self::Shipped => "shapes",
             Self::Stored(name) => name.as_str(),
+            Self::File(path) => path.file_name().and_then(OsStr::to_str).unwrap_or("file"),
         }
     }
 
@@ -64,7 +69,7 @@ impl ModelChoice {
             Self::Figures => (default_figures(), GridSteps::FINE),
             Self::EqualFigures => (equal_figures(), GridSteps::FINE),
             Self::Shipped => (shipped_shapes(), SHIPPED_STEPS),
-            Self::Stored(_) => return None,
+            Self::Stored(_) | Self::File(_) => return None,
         };
         Some(Training::fitting(shapes, steps))
     }
@@ -78,6 +83,7 @@ impl fmt::Display for ModelChoice {
             Self::EqualFigures => f.write_str("the seven figures of 30 cells"),
             Self::Shipped => f.write_str("the shapes that come with it"),
             Self::Stored(name) => write!(f, "model {name}"),
+            Self::File(path) => write!(f, "model {}", path.display()),
         }
     }
 }

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::acquire::RecordingMetadata;
 use crate::formats::StoredShape;
+use crate::formats::recording::{FrameMark, RecordingMetadata};
 use crate::imprint::Imprint;
 use crate::pose::PoseGrid;
-use crate::recognition::SeparationPoint;
+use crate::recognition::{Noise, SeparationPoint};
 use crate::storage::{Existing, Expected};
 use crate::tui::app::message::Purpose;
 use crate::tui::explore::message::Findings;
@@ -78,6 +78,12 @@ pub enum Work {
     Record(Box<RecordingMetadata>),
     /// Stop that.
     StopRecording,
+    /// Write the marks into the description of the recording.
+    Mark(Vec<FrameMark>),
+    /// Name the imprints of that source by a set of shapes, under a noise; None names them no more.
+    NameBy(u64, Option<(ModelChoice, Option<Noise>)>),
+    /// Name an imprint.
+    Name(Box<Imprint>),
     /// Search a model for the nearest imprint, and for the poses of a shape, None for that of the nearest imprint.
     Look(Arc<TrainedModel>, Box<Imprint>, Option<usize>),
 }

@@ -14,13 +14,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::acquire::{
-    AcquireError, AcquireEvent, AcquireOptions, FrameRecorder, FrameSource, RecordingMetadata,
-    acquire,
+    AcquireError, AcquireEvent, AcquireOptions, FrameRecorder, FrameSource, acquire,
 };
+use crate::formats::recording::{FrameMark, RecordingMetadata};
 use crate::frame::Frame;
 use crate::storage::{Existing, location};
 use crate::tui::explore::message::WorkerEvent;
-use crate::tui::live::history::{HISTORY_BYTES, bytes_of};
+use crate::tui::live::history::bytes_of;
 use crate::tui::live::message::{FrameBatch, LiveEvent, SourceState};
 use crate::tui::live::request::WatchRequest;
 use crate::tui::runtime::progress::WorkerEventSink;
@@ -47,6 +47,8 @@ struct FrameFeed {
     pending: Mutex<Pending>,
     /// Locked apart, so that a slow disk holds up the source only.
     recorder: Mutex<Option<(PathBuf, FrameRecorder)>>,
+    /// Marks that are not in the recording's description yet.
+    marks: Mutex<Option<Vec<FrameMark>>>,
 }
 
 #[derive(Debug, Default)]
@@ -137,6 +139,12 @@ impl FrameWatcher {
         Some(WorkerEvent::Live(watched.number, event))
     }
 
+    /// Has the marks written into the description of the recording, by the thread that records.
+    pub(super) fn mark(&self, marks: &[FrameMark]) -> Option<WorkerEvent> {
+        *locked(&self.watched.as_ref()?.feed.marks) = Some(marks.to_vec());
+        None
+    }
+
     /// Whether there is something to take.
     pub(super) fn has_new(&self) -> bool {
         let pending = self
@@ -216,10 +224,14 @@ impl Watched {
 
     /// Finishes the recording; None if there was none.
     fn end_recording(&self) -> Option<LiveEvent> {
-        let (path, recorder) = locked(&self.feed.recorder).take()?;
+        let (path, mut recorder) = locked(&self.feed.recorder).take()?;
+        let marked = match locked(&self.feed.marks).take() {
+            Some(marks) => recorder.mark(marks),
+            None => Ok(()),
+        };
         locked(&self.feed.pending).batch.status.recorded = None;
         let name = path.to_string_lossy().into_owned();
-        Some(match recorder.finish() {
+        Some(match marked.and_then(|()| recorder.finish()) {
             Ok(frames) => LiveEvent::Recorded(name, frames),
             Err(error) => LiveEvent::NotRecorded(error.to_string()),
         })
@@ -311,7 +323,7 @@ impl FrameFeed {
                 own.time = time;
                 self.change(|pending| {
                     pending.note(recorded);
-                    pending.push(Arc::new(own));
+                    pending.push(Arc::new(own), request.history_bytes);
                 })
             }
             AcquireEvent::Provisional(frame) => {
@@ -368,7 +380,12 @@ impl FrameFeed {
         let Some((_, own)) = &mut *recorder else {
             return Ok(None);
         };
-        let written = own.tick().map(|()| Some(own.frames()));
+        let marked = match locked(&self.marks).take() {
+            Some(marks) => own.mark(marks),
+            None => Ok(()),
+        };
+        let written = marked.and_then(|()| own.tick());
+        let written = written.map(|()| Some(own.frames()));
         written.map_err(|error| {
             let _ = recorder.take();
             error.to_string()
@@ -378,12 +395,12 @@ impl FrameFeed {
 
 impl Pending {
     /// Adds a frame; the oldest go where nobody takes them and there is no memory for more.
-    fn push(&mut self, frame: Arc<Frame>) {
+    fn push(&mut self, frame: Arc<Frame>, most: usize) {
         self.batch.status.state = SourceState::Live;
         self.batch.provisional = None;
         self.bytes += bytes_of(&frame);
         self.batch.frames.push(frame);
-        if self.bytes > HISTORY_BYTES && self.batch.frames.len() > 1 {
+        if self.bytes > most && self.batch.frames.len() > 1 {
             let half = self.batch.frames.len() / 2;
             let dropped = self.batch.frames.drain(..half);
             self.bytes -= dropped.map(|frame| bytes_of(&frame)).sum::<usize>();

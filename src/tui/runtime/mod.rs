@@ -9,6 +9,7 @@
 //! models           models for recognition: trained, read, searched
 //! sizes            the limit of a set in several sizes
 //! frames           a source of frames: watched, recorded
+//! naming           the shapes that left the imprints of frames
 //! journal_writer   unsaved work, written beside the program
 //! write_access     where files may be written
 //! shape_log        which stored shapes were used, for a record
@@ -26,6 +27,8 @@ mod models;
 mod sizes;
 
 mod frames;
+
+mod naming;
 
 pub mod progress;
 

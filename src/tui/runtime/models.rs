@@ -52,7 +52,7 @@ impl ModelStore {
 
     /// Reads or trains the model of a set. `begun` is called with the number of poses before a training, `progress`
     /// during it, as by a sweep.
-    fn model(
+    pub(super) fn model(
         &self,
         choice: &ModelChoice,
         begun: &dyn Fn(u64),
@@ -61,6 +61,9 @@ impl ModelStore {
         let training = match (choice.training(), choice) {
             (Some(training), _) => training.map_err(|error| error.to_string())?,
             (None, ModelChoice::Stored(name)) => return self.stored(name),
+            (None, ModelChoice::File(path)) => {
+                return load_model(path).map_err(|error| error.to_string());
+            }
             (None, _) => return Err(format!("{choice} cannot be trained")),
         };
         let cached = self

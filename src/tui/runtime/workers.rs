@@ -16,12 +16,15 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crate::pose::PoseGrid;
+use crate::recognition::Noise;
 use crate::storage::{ArchiveFileError, AtlasFile, Existing, ModelCache, PoseFile, is_poses};
 use crate::sweep::{Sweep, SweepResult, TimingSample};
 use crate::tui::explore::message::{Findings, WorkerEvent};
+use crate::tui::recognise::sets::ModelChoice;
 use crate::tui::runtime::effect::Work;
 use crate::tui::runtime::frames::FrameWatcher;
 use crate::tui::runtime::models::{self, ModelStore, ModelWorker};
+use crate::tui::runtime::naming::ShapeNamer;
 use crate::tui::runtime::progress::{ProgressReporter, WorkerEventSink, guarded, proceed};
 use crate::tui::runtime::sizes::SizeWorker;
 use crate::tui::runtime::write_access::WriteAccess;
@@ -46,6 +49,8 @@ pub(in crate::tui) struct Workers {
     sizes: SizeWorker,
     /// Watches a source of frames.
     pub(super) frames: FrameWatcher,
+    /// Names the imprints of its frames.
+    namer: ShapeNamer,
     /// Where files may be written.
     pub(super) access: WriteAccess,
 }
@@ -125,8 +130,19 @@ impl Workers {
                 self.sizes.stop();
                 None
             }
-            Work::Watch(number, request) => self.frames.watch(number, request, self.post.clone()),
+            Work::Watch(number, request) => {
+                let model = request.model.clone();
+                self.name_by(number, model.map(|model| (model, request.noise())));
+                self.frames.watch(number, request, self.post.clone())
+            }
+            Work::NameBy(number, model) => {
+                self.name_by(number, model);
+                None
+            }
+            Work::Name(imprint) => self.namer.name(&imprint),
+            Work::Mark(marks) => self.frames.mark(&marks),
             Work::StopWatching => {
+                self.namer.end();
                 self.frames.stop();
                 None
             }
@@ -135,6 +151,17 @@ impl Workers {
             Work::Look(trained, imprint, shape) => {
                 models::look(trained, imprint, shape, self.post.clone())
             }
+        }
+    }
+
+    /// Prepares the model that names the imprints of frames.
+    fn name_by(&mut self, number: u64, model: Option<(ModelChoice, Option<Noise>)>) {
+        match model {
+            Some(model) => {
+                let store = self.models.store.clone();
+                self.namer.begin(number, store, model, self.post.clone());
+            }
+            None => self.namer.end(),
         }
     }
 

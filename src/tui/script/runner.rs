@@ -13,7 +13,6 @@
 //! command, so that a script prints the same each time.
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
 use serde_json::{Value, json};
 
@@ -23,7 +22,6 @@ use crate::tui::app::message::{Message, Mouse, MouseKind};
 use crate::tui::app::state::App;
 use crate::tui::keys::key::Key;
 use crate::tui::live::message::LiveMessage;
-use crate::tui::live::request::WatchRequest;
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::runtime::World;
 use crate::tui::script::command::{ScreenPosition, ScriptCommand, ScriptError, read};
@@ -180,8 +178,7 @@ fn act(session: &mut Session, line: usize, command: &ScriptCommand) -> Result<()
             session.send(Message::Recognise(RecogniseMessage::Seed(*seed)));
         }
         ScriptCommand::Source(name) => {
-            let request = Arc::new(WatchRequest::new(name));
-            session.send(Message::Live(LiveMessage::Watch(request)));
+            session.send(Message::Live(LiveMessage::Source(name.clone())));
         }
         ScriptCommand::Frames(count) => session.frames(*count),
         ScriptCommand::Signal(name) if name == "TSTP" => session.send(Message::Redraw),

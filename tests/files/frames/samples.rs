@@ -249,6 +249,24 @@ fn topics_and_their_sensors_are_channels() {
     let bytes = sample("topics.mcap");
     let found = recorded(&bytes, Some((4, 5)));
     assert!(found.error.is_none(), "{:?}", found.error);
+    // The same in chunks that are packed, as the usual writers do it.
+    for packed in ["topics_lz4.mcap", "topics_zstd.mcap"] {
+        let packed = recorded(&sample(packed), Some((4, 5)));
+        assert!(packed.error.is_none(), "{:?}", packed.error);
+        assert_eq!(packed.channels, found.channels);
+        let values = |found: &Recorded| {
+            let frames = found.frames.iter();
+            let bits = frames.map(|frame| {
+                frame
+                    .values()
+                    .iter()
+                    .map(|value| value.to_bits())
+                    .collect::<Vec<_>>()
+            });
+            bits.collect::<Vec<_>>()
+        };
+        assert_eq!(values(&packed), values(&found));
+    }
     let names: Vec<_> = found
         .channels
         .iter()
@@ -278,4 +296,14 @@ fn topics_and_their_sensors_are_channels() {
         message.as_deref(),
         Some("the file ends without a footer: it was not closed")
     );
+    for name in ["topics_lz4.mcap", "topics_zstd.mcap"] {
+        let packed = sample(name);
+        let open = recorded(&packed[..packed.len() * 2 / 3], Some((4, 5)));
+        assert!(open.error.is_some(), "{name}");
+        let mut broken = packed.clone();
+        for byte in &mut broken[400..440] {
+            *byte ^= 0x55;
+        }
+        assert!(recorded(&broken, Some((4, 5))).error.is_some(), "{name}");
+    }
 }

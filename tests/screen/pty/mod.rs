@@ -20,6 +20,8 @@ mod mouse;
 
 mod record;
 
+mod live;
+
 /// Becomes the program; see `program`.
 #[test]
 #[ignore = "only as a child of other tests"]

@@ -3,7 +3,7 @@
 use std::io::Cursor;
 use std::ops::ControlFlow;
 
-use taxel::formats::recording::{ReadOptions, RecordingEvent, read};
+use taxel::formats::recording::{ReadOptions, RecordingEvent, RecordingMetadata, read};
 use taxel::formats::stream::{StreamDecoder, StreamEvent, StreamOptions};
 use taxel::frame::{Processing, Rule};
 
@@ -37,6 +37,20 @@ pub(crate) fn recording(bytes: &[u8]) {
         if let Err(error) = read {
             is_short(&error.to_string());
         }
+    }
+}
+
+/// What lies beside a recording. What is read is written and read as the same.
+pub(crate) fn description(bytes: &[u8]) {
+    match RecordingMetadata::read(bytes) {
+        Some(Ok(metadata)) => {
+            let text = metadata.text().expect("it is written");
+            let again = RecordingMetadata::read(&text).expect("it is one");
+            let again = again.expect("it is a right one").text();
+            assert_eq!(again.expect("it is written"), text);
+        }
+        Some(Err(error)) => is_short(&error),
+        None => {}
     }
 }
 

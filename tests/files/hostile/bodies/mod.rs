@@ -22,7 +22,7 @@ pub(crate) use screen::session_of;
 pub(crate) type Body = (&'static str, &'static str, fn(&[u8]));
 
 /// All of them.
-pub(crate) const BODIES: [Body; 20] = [
+pub(crate) const BODIES: [Body; 21] = [
     ("shape", "shape", formats::shape),
     ("job", "job", formats::job),
     ("imprint", "imprint", formats::imprint),
@@ -43,6 +43,7 @@ pub(crate) const BODIES: [Body; 20] = [
     ("session", "session", screen::session),
     ("recording", "recording", frames::recording),
     ("stream", "stream", frames::stream),
+    ("description", "description", frames::description),
 ];
 
 /// The body of that name.

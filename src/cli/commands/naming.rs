@@ -1,0 +1,111 @@
+//! What a model says of the imprint of a frame, for `taxel frames` and `taxel watch` with `--model`.
+
+use std::ffi::OsString;
+
+use crate::cli::commands::model;
+use crate::cli::error::CliError;
+use crate::cli::input::shapes::Shelf;
+use crate::cli::output::answer::{AnswerJson, AnswerText};
+use crate::cli::output::charset::Charset;
+use crate::cli::output::report;
+use crate::formats::json;
+use crate::imprint::Imprint;
+use crate::recognition::{Answer, Evidence, Method, Model, Noise, NoisyRecogniser};
+
+/// Which model names imprints, and how often a taxel of the sensor flips.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct NamingArguments {
+    /// Its name or file; without one nothing is named.
+    pub(crate) model: Option<OsString>,
+    /// The probability that a taxel flips.
+    pub(crate) noise: Option<Noise>,
+}
+
+impl NamingArguments {
+    /// Reads or trains the model; None if none is asked for. Training takes seconds.
+    ///
+    /// # Errors
+    /// If there is no such model, or it cannot be read.
+    pub(crate) fn load(&self, shelf: &Shelf) -> Result<Option<Model>, CliError> {
+        let model = self.model.as_ref();
+        model.map(|model| model::find(model, shelf)).transpose()
+    }
+
+    /// The noise, with the dead cells of a mask left out.
+    pub(crate) fn noise_with(&self, mask: Option<Imprint>) -> Option<Noise> {
+        let noise = self.noise?;
+        Some(mask.map_or(noise, |mask| noise.without(mask)))
+    }
+}
+
+/// Names imprints, one after the other.
+#[derive(Debug)]
+pub(crate) struct FrameNamer<'a> {
+    model: &'a Model,
+    noise: Option<Noise>,
+    noisy: Option<NoisyRecogniser<'a>>,
+}
+
+impl<'a> FrameNamer<'a> {
+    /// Names them by this model, under a noise if one is given.
+    pub(crate) fn new(model: &'a Model, noise: Option<Noise>) -> Self {
+        Self {
+            model,
+            noise,
+            noisy: noise.map(|noise| NoisyRecogniser::new(model, noise)),
+        }
+    }
+
+    fn answer(&mut self, imprint: &Imprint) -> (Answer, Method) {
+        let touches = [*imprint];
+        match &mut self.noisy {
+            Some(noisy) => noisy.recognise(&touches, None),
+            None => (self.model.recognise(Evidence::of(&touches)), Method::Exact),
+        }
+    }
+
+    /// The line of JSON of a frame, with a key `recognition` at its end: what `taxel recognise` answers to the imprint,
+    /// null where nothing is active.
+    pub(crate) fn extend(&mut self, line: &mut Vec<u8>, imprint: Option<&Imprint>) {
+        let Some(end) = line.iter().rposition(|&byte| byte == b'}') else {
+            return;
+        };
+        line.truncate(end);
+        line.extend(b",\"recognition\":");
+        match imprint.filter(|imprint| !imprint.is_empty()) {
+            None => line.extend(b"null"),
+            Some(imprint) => {
+                let (answer, method) = self.answer(imprint);
+                let text = json::text(&AnswerJson {
+                    model: self.model,
+                    answer: &answer,
+                    method,
+                    noise: self.noise,
+                    nearest: self.model.nearest_of(Evidence::of(&[*imprint])),
+                    top: None,
+                    asks_pose: false,
+                    pose: None,
+                    copied: Vec::new(),
+                });
+                line.extend(report::ascii_json(&text).bytes());
+            }
+        }
+        line.extend(b"}\n");
+    }
+
+    /// The answer in words, as by `taxel recognise`; empty where nothing is active.
+    pub(crate) fn text(&mut self, imprint: &Imprint, charset: Charset) -> String {
+        if imprint.is_empty() {
+            return String::new();
+        }
+        let (answer, _) = self.answer(imprint);
+        let text = AnswerText {
+            model: self.model,
+            touch: imprint,
+            answer: &answer,
+            top: None,
+            noise: self.noise,
+        };
+        text.text(charset)
+    }
+}

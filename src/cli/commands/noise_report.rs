@@ -1,0 +1,132 @@
+//! `taxel frames FILE --noise-report`: how often taxels flip, and which are dead or stuck, by a recording's own frames.
+
+use std::ops::ControlFlow;
+
+use serde::Serialize;
+
+use crate::cli::error::CliError;
+use crate::cli::input::recording::RecordingFile;
+use crate::formats::json;
+use crate::formats::recording::RecordingEvent;
+use crate::formats::value::{counted, grouped};
+use crate::frame::{FlipCounter, FlipReport, Processing};
+use crate::imprint::Imprint;
+
+/// The report as an object of JSON, its keys in the order of the documentation.
+#[derive(Serialize)]
+struct NoiseJson {
+    frames: u64,
+    cells: u32,
+    noise: Option<f64>,
+    standard_error: Option<f64>,
+    flips: u64,
+    repeated: u64,
+    /// Column and row of each.
+    stuck_on: Vec<[u8; 2]>,
+    stuck_off: Vec<[u8; 2]>,
+    mask: Vec<String>,
+}
+
+/// Reads a channel whose frames become imprints by `processing`. None if there is no frame.
+///
+/// # Errors
+/// If a frame cannot be processed.
+pub(crate) fn gather(
+    recording: &mut RecordingFile,
+    channel: usize,
+    processing: &mut Processing,
+) -> Result<Option<FlipReport>, CliError> {
+    let mut counter: Option<FlipCounter> = None;
+    let mut failure = None;
+    // A damage was found before, and is reported afterwards.
+    let _ = recording.read(&mut |event| {
+        let RecordingEvent::Frame(frame) = event else {
+            return ControlFlow::Continue(());
+        };
+        if frame.channel != channel {
+            return ControlFlow::Continue(());
+        }
+        match processing.run(frame) {
+            Ok(processed) => {
+                let counter = counter.get_or_insert_with(|| {
+                    let values = processed.raw;
+                    let mut cells = Imprint::empty(values.columns(), values.rows());
+                    for row in 0..values.rows() {
+                        for (column, value) in (0..values.columns()).zip(values.row(row)) {
+                            cells.set(column, row, !value.is_nan());
+                        }
+                    }
+                    FlipCounter::new(cells)
+                });
+                if let Some(imprint) = &processed.imprint {
+                    counter.add(imprint);
+                }
+                ControlFlow::Continue(())
+            }
+            Err(error) => {
+                failure = Some(error);
+                ControlFlow::Break(())
+            }
+        }
+    });
+    if let Some(error) = failure {
+        return Err(recording.refused(&error));
+    }
+    Ok(counter.map(|counter| counter.finish()))
+}
+
+/// Column and row of each active taxel, row by row.
+fn places(imprint: &Imprint) -> Vec<[u8; 2]> {
+    let rows = 0..imprint.rows();
+    let all = rows.flat_map(|row| (0..imprint.columns()).map(move |column| [column, row]));
+    all.filter(|&[column, row]| imprint.get(column, row))
+        .collect()
+}
+
+/// The report as a line of JSON.
+pub(crate) fn json(found: &FlipReport) -> String {
+    let line = json::text(&NoiseJson {
+        frames: found.frames,
+        cells: found.cells,
+        noise: found.noise,
+        standard_error: found.standard_error,
+        flips: found.flips,
+        repeated: found.repeated,
+        stuck_on: places(&found.stuck_on),
+        stuck_off: places(&found.stuck_off),
+        mask: found.mask().lines().collect(),
+    });
+    line + "\n"
+}
+
+/// The report in words.
+pub(crate) fn text(found: &FlipReport) -> String {
+    let frames = counted(found.frames, "frame");
+    let mut text = format!("{frames} of {}\n", counted(u64::from(found.cells), "taxel"));
+    match (found.noise, found.standard_error) {
+        (Some(noise), Some(error)) => {
+            text += &format!(
+                "noise {noise:.5} ± {error:.5}: {} of {} states that were the same before and after\n",
+                grouped(found.flips),
+                grouped(found.repeated)
+            );
+        }
+        _ => text += "too few frames to tell how often taxels flip\n",
+    }
+    for (what, stuck) in [
+        ("stuck on", &found.stuck_on),
+        ("stuck off or dead", &found.stuck_off),
+    ] {
+        let places: Vec<String> = places(stuck)
+            .iter()
+            .map(|[column, row]| format!("{column},{row}"))
+            .collect();
+        let places = if places.is_empty() {
+            "none".to_owned()
+        } else {
+            places.join("  ")
+        };
+        text += &format!("{what}: {places}\n");
+    }
+    text
+}

@@ -1,0 +1,120 @@
+//! A frame of a real sensor in a line of JSON, with the rule of its imprint: `{"frame":[[0,12],[null,30]],"at_least":10}`.
+
+use serde::Deserialize;
+
+use crate::frame::{Frame, FrameError, MAX_FRAME_SIDE, Processing, Rule};
+use crate::imprint::Imprint;
+
+/// The keys beside `frame` that say which values are active.
+pub(crate) const RULE_KEYS: [&str; 5] = ["at_least", "percent", "low", "high", "least"];
+
+/// The values of a frame, row by row; null is no cell.
+pub(crate) type FrameRows = Vec<Vec<Option<f64>>>;
+
+/// Which values are active, as a line says it.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+pub(crate) struct RuleRecord {
+    /// Active from this value on.
+    pub(crate) at_least: Option<f64>,
+    /// Active from this share of the largest value on, in percent.
+    pub(crate) percent: Option<f64>,
+    /// Active from this value on where joined to one of `high`.
+    pub(crate) low: Option<f64>,
+    /// See `low`.
+    pub(crate) high: Option<f64>,
+    /// Pieces of fewer taxels are dropped.
+    pub(crate) least: Option<u32>,
+}
+
+impl RuleRecord {
+    /// The rule of these keys.
+    ///
+    /// # Errors
+    /// If there is none, or there are several, or it is out of range; the message is one sentence.
+    pub(crate) fn rule(&self) -> Result<Rule, String> {
+        let made = |rule: Result<Rule, FrameError>| rule.map_err(|error| error.to_string());
+        match (self.at_least, self.percent, self.low, self.high) {
+            (Some(threshold), None, None, None) => made(Rule::at_least(threshold)),
+            (None, Some(percent), None, None) => made(Rule::percent(percent)),
+            (None, None, Some(low), Some(high)) => made(Rule::hysteresis(low, high)),
+            _ => Err("expected one threshold: at_least, percent, or low and high".to_owned()),
+        }
+    }
+
+    /// The imprint of a frame by this rule.
+    ///
+    /// # Errors
+    /// If there is no rule or several, or the rows are no frame of at most 64 × 64 cells; the message is one sentence.
+    pub(crate) fn imprint(&self, rows: &[Vec<Option<f64>>]) -> Result<Imprint, String> {
+        let mut processing = Processing::default();
+        processing.rule = Some(self.rule()?);
+        processing.least = self.least.map_or(0, |least| least);
+        let columns = rows.first().map_or(0, Vec::len);
+        let side = |length: usize| {
+            let side = u16::try_from(length).ok();
+            side.filter(|side| (1..=MAX_FRAME_SIDE).contains(side))
+        };
+        let (Some(width), Some(height)) = (side(columns), side(rows.len())) else {
+            return Err(format!(
+                "frame: {} rows of {columns}, expected 1 to 64 of each",
+                rows.len()
+            ));
+        };
+        if let Some(row) = rows.iter().position(|row| row.len() != columns) {
+            let found = rows[row].len();
+            return Err(format!(
+                "frame: row {} has {found} values, expected {columns} as in the first row",
+                row + 1
+            ));
+        }
+        let mut frame = Frame::new(width, height);
+        for (slot, value) in frame.values_mut().iter_mut().zip(rows.iter().flatten()) {
+            *slot = value.map_or(f64::NAN, |value| value);
+        }
+        let processed = processing
+            .run(&frame)
+            .map_err(|error| format!("frame: {error}"))?;
+        processed
+            .imprint
+            .ok_or_else(|| "frame: no threshold".to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn imprint(rule: &str, frame: &str) -> Result<String, String> {
+        let rule: RuleRecord = serde_json::from_str(rule).expect("a rule");
+        let rows: FrameRows = serde_json::from_str(frame).expect("a frame");
+        rule.imprint(&rows).map(|imprint| imprint.to_string())
+    }
+
+    #[test]
+    fn a_frame_becomes_an_imprint_by_one_rule() {
+        let frame = "[[10, 9.5, null], [0, 20, 20]]";
+        assert_eq!(
+            imprint("{\"at_least\":10}", frame).as_deref(),
+            Ok("#..\n.##")
+        );
+        assert_eq!(
+            imprint("{\"percent\":100}", frame).as_deref(),
+            Ok("...\n.##")
+        );
+        let both = "{\"low\":9,\"high\":20,\"least\":2}";
+        assert_eq!(imprint(both, frame).as_deref(), Ok("##.\n.##"));
+        let wrong =
+            |rule: &str, frame: &str| imprint(rule, frame).err().unwrap_or_else(String::new);
+        assert!(wrong("{}", frame).contains("expected one threshold"));
+        assert!(wrong("{\"low\":1}", frame).contains("expected one threshold"));
+        assert!(wrong("{\"percent\":0}", frame).contains("above 0"));
+        assert_eq!(
+            wrong("{\"at_least\":1}", "[[1, 2], [3]]"),
+            "frame: row 2 has 1 values, expected 2 as in the first row"
+        );
+        assert_eq!(
+            wrong("{\"at_least\":1}", "[]"),
+            "frame: 0 rows of 0, expected 1 to 64 of each"
+        );
+    }
+}

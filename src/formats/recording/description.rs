@@ -1,0 +1,275 @@
+//! What lies beside a recording of taxel's own: `touch.json` says where the frames of `touch.npy` are from, their unit, and how
+//! they were looked at.
+//!
+//! ```text
+//! {"format":"taxel-touch/1","source":"/dev/ttyUSB0","unit":"kPa","pitch_mm":[2.0,2.0],"seconds_per_frame":0.01,
+//!  "rule":{"at_least":10,"from":"flag"},"tare_frames":30,"tare":[[0.5,null],…],"marks":[{"number":65,"time":6.5}]}
+//! ```
+//! Everything but `format` may be missing. The values in the array are as the sensor sent them, in f64: what is said here
+//! is done again when they are read, unless flags say otherwise.
+
+use serde::ser::Serializer;
+use serde::{Deserialize, Serialize};
+
+use crate::formats::framed::RuleRecord;
+use crate::formats::json;
+use crate::formats::recording::answer::SetRule;
+use crate::frame::{LARGEST_VALUE, Rule, Tare};
+use crate::matrix::Matrix;
+use crate::quote::legible;
+use crate::sensor::MAX_SIDE;
+
+/// The name of the form.
+const FORMAT: &str = "taxel-touch/1";
+
+/// A matrix row by row; null where there is no cell.
+type Rows = Vec<Vec<Option<f64>>>;
+
+/// A frame that was marked while it was recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrameMark {
+    /// Its number, as that of its record.
+    pub number: u64,
+    /// Its time in seconds.
+    pub time: Option<f64>,
+}
+
+/// What `touch.json` says.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RecordingMetadata {
+    /// The source's name.
+    pub source: String,
+    /// The unit of the values.
+    pub unit: Option<String>,
+    /// The distance of two cells, in mm, along x and along y.
+    pub pitch_mm: Option<[f64; 2]>,
+    /// Seconds from a frame to the next.
+    pub seconds_per_frame: Option<f64>,
+    /// The rule of the imprints that were shown meanwhile.
+    pub rule: Option<SetRule>,
+    /// What was taken off each cell meanwhile. The recorded values are those before that.
+    pub tare: Option<Tare>,
+    /// Frames that were marked.
+    pub marks: Vec<FrameMark>,
+}
+
+/// The object as it stands.
+#[derive(Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+struct Described {
+    format: String,
+    source: String,
+    unit: Option<String>,
+    pitch_mm: Option<[f64; 2]>,
+    seconds_per_frame: Option<f64>,
+    #[serde(serialize_with = "rule_or_null")]
+    rule: Option<DescribedRule>,
+    tare_frames: Option<u64>,
+    tare: Option<Rows>,
+    tare_spread: Option<Rows>,
+    tare_step: Option<f64>,
+    marks: Vec<FrameMark>,
+}
+
+/// A rule, read and written in different ways: it is from a file as soon as it is read.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+enum DescribedRule {
+    #[serde(skip)]
+    Set(SetRule),
+    Noise {
+        noise: f64,
+        #[serde(default)]
+        least: u32,
+    },
+    Other(RuleRecord),
+}
+
+fn rule_or_null<S: Serializer>(
+    rule: &Option<DescribedRule>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    match rule {
+        Some(DescribedRule::Set(rule)) => rule.serialize(serializer),
+        _ => serializer.serialize_none(),
+    }
+}
+
+impl RecordingMetadata {
+    /// Reads the description. None if the bytes are something else, which may well lie beside an array.
+    ///
+    /// # Errors
+    /// What is wrong with it, in one sentence.
+    pub fn read(bytes: &[u8]) -> Option<Result<Self, String>> {
+        #[derive(Deserialize)]
+        struct Format {
+            format: String,
+        }
+        let own: Format = serde_json::from_slice(bytes).ok()?;
+        (own.format == FORMAT).then(|| {
+            let described = serde_json::from_slice::<Described>(bytes);
+            described
+                .map_err(|error| json::message(&error))
+                .and_then(Self::of)
+        })
+    }
+
+    fn of(described: Described) -> Result<Self, String> {
+        let rule = match described.rule {
+            None => None,
+            Some(DescribedRule::Set(rule)) => Some(rule),
+            Some(DescribedRule::Noise { noise, least }) => Some(SetRule {
+                rule: Rule::noise(noise).map_err(|error| format!("rule: {error}"))?,
+                least,
+                from: "file",
+            }),
+            Some(DescribedRule::Other(record)) => Some(SetRule {
+                rule: record.rule().map_err(|error| format!("rule: {error}"))?,
+                least: record.least.map_or(0, |least| least),
+                from: "file",
+            }),
+        };
+        let positive = |value: &f64| *value > 0.0 && *value <= LARGEST_VALUE;
+        let tare = match (described.tare, described.tare_frames) {
+            (Some(rows), Some(frames)) if frames > 0 => {
+                let baseline = matrix("tare", &rows)?;
+                let spread = described.tare_spread.as_ref();
+                let spread = spread.map(|rows| matrix("tare_spread", rows)).transpose()?;
+                let step = described.tare_step.filter(positive);
+                let tare = Tare::from_parts(baseline, spread, step, frames);
+                Some(tare.map_err(|error| format!("tare: {error}"))?)
+            }
+            _ => None,
+        };
+        Ok(Self {
+            source: legible(&described.source),
+            unit: described.unit.as_deref().map(legible),
+            pitch_mm: described
+                .pitch_mm
+                .filter(|pitch| pitch.iter().all(positive)),
+            seconds_per_frame: described.seconds_per_frame.filter(positive),
+            rule,
+            tare,
+            marks: described.marks,
+        })
+    }
+
+    /// The description as the text of a file.
+    ///
+    /// # Errors
+    /// None that is known of; what the writer of JSON reports.
+    pub fn text(&self) -> Result<Vec<u8>, serde_json::Error> {
+        let tare = self.tare.as_ref();
+        serde_json::to_vec_pretty(&Described {
+            format: FORMAT.to_owned(),
+            source: self.source.clone(),
+            unit: self.unit.clone(),
+            pitch_mm: self.pitch_mm,
+            seconds_per_frame: self.seconds_per_frame,
+            rule: self.rule.map(DescribedRule::Set),
+            tare_frames: tare.map(Tare::frames),
+            tare: tare.map(|tare| rows(tare.baseline())),
+            tare_spread: tare.map(|tare| rows(tare.spread())),
+            tare_step: tare.map(Tare::step),
+            marks: self.marks.clone(),
+        })
+    }
+}
+
+fn rows(matrix: &Matrix<f64>) -> Rows {
+    let row = |row| {
+        let values = matrix.row(row).iter();
+        values
+            .map(|&value| (!value.is_nan()).then_some(value))
+            .collect()
+    };
+    (0..matrix.rows()).map(row).collect()
+}
+
+fn matrix(what: &str, rows: &Rows) -> Result<Matrix<f64>, String> {
+    let columns = rows.first().map_or(0, Vec::len);
+    let side = |length: usize| {
+        let side = u8::try_from(length).ok();
+        side.filter(|side| (1..=MAX_SIDE).contains(side))
+    };
+    let even = rows.iter().all(|row| row.len() == columns);
+    let (Some(width), Some(height), true) = (side(columns), side(rows.len()), even) else {
+        return Err(format!(
+            "{what}: expected 1 to 64 rows of one length, up to 64"
+        ));
+    };
+    let mut matrix = Matrix::filled(width, height, f64::NAN);
+    for (slot, value) in matrix.values_mut().iter_mut().zip(rows.iter().flatten()) {
+        *slot = value.map_or(f64::NAN, |value| value);
+    }
+    Ok(matrix)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::TareFrames;
+
+    #[test]
+    fn a_description_is_read_as_it_was_written() {
+        let mut values = Matrix::filled(2, 1, 0.5);
+        values.set(1, 0, f64::NAN);
+        let mut tare = TareFrames::new(2);
+        tare.add(&values).expect("it fits");
+        tare.add(&values).expect("it fits");
+        for rule in [
+            Rule::AtLeast(10.0),
+            Rule::Percent(12.5),
+            Rule::Hysteresis {
+                low: 1.0,
+                high: 2.0,
+            },
+            Rule::Noise(4.0),
+        ] {
+            let metadata = RecordingMetadata {
+                source: "/dev/ttyUSB0".to_owned(),
+                unit: Some("kPa".to_owned()),
+                pitch_mm: Some([2.0, 3.0]),
+                seconds_per_frame: Some(0.01),
+                rule: Some(SetRule {
+                    rule,
+                    least: 3,
+                    from: "file",
+                }),
+                tare: Some(tare.clone().finish().expect("two frames")),
+                marks: vec![FrameMark {
+                    number: 65,
+                    time: None,
+                }],
+            };
+            let text = metadata.text().expect("JSON");
+            let read = RecordingMetadata::read(&text).expect("a description");
+            let read = read.expect("a right one");
+            // NaN is not equal to itself.
+            assert_eq!(
+                read.tare.map(|tare| rows(tare.baseline())),
+                Some(vec![vec![Some(0.5), None]])
+            );
+            assert_eq!(
+                (read.rule, read.marks, read.unit, read.seconds_per_frame),
+                (metadata.rule, metadata.marks, metadata.unit, Some(0.01))
+            );
+        }
+    }
+
+    #[test]
+    fn other_files_are_none_and_wrong_ones_are_refused() {
+        for other in ["", "[1]", "{\"format\":\"taxel-shape/1\"}", "{}"] {
+            assert_eq!(RecordingMetadata::read(other.as_bytes()), None, "{other}");
+        }
+        let wrong = |rest: &str| {
+            let text = format!("{{\"format\":\"{FORMAT}\",{rest}}}");
+            let read = RecordingMetadata::read(text.as_bytes()).expect("a description");
+            read.err().unwrap_or_else(String::new)
+        };
+        assert_eq!(wrong("\"marks\":[]"), "");
+        assert!(wrong("\"rule\":{\"percent\":0}").contains("above 0"));
+        assert!(wrong("\"tare_frames\":1,\"tare\":[[1],[2,3]]").contains("rows of one length"));
+        assert!(wrong("\"unit\":3").contains("string"));
+    }
+}

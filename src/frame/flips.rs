@@ -1,0 +1,244 @@
+//! How often taxels flip, and which are dead or stuck, as a recording itself shows it.
+//!
+//! Of three frames in a row, a taxel that is the same in the first and the last is taken to have been so all the time: if it
+//! differs in the middle one, it has flipped. If every taxel flips with probability e, a share e(1−e) / (1 − 2e(1−e)) of
+//! these does so; that gives e. What moves changes taxels too, but seldom for one frame only, and what rests, or nothing at
+//! all on the sensor, changes none: so idle frames and repeated ones count most.
+//!
+//! A taxel is stuck on if it is active wherever none of its neighbours is, and off or dead if it is never active where three
+//! quarters of its neighbours are; each in ten frames or more. A hole of one taxel that never moves looks the same.
+
+use crate::imprint::Imprint;
+
+/// Frames that it takes to call a taxel stuck.
+const ENOUGH: u32 = 10;
+
+/// What was seen of a taxel.
+#[derive(Clone, Copy, Debug, Default)]
+struct TaxelCounts {
+    /// Frames in which no neighbour was active, and in how many of these it was.
+    alone: (u32, u32),
+    /// Frames in which three quarters of the neighbours were active, and in how many of these it was.
+    amid: (u32, u32),
+}
+
+/// Gathers the frames of a recording.
+#[derive(Clone, Debug)]
+pub struct FlipCounter {
+    /// The taxels that there are.
+    cells: Imprint,
+    frames: u64,
+    /// The last two imprints, the last one first.
+    before: [Option<Imprint>; 2],
+    repeated: u64,
+    flips: u64,
+    taxels: Vec<TaxelCounts>,
+}
+
+/// What a recording tells of its taxels.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct FlipReport {
+    /// Number of frames.
+    pub frames: u64,
+    /// Number of taxels.
+    pub cells: u32,
+    /// How often a taxel was the same in the frame before and the frame after.
+    pub repeated: u64,
+    /// In how many of these it differed meanwhile.
+    pub flips: u64,
+    /// The probability that a taxel flips; None without three frames, or if it seems to be ½ or more.
+    pub noise: Option<f64>,
+    /// The standard error of that, as if flips were independent.
+    pub standard_error: Option<f64>,
+    /// Taxels that are stuck on.
+    pub stuck_on: Imprint,
+    /// Taxels that are stuck off, or dead.
+    pub stuck_off: Imprint,
+}
+
+impl FlipReport {
+    /// The taxels that say nothing: stuck on or off.
+    pub fn mask(&self) -> Imprint {
+        let mut mask = self.stuck_on;
+        for (word, off) in mask.words_mut().iter_mut().zip(self.stuck_off.words()) {
+            *word |= off;
+        }
+        mask
+    }
+}
+
+impl FlipCounter {
+    /// Prepares for imprints of these taxels.
+    pub fn new(cells: Imprint) -> Self {
+        let count = usize::from(cells.columns()) * usize::from(cells.rows());
+        Self {
+            cells,
+            frames: 0,
+            before: [None; 2],
+            repeated: 0,
+            flips: 0,
+            taxels: vec![TaxelCounts::default(); count],
+        }
+    }
+
+    /// Adds an imprint, of the same size; another one is left out.
+    pub fn add(&mut self, imprint: &Imprint) {
+        if (imprint.columns(), imprint.rows()) != (self.cells.columns(), self.cells.rows()) {
+            return;
+        }
+        self.frames += 1;
+        if let [Some(middle), Some(first)] = &self.before {
+            let words = self.cells.words().iter().zip(first.words());
+            let words = words.zip(middle.words()).zip(imprint.words());
+            for (((cells, first), middle), last) in words {
+                let same = !(first ^ last) & cells;
+                self.repeated += u64::from(same.count_ones());
+                self.flips += u64::from((same & (first ^ middle)).count_ones());
+            }
+        }
+        self.before = [Some(*imprint), self.before[0]];
+        self.count_neighbours(imprint);
+    }
+
+    fn count_neighbours(&mut self, imprint: &Imprint) {
+        let columns = usize::from(imprint.columns());
+        for (index, counts) in self.taxels.iter_mut().enumerate() {
+            let (Ok(column), Ok(row)) =
+                (u8::try_from(index % columns), u8::try_from(index / columns))
+            else {
+                continue;
+            };
+            if !self.cells.get(column, row) {
+                continue;
+            }
+            let (mut there, mut active) = (0, 0);
+            for y in row.saturating_sub(1)..=(row + 1).min(imprint.rows() - 1) {
+                for x in column.saturating_sub(1)..=(column + 1).min(imprint.columns() - 1) {
+                    if (x, y) != (column, row) && self.cells.get(x, y) {
+                        there += 1;
+                        active += u32::from(imprint.get(x, y));
+                    }
+                }
+            }
+            let own = u32::from(imprint.get(column, row));
+            if active == 0 {
+                counts.alone.0 += 1;
+                counts.alone.1 += own;
+            } else if 4 * active >= 3 * there && there >= 3 {
+                counts.amid.0 += 1;
+                counts.amid.1 += own;
+            }
+        }
+    }
+
+    /// What the frames tell.
+    pub fn finish(&self) -> FlipReport {
+        let (columns, rows) = (self.cells.columns(), self.cells.rows());
+        let mut stuck_on = Imprint::empty(columns, rows);
+        let mut stuck_off = stuck_on;
+        for row in 0..rows {
+            for column in 0..columns {
+                let index = usize::from(row) * usize::from(columns) + usize::from(column);
+                let counts = self.taxels[index];
+                // One frame in a hundred may be a flip.
+                let (alone, on) = counts.alone;
+                if alone >= ENOUGH && 100 * (alone - on) <= alone {
+                    stuck_on.set(column, row, true);
+                }
+                let (amid, on) = counts.amid;
+                if amid >= ENOUGH && 100 * on <= amid {
+                    stuck_off.set(column, row, true);
+                }
+            }
+        }
+        let noise = noise(self.flips, self.repeated);
+        #[expect(clippy::cast_precision_loss, reason = "an estimate")]
+        let standard_error =
+            noise.map(|_| (self.flips.max(1) as f64).sqrt() / self.repeated as f64);
+        FlipReport {
+            frames: self.frames,
+            cells: self.cells.count(),
+            repeated: self.repeated,
+            flips: self.flips,
+            noise,
+            standard_error,
+            stuck_on,
+            stuck_off,
+        }
+    }
+}
+
+/// The probability e of a flip for which so many of the repeated states differ meanwhile.
+fn noise(flips: u64, repeated: u64) -> Option<f64> {
+    if repeated == 0 {
+        return None;
+    }
+    #[expect(clippy::cast_precision_loss, reason = "an estimate")]
+    let share = flips as f64 / repeated as f64;
+    let product = share / (1.0 + 2.0 * share);
+    let root = 1.0 - 4.0 * product;
+    (root > 0.0).then(|| (1.0 - root.sqrt()) / 2.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers that look random, the same each time.
+    fn next(state: &mut u64) -> u64 {
+        *state ^= *state << 13;
+        *state ^= *state >> 7;
+        *state ^= *state << 17;
+        *state
+    }
+
+    #[test]
+    fn the_noise_that_was_put_in_is_found_and_so_are_stuck_taxels() {
+        let rows = [
+            "........", "..####..", "..####..", "..####..", "..####..", "........", "........",
+            "........",
+        ];
+        let idle = Imprint::empty(8, 8);
+        let square = Imprint::from_rows(rows.iter().copied()).expect("rows");
+        let cells = Imprint::from_rows(["########"; 8].iter().copied()).expect("rows");
+        let mut counter = FlipCounter::new(cells);
+        let mut state = 7;
+        for frame in 0..4000 {
+            let mut imprint = if frame % 400 < 200 { idle } else { square };
+            for row in 0..8 {
+                for column in 0..8 {
+                    if next(&mut state) % 100 < 2 {
+                        imprint.set(column, row, !imprint.get(column, row));
+                    }
+                }
+            }
+            imprint.set(7, 7, true);
+            imprint.set(3, 3, false);
+            counter.add(&imprint);
+        }
+        let report = counter.finish();
+        let noise = report.noise.expect("an estimate");
+        // Two of the 64 never flip.
+        assert!((noise - 0.02 * 62.0 / 64.0).abs() < 0.001, "{noise}");
+        assert!(report.standard_error.is_some_and(|error| error < 0.0005));
+        assert_eq!((report.frames, report.cells), (4000, 64));
+        let found = |imprint: &Imprint| (imprint.count(), imprint.get(7, 7), imprint.get(3, 3));
+        assert_eq!(found(&report.stuck_on), (1, true, false));
+        assert_eq!(found(&report.stuck_off), (1, false, true));
+        assert_eq!(report.mask().count(), 2);
+    }
+
+    #[test]
+    fn a_few_frames_tell_nothing() {
+        let cells = Imprint::from_rows(["##", "##"].iter().copied()).expect("rows");
+        let mut counter = FlipCounter::new(cells);
+        counter.add(&cells);
+        counter.add(&cells);
+        assert_eq!(counter.finish().noise, None);
+        counter.add(&cells);
+        let report = counter.finish();
+        assert_eq!((report.noise, report.repeated), (Some(0.0), 4));
+        assert_eq!(report.mask().count(), 0);
+    }
+}

@@ -1,0 +1,117 @@
+//! What a model says of the imprint that is shown: the likeliest shape and the nearest imprint, while frames come.
+//!
+//! A worker answers one imprint at a time, and then the newest: neither its training nor its search holds up drawing.
+
+use crate::imprint::Imprint;
+use crate::recognition::{Answer, AnswerState, Evidence, Model, Noise};
+use crate::tui::recognise::sets::ModelChoice;
+
+/// What a model says of an imprint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedImprint {
+    /// The imprint.
+    pub imprint: Imprint,
+    /// How far the answer can be trusted.
+    pub state: AnswerState,
+    /// The likeliest shapes: one, several of a tie, none of an imprint that no shape leaves.
+    pub names: Vec<String>,
+    /// How likely the first of these is.
+    pub probability: Option<f64>,
+    /// The shape whose imprint is nearest, and in how many taxels that differs.
+    pub nearest: Option<(String, u32)>,
+}
+
+impl NamedImprint {
+    /// The answer of a model to an imprint.
+    pub fn new(model: &Model, imprint: &Imprint, answer: &Answer) -> Self {
+        let name = |shape: usize| model.shapes()[shape].name.clone();
+        let shapes = match answer.state {
+            AnswerState::Tied => answer.tied.clone(),
+            _ => answer.shape.into_iter().collect(),
+        };
+        let nearest = model.nearest_of(Evidence::of(&[*imprint]));
+        Self {
+            imprint: *imprint,
+            state: answer.state,
+            names: shapes.into_iter().map(name).collect(),
+            probability: answer.ranking.first().map(|&(_, probability)| probability),
+            nearest: nearest.map(|nearest| (name(nearest.shape), nearest.distance)),
+        }
+    }
+}
+
+/// The model of the page, and its last answer.
+#[derive(Clone, Debug)]
+pub struct Naming {
+    /// The set of shapes.
+    pub choice: ModelChoice,
+    /// How often a taxel flips.
+    pub noise: Option<Noise>,
+    /// The last answer.
+    pub answer: Option<Box<NamedImprint>>,
+    /// Why there are no answers.
+    pub failure: Option<String>,
+    /// Whether an answer is on its way.
+    asked: bool,
+}
+
+impl Naming {
+    /// Names by a set of shapes, under a noise if one is given.
+    pub fn new(choice: ModelChoice, noise: Option<Noise>) -> Self {
+        Self {
+            choice,
+            noise,
+            answer: None,
+            failure: None,
+            asked: false,
+        }
+    }
+
+    /// Whether an imprint is to be asked for now; notes that it is.
+    pub fn ask(&mut self, imprint: &Imprint) -> bool {
+        let known = self
+            .answer
+            .as_ref()
+            .is_some_and(|own| own.imprint == *imprint);
+        let asks = !self.asked && !known && self.failure.is_none() && !imprint.is_empty();
+        self.asked |= asks;
+        asks
+    }
+
+    /// Takes an answer.
+    pub fn take(&mut self, answer: NamedImprint) {
+        self.asked = false;
+        self.answer = Some(Box::new(answer));
+    }
+
+    /// Takes that there are none.
+    pub fn fail(&mut self, reason: String) {
+        self.asked = false;
+        self.failure = Some(reason);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_imprint_is_asked_for_at_a_time_and_none_twice() {
+        let mut naming = Naming::new(ModelChoice::Figures, None);
+        let [one, other]: [Imprint; 2] = ["##", "#."].map(|text| text.parse().expect("rows"));
+        assert!(!naming.ask(&Imprint::empty(2, 1)));
+        assert!(naming.ask(&one));
+        assert!(!naming.ask(&other));
+        naming.take(NamedImprint {
+            imprint: one,
+            state: AnswerState::Unknown,
+            names: Vec::new(),
+            probability: None,
+            nearest: None,
+        });
+        assert!(!naming.ask(&one));
+        assert!(naming.ask(&other));
+        naming.fail("no model".to_owned());
+        assert!(!naming.ask(&other));
+    }
+}

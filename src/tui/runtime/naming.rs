@@ -1,0 +1,139 @@
+//! Names the imprints of frames, on a thread of its own: it reads or trains the model, then answers one imprint after the
+//! other.
+//!
+//! ```text
+//! begin(set, noise)  -> the thread prepares the model
+//! name(imprint)      -> Named, or NotNamed: why there is no model
+//! ```
+//! Without a receiver of events, as in a script, an imprint is answered at once.
+
+use std::cell::OnceCell;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Sender, channel};
+use std::thread::JoinHandle;
+
+use crate::imprint::Imprint;
+use crate::recognition::{Evidence, Model, Noise, NoisyRecogniser};
+use crate::tui::explore::message::WorkerEvent;
+use crate::tui::live::message::LiveEvent;
+use crate::tui::live::naming::NamedImprint;
+use crate::tui::recognise::sets::ModelChoice;
+use crate::tui::runtime::models::ModelStore;
+use crate::tui::runtime::progress::{WorkerEventSink, guarded};
+
+/// A model that is asked on the thread that waits for its answer.
+#[derive(Debug)]
+struct OwnModel {
+    store: ModelStore,
+    choice: ModelChoice,
+    noise: Option<Noise>,
+    /// The model, or why there is none.
+    model: OnceCell<Result<Model, String>>,
+}
+
+/// Names imprints by the model that was chosen last.
+#[derive(Debug, Default)]
+pub(super) struct ShapeNamer {
+    number: u64,
+    /// What is named by, where there is no thread; the model is prepared when the first imprint comes.
+    here: Option<OwnModel>,
+    imprints: Option<Sender<Imprint>>,
+    /// Set to break off a training.
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl ShapeNamer {
+    /// Prepares a model in place of the one before. Events carry the number of the source whose frames are named.
+    pub(super) fn begin(
+        &mut self,
+        number: u64,
+        store: ModelStore,
+        (choice, noise): (ModelChoice, Option<Noise>),
+        post: Option<WorkerEventSink>,
+    ) {
+        self.end();
+        self.number = number;
+        self.stop = Arc::default();
+        let stop = Arc::clone(&self.stop);
+        let Some(post) = post else {
+            self.here = Some(OwnModel {
+                store,
+                choice,
+                noise,
+                model: OnceCell::new(),
+            });
+            return;
+        };
+        let (imprints, waiting) = channel::<Imprint>();
+        self.imprints = Some(imprints);
+        self.thread = Some(std::thread::spawn(move || {
+            let ended = guarded(number, || {
+                let progress = |_: u64| !stop.load(Ordering::Relaxed);
+                let model = match store.model(&choice, &|_| (), &progress) {
+                    Ok(model) => model,
+                    Err(reason) => return WorkerEvent::Live(number, LiveEvent::NotNamed(reason)),
+                };
+                let mut noisy = noise.map(|noise| NoisyRecogniser::new(&model, noise));
+                while let Ok(imprint) = waiting.recv() {
+                    let named = named(&model, noisy.as_mut(), &imprint);
+                    post(WorkerEvent::Live(number, LiveEvent::Named(Box::new(named))));
+                }
+                WorkerEvent::Live(number, LiveEvent::Waiting)
+            });
+            post(ended);
+        }));
+    }
+
+    /// Answers an imprint: at once, or later by an event.
+    pub(super) fn name(&self, imprint: &Imprint) -> Option<WorkerEvent> {
+        if let Some(imprints) = &self.imprints {
+            // A thread that has ended has said why.
+            let _ = imprints.send(*imprint);
+            return None;
+        }
+        let own = self.here.as_ref()?;
+        let train = || own.store.model(&own.choice, &|_| (), &|_| true);
+        let event = match own.model.get_or_init(train) {
+            Ok(model) => {
+                let mut noisy = own.noise.map(|noise| NoisyRecogniser::new(model, noise));
+                LiveEvent::Named(Box::new(named(model, noisy.as_mut(), imprint)))
+            }
+            Err(reason) => LiveEvent::NotNamed(reason.clone()),
+        };
+        Some(WorkerEvent::Live(self.number, event))
+    }
+
+    /// Names nothing any more. The thread ends by itself: an answer under way is not waited for.
+    pub(super) fn end(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        self.imprints = None;
+        self.here = None;
+        self.thread = None;
+    }
+}
+
+impl Drop for ShapeNamer {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        self.imprints = None;
+        if let Some(thread) = self.thread.take() {
+            // It catches its own panics. A model that is being written to the cache is written first.
+            let _ = thread.join();
+        }
+    }
+}
+
+fn named(
+    model: &Model,
+    noisy: Option<&mut NoisyRecogniser<'_>>,
+    imprint: &Imprint,
+) -> NamedImprint {
+    let touches = [*imprint];
+    let answer = match noisy {
+        Some(noisy) => noisy.recognise(&touches, None).0,
+        None => model.recognise(Evidence::of(&touches)),
+    };
+    NamedImprint::new(model, imprint, &answer)
+}

@@ -1,0 +1,96 @@
+//! The page about sensors: every line of it that can be run here is run, in the order in which it stands there.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+const PAGE: &str = include_str!("../../docs/sensors.md");
+
+/// The contents of the fences of a language.
+fn fences(language: &str) -> Vec<&'static str> {
+    let start = format!("{language}\n");
+    let parts = PAGE.split("```").enumerate();
+    parts
+        .filter(|(index, _)| index % 2 == 1)
+        .filter_map(|(_, part)| part.strip_prefix(start.as_str()))
+        .collect()
+}
+
+/// Two frames of 8 x 8 as candump prints them: a message a row.
+fn candump() -> String {
+    let mut text = String::new();
+    for frame in 0..2 {
+        for row in 0..8 {
+            let values = (0..8).map(|column| format!(" {:02X}", 16 * row + column + frame));
+            let values: String = values.collect();
+            let _ = writeln!(text, "  can0  10{row}   [8] {values}");
+        }
+    }
+    text
+}
+
+fn furnished(folder: &Path) {
+    let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files/frames/samples");
+    for (from, to) in [
+        ("tekscan.asf", "recording.csv"),
+        ("plain.csv", "plain.csv"),
+        ("echo.txt", "echo.txt"),
+        ("echo.yaml", "echo.yaml"),
+        ("frames.jsonl", "frames.jsonl"),
+    ] {
+        fs::copy(samples.join(from), folder.join(to)).expect(from);
+    }
+    fs::write(folder.join("candump.txt"), candump()).expect("written");
+    fs::write(folder.join("rows.awk"), fences("awk")[0]).expect("written");
+    fs::write(folder.join("parts.jsonl"), super::model::PARTS).expect("written");
+    let parts = folder.join("parts.jsonl");
+    let line = format!(
+        "model train {} {} --out {}",
+        parts.display(),
+        super::model::COARSE,
+        folder.join("parts.npz").display()
+    );
+    let trained = super::taxel(&line, "");
+    assert_eq!(trained.status, Some(0), "{}", trained.stderr);
+}
+
+#[test]
+fn every_line_that_can_be_run_is_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    furnished(folder);
+    let binary = Path::new(env!("CARGO_BIN_EXE_taxel"));
+    let mut path = binary.parent().expect("a folder").as_os_str().to_owned();
+    path.push(":");
+    path.push(std::env::var_os("PATH").unwrap_or_default());
+    let mut answered = 0;
+    for line in fences("console").iter().flat_map(|fence| fence.lines()) {
+        let line = line.strip_prefix("$ ").expect("a line begins with $");
+        let run = Command::new("sh")
+            .args(["-c", line])
+            .current_dir(folder)
+            .env("PATH", &path)
+            .env("HOME", folder)
+            .env("TAXEL_LIBRARY", folder.join("library"))
+            .env("TAXEL_CONFIG", "/dev/null")
+            .env("LC_ALL", "C.UTF-8")
+            .output()
+            .expect("there is a shell");
+        assert!(run.status.success(), "{line}: {run:?}");
+        assert!(!run.stdout.is_empty(), "{line}");
+        if line.contains("candump") {
+            let text = String::from_utf8_lossy(&run.stdout).into_owned();
+            assert_eq!(text.lines().count(), 2, "{text}");
+            assert!(
+                text.contains("\"max\":119") && text.contains("\"max\":120"),
+                "{text}"
+            );
+        }
+        answered += 1;
+    }
+    assert!(answered > 15, "{answered} lines");
+    for file in ["mask.txt", "touch.npy", "touch.json"] {
+        assert!(folder.join(file).exists(), "{file}");
+    }
+}
