@@ -176,6 +176,9 @@ pub(crate) enum CliError {
         /// Why not.
         error: io::Error,
     },
+    /// A sweep or a training needs more memory than it may use.
+    #[error("{0}")]
+    Memory(String),
     /// The ranges do not make a grid for the shape.
     #[error(transparent)]
     Grid(#[from] GridError),

@@ -159,6 +159,30 @@ impl FinishedFile {
     }
 }
 
+/// Gives two files that belong together their names. Whenever the program dies, there is never one of these beside an
+/// older one of the other: what stands under the second name is removed first, and named last.
+///
+/// # Errors
+/// As for [`FinishedFile::persist`].
+pub fn persist_pair(first: FinishedFile, second: FinishedFile) -> Result<(), FileError> {
+    let refuse = |doing, error| FileError::new(doing, second.path(), error);
+    match second.existing {
+        Existing::Replaced => match fs::remove_file(second.path()) {
+            Err(error) if error.kind() == ErrorKind::NotFound => {}
+            removed => {
+                removed.map_err(|error| refuse("replace it", error))?;
+                sync_folder(folder_of(second.path()))?;
+            }
+        },
+        Existing::Kept if second.path().symlink_metadata().is_ok() => {
+            return Err(refuse("create it", ErrorKind::AlreadyExists.into()));
+        }
+        Existing::Kept => {}
+    }
+    first.persist()?;
+    second.persist()
+}
+
 /// Writes a file that replaces `path`: under a temporary name that only the holder of a lock uses, or without a lock
 /// under a name of its own.
 ///

@@ -59,7 +59,7 @@ mod sweep_file;
 #[cfg(all(feature = "recognition", feature = "library"))]
 mod models;
 
-pub use atomic_file::{Existing, FinishedFile, UnfinishedFile};
+pub use atomic_file::{Existing, FinishedFile, UnfinishedFile, persist_pair};
 
 pub use error::FileError;
 #[cfg(feature = "library")]

@@ -222,6 +222,7 @@ mod tests {
     use crate::pose::{Anchor, Axis, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
+    use crate::storage::persist_pair;
     use crate::sweep::Sweep;
 
     fn result() -> SweepResult {
@@ -271,6 +272,32 @@ mod tests {
             error.ends_with("a.csv: No such file or directory (os error 2)"),
             "{error}"
         );
+    }
+
+    #[test]
+    fn a_pair_is_never_of_two_sweeps() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let result = result();
+        let going = AtomicBool::new(false);
+        let (atlas, poses) = (folder.path().join("a.csv"), folder.path().join("a.npy"));
+        let pair = |existing| {
+            let file = AtlasFile::new(&atlas).expect("a form");
+            let first = file.prepare(&result, existing, &going).expect("written");
+            let second = PoseFile::new(&poses, &result.grid, existing).expect("begun");
+            (first, second.finish().expect("written"))
+        };
+        let (first, second) = pair(Existing::Kept);
+        std::fs::write(&poses, "theirs").expect("written");
+        let refused = persist_pair(first, second).expect_err("one is there");
+        assert!(refused.exists() && !atlas.exists(), "neither is named");
+        std::fs::write(&atlas, "old").expect("written");
+        let (first, second) = pair(Existing::Replaced);
+        // The program dies after the first step: the old poses are gone, the old atlas is there.
+        std::fs::remove_file(&poses).expect("there");
+        assert_eq!(std::fs::read_to_string(&atlas).ok().as_deref(), Some("old"));
+        persist_pair(first, second).expect("named");
+        assert!(std::fs::read(&poses).is_ok_and(|bytes| bytes.starts_with(b"\x93NUMPY")));
+        assert!(std::fs::read_to_string(&atlas).is_ok_and(|text| text.starts_with("id,")));
     }
 
     #[test]

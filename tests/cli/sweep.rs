@@ -394,3 +394,49 @@ assert x0[0] == 5.0 and x0.max() <= 5.9 and numpy.isnan(atlas['cg_cd_direction']
         String::from_utf8_lossy(&python.stderr)
     );
 }
+
+/// What would need more memory than it may use is refused, or stopped, with what can be done.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_sweep_keeps_to_the_memory_that_it_may_use() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let atlas = folder.path().join("a.npz");
+    let run = |ranges: &str, memory: &str| {
+        let line = format!(
+            "sweep rectangle --length 10 --width 8 --thickness 0.7 {ranges} --memory {memory} --quiet --atlas {}",
+            atlas.display()
+        );
+        taxel(&line, "")
+    };
+    let all = "--x0 0:6:0.01 --y0 0:8:0.01 --angle 0:359.9:0.1";
+    let refused = run(all, "1G");
+    assert_eq!((refused.status, refused.stdout.as_str()), (Some(1), ""));
+    assert!(
+        refused.stderr.starts_with("error: it needs about ")
+            && refused.stderr.contains("--shard 1/8"),
+        "{refused:?}"
+    );
+    // Not so much that the estimate is sure of it.
+    let stopped = run("--x0 0:3:0.05 --y0 0:3:0.05 --angle 0:45:1", "20M");
+    assert_eq!(
+        (stopped.status, stopped.stdout.as_str()),
+        (Some(1), ""),
+        "{stopped:?}"
+    );
+    assert!(stopped.stderr.contains("memory"), "{stopped:?}");
+    assert_eq!(
+        fs::read_dir(folder.path()).expect("read").count(),
+        0,
+        "nothing is left"
+    );
+    let done = run("--x0 0:1:0.5 --y0 0:1:0.5 --angle 0", "4G");
+    assert_eq!(done.status, Some(0), "{done:?}");
+    let wrong = run(all, "much");
+    assert_eq!(wrong.status, Some(2));
+    assert!(
+        wrong
+            .stderr
+            .contains("expected an amount of memory such as 2G"),
+        "{wrong:?}"
+    );
+}

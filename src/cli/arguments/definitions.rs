@@ -16,8 +16,8 @@ use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgGroup, Command, value_parser};
 
 use crate::cli::arguments::flags::{
-    anchor, force, jobs, json, name, of_sensor, option, parse_name, parse_npy, quiet, range,
-    replace, sensor, sensor_of_imprints, shard, switch, what,
+    anchor, force, jobs, json, memory, name, of_sensor, option, parse_name, parse_npy, quiet,
+    range, replace, sensor, sensor_of_imprints, shard, switch, what,
 };
 use crate::cli::arguments::help::{
     ABOUT, BATCH_EXAMPLES, CHECK_EXAMPLES, DELETE_EXAMPLES, DESCRIBE_EXAMPLES, EXAMPLES,
@@ -210,7 +210,16 @@ fn sweep() -> Command {
         }))
         .arg(anchor())
         .args(sensor_of_imprints())
-        .args([atlas(), poses, replace(), jobs(), shard(), json(), quiet()])
+        .args([
+            atlas(),
+            poses,
+            replace(),
+            jobs(),
+            memory(),
+            shard(),
+            json(),
+            quiet(),
+        ])
 }
 
 /// `taxel merge FILE.npz…`.

@@ -16,6 +16,7 @@ use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, RangeError, Ranges};
 use crate::sensor::SENSOR_PARAMETERS;
 use crate::storage::is_poses;
 use crate::sweep::{Shard, ShardError};
+use crate::tui::runtime::memory::MemorySize;
 
 /// A flag without a value, `--NAME`.
 pub(super) fn switch(name: &'static str, help: &'static str) -> Arg {
@@ -76,6 +77,21 @@ pub(super) fn jobs_of(matches: &ArgMatches) -> usize {
     matches
         .get_one::<u16>("jobs")
         .map_or(0, |&jobs| jobs.into())
+}
+
+/// `--memory`, the most that a sweep or a training may use.
+pub(super) fn memory() -> Arg {
+    option(
+        "memory",
+        "SIZE",
+        "Stop before it uses more memory: 500M, 2G;\ndefault what is free",
+    )
+    .value_parser(|text: &str| text.parse::<MemorySize>())
+}
+
+/// The value of [`memory`], if it is given.
+pub(super) fn memory_of(matches: &ArgMatches) -> Option<MemorySize> {
+    matches.get_one("memory").copied()
 }
 
 /// `--shard`, for work that several machines share.

@@ -34,6 +34,7 @@ use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::storage::AtlasFile;
 use crate::sweep::Shard;
+use crate::tui::runtime::memory::MemorySize;
 
 /// What the arguments ask for.
 #[derive(Clone, Debug)]
@@ -328,6 +329,11 @@ fn wanted(matches: &ArgMatches) -> Wanted {
         existing: parameters::existing(matches),
         json: matches.get_flag("json"),
         quiet: matches.get_flag("quiet"),
+        memory: match matches.try_get_one::<MemorySize>("memory") {
+            Ok(size) => size.copied(),
+            // Merging has no such flag.
+            Err(_) => None,
+        },
     }
 }
 

@@ -37,6 +37,7 @@ use crate::recognition::{
 use crate::sensor::Sensor;
 use crate::storage::{ModelCache, ModelFolder, UnfinishedFile, load_model, model_hash, save_model};
 use crate::tui::recognise::sets::ModelChoice;
+use crate::tui::runtime::memory::MemoryGuard;
 
 /// The smallest side of a sensor that training chooses.
 const LEAST_SIDE: u8 = 16;
@@ -75,10 +76,11 @@ pub(crate) fn train(
     if !asked.quiet {
         crate::cli::note(&grid_text(&sensor, anchor, &ranges), charset);
     }
+    let memory = MemoryGuard::new(asked.memory);
     let progress = Progress::new(training.poses(), asked.quiet, charset);
     let tell = |poses: u64| {
         progress.add(poses);
-        !stopped.load(Ordering::Relaxed)
+        !stopped.load(Ordering::Relaxed) && memory.allows()
     };
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(asked.jobs)
@@ -87,6 +89,7 @@ pub(crate) fn train(
     let model = pool.install(|| training.progress(&tell).run());
     progress.finish();
     let model = model.map_err(|error| match error {
+        TrainingError::Stopped if memory.exceeded() => CliError::Memory(memory.message()),
         TrainingError::Stopped => signals.failure(),
         error => error.into(),
     })?;

@@ -31,9 +31,11 @@ use crate::recognition::{Evaluation, Model, TrainingError};
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::storage::{
-    ArchiveFileError, AtlasFile, Existing, FinishedFile, PoseFile, load_model, save_model,
+    ArchiveFileError, AtlasFile, Existing, FinishedFile, PoseFile, load_model, persist_pair,
+    save_model,
 };
 use crate::sweep::{Shard, Sweep, SweepResult};
+use crate::tui::runtime::memory::{MemoryGuard, MemorySize};
 
 /// What a sweep or a merge is to write and print.
 #[derive(Clone, Debug)]
@@ -48,6 +50,8 @@ pub(crate) struct Wanted {
     pub(crate) json: bool,
     /// Whether to show no progress.
     pub(crate) quiet: bool,
+    /// `--memory`: the most that it may use.
+    pub(crate) memory: Option<MemorySize>,
 }
 
 /// The error for an atlas that cannot be read.
@@ -122,6 +126,8 @@ pub(crate) fn sweep(
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
     let pool = pool.map_err(|error| CliError::System(io::Error::other(error)))?;
+    let memory = MemoryGuard::new(wanted.memory);
+    memory.check(grid).map_err(CliError::Memory)?;
     let mut poses = match &wanted.poses {
         Some(path) => Some(PoseFile::new(path, grid, wanted.existing)?),
         None => None,
@@ -131,7 +137,7 @@ pub(crate) fn sweep(
     let progress = Progress::new(all, wanted.quiet, charset);
     let tell = |poses: u64| {
         progress.add(poses);
-        !stopped.load(Ordering::Relaxed)
+        !stopped.load(Ordering::Relaxed) && memory.allows()
     };
     let mut take = |row: u64, ids: &[u32]| {
         if let Some(file) = &mut poses {
@@ -144,6 +150,9 @@ pub(crate) fn sweep(
     }
     let result = pool.install(|| sweep.run());
     progress.finish();
+    if memory.exceeded() {
+        return Err(CliError::Memory(memory.message()));
+    }
     let poses = poses.map(PoseFile::finish).transpose()?;
     if !result.complete() {
         return Err(signals.failure());
@@ -232,10 +241,12 @@ fn leave(
         }
         None => None,
     };
-    // Both files are complete; renaming them hardly ever fails.
-    for file in atlas.into_iter().chain(poses) {
-        file.persist().map_err(ArchiveFileError::from)?;
-    }
+    let named = match (atlas, poses) {
+        (Some(atlas), Some(poses)) => persist_pair(atlas, poses),
+        (Some(file), None) | (None, Some(file)) => file.persist(),
+        (None, None) => Ok(()),
+    };
+    named.map_err(ArchiveFileError::from)?;
     let summary = SweepSummary::new(result, start.elapsed());
     Ok(if wanted.json {
         summary.json()

@@ -12,6 +12,7 @@
 //! naming           the shapes that left the imprints of frames
 //! journal_writer   unsaved work, written beside the program
 //! write_access     where files may be written
+//! memory           a bound on the memory of sweeps and trainings
 //! shape_log        which stored shapes were used, for a record
 //! mailbox          messages from the workers, which wake the event loop
 //! ```
@@ -39,6 +40,8 @@ pub mod mailbox;
 mod write_access;
 
 mod shape_log;
+
+pub(crate) mod memory;
 
 pub use crate::tui::runtime::progress::WorkerEventSink;
 

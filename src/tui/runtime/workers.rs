@@ -23,6 +23,7 @@ use crate::tui::explore::message::{Findings, WorkerEvent};
 use crate::tui::recognise::sets::ModelChoice;
 use crate::tui::runtime::effect::Work;
 use crate::tui::runtime::frames::FrameWatcher;
+use crate::tui::runtime::memory::MemoryGuard;
 use crate::tui::runtime::models::{self, ModelStore, ModelWorker};
 use crate::tui::runtime::naming::ShapeNamer;
 use crate::tui::runtime::progress::{ProgressReporter, WorkerEventSink, guarded, proceed};
@@ -231,8 +232,16 @@ fn sweep(
     stop: &AtomicBool,
     clock: Option<&ProgressReporter<'_>>,
 ) -> WorkerEvent {
-    let progress = |poses: u64| proceed(poses, stop, clock);
+    let memory = MemoryGuard::new(None);
+    if let Err(message) = memory.check(grid) {
+        return WorkerEvent::Failed(number, message);
+    }
+    let progress = |poses: u64| proceed(poses, stop, clock) && memory.allows();
     let result = Sweep::new(grid).progress(&progress).run();
+    if memory.exceeded() {
+        // What was found is given up: there is no memory to show it.
+        return WorkerEvent::Failed(number, memory.message());
+    }
     let classes = result.atlas.distinct_classes();
     WorkerEvent::Swept(
         number,

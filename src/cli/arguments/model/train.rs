@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::{ArgGroup, ArgMatches, Command, value_parser};
 
 use crate::cli::arguments::flags::{
-    self, anchor, jobs, json, option, parse_name, quiet, range, replace, sensor_of_imprints, shard,
-    switch,
+    self, anchor, jobs, json, memory, option, parse_name, quiet, range, replace,
+    sensor_of_imprints, shard, switch,
 };
 use crate::cli::arguments::help::MODEL_TRAIN_EXAMPLES;
 use crate::cli::arguments::model::shape_set::{self, SetArguments};
@@ -18,6 +18,7 @@ use crate::pose::{Anchor, Axis, GivenRanges};
 use crate::sensor::Sensor;
 use crate::storage::Existing;
 use crate::sweep::Shard;
+use crate::tui::runtime::memory::MemorySize;
 
 /// A set of shapes, how to train it, and where the model goes.
 #[derive(Clone, Debug)]
@@ -38,6 +39,8 @@ pub(crate) struct TrainArguments {
     pub(crate) shard: Shard,
     /// Threads; 0 for as many as there are cores.
     pub(crate) jobs: usize,
+    /// The most memory that it may use, if it is given.
+    pub(crate) memory: Option<MemorySize>,
     /// Whether poses at which the sensor cuts a shape off are learned too; otherwise they are an error.
     pub(crate) allow_cut: bool,
     /// Where the model is written.
@@ -92,7 +95,15 @@ pub(super) fn command() -> Command {
         .arg(shape_set::positions())
         .arg(anchor)
         .args(sensor_of_imprints())
-        .args([allow_cut, jobs(), shard(), replace(), json(), quiet()])
+        .args([
+            allow_cut,
+            jobs(),
+            memory(),
+            shard(),
+            replace(),
+            json(),
+            quiet(),
+        ])
 }
 
 impl TrainArguments {
@@ -117,6 +128,7 @@ impl TrainArguments {
             given,
             shard: flags::shard_of(matches),
             jobs: flags::jobs_of(matches),
+            memory: flags::memory_of(matches),
             allow_cut: matches.get_flag("allow-cut"),
             to,
             existing: parameters::existing(matches),

@@ -1,0 +1,264 @@
+//! A bound on the memory of long work: sweeps and trainings, which keep every distinct imprint.
+//!
+//! The program's own memory is looked at while the work goes on. Tables grow by doubling, so the work is stopped when half
+//! of what is allowed is in use: the next step still fits, and nothing has to be given up in the middle of it.
+
+use std::fmt;
+use std::str::FromStr;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use crate::pose::PoseGrid;
+use crate::sweep::{Sweep, TimingSample};
+
+/// The least time between two looks.
+const PAUSE: Duration = Duration::from_millis(20);
+
+/// Bytes that an imprint takes in an atlas beside its own: its count, hash, description and the values of its statistics.
+const BYTES_BESIDE: u64 = 500;
+
+/// An amount of memory in bytes, written as `2G`, `500M` or `1.5G`: K, M, G and T are 1024, its square, cube and fourth
+/// power.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct MemorySize(pub(crate) u64);
+
+/// The letters of [`MemorySize`] and what they stand for.
+const UNITS: [(char, u64); 4] = [
+    ('T', 1 << 40),
+    ('G', 1 << 30),
+    ('M', 1 << 20),
+    ('K', 1 << 10),
+];
+
+impl FromStr for MemorySize {
+    type Err = &'static str;
+
+    /// Reads an amount.
+    ///
+    /// # Errors
+    /// What was expected.
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        const EXPECTED: &str = "expected an amount of memory such as 2G or 500M";
+        let unit = UNITS.iter().find_map(|(letter, bytes)| {
+            let number = text.strip_suffix([*letter, letter.to_ascii_lowercase()])?;
+            Some((number, *bytes))
+        });
+        let (number, bytes) = unit.unwrap_or((text, 1));
+        let number: f64 = number.parse().map_err(|_| EXPECTED)?;
+        #[expect(clippy::cast_precision_loss, reason = "powers of two")]
+        let total = number * bytes as f64;
+        if !(1.0..1e18).contains(&total) {
+            return Err(EXPECTED);
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "in range"
+        )]
+        let bytes = total as u64;
+        Ok(Self(bytes))
+    }
+}
+
+impl fmt::Display for MemorySize {
+    /// Rounded to a tenth: `1.5G`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let unit = UNITS.iter().find(|(_, bytes)| self.0 >= *bytes);
+        match unit {
+            Some((letter, bytes)) => {
+                #[expect(clippy::cast_precision_loss, reason = "rounded anyway")]
+                let number = self.0 as f64 / *bytes as f64;
+                write!(f, "{number:.1}{letter}")
+            }
+            None => write!(f, "{}", self.0),
+        }
+    }
+}
+
+/// Watches over the memory of a piece of work.
+#[derive(Debug)]
+pub(crate) struct MemoryGuard {
+    /// What is allowed; None where the system does not say what is free.
+    allowed: Option<MemorySize>,
+    /// When memory is looked at next.
+    due: Mutex<Instant>,
+    /// Whether too much was in use once.
+    exceeded: AtomicBool,
+}
+
+impl MemoryGuard {
+    /// A guard with this bound, or with all that the machine has free and limits allow.
+    pub(crate) fn new(allowed: Option<MemorySize>) -> Self {
+        Self {
+            allowed: allowed.or_else(free),
+            due: Mutex::new(Instant::now()),
+            exceeded: AtomicBool::new(false),
+        }
+    }
+
+    /// Whether the work may go on. Cheap enough to be asked often.
+    pub(crate) fn allows(&self) -> bool {
+        let Some(allowed) = self.allowed else {
+            return true;
+        };
+        if self.exceeded() {
+            return false;
+        }
+        // Where another thread is looking, this one need not.
+        if let Ok(mut due) = self.due.try_lock()
+            && Instant::now() >= *due
+        {
+            *due = Instant::now() + PAUSE;
+            if used().is_some_and(|used| used.0 > allowed.0 / 2) {
+                self.exceeded.store(true, Ordering::Relaxed);
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Whether it has stopped the work.
+    pub(crate) fn exceeded(&self) -> bool {
+        self.exceeded.load(Ordering::Relaxed)
+    }
+
+    /// The message after it has stopped the work.
+    pub(crate) fn message(&self) -> String {
+        let allowed = self.allowed.unwrap_or(MemorySize(0));
+        format!(
+            "stopped: it needs more memory than the {allowed} that it may use; take coarser steps, sweep it in shards \
+             (--shard 1/8, ..., then taxel merge), or allow more (--memory)"
+        )
+    }
+
+    /// Refuses the sweep of a grid that needs far more than is allowed, before it starts.
+    ///
+    /// # Errors
+    /// A message with the estimate.
+    pub(crate) fn check(&self, grid: &PoseGrid) -> Result<(), String> {
+        let Some(allowed) = self.allowed else {
+            return Ok(());
+        };
+        let expected = expected(grid);
+        // The estimate may be twice too high: imprints of one angle may be those of another.
+        if expected.0 / 2 <= allowed.0 {
+            return Ok(());
+        }
+        Err(format!(
+            "it needs about {expected} of memory and may use {allowed}; take coarser steps, sweep it in shards (--shard \
+             1/8, ..., then taxel merge), or allow more (--memory)"
+        ))
+    }
+}
+
+/// How much memory the sweep of a grid needs, from the imprints of a small part of it.
+fn expected(grid: &PoseGrid) -> MemorySize {
+    let sample = TimingSample::of(grid);
+    let found = Sweep::new(&sample.grid).run().atlas.len();
+    let sensor = grid.sensor();
+    let taxels = u64::from(sensor.columns()) * u64::from(sensor.rows());
+    #[expect(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "an estimate, and it saturates"
+    )]
+    let bytes = (found as f64 * sample.times * (BYTES_BESIDE + taxels / 8) as f64) as u64;
+    MemorySize(bytes)
+}
+
+/// A line of one of the system's tables, such as `VmRSS:      5120 kB`.
+#[cfg(target_os = "linux")]
+fn listed(table: &str, name: &str) -> Option<MemorySize> {
+    let table = std::fs::read_to_string(table).ok()?;
+    let line = table.lines().find_map(|line| line.strip_prefix(name))?;
+    let kilobytes: u64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(MemorySize(kilobytes * 1024))
+}
+
+/// The memory that the program has in use.
+#[cfg(target_os = "linux")]
+fn used() -> Option<MemorySize> {
+    listed("/proc/self/status", "VmRSS:")
+}
+
+/// What the program may use: what the machine has free, with what it uses already, or less where a limit is set for the
+/// process or its control group.
+#[cfg(target_os = "linux")]
+fn free() -> Option<MemorySize> {
+    use rustix::process::{Resource, getrlimit};
+    let number = |path: &str| {
+        std::fs::read_to_string(path)
+            .ok()?
+            .trim()
+            .parse::<u64>()
+            .ok()
+    };
+    let limits = [
+        Some(listed("/proc/meminfo", "MemAvailable:")?.0 + used()?.0),
+        getrlimit(Resource::As).current,
+        getrlimit(Resource::Data).current,
+        number("/sys/fs/cgroup/memory.max"),
+        number("/sys/fs/cgroup/memory/memory.limit_in_bytes"),
+    ];
+    limits.into_iter().flatten().min().map(MemorySize)
+}
+
+/// Elsewhere the system is not asked.
+#[cfg(not(target_os = "linux"))]
+fn used() -> Option<MemorySize> {
+    None
+}
+
+#[cfg(not(target_os = "linux"))]
+fn free() -> Option<MemorySize> {
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Figure, FigureKind};
+    use crate::pose::{Anchor, Axis, Ranges};
+    use crate::sensor::Sensor;
+    use crate::source::Source;
+
+    #[test]
+    fn amounts_are_read_and_shown() {
+        for (text, bytes, shown) in [
+            ("2G", 2 << 30, "2.0G"),
+            ("1.5g", 3 << 29, "1.5G"),
+            ("500M", 500 << 20, "500.0M"),
+            ("1024", 1024, "1.0K"),
+            ("12", 12, "12"),
+        ] {
+            assert_eq!(text.parse(), Ok(MemorySize(bytes)), "{text}");
+            assert_eq!(MemorySize(bytes).to_string(), shown);
+        }
+        for text in ["", "G", "-1G", "0", "2GB", "1e30", "NaN", "two"] {
+            assert!(text.parse::<MemorySize>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_guard_stops_what_needs_too_much() {
+        let small = MemoryGuard::new(Some(MemorySize(1024)));
+        let large = MemoryGuard::new(Some(MemorySize(1 << 50)));
+        assert!(large.allows() && !large.exceeded());
+        assert_eq!(small.allows(), used().is_none());
+        assert_eq!(small.exceeded(), used().is_some());
+        assert!(
+            small.message().contains("more memory than the 1.0K"),
+            "{}",
+            small.message()
+        );
+        let source = Source::Figure(Figure::default_of(FigureKind::Heptagon, &Sensor::default()));
+        let cell = Ranges::default().with(Axis::Angle, "0:359.9:0.1".parse().expect("a range"));
+        let grid =
+            PoseGrid::new(source, Sensor::default(), Anchor::Corner, cell).expect("in range");
+        let refused = small.check(&grid).expect_err("far too little");
+        assert!(refused.contains("--shard"), "{refused}");
+        assert_eq!(large.check(&grid), Ok(()));
+    }
+}
