@@ -57,7 +57,8 @@
 //!  recognition  models of shapes: the posterior of a touch, the limit of any method
 //!  prelude      what a program that uses the crate imports
 //!  ───────────  above: total, no input or output, no panic; below: the world
-//!  formats      text, PBM, CSV, NPY, JSON, atlases; drawings as SVG and PNG
+//!  formats      text, PBM, CSV, NPY, JSON, atlases, models; recordings and streams of
+//!               sensors; drawings as SVG and PNG
 //!  storage      files: atomic writes, the folder of stored shapes, journal, trash
 //!  acquire      where frames come from: serial, pipes, tcp, files; recording them
 //!  tui          the screen                                                         ratatui, crossterm
@@ -70,6 +71,11 @@
 //! form, flag or JSON line -> parameter (range) -> figure or picture -> outlines, placed
 //!   -> coverage -> imprint -> regions -> descriptors -> panel, table, JSON, drawing, sweep
 //! ```
+//! The way of a frame:
+//! ```text
+//! file -> formats::recording, or acquire -> bytes -> formats::stream
+//!   -> frame (crop, tare, gain, threshold) -> imprint -> regions -> descriptors, recognition
+//! ```
 //!
 //! # Features
 //!
@@ -80,7 +86,7 @@
 //! sweep               pose, atlas, sweep; formats::atlas, archive;     json
 //!                     storage::AtlasFile, PoseFile, UnfinishedFile
 //! recognition         recognition; formats::model                      sweep
-//! frames              formats::recording                               json
+//! frames              formats::recording, stream                       json
 //! png                 formats::Drawing::png
 //! library             storage                                          json
 //! acquire             acquire                                          frames, library
