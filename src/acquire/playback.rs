@@ -94,18 +94,12 @@ pub(super) fn run(
                     }
                 }
                 RecordingEvent::Frame(frame) => {
-                    let waited = if options.once {
-                        ControlFlow::Continue(())
+                    let time = frame.time;
+                    let given_up = !options.once && pace.wait(time, stop, consumer).is_break();
+                    if given_up || stop.load(Ordering::Relaxed) {
+                        ControlFlow::Break(())
                     } else {
-                        pace.wait(frame.time, stop, consumer)
-                    };
-                    let stopped = stop.load(Ordering::Relaxed);
-                    match waited {
-                        ControlFlow::Continue(()) if !stopped => consumer(AcquireEvent::Frame {
-                            frame,
-                            time: frame.time,
-                        }),
-                        _ => ControlFlow::Break(()),
+                        consumer(AcquireEvent::Frame { frame, time })
                     }
                 }
                 RecordingEvent::Note(note) => consumer(AcquireEvent::Note(note)),

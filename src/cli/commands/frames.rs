@@ -542,51 +542,53 @@ impl Selection {
                 return output.answers.write_all(&content).map_err(CliError::Write);
             }
             (None, Form::Json(_)) => {
-                let notes = lines.split_off(titles.len());
-                for note in notes {
+                for note in lines.split_off(titles.len()) {
                     (output.notes)(&note);
                 }
-                let answer = FrameAnswer {
-                    frame,
-                    channel: listed.info.name.as_deref(),
-                    processed: *processed,
-                    rule: Some(self.rule),
-                    tare: self.tare,
-                };
-                let mut line = report::ascii_json(&json::text(&answer)).into_bytes();
-                match &mut output.namer {
-                    Some(namer) => namer.extend(&mut line, Some(&imprint)),
-                    None => line.push(b'\n'),
-                }
-                line
+                self.line((frame, processed), &imprint, listed, output)
             }
             (None, Form::Table(_)) => {
                 lines.push(report::size(&imprint, None, pitch));
                 let gap = if again { "\n" } else { "" };
-                let map = heat.map(|values| {
+                let map = heat.map_or_else(String::new, |values| {
                     let unit = listed.info.unit.as_ref();
                     let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
                     heat_map(values, &output.charset.line(&unit), output.charset) + "\n"
                 });
                 let table = report::table(&imprint, &lines, pitch, output.charset);
-                let named = output.namer.as_mut().map(|namer| {
-                    let answer = namer.text(&imprint, output.charset);
-                    if answer.is_empty() {
-                        answer
-                    } else {
-                        format!("\n{answer}")
-                    }
-                });
-                let parts = [
-                    gap,
-                    map.as_deref().unwrap_or(""),
-                    &table,
-                    named.as_deref().unwrap_or(""),
-                ];
-                parts.concat().into_bytes()
+                let namer = output.namer.as_mut();
+                let mut named = namer.map(|namer| namer.text(&imprint, output.charset));
+                if let Some(named) = named.as_mut().filter(|named| !named.is_empty()) {
+                    named.insert(0, '\n');
+                }
+                let named = named.as_deref().unwrap_or("");
+                [gap, &map, &table, named].concat().into_bytes()
             }
         };
         output.write(&text)
+    }
+
+    /// A frame as a line of JSON, with the name of its shape if a model is given.
+    fn line(
+        &self,
+        (frame, processed): (&Frame, &Processed<'_>),
+        imprint: &Imprint,
+        listed: &ListedChannel,
+        output: &mut FramesOutput<'_>,
+    ) -> Vec<u8> {
+        let answer = FrameAnswer {
+            frame,
+            channel: listed.info.name.as_deref(),
+            processed: *processed,
+            rule: Some(self.rule),
+            tare: self.tare,
+        };
+        let mut line = report::ascii_json(&json::text(&answer)).into_bytes();
+        match &mut output.namer {
+            Some(namer) => namer.extend(&mut line, Some(imprint)),
+            None => line.push(b'\n'),
+        }
+        line
     }
 
     /// What the frame is, in lines: `iscan.csv, frame 65 (label 66), 6.5 s`, and sum, maximum and threshold.

@@ -42,16 +42,7 @@ pub(crate) fn screen(
     charset: Charset,
     watched: Option<WatchRequest>,
 ) -> Result<u8, CliError> {
-    // A locale that is not UTF-8 means ASCII; one that is says nothing about the terminal's font.
-    let ascii = (charset == Charset::Ascii).then_some(true);
-    let flags = Flags {
-        color: settings.color(),
-        palette: settings.theme(),
-        ascii: settings.ascii().or(ascii),
-        no_mouse: !settings.mouse(),
-        size,
-    };
-    let terminal = TerminalSettings::from_environment(std::env::var_os, &flags);
+    let terminal = terminal_settings(settings, size, charset);
     let options = Options {
         sensor: settings.sensor(),
         theme: terminal.theme(),
@@ -95,6 +86,24 @@ pub(crate) fn screen(
         }
     }
     Ok(ended.map_err(CliError::Screen)?.status())
+}
+
+/// How the terminal is used: by the settings, and by what the environment says of it.
+fn terminal_settings(
+    settings: &Effective,
+    size: Option<(u16, u16)>,
+    charset: Charset,
+) -> TerminalSettings {
+    // A locale that is not UTF-8 means ASCII; one that is says nothing about the terminal's font.
+    let ascii = (charset == Charset::Ascii).then_some(true);
+    let flags = Flags {
+        color: settings.color(),
+        palette: settings.theme(),
+        ascii: settings.ascii().or(ascii),
+        no_mouse: !settings.mouse(),
+        size,
+    };
+    TerminalSettings::from_environment(std::env::var_os, &flags)
 }
 
 /// A record being written.
