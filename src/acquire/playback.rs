@@ -9,7 +9,9 @@ use std::time::{Duration, Instant};
 use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions};
 use crate::acquire::recorder::description_beside;
 use crate::acquire::stream::Consumer;
-use crate::formats::recording::{ReadOptions, RecordingEvent, read};
+use crate::formats::recording::{
+    ChannelInfo, ReadOptions, RecordingEvent, RecordingMetadata, read,
+};
 use crate::formats::stream::StreamCounts;
 
 /// The rate of a recording that does not say its own: ten frames a second.
@@ -83,10 +85,7 @@ pub(super) fn run(
         read(&mut file, reading, &mut |event| {
             flow = match event {
                 RecordingEvent::Channel(info) => {
-                    let mut info = info.clone();
-                    if let Some(description) = &description {
-                        info.complete(description);
-                    }
+                    let info = completed(info, description.as_ref());
                     pace.step = info.seconds_per_frame.unwrap_or(STEP);
                     match round {
                         0 => consumer(AcquireEvent::Channel(&info)),
@@ -111,4 +110,13 @@ pub(super) fn run(
             return Ok(());
         }
     }
+}
+
+/// What a recording says of a channel, with what the description beside it says.
+fn completed(info: &ChannelInfo, description: Option<&RecordingMetadata>) -> ChannelInfo {
+    let mut info = info.clone();
+    if let Some(description) = description {
+        info.complete(description);
+    }
+    info
 }

@@ -207,14 +207,18 @@ impl Surroundings {
     /// Runs `taxel frames`. Answers that were made before an error are printed.
     fn frames(&self, asked: &FramesArguments, form: Form, kept: Kept) -> Result<(), CliError> {
         let model = asked.naming.load(&self.shelf)?;
-        let noise = asked.naming.noise_with(frames::mask(&asked.processing)?);
+        let noise = asked
+            .naming
+            .noise_with(frames::mask(&asked.processing)?.as_ref());
         let mut answers = BufWriter::new(io::stdout().lock());
         let output = FramesOutput {
             form,
             kept,
             shelf: &self.shelf,
             charset: self.charset,
-            namer: model.as_ref().map(|model| FrameNamer::new(model, noise)),
+            namer: model
+                .as_ref()
+                .map(|model| FrameNamer::new(model, noise.as_ref())),
             answers: &mut answers,
             notes: &mut |text| note(text, self.charset),
         };

@@ -103,8 +103,7 @@ mod tests {
         );
         let both = "{\"low\":9,\"high\":20,\"least\":2}";
         assert_eq!(imprint(both, frame).as_deref(), Ok("##.\n.##"));
-        let wrong =
-            |rule: &str, frame: &str| imprint(rule, frame).err().unwrap_or_else(String::new);
+        let wrong = |rule: &str, frame: &str| imprint(rule, frame).expect_err("it is refused");
         assert!(wrong("{}", frame).contains("expected one threshold"));
         assert!(wrong("{\"low\":1}", frame).contains("expected one threshold"));
         assert!(wrong("{\"percent\":0}", frame).contains("above 0"));

@@ -161,13 +161,12 @@ impl<'de: 'a, 'a> Deserialize<'de> for JobLine<'a> {
                         line.take_rule(key, &mut map)?;
                         continue;
                     }
-                    match key.as_ref() {
-                        "frame" => once("frame", &mut line.frame, map.next_value()?)?,
-                        _ => {
-                            let expected = "figure, picture, imprint, frame, sensor or a parameter";
-                            line.record.take(&key, &mut map, expected)?;
-                        }
+                    if key == "frame" {
+                        once("frame", &mut line.frame, map.next_value()?)?;
+                        continue;
                     }
+                    let expected = "figure, picture, imprint, frame, sensor or a parameter";
+                    line.record.take(&key, &mut map, expected)?;
                 }
                 Ok(line)
             }

@@ -242,7 +242,9 @@ fn report_noise(
         None => None,
     };
     if let Form::Json(_) = output.form {
-        said.iter().for_each(|said| (output.notes)(said));
+        if let Some(said) = said {
+            (output.notes)(&said);
+        }
         return output.write(noise_report::json(found));
     }
     let text = noise_report::text(found) + &said.map_or(String::new(), |said| said + "\n");

@@ -32,9 +32,9 @@ impl NamingArguments {
     }
 
     /// The noise, with the dead cells of a mask left out.
-    pub(crate) fn noise_with(&self, mask: Option<Imprint>) -> Option<Noise> {
+    pub(crate) fn noise_with(&self, mask: Option<&Imprint>) -> Option<Noise> {
         let noise = self.noise?;
-        Some(mask.map_or(noise, |mask| noise.without(mask)))
+        Some(mask.map_or(noise, |mask| noise.without(*mask)))
     }
 }
 
@@ -48,11 +48,11 @@ pub(crate) struct FrameNamer<'a> {
 
 impl<'a> FrameNamer<'a> {
     /// Names them by this model, under a noise if one is given.
-    pub(crate) fn new(model: &'a Model, noise: Option<Noise>) -> Self {
+    pub(crate) fn new(model: &'a Model, noise: Option<&Noise>) -> Self {
         Self {
             model,
-            noise,
-            noisy: noise.map(|noise| NoisyRecogniser::new(model, noise)),
+            noise: noise.copied(),
+            noisy: noise.map(|noise| NoisyRecogniser::new(model, *noise)),
         }
     }
 

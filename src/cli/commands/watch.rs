@@ -136,13 +136,13 @@ pub(crate) fn watch(
 /// recording.
 fn line_writer(asked: &WatchArguments, shelf: &Shelf) -> Result<LineWriter, CliError> {
     let naming = asked.naming.clone();
-    let noise = naming.noise_with(frames::mask(&asked.processing)?);
+    let noise = naming.noise_with(frames::mask(&asked.processing)?.as_ref());
     let shelf = shelf.clone();
     Ok(LineWriter::start(move |lines| {
         let Some(model) = naming.load(&shelf)? else {
             return lines.write(&mut |_, _| ());
         };
-        let mut namer = FrameNamer::new(&model, noise);
+        let mut namer = FrameNamer::new(&model, noise.as_ref());
         lines.write(&mut |line, imprint| namer.extend(line, imprint))
     }))
 }

@@ -85,6 +85,8 @@ enum DescribedRule {
     Other(RuleRecord),
 }
 
+/// The rule as an object, null without one.
+#[expect(clippy::ref_option, reason = "serde calls it so")]
 fn rule_or_null<S: Serializer>(
     rule: &Option<DescribedRule>,
     serializer: S,
@@ -265,9 +267,9 @@ mod tests {
         let wrong = |rest: &str| {
             let text = format!("{{\"format\":\"{FORMAT}\",{rest}}}");
             let read = RecordingMetadata::read(text.as_bytes()).expect("a description");
-            read.err().unwrap_or_else(String::new)
+            read.err().map_or(String::from("right"), |error| error)
         };
-        assert_eq!(wrong("\"marks\":[]"), "");
+        assert_eq!(wrong("\"marks\":[]"), "right");
         assert!(wrong("\"rule\":{\"percent\":0}").contains("above 0"));
         assert!(wrong("\"tare_frames\":1,\"tare\":[[1],[2,3]]").contains("rows of one length"));
         assert!(wrong("\"unit\":3").contains("string"));

@@ -187,7 +187,7 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
                 None => "shapes are not named".to_owned(),
             };
             inform(app, text);
-            let model = model.map(|model| (model, page.request().noise()));
+            let model = model.map(|model| Box::new((model, page.request().noise())));
             return Some(Effect::Work(Work::NameBy(page.number(), model)));
         }
         LiveMessage::Open | LiveMessage::Watch(_) | LiveMessage::Source(_) => {}
@@ -228,7 +228,6 @@ fn record(page: &Live) -> Effect {
         tare: page.tare_values().cloned(),
         seconds_per_frame: channel.and_then(|channel| channel.seconds_per_frame),
         marks: page.marks().to_vec(),
-        ..RecordingMetadata::default()
     };
     Effect::Work(Work::Record(Box::new(metadata)))
 }

@@ -81,7 +81,7 @@ pub enum Work {
     /// Write the marks into the description of the recording.
     Mark(Vec<FrameMark>),
     /// Name the imprints of that source by a set of shapes, under a noise; None names them no more.
-    NameBy(u64, Option<(ModelChoice, Option<Noise>)>),
+    NameBy(u64, Option<Box<(ModelChoice, Option<Noise>)>>),
     /// Name an imprint.
     Name(Box<Imprint>),
     /// Search a model for the nearest imprint, and for the poses of a shape, None for that of the nearest imprint.

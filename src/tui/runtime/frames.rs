@@ -24,6 +24,7 @@ use crate::tui::live::history::bytes_of;
 use crate::tui::live::message::{FrameBatch, LiveEvent, SourceState};
 use crate::tui::live::request::WatchRequest;
 use crate::tui::runtime::progress::WorkerEventSink;
+use crate::tui::runtime::write_access::WriteAccess;
 
 /// The source that is watched.
 #[derive(Debug, Default)]
@@ -118,14 +119,23 @@ impl FrameWatcher {
     }
 
     /// Begins a recording in the first file `touch-1.npy`, `touch-2.npy` … that is not there.
-    pub(super) fn record(&self, metadata: &RecordingMetadata) -> Option<WorkerEvent> {
+    pub(super) fn record(
+        &self,
+        metadata: &RecordingMetadata,
+        access: &WriteAccess,
+    ) -> Option<WorkerEvent> {
         let watched = self.watched.as_ref()?;
-        let mut names = (1..10_000).map(|number| PathBuf::from(format!("touch-{number}.npy")));
-        let is_free = |path: &PathBuf| !path.exists() && !path.with_extension("json").exists();
-        let begun = match names.find(is_free) {
-            Some(path) => watched
+        let names = (1..10_000).map(|number| format!("touch-{number}.npy"));
+        let mut paths = names.map(|name| (access.path(&name, Existing::Kept), name));
+        let is_free = |(path, _): &(Result<PathBuf, String>, String)| match path {
+            Ok(path) => !path.exists() && !path.with_extension("json").exists(),
+            Err(_) => true,
+        };
+        let begun = match paths.find(is_free) {
+            Some((Ok(path), name)) => watched
                 .begin_recording(&path, Existing::Kept, metadata)
-                .map(|()| LiveEvent::Recording(path.to_string_lossy().into_owned())),
+                .map(|()| LiveEvent::Recording(name)),
+            Some((Err(refused), _)) => Err(refused),
             None => Err("10,000 recordings are here already; move some elsewhere".to_owned()),
         };
         let event = begun.unwrap_or_else(LiveEvent::NotRecorded);

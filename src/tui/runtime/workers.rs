@@ -131,9 +131,22 @@ impl Workers {
                 self.sizes.stop();
                 None
             }
+            Work::Look(trained, imprint, shape) => {
+                models::look(trained, imprint, shape, self.post.clone())
+            }
+            work => self.perform_live(work),
+        }
+    }
+
+    /// Work about a source of frames.
+    fn perform_live(&mut self, work: Work) -> Option<WorkerEvent> {
+        match work {
             Work::Watch(number, request) => {
                 let model = request.model.clone();
-                self.name_by(number, model.map(|model| (model, request.noise())));
+                self.name_by(
+                    number,
+                    model.map(|model| Box::new((model, request.noise()))),
+                );
                 self.frames.watch(number, request, self.post.clone())
             }
             Work::NameBy(number, model) => {
@@ -147,20 +160,18 @@ impl Workers {
                 self.frames.stop();
                 None
             }
-            Work::Record(metadata) => self.frames.record(&metadata),
+            Work::Record(metadata) => self.frames.record(&metadata, &self.access),
             Work::StopRecording => self.frames.stop_recording(),
-            Work::Look(trained, imprint, shape) => {
-                models::look(trained, imprint, shape, self.post.clone())
-            }
+            _ => None,
         }
     }
 
     /// Prepares the model that names the imprints of frames.
-    fn name_by(&mut self, number: u64, model: Option<(ModelChoice, Option<Noise>)>) {
+    fn name_by(&mut self, number: u64, model: Option<Box<(ModelChoice, Option<Noise>)>>) {
         match model {
             Some(model) => {
                 let store = self.models.store.clone();
-                self.namer.begin(number, store, model, self.post.clone());
+                self.namer.begin(number, store, *model, self.post.clone());
             }
             None => self.namer.end(),
         }
