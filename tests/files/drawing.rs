@@ -6,7 +6,7 @@ use std::path::Path;
 
 use taxel::description::regions;
 use taxel::figure::Figure;
-use taxel::formats::{ConfusionMap, Drawing, LinePlot};
+use taxel::formats::{ConfusionMap, Drawing, LinePlot, PointPlot, PoseMap};
 use taxel::imprint::Imprint;
 use taxel::picture::Picture;
 use taxel::sensor::Sensor;
@@ -260,13 +260,109 @@ fn curves_have_axes_and_a_legend() {
     assert_eq!(many.svg().matches("class=\"curve\"").count(), 32);
 }
 
+/// The axes begin where the points do; curves have gaps where there is no value, and each its name.
+#[test]
+fn points_have_axes_that_begin_anywhere() {
+    let points = [
+        (40.0, 10.5),
+        (44.0, 11.25),
+        (f64::NAN, 3.0),
+        (42.0, 12.0),
+        (42.0, 12.0),
+    ];
+    let curve = [
+        (40.0, 11.0),
+        (41.0, f64::INFINITY),
+        (42.0, 11.5),
+        (43.0, 11.25),
+    ];
+    let plot = PointPlot::new("na", "f <&>")
+        .with_title("5 imprints")
+        .with_points(&points)
+        .with_curve("mean", &curve, false)
+        .with_curve("largest", &curve, true)
+        .with_chosen(42.0, 12.0);
+    let svg = plot.svg();
+    golden("points", &svg);
+    for text in [
+        ">40<",
+        ">44<",
+        ">10.5<",
+        ">12.0<",
+        ">na<",
+        ">f &lt;&amp;&gt;<",
+        ">mean<",
+    ] {
+        assert!(svg.contains(text), "{text}\n{svg}");
+    }
+    assert!(!svg.contains(">0<"), "no axis has to begin at 0");
+    let specks = svg.lines().find(|line| line.contains("class=\"points\""));
+    assert_eq!(
+        specks.map(|line| line.matches('M').count()),
+        Some(3),
+        "two are one"
+    );
+    assert_eq!(
+        svg.matches("stroke-dasharray").count(),
+        2,
+        "a dashed curve and its sample"
+    );
+    // Without a point, or with one only, there is a page as well.
+    for points in [&[][..], &[(5.0, 5.0)], &[(1e300, -1e300), (-1e300, 1e300)]] {
+        let svg = PointPlot::new("x", "y")
+            .with_points(points)
+            .with_chosen(f64::NAN, 0.0)
+            .svg();
+        assert!(
+            svg.contains("viewBox") && !svg.contains("NaN") && !svg.contains("inf"),
+            "{svg}"
+        );
+        assert!(!svg.contains("chosen"));
+    }
+}
+
+/// Areas of one imprint have no lines in them, and every line parts two areas.
+#[test]
+fn a_map_has_areas_with_borders() {
+    let ids = [0, 0, 1, 0, 2, 1].map(Some);
+    let map = PoseMap::new((5.0, 5.02), (7.0, 7.01), 3, &ids).expect("two rows");
+    let svg = map.clone().with_title("angle 30").with_chosen(2, 1).svg();
+    golden("map", &svg);
+    let borders = svg.lines().find(|line| line.contains("class=\"borders\""));
+    // Between the rows below the second cell, and beside it on both sides; above it to the right.
+    assert_eq!(
+        borders.map(|line| line.matches('M').count()),
+        Some(3),
+        "{svg}"
+    );
+    for text in [
+        ">5.000<",
+        ">5.020<",
+        ">7.010<",
+        ">x0 / cells<",
+        "class=\"chosen\"",
+    ] {
+        assert!(svg.contains(text), "{text}\n{svg}");
+    }
+    assert!(!map.with_chosen(3, 0).svg().contains("chosen"));
+    let one = PoseMap::new((5.0, 5.0), (5.0, 5.0), 1, &[None]).expect("one cell");
+    assert!(!one.svg().contains("NaN") && !one.svg().contains("imprints\""));
+    for (columns, count) in [(0, 0), (2, 3), (2, 0), (1025, 1025)] {
+        let ids = vec![None; count];
+        assert!(PoseMap::new((0.0, 1.0), (0.0, 1.0), columns, &ids).is_none());
+    }
+    assert!(PoseMap::new((0.0, f64::NAN), (0.0, 1.0), 1, &[None]).is_none());
+}
+
 #[cfg(feature = "png")]
 #[test]
 fn matrices_and_curves_are_drawn_in_pixels() {
     let labels = ["a", "b"].map(str::to_owned);
     let map = ConfusionMap::new(&labels, &[vec![5, 5], vec![0, 10]]).expect("few shapes");
     let plot = LinePlot::new("x", "y").with_curve("c", &[(0.0, 0.0), (1.0, 1.0)]);
-    for png in [map.png(), plot.png()] {
+    let points = PointPlot::new("x", "y").with_points(&[(0.0, 3.0), (1.0, 4.0)]);
+    let areas = PoseMap::new((0.0, 1.0), (0.0, 1.0), 2, &[Some(1), Some(2)]).expect("a row");
+    for png in [map.png(), plot.png(), points.png(), areas.png()] {
         let png = png.expect("in memory");
         let decoder = png::Decoder::new(std::io::Cursor::new(&png));
         let mut reader = decoder.read_info().expect("a PNG");

@@ -10,7 +10,12 @@ pub(super) struct Ticks(pub(super) Vec<(f64, String)>);
 impl Ticks {
     /// Ticks from 0 to `length`, at steps of 1, 2 or 5 times a power of ten, none smaller than `least`.
     pub(super) fn new(length: f64, least: f64) -> Self {
-        let smallest = (length / STEPS).max(least);
+        Self::between((0.0, length), least, STEPS)
+    }
+
+    /// The same from one number to another, at most about `steps` of them.
+    pub(super) fn between((low, high): (f64, f64), least: f64, steps: f64) -> Self {
+        let smallest = ((high - low) / steps).max(least);
         let power = 10_f64.powf(smallest.log10().floor());
         // A hair is allowed for the roundings of the logarithm.
         let fits = |factor: &f64| factor * power >= smallest * (1.0 - 1e-9);
@@ -18,8 +23,10 @@ impl Ticks {
         let step = factor * power;
         let decimals = (1..=12_u8).find(|&n| step * 10_f64.powi(n.into()) >= 10.0 * (1.0 - 1e-9));
         let decimals = usize::from(decimals.map_or(12, |n| n - 1));
-        let place = |index: u32| f64::from(index) * step;
-        let last = length * (1.0 + 1e-9);
+        let first = (low / step - 1e-9).ceil();
+        // Never a negative zero.
+        let place = |index: u32| (first + f64::from(index)) * step + 0.0;
+        let last = high + (high - low) * 1e-9;
         let places = (0..=10).map(place).take_while(|&place| place <= last);
         Self(
             places
@@ -35,9 +42,65 @@ impl Ticks {
     }
 }
 
+/// The numbers that an axis from `low` to `high` is marked with, and how each is written: at most about `steps` of them.
+pub(crate) fn axis_marks(ends: (f64, f64), steps: u16) -> Vec<(f64, String)> {
+    let steps = f64::from(steps.max(1));
+    Ticks::between(ends, 0.0, steps).0
+}
+
+/// The ends of an axis for some values: a little beyond the smallest and the largest, so that no point lies on the frame.
+/// From 0 to 1 where there is none.
+pub(crate) fn axis_ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let nothing = (f64::INFINITY, f64::NEG_INFINITY);
+    let (low, high) = values
+        .filter(|value| value.is_finite())
+        .fold(nothing, |ends, value| {
+            (ends.0.min(value), ends.1.max(value))
+        });
+    if low > high {
+        return (0.0, 1.0);
+    }
+    // A billionth of the size of the numbers is the least that their digits can tell.
+    let least = low.abs().max(high.abs()).max(1e-6) * 1e-9;
+    let beyond = if high - low > least {
+        (high - low) * 0.04
+    } else {
+        high.abs().max(1.0) * 0.1
+    };
+    (low - beyond, high + beyond)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_axis_may_begin_anywhere() {
+        let labels = |low, high, steps| {
+            let marks = axis_marks((low, high), steps);
+            let labels: Vec<String> = marks.into_iter().map(|(_, label)| label).collect();
+            labels.join(" ")
+        };
+        assert_eq!(labels(-190.0, 190.0, 4), "-100 0 100");
+        assert_eq!(
+            labels(41.7, 43.2, 8),
+            "41.8 42.0 42.2 42.4 42.6 42.8 43.0 43.2"
+        );
+        assert_eq!(labels(-0.02, 0.02, 4), "-0.02 -0.01 0.00 0.01 0.02");
+        let ends = |values: &[f64]| axis_ends(values.iter().copied());
+        assert_eq!(ends(&[]), (0.0, 1.0));
+        assert_eq!(ends(&[f64::NAN]), (0.0, 1.0));
+        assert_eq!(ends(&[20.0, 20.0]), (18.0, 22.0));
+        assert_eq!(ends(&[0.0]), (-0.1, 0.1));
+        assert_eq!(ends(&[0.0, 100.0]), (-4.0, 104.0));
+        for (low, high) in [(1e12, 1e12 + 1.0), (-1e300, 1e300), (0.0, 1e-300)] {
+            let (low, high) = ends(&[low, high]);
+            assert!(
+                low < high && axis_marks((low, high), 8).len() <= 11,
+                "{low} {high}"
+            );
+        }
+    }
 
     fn labels(length: f64, least: f64) -> Vec<String> {
         let Ticks(marks) = Ticks::new(length, least);

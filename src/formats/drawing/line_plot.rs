@@ -13,8 +13,8 @@ const PLANE: Position = (324.0, 200.0);
 /// Each curve has its own dashes; after these they repeat.
 const DASHES: [Option<[f64; 2]>; 4] = [None, Some([6.0, 3.0]), Some([1.0, 3.0]), Some([12.0, 4.0])];
 
-/// The lines behind the curves.
-const GRID: Stroke = Stroke {
+/// The lines at the marks of both axes.
+pub(super) const GRID: Stroke = Stroke {
     width: 0.4,
     grey: 200,
     dash: None,
@@ -174,11 +174,12 @@ impl LinePlot {
 
 /// The width of a text of that many characters.
 #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^53 characters")]
-fn width(characters: usize) -> f64 {
+pub(super) fn width(characters: usize) -> f64 {
     TEXT * ADVANCE * characters as f64
 }
 
-fn path_of(what: &'static str, steps: Vec<Segment>, line: Stroke) -> Element {
+/// A line of the page, by the name of what it is.
+pub(super) fn path_of(what: &'static str, steps: Vec<Segment>, line: Stroke) -> Element {
     Element::Line {
         what,
         steps,
@@ -187,7 +188,8 @@ fn path_of(what: &'static str, steps: Vec<Segment>, line: Stroke) -> Element {
     }
 }
 
-fn label(text: &str, place: Position, anchor: TextAnchor) -> Element {
+/// A text of the page.
+pub(super) fn label(text: &str, place: Position, anchor: TextAnchor) -> Element {
     Element::Text {
         text: text.to_owned(),
         place,

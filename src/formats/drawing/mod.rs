@@ -14,7 +14,8 @@
 //! assert!(drawing.svg().contains(">x / mm</text>"));
 //! ```
 //!
-//! The same pages show a confusion matrix ([`ConfusionMap`]) and curves ([`LinePlot`]).
+//! The same pages show a confusion matrix ([`ConfusionMap`]), curves ([`LinePlot`]), points ([`PointPlot`]) and maps of
+//! positions ([`PoseMap`]).
 
 mod scene;
 
@@ -29,6 +30,10 @@ mod outline;
 mod confusion_map;
 
 mod line_plot;
+
+mod point_plot;
+
+mod pose_map;
 
 mod svg;
 
@@ -47,9 +52,13 @@ use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::parameter::Parameter;
 use crate::sensor::Sensor;
+#[cfg(feature = "tui")]
+pub(crate) use axis::{axis_ends, axis_marks};
 pub use confusion_map::ConfusionMap;
 pub use line_plot::LinePlot;
 use page::{DrawingPage, Subject};
+pub use point_plot::PointPlot;
+pub use pose_map::PoseMap;
 use scene::Segment;
 
 /// Wider ones would make the page wider than paper.

@@ -6,6 +6,7 @@ use ratatui::layout::{Position, Rect};
 use crate::quote::shortened;
 use crate::storage::{AtlasFile, is_poses};
 use crate::tui::app::page::{Page, Slot};
+use crate::tui::explore::drawing::drawn_form;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::text_field::TextField;
@@ -21,7 +22,7 @@ const LABEL: &str = "Export to: ";
 /// What is exported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExportKind {
-    /// The imprints and poses of a sweep.
+    /// The imprints and poses of a sweep, and the drawing of a page.
     Imprints,
     /// The error of a set against size.
     Curve,
@@ -31,7 +32,7 @@ impl ExportKind {
     /// What a name can end in.
     fn endings(self) -> &'static str {
         match self {
-            Self::Imprints => ".csv, .jsonl, .npz or .npy",
+            Self::Imprints => ".csv, .jsonl, .npz, .npy or .svg",
             Self::Curve => ".csv, .svg or .png",
         }
     }
@@ -39,7 +40,9 @@ impl ExportKind {
     /// Whether a name ends so.
     fn takes(self, name: &str) -> bool {
         match self {
-            Self::Imprints => is_poses(name) || AtlasFile::new(name).is_ok(),
+            Self::Imprints => {
+                is_poses(name) || drawn_form(name).is_some() || AtlasFile::new(name).is_ok()
+            }
             Self::Curve => {
                 let ending = std::path::Path::new(name).extension();
                 ending.is_some_and(|ending| ["csv", "svg", "png"].iter().any(|own| ending == *own))
@@ -135,7 +138,7 @@ mod tests {
     #[test]
     fn the_ending_tells_the_form() {
         let name = |text: &str| ExportDialog::new(text).name();
-        for good in ["a.csv", " a/b.jsonl ", "./c.npz", "poses.npy"] {
+        for good in ["a.csv", " a/b.jsonl ", "./c.npz", "poses.npy", "map.SVG"] {
             assert_eq!(name(good).as_deref(), Ok(good.trim()));
         }
         for bad in ["", "a", "a.txt", ".csv", "csv", "npy"] {

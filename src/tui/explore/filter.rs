@@ -38,13 +38,6 @@ pub struct FilterDialog {
     kept: Result<(usize, usize), FilterError>,
 }
 
-/// How many imprints a list has and how many it had without a filter, as people read it: `312 of 4,102`.
-pub fn kept_of_all(results: &Results) -> String {
-    let count = |count: usize| grouped(count as u64);
-    let (kept, all) = (results.row_count(), results.sweep().atlas.len());
-    format!("{} of {}", count(kept), count(all))
-}
-
 impl FilterDialog {
     /// A field that starts with the filter of a list.
     pub fn new(results: &Results) -> Self {

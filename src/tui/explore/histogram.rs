@@ -31,6 +31,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     title: "histogram",
     context: Context::Histogram,
     sifted: false,
+    drawing: None,
     draw,
     click: |_, _, _| None,
     update: choose_descriptor,

@@ -41,6 +41,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     title: "imprints",
     context: Context::Imprints,
     sifted: true,
+    drawing: None,
     draw,
     click,
     update,

@@ -44,11 +44,22 @@ pub enum ExplorePage {
     Histogram,
     /// The square of x0 and y0 at one angle.
     Map,
+    /// Two descriptors, one against the other.
+    Scatter,
+    /// The chosen descriptor against the angle.
+    Angles,
 }
 
 impl ExplorePage {
     /// All of them, in their order.
-    pub const ALL: [Self; 4] = [Self::Imprints, Self::Statistics, Self::Histogram, Self::Map];
+    pub const ALL: [Self; 6] = [
+        Self::Imprints,
+        Self::Statistics,
+        Self::Histogram,
+        Self::Map,
+        Self::Scatter,
+        Self::Angles,
+    ];
 }
 
 /// A zoom of pictures.
@@ -77,7 +88,8 @@ pub enum ExploreMessage {
     NextPage(i8),
     /// The descriptor this many further on; negative goes back.
     Feature(i8),
-    /// Scroll the columns of the statistics by this many; choose another heading of the list.
+    /// Scroll the columns of the statistics by this many; choose another heading of the list, another descriptor for
+    /// the right of the scatter plot.
     Columns(i8),
     /// Sort the imprints by a column; again by the same column, reversed.
     Sort(ListColumn),

@@ -6,7 +6,7 @@
 //! results    what was found and what is looked at         column: what its list is sorted by
 //! export  filter  mark       prompts: a file, a condition, a letter     prompts: what keys do in the last two
 //! page       what the results know of a page of theirs    pages: the table of pages
-//! imprints  statistics  histogram  map                    the pages
+//! imprints  statistics  histogram  map  scatter  angles   the pages           drawing: a page in a file
 //! work       from the form to the results                 update: what keys do over the results
 //! ```
 
@@ -19,6 +19,8 @@ pub mod running;
 pub mod column;
 
 pub mod results;
+
+pub mod drawing;
 
 pub mod export;
 
@@ -35,6 +37,10 @@ pub mod statistics;
 pub mod histogram;
 
 pub mod map;
+
+pub mod scatter;
+
+pub mod angles;
 
 pub mod pages;
 

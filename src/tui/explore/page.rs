@@ -7,6 +7,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::explore::drawing::PageDrawing;
 use crate::tui::explore::message::{ExploreMessage, ExplorePage};
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
@@ -23,11 +24,13 @@ pub struct ResultsPage {
     pub context: Context,
     /// Whether it shows only the imprints that the filter keeps.
     pub sifted: bool,
+    /// The same for a file: None for a page that is a table, and where there is nothing to draw.
+    pub drawing: Option<fn(&Results) -> Option<PageDrawing>>,
     /// Draws it. Returns where the cursor is, None if the page has none.
     pub draw: fn(&Results, &Theme, &mut Buffer, Rect) -> Option<Position>,
     /// What a click at a position means.
     pub click: fn(&Results, Rect, Position) -> Option<Message>,
-    /// Handles the messages that mean something else on each page: to scroll and to select a row.
+    /// Handles the messages that mean something else on each page: to scroll, to select a row, to move a cursor.
     pub update: fn(&mut Results, &Message, Rect),
 }
 

@@ -3,7 +3,7 @@
 
 use crate::tui::explore::message::ExplorePage;
 use crate::tui::explore::page::ResultsPage;
-use crate::tui::explore::{histogram, imprints, map, statistics};
+use crate::tui::explore::{angles, histogram, imprints, map, scatter, statistics};
 
 /// All pages, a row for each.
 pub static PAGES: [&ResultsPage; ExplorePage::ALL.len()] = [
@@ -11,6 +11,8 @@ pub static PAGES: [&ResultsPage; ExplorePage::ALL.len()] = [
     &statistics::PAGE,
     &histogram::PAGE,
     &map::PAGE,
+    &scatter::PAGE,
+    &angles::PAGE,
 ];
 
 /// The row of a page.

@@ -4,7 +4,7 @@ use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
-use crate::tui::explore::filter::{FilterDialog, kept_of_all};
+use crate::tui::explore::filter::FilterDialog;
 use crate::tui::explore::mark::{MarkDialog, MarkPurpose};
 use crate::tui::explore::message::ExplorePage;
 use crate::tui::explore::results::Results;
@@ -35,7 +35,7 @@ pub(crate) fn in_filter(
         Message::Accept => {
             dialog.apply(results);
             let Some(error) = dialog.error() else {
-                let kept = kept_of_all(results);
+                let kept = results.kept_of_all();
                 inform(app, format!("{kept} imprints"));
                 return None;
             };
@@ -122,10 +122,12 @@ pub(crate) fn in_mark(app: &mut App, dialog: MarkDialog, message: &Message) -> O
     None
 }
 
-/// Goes to a marked pose: on the map to the pose itself, elsewhere to its imprint in the list.
+/// Goes to a marked pose: on the map and at the angles to the pose itself, elsewhere to its imprint, in the list or among
+/// the points.
 fn go_to(results: &mut Results, pose: u64) -> Result<(), String> {
-    if results.page() == ExplorePage::Map {
+    if matches!(results.page(), ExplorePage::Map | ExplorePage::Angles) {
         results.go_to_pose(pose);
+        results.prepare();
         return Ok(());
     }
     let id = results.id_at(pose);
@@ -136,7 +138,7 @@ fn go_to(results: &mut Results, pose: u64) -> Result<(), String> {
             results.filter()
         ));
     }
-    if results.page() != ExplorePage::Imprints {
+    if results.page() != ExplorePage::Scatter {
         results.turn_to(ExplorePage::Imprints);
     }
     Ok(())

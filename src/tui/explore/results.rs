@@ -7,15 +7,19 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::atlas::{AtlasEntry, AtlasFilter, Feature, features};
+use crate::formats::value::{counted, grouped};
 use crate::imprint::Imprint;
 use crate::index::wide;
 use crate::pose::{Axis, Pose, PoseIndex};
 use crate::sweep::SweepResult;
 use crate::touch::Plane;
+use crate::tui::explore::angles::curve::AngleCurve;
 use crate::tui::explore::column::ListColumn;
-use crate::tui::explore::message::{ExplorePage, Findings, Zoom};
-use crate::tui::keys::key::Arrow;
+use crate::tui::explore::message::{ExplorePage, Findings, Zoom, name_of};
 use crate::tui::widget::number::around;
+
+/// The descriptor that the scatter plot has to the right at first: the perimeter `p`, by its index.
+const ACROSS: usize = 7;
 
 /// The results, as they are looked at.
 #[derive(Clone, Debug)]
@@ -28,6 +32,12 @@ pub struct Results {
     feature: usize,
     /// Its value for each imprint.
     values: Vec<Option<f64>>,
+    /// The number of the descriptor that the scatter plot has to the right, and its values.
+    across: (usize, Vec<Option<f64>>),
+    /// The imprints of each angle, once the page of angles was looked at.
+    angle_curve: Option<Arc<AngleCurve>>,
+    /// How often the map was zoomed in, from its whole range on.
+    closer: u8,
     /// What rows are sorted by, and whether the largest comes first.
     sort: (ListColumn, bool),
     /// The heading that is chosen to sort by.
@@ -55,6 +65,9 @@ impl Results {
             page: ExplorePage::Imprints,
             feature: 0,
             values: findings.sweep.atlas.values(0),
+            across: (ACROSS, findings.sweep.atlas.values(ACROSS)),
+            angle_curve: None,
+            closer: 0,
             findings,
             sort: (ListColumn::Poses, true),
             heading: ListColumn::Poses,
@@ -123,6 +136,71 @@ impl Results {
         if self.sort.0 == ListColumn::Value {
             self.arrange();
         }
+    }
+
+    /// The number of the descriptor that the scatter plot has to the right.
+    pub fn across(&self) -> usize {
+        self.across.0
+    }
+
+    /// Its value of each imprint, by the imprints' numbers.
+    pub fn across_values(&self) -> &[Option<f64>] {
+        &self.across.1
+    }
+
+    /// Chooses another descriptor for the right of the scatter plot, the first after the last.
+    pub fn next_across(&mut self, by: i8) {
+        let number = around(self.across.0, by, features().len());
+        self.across = (number, self.sweep().atlas.values(number));
+    }
+
+    /// The imprints of each angle at the zooms of the map, None before [`Results::prepare`].
+    pub fn angle_curve(&self) -> Option<&AngleCurve> {
+        let curve = self.angle_curve.as_deref();
+        curve.filter(|curve| curve.is_at(self.place))
+    }
+
+    /// Finds what the present page shows and is not kept for every page: the imprints of each angle.
+    pub fn prepare(&mut self) {
+        if self.page == ExplorePage::Angles && self.angle_curve().is_none() {
+            self.angle_curve = Some(Arc::new(AngleCurve::of(self.sweep(), self.place)));
+        }
+    }
+
+    /// How often the map was zoomed in.
+    pub fn closer(&self) -> u8 {
+        self.closer
+    }
+
+    /// Zooms the map in, or out if negative; `last` is the closest that there is.
+    pub fn zoom_map(&mut self, by: i8, last: u8) {
+        self.closer = self.closer.min(last).saturating_add_signed(by).min(last);
+    }
+
+    /// How many imprints the list has of how many there are, as people read it: `312 of 4,102`.
+    pub fn kept_of_all(&self) -> String {
+        let count = |count: usize| grouped(count as u64);
+        let all = self.sweep().atlas.len();
+        format!("{} of {}", count(self.row_count()), count(all))
+    }
+
+    /// How much there is; first of all, whether it is all. `sifted` says whether what is shown follows the filter.
+    pub fn summary(&self, sifted: bool) -> String {
+        let result = self.sweep();
+        let all = result.grid.poses();
+        let poses = if result.complete() {
+            counted(result.poses, "pose")
+        } else {
+            let done = grouped(result.poses);
+            format!("a part: {done} of {}", counted(all, "pose"))
+        };
+        let what = name_of(result.grid.source());
+        if sifted && !self.filter.is_empty() {
+            let kept = self.kept_of_all();
+            return format!("{what}: {poses}, {kept} distinct imprints: {}", self.filter);
+        }
+        let distinct = counted(result.atlas.len() as u64, "distinct imprint");
+        format!("{what}: {poses}, {distinct}")
     }
 
     /// What the imprints are sorted by, and whether from the largest on.
@@ -246,13 +324,6 @@ impl Results {
         self.place
     }
 
-    /// Moves it by a pose.
-    pub fn move_cursor(&mut self, arrow: Arrow) {
-        let (dx, dy) = arrow.step();
-        self.move_along(Axis::X0, dx.into());
-        self.move_along(Axis::Y0, dy.into());
-    }
-
     /// Puts it at an x0 and a y0, or the last ones.
     pub fn point(&mut self, x0: u64, y0: u64) {
         let counts = self.sweep().grid.counts();
@@ -290,9 +361,9 @@ impl Results {
         self.place = self.sweep().grid.index(number);
     }
 
-    /// The pose that is looked at: of the map, or the first one of the selected imprint; its number.
+    /// The pose that is looked at: of the map and the angles, or the first one of the selected imprint; its number.
     pub fn pose(&self) -> Option<u64> {
-        if self.page == ExplorePage::Map {
+        if matches!(self.page, ExplorePage::Map | ExplorePage::Angles) {
             return Some(self.sweep().grid.number(self.place));
         }
         let (_, entry) = self.rows_from(self.selected).next()?;
@@ -435,12 +506,12 @@ mod tests {
     fn the_cursor_of_the_map_stays_on_it() {
         let mut results = results();
         results.turn_to(ExplorePage::Map);
-        for (arrow, place) in [
-            (Arrow::Left, [0, 0, 0, 0, 0]),
-            (Arrow::Right, [1, 0, 0, 0, 0]),
-            (Arrow::Down, [1, 1, 0, 0, 0]),
+        for (axis, by, place) in [
+            (Axis::X0, -1, [0, 0, 0, 0, 0]),
+            (Axis::X0, 1, [1, 0, 0, 0, 0]),
+            (Axis::Y0, 1, [1, 1, 0, 0, 0]),
         ] {
-            results.move_cursor(arrow);
+            results.move_along(axis, by);
             assert_eq!(results.place().into_array(), place);
         }
         results.point(u64::MAX, u64::MAX);
@@ -453,6 +524,6 @@ mod tests {
         assert_eq!(results.place().into_array(), [0, 2, 0, 0, 0]);
         assert_eq!(results.pose(), Some(20));
         results.next_page(1);
-        assert_eq!(results.page(), ExplorePage::Imprints);
+        assert_eq!(results.page(), ExplorePage::Scatter);
     }
 }

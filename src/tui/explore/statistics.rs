@@ -28,6 +28,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     title: "statistics",
     context: Context::Statistics,
     sifted: false,
+    drawing: None,
     draw,
     click: |results, page, at| {
         let row = StatisticsTable::of(page, results).row(at)?;

@@ -15,10 +15,12 @@ use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Page;
 use crate::tui::app::state::App;
+use crate::tui::explore::drawing::drawn_form;
 use crate::tui::explore::export::{ExportDialog, ExportKind};
 use crate::tui::explore::filter::FilterDialog;
 use crate::tui::explore::mark::MarkPurpose;
 use crate::tui::explore::message::{ExploreMessage, ExplorePage, name_of};
+use crate::tui::explore::page::ResultsPage;
 use crate::tui::explore::pages;
 use crate::tui::explore::prompts::mark_dialog;
 use crate::tui::explore::results::Results;
@@ -50,10 +52,9 @@ pub(crate) fn in_results(
             }
             return None;
         }
-        Message::Cursor(arrow) => results.move_cursor(arrow),
         Message::Paste(_) => inform(app, "pasted text goes into fields only"),
         Message::Explore(ExploreMessage::Export) => {
-            let name = format!("{}.csv", name_of(results.sweep().grid.source()));
+            let name = proposed(&results);
             app.dialogs.push(Dialog::Results(results));
             let dialog = ExportDialog::proposing(&name);
             app.dialogs.push(Dialog::Export(dialog));
@@ -86,10 +87,21 @@ pub(crate) fn in_results(
             let area = app.panes().map(|panes| panes.area(results.slot()));
             let page = area.map_or(Rect::default(), |area| ResultPanes::of(area).page);
             (pages::row(results.page()).update)(&mut results, &message, page);
+            results.prepare();
         }
     }
     app.dialogs.push(Dialog::Results(results));
     None
+}
+
+/// The name that an export proposes: of the page's drawing where it has one, otherwise of the table of imprints.
+fn proposed(results: &Results) -> String {
+    let name = name_of(results.sweep().grid.source());
+    let row = pages::row(results.page());
+    match row.drawing {
+        Some(_) => format!("{name}-{}.svg", row.title),
+        None => format!("{name}.csv"),
+    }
 }
 
 /// What changes only what is looked at.
@@ -153,10 +165,10 @@ fn select(app: &mut App, results: &mut Results, id: u32) -> bool {
     found
 }
 
-/// From the list to the first pose on the map, from the map to the imprint in the list.
+/// From the list and the points to the first pose on the map, from the map and the angles to the imprint in the list.
 fn follow(app: &mut App, results: &mut Results) {
     let Some(pose) = results.pose() else { return };
-    if results.page() != ExplorePage::Map {
+    if !matches!(results.page(), ExplorePage::Map | ExplorePage::Angles) {
         results.go_to_pose(pose);
         return results.turn_to(ExplorePage::Map);
     }
@@ -228,9 +240,26 @@ pub(crate) fn in_export(
     None
 }
 
-/// Why the poses cannot be written.
+/// Why a file cannot be written: the present page is a table and has no drawing, or not all poses were swept.
 fn missing(app: &App, name: &str) -> Option<String> {
-    let result = app.results_below()?.sweep();
+    let results = app.results_below()?;
+    let result = results.sweep();
+    if let Some(form) = drawn_form(name) {
+        let drawn = |row: &&&ResultsPage| row.drawing.is_some();
+        let titles: Vec<&str> = pages::PAGES
+            .iter()
+            .filter(drawn)
+            .map(|row| row.title)
+            .collect();
+        let reason = format!(
+            "this page has no drawing for .{form}; {} have one",
+            titles.join(", ")
+        );
+        return pages::row(results.page())
+            .drawing
+            .is_none()
+            .then_some(reason);
+    }
     (is_poses(name) && !result.complete()).then(|| {
         format!(
             ".npy needs all poses: only {} of {} were swept",

@@ -1,7 +1,7 @@
 //! The results of a sweep.
 //!
 //! ```text
-//!  1 imprints   2 statistics   3 histogram   4 map     a tab for each page; titles only where all of them fit
+//!  1 imprints   2 statistics   3 histogram   4 map …   a tab for each page; titles only where all of them fit
 //! hexagon: 1,000 poses, 87 distinct imprints           what was swept, and how much was found
 //!                                                      the page, see the table in `pages`
 //! ```
@@ -10,11 +10,9 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::formats::value::{counted, grouped};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot};
-use crate::tui::explore::filter::kept_of_all;
-use crate::tui::explore::message::{ExploreMessage, ExplorePage, name_of};
+use crate::tui::explore::message::{ExploreMessage, ExplorePage};
 use crate::tui::explore::pages;
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
@@ -51,7 +49,7 @@ impl Page for Results {
             };
             write::line(buffer, area, theme, [(title.as_str(), role)]);
         }
-        let summary = summary(self);
+        let summary = self.summary(pages::row(self.page()).sifted);
         write::line(
             buffer,
             parts.summary,
@@ -139,28 +137,4 @@ impl ResultPanes {
             )
         })
     }
-}
-
-/// How much there is; first of all, whether it is all. On the pages that follow the filter, how many imprints it keeps.
-fn summary(results: &Results) -> String {
-    let result = results.sweep();
-    let poses = if result.complete() {
-        counted(result.poses, "pose")
-    } else {
-        format!(
-            "a part: {} of {}",
-            grouped(result.poses),
-            counted(result.grid.poses(), "pose")
-        )
-    };
-    let what = name_of(result.grid.source());
-    let distinct = counted(result.atlas.len() as u64, "distinct imprint");
-    if results.filter().is_empty() || !pages::row(results.page()).sifted {
-        return format!("{what}: {poses}, {distinct}");
-    }
-    let kept = kept_of_all(results);
-    format!(
-        "{what}: {poses}, {kept} distinct imprints: {}",
-        results.filter()
-    )
 }

@@ -3,6 +3,7 @@
 //! ```text
 //! Open -> form of ranges -> Start -> Running -> Swept -> results        Stop: the results so far
 //! results -> name of a file -> Running -> Written                       Stop: no file
+//! results -> name of a drawing -> a request about files
 //! ```
 //! Each piece of work has a number, and its events carry it. Events of work that is no longer waited for are dropped.
 
@@ -15,12 +16,14 @@ use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Mode};
+use crate::tui::explore::drawing::drawn_form;
 use crate::tui::explore::export::ExportDialog;
 use crate::tui::explore::message::{ExploreMessage, Findings, WorkerEvent};
+use crate::tui::explore::pages;
 use crate::tui::explore::ranges::state::{RangesForm, explored};
 use crate::tui::explore::results::Results;
 use crate::tui::explore::running::{Running, WorkKind};
-use crate::tui::runtime::effect::{Effect, Work};
+use crate::tui::runtime::effect::{Effect, FileRequest, Work};
 use crate::tui::{live, recognise};
 
 /// Handles what a key, a command or an answered question asks for.
@@ -29,6 +32,21 @@ pub(crate) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
         ExploreMessage::Open => open(app),
         ExploreMessage::Ranges => open_ranges(app),
         ExploreMessage::Start(grid) => Some(start(app, *grid)),
+        ExploreMessage::Write(name, existing) if drawn_form(&name).is_some() => {
+            let form = drawn_form(&name)?;
+            let results = app.results_below()?;
+            let Some(drawing) = (pages::row(results.page()).drawing?)(results) else {
+                refuse(app, "there is nothing to draw");
+                return None;
+            };
+            match drawing.content(form) {
+                Ok(content) => Some(Effect::File(FileRequest::Write(name, content, existing))),
+                Err(error) => {
+                    refuse(app, error);
+                    None
+                }
+            }
+        }
         ExploreMessage::Write(name, existing) => {
             let found = Arc::clone(app.results_below()?.findings());
             let poses = is_poses(&name).then(|| found.sweep.grid.poses());

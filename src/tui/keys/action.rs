@@ -253,6 +253,8 @@ actions! {
         STATISTICS "statistics" [] Explore(ExploreMessage::Page(ExplorePage::Statistics));
         HISTOGRAM "histogram" [] Explore(ExploreMessage::Page(ExplorePage::Histogram));
         MAP "map" [] Explore(ExploreMessage::Page(ExplorePage::Map));
+        SCATTER "scatter" [] Explore(ExploreMessage::Page(ExplorePage::Scatter));
+        ANGLES "angles" [] Explore(ExploreMessage::Page(ExplorePage::Angles));
         NEXT_PAGE "next-page" [] Explore(NextPage(1));
         PREVIOUS_PAGE "previous-page" [] Explore(NextPage(-1));
         NEXT_DESCRIPTOR "next-descriptor" [] Explore(Feature(1));

@@ -97,6 +97,10 @@ contexts! {
     Histogram "histogram" "At the histogram" Ignored, EXPLORE;
     /// On its map page.
     Map "map" "On the map" Ignored, EXPLORE;
+    /// On its scatter page.
+    Scatter "scatter" "At the scatter plot" Ignored, EXPLORE;
+    /// On its page of angles.
+    Angles "angles" "At the plot of angles" Ignored, EXPLORE;
     /// In the field for a filter of the list of imprints.
     Filter "filter" "Filtering the list of imprints" Typed, EVERYWHERE;
     /// Where a letter is asked for, to mark something or to go to a mark.

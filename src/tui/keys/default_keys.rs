@@ -188,7 +188,9 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('1') => IMPRINTS,
             Char('2') => STATISTICS,
             Char('3') => HISTOGRAM,
-            Char('4') => MAP] "" "imprints, statistics, histogram, map";
+            Char('4') => MAP,
+            Char('5') => SCATTER,
+            Char('6') => ANGLES] "" "imprints, statistics, histogram, map, scatter, angles";
         [Tab => NEXT_PAGE, BackTab => PREVIOUS_PAGE]
             "page" "next, previous page";
         [Char('d') => NEXT_DESCRIPTOR, Char('D') => PREVIOUS_DESCRIPTOR]
@@ -196,7 +198,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('m') => MARK, Char('\'') => JUMP]
             "" "mark what is selected by a letter; go to a mark";
         [Char('x') => EXPORT]
-            "export" "write a file: .csv .jsonl .npz imprints, .npy poses";
+            "export" "write .csv .jsonl .npz imprints, .npy poses, .svg plot";
         [Char('e') => RANGES] "ranges" "explore other ranges";
         [Char('?') => HELP] "help" "all keys";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]
@@ -239,7 +241,9 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
 
     Map {
         [LEFT => CURSOR_LEFT, RIGHT => CURSOR_RIGHT, UP => CURSOR_UP, DOWN => CURSOR_DOWN]
-            "" "to the next pose; each letter is an imprint";
+            "" "to the next pose; each letter or colour is an imprint";
+        [Char('+') => ZOOM_IN, Char('-') => ZOOM_OUT]
+            "zoom" "closer, down to letters; out, to the whole range";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten poses up, down";
         [Home => FIRST, End => LAST] "" "to the first, the last x0";
         [Char('<') => PREVIOUS_ANGLE, Char('>') => NEXT_ANGLE]
@@ -251,6 +255,31 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "" "next, previous zoom x, zoom y of a picture";
         [Enter => ACCEPT] "to matrix" "put this pose onto the matrix";
         [Char('g') => FOLLOW] "list" "go to its imprint in the list";
+    }
+
+    Scatter {
+        [UP => SCROLL_UP, DOWN => SCROLL_DOWN, PageUp => PAGE_UP, PageDown => PAGE_DOWN]
+            "upwards" "choose the descriptor of the upward axis";
+        [Home => FIRST, End => LAST] "" "first, last descriptor for that axis";
+        [LEFT => EARLIER_COLUMNS, RIGHT => LATER_COLUMNS]
+            "across" "choose the descriptor of the other axis";
+        [Char('/') => FILTER, Char('f') => FILTER]
+            "filter" "show only imprints that fit, such as na>=40 holes=0";
+        [Enter => ACCEPT] "to matrix" "put the selected imprint onto the matrix";
+        [Char('j') => FIND] "find" "jump to the imprint that is on the matrix";
+        [Char('g') => FOLLOW] "map" "go to its first pose on the map";
+    }
+
+    Angles {
+        [UP => SCROLL_UP, DOWN => SCROLL_DOWN, PageUp => PAGE_UP, PageDown => PAGE_DOWN]
+            "descriptor" "choose a descriptor";
+        [Home => FIRST, End => LAST] "" "first, last descriptor";
+        [LEFT => PREVIOUS_ANGLE, RIGHT => NEXT_ANGLE, Char('<') => PREVIOUS_ANGLE, Char('>') => NEXT_ANGLE]
+            "angle" "previous, next angle";
+        [Char('(') => TEN_ANGLES_BACK, Char(')') => TEN_ANGLES_ON]
+            "" "ten angles back, on";
+        [Enter => ACCEPT] "to matrix" "put the pose of the map at this angle onto the matrix";
+        [Char('g') => FOLLOW] "list" "go to the imprint of that pose in the list";
     }
 
     Filter {

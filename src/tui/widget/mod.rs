@@ -5,6 +5,7 @@
 //! number       numbers of columns, lines, taxels     write       text into the buffer
 //! curve        a curve with axes
 //! columns      widths and word wrap                  thumbnail   a small imprint
+//! dots         lines and points in Braille           plot        two axes around a field of dots
 //! ```
 
 pub mod text_field;
@@ -20,6 +21,8 @@ pub mod heat;
 pub mod dots;
 
 pub mod curve;
+
+pub mod plot;
 
 pub mod write;
 

@@ -19,8 +19,8 @@ use crate::common;
 const FIGURE: &str = include_str!("../../scripts/paper_figure.taxel");
 const TOUR: &str = include_str!("../../scripts/tour.taxel");
 
-/// The last screen that a script shows: as text, and drawn under a title.
-fn last_screen(script: &str, title: &str) -> (String, String) {
+/// The screens that a script shows, by their names: as text, and drawn under a title each.
+fn screens(script: &str, title: impl Fn(&str) -> String) -> Vec<(String, String, String)> {
     let settings = ScriptOptions {
         options: Options {
             theme: Theme {
@@ -37,15 +37,22 @@ fn last_screen(script: &str, title: &str) -> (String, String) {
         folder: None,
     };
     let world = World::scratch().expect("there is a folder for temporary files");
-    let (mut text, mut drawn) = (String::new(), String::new());
+    let mut screens = Vec::new();
     run_shown(script, &[], &settings, world, &mut |shown| {
-        if let ScriptOutput::Screen(_, session) = shown {
-            text = session.screen();
-            drawn = session.svg(title);
+        if let ScriptOutput::Screen(name, session) = shown {
+            let drawn = session.svg(&title(name));
+            screens.push((name.to_owned(), session.screen(), drawn));
         }
         ControlFlow::Continue(())
     })
     .expect("the script holds");
+    screens
+}
+
+/// The last screen that a script shows: as text, and drawn under a title.
+fn last_screen(script: &str, title: &str) -> (String, String) {
+    let last = screens(script, |_| title.to_owned()).pop();
+    let (_, text, drawn) = last.expect("the script shows a screen");
     (text, drawn)
 }
 
@@ -61,10 +68,36 @@ pub(crate) fn svg() -> String {
     last_screen(FIGURE, "taxel: the imprint of a ring and its descriptors").1
 }
 
-/// The map of the imprints of a rectangle at 30 degrees.
-pub(crate) fn explore_svg() -> String {
-    let script = "Keys fr<Enter>e<Enter>4)))\nExpect /3,600,000 poses/\nScreen\n";
-    last_screen(script, "taxel: the map of the imprints of a rectangle").1
+/// The pages of Explore for the rectangle at every tenth degree, by the names of their files.
+pub(crate) fn explore_svgs() -> Vec<(String, String)> {
+    const SCRIPT: &str = "
+Keys fr<Enter>:explore --angle 0:350:10<Enter>
+Expect /360,000 poses/
+Keys /
+Type \"na>=19 holes=0\"
+Keys <Enter>sm
+Keys a<Down>
+Screen explore-imprints
+Keys /<C-u><Enter>2<4x:Down>
+Screen explore-statistics
+Keys 3
+Screen explore-histogram
+Keys 4)
+Keys <30x:Right>
+Screen explore
+Keys ++++
+Screen explore-letters
+Keys 5<Home>
+Screen explore-scatter
+Keys 6<7x:Down>
+Screen explore-angles
+";
+    let title = |name: &str| {
+        let page = name.strip_prefix("explore-").unwrap_or("map");
+        format!("taxel: Explore, the {page} of a rectangle")
+    };
+    let all = screens(SCRIPT, title).into_iter();
+    all.map(|(name, _, drawn)| (name, drawn)).collect()
 }
 
 /// The same touch as on the screen, drawn in millimetres.

@@ -99,3 +99,40 @@ fn no_part_of_a_file_is_left_at_the_end() {
     let names = std::fs::read_dir(folder.path()).expect("a folder").count();
     assert_eq!(names, 0);
 }
+
+/// The drawings of pages with a plot are those that the library draws, in both forms.
+#[test]
+fn a_plot_is_written_as_a_drawing() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let mut session = session("fp<Enter>");
+    press(&mut session, SHORT);
+    for (page, mark) in [
+        ("4", "class=\"borders\""),
+        ("5", "class=\"points\""),
+        ("6", "class=\"curve\""),
+    ] {
+        press(&mut session, page);
+        let path = folder.path().join(format!("{page}.svg"));
+        export(&mut session, &path);
+        shows(&session, &["written: "]);
+        let svg = std::fs::read_to_string(&path).expect("it is there");
+        assert!(svg.starts_with("<svg ") && svg.contains(mark), "{svg:.200}");
+        assert!(svg.contains("pentagon: 600 poses"), "{svg:.400}");
+        let path = folder.path().join(format!("{page}.png"));
+        export(&mut session, &path);
+        shows(&session, &["written: "]);
+        let png = std::fs::read(&path).expect("it is there");
+        assert!(png.starts_with(b"\x89PNG"));
+    }
+    // A file that is there is asked about.
+    let path = folder.path().join("6.svg");
+    std::fs::write(&path, "mine").expect("written");
+    export(&mut session, &path);
+    shows(&session, &["Replace "]);
+    press(&mut session, "n");
+    assert_eq!(std::fs::read(&path).ok().as_deref(), Some(&b"mine"[..]));
+    export(&mut session, &path);
+    press(&mut session, "y");
+    let svg = std::fs::read(&path).expect("it is there");
+    assert!(svg.starts_with(b"<svg "));
+}

@@ -1,6 +1,9 @@
 //! Where the map's cells, its rulers and the pose at its cursor are.
 //!
-//! A map that is larger than its page scrolls with its cursor. A pose is two columns wide if the whole map fits so.
+//! Where letters for all poses do not fit, the map begins as a picture of its whole range, of which each half of a
+//! character is a pose: one in so many along both axes. Zooming in halves that number, down to every pose, and then to
+//! letters. A map that is larger than its page scrolls with its cursor. A letter is two columns wide if the whole map
+//! fits so.
 
 use ratatui::layout::{Position, Rect};
 
@@ -20,14 +23,45 @@ pub struct MapPane {
     pub cells: Rect,
     /// Characters of a cell.
     pub cell: u16,
+    /// Poses shown in a line of the screen, one above the other: two in a picture.
+    pub lines: u16,
+    /// One pose in so many is shown, along x0 and along y0.
+    pub stride: u64,
+    /// The closest zoom that there is.
+    pub closest: u8,
     /// The first x0 and y0, by number.
     pub first: (u64, u64),
-    /// How many of them are visible.
+    /// How many of them are shown.
     pub count: (u64, u64),
     /// The pose at the cursor, where there is room beside the cells.
     pub side: Option<Rect>,
     /// The same in one line.
     pub detail: Rect,
+}
+
+/// A way of showing the map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum MapScale {
+    /// A letter for each pose.
+    Letters,
+    /// Half a character for one pose in so many.
+    Picture(u64),
+}
+
+/// The ways of showing a map of some poses across and down in a room of columns and lines, from the whole range on.
+fn scales((width, height): (u64, u64), (columns, lines): (u16, u16)) -> Vec<MapScale> {
+    let (columns, lines) = (u64::from(columns.max(1)), u64::from(lines.max(1)));
+    let mut scales = Vec::new();
+    if width > columns || height > lines {
+        let mut stride = width.div_ceil(columns).max(height.div_ceil(2 * lines));
+        scales.push(MapScale::Picture(stride));
+        while stride > 1 {
+            stride = stride.div_ceil(2);
+            scales.push(MapScale::Picture(stride));
+        }
+    }
+    scales.push(MapScale::Letters);
+    scales
 }
 
 impl MapPane {
@@ -45,15 +79,24 @@ impl MapPane {
             ..body
         };
         let across = room.saturating_sub(label);
-        let cell = if 2 * width <= u64::from(across) { 2 } else { 1 };
-        let seen_x = width.min(u64::from(across / cell));
-        let seen_y = height.min(u64::from(body.height));
+        let scales = scales((width, height), (across, body.height));
+        // There are at most as many as a number has bits, and two.
+        let closest = scales.len() - 1;
+        let scale = scales[usize::from(results.closer()).min(closest)];
+        let (stride, lines) = match scale {
+            MapScale::Letters => (1, 1),
+            MapScale::Picture(stride) => (stride, 2),
+        };
+        let double = scale == MapScale::Letters && 2 * width <= u64::from(across);
+        let cell = if double { 2 } else { 1 };
         let [x0, y0, ..] = results.place().into_array();
-        let from = |at: u64, seen: u64, all: u64| at.saturating_sub(seen / 2).min(all - seen);
+        let (from_x, seen_x) = seen(x0, width, stride, u64::from(across / cell), 1);
+        let rows = u64::from(body.height) * u64::from(lines);
+        let (from_y, seen_y) = seen(y0, height, stride, rows, lines.into());
         let cells = Rect {
             x: page.x + label.min(page.width),
             width: narrow(seen_x) * cell,
-            height: narrow(seen_y),
+            height: narrow(seen_y.div_ceil(lines.into())),
             ..body
         };
         let line = |index: u16| Rect {
@@ -66,7 +109,10 @@ impl MapPane {
             ruler: line(1),
             cells,
             cell,
-            first: (from(x0, seen_x, width), from(y0, seen_y, height)),
+            lines,
+            stride,
+            closest: u8::try_from(closest).map_or(u8::MAX, |closest| closest),
+            first: (from_x, from_y),
             count: (seen_x, seen_y),
             side: with_side.then_some(Rect {
                 x: page.x + room + 2,
@@ -80,12 +126,81 @@ impl MapPane {
         }
     }
 
-    /// The x0 and y0 at a place of the screen, by number.
+    /// The x0 and y0 at a place of the screen, by number; of two in a line the upper one.
     pub fn pose(&self, place: Position) -> Option<(u64, u64)> {
         self.cells.contains(place).then(|| {
             let x = u64::from((place.x - self.cells.x) / self.cell);
-            let y = u64::from(place.y - self.cells.y);
-            (self.first.0 + x, self.first.1 + y)
+            let y = u64::from(place.y - self.cells.y) * u64::from(self.lines);
+            (
+                self.first.0 + x * self.stride,
+                self.first.1 + y * self.stride,
+            )
         })
+    }
+
+    /// The place of the screen where a pose is shown, and whether it is the lower one of two; None where it is not in
+    /// sight.
+    pub fn place(&self, (x0, y0): (u64, u64)) -> Option<(Position, bool)> {
+        let x = x0.checked_sub(self.first.0)? / self.stride;
+        let y = y0.checked_sub(self.first.1)? / self.stride;
+        let inside = x < self.count.0 && y < self.count.1;
+        let line = narrow(y / u64::from(self.lines));
+        let lower = !y.is_multiple_of(self.lines.into());
+        inside.then(|| {
+            let place = Position::new(self.cells.x + narrow(x) * self.cell, self.cells.y + line);
+            (place, lower)
+        })
+    }
+
+    /// Whether it is a picture, not letters.
+    pub fn is_picture(&self) -> bool {
+        self.lines > 1
+    }
+}
+
+/// Of `all` poses of which one in `stride` is shown, the first that is in sight and how many are, with the one at `at` as
+/// near to the middle as the ends allow. `block` of them stand together.
+fn seen(at: u64, all: u64, stride: u64, room: u64, block: u64) -> (u64, u64) {
+    let shown = all.div_ceil(stride);
+    let seen = shown.min(room);
+    let first = (at / stride).saturating_sub(seen / 2).min(shown - seen);
+    let first = first - first % block;
+    (first * stride, seen)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_map_is_shown_whole_first_and_letters_are_the_closest() {
+        let strides = |map, room| {
+            let scales = scales(map, room).into_iter();
+            let strides = scales.map(|scale| match scale {
+                MapScale::Picture(stride) => stride,
+                MapScale::Letters => 0,
+            });
+            strides.collect::<Vec<_>>()
+        };
+        assert_eq!(strides((40, 17), (40, 17)), [0], "letters fit at once");
+        assert_eq!(strides((41, 17), (40, 17)), [2, 1, 0]);
+        assert_eq!(strides((40, 34), (40, 17)), [1, 0]);
+        assert_eq!(strides((100, 100), (52, 17)), [3, 2, 1, 0]);
+        assert_eq!(strides((1_000_000, 1), (0, 0)).last(), Some(&0));
+    }
+
+    #[test]
+    fn what_is_in_sight_keeps_the_cursor_and_whole_blocks() {
+        for (all, stride, room, block) in
+            [(100, 3, 20, 2), (7, 2, 9, 2), (50, 1, 4, 1), (5, 5, 0, 2)]
+        {
+            for at in 0..all {
+                let (first, count) = seen(at, all, stride, room, block);
+                assert!(first.is_multiple_of(stride * block) && count <= room);
+                assert!((first + count * stride).saturating_sub(all) < stride * block.max(2));
+                let here = first <= at && at < first + (count + block) * stride;
+                assert!(here || room == 0, "{at} of {all}: {first}, {count}");
+            }
+        }
     }
 }

@@ -20,6 +20,11 @@ pub const LETTERS: u8 = 62;
 /// assert_eq!(letters(&[Some(0), Some(62), None, Some(3)], 2), [Some(0), Some(1), None, Some(3)]);
 /// ```
 pub fn letters(ids: &[Option<u32>], width: usize) -> Vec<Option<u8>> {
+    signs(ids, width, LETTERS)
+}
+
+/// The same with another number of signs, at least one: colours or shades.
+pub fn signs(ids: &[Option<u32>], width: usize, count: u8) -> Vec<Option<u8>> {
     let width = width.max(1);
     let mut neighbours: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
     let mut touch = |one: u32, other: usize| {
@@ -54,8 +59,8 @@ pub fn letters(ids: &[Option<u32>], width: usize) -> Vec<Option<u8>> {
             around.any(|other| chosen.get(other) == Some(letter))
         };
         // The remainder has one byte.
-        let [own, ..] = (id % u32::from(LETTERS)).to_le_bytes();
-        let others = || (0..LETTERS).map(|step| (own + step) % LETTERS);
+        let [own, ..] = (id % u32::from(count)).to_le_bytes();
+        let others = || (0..count).map(|step| (own + step) % count);
         let unused = |letter: &u8| !used.contains(letter);
         let letter = others()
             .find(unused)

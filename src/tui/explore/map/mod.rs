@@ -1,7 +1,7 @@
 //! The map page: which imprint each x0 and y0 leaves at one angle.
 //!
 //! ```text
-//! letters   a letter for each imprint, different ones for neighbours
+//! letters   a letter, colour or shade for each imprint, different ones for neighbours
 //! layout    cells, rulers, the pose at the cursor
 //! view      draws them
 //! ```
@@ -28,6 +28,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     title: "map",
     context: Context::Map,
     sifted: false,
+    drawing: Some(view::drawing),
     draw: view::draw,
     click,
     update,
@@ -39,10 +40,18 @@ fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
     Some(Message::Explore(ExploreMessage::Point(x0, y0)))
 }
 
-/// Moves the cursor: along y0 by lines, along x0 to the ends.
-fn update(results: &mut Results, message: &Message, _page: Rect) {
+/// Moves the cursor by the poses that are shown: along y0 by lines, along x0 to the ends. Zooms the map.
+fn update(results: &mut Results, message: &Message, page: Rect) {
+    let pane = MapPane::of(page, results);
+    let stride = i64::try_from(pane.stride).map_or(i64::MAX, |stride| stride);
     match *message {
-        Message::Scroll(lines) => results.move_along(Axis::Y0, i64::from(lines)),
+        Message::Cursor(arrow) => {
+            let (dx, dy) = arrow.step();
+            results.move_along(Axis::X0, i64::from(dx) * stride);
+            results.move_along(Axis::Y0, i64::from(dy) * stride);
+        }
+        Message::Zoom(by) => results.zoom_map(by, pane.closest),
+        Message::Scroll(lines) => results.move_along(Axis::Y0, i64::from(lines) * stride),
         Message::ScrollTo(Endpoint::First) => results.move_along(Axis::X0, i64::MIN),
         Message::ScrollTo(Endpoint::Last) => results.move_along(Axis::X0, i64::MAX),
         _ => {}

@@ -9,23 +9,50 @@
 //! ```
 //! Neighbouring imprints have different letters, so that borders are visible without colours; the same letter elsewhere
 //! may be another imprint. A pose that the stopped sweep did not reach is blank.
+//!
+//! A map that does not fit in letters is a picture first, with a colour for each imprint in each half of a character;
+//! without colours with a shade in each character. Six colours and five shades seldom have to repeat beside each other.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use ratatui::style::Style;
 
+use crate::formats::PoseMap;
 use crate::formats::value::{counted, grouped};
 use crate::parameter::Parameter;
 use crate::pose::{Axis, PoseGrid};
 use crate::touch::Plane;
+use crate::tui::explore::drawing::PageDrawing;
 use crate::tui::explore::map::layout::MapPane;
-use crate::tui::explore::map::letters::{letter, letters};
+use crate::tui::explore::map::letters::{LETTERS, letter, signs};
 use crate::tui::explore::results::Results;
-use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
 
-/// What letters mean.
-const LEGEND: &str = "  letter: an imprint";
+/// Colours of things side by side.
+const TINTS: u8 = 6;
+/// Shades of the theme, that of nothing among them.
+const SHADES: u8 = 5;
+/// A coverage that each of them stands for.
+const COVERAGES: [f64; 5] = [0.0, 0.1, 0.3, 0.7, 1.0];
+
+/// A drawing has no more cells along a side: more could not be told apart.
+const DRAWN: u64 = 400;
+
+/// What letters, colours or shades mean, and how many poses are not shown.
+fn meaning(theme: &Theme, pane: &MapPane) -> String {
+    let sign = match (pane.is_picture(), has_colours(theme)) {
+        (false, _) => "letter",
+        (true, true) => "colour",
+        (true, false) => "shade",
+    };
+    let part = if pane.stride > 1 {
+        format!(", 1 in {0} x {0}", pane.stride)
+    } else {
+        String::new()
+    };
+    format!("  {sign}: an imprint{part}")
+}
 
 /// Draws the page. Returns where the cursor is.
 pub(in crate::tui) fn draw(
@@ -40,13 +67,31 @@ pub(in crate::tui) fn draw(
     let end = write::line(buffer, pane.head, theme, [(head.as_str(), Role::Title)]);
     // Only where there is room for all of it.
     let legend = write::right_of(pane.head, end);
-    if write::width(LEGEND) <= usize::from(legend.width) {
-        write::line(buffer, legend, theme, [(LEGEND, Role::Quiet)]);
+    let text = meaning(theme, &pane);
+    if write::width(&text) <= usize::from(legend.width) {
+        write::line(buffer, legend, theme, [(text.as_str(), Role::Quiet)]);
     }
     let cursor = draw_cells(theme, results, &pane, buffer);
     draw_rulers(theme, grid, &pane, buffer, page);
     draw_pose(theme, results, &pane, buffer);
     cursor
+}
+
+/// The same for a file: the whole range at the present angle and zoom.
+pub(in crate::tui) fn drawing(results: &Results) -> Option<PageDrawing> {
+    let grid = &results.sweep().grid;
+    let [width, height, ..] = grid.counts().into_array();
+    let stride = width.max(height).div_ceil(DRAWN).max(1);
+    let (across, down) = (width.div_ceil(stride), height.div_ceil(stride));
+    let ids = sampled(results, (0, 0), (across, down), stride);
+    let ends = |axis: Axis, count: u64| {
+        let range = grid.ranges()[axis];
+        (range.value(0), range.value((count - 1) * stride))
+    };
+    let (x0, y0) = (ends(Axis::X0, across), ends(Axis::Y0, down));
+    let map = PoseMap::new(x0, y0, usize::try_from(across).ok()?, &ids)?;
+    let title = format!("{}; {}", results.summary(false), heading(results));
+    Some(PageDrawing::Map(map.with_title(&title)))
 }
 
 /// The angle and the zooms, and how many others there are.
@@ -70,60 +115,122 @@ fn heading(results: &Results) -> String {
     parts.collect::<Vec<_>>().join("  ")
 }
 
-/// Draws the letters of the visible poses. Returns where the cursor is, None if there is no room for any cell.
+/// The imprints of the poses in sight, row by row.
+fn ids(results: &Results, pane: &MapPane) -> Vec<Option<u32>> {
+    sampled(results, pane.first, pane.count, pane.stride)
+}
+
+/// The imprints of a number of poses across and down, from a first one on, one in `stride` along both axes.
+fn sampled(
+    results: &Results,
+    (x, y): (u64, u64),
+    (width, height): (u64, u64),
+    stride: u64,
+) -> Vec<Option<u32>> {
+    let step = usize::try_from(stride).map_or(usize::MAX, |step| step);
+    let place = results.place();
+    if stride == 1 {
+        return results.sweep().ids(place, x..x + width, y..y + height);
+    }
+    let end = x + width.saturating_sub(1) * stride + 1;
+    let rows = (0..height).map(|row| y + row * stride);
+    let ids = rows.flat_map(|row| {
+        let ids = results.sweep().ids(place, x..end, row..row + 1);
+        ids.into_iter().step_by(step)
+    });
+    ids.collect()
+}
+
+/// Draws the poses in sight. Returns where the cursor is, None if there is no room for any cell.
 fn draw_cells(
     theme: &Theme,
     results: &Results,
     pane: &MapPane,
     buffer: &mut Buffer,
 ) -> Option<Position> {
-    let ((x, y), (width, height)) = (pane.first, pane.count);
-    let ids = results
-        .sweep()
-        .ids(results.place(), x..x + width, y..y + height);
-    let columns = usize::try_from(width).unwrap_or(1).max(1);
-    let letters = letters(&ids, columns);
-    let [at_x, at_y, ..] = results.place().into_array();
-    let here =
-        pane.count != (0, 0) && (x..x + width).contains(&at_x) && (y..y + height).contains(&at_y);
-    let step = |from: u64, to: u64| narrow(to - from);
-    let cursor = here.then(|| {
-        Position::new(
-            pane.cells.x + step(x, at_x) * pane.cell,
-            pane.cells.y + step(y, at_y),
-        )
-    });
-    for (place, number) in pane
-        .cells
-        .rows()
-        .flat_map(Rect::columns)
-        .filter(|place| (place.x - pane.cells.x).is_multiple_of(pane.cell))
-        .zip(letters)
-    {
-        let (text, style) = match number {
-            Some(number) => (letter(number), theme.tint(number.into())),
-            None => (' ', theme.style(Role::Quiet)),
-        };
-        for column in 0..pane.cell {
-            let position = Position::new(place.x + column, place.y);
-            let style = if cursor == Some(Position::new(place.x, place.y)) {
-                theme.style(Role::Cursor)
+    let ids = ids(results, pane);
+    let columns = usize::try_from(pane.count.0).unwrap_or(1).max(1);
+    let count = if pane.is_picture() {
+        signs_of_pictures(theme)
+    } else {
+        LETTERS
+    };
+    let signs = signs(&ids, columns, count);
+    let lines = usize::from(pane.lines);
+    for (index, line) in signs.chunks(columns * lines).enumerate() {
+        let row = write::row(pane.cells, index);
+        for (column, place) in row.columns().enumerate() {
+            let column = column / usize::from(pane.cell);
+            let upper = line.get(column).copied().flatten();
+            let (sign, style) = if pane.is_picture() {
+                let lower = line.get(columns + column).copied().flatten();
+                halves(theme, upper, lower)
             } else {
-                style
+                let sign = upper.map_or(' ', letter);
+                let tint = upper.map(|number| theme.tint(number.into()));
+                (sign, tint.unwrap_or(theme.style(Role::Quiet)))
             };
-            if let Some(cell) = buffer.cell_mut(position) {
-                cell.set_char(text).set_style(style);
+            if let Some(cell) = buffer.cell_mut(place.as_position()) {
+                cell.set_char(sign).set_style(style);
             }
         }
     }
-    cursor
+    let [x0, y0, ..] = results.place().into_array();
+    let (cursor, _) = pane.place((x0, y0))?;
+    for column in 0..pane.cell {
+        if let Some(cell) = buffer.cell_mut(Position::new(cursor.x + column, cursor.y)) {
+            // A block that is reversed could not be told from its neighbours.
+            if pane.is_picture() {
+                cell.reset();
+                cell.set_char('+');
+            }
+            cell.set_style(theme.style(Role::Cursor));
+        }
+    }
+    Some(cursor)
+}
+
+/// How many colours or shades a picture has.
+fn signs_of_pictures(theme: &Theme) -> u8 {
+    if has_colours(theme) { TINTS } else { SHADES }
+}
+
+/// Whether both halves of a character can have a colour.
+fn has_colours(theme: &Theme) -> bool {
+    !theme.ascii && theme.tint(0).fg.is_some()
+}
+
+/// The character for two poses, one above the other, by their signs: in colours; without colours a shade for the upper one.
+fn halves(theme: &Theme, upper: Option<u8>, lower: Option<u8>) -> (char, Style) {
+    let tint = |sign: u8| theme.tint(sign.into());
+    if !has_colours(theme) {
+        let [shade, _] = upper.map_or([' '; 2], |sign| {
+            theme.shade(COVERAGES[usize::from(sign % SHADES)])
+        });
+        return (shade, upper.map_or(Style::new(), tint));
+    }
+    match (upper, lower) {
+        (None, None) => (' ', Style::new()),
+        (Some(upper), None) => ('▀', tint(upper)),
+        (None, Some(lower)) => ('▄', tint(lower)),
+        (Some(upper), Some(lower)) if upper == lower => ('█', tint(upper)),
+        (Some(upper), Some(lower)) => {
+            let behind = tint(lower).fg;
+            (
+                '▀',
+                behind.map_or(tint(upper), |color| tint(upper).bg(color)),
+            )
+        }
+    }
 }
 
 /// y0 left of the cells; above them the first x0 and the last.
 fn draw_rulers(theme: &Theme, grid: &PoseGrid, pane: &MapPane, buffer: &mut Buffer, page: Rect) {
     let ranges = grid.ranges();
     let label = usize::from(pane.cells.x.saturating_sub(page.x)).saturating_sub(1);
-    for (line, index) in (0..pane.cells.height).zip(pane.first.1..) {
+    let step = pane.stride * u64::from(pane.lines);
+    for line in 0..pane.cells.height {
+        let index = pane.first.1 + u64::from(line) * step;
         let row = Rect {
             x: page.x,
             y: pane.cells.y + line,
@@ -137,7 +244,7 @@ fn draw_rulers(theme: &Theme, grid: &PoseGrid, pane: &MapPane, buffer: &mut Buff
     let value = |index: u64| Parameter::X0.format(ranges[Axis::X0].value(index));
     let (first, last) = (
         value(pane.first.0),
-        value(pane.first.0 + pane.count.0.max(1) - 1),
+        value(pane.first.0 + (pane.count.0.max(1) - 1) * pane.stride),
     );
     let ruler = write::right_of(pane.ruler, pane.cells.x);
     let width = usize::from(pane.cells.width);

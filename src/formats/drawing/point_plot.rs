@@ -1,0 +1,234 @@
+//! Points over two axes that begin where the points do: a scatter plot, or curves of a value that has no natural zero.
+
+use std::collections::BTreeSet;
+
+use crate::formats::drawing::axis::{Ticks, axis_ends};
+use crate::formats::drawing::line_plot::{GRID, label, path_of, width};
+use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT};
+use crate::formats::drawing::scene::{
+    Element, Position, Segment, Stroke, TextAnchor, circle, rectangle,
+};
+use crate::formats::drawing::svg;
+
+/// Width and height of the plane, in points.
+const PLANE: Position = (324.0, 243.0);
+
+/// Most marks of an axis.
+const STEPS: f64 = 8.0;
+
+/// Longer texts are cut.
+const LONGEST: usize = 100;
+
+/// Points nearer than this share of the plane's width are drawn once.
+const RASTER: f64 = 1000.0;
+
+/// Points and curves to draw.
+///
+/// ```
+/// use taxel::formats::PointPlot;
+/// let plot = PointPlot::new("na", "p").with_points(&[(18.0, 18.0), (21.0, 20.0)]).with_chosen(18.0, 18.0);
+/// assert!(plot.svg().contains(">na</text>"));
+/// ```
+#[derive(Clone, Debug)]
+pub struct PointPlot {
+    labels: [String; 2],
+    title: String,
+    points: Vec<Position>,
+    /// Curves with their names, and whether each is dashed.
+    curves: Vec<(String, Vec<Position>, bool)>,
+    chosen: Option<Position>,
+}
+
+impl PointPlot {
+    /// A plot without a point, with what its axes are.
+    pub fn new(x: &str, y: &str) -> Self {
+        Self {
+            labels: [cut(x), cut(y)],
+            title: String::new(),
+            points: Vec::new(),
+            curves: Vec::new(),
+            chosen: None,
+        }
+    }
+
+    /// With a line above; at most the first 100 characters of it.
+    #[must_use]
+    pub fn with_title(mut self, title: &str) -> Self {
+        self.title = cut(title);
+        self
+    }
+
+    /// With points; those with a coordinate that is not finite are left out.
+    #[must_use]
+    pub fn with_points(mut self, points: &[(f64, f64)]) -> Self {
+        self.points
+            .extend(points.iter().filter(|point| finite(point)));
+        self
+    }
+
+    /// With a curve through points, in their order; it has a gap where a coordinate is not finite. A dashed one is told from
+    /// the others without colours.
+    #[must_use]
+    pub fn with_curve(mut self, name: &str, points: &[(f64, f64)], dashed: bool) -> Self {
+        self.curves.push((cut(name), points.to_vec(), dashed));
+        self
+    }
+
+    /// With a ring around a point.
+    #[must_use]
+    pub fn with_chosen(mut self, x: f64, y: f64) -> Self {
+        self.chosen = Some((x, y)).filter(finite);
+        self
+    }
+
+    /// As SVG 1.1.
+    pub fn svg(&self) -> String {
+        svg::write(&self.page())
+    }
+
+    /// As PNG, 8 bits of grey. Characters beyond Latin-1 are shown as `?`.
+    ///
+    /// # Errors
+    /// Those of the encoder, which has none for a page in memory.
+    #[cfg(feature = "png")]
+    pub fn png(&self) -> std::io::Result<Vec<u8>> {
+        crate::formats::drawing::png::write(&self.page())
+    }
+
+    /// All points, those of the curves too.
+    fn all(&self) -> impl Iterator<Item = &Position> {
+        let curves = self.curves.iter().flat_map(|(_, points, _)| points);
+        curves.filter(|point| finite(point)).chain(&self.points)
+    }
+
+    /// Lays out frame, marks, points and the legend of the curves.
+    fn page(&self) -> DrawingPage {
+        let (from_x, to_x) = axis_ends(self.all().map(|point| point.0));
+        let (from_y, to_y) = axis_ends(self.all().map(|point| point.1));
+        let across = Ticks::between((from_x, to_x), 0.0, STEPS);
+        let upwards = Ticks::between((from_y, to_y), 0.0, STEPS);
+        let above = if self.title.is_empty() { 0.0 } else { ROW };
+        let corner = (
+            MARGIN + TEXT * 2.0 + width(upwards.width()) + 6.0,
+            MARGIN + TEXT + above,
+        );
+        let end = (corner.0 + PLANE.0, corner.1 + PLANE.1);
+        let scale = (PLANE.0 / (to_x - from_x), PLANE.1 / (to_y - from_y));
+        let place = |(x, y): Position| {
+            (
+                corner.0 + (x - from_x) * scale.0,
+                end.1 - (y - from_y) * scale.1,
+            )
+        };
+        let mut marks = vec![label(
+            &self.title,
+            (corner.0, MARGIN + TEXT),
+            TextAnchor::Start,
+        )];
+        self.axes(&mut marks, (&across, &upwards), (corner, end), &place);
+        marks.push(path_of("points", self.specks(&place), Stroke::black(2.0)));
+        let mut last = end.1 + TEXT * 2.0 + 6.0;
+        let mut right = end.0.max(corner.0 + width(self.title.chars().count()));
+        for (index, (name, points, dashed)) in (0_u8..).zip(&self.curves) {
+            let line = Stroke {
+                dash: dashed.then_some([4.0, 3.0]),
+                ..Stroke::black(1.1)
+            };
+            marks.push(path_of("curve", curve(points, &place), line));
+            last = end.1 + TEXT * 4.0 + ROW * f64::from(index);
+            let sample = [(corner.0, last), (corner.0 + 24.0, last)];
+            marks.push(path_of("legend", curve(&sample, &|place| place), line));
+            let at = (corner.0 + 30.0, last + TEXT * 0.35);
+            marks.push(label(name, at, TextAnchor::Start));
+            right = right.max(at.0 + width(name.chars().count()));
+        }
+        if let Some(chosen) = self.chosen {
+            marks.push(path_of(
+                "chosen",
+                circle(place(chosen), 4.0),
+                Stroke::black(1.1),
+            ));
+        }
+        DrawingPage {
+            size: (right + MARGIN, last + TEXT * 0.5 + MARGIN),
+            plane: (corner, end),
+            title: format!("{} against {}", self.labels[1], self.labels[0]),
+            marks,
+        }
+    }
+
+    /// Lines without length, whose round ends are the points; those that lie on each other once.
+    #[expect(clippy::cast_possible_truncation, reason = "within the plane")]
+    fn specks(&self, place: &dyn Fn(Position) -> Position) -> Vec<Segment> {
+        let raster = |at: f64| (at * RASTER / PLANE.0).round() as i32;
+        let mut seen = BTreeSet::new();
+        let mut specks = Vec::new();
+        for point in self.points.iter().map(|&point| place(point)) {
+            if seen.insert((raster(point.0), raster(point.1))) {
+                specks.extend([Segment::Move(point), Segment::Line(point)]);
+            }
+        }
+        specks
+    }
+
+    /// The frame, lines at the marks of both axes, and what they are.
+    fn axes(
+        &self,
+        marks: &mut Vec<Element>,
+        (across, upwards): (&Ticks, &Ticks),
+        (from, to): (Position, Position),
+        place: &dyn Fn(Position) -> Position,
+    ) {
+        let mut grid = Vec::new();
+        for (value, text) in &across.0 {
+            let (x, _) = place((*value, 0.0));
+            grid.extend([Segment::Move((x, from.1)), Segment::Line((x, to.1))]);
+            marks.push(label(text, (x, to.1 + TEXT + 3.0), TextAnchor::Middle));
+        }
+        for (value, text) in &upwards.0 {
+            let (_, y) = place((0.0, *value));
+            grid.extend([Segment::Move((from.0, y)), Segment::Line((to.0, y))]);
+            let at = (from.0 - 5.0, y + TEXT * 0.35);
+            marks.push(label(text, at, TextAnchor::End));
+        }
+        marks.push(path_of("grid", grid, GRID));
+        marks.push(path_of("axes", rectangle(from, to), Stroke::black(0.6)));
+        let middle = (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1));
+        let below = (middle.0, to.1 + TEXT * 2.0 + 6.0);
+        marks.push(label(&self.labels[0], below, TextAnchor::Middle));
+        marks.push(Element::Text {
+            text: self.labels[1].clone(),
+            place: (MARGIN + TEXT, middle.1),
+            anchor: TextAnchor::Middle,
+            upright: true,
+        });
+    }
+}
+
+/// As much of a text as fits onto a page.
+fn cut(text: &str) -> String {
+    text.chars().take(LONGEST).collect()
+}
+
+/// Whether a point can be drawn.
+fn finite(point: &Position) -> bool {
+    point.0.abs() <= 1e300 && point.1.abs() <= 1e300
+}
+
+/// The path through points, broken where one cannot be drawn.
+fn curve(points: &[Position], place: &dyn Fn(Position) -> Position) -> Vec<Segment> {
+    let mut drawn = false;
+    let mut path = Vec::new();
+    for point in points {
+        if finite(point) {
+            let to = place(*point);
+            path.push(if drawn {
+                Segment::Line(to)
+            } else {
+                Segment::Move(to)
+            });
+        }
+        drawn = finite(point);
+    }
+    path
+}

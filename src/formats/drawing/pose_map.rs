@@ -1,0 +1,264 @@
+//! A map of positions: which imprint each x0 and y0 leaves, as areas with borders.
+//!
+//! Borders tell the areas apart; greys only help the eye, and are lost without harm on a bad printer.
+
+use crate::formats::drawing::axis::Ticks;
+use crate::formats::drawing::line_plot::{label, path_of, width};
+use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT};
+use crate::formats::drawing::scene::{Element, Position, Segment, Stroke, TextAnchor, rectangle};
+use crate::formats::drawing::svg;
+
+/// The larger side of the plane, in points.
+const PLANE: f64 = 288.0;
+
+/// More cells along a side cannot be told apart in print.
+const MOST: usize = 1024;
+
+/// Greys of areas, by the number of the imprint.
+const GREYS: [u8; 5] = [255, 232, 209, 186, 163];
+
+/// Between two areas.
+const BORDER: Stroke = Stroke::black(0.5);
+
+/// A map to draw.
+///
+/// ```
+/// use taxel::formats::PoseMap;
+/// let ids = [Some(0), Some(0), Some(7), None];
+/// let map = PoseMap::new((5.0, 5.1), (5.0, 5.1), 2, &ids).expect("two rows of two");
+/// assert!(map.svg().contains(">x0 / cells</text>"));
+/// ```
+#[derive(Clone, Debug)]
+pub struct PoseMap {
+    /// The first and the last x0, and y0.
+    ends: [(f64, f64); 2],
+    columns: usize,
+    ids: Vec<Option<u32>>,
+    title: String,
+    chosen: Option<(usize, usize)>,
+}
+
+impl PoseMap {
+    /// A map of the imprints' numbers, row by row, at places from the first x0 and y0 to the last ones; None is a position
+    /// without one. None where the rows are not whole, or a side has no cell or more than 1,024.
+    pub fn new(
+        x0: (f64, f64),
+        y0: (f64, f64),
+        columns: usize,
+        ids: &[Option<u32>],
+    ) -> Option<Self> {
+        let rows = ids.len().checked_div(columns)?;
+        let drawn = 1..=MOST;
+        let whole =
+            rows * columns == ids.len() && drawn.contains(&rows) && drawn.contains(&columns);
+        let finite = [x0.0, x0.1, y0.0, y0.1].into_iter().all(f64::is_finite);
+        (whole && finite).then(|| Self {
+            ends: [x0, y0],
+            columns,
+            ids: ids.to_vec(),
+            title: String::new(),
+            chosen: None,
+        })
+    }
+
+    /// With a line above; at most the first 100 characters of it.
+    #[must_use]
+    pub fn with_title(mut self, title: &str) -> Self {
+        self.title = title.chars().take(100).collect();
+        self
+    }
+
+    /// With a frame around a cell, given by column and row.
+    #[must_use]
+    pub fn with_chosen(mut self, column: usize, row: usize) -> Self {
+        self.chosen = Some((column, row)).filter(|_| column < self.columns && row < self.rows());
+        self
+    }
+
+    /// As SVG 1.1.
+    pub fn svg(&self) -> String {
+        svg::write(&self.page())
+    }
+
+    /// As PNG, 8 bits of grey. Characters beyond Latin-1 are shown as `?`.
+    ///
+    /// # Errors
+    /// Those of the encoder, which has none for a page in memory.
+    #[cfg(feature = "png")]
+    pub fn png(&self) -> std::io::Result<Vec<u8>> {
+        crate::formats::drawing::png::write(&self.page())
+    }
+
+    /// How many rows it has.
+    fn rows(&self) -> usize {
+        self.ids.len() / self.columns
+    }
+
+    /// The imprint of a cell.
+    fn id(&self, column: usize, row: usize) -> Option<u32> {
+        let index = row * self.columns + column;
+        self.ids.get(index).copied().flatten()
+    }
+
+    /// Lays out areas, borders and axes.
+    fn page(&self) -> DrawingPage {
+        let side = PLANE / count(self.columns.max(self.rows()));
+        let high = |ends: (f64, f64)| Ticks::between(ordered(ends), 0.0, 6.0);
+        let [across, along] = self.ends.map(high);
+        let above = if self.title.is_empty() { 0.0 } else { ROW };
+        let corner = (
+            MARGIN + TEXT * 2.0 + width(along.width()) + 6.0,
+            MARGIN + above + TEXT * 3.0 + 4.0,
+        );
+        let place = |column: usize, row: usize| {
+            (
+                corner.0 + count(column) * side,
+                corner.1 + count(row) * side,
+            )
+        };
+        let end = place(self.columns, self.rows());
+        let mut marks = vec![label(
+            &self.title,
+            (corner.0, MARGIN + TEXT),
+            TextAnchor::Start,
+        )];
+        marks.extend(self.areas(&place));
+        marks.push(path_of("borders", self.borders(&place), BORDER));
+        if let Some((column, row)) = self.chosen {
+            let cell = rectangle(place(column, row), place(column + 1, row + 1));
+            marks.push(path_of("chosen", cell, Stroke::black(2.0)));
+        }
+        self.axes(&mut marks, [&across, &along], (corner, end), side);
+        let right = end.0.max(corner.0 + width(self.title.chars().count()));
+        DrawingPage {
+            size: (right + MARGIN, end.1 + TEXT + MARGIN),
+            plane: (corner, end),
+            title: "imprints of positions".to_owned(),
+            marks,
+        }
+    }
+
+    /// The cells of each grey, those side by side in one rectangle.
+    fn areas(&self, place: &dyn Fn(usize, usize) -> Position) -> Vec<Element> {
+        let mut areas: Vec<Vec<(Position, Position)>> = vec![Vec::new(); GREYS.len()];
+        for row in 0..self.rows() {
+            let mut column = 0;
+            while column < self.columns {
+                let id = self.id(column, row);
+                let alike = (column..self.columns).take_while(|&other| self.id(other, row) == id);
+                let end = column + alike.count();
+                if let Some(id) = id {
+                    let area = (place(column, row), place(end, row + 1));
+                    areas[shade(id)].push(area);
+                }
+                column = end;
+            }
+        }
+        let areas = areas.into_iter().zip(GREYS);
+        let filled = areas.filter(|(rectangles, _)| !rectangles.is_empty());
+        let fill = |(rectangles, grey)| Element::Fill {
+            what: "imprints",
+            rectangles,
+            grey,
+        };
+        filled.map(fill).collect()
+    }
+
+    /// The lines between cells of different imprints, those in a row as one.
+    fn borders(&self, place: &dyn Fn(usize, usize) -> Position) -> Vec<Segment> {
+        let mut lines = Vec::new();
+        let mut line = |from: Position, to: Position| {
+            lines.extend([Segment::Move(from), Segment::Line(to)]);
+        };
+        let (columns, rows) = (self.columns, self.rows());
+        for row in 1..rows {
+            let differs = |column: usize| self.id(column, row - 1) != self.id(column, row);
+            for (from, to) in runs(columns, differs) {
+                line(place(from, row), place(to, row));
+            }
+        }
+        for column in 1..columns {
+            let differs = |row: usize| self.id(column - 1, row) != self.id(column, row);
+            for (from, to) in runs(rows, differs) {
+                line(place(column, from), place(column, to));
+            }
+        }
+        lines
+    }
+
+    /// The frame, the marks of both axes at the middles of cells, and what the axes are.
+    fn axes(
+        &self,
+        marks: &mut Vec<Element>,
+        [across, along]: [&Ticks; 2],
+        (from, to): (Position, Position),
+        side: f64,
+    ) {
+        let at = |value: f64, (low, high): (f64, f64), cells: usize| {
+            let last = count(cells.saturating_sub(1));
+            let share = if high == low {
+                0.0
+            } else {
+                (value - low) / (high - low)
+            };
+            (share * last + 0.5) * side
+        };
+        let mut ticks = rectangle(from, to);
+        for (value, text) in &across.0 {
+            let x = from.0 + at(*value, self.ends[0], self.columns);
+            ticks.extend([Segment::Move((x, from.1 - 3.0)), Segment::Line((x, from.1))]);
+            marks.push(label(text, (x, from.1 - 5.0), TextAnchor::Middle));
+        }
+        for (value, text) in &along.0 {
+            let y = from.1 + at(*value, self.ends[1], self.rows());
+            ticks.extend([Segment::Move((from.0 - 3.0, y)), Segment::Line((from.0, y))]);
+            let place = (from.0 - 5.0, y + TEXT * 0.35);
+            marks.push(label(text, place, TextAnchor::End));
+        }
+        marks.push(path_of("axes", ticks, Stroke::black(0.6)));
+        let middle = (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1));
+        let above = (middle.0, from.1 - 5.0 - TEXT * 1.5);
+        marks.push(label("x0 / cells", above, TextAnchor::Middle));
+        marks.push(Element::Text {
+            text: "y0 / cells".to_owned(),
+            place: (MARGIN + TEXT, middle.1),
+            anchor: TextAnchor::Middle,
+            upright: true,
+        });
+    }
+}
+
+/// A number of cells, for lengths.
+#[expect(clippy::cast_precision_loss, reason = "at most 1,024")]
+fn count(cells: usize) -> f64 {
+    cells as f64
+}
+
+/// The index of an imprint's grey.
+fn shade(id: u32) -> usize {
+    // The remainder has one byte.
+    let [shade, ..] = (id % 5).to_le_bytes();
+    shade.into()
+}
+
+/// The ends of an axis, the smaller first; of a single value a little around it.
+fn ordered((one, other): (f64, f64)) -> (f64, f64) {
+    let (low, high) = (one.min(other), one.max(other));
+    if low < high {
+        (low, high)
+    } else {
+        (low - 1e-6, high + 1e-6)
+    }
+}
+
+/// The runs of indices below a number that a condition holds for: first, and behind the last.
+fn runs(count: usize, holds: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
+    let mut runs: Vec<(usize, usize)> = Vec::new();
+    for index in (0..count).filter(|&index| holds(index)) {
+        match runs.last_mut() {
+            Some((_, end)) if *end == index => *end += 1,
+            _ => runs.push((index, index + 1)),
+        }
+    }
+    runs
+}

@@ -1,0 +1,217 @@
+//! What a descriptor does over the angles of a sweep: at each angle its smallest, mean and largest value over the
+//! positions.
+//!
+//! The imprints of an angle are found by going through its positions again. Of a large grid only every so many-th angle
+//! and every so many-th y0 are gone through, so that it takes no longer than one looks.
+
+use std::collections::BTreeMap;
+
+use crate::atlas::Feature;
+use crate::index::wide;
+use crate::pose::{Axis, PoseIndex};
+use crate::sweep::SweepResult;
+
+/// Most angles: a screen has no more dots.
+const MOST_ANGLES: u64 = 720;
+
+/// Most rows of positions, those of all angles together.
+const MOST_ROWS: u64 = 8_000;
+
+/// How often which imprints occur at the angles of a sweep, at one zoom.
+#[derive(Clone, Debug)]
+pub struct AngleCurve {
+    /// The zooms, as a place at the first position and angle.
+    zooms: PoseIndex,
+    /// One angle in so many is gone through.
+    pub every_angle: u64,
+    /// One y0 in so many.
+    pub every_row: u64,
+    /// For each of these angles its index and its imprints, by number, with how many of its positions leave them.
+    angles: Vec<(u64, BTreeMap<u32, u32>)>,
+}
+
+/// The values of a descriptor at an angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AngleSpread {
+    /// The index of the angle.
+    pub index: u64,
+    /// The angle in degrees.
+    pub degrees: f64,
+    /// The smallest value; that of a direction is none.
+    pub min: Option<f64>,
+    /// The mean; of a direction the circular one.
+    pub mean: f64,
+    /// The largest value.
+    pub max: Option<f64>,
+}
+
+/// A place with only its zooms.
+fn zooms_of(place: PoseIndex) -> PoseIndex {
+    place
+        .with(Axis::X0, 0)
+        .with(Axis::Y0, 0)
+        .with(Axis::Angle, 0)
+}
+
+impl AngleCurve {
+    /// Goes through the positions of all angles at the zooms of a place.
+    pub fn of(sweep: &SweepResult, place: PoseIndex) -> Self {
+        let counts = sweep.grid.counts();
+        let (columns, rows, angles) = (counts[Axis::X0], counts[Axis::Y0], counts[Axis::Angle]);
+        let every_angle = angles.div_ceil(MOST_ANGLES).max(1);
+        let each = (MOST_ROWS / angles.div_ceil(every_angle)).max(1);
+        let every_row = rows.div_ceil(each).max(1);
+        let step = |every: u64| usize::try_from(every).map_or(usize::MAX, |every| every);
+        let zooms = zooms_of(place);
+        let found = |angle: u64| {
+            let mut imprints = BTreeMap::new();
+            for row in (0..rows).step_by(step(every_row)) {
+                let at = zooms.with(Axis::Angle, angle);
+                let end = if every_row == 1 { rows } else { row + 1 };
+                for id in sweep.ids(at, 0..columns, row..end).into_iter().flatten() {
+                    *imprints.entry(id).or_insert(0) += 1;
+                }
+                if every_row == 1 {
+                    break;
+                }
+            }
+            (angle, imprints)
+        };
+        Self {
+            zooms,
+            every_angle,
+            every_row,
+            angles: (0..angles).step_by(step(every_angle)).map(found).collect(),
+        }
+    }
+
+    /// Whether it is that of the zooms of a place.
+    pub fn is_at(&self, place: PoseIndex) -> bool {
+        self.zooms == zooms_of(place)
+    }
+
+    /// The values of a descriptor at each angle where there are some. `values` are those of the imprints, by number.
+    pub fn spread(
+        &self,
+        sweep: &SweepResult,
+        feature: &Feature,
+        values: &[Option<f64>],
+    ) -> Vec<AngleSpread> {
+        let range = sweep.grid.ranges()[Axis::Angle];
+        let mut spread = Vec::with_capacity(self.angles.len());
+        for (index, imprints) in &self.angles {
+            let known = imprints
+                .iter()
+                .filter_map(|(&id, &count)| Some(((*values.get(wide(id))?)?, f64::from(count))));
+            let known: Vec<(f64, f64)> = known.collect();
+            if known.is_empty() {
+                continue;
+            }
+            let plain = !feature.circular;
+            let all = || known.iter().map(|(value, _)| *value);
+            spread.push(AngleSpread {
+                index: *index,
+                degrees: range.value(*index),
+                min: plain.then(|| all().fold(f64::INFINITY, f64::min)),
+                mean: if plain {
+                    mean(&known)
+                } else {
+                    direction(&known)
+                },
+                max: plain.then(|| all().fold(f64::NEG_INFINITY, f64::max)),
+            });
+        }
+        spread
+    }
+}
+
+/// The mean of values with how often each occurs.
+fn mean(known: &[(f64, f64)]) -> f64 {
+    let count: f64 = known.iter().map(|(_, count)| count).sum();
+    let sum: f64 = known.iter().map(|(value, count)| value * count).sum();
+    sum / count
+}
+
+/// The circular mean of directions in degrees.
+fn direction(known: &[(f64, f64)]) -> f64 {
+    let part = |of: fn(f64) -> f64| -> f64 {
+        let parts = known.iter();
+        parts
+            .map(|(value, count)| of(value.to_radians()) * count)
+            .sum()
+    };
+    part(f64::sin).atan2(part(f64::cos)).to_degrees()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::atlas::features;
+    use crate::figure::{Figure, FigureKind};
+    use crate::pose::{Anchor, PoseGrid, Ranges};
+    use crate::sensor::Sensor;
+    use crate::source::Source;
+    use crate::sweep::Sweep;
+
+    fn sweep(y0: &str, angle: &str) -> SweepResult {
+        let range = |text: &str| text.parse().expect("a range");
+        let ranges = Ranges::default()
+            .with(Axis::X0, range("5:5.9:0.1"))
+            .with(Axis::Y0, range(y0))
+            .with(Axis::Angle, range(angle));
+        let figure = Figure::default_of(FigureKind::Rectangle, &Sensor::default());
+        let grid = PoseGrid::new(
+            Source::Figure(figure),
+            Sensor::default(),
+            Anchor::Corner,
+            ranges,
+        );
+        Sweep::new(&grid.expect("in range")).run()
+    }
+
+    /// Against each pose of an angle, described by itself.
+    #[test]
+    fn each_angle_has_the_values_of_its_positions() {
+        let sweep = sweep("5:5.3:0.1", "0:80:20");
+        let curve = AngleCurve::of(&sweep, PoseIndex::new([3, 2, 1, 0, 0]));
+        assert_eq!((curve.every_angle, curve.every_row), (1, 1));
+        assert!(curve.is_at(PoseIndex::new([9, 0, 4, 0, 0])));
+        for (number, feature) in features().iter().enumerate() {
+            let values = sweep.atlas.values(number);
+            let spread = curve.spread(&sweep, feature, &values);
+            assert_eq!(spread.len(), 5, "{}", feature.key);
+            for at in spread {
+                let place = PoseIndex::new([0, 0, at.index, 0, 0]);
+                let ids = sweep.ids(place, 0..10, 0..4);
+                let own: Vec<f64> = ids.iter().filter_map(|id| values[wide((*id)?)]).collect();
+                let within = |value: f64| {
+                    at.min.is_none_or(|min| min <= value) && at.max.is_none_or(|max| value <= max)
+                };
+                assert!(own.iter().all(|&value| within(value)), "{}", feature.key);
+                assert_eq!(at.min.is_none(), feature.circular);
+                if !feature.circular {
+                    let count = f64::from(u32::try_from(own.len()).expect("few"));
+                    let mean = own.iter().sum::<f64>() / count;
+                    assert!((at.mean - mean).abs() < 1e-9, "{}", feature.key);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn directions_have_a_circular_mean() {
+        let mean = direction(&[(170.0, 1.0), (-170.0, 1.0)]);
+        assert!((mean.abs() - 180.0).abs() < 1e-9, "{mean}");
+        assert!((direction(&[(10.0, 3.0), (50.0, 0.0)]) - 10.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn of_a_large_grid_a_part_is_gone_through() {
+        let sweep = sweep("5:5.99:0.01", "0:89.9:0.1");
+        let curve = AngleCurve::of(&sweep, PoseIndex::new([0; 5]));
+        assert_eq!((curve.every_angle, curve.every_row), (2, 6));
+        let spread = curve.spread(&sweep, &features()[0], &sweep.atlas.values(0));
+        assert_eq!(spread.len(), 450);
+        assert_eq!((spread[1].index, spread[449].index), (2, 898));
+    }
+}

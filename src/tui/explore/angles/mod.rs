@@ -1,0 +1,209 @@
+//! The angles page: the chosen descriptor against the angle.
+//!
+//! ```text
+//! na: active taxels against the angle   line: mean, dashes: min, max       what is shown
+//! na
+//! 20 ┤⠉⠒⠤⣀                                                                 over all positions
+//!    └────┬────┬──── angle / °
+//! angle 30°: min 16, mean 18.2, max 20                                     at the cursor
+//! ```
+//! Up and down choose the descriptor, left and right the angle, which is that of the map too.
+
+pub mod curve;
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::formats::value::fitting;
+use crate::formats::{PointPlot, axis_ends};
+use crate::pose::Axis;
+use crate::tui::app::message::Message;
+use crate::tui::explore::angles::curve::AngleSpread;
+use crate::tui::explore::drawing::PageDrawing;
+use crate::tui::explore::message::{ExploreMessage, ExplorePage};
+use crate::tui::explore::page::{ResultsPage, choose_descriptor};
+use crate::tui::explore::results::Results;
+use crate::tui::keys::binding::Context;
+use crate::tui::widget::plot::{DotKind, PlotField};
+use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::write;
+
+/// Characters of a value.
+const VALUE: usize = 9;
+
+/// What the lines are.
+const LEGEND: &str = "  line: mean, dashes: min, max";
+
+/// The page.
+pub static PAGE: ResultsPage = ResultsPage {
+    page: ExplorePage::Angles,
+    title: "angles",
+    context: Context::Angles,
+    sifted: false,
+    drawing: Some(drawing),
+    draw,
+    click,
+    update: choose_descriptor,
+};
+
+/// What the page shows: the spread at each angle; none before the angles were gone through.
+fn spread(results: &Results) -> Vec<AngleSpread> {
+    let curve = results.angle_curve();
+    curve.map_or(Vec::new(), |curve| {
+        curve.spread(results.sweep(), results.feature(), results.values())
+    })
+}
+
+/// The field on its page.
+fn field(page: Rect, spread: &[AngleSpread]) -> Option<PlotField> {
+    let area = Rect {
+        height: page.height.saturating_sub(2),
+        ..write::below(page, 1)
+    };
+    let values = spread.iter().flat_map(|at| [at.min, Some(at.mean), at.max]);
+    let x = axis_ends(spread.iter().map(|at| at.degrees));
+    PlotField::of(area, x, axis_ends(values.flatten()))
+}
+
+/// A click chooses the nearest angle.
+fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
+    let spread = spread(results);
+    let (degrees, _) = field(page, &spread)?.point(at)?;
+    let far = |at: &&AngleSpread| (at.degrees - degrees).abs();
+    let nearest = spread
+        .iter()
+        .min_by(|one, other| far(one).total_cmp(&far(other)))?;
+    let now = results.place()[Axis::Angle];
+    let by = i16::try_from(nearest.index.cast_signed() - now.cast_signed()).ok()?;
+    Some(Message::Explore(ExploreMessage::Angle(by)))
+}
+
+/// The descriptor, and over which positions it is taken.
+fn title(results: &Results) -> String {
+    let feature = results.feature();
+    let mut text = format!(
+        "{}: {} against the angle",
+        feature.key, feature.descriptor.name
+    );
+    if let Some(curve) = results.angle_curve() {
+        for (every, what) in [(curve.every_angle, "angle"), (curve.every_row, "y0")] {
+            if every > 1 {
+                text += &format!(", 1 {what} in {every}");
+            }
+        }
+    }
+    text
+}
+
+/// Draws the page. Returns where the mean at the chosen angle is.
+fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
+    let text = title(results);
+    let end = write::line(buffer, page, theme, [(text.as_str(), Role::Title)]);
+    let legend = write::right_of(page, end);
+    if write::width(LEGEND) <= usize::from(legend.width) {
+        write::line(buffer, legend, theme, [(LEGEND, Role::Quiet)]);
+    }
+    let spread = spread(results);
+    let Some(here) = nearest(results, &spread) else {
+        let text = "no pose has a value";
+        write::line(buffer, write::row(page, 1), theme, [(text, Role::Quiet)]);
+        return None;
+    };
+    if page.height > 1 {
+        let foot = write::below(page, page.height - 1);
+        let text = detail(&here);
+        write::line(buffer, foot, theme, [(text.as_str(), Role::Text)]);
+    }
+    let field = field(page, &spread)?;
+    let key = results.feature().key.as_str();
+    field.draw_axes(theme, buffer, [key, "angle / °"]);
+    let quiet = theme.style(Role::Text);
+    for (of, dashed) in CURVES {
+        let mut canvas = field.canvas();
+        let places = spread
+            .iter()
+            .map(|at| Some(field.dot((at.degrees, of(at)?))));
+        let places: Vec<_> = places.collect();
+        for pair in places.windows(2) {
+            if let [Some(from), Some(to)] = *pair {
+                let shown = |place: f64| !dashed || place.rem_euclid(6.0) < 3.0;
+                if shown(from.0) {
+                    canvas.line(from, to);
+                }
+            }
+        }
+        if let [Some(only)] = places[..] {
+            canvas.set(only);
+        }
+        let style = if dashed {
+            quiet
+        } else {
+            theme.style(Role::Chosen)
+        };
+        field.draw_dots(theme, buffer, &canvas, DotKind::Lines, style);
+    }
+    let at = field.character((here.degrees, here.mean))?;
+    if let Some(cell) = buffer.cell_mut(at) {
+        cell.set_char('o').set_style(theme.style(Role::Cursor));
+    }
+    Some(at)
+}
+
+/// A value of a spread.
+type SpreadValue = fn(&AngleSpread) -> Option<f64>;
+
+/// The curves: what of a spread each one shows, and whether it is dashed; the mean lies over the others.
+const CURVES: [(SpreadValue, bool); 3] = [
+    (|at| at.min, true),
+    (|at| at.max, true),
+    (|at| Some(at.mean), false),
+];
+
+/// The spread at the chosen angle, or at the nearest one that has a value.
+fn nearest(results: &Results, spread: &[AngleSpread]) -> Option<AngleSpread> {
+    let now = results.place()[Axis::Angle];
+    spread
+        .iter()
+        .min_by_key(|at| at.index.abs_diff(now))
+        .copied()
+}
+
+/// The values at an angle in one line.
+fn detail(at: &AngleSpread) -> String {
+    let told = |value: f64| fitting(value, VALUE);
+    let angle = Axis::Angle.parameter().format(at.degrees);
+    let ends = at.min.zip(at.max);
+    ends.map_or_else(
+        || format!("angle {angle}°: mean {}", told(at.mean)),
+        |(min, max)| {
+            format!(
+                "angle {angle}°: min {}, mean {}, max {}",
+                told(min),
+                told(at.mean),
+                told(max)
+            )
+        },
+    )
+}
+
+/// The same for a file.
+fn drawing(results: &Results) -> Option<PageDrawing> {
+    let spread = spread(results);
+    if spread.is_empty() {
+        return None;
+    }
+    let feature = results.feature();
+    let label = format!("{}: {}", feature.key, feature.descriptor.name);
+    let mut plot = PointPlot::new("angle / °", &label).with_title(&results.summary(false));
+    let names = ["smallest", "largest", "mean"];
+    for ((of, dashed), name) in CURVES.into_iter().zip(names) {
+        let points: Vec<(f64, f64)> = spread
+            .iter()
+            .filter_map(|at| Some((at.degrees, of(at)?)))
+            .collect();
+        if !points.is_empty() {
+            plot = plot.with_curve(name, &points, dashed);
+        }
+    }
+    Some(PageDrawing::Points(plot))
+}

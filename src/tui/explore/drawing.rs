@@ -1,0 +1,43 @@
+//! The drawing of a page of the results, for a file.
+
+use crate::formats::{PointPlot, PoseMap};
+
+/// What a page is drawn as.
+#[derive(Clone, Debug)]
+pub enum PageDrawing {
+    /// Points or curves between two axes.
+    Points(PointPlot),
+    /// A map of positions.
+    Map(PoseMap),
+}
+
+/// The form that the ending of a name asks for, in small letters; None where no drawing has it.
+pub fn drawn_form(name: &str) -> Option<&'static str> {
+    let ending = std::path::Path::new(name).extension()?.to_str()?;
+    let mut forms = FORMS.iter().copied();
+    forms.find(|form| form.eq_ignore_ascii_case(ending))
+}
+
+/// The forms of drawings, by the endings of names.
+const FORMS: &[&str] = if cfg!(feature = "png") {
+    &["svg", "png"]
+} else {
+    &["svg"]
+};
+
+impl PageDrawing {
+    /// The content of a file in a form.
+    ///
+    /// # Errors
+    /// Those of the encoder.
+    pub fn content(&self, form: &str) -> Result<Vec<u8>, String> {
+        match (self, form) {
+            #[cfg(feature = "png")]
+            (Self::Points(plot), "png") => plot.png().map_err(|error| error.to_string()),
+            #[cfg(feature = "png")]
+            (Self::Map(map), "png") => map.png().map_err(|error| error.to_string()),
+            (Self::Points(plot), _) => Ok(plot.svg().into_bytes()),
+            (Self::Map(map), _) => Ok(map.svg().into_bytes()),
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! The scatter page: two descriptors of every imprint that the filter keeps, one against the other.
+//!
+//! ```text
+//! p: perimeter against na: active taxels; 62 imprints      what is shown; how many have both values
+//! p
+//! 24 ┤      ⠂⠐⠄                                            a dot an imprint, the selected one is marked
+//!    └────┬────┬──── na
+//! imprint 5: na 22, p 20; 4 poses                          the selected one
+//! ```
+//! Up and down choose the upward descriptor, which is that of the other pages too; left and right the other one. A click
+//! selects the nearest imprint.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::atlas::{AtlasEntry, features};
+use crate::formats::value::{counted, fitting};
+use crate::formats::{PointPlot, axis_ends};
+use crate::tui::app::message::Message;
+use crate::tui::explore::drawing::PageDrawing;
+use crate::tui::explore::message::{ExploreMessage, ExplorePage};
+use crate::tui::explore::page::{ResultsPage, choose_descriptor};
+use crate::tui::explore::results::Results;
+use crate::tui::keys::binding::Context;
+use crate::tui::widget::plot::{DotKind, PlotField};
+use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::write;
+
+/// Characters of a value.
+const VALUE: usize = 9;
+
+/// The page.
+pub static PAGE: ResultsPage = ResultsPage {
+    page: ExplorePage::Scatter,
+    title: "scatter",
+    context: Context::Scatter,
+    sifted: true,
+    drawing: Some(drawing),
+    draw,
+    click,
+    update,
+};
+
+/// Chooses the descriptors, selects an imprint.
+fn update(results: &mut Results, message: &Message, page: Rect) {
+    match *message {
+        Message::Explore(ExploreMessage::Columns(by)) => results.next_across(by),
+        Message::Explore(ExploreMessage::Select(row)) => results.select(row),
+        _ => choose_descriptor(results, message, page),
+    }
+}
+
+/// An imprint's values: across and upwards; None if it lacks one.
+fn point(results: &Results, entry: &AtlasEntry) -> Option<(f64, f64)> {
+    let index = usize::try_from(entry.id).ok()?;
+    let [x, y] = [results.across_values(), results.values()];
+    Some(((*x.get(index)?)?, (*y.get(index)?)?))
+}
+
+/// The points of all rows, with the rows' indices.
+fn points(results: &Results) -> Vec<(usize, (f64, f64))> {
+    let rows = results.rows_from(0);
+    rows.filter_map(|(row, entry)| Some((row, point(results, &entry)?)))
+        .collect()
+}
+
+/// The field on its page, for some points.
+fn field(page: Rect, points: &[(usize, (f64, f64))]) -> Option<PlotField> {
+    let area = Rect {
+        height: page.height.saturating_sub(2),
+        ..write::below(page, 1)
+    };
+    let x = axis_ends(points.iter().map(|(_, point)| point.0));
+    let y = axis_ends(points.iter().map(|(_, point)| point.1));
+    PlotField::of(area, x, y)
+}
+
+/// A click selects the nearest imprint; one on the selected imprint takes it.
+fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
+    let points = points(results);
+    let field = field(page, &points)?;
+    let (x, y) = field.dot(field.point(at)?);
+    let far = |(_, point): &&(usize, (f64, f64))| {
+        let (other_x, other_y) = field.dot(*point);
+        (other_x - x).hypot(other_y - y)
+    };
+    let nearest = points
+        .iter()
+        .min_by(|one, other| far(one).total_cmp(&far(other)));
+    nearest.map(|&(row, _)| {
+        if row == results.selected() {
+            Message::Accept
+        } else {
+            Message::Explore(ExploreMessage::Select(row))
+        }
+    })
+}
+
+/// What the page shows, in words.
+fn title(results: &Results, count: usize) -> String {
+    let (x, y) = (&features()[results.across()], results.feature());
+    format!(
+        "{}: {} against {}: {}; {}",
+        y.key,
+        y.descriptor.name,
+        x.key,
+        x.descriptor.name,
+        counted(count as u64, "imprint")
+    )
+}
+
+/// Draws the page. Returns where the selected imprint is.
+fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
+    let points = points(results);
+    let title = title(results, points.len());
+    write::line(buffer, page, theme, [(title.as_str(), Role::Title)]);
+    if points.is_empty() {
+        let text = "no imprint has both values";
+        write::line(buffer, write::row(page, 1), theme, [(text, Role::Quiet)]);
+        return None;
+    }
+    let selected = results.rows_from(results.selected()).next();
+    let foot = write::below(page, page.height.saturating_sub(1));
+    if let Some((_, entry)) = selected.filter(|_| page.height > 1) {
+        let text = detail(theme, results, &entry);
+        write::line(buffer, foot, theme, [(text.as_str(), Role::Text)]);
+    }
+    let field = field(page, &points)?;
+    let mut canvas = field.canvas();
+    for &(_, point) in &points {
+        canvas.set(field.dot(point));
+    }
+    let across = features()[results.across()].key.as_str();
+    field.draw_axes(theme, buffer, [results.feature().key.as_str(), across]);
+    let style = theme.style(Role::Chosen);
+    field.draw_dots(theme, buffer, &canvas, DotKind::Points, style);
+    let (_, entry) = selected?;
+    let at = field.character(point(results, &entry)?)?;
+    if let Some(cell) = buffer.cell_mut(at) {
+        cell.set_char('o').set_style(theme.style(Role::Cursor));
+    }
+    Some(at)
+}
+
+/// The selected imprint in one line.
+fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
+    let index = usize::try_from(entry.id).ok();
+    let told = |values: &[Option<f64>]| {
+        let value = index.and_then(|index| *values.get(index)?);
+        value.map_or_else(|| theme.none().to_owned(), |value| fitting(value, VALUE))
+    };
+    format!(
+        "imprint {}: {} {}, {} {}; {}",
+        entry.id,
+        features()[results.across()].key,
+        told(results.across_values()),
+        results.feature().key,
+        told(results.values()),
+        counted(entry.count, "pose")
+    )
+}
+
+/// The same for a file.
+fn drawing(results: &Results) -> Option<PageDrawing> {
+    let points: Vec<(f64, f64)> = points(results).into_iter().map(|(_, at)| at).collect();
+    if points.is_empty() {
+        return None;
+    }
+    let (x, y) = (&features()[results.across()], results.feature());
+    let label =
+        |feature: &crate::atlas::Feature| format!("{}: {}", feature.key, feature.descriptor.name);
+    let mut plot = PointPlot::new(&label(x), &label(y))
+        .with_title(&results.summary(true))
+        .with_points(&points);
+    let selected = results.rows_from(results.selected()).next();
+    if let Some((x, y)) = selected.and_then(|(_, entry)| point(results, &entry)) {
+        plot = plot.with_chosen(x, y);
+    }
+    Some(PageDrawing::Points(plot))
+}

@@ -1,0 +1,329 @@
+//! Two axes with their numbers, around a field of dots.
+//!
+//! ```text
+//! p                             the label of the upward axis
+//! 24 ┤      ⠂⠐⠄                 its numbers; the field, eight dots a character
+//! 22 ┤  ⠐⠂⠄
+//!    └────┬────┬────
+//!        18   20     na         the numbers of the other axis, and its label
+//! ```
+//! Numbers that have no room are left out. Where the terminal has no Braille, points are shown as shades by how many of
+//! a character's dots are set, and lines as strokes.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+use ratatui::style::Style;
+
+use crate::formats::axis_marks;
+use crate::tui::widget::dots::{DOTS, DotCanvas, Place, glyph};
+use crate::tui::widget::number::narrow;
+use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::write;
+
+/// Characters between two numbers of the axis to the right, about.
+const APART: u16 = 10;
+/// Lines between two numbers of the upward axis, about.
+const LINES: u16 = 2;
+
+/// What the dots of a field are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DotKind {
+    /// Points that have nothing to do with their neighbours.
+    Points,
+    /// Parts of lines.
+    Lines,
+}
+
+/// A field between two axes.
+#[derive(Clone, Debug)]
+pub struct PlotField {
+    /// The characters of the field.
+    pub field: Rect,
+    /// The ends of the axis to the right.
+    x: (f64, f64),
+    /// The ends of the upward axis.
+    y: (f64, f64),
+    /// Where the upward axis has numbers.
+    upwards: Vec<(f64, String)>,
+    /// The whole plot.
+    area: Rect,
+}
+
+impl PlotField {
+    /// The field in an area, between axes with these ends; None where there is no room for any.
+    pub fn of(area: Rect, x: (f64, f64), y: (f64, f64)) -> Option<Self> {
+        let height = area.height.checked_sub(3).filter(|&height| height > 0)?;
+        let upwards = axis_marks(y, (height / LINES).max(1));
+        let labels = upwards.iter().map(|(_, label)| write::width(label));
+        let indent = narrow(labels.fold(0, usize::max) + 2);
+        let width = area.width.checked_sub(indent).filter(|&width| width > 0)?;
+        Some(Self {
+            field: Rect {
+                x: area.x + indent,
+                y: area.y + 1,
+                width,
+                height,
+            },
+            x,
+            y,
+            upwards,
+            area,
+        })
+    }
+
+    /// An empty canvas of the field's size.
+    pub fn canvas(&self) -> DotCanvas {
+        DotCanvas::new(self.field.width, self.field.height)
+    }
+
+    /// Where a point lies among the dots.
+    pub fn dot(&self, (x, y): (f64, f64)) -> Place {
+        let wide = f64::from(self.field.width) * f64::from(DOTS.0);
+        let high = f64::from(self.field.height) * f64::from(DOTS.1);
+        let share = |at: f64, (low, high): (f64, f64)| (at - low) / (high - low);
+        (share(x, self.x) * wide, (1.0 - share(y, self.y)) * high)
+    }
+
+    /// The character in which a point lies, None if it lies outside.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "within the field"
+    )]
+    pub fn character(&self, point: (f64, f64)) -> Option<Position> {
+        let (x, y) = self.dot(point);
+        let (x, y) = (x / f64::from(DOTS.0), y / f64::from(DOTS.1));
+        let inside = (0.0..f64::from(self.field.width)).contains(&x)
+            && (0.0..f64::from(self.field.height)).contains(&y);
+        inside.then(|| Position::new(self.field.x + x as u16, self.field.y + y as u16))
+    }
+
+    /// The point in the middle of a character of the field; None outside of it.
+    pub fn point(&self, at: Position) -> Option<(f64, f64)> {
+        self.field.contains(at).then(|| {
+            let middle =
+                |at: u16, from: u16, length: u16| (f64::from(at - from) + 0.5) / f64::from(length);
+            let right = middle(at.x, self.field.x, self.field.width);
+            let down = middle(at.y, self.field.y, self.field.height);
+            (
+                self.x.0 + (self.x.1 - self.x.0) * right,
+                self.y.1 - (self.y.1 - self.y.0) * down,
+            )
+        })
+    }
+
+    /// Draws both axes with numbers, and what they are: upwards first.
+    pub fn draw_axes(&self, theme: &Theme, buffer: &mut Buffer, [upward, right]: [&str; 2]) {
+        write::line(buffer, self.area, theme, [(upward, Role::Key)]);
+        self.draw_frame(theme, buffer);
+        self.draw_upwards(theme, buffer);
+        self.draw_across(theme, buffer, right);
+    }
+
+    /// Both axes without marks.
+    fn draw_frame(&self, theme: &Theme, buffer: &mut Buffer) {
+        let [across, down, corner] = if theme.ascii {
+            ['-', '|', '+']
+        } else {
+            ['─', '│', '└']
+        };
+        let (left, bottom) = (self.field.x - 1, self.field.bottom());
+        let upward = (self.field.y..bottom).map(|y| (left, y, down));
+        let right = (self.field.x..self.field.right()).map(|x| (x, bottom, across));
+        for (x, y, sign) in upward.chain(right).chain([(left, bottom, corner)]) {
+            if let Some(cell) = buffer.cell_mut(Position::new(x, y)) {
+                cell.set_char(sign).set_style(theme.style(Role::Quiet));
+            }
+        }
+    }
+
+    /// The marks and numbers of the upward axis; two numbers never share a line.
+    fn draw_upwards(&self, theme: &Theme, buffer: &mut Buffer) {
+        let left = self.field.x - 1;
+        let middle = f64::midpoint(self.x.0, self.x.1);
+        let mut last = None;
+        for (value, text) in &self.upwards {
+            let Some(at) = self.character((middle, *value)) else {
+                continue;
+            };
+            if let Some(cell) = buffer.cell_mut(Position::new(left, at.y)) {
+                cell.set_char(if theme.ascii { '+' } else { '┤' });
+            }
+            if last != Some(at.y) {
+                let room = usize::from(left - self.area.x).saturating_sub(1);
+                let text = format!("{text:>room$}");
+                let row = self.line_at(at.y);
+                write::line(buffer, row, theme, [(text.as_str(), Role::Quiet)]);
+            }
+            last = Some(at.y);
+        }
+    }
+
+    /// The marks and numbers of the other axis, and what it is; numbers that have no room are left out.
+    fn draw_across(&self, theme: &Theme, buffer: &mut Buffer, label: &str) {
+        let bottom = self.field.bottom();
+        let width = narrow(write::width(label));
+        let end = self.area.right().saturating_sub(width);
+        let below = self.line_at(bottom + 1);
+        let place = write::right_of(below, end);
+        write::line(buffer, place, theme, [(label, Role::Key)]);
+        let middle = f64::midpoint(self.y.0, self.y.1);
+        let mut free = self.area.x;
+        for (value, text) in axis_marks(self.x, self.field.width / APART) {
+            let Some(at) = self.character((value, middle)) else {
+                continue;
+            };
+            if let Some(cell) = buffer.cell_mut(Position::new(at.x, bottom)) {
+                cell.set_char(if theme.ascii { '+' } else { '┬' });
+            }
+            let width = narrow(write::width(&text));
+            let from = at.x.saturating_sub(width / 2);
+            if from >= free && from + width < end {
+                let place = write::right_of(below, from);
+                write::line(buffer, place, theme, [(text.as_str(), Role::Quiet)]);
+                free = from + width + 1;
+            }
+        }
+    }
+
+    /// A line of the plot, from its left edge on.
+    fn line_at(&self, y: u16) -> Rect {
+        Rect {
+            y,
+            height: 1,
+            ..self.area
+        }
+    }
+
+    /// Draws the dots of a canvas into the field.
+    pub fn draw_dots(
+        &self,
+        theme: &Theme,
+        buffer: &mut Buffer,
+        canvas: &DotCanvas,
+        kind: DotKind,
+        style: Style,
+    ) {
+        for (column, row, dots) in canvas.characters() {
+            let sign = match kind {
+                DotKind::Lines => glyph(theme, dots),
+                DotKind::Points => speck(theme, dots),
+            };
+            let at = Position::new(self.field.x + column, self.field.y + row);
+            if let Some(cell) = buffer.cell_mut(at) {
+                cell.set_char(sign).set_style(style);
+            }
+        }
+    }
+}
+
+/// The character for points in a character's dots: Braille, or a shade by how many dots there are.
+fn speck(theme: &Theme, dots: u8) -> char {
+    let count = dots.count_ones();
+    match (theme.ascii, theme.console) {
+        (false, false) => glyph(theme, dots),
+        (true, _) => match count {
+            0 => ' ',
+            1 => '.',
+            2 => ':',
+            3 | 4 => '+',
+            _ => '#',
+        },
+        (false, true) => match count {
+            0 => ' ',
+            1 => '·',
+            2 => '░',
+            3 | 4 => '▒',
+            _ => '▓',
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(theme: Theme, area: Rect, points: &[(f64, f64)]) -> String {
+        let mut buffer = Buffer::empty(area);
+        let Some(field) = PlotField::of(area, (0.0, 10.0), (-1.0, 1.0)) else {
+            return "no room".to_owned();
+        };
+        let mut canvas = field.canvas();
+        for &point in points {
+            canvas.set(field.dot(point));
+        }
+        field.draw_axes(&theme, &mut buffer, ["up", "right"]);
+        let style = theme.style(Role::Chosen);
+        field.draw_dots(&theme, &mut buffer, &canvas, DotKind::Points, style);
+        let rows = area.rows().map(|row| {
+            let cells = row.columns().map(|cell| buffer[(cell.x, cell.y)].symbol());
+            cells.collect::<String>().trim_end().to_owned()
+        });
+        rows.collect::<Vec<_>>().join("\n")
+    }
+
+    #[test]
+    fn points_stand_between_axes_with_numbers() {
+        let area = Rect::new(0, 0, 30, 9);
+        let points = [
+            (0.1, -0.9),
+            (5.0, -0.05),
+            (5.3, -0.1),
+            (9.9, 0.9),
+            (11.0, 0.0),
+        ];
+        let ascii = shown(Theme::plain(true), area, &points);
+        let lines: Vec<&str> = ascii.lines().collect();
+        assert_eq!(lines[0], "up");
+        assert!(
+            lines[4].starts_with(" 0 +") && lines[4].contains(':'),
+            "{ascii}"
+        );
+        assert!(
+            lines[1].ends_with('.') && lines[6].contains("|."),
+            "{ascii}"
+        );
+        assert!(
+            lines[7].starts_with("   +") && lines[7].matches('+').count() > 2,
+            "{ascii}"
+        );
+        assert!(
+            lines[8].ends_with("right") && lines[8].contains(" 5 "),
+            "{ascii}"
+        );
+        let braille = shown(Theme::plain(false), area, &points);
+        assert!(
+            braille.contains(" 0 ┤") && braille.contains('└'),
+            "{braille}"
+        );
+        assert_eq!(
+            braille
+                .chars()
+                .filter(|c| ('\u{2800}'..'\u{2900}').contains(c))
+                .count(),
+            3
+        );
+    }
+
+    #[test]
+    fn a_character_has_the_point_in_its_middle_and_no_area_is_too_small() {
+        let area = Rect::new(3, 2, 40, 12);
+        let field = PlotField::of(area, (0.0, 10.0), (-1.0, 1.0)).expect("room");
+        for place in field.field.positions() {
+            let point = field.point(place).expect("inside");
+            assert_eq!(field.character(point), Some(place));
+        }
+        assert_eq!(field.point(Position::new(0, 0)), None);
+        assert_eq!(field.character((11.0, 0.0)), None);
+        for width in 0..9 {
+            for height in 0..9 {
+                let shown = shown(
+                    Theme::plain(false),
+                    Rect::new(0, 0, width, height),
+                    &[(1.0, 0.0)],
+                );
+                assert!(shown.lines().count() <= usize::from(height.max(1)));
+            }
+        }
+    }
+}
