@@ -14,7 +14,7 @@
 
 use std::ffi::OsStr;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
 use serde_json::json;
@@ -53,17 +53,7 @@ pub(crate) fn train(
     shelf: &Shelf,
     charset: Charset,
 ) -> Result<String, CliError> {
-    let path = match &asked.to {
-        ModelTarget::File(path) => path.clone(),
-        ModelTarget::Named(name) => {
-            let models = folder(shelf)?;
-            std::fs::create_dir_all(models.path()).map_err(|error| CliError::File {
-                name: models.path().to_string_lossy().into_owned(),
-                error,
-            })?;
-            models.file(name)
-        }
-    };
+    let path = path_of(&asked.to, shelf)?;
     let shapes = shape_set::read(&asked.set, shelf)?;
     let (sensor, anchor, ranges) = grid(asked, &shapes)?;
     let signals = Signals::heard().map_err(CliError::System)?;
@@ -108,6 +98,21 @@ pub(crate) fn train(
         let summary = evaluation::summary(&limit, charset);
         charset.lines(&format!("written: {name}\n")) + &summary
     })
+}
+
+/// The file of a new model. The folder beside the library is made if it is not there.
+fn path_of(target: &ModelTarget, shelf: &Shelf) -> Result<PathBuf, CliError> {
+    match target {
+        ModelTarget::File(path) => Ok(path.clone()),
+        ModelTarget::Named(name) => {
+            let models = folder(shelf)?;
+            std::fs::create_dir_all(models.path()).map_err(|error| CliError::File {
+                name: models.path().to_string_lossy().into_owned(),
+                error,
+            })?;
+            Ok(models.file(name))
+        }
+    }
 }
 
 /// What was chosen for a training, in a line.
