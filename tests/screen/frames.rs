@@ -23,16 +23,16 @@ const SCENES: [(&str, &str, &str, usize); 9] = [
     ("first frame", "", "", 2200),
     ("cursor move", "", "<Right>", 60),
     ("cursor move on a figure", "f<CR>", "<Right>", 60),
-    ("first toggle", "", "<Space>", 210),
+    ("first toggle", "", "<Space>", 174),
     (
         "toggle that makes a hole",
         "f<CR><8x:Left><8x:Down><3x:Right><3x:Up>",
         "<Space>",
-        75,
+        57,
     ),
     ("a form opens", "f<CR>", "f", 690),
-    ("a field is edited", "f<CR>f<Tab>", "3", 160),
-    ("a page of Explore", SWEPT, "2", 1700),
+    ("a field is edited", "f<CR>f<Tab>", "3", 151),
+    ("a page of Explore", SWEPT, "2", 1575),
     ("a row of Explore", SWEPT, "<Down>", 360),
 ];
 
@@ -87,14 +87,15 @@ impl Write for Counter {
 #[test]
 fn every_frame_fits_its_budget_and_takes_fewer_bytes_than_by_the_stock_backend() {
     println!("{:26} {:>6} {:>6}", "", "own", "stock");
+    let mut over = Vec::new();
     for (name, before, keys, most) in SCENES {
         let (first, then) = (session(before), session(&format!("{before}{keys}")));
         let then = (!keys.is_empty()).then_some(&then);
         let (own, stock) = (own(&first, then), stock(&first, then));
         println!("{name:26} {own:6} {stock:6}");
-        assert!(
-            own <= most && 5 * own <= 4 * stock,
-            "{name}: {own}, {stock}"
-        );
+        if own > most || 5 * own > 4 * stock {
+            over.push(format!("{name}: {own} of at most {most}, {stock}"));
+        }
     }
+    assert!(over.is_empty(), "{over:#?}");
 }

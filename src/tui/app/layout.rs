@@ -1,17 +1,21 @@
 //! The panes of the screen, for drawing and for finding what the mouse points at.
 //!
-//! The panel stands beside the matrix where both fit; otherwise each is a page of its own. Taxels are enlarged only
-//! where the panel keeps all its room. See [`crate::tui::app::view`] for a picture.
+//! The panel stands beside the matrix where both fit, and on a screen that is wide enough for the default sensor also
+//! beside a larger one, of which a part is seen; otherwise each is a page of its own. Taxels are enlarged only where
+//! the panel keeps all its room. See [`crate::tui::app::view`] for a picture.
 
 use ratatui::layout::Rect;
 
 use crate::imprint::Imprint;
 use crate::tui::app::page::Slot;
-use crate::tui::matrix::layout::{matrix_width, scale};
+use crate::tui::matrix::layout::{RULER, TaxelSize};
 use crate::tui::widget::write::{below, right_of};
 
 /// The panel is not made narrower than this; below, it is a page of its own.
 const PANEL: u16 = 30;
+
+/// From this width on the panel stands beside every matrix: the default sensor fits there.
+const BOTH: u16 = RULER + 2 * 16 + 1 + PANEL;
 
 /// The room that the panel gets before taxels are made larger.
 const WIDE_PANEL: u16 = 44;
@@ -63,8 +67,9 @@ pub struct Panes {
 }
 
 impl Panes {
-    /// The panes of a screen for a matrix; none on a screen that is too small for any.
-    pub fn of(area: Rect, imprint: &Imprint) -> Option<Self> {
+    /// The panes of a screen for a matrix, of which two taxels may share a character where `halves` says so; none on a
+    /// screen that is too small for any.
+    pub fn of(area: Rect, imprint: &Imprint, halves: bool) -> Option<Self> {
         if area.width < SMALLEST.0 || area.height < SMALLEST.1 {
             return None;
         }
@@ -89,11 +94,8 @@ impl Panes {
             ..body
         };
         let content = below(body, title.height);
-        let width = whole_matrix(area, content, imprint);
-        let matrix = Rect {
-            width: width.unwrap_or(matrix_width(imprint, 2).min(area.width)),
-            ..content
-        };
+        let width = matrix_width(content, imprint, halves);
+        let matrix = Rect { width, ..content };
         let left = (matrix.right() + 1).min(content.right());
         let beside = right_of(content, left);
         let (form, form_panel) = form(content, beside);
@@ -103,7 +105,7 @@ impl Panes {
             title,
             content,
             matrix,
-            panel: width.map(|_| beside),
+            panel: (beside.width >= PANEL).then_some(beside),
             form,
             form_panel,
             source: if foot > 2 { line(foot) } else { absent },
@@ -128,19 +130,25 @@ impl Panes {
     }
 }
 
-/// The width of the matrix where the panel fits beside all of it, None where it does not. Square taxels come first, as
-/// large as there is room for; narrow ones only for a matrix that would not fit with square ones at all.
-fn whole_matrix(area: Rect, body: Rect, imprint: &Imprint) -> Option<u16> {
-    let beside_panel = |cell: u16| {
-        Some(matrix_width(imprint, cell)).filter(|width| width + 1 + PANEL <= area.width)
+/// The width of the matrix in the content of a screen: what is left of it is for the panel, or too little for that.
+/// Square taxels come first, as large as there is room for, then smaller ones that show more of the matrix.
+fn matrix_width(content: Rect, imprint: &Imprint, halves: bool) -> u16 {
+    let beside = |panel: u16| Rect {
+        width: content.width.saturating_sub(1 + panel),
+        ..content
     };
-    let room = body.width.saturating_sub(1 + WIDE_PANEL);
-    let large = scale(imprint, room, body.height);
-    let large = (large > 1).then(|| matrix_width(imprint, 2 * large));
-    let too_wide = matrix_width(imprint, 2) > area.width;
-    large
-        .or_else(|| beside_panel(2))
-        .or_else(|| beside_panel(1).filter(|_| too_wide))
+    let room = if content.width >= BOTH {
+        beside(PANEL)
+    } else {
+        content
+    };
+    let fitting = |room: Rect| TaxelSize::fitting(imprint, room, halves);
+    let size = match (fitting(room), fitting(beside(WIDE_PANEL))) {
+        (TaxelSize::Square(_), large @ TaxelSize::Square(_)) => large,
+        (TaxelSize::Square(_), _) => TaxelSize::Square(1),
+        (small, _) => small,
+    };
+    size.matrix_width(imprint).min(room.width)
 }
 
 /// The area of a form: beside the matrix, or over its foot where there is too little room; and that of the descriptors,

@@ -1,7 +1,7 @@
 //! What the mouse does: it paints taxels, and otherwise does what a key would, also on the lines that name keys.
 //!
-//! A press on a taxel switches it, and a drag from there gives all taxels on its way the same state, as one change. On
-//! a page, the page itself says what a click means ([`crate::tui::app::page::Page::click`]).
+//! A press on a taxel switches it, and a drag from there gives all taxels on its way the same state, as one change. Of two
+//! taxels in a character the one with the cursor is meant, otherwise the upper one. On a page, the page itself says what a click means ([`crate::tui::app::page::Page::click`]).
 
 use ratatui::layout::{Position, Rect};
 
@@ -11,7 +11,6 @@ use crate::tui::app::menu;
 use crate::tui::app::message::{Message, Mouse, MouseKind};
 use crate::tui::app::page::{Page, Slot};
 use crate::tui::app::state::{App, NarrowPage};
-use crate::tui::matrix::layout::TaxelGrid;
 use crate::tui::widget::number::taxels;
 
 /// What the mouse points at.
@@ -132,8 +131,7 @@ fn at(app: &App, column: u16, row: u16) -> Option<Target> {
     if panes.panel.is_none() && app.page == NarrowPage::Panel {
         return inside(panes.content).then_some(Target::Panel);
     }
-    let matrix = Some(panes.matrix).filter(|&area| inside(area))?;
-    let grid = TaxelGrid::of(matrix, &app.reading().imprint, app.cursor());
+    let grid = app.grid().filter(|_| inside(panes.matrix))?;
     let (column, row) = grid.taxel(column, row)?;
     Some(Target::Taxel(column, row, grid.whole))
 }

@@ -19,6 +19,7 @@ use crate::tui::keys::keymap::Keymap;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::live::state::Live;
 use crate::tui::matrix::layers::Layers;
+use crate::tui::matrix::layout::TaxelGrid;
 use crate::tui::recognise::state::Recognition;
 use crate::tui::widget::theme::Theme;
 
@@ -306,7 +307,21 @@ impl App {
     /// The panes of the screen, None if it is too small.
     pub fn panes(&self) -> Option<Panes> {
         let (columns, rows) = self.screen;
-        Panes::of(Rect::new(0, 0, columns, rows), &self.reading().imprint)
+        let area = Rect::new(0, 0, columns, rows);
+        Panes::of(area, &self.reading().imprint, self.halves())
+    }
+
+    /// Whether two taxels may share a character of the screen. Coverage and marks of a comparison need one for each.
+    pub(in crate::tui) fn halves(&self) -> bool {
+        let compared = self.pane().and_then(Page::compared_with);
+        self.display == Display::Imprint && compared.is_none()
+    }
+
+    /// Where the taxels are on the screen; None if it is too small.
+    pub(in crate::tui) fn grid(&self) -> Option<TaxelGrid> {
+        let area = self.panes()?.matrix;
+        let imprint = &self.reading().imprint;
+        Some(TaxelGrid::of(area, imprint, self.cursor(), self.halves()))
     }
 
     /// The results that are open, perhaps under other pages.

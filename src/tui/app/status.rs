@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0° + 1 by hand              what made the imprint
-//! column  8, row  8  covered 1.000000    active  NA 52 in all        the taxel under the cursor
+//! column  8, row  8  1.000000    active  NA 52 in all                the taxel under the cursor: coverage, state
 //! saved as washer                                                    a notice, a question, or a prompt
 //! Space toggle  u undo  ? help                                       keys that mean something now
 //! ```
@@ -83,13 +83,9 @@ fn source(app: &App, panes: &Panes) -> String {
     let own = name(app).filter(|_| panes.title.height == 0);
     let name = own.map_or(String::new(), |name| format!("{name}: "));
     let Some(source) = &document.source else {
-        return name
-            + &if by_hand == 0 {
-                let (draw, figure) = (app.key_of(&action::TOGGLE), app.key_of(&action::FIGURE));
-                format!("empty: {draw} draws, {figure} places a figure")
-            } else {
-                "drawn by hand".to_owned()
-            };
+        // The same before and after the first taxel: that saves a dozen bytes then.
+        let (draw, figure) = (app.key_of(&action::TOGGLE), app.key_of(&action::FIGURE));
+        return format!("{name}drawn by hand: {draw} draws, {figure} places a figure");
     };
     let mut text = name + &source.to_string();
     if by_hand > 0 {
@@ -137,7 +133,7 @@ fn taxel(app: &App, seen: &Reading, panes: &Panes) -> String {
     let width = usize::from(panes.taxel.width);
     if width >= if step.is_empty() { 60 } else { 80 } {
         let place = format!("column {column:>across$}, row {row:>down$}");
-        let covered = coverage.map_or(String::new(), |coverage| format!("  covered {coverage:.6}"));
+        let covered = coverage.map_or(String::new(), |coverage| format!("  {coverage:.6}"));
         let gap = if step.is_empty() { "" } else { "  " };
         return format!("{place}{covered}  {state:>8}  {all}{gap}{step}");
     }

@@ -38,7 +38,7 @@ pub fn view(app: &App, frame: &mut Frame<'_>) {
     let area = frame.area();
     let theme = app.theme();
     let buffer = frame.buffer_mut();
-    let Some(panes) = Panes::of(area, &app.reading().imprint) else {
+    let Some(panes) = Panes::of(area, &app.reading().imprint, app.halves()) else {
         let (width, height) = SMALLEST;
         let needed = format!("{width} x {height}");
         for (index, text) in ["too small,", "need", &needed].into_iter().enumerate() {

@@ -10,7 +10,7 @@ use ratatui::style::Modifier;
 use crate::description::Description;
 use crate::geometry::{Ellipse, Pen, Point, Side, Solid};
 use crate::source::Source;
-use crate::tui::matrix::layout::TaxelGrid;
+use crate::tui::matrix::layout::{TaxelGrid, TaxelSize};
 use crate::tui::widget::dots::{DOTS, DotCanvas, Place, glyph};
 use crate::tui::widget::theme::{Role, Theme};
 
@@ -32,7 +32,7 @@ pub struct Layers {
 impl Layers {
     /// Whether a layer is shown on a grid.
     pub fn shown(layer: Option<bool>, grid: &TaxelGrid) -> bool {
-        layer.unwrap_or(grid.cell >= 3 && grid.lines >= 2)
+        layer.unwrap_or(matches!(grid.size, TaxelSize::Square(2..)))
     }
 }
 
@@ -44,20 +44,26 @@ struct DotGrid<'a> {
 
 impl<'a> DotGrid<'a> {
     fn new(grid: &'a TaxelGrid) -> Self {
-        let (columns, rows) = (u16::from(grid.columns.count), u16::from(grid.rows.count));
+        let (columns, lines) = grid.characters();
         Self {
             grid,
-            canvas: DotCanvas::new(columns * grid.cell, rows * grid.lines),
+            canvas: DotCanvas::new(columns, lines),
         }
+    }
+
+    /// The dots of a taxel across and down.
+    fn dots(&self) -> (u16, u16) {
+        let size = self.grid.size;
+        (size.columns() * DOTS.0, size.half_lines() * DOTS.1 / 2)
     }
 
     /// A place on the plane, in cell sides, among the dots.
     fn place(&self, x: f64, y: f64) -> Place {
-        let (cell, lines) = (self.grid.cell * DOTS.0, self.grid.lines * DOTS.1);
+        let (across, down) = self.dots();
         let (left, top) = (self.grid.columns.first, self.grid.rows.first);
         (
-            (x - f64::from(left)) * f64::from(cell),
-            (y - f64::from(top)) * f64::from(lines),
+            (x - f64::from(left)) * f64::from(across),
+            (y - f64::from(top)) * f64::from(down),
         )
     }
 }
@@ -76,7 +82,7 @@ impl Pen<f64> for DotGrid<'_> {
 
     fn ellipse(&mut self, ellipse: &Ellipse<f64>, material: Side) {
         let reach = ellipse.reach();
-        let dots = reach.x.max(reach.y) * f64::from(self.grid.cell * DOTS.0);
+        let dots = reach.x.max(reach.y) * f64::from(self.dots().0);
         let scale = match material {
             Side::Inside => 1.0 - INSIDE / dots.max(1.0),
             Side::Outside => 1.0 + INSIDE / dots.max(1.0),
@@ -106,20 +112,14 @@ pub(in crate::tui) struct Overlay<'a> {
 }
 
 impl Overlay<'_> {
-    /// Draws it. The characters beside the cursor's taxel, whose place is given, stay as they are.
+    /// Draws it.
     pub(in crate::tui) fn draw(
         &self,
         grid: &TaxelGrid,
         theme: &Theme,
         buffer: &mut Buffer,
         active: impl Fn(u8, u8) -> bool,
-        cursor: Option<Position>,
     ) {
-        let mark = |place: Position, cursor: Position| {
-            let right = cursor.x + grid.cell - 1;
-            place == cursor || grid.cell > 2 && place == Position::new(right, cursor.y)
-        };
-        let free = |place: &Position| cursor.is_none_or(|cursor| !mark(*place, cursor));
         let mut dots = DotGrid::new(grid);
         if let Some(region) = &self.region {
             draw_rectangle(&mut dots, region);
@@ -129,12 +129,10 @@ impl Overlay<'_> {
         }
         for (column, row, shape) in dots.canvas.characters() {
             let place = Position::new(grid.x + column, grid.y + row);
-            let Some(cell) = Some(place).filter(free).and_then(|at| buffer.cell_mut(at)) else {
+            let Some(cell) = buffer.cell_mut(place) else {
                 continue;
             };
-            let on = grid
-                .taxel(place.x, place.y)
-                .is_some_and(|(x, y)| active(x, y));
+            let on = grid.taxels(place.x, place.y).any(|(x, y)| active(x, y));
             let style = if on {
                 theme.style(Role::Chosen).add_modifier(Modifier::REVERSED)
             } else {
@@ -144,7 +142,7 @@ impl Overlay<'_> {
             cell.set_char(glyph(theme, shape)).set_style(style);
         }
         for (place, letter) in self.centres(&dots, *buffer.area()) {
-            if let Some(cell) = Some(place).filter(free).and_then(|at| buffer.cell_mut(at)) {
+            if let Some(cell) = buffer.cell_mut(place) {
                 cell.reset();
                 cell.set_char(letter).set_style(theme.style(Role::Focus));
             }

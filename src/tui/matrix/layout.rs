@@ -1,26 +1,70 @@
-//! Where the taxels are on the screen.
+//! Where the taxels are on the screen, and how large.
 //!
-//! A taxel is two characters wide, so that it looks square; one where the matrix fits only so; or a multiple of two
-//! where all taxels fit enlarged. Drawing and the mouse share this layout.
+//! ```text
+//! Square(2)   four columns, two lines     where the whole matrix fits enlarged
+//! Square(1)   two columns, one line       looks square
+//! Narrow      one column, one line        coverage of a matrix that is too wide for two
+//! Half        one column, half a line     a matrix that does not fit otherwise: two taxels a character
+//! ```
+//! A matrix that does not fit even so is seen through a window that follows the cursor in steps of half its size: a
+//! move of the cursor changes a few characters, and only now and then all of them. Drawing and the mouse share this
+//! layout.
 
 use ratatui::layout::Rect;
 
 use crate::imprint::Imprint;
-use crate::tui::widget::number::taxels;
+use crate::tui::widget::number::{narrow, taxels};
 
 /// Columns of the row ruler.
 pub const RULER: u16 = 3;
 
-/// How many times taxels can be enlarged so that all of them fit; 1 if they do not fit even unenlarged.
-pub(in crate::tui) fn scale(imprint: &Imprint, width: u16, height: u16) -> u16 {
-    let across = width.saturating_sub(RULER) / (2 * u16::from(imprint.columns()));
-    let down = height.saturating_sub(1) / u16::from(imprint.rows());
-    across.min(down).max(1)
+/// How large a taxel is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TaxelSize {
+    /// The upper or the lower half of a character.
+    Half,
+    /// A character.
+    Narrow,
+    /// Two characters side by side, or this many times that, both across and down.
+    Square(u16),
 }
 
-/// The width of the whole matrix with its ruler.
-pub(in crate::tui) fn matrix_width(imprint: &Imprint, cell: u16) -> u16 {
-    RULER + cell * u16::from(imprint.columns())
+impl TaxelSize {
+    /// The largest size at which all taxels fit beside their rulers. Where they do not fit in squares, two taxels share
+    /// a character if `halves` allows it; otherwise they are as wide as all columns allow.
+    pub(in crate::tui) fn fitting(imprint: &Imprint, area: Rect, halves: bool) -> Self {
+        let columns = u16::from(imprint.columns());
+        let across = area.width.saturating_sub(RULER);
+        let lines = area.height.saturating_sub(1);
+        match (across / (2 * columns)).min(lines / u16::from(imprint.rows())) {
+            0 if halves => Self::Half,
+            0 if across / 2 < columns && columns <= across => Self::Narrow,
+            0 => Self::Square(1),
+            times => Self::Square(times),
+        }
+    }
+
+    /// Columns of the screen that a taxel has.
+    pub(in crate::tui) fn columns(self) -> u16 {
+        match self {
+            Self::Half | Self::Narrow => 1,
+            Self::Square(times) => 2 * times,
+        }
+    }
+
+    /// Halves of a line that it has.
+    pub(in crate::tui) fn half_lines(self) -> u16 {
+        match self {
+            Self::Half => 1,
+            Self::Narrow => 2,
+            Self::Square(times) => 2 * times,
+        }
+    }
+
+    /// The width of the whole matrix with its ruler.
+    pub(in crate::tui) fn matrix_width(self, imprint: &Imprint) -> u16 {
+        RULER + self.columns() * u16::from(imprint.columns())
+    }
 }
 
 /// Which part of one axis of the matrix is visible.
@@ -30,21 +74,39 @@ pub struct AxisWindow {
     pub first: u8,
     /// How many.
     pub count: u8,
+    /// How many there are in all.
+    all: u8,
 }
 
 impl AxisWindow {
-    /// `cells` of which `room` can be seen, the cursor as near to the middle as the ends allow.
+    /// `cells` of which `room` can be seen, the cursor among them. The window moves by half of its size.
     pub(in crate::tui) fn new(cells: u8, room: u16, cursor: u8) -> Self {
+        Self::in_steps(cells, room, cursor, 1)
+    }
+
+    /// The same of a window that begins at a multiple of `step`.
+    fn in_steps(cells: u8, room: u16, cursor: u8, step: u8) -> Self {
         let count = taxels(room).min(cells);
+        let whole_steps = |number: u8| number / step * step;
+        let stride = whole_steps(count / 2).max(step);
+        let before = (cursor / stride * stride).saturating_sub(whole_steps(count / 4));
+        let last = (cells - count).next_multiple_of(step);
+        let first = if count < cells { before.min(last) } else { 0 };
         Self {
-            first: cursor.saturating_sub(count / 2).min(cells - count),
-            count,
+            first,
+            count: count.min(cells - first),
+            all: cells,
         }
     }
 
     /// The visible cells, each with its place from the first one.
     pub fn visible(&self) -> impl Iterator<Item = (u16, u8)> {
         (0..self.count).map(|index| (u16::from(index), self.first + index))
+    }
+
+    /// Whether there are cells before the first visible one, and after the last.
+    pub fn hidden(&self) -> (bool, bool) {
+        (self.first > 0, self.first + self.count < self.all)
     }
 
     /// The cell at a place counted from the first visible one.
@@ -60,46 +122,84 @@ pub struct TaxelGrid {
     pub x: u16,
     /// The row of the screen where it begins.
     pub y: u16,
-    /// Columns of the screen that a taxel has: 2 or a multiple, or 1 where the matrix fits only so.
-    pub cell: u16,
-    /// Rows of the screen that a taxel has.
-    pub lines: u16,
+    /// How large taxels are.
+    pub size: TaxelSize,
     /// Visible columns.
     pub columns: AxisWindow,
     /// Visible rows.
     pub rows: AxisWindow,
     /// Whether all taxels are visible.
     pub whole: bool,
+    /// The taxel that the cursor is on: column, row.
+    cursor: (u8, u8),
 }
 
 impl TaxelGrid {
-    /// The taxels of a matrix in its pane, with the cursor at a taxel.
-    pub fn of(area: Rect, imprint: &Imprint, cursor: (u8, u8)) -> Self {
-        let (columns, rows) = (imprint.columns(), imprint.rows());
-        let room = area.width.saturating_sub(RULER);
-        let fits_narrow_only = u16::from(columns) > room / 2 && u16::from(columns) <= room;
-        let lines = scale(imprint, area.width, area.height);
-        let cell = if fits_narrow_only { 1 } else { 2 * lines };
-        let columns_seen = AxisWindow::new(columns, room / cell, cursor.0);
-        let rows_seen = AxisWindow::new(rows, area.height.saturating_sub(1) / lines, cursor.1);
-        let whole = columns_seen.count == columns && rows_seen.count == rows;
+    /// The taxels of a matrix in its pane, with the cursor at a taxel. `halves` tells whether two of them may share a
+    /// character.
+    pub fn of(area: Rect, imprint: &Imprint, cursor: (u8, u8), halves: bool) -> Self {
+        let size = TaxelSize::fitting(imprint, area, halves);
+        let (across, lines) = (
+            area.width.saturating_sub(RULER),
+            area.height.saturating_sub(1),
+        );
+        // A line of two taxels keeps its two wherever the window is.
+        let step = if size == TaxelSize::Half { 2 } else { 1 };
+        let columns = AxisWindow::new(imprint.columns(), across / size.columns(), cursor.0);
+        let rows = narrow(2 * u32::from(lines) / u32::from(size.half_lines()));
+        let rows = AxisWindow::in_steps(imprint.rows(), rows, cursor.1, step);
+        let whole = columns.count == imprint.columns() && rows.count == imprint.rows();
         Self {
             x: area.x + RULER.min(area.width),
             y: area.y + 1,
-            cell,
-            lines,
-            columns: columns_seen,
-            rows: rows_seen,
+            size,
+            columns,
+            rows,
             whole,
+            cursor,
         }
     }
 
-    /// The taxel at a place of the screen.
+    /// Columns and lines of the screen that the visible taxels have.
+    pub fn characters(&self) -> (u16, u16) {
+        let (columns, rows) = (u16::from(self.columns.count), u16::from(self.rows.count));
+        (
+            columns * self.size.columns(),
+            (rows * self.size.half_lines()).div_ceil(2),
+        )
+    }
+
+    /// The place of a taxel on the screen, by its indices among the visible columns and rows. Two that share a character
+    /// share their place.
+    pub fn place(&self, column: u16, row: u16) -> Rect {
+        let (width, half_lines) = (self.size.columns(), self.size.half_lines());
+        Rect {
+            x: self.x + column * width,
+            y: self.y + row * half_lines / 2,
+            width,
+            height: half_lines.div_ceil(2),
+        }
+    }
+
+    /// The taxels at a place of the screen: none, one, or of two in a character the upper one first.
+    pub fn taxels(&self, x: u16, y: u16) -> impl Iterator<Item = (u8, u8)> {
+        let place = x.checked_sub(self.x).zip(y.checked_sub(self.y));
+        let found = move |half: u16| {
+            let (x, y) = place?;
+            let row = (2 * u32::from(y) + u32::from(half)) / u32::from(self.size.half_lines());
+            Some((
+                self.columns.at(x / self.size.columns())?,
+                self.rows.at(narrow(row))?,
+            ))
+        };
+        let second = if self.size == TaxelSize::Half { 1 } else { 0 };
+        (0..=second).filter_map(found)
+    }
+
+    /// The taxel that a click at a place of the screen means. Of two in a character that is the one with the cursor,
+    /// otherwise the upper one.
     pub fn taxel(&self, x: u16, y: u16) -> Option<(u8, u8)> {
-        let (x, y) = (x.checked_sub(self.x)?, y.checked_sub(self.y)?);
-        Some((
-            self.columns.at(x / self.cell)?,
-            self.rows.at(y / self.lines)?,
-        ))
+        let mut with_cursor = self.taxels(x, y).filter(|&taxel| taxel == self.cursor);
+        with_cursor.next().or_else(|| self.taxels(x, y).next())
     }
 }

@@ -27,18 +27,16 @@ const VALUE: usize = 17;
 pub fn draw(matrix: &MatrixView<'_>, theme: &Theme, buffer: &mut Buffer, area: Rect) {
     let (seen, chosen) = (matrix.reading, matrix.chosen);
     let described = seen.region(chosen).zip(seen.description(chosen));
-    let title = match &described {
+    let which = match &described {
         Some(((index, region), _)) => {
-            format!(
-                "Region {} of {}: {}",
-                index + 1,
-                seen.regions.len(),
-                region.kind().name()
-            )
+            let (number, kind) = (index + 1, region.kind().name());
+            format!("{number} of {}: {kind}", seen.regions.len())
         }
-        None => "No region: the matrix is empty".to_owned(),
+        None => "0 of 0: the matrix is empty".to_owned(),
     };
-    write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
+    // Plain as the values, so that a toggle changes no style here.
+    let heading = [("Region ", Role::Title), (which.as_str(), Role::Text)];
+    write::line(buffer, area, theme, heading);
     let lines = usize::from(area.height.saturating_sub(1)).max(1);
     let columns = DESCRIPTORS.len().div_ceil(lines);
     let width = area.width / narrow(columns).max(1);

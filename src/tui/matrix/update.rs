@@ -26,7 +26,6 @@ use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Arrow;
 use crate::tui::matrix::files;
 use crate::tui::matrix::layers::Layers;
-use crate::tui::matrix::layout::TaxelGrid;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::runtime::effect::{Effect, FileRequest, LibraryRequest, TerminalEffect};
 use crate::tui::shapes::state::ListDialog;
@@ -307,8 +306,7 @@ fn open_list(app: &mut App, purpose: Purpose) -> Effect {
 
 /// Shows a layer or hides it; says which, and why there is nothing to see of it.
 fn switch_layer(app: &mut App, layer: Layer) {
-    let Some(panes) = app.panes() else { return };
-    let grid = TaxelGrid::of(panes.matrix, &app.reading().imprint, app.cursor());
+    let Some(grid) = app.grid() else { return };
     let (name, now, missing) = match layer {
         Layer::Outline => (
             "the outline",

@@ -4,11 +4,11 @@
 //!    0   2   4   6           column ruler
 //!  0 · · · · · · · ·         row ruler, then two characters for each taxel
 //!  1 · · ████████· ·
-//!  2 · · ██[ ████· ·         the cursor is the first character of its taxel; the second still shows its state
+//!  2 · · ██·[·]██· ·         the cursor between brackets, which hide second characters only
 //! ```
 //! A taxel of the described region, another active taxel, one of a described hole and an inactive one differ in their
-//! characters, not only in colour. A matrix that is larger than its pane scrolls with the cursor; one that is much
-//! smaller is drawn larger, a whole number of times. Coverage is shown in five shades or in percent: two digits
+//! characters, not only in colour. Of a matrix that is larger than its pane two rows share a line, by half blocks, and
+//! if that is not enough it scrolls with the cursor; one that is much smaller is drawn larger, a whole number of times. Coverage is shown in five shades or in percent: two digits
 //! where a taxel has room for a space beside them, else the tens alone, so that numbers do not run together.
 
 use ratatui::buffer::Buffer;
@@ -21,9 +21,9 @@ use crate::tui::app::document::Reading;
 use crate::tui::app::page::Page;
 use crate::tui::app::state::{App, Display};
 use crate::tui::matrix::layers::{Layers, Overlay};
-use crate::tui::matrix::layout::TaxelGrid;
+use crate::tui::matrix::layout::{TaxelGrid, TaxelSize};
+use crate::tui::matrix::rulers;
 use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::write;
 
 /// What is drawn of the matrix.
 #[derive(Clone, Copy, Debug)]
@@ -61,67 +61,89 @@ impl<'a> MatrixView<'a> {
         }
     }
 
+    /// Where the taxels are in an area.
+    fn grid(&self, area: Rect) -> TaxelGrid {
+        let halves = self.display == Display::Imprint && self.compared.is_none();
+        TaxelGrid::of(area, &self.reading.imprint, self.cursor, halves)
+    }
+
     /// Draws the matrix. Returns where the cursor is, None where it is not visible.
     pub fn draw(&self, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
-        let seen = self.reading;
-        let grid = TaxelGrid::of(area, &seen.imprint, self.cursor);
-        let (cell, columns, rows) = (grid.cell, grid.columns, grid.rows);
-        // A number wants four characters with the space before the next one.
-        let every = match cell {
-            1 => 5,
-            2 => 2,
-            _ => 1,
+        let grid = self.grid(area);
+        rulers::draw(theme, &grid, buffer, area);
+        let chosen = self.reading.region(self.chosen).map(|(_, region)| region);
+        let role = |column, row| {
+            let role = self.difference(column, row);
+            role.unwrap_or_else(|| role_of(self.reading, chosen, column, row))
         };
-        for (index, column) in columns.visible().filter(|(_, column)| column % every == 0) {
-            let middle = (cell.max(2) - 2) / 2;
-            let place = write::right_of(write::row(area, 0), grid.x + index * cell + middle);
-            write::line(
-                buffer,
-                place,
-                theme,
-                [(column.to_string().as_str(), Role::Quiet)],
-            );
-        }
-        let chosen = seen.region(self.chosen).map(|(_, region)| region);
+        let rows = if grid.size == TaxelSize::Half { 2 } else { 1 };
         let mut cursor = None;
-        for (index, row) in rows.visible() {
-            let top = index * grid.lines;
-            let middle = top + (grid.lines - 1) / 2;
-            let line = write::row(area, usize::from(middle) + 1);
-            write::line(
-                buffer,
-                line,
-                theme,
-                [(format!("{row:>2}").as_str(), Role::Quiet)],
-            );
-            for (index, column) in columns.visible() {
-                let place = Rect {
-                    x: grid.x + index * cell,
-                    y: grid.y + top,
-                    width: cell,
-                    height: grid.lines,
-                };
-                let here = (column, row) == self.cursor;
-                let role = self.difference(column, row);
-                let role = role.unwrap_or_else(|| role_of(seen, chosen, column, row));
-                self.draw_taxel(theme, role, (column, row), buffer, place);
-                if here {
-                    cursor = Some(Position::new(place.x, grid.y + middle));
+        for (y, row) in grid.rows.visible().step_by(rows) {
+            for (x, column) in grid.columns.visible() {
+                let place = grid.place(x, y);
+                if grid.taxels(place.x, place.y).any(|at| at == self.cursor) {
+                    cursor = Some(place);
+                }
+                let upper = role(column, row);
+                if rows == 2 {
+                    let (sign, role) = theme.two_taxels(upper, role(column, row + 1));
+                    if let Some(cell) = buffer.cell_mut(place.as_position()) {
+                        cell.set_char(sign).set_style(theme.style(role));
+                    }
+                } else {
+                    self.draw_taxel(theme, upper, (column, row), buffer, place);
                 }
             }
         }
-        self.draw_layers(theme, &grid, buffer, cursor);
-        cursor
+        self.draw_layers(theme, &grid, buffer);
+        cursor.map(|place| self.draw_cursor(theme, grid.size, buffer, place))
     }
 
-    /// The layers that are shown, the cursor's character free.
-    fn draw_layers(
+    /// Marks the cursor's taxel on both sides, and answers where the cursor is. A taxel of two columns shows its state in the
+    /// first one; so one mark stands on its second, the other on the second of the taxel before it or on the ruler. In a
+    /// single column there is room for neither: there the taxel itself is marked, and of two that share a character the
+    /// other one is hidden.
+    fn draw_cursor(
         &self,
         theme: &Theme,
-        grid: &TaxelGrid,
+        size: TaxelSize,
         buffer: &mut Buffer,
-        cursor: Option<Position>,
-    ) {
+        place: Rect,
+    ) -> Position {
+        let before = u16::from(size == TaxelSize::Square(1));
+        let at = Position::new(
+            place.x.saturating_sub(before),
+            place.y + (place.height - 1) / 2,
+        );
+        let (column, row) = self.cursor;
+        // Brackets are plain: so little is sent when the cursor moves, and the terminal's own cursor is on the first one.
+        let style = match size {
+            TaxelSize::Square(_) => theme.style(Role::Text),
+            TaxelSize::Half | TaxelSize::Narrow => theme.style(Role::Cursor),
+        };
+        let mut mark = |x: u16, sign: Option<char>| {
+            if let Some(cell) = buffer.cell_mut(Position::new(x, at.y)) {
+                let sign = sign.map_or_else(|| cell.symbol().to_owned(), String::from);
+                cell.reset();
+                cell.set_symbol(&sign).set_style(style);
+            }
+        };
+        match size {
+            TaxelSize::Half => {
+                let active = self.reading.imprint.get(column, row);
+                mark(at.x, Some(theme.half_cursor(row % 2 == 1, active)));
+            }
+            TaxelSize::Narrow => mark(at.x, None),
+            TaxelSize::Square(_) => {
+                mark(at.x, Some('['));
+                mark(place.right() - 1, Some(']'));
+            }
+        }
+        at
+    }
+
+    /// The layers that are shown.
+    fn draw_layers(&self, theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer) {
         let active = |column, row| self.reading.imprint.get(column, row);
         let overlay = Overlay {
             outline: self
@@ -130,7 +152,7 @@ impl<'a> MatrixView<'a> {
             region: (self.reading.description(self.chosen))
                 .filter(|_| Layers::shown(self.layers.rectangle, grid)),
         };
-        overlay.draw(grid, theme, buffer, active, cursor);
+        overlay.draw(grid, theme, buffer, active);
     }
 
     /// How a taxel differs from the imprint that the matrix is compared with; None if it does not.
@@ -147,8 +169,7 @@ impl<'a> MatrixView<'a> {
         }
     }
 
-    /// A taxel: two characters, or more of the same where it is drawn larger. The cursor stands on its left, on a large one
-    /// on its right, too; what is between still tells the state: a blank is an inactive taxel.
+    /// A taxel: a character or two, or more of the same where it is drawn larger, with a sign or a number in its middle.
     fn draw_taxel(
         &self,
         theme: &Theme,
@@ -164,7 +185,6 @@ impl<'a> MatrixView<'a> {
             Display::Shades => theme.shade(coverage(seen, column, row)),
             Display::Percent => percent(theme, coverage(seen, column, row), place.width > 2),
         };
-        let here = (column, row) == self.cursor;
         let style = theme.style(role);
         // Full cells are filled, a sign or a number stands in the middle.
         let fill = if first == second && !first.is_ascii_digit() {
@@ -174,18 +194,11 @@ impl<'a> MatrixView<'a> {
         };
         let sign = ((place.width.max(2) - 2) / 2, (place.height.max(1) - 1) / 2);
         for position in place.intersection(*buffer.area()).positions() {
-            let (x, y) = (position.x - place.x, position.y - place.y);
-            let last = place.width - 1;
-            let (character, style) = match x {
-                0 if here && y == sign.1 && last == 0 => (first, theme.style(Role::Cursor)),
-                0 if here && y == sign.1 => ('[', theme.style(Role::Cursor)),
-                // Of two columns the second one still tells the state.
-                _ if here && y == sign.1 && x == last && last > 1 => {
-                    (']', theme.style(Role::Cursor))
-                }
-                _ if (x, y) == sign => (first, style),
-                _ if (x, y) == (sign.0 + 1, sign.1) => (second, style),
-                _ => (fill, style),
+            let at = (position.x - place.x, position.y - place.y);
+            let character = match at {
+                _ if at == sign => first,
+                _ if at == (sign.0 + 1, sign.1) => second,
+                _ => fill,
             };
             buffer[position].set_char(character).set_style(style);
         }

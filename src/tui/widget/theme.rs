@@ -264,6 +264,50 @@ impl Theme {
         }
     }
 
+    /// The character of two taxels, one above the other, by their roles, and the role that it is drawn in. Where only one
+    /// is active, the described region has half blocks and the others quarters. A hole that is described is seen beside
+    /// what surrounds it: `b` has it below, `p` above.
+    pub fn two_taxels(&self, upper: Role, lower: Role) -> (char, Role) {
+        use Role::{Active, Chosen, Hole};
+        let quarters = !self.ascii && !self.console;
+        let pick = |block: char, ascii: char| if self.ascii { ascii } else { block };
+        match (upper, lower) {
+            _ if upper == lower => (self.taxel(upper)[0], upper),
+            (Hole, Active | Chosen) if quarters => ('▙', Hole),
+            (Active | Chosen, Hole) if quarters => ('▛', Hole),
+            (Hole, Active | Chosen) => ('p', Hole),
+            (Active | Chosen, Hole) => ('b', Hole),
+            (Chosen, _) => (pick('▀', '"'), Chosen),
+            (_, Chosen) => (pick('▄', '_'), Chosen),
+            (Active, _) if quarters => ('▘', Active),
+            (_, Active) if quarters => ('▖', Active),
+            (Active, _) => ('\'', Active),
+            (_, Active) => (',', Active),
+            (Hole, _) => (self.taxel(Hole)[0], Hole),
+            _ => (self.taxel(lower)[0], lower),
+        }
+    }
+
+    /// The mark of the cursor on one of two taxels in a character: it points to the taxel, and is a letter where that is
+    /// active.
+    pub fn half_cursor(&self, lower: bool, active: bool) -> char {
+        match (lower, active) {
+            (false, false) => '^',
+            (false, true) => 'A',
+            (true, false) => 'v',
+            (true, true) => 'V',
+        }
+    }
+
+    /// What marks the ends where there is more to see: above, below, left, right.
+    pub fn more(&self) -> [char; 4] {
+        if self.ascii {
+            ['^', 'v', '<', '>']
+        } else {
+            ['↑', '↓', '←', '→']
+        }
+    }
+
     /// What marks the heading that rows are sorted by, from the largest on or from the smallest.
     pub fn sorted(&self, descending: bool) -> char {
         match (self.ascii, descending) {

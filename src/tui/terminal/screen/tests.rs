@@ -199,9 +199,16 @@ fn the_shortest_way_is_taken() {
     assert_eq!(frame(&["abcdefg h"], &["a       h"]), "a\x1b[6X\r");
     assert_eq!(frame(&["abcd h"], &["a    h"]), "a   \r");
     assert_eq!(frame(&["abcdefghijk x"], &["a        jk x"]), "a\x1b[8X\r");
-    // In reading order, though the cursor is in the last row.
+    // First what is near the cursor, the rest in reading order.
     assert_eq!(
         frame_at(&["ab", "", "ab"], &["xb", "", "xb"], (0, 2)),
-        "\x1b[Hx\r\n\nx\r"
+        "x\x1b[Hx\r\n\n"
     );
+    // The terminal remembers a place where that is shorter than its address.
+    let rows = |last| ["", "", "", "", "", "", "", "", "", "", last];
+    assert_eq!(
+        frame_at(&rows("abc"), &rows("abx"), (20, 0)),
+        "\x1b7\x1b[11;3Hx\x1b8"
+    );
+    assert_eq!(frame_at(&["", "a"], &["b", "a"], (0, 1)), "\x1bMb\r\n");
 }

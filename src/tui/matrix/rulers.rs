@@ -1,0 +1,71 @@
+//! The rulers of the matrix: numbers of columns above it and of rows on its left, and arrows at the ends behind which
+//! there is more to see.
+//!
+//! ```text
+//!   ←10   15   20   25  →        columns 8 to 27 of more
+//!  8↑· · · ·                     the first line; there are rows above it
+//! ```
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+use crate::tui::matrix::layout::{TaxelGrid, TaxelSize};
+use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::write;
+
+/// Draws both rulers and the arrows into the area of the matrix.
+pub(super) fn draw(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: Rect) {
+    draw_columns(theme, grid, buffer, area);
+    draw_rows(theme, grid, buffer, area);
+    let [above, below, left, right] = theme.more();
+    let ((more_above, more_below), (more_left, more_right)) =
+        (grid.rows.hidden(), grid.columns.hidden());
+    let (width, height) = grid.characters();
+    let before = grid.x.saturating_sub(1);
+    let marks = [
+        (more_above, before, grid.y, above),
+        (more_below, before, grid.y + height.max(1) - 1, below),
+        (more_left, before, area.y, left),
+        (more_right, grid.x + width.max(1) - 1, area.y, right),
+    ];
+    for (_, x, y, mark) in marks.into_iter().filter(|(more, ..)| *more) {
+        let place = Rect::new(x, y, 1, 1).intersection(area);
+        write::line(buffer, place, theme, [(&*mark.to_string(), Role::Key)]);
+    }
+}
+
+/// The numbers of columns, as many as have room for two digits and a blank, and none in the place of an arrow.
+fn draw_columns(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: Rect) {
+    let (cell, line) = (grid.size.columns(), write::row(area, 0));
+    let every = match cell {
+        1 => 5,
+        2 => 2,
+        _ => 1,
+    };
+    let (_, more) = grid.columns.hidden();
+    let end = grid.x + grid.characters().0 - u16::from(more);
+    for (index, column) in grid
+        .columns
+        .visible()
+        .filter(|(_, column)| column % every == 0)
+    {
+        let x = grid.x + index * cell + (cell.max(2) - 2) / 2;
+        let text = column.to_string();
+        if !more || x + 2 <= end {
+            let place = write::right_of(line, x);
+            write::line(buffer, place, theme, [(text.as_str(), Role::Quiet)]);
+        }
+    }
+}
+
+/// The number of each row; of two in a line that of the upper one.
+fn draw_rows(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: Rect) {
+    let rows = if grid.size == TaxelSize::Half { 2 } else { 1 };
+    for (index, row) in grid.rows.visible().step_by(rows) {
+        let place = grid.place(0, index);
+        let y = place.y + (place.height - 1) / 2;
+        let line = write::row(area, usize::from(y - area.y));
+        let text = format!("{row:>2}");
+        write::line(buffer, line, theme, [(text.as_str(), Role::Quiet)]);
+    }
+}
