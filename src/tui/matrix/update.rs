@@ -44,19 +44,6 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
             app.mode = Mode::Draw;
             replace(app, *document);
         }
-        Message::Load => return Some(open_list(app, Purpose::Load)),
-        Message::Delete => return Some(open_list(app, Purpose::Delete)),
-        Message::Picture if matches!(app.history.present().source, Some(Source::Picture(_))) => {
-            edit_picture(app);
-        }
-        Message::Picture => return Some(open_list(app, Purpose::Picture)),
-        Message::Figure => open_form(app, FormDialog::figure(app.history.present())),
-        Message::Sensor => open_form(app, FormDialog::sensor(app.history.present())),
-        Message::Save => save(app),
-        Message::Command => {
-            let dialog = CommandDialog::new(&app.commands);
-            app.dialogs.push(Dialog::Command(dialog));
-        }
         Message::Compare => match app
             .history
             .before()
@@ -65,15 +52,6 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
             Some(before) => compare_with(app, "the state before", &before),
             None => inform(app, "nothing to compare with: there was no step yet"),
         },
-        Message::History => {
-            let (steps, present) = app.history.steps();
-            app.dialogs
-                .push(Dialog::History(HistoryDialog::new(steps, present)));
-        }
-        Message::Help => {
-            let help = Help::new(app.context());
-            app.dialogs.push(Dialog::Help(help));
-        }
         Message::AskRemove(name) => ask(app, format!("Delete {name}?"), Message::Remove(name)),
         Message::Replace(shape, stamp) => {
             let text = format!("Replace {}?", shape.name);
@@ -98,8 +76,38 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         }
         other => match library_request(other) {
             Ok(request) => return Some(Effect::Library(request)),
-            Err(other) => edit(app, &other),
+            Err(other) => return open_page(app, &other),
         },
+    }
+    None
+}
+
+/// Opens the page that a message asks for; does on the matrix what any other message says.
+fn open_page(app: &mut App, message: &Message) -> Option<Effect> {
+    match message {
+        Message::Load => return Some(open_list(app, Purpose::Load)),
+        Message::Delete => return Some(open_list(app, Purpose::Delete)),
+        Message::Picture if matches!(app.history.present().source, Some(Source::Picture(_))) => {
+            edit_picture(app);
+        }
+        Message::Picture => return Some(open_list(app, Purpose::Picture)),
+        Message::Figure => open_form(app, FormDialog::figure(app.history.present())),
+        Message::Sensor => open_form(app, FormDialog::sensor(app.history.present())),
+        Message::Save => save(app),
+        Message::Command => {
+            let dialog = CommandDialog::new(&app.commands);
+            app.dialogs.push(Dialog::Command(dialog));
+        }
+        Message::History => {
+            let (steps, present) = app.history.steps();
+            app.dialogs
+                .push(Dialog::History(HistoryDialog::new(steps, present)));
+        }
+        Message::Help => {
+            let help = Help::new(app.context());
+            app.dialogs.push(Dialog::Help(help));
+        }
+        other => edit(app, other),
     }
     None
 }

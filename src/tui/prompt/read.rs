@@ -66,6 +66,20 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
             )),
         },
         (_, []) => Err(unexpected()),
+        (arguments, words) => with_arguments(arguments, rest, words, app, unexpected),
+    }
+}
+
+/// The message of a command with its arguments: as the rest of the line, and as its words, of which there is one at least.
+/// `unexpected` says what they should be.
+fn with_arguments(
+    arguments: Arguments,
+    rest: &str,
+    words: &[&str],
+    app: &App,
+    unexpected: impl Fn() -> String,
+) -> Result<Message, String> {
+    match (arguments, words) {
         (Arguments::Shape(purpose), _) => {
             let name = name_of(rest)?.to_string();
             Ok(match purpose {
@@ -98,7 +112,7 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
         (Arguments::Degrees, _) => degrees(rest),
         (Arguments::Taxel, [column, row]) => taxel(column, row, &app.shown().sensor),
         (Arguments::Distance, [dx, dy]) => distance(dx, dy).ok_or_else(unexpected),
-        (Arguments::Taxel | Arguments::Distance, _) => Err(unexpected()),
+        (Arguments::Taxel | Arguments::Distance | Arguments::Figure, _) => Err(unexpected()),
     }
 }
 

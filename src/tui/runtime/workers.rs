@@ -82,6 +82,35 @@ impl Workers {
         self.models.store.keep_in(cache);
     }
 
+    /// Measures how long a sweep would take, in place of the measurement before. Without threads, nothing: the answer would
+    /// be another one each time.
+    fn measure(&mut self, grid: Box<PoseGrid>) -> Option<WorkerEvent> {
+        self.measuring.store(true, Ordering::Relaxed);
+        let post = self.post.clone()?;
+        self.measuring = Arc::default();
+        let stop = Arc::clone(&self.measuring);
+        std::thread::spawn(move || {
+            if let Some(time) = measure(&grid, &stop) {
+                post(WorkerEvent::Estimate(grid, time));
+            }
+        });
+        None
+    }
+
+    /// Sweeps all poses of a grid, and tells how far it is where there are threads.
+    fn sweep(&mut self, number: u64, grid: Box<PoseGrid>) -> Option<WorkerEvent> {
+        let stop = self.begin();
+        let Some(post) = self.post.clone() else {
+            return Some(sweep(number, &grid, &stop, None));
+        };
+        std::thread::spawn(move || {
+            let clock = ProgressReporter::new(number, &post);
+            let event = guarded(number, || sweep(number, &grid, &stop, Some(&clock)));
+            post(event);
+        });
+        None
+    }
+
     /// Begins a piece of work. Without threads, does it and returns its last event.
     pub(in crate::tui) fn perform(&mut self, work: Work) -> Option<WorkerEvent> {
         match work {
@@ -89,30 +118,8 @@ impl Workers {
                 self.stop.store(true, Ordering::Relaxed);
                 None
             }
-            Work::Measure(grid) => {
-                self.measuring.store(true, Ordering::Relaxed);
-                let post = self.post.clone()?;
-                self.measuring = Arc::default();
-                let stop = Arc::clone(&self.measuring);
-                std::thread::spawn(move || {
-                    if let Some(time) = measure(&grid, &stop) {
-                        post(WorkerEvent::Estimate(grid, time));
-                    }
-                });
-                None
-            }
-            Work::Sweep(number, grid) => {
-                let stop = self.begin();
-                let Some(post) = self.post.clone() else {
-                    return Some(sweep(number, &grid, &stop, None));
-                };
-                std::thread::spawn(move || {
-                    let clock = ProgressReporter::new(number, &post);
-                    let event = guarded(number, || sweep(number, &grid, &stop, Some(&clock)));
-                    post(event);
-                });
-                None
-            }
+            Work::Measure(grid) => self.measure(grid),
+            Work::Sweep(number, grid) => self.sweep(number, grid),
             Work::Write(number, findings, name, existing) => {
                 match self.access.path(&name, existing) {
                     Ok(path) => self.write(number, findings, (name, path), existing),

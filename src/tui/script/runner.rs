@@ -153,19 +153,7 @@ fn act(session: &mut Session, line: usize, command: &ScriptCommand) -> Result<()
                 })?,
             );
         }
-        ScriptCommand::Drag(places) => {
-            for (index, &place) in places.iter().enumerate() {
-                let kind = if index == 0 {
-                    MouseKind::Press
-                } else {
-                    MouseKind::Drag
-                };
-                mouse(session, kind, place);
-            }
-            if let Some(&last) = places.last() {
-                mouse(session, MouseKind::Release, last);
-            }
-        }
+        ScriptCommand::Drag(places) => drag(session, places),
         ScriptCommand::Scroll(place, turns) => {
             let kind = if *turns < 0 {
                 MouseKind::ScrollUp
@@ -192,6 +180,21 @@ fn act(session: &mut Session, line: usize, command: &ScriptCommand) -> Result<()
         }
     }
     Ok(())
+}
+
+/// Presses the mouse at the first of some places, moves it over the others and lets it go at the last one.
+fn drag(session: &mut Session, places: &[ScreenPosition]) {
+    for (index, &place) in places.iter().enumerate() {
+        let kind = if index == 0 {
+            MouseKind::Press
+        } else {
+            MouseKind::Drag
+        };
+        mouse(session, kind, place);
+    }
+    if let Some(&last) = places.last() {
+        mouse(session, MouseKind::Release, last);
+    }
 }
 
 /// Does a command that looks at the program. Answers whether it was one.
