@@ -24,7 +24,6 @@ const STILL_LONG: &str = "
     src/tui/matrix/update.rs act
     src/tui/prompt/read.rs read
     src/tui/recognise/update.rs act
-    src/tui/runtime/workers.rs perform
     src/tui/script/runner.rs act
 ";
 
