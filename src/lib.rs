@@ -87,6 +87,7 @@
 //!                     storage::AtlasFile, PoseFile, UnfinishedFile
 //! recognition         recognition; formats::model                      sweep
 //! frames              formats::recording, stream                       json
+//! mcap                MCAP files in formats::recording                 frames
 //! png                 formats::Drawing::png
 //! library             storage                                          json
 //! acquire             acquire                                          frames, library

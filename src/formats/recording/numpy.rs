@@ -42,6 +42,7 @@ pub(super) struct NumberType {
 
 impl NumberType {
     /// A kind of number (`b`, `i`, `u` or `f`) of 1, 2, 4 or 8 bytes.
+    #[cfg(feature = "mcap")]
     pub(super) fn new(kind: u8, size: usize, big_endian: bool) -> Self {
         Self {
             kind,
