@@ -72,9 +72,19 @@ pub(crate) enum CliError {
         /// What is wrong.
         error: String,
     },
-    /// A training that is refused.
-    #[error(transparent)]
+    /// A training that is refused. What may be allowed is said with its flag.
+    #[error("{reason}{flag}", reason = .0, flag = flag_of(.0))]
     Training(#[from] TrainingError),
+    /// A file that cannot be of that form.
+    #[error("{name}: {what} is written as {expected}")]
+    Ending {
+        /// Its name.
+        name: String,
+        /// What was to be written.
+        what: &'static str,
+        /// The ending that is right.
+        expected: &'static str,
+    },
     /// The argument is neither the name of a model nor a file.
     #[error("no model is called {name:?}, and no file either; 'taxel model list' shows all")]
     NoModel {
@@ -248,6 +258,14 @@ impl From<ArchiveFileError> for CliError {
         } else {
             Self::SweepFile(error)
         }
+    }
+}
+
+/// What follows the reason of a refused training: the flag that allows it.
+fn flag_of(error: &TrainingError) -> &'static str {
+    match error {
+        TrainingError::Cut { .. } => " with --allow-cut",
+        _ => "",
     }
 }
 

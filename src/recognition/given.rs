@@ -8,10 +8,13 @@ use std::collections::HashMap;
 use rayon::prelude::*;
 
 use crate::atlas::ImprintSummary;
-use crate::description::{DESCRIPTORS, Description, Descriptor, Value};
+use crate::description::{DESCRIPTORS, Description, Descriptor, ExactValue, Value};
+use crate::imprint::Imprint;
 use crate::quote::shortened;
 use crate::recognition::evaluation::Evaluation;
-use crate::recognition::model::{Model, ShapeCount};
+use crate::recognition::model::{Model, ShapeCount, share};
+use crate::recognition::noise::Noise;
+use crate::recognition::simulation::RecognitionRate;
 
 /// A descriptor that says something of the shape: one that does not change when the imprint is moved.
 #[derive(Clone, Copy, Debug)]
@@ -155,6 +158,77 @@ impl GivenDescriptors {
         }
         table.evaluate(&classes)
     }
+}
+
+impl GivenDescriptors {
+    /// Draws noisy touches as [`Model::recognition_rate`] does and names them by these descriptors alone: by the shape
+    /// that has their values most often without noise. Values that no shape has then get no name, which is wrong. None
+    /// if `progress` stops it.
+    ///
+    /// ```
+    /// use taxel::recognition::{GivenDescriptors, GridSteps, Noise, Training, equal_figures};
+    ///
+    /// let steps = GridSteps { positions: 4, degrees: 15 };
+    /// let model = Training::fitting(equal_figures(), steps)?.run()?;
+    /// let given: GivenDescriptors = "na,p".parse()?;
+    /// let rate = |noise: f64| {
+    ///     let noise = Noise::new(noise).expect("below ½");
+    ///     given.rate(&model, (16, 16), &noise, 100, 0, &|_| true).expect("not stopped")
+    /// };
+    /// assert!(rate(0.0).accuracy() > rate(0.02).accuracy());
+    /// assert_eq!(rate(0.0).held_share(), 1.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn rate(
+        &self,
+        model: &Model,
+        size: (u8, u8),
+        noise: &Noise,
+        per_shape: u64,
+        seed: u64,
+        progress: &(dyn Fn(u64) -> bool + Sync),
+    ) -> Option<RecognitionRate> {
+        let table = GivenTable::new(model);
+        let mut counts: HashMap<Vec<ExactValue>, Vec<u128>> = HashMap::new();
+        for (key, description) in table.descriptions().iter().enumerate() {
+            let own = counts.entry(self.values(description.as_ref()));
+            let own = own.or_insert_with(|| vec![0; model.shapes().len()]);
+            for &count in model.counts(key) {
+                own[usize::from(count.shape)] += model.weighted(count);
+            }
+        }
+        let names: HashMap<_, _> = counts
+            .into_iter()
+            .filter_map(|(values, own)| Some((values, most_of(&own)?)))
+            .collect();
+        let judge = |rate: &mut RecognitionRate, shape: usize, touch: &Imprint| {
+            let description = ImprintSummary::of(touch).description;
+            let named = names.get(&self.values(description.as_ref()));
+            rate.count(shape, named.copied());
+        };
+        model.simulated(size, noise, per_shape, seed, progress, &judge)
+    }
+
+    /// The values of these descriptors, in steps where they are rounded.
+    fn values(&self, description: Option<&Description>) -> Vec<ExactValue> {
+        let value = |descriptor: &ShapeDescriptor| {
+            let mut roundings = self.roundings.iter();
+            let rounding = roundings.find(|own| own.descriptor == *descriptor);
+            let description = description?;
+            match rounding {
+                Some(rounding) => rounding.rounded((descriptor.0.measure)(description)),
+                None => (descriptor.0.exact)(description),
+            }
+        };
+        self.descriptors.iter().map(value).collect()
+    }
+}
+
+/// The most frequent shape, of equals the first, and its share.
+fn most_of(counts: &[u128]) -> Option<(usize, f64)> {
+    let all = counts.iter().enumerate().rev();
+    let (shape, &most) = all.max_by_key(|(_, count)| **count)?;
+    Some((shape, share(most, counts.iter().sum())))
 }
 
 impl std::str::FromStr for GivenDescriptors {

@@ -58,7 +58,7 @@ pub use nearest::Nearest;
 pub use noise::{Distances, Method, Noise, NoiseError, Scanner};
 pub use noisy::NoisyRecogniser;
 pub use peers::{Peer, PeerEvaluation, PeerSettings};
-pub use pose_estimate::{AngleEstimate, PoseEstimate};
+pub use pose_estimate::{AngleEstimate, PlacedSource, PoseEstimate};
 pub use separation::{Separation, SeparationPoint, SizeAxis, SmallestSize};
 pub use sets::{GridSteps, default_figures, equal_figures};
 #[cfg(feature = "tui")]

@@ -4,6 +4,7 @@ use crate::imprint::Imprint;
 use crate::pose::{Axis, PoseGrid, period};
 use crate::recognition::key::ImprintKey;
 use crate::recognition::model::{Model, share};
+use crate::source::Source;
 use crate::sweep::Sweep;
 use crate::touch::Plane;
 
@@ -62,6 +63,19 @@ impl Model {
         imprint: &Imprint,
         progress: &(dyn Fn(u64) -> bool + Sync),
     ) -> Option<PoseEstimate> {
+        self.poses_of(shape, imprint, 0, progress)
+            .map(|(estimate, _)| estimate)
+    }
+
+    /// Returns the same with at most so many of the poses: first the one nearest to the mean, which is the likeliest since
+    /// all are equally likely by themselves, then others spread over the 95 % of the poses that are nearest to it.
+    pub fn poses_of(
+        &self,
+        shape: usize,
+        imprint: &Imprint,
+        most: usize,
+        progress: &(dyn Fn(u64) -> bool + Sync),
+    ) -> Option<(PoseEstimate, Vec<PlacedSource>)> {
         let bounds = imprint.bounds()?;
         let key = ImprintKey::of(imprint);
         let source = self.shapes().get(shape)?.source.clone();
@@ -72,6 +86,7 @@ impl Model {
         let mut plane = Plane::new(*grid.sensor());
         let mut sums = Sums::default();
         let mut degrees = vec![0; period.unwrap_or(1) as usize];
+        let mut seen = Vec::new();
         for run in runs {
             let first = grid.pose(run.first);
             // All poses of a run leave one imprint, in one place.
@@ -84,14 +99,93 @@ impl Model {
             let [x, y] = grid.centre(first);
             let weight = run.poses * run.orientations;
             sums.add(weight, (x + by[0], last + by[0]), run.poses, y + by[1]);
+            if most > 0 {
+                let middle = run.first + run.poses / 2;
+                let x = f64::midpoint(x, last) + by[0];
+                seen.push(SeenPose {
+                    place: [x, y + by[1], first[Axis::Angle]],
+                    weight,
+                    number: middle,
+                    by,
+                });
+            }
             if let Some(period) = period {
                 let angle = first[Axis::Angle].rem_euclid(f64::from(period));
                 sums.turn(weight, angle / f64::from(period));
                 degrees[whole(angle, period)] += weight;
             }
         }
-        sums.finish(period.map(|period| (period, degrees)))
+        let estimate = sums.finish(period.map(|period| (period, degrees)))?;
+        let sources = chosen(seen, &estimate, most).into_iter();
+        let sources = sources.filter_map(|own| {
+            let source = grid.source_at(grid.pose(own.number)).ok()?;
+            Some(PlacedSource { source, by: own.by })
+        });
+        let sources = sources.collect();
+        Some((estimate, sources))
     }
+}
+
+/// A shape in a pose, and how far it is moved from there onto the matrix of an imprint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlacedSource {
+    /// The shape on the sensor of the model.
+    pub source: Source,
+    /// By how many columns and rows its imprint lies elsewhere on the matrix.
+    pub by: [f64; 2],
+}
+
+/// Neighbouring poses that leave the imprint.
+struct SeenPose {
+    /// x, y and angle of their middle.
+    place: [f64; 3],
+    /// How many poses they count as.
+    weight: u64,
+    /// The number of the middle one.
+    number: u64,
+    /// How far its imprint is moved.
+    by: [f64; 2],
+}
+
+/// The pose nearest to the mean, then others spread evenly over the 95 % nearest to it, in order of that; at most so many.
+/// Distances are in units of the spread of each number.
+fn chosen(mut seen: Vec<SeenPose>, estimate: &PoseEstimate, most: usize) -> Vec<SeenPose> {
+    let distance = |own: &SeenPose| {
+        let over = |from: f64, spread: f64| if spread > 0.0 { from / spread } else { 0.0 };
+        let [x, y, angle] = own.place;
+        let dx = over(x - estimate.position[0], estimate.spread[0]);
+        let dy = over(y - estimate.position[1], estimate.spread[1]);
+        let turned = estimate.angle.as_ref().and_then(|own| {
+            let period = f64::from(own.period);
+            let from = (angle - own.mean? + period / 2.0).rem_euclid(period) - period / 2.0;
+            Some(over(from, own.spread?))
+        });
+        let da = turned.map_or(0.0, |from| from);
+        dx * dx + dy * dy + da * da
+    };
+    seen.sort_by_cached_key(|own| (ordered(distance(own)), own.number));
+    let (mut held, mut count) = (0_u128, 0);
+    while count < seen.len() && (count == 0 || held * 100 < u128::from(estimate.poses) * 95) {
+        held += u128::from(seen[count].weight);
+        count += 1;
+    }
+    seen.truncate(count);
+    let others = most.max(2) - 1;
+    let mut index = 0;
+    seen.retain(|_| {
+        // The first, and each that begins another part of the rest.
+        let part = |index: usize| index * others / count;
+        let kept = index == 0 || part(index) != part(index - 1) || index + 1 == count;
+        index += 1;
+        kept
+    });
+    seen.truncate(most);
+    seen
+}
+
+/// A number from 0 on that is in the order of its bits.
+fn ordered(distance: f64) -> u64 {
+    distance.max(0.0).to_bits()
 }
 
 /// The whole degree that an angle from 0 to below a period lies in.
@@ -237,6 +331,16 @@ mod tests {
             assert_eq!(own.map(|count| count.poses).sum::<u64>(), estimate.poses);
             assert!((estimate.position[0] - mean).abs() < 1e-9);
             assert!((estimate.spread[0] - spread).abs() < 1e-6);
+            let (same, poses) = (model.poses_of(shape, &imprint, 9, &|_| true)).expect("it does");
+            assert_eq!(same, estimate);
+            assert!((1..=9).contains(&poses.len()));
+            for placed in &poses {
+                let touch = plane.touch(&placed.source);
+                assert!(ImprintKey::of(&touch) == key, "{:?}", placed.source);
+                let there = touch.bounds().expect("not empty");
+                let moved = f64::from(there.left) + placed.by[0];
+                assert!((moved - f64::from(bounds.left)).abs() < 1e-9);
+            }
             assert_eq!(
                 estimate.angle.is_none(),
                 shape == 0,

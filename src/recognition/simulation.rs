@@ -15,7 +15,7 @@ use crate::recognition::model::{Model, share};
 use crate::recognition::noise::{Noise, Scanner};
 
 /// How often noisy touches are named right.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct RecognitionRate {
     /// Touches that were drawn.
@@ -150,8 +150,24 @@ impl Model {
         seed: u64,
         progress: &(dyn Fn(u64) -> bool + Sync),
     ) -> Option<RecognitionRate> {
-        const CHUNK: u64 = 50;
         let scanner = Scanner::new(self, columns, rows);
+        let judge = |rate: &mut RecognitionRate, shape: usize, touch: &Imprint| {
+            rate.add(self, &scanner, told, shape, touch);
+        };
+        self.simulated((columns, rows), noise, per_shape, seed, progress, &judge)
+    }
+
+    /// Draws touches as [`Self::recognition_rate`] does; `judge` names the shape of each and counts.
+    pub(super) fn simulated(
+        &self,
+        (columns, rows): (u8, u8),
+        noise: &Noise,
+        per_shape: u64,
+        seed: u64,
+        progress: &(dyn Fn(u64) -> bool + Sync),
+        judge: &(dyn Fn(&mut RecognitionRate, usize, &Imprint) + Sync),
+    ) -> Option<RecognitionRate> {
+        const CHUNK: u64 = 50;
         let places = |key: usize| {
             let key = self.keys().get(key);
             let fits =
@@ -170,12 +186,7 @@ impl Model {
             .map(|(shape, chunk)| {
                 let number = crate::index::index(chunk) * draws.len() + shape;
                 let mut random = generator(seed, number as u64);
-                let mut rate = RecognitionRate {
-                    touches: 0,
-                    right: 0,
-                    held: 0,
-                    claimed: 0.0,
-                };
+                let mut rate = RecognitionRate::default();
                 for _ in 0..CHUNK.min(per_shape - chunk * CHUNK) {
                     if stopped.load(Ordering::Relaxed) {
                         break;
@@ -184,7 +195,7 @@ impl Model {
                         break;
                     };
                     let touch = self.touch_of(key, (columns, rows), noise, &mut random);
-                    rate.add(self, &scanner, told, shape, &touch);
+                    judge(&mut rate, shape, &touch);
                     if !progress(1) {
                         stopped.store(true, Ordering::Relaxed);
                     }
@@ -306,6 +317,16 @@ impl Model {
 }
 
 impl RecognitionRate {
+    /// Counts a touch of a shape by the name that it was given and how probable that was; None for no name.
+    pub(super) fn count(&mut self, shape: usize, named: Option<(usize, f64)>) {
+        self.touches += 1;
+        if let Some((named, probability)) = named {
+            self.held += 1;
+            self.right += u64::from(named == shape);
+            self.claimed += probability;
+        }
+    }
+
     /// Names one touch.
     fn add(
         &mut self,

@@ -9,6 +9,7 @@
 //! ```text
 //! FOLDER/washer.json                    a shape
 //! FOLDER/.commands                      what was typed after `:`, a line each
+//! FOLDER/.recognise                     the set of shapes that was chosen last
 //! FOLDER/.lock                          held while writing
 //! FOLDER/.taxel-tmp                     being written
 //! FOLDER/.trash/0000000007 washer.json  deleted
@@ -48,6 +49,8 @@ mod library;
 mod journal;
 
 #[cfg(feature = "library")]
+mod chosen_set;
+
 mod commands;
 
 #[cfg(feature = "sweep")]
@@ -69,6 +72,7 @@ pub(crate) use temporary::ScratchFolder;
 pub use error::LibraryError;
 
 #[cfg(feature = "library")]
+pub use chosen_set::ChosenSetFile;
 pub use commands::CommandFile;
 
 #[cfg(feature = "library")]

@@ -199,6 +199,55 @@ fn what_descriptors_pairs_and_classifiers_are_worth() {
 }
 
 #[test]
+fn what_is_said_and_written_fits_what_is_asked() {
+    let place = Place::new();
+    place.done(&format!(
+        "model train rectangles.jsonl {COARSE} --out m.npz"
+    ));
+    let wrong = |asked: &str| {
+        let text = place.done(&format!("model confusion m.npz {asked}"));
+        let line = text.lines().find(|line| line.starts_with("wrong"));
+        line.expect("it is there").to_owned()
+    };
+    assert!(wrong("").ends_with("the limit: no method errs less"));
+    let given = wrong("--given na,p");
+    assert!(given.ends_with("no method that sees only these descriptors errs less"));
+    assert!(wrong("--classifier lda").ends_with('%'), "not the limit");
+    place.done("model confusion m.npz --classifier all --export all.csv");
+    let table = String::from_utf8(place.read("all.csv")).expect("text");
+    assert!(table.starts_with("classifier,error,right_in_top_two,information_bits\nz,"));
+    assert!(
+        table
+            .lines()
+            .last()
+            .is_some_and(|line| line.starts_with("limit,"))
+    );
+    let run = place.run(
+        "model confusion m.npz --classifier all --export all.svg",
+        "",
+    );
+    refused(
+        &run,
+        1,
+        "all.svg: the table of all classifiers is written as .csv",
+    );
+    // Noise, from the whole imprint and from descriptors.
+    let noisy = "model confusion m.npz --noise 0:0.04:0.02 --dead 0,4 --touches 50 --quiet";
+    let shown = place.done(&format!("{noisy} --export noise.svg"));
+    assert!(shown.contains("\n4 dead taxels\n"), "{shown}");
+    let drawn = String::from_utf8(place.read("noise.svg")).expect("text");
+    assert!(drawn.contains(">4 dead taxels</text>") && drawn.contains(">noise</text>"));
+    let right = |asked: &str| {
+        let answer = place.json(&format!("{noisy} --json {asked}"));
+        let rows = answer["degradation"].as_array().expect("rows").clone();
+        [0, 2].map(|row: usize| rows[row]["accuracy"].as_f64().expect("a share"))
+    };
+    let (whole, given) = (right(""), right("--given na,p"));
+    assert!(given[0] <= whole[0] + 0.1 && given[1] < whole[1] - 0.05);
+    assert!(given[1] < given[0] - 0.1, "one taxel more is another count");
+}
+
+#[test]
 fn shards_and_threads_give_the_same_bytes() {
     let place = Place::new();
     let train = "model train parts.jsonl --positions 10 --angle 0:359:3 --quiet";
@@ -345,14 +394,14 @@ fn sets_that_make_no_sense_are_refused_in_one_sentence() {
         &place.run(cut, ""),
         1,
         "t: the 16 x 16 sensor cuts off 3600 of 3600 poses; use a larger sensor or other positions, \
-         or allow it",
+         or allow it with --allow-cut",
     );
     place.done(&format!("{cut} --allow-cut"));
     refused(
         &train("--shape 'huge=ellipse radius_x=40 radius_y=40'", ""),
         1,
         "huge: the 64 x 64 sensor cuts off 7200 of 7200 poses; use a larger sensor or other positions, \
-         or allow it",
+         or allow it with --allow-cut",
     );
     refused(
         &taxel("model confusion nowhere", ""),

@@ -9,13 +9,13 @@ use serde_json::json;
 
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::confusion::{ConfusionArguments, Evaluated};
-use crate::cli::commands::export::put;
+use crate::cli::commands::export::{ending, put};
 use crate::cli::commands::model;
 use crate::cli::commands::noise;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
-use crate::cli::output::evaluation::{self, EvaluationJson};
+use crate::cli::output::evaluation::{self, EvaluationJson, NamedBy};
 use crate::cli::output::report;
 use crate::formats::{ConfusionMap, json};
 use crate::recognition::{Evaluation, Model, Peer, PeerEvaluation, greedy};
@@ -43,8 +43,8 @@ pub(crate) fn confusion(
         }
         Evaluated::Greedy => Ok(chosen(&model, asked, charset)),
         Evaluated::Pairs => Ok(pairs(&model, as_json, charset)),
-        Evaluated::AllPeers => Ok(all_peers(&model, asked, charset)),
-        Evaluated::Noise(noise) => noise::degradation(&model, noise, asked.form, charset),
+        Evaluated::AllPeers => all_peers(&model, asked, charset),
+        Evaluated::Noise(noise) => noise::degradation(&model, noise, asked, charset),
         Evaluated::HalfStep => noise::half_step(&model, as_json, charset),
     }
 }
@@ -79,12 +79,32 @@ fn pairs(model: &Model, as_json: bool, charset: Charset) -> String {
     report::ascii_json(&line) + "\n"
 }
 
-/// The errors of all other classifiers beside the limit.
-fn all_peers(model: &Model, asked: &ConfusionArguments, charset: Charset) -> String {
+/// The errors of all other classifiers beside the limit. Writes them to a file of commas too, if one is asked for.
+///
+/// # Errors
+/// [`CliError::Ending`] for a file that is no table.
+fn all_peers(
+    model: &Model,
+    asked: &ConfusionArguments,
+    charset: Charset,
+) -> Result<String, CliError> {
+    if let Some(path) = asked.export.as_ref().filter(|path| ending(path) != "csv") {
+        return Err(CliError::Ending {
+            name: path.to_string_lossy().into_owned(),
+            what: "the table of all classifiers",
+            expected: ".csv",
+        });
+    }
     let all = Peer::ALL.map(|peer| peer.evaluate(model, &asked.peers));
     let limit = Evaluation::of(model);
-    if asked.form != EvaluationForm::Json {
-        return evaluation::peers(&all, &limit, charset);
+    if let Some(path) = &asked.export {
+        let table = evaluation::peers_csv(&all, &limit);
+        put(path, table.as_bytes(), asked.existing)?;
+    }
+    match asked.form {
+        EvaluationForm::Json => {}
+        EvaluationForm::Csv => return Ok(evaluation::peers_csv(&all, &limit)),
+        EvaluationForm::Text => return Ok(evaluation::peers(&all, &limit, charset)),
     }
     let errors = all.iter().map(|reached| {
         let error = json!(reached.evaluation.error());
@@ -92,7 +112,7 @@ fn all_peers(model: &Model, asked: &ConfusionArguments, charset: Charset) -> Str
     });
     let limit = ("limit".to_owned(), json!(limit.error()));
     let table: serde_json::Map<_, _> = errors.chain([limit]).collect();
-    json::text(&table) + "\n"
+    Ok(json::text(&table) + "\n")
 }
 
 /// One evaluation, in the form that is asked for; `peer` is the classifier, if it is not the best one. Writes the file
@@ -119,7 +139,12 @@ fn shown(
             let matrix = evaluation::matrix(own, charset);
             let worst = evaluation::worst_pairs(own, charset);
             let features = charset.lines(&evaluation::features(peer));
-            let summary = evaluation::summary(own, charset);
+            let named = match (&asked.of, peer) {
+                (_, Some(_)) => NamedBy::Peer,
+                (Evaluated::Given(_), None) => NamedBy::Descriptors,
+                _ => NamedBy::Imprint,
+            };
+            let summary = evaluation::summary(own, named, charset);
             format!("{summary}\n{matrix}{worst}{features}")
         }
     })
@@ -147,10 +172,4 @@ fn file(path: &Path, own: &Evaluation) -> Result<Vec<u8>, CliError> {
         "png" => map()?.with_title(&title).png().map_err(CliError::Write)?,
         _ => evaluation::csv(own).into_bytes(),
     })
-}
-
-/// The ending of a file's name in small letters; empty without one.
-pub(crate) fn ending(path: &Path) -> String {
-    let ending = path.extension().and_then(|ending| ending.to_str());
-    ending.map_or_else(String::new, str::to_ascii_lowercase)
 }

@@ -207,6 +207,12 @@ pub(crate) enum Exported {
     Said(String),
 }
 
+/// The ending of a file's name in small letters; empty without one.
+pub(crate) fn ending(path: &Path) -> String {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    ending.map_or_else(String::new, str::to_ascii_lowercase)
+}
+
 /// Writes a file: completely or not at all.
 pub(crate) fn put(path: &Path, content: &[u8], existing: Existing) -> Result<(), CliError> {
     Ok(finished(path, content, existing)?.persist()?)

@@ -95,7 +95,7 @@ pub(crate) fn train(
         text.insert("file".to_owned(), json!(name));
         json::text(&text) + "\n"
     } else {
-        let summary = evaluation::summary(&limit, charset);
+        let summary = evaluation::summary(&limit, evaluation::NamedBy::Imprint, charset);
         charset.lines(&format!("written: {name}\n")) + &summary
     })
 }
@@ -303,7 +303,7 @@ pub(crate) fn show(
         text += &format!(", {cut} of all cut off by the sensor");
     }
     text.push('\n');
-    text += &evaluation::summary(&limit, charset);
+    text += &evaluation::summary(&limit, evaluation::NamedBy::Imprint, charset);
     let never = model.never_certain();
     if !never.is_empty() {
         let names = never

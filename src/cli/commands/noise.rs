@@ -19,20 +19,23 @@ use std::sync::atomic::Ordering;
 use serde_json::json;
 
 use crate::cli::arguments::flags::EvaluationForm;
-use crate::cli::arguments::model::confusion::NoiseArguments;
+use crate::cli::arguments::model::confusion::{ConfusionArguments, NoiseArguments};
 use crate::cli::arguments::model::touches::TouchesArguments;
+use crate::cli::commands::export::{ending, put};
 use crate::cli::commands::model;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, bar, percent};
+use crate::cli::output::plot;
 use crate::cli::output::progress::Progress;
 use crate::cli::output::report;
 use crate::cli::signals::Signals;
-use crate::formats::json;
+use crate::formats::{LinePlot, json};
 use crate::recognition::{
-    Model, Noise, RecognitionRate, TouchesUntil, TrainingError, random_taxels,
+    GivenDescriptors, Model, Noise, RecognitionRate, TouchesUntil, TrainingError, random_taxels,
 };
+use crate::storage::UnfinishedFile;
 
 /// A line of the table: the noise, the number of dead taxels, and what was reached.
 struct NoiseRow {
@@ -53,16 +56,21 @@ struct NoiseRow {
 pub(crate) fn degradation(
     model: &Model,
     asked: &NoiseArguments,
-    form: EvaluationForm,
+    all_asked: &ConfusionArguments,
     charset: Charset,
 ) -> Result<String, CliError> {
+    let export = all_asked.export.as_deref();
+    if let Some(path) = export {
+        drop(UnfinishedFile::new(path, all_asked.existing)?);
+    }
+    let given = given_of(asked, all_asked);
     let signals = Signals::heard().map_err(CliError::System)?;
     let sizes = (model.sensor().columns(), model.sensor().rows());
     let (columns, rows) = asked.size.unwrap_or(sizes);
     let values: Vec<f64> = asked.noise.values().collect();
     let each = asked.touches * model.shapes().len() as u64;
     let all = each * values.len() as u64 * asked.dead.len() as u64;
-    let progress = Progress::new(all, asked.quiet, charset);
+    let progress = Progress::counting("touches", all, asked.quiet, charset);
     let tell = |touches: u64| {
         progress.add(touches);
         !signals.stopped.load(Ordering::Relaxed)
@@ -72,14 +80,20 @@ pub(crate) fn degradation(
         let mask = random_taxels(columns, rows, dead, asked.seed);
         for &value in &values {
             let noise = Noise::new(value)?.without(mask);
-            let rate = model.recognition_rate(
-                (columns, rows),
-                &noise,
-                &noise,
-                asked.touches,
-                asked.seed,
-                &tell,
-            );
+            let rate = match &given {
+                None => model.recognition_rate(
+                    (columns, rows),
+                    &noise,
+                    &noise,
+                    asked.touches,
+                    asked.seed,
+                    &tell,
+                ),
+                Some(given) => {
+                    let size = (columns, rows);
+                    given.rate(model, size, &noise, asked.touches, asked.seed, &tell)
+                }
+            };
             let rate = rate.ok_or_else(|| signals.failure())?;
             table.push(NoiseRow {
                 noise: value,
@@ -89,11 +103,61 @@ pub(crate) fn degradation(
         }
     }
     progress.finish();
-    Ok(match form {
+    if let Some(path) = export {
+        let content = match ending(path).as_str() {
+            "svg" => noise_plot(&table).svg().into_bytes(),
+            "png" => noise_plot(&table).png().map_err(CliError::Write)?,
+            _ => noise_csv(&table).into_bytes(),
+        };
+        put(path, &content, all_asked.existing)?;
+    }
+    Ok(match all_asked.form {
         EvaluationForm::Json => noise_json(&table, (columns, rows), asked.seed),
         EvaluationForm::Csv => noise_csv(&table),
-        EvaluationForm::Text => charset.lines(&noise_text(&table, asked.seed, charset)),
+        EvaluationForm::Text => {
+            let text = noise_text(&table, asked.seed, given.is_some(), charset);
+            charset.lines(&(text + &noise_curves(&table, charset)))
+        }
     })
+}
+
+/// The descriptors that are known, measured in the steps that are asked for; None for the whole imprint.
+fn given_of(asked: &NoiseArguments, all_asked: &ConfusionArguments) -> Option<GivenDescriptors> {
+    let given = asked.given.clone()?;
+    Some(given.rounded(all_asked.roundings.clone()))
+}
+
+/// The rows of each number of dead taxels: noise and accuracy.
+fn noise_points(table: &[NoiseRow]) -> Vec<(u32, Vec<(f64, f64)>)> {
+    let groups = table.chunk_by(|one, other| one.dead == other.dead);
+    let points = |rows: &[NoiseRow]| {
+        let points = rows.iter().map(|row| (row.noise, row.rate.accuracy()));
+        (rows[0].dead, points.collect())
+    };
+    groups.map(points).collect()
+}
+
+/// A curve for each number of dead taxels, to draw.
+fn noise_plot(table: &[NoiseRow]) -> LinePlot {
+    let plot = LinePlot::new("noise", "right");
+    let curves = noise_points(table).into_iter();
+    curves.fold(plot, |plot, (dead, points)| {
+        plot.with_curve(&format!("{dead} dead taxels"), &points)
+    })
+}
+
+/// The same curves in the terminal, each below the other; none of a single noise.
+fn noise_curves(table: &[NoiseRow], charset: Charset) -> String {
+    let curves = noise_points(table).into_iter();
+    let curves = curves.map(|(dead, points)| {
+        let curve = plot::lines("right", "noise", &points, charset);
+        match (curve.is_empty(), dead) {
+            (true, _) => String::new(),
+            (false, 0) => format!("\n{curve}"),
+            (false, dead) => format!("\n{dead} dead taxels\n{curve}"),
+        }
+    });
+    curves.collect()
 }
 
 /// One line of JSON: size of the matrix, seed, and a list of the rows, with all digits.
@@ -140,7 +204,7 @@ fn noise_csv(table: &[NoiseRow]) -> String {
 }
 
 /// The table with a bar per row.
-fn noise_text(table: &[NoiseRow], seed: u64, charset: Charset) -> String {
+fn noise_text(table: &[NoiseRow], seed: u64, given: bool, charset: Charset) -> String {
     /// Characters of a bar for 100 %.
     const BAR: usize = 30;
     let mut text = String::from("  noise  dead     right            held   claimed\n");
@@ -161,7 +225,8 @@ fn noise_text(table: &[NoiseRow], seed: u64, charset: Charset) -> String {
     let touches = table.first().map_or(0, |row| row.rate.touches);
     let _ = writeln!(
         text,
-        "{touches} touches a row, seed {seed}; held: imprints that some shape leaves without noise"
+        "{touches} touches a row, seed {seed}; held: {} that some shape leaves without noise",
+        if given { "values" } else { "imprints" }
     );
     text
 }
@@ -224,7 +289,7 @@ pub(crate) fn touches(
     let model = model::find(&asked.model, shelf)?;
     let signals = Signals::heard().map_err(CliError::System)?;
     let all = asked.runs * model.shapes().len() as u64;
-    let progress = Progress::new(all, asked.quiet, charset);
+    let progress = Progress::counting("runs", all, asked.quiet, charset);
     let tell = |runs: u64| {
         progress.add(runs);
         !signals.stopped.load(Ordering::Relaxed)

@@ -218,7 +218,7 @@ fn merge_models(files: &[PathBuf], wanted: &Wanted, charset: Charset) -> Result<
         });
         report::ascii_json(&line) + "\n"
     } else {
-        evaluation::summary(&limit, charset)
+        evaluation::summary(&limit, evaluation::NamedBy::Imprint, charset)
     })
 }
 

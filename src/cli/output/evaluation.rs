@@ -109,8 +109,30 @@ pub(crate) fn bar(share: f64, width: usize, charset: Charset) -> String {
     full.repeat((share * width as f64).round() as usize)
 }
 
+/// Who names the shapes of an evaluation; it says what the error is the limit of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum NamedBy {
+    /// The best method that sees the whole imprint.
+    Imprint,
+    /// The best one that sees some descriptors.
+    Descriptors,
+    /// Another method, which is not the best one.
+    Peer,
+}
+
+impl NamedBy {
+    /// What is said behind the error.
+    fn remark(self) -> &'static str {
+        match self {
+            Self::Imprint => "  the limit: no method errs less",
+            Self::Descriptors => "  no method that sees only these descriptors errs less",
+            Self::Peer => "",
+        }
+    }
+}
+
 /// What an evaluation says, in lines: touches, error, certain, top two, information.
-pub(crate) fn summary(evaluation: &Evaluation, charset: Charset) -> String {
+pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy, charset: Charset) -> String {
     let number = |number| grouped(number, charset);
     let share = |part: u128| percent(ratio(part, evaluation.touches));
     let Evaluation {
@@ -137,7 +159,7 @@ pub(crate) fn summary(evaluation: &Evaluation, charset: Charset) -> String {
         );
     };
     line("right", *right, "");
-    line("wrong", touches - right, "  the limit: no method errs less");
+    line("wrong", touches - right, named.remark());
     line("certain", *certain, "  only one shape can leave them");
     line("tied", *tied, "  named by the order of the set");
     line("in top two", *right_in_top_two, "");
@@ -315,6 +337,23 @@ pub(crate) fn peers(reached: &[PeerEvaluation], limit: &Evaluation, charset: Cha
     }
     line("limit of one touch", limit);
     charset.lines(&(text + &features(reached.first())))
+}
+
+/// The table of all classifiers with commas, and with a row of names; the limit is the last row.
+pub(crate) fn peers_csv(reached: &[PeerEvaluation], limit: &Evaluation) -> String {
+    let mut text = String::from("classifier,error,right_in_top_two,information_bits\n");
+    let peers = reached.iter().map(|own| (own.peer.name(), &own.evaluation));
+    for (name, own) in peers.chain([("limit", limit)]) {
+        let top_two = ratio(own.right_in_top_two, own.touches);
+        // Cannot fail: the text is kept in memory.
+        let _ = writeln!(
+            text,
+            "{name},{},{top_two},{}",
+            own.error(),
+            own.information_bits
+        );
+    }
+    text
 }
 
 /// The features that a peer used, and those that it left out.

@@ -21,6 +21,8 @@ const PAUSE: Duration = Duration::from_secs(10);
 
 /// Shows how many poses of a sweep are done. It is shared by all threads of the sweep.
 pub(crate) struct Progress {
+    /// What is counted, in the plural.
+    noun: &'static str,
     /// Poses of the whole work.
     all: u64,
     /// Poses that are done.
@@ -42,6 +44,11 @@ enum Shown {
 impl Progress {
     /// Starts to show the progress of `all` poses.
     pub(crate) fn new(all: u64, quiet: bool, charset: Charset) -> Self {
+        Self::counting("poses", all, quiet, charset)
+    }
+
+    /// The same of something else, named in the plural.
+    pub(crate) fn counting(noun: &'static str, all: u64, quiet: bool, charset: Charset) -> Self {
         let shown = if quiet {
             Shown::Nothing
         } else if std::io::stderr().is_terminal() {
@@ -53,9 +60,9 @@ impl Progress {
             };
             let style = ProgressStyle::with_template(template);
             // Millions of poses a second: the library's own format would show decimals.
-            let rate = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
+            let rate = move |state: &ProgressState, text: &mut dyn std::fmt::Write| {
                 // Cannot fail: the text is kept in memory.
-                let _ = write!(text, "{:.0} poses/s", state.per_sec());
+                let _ = write!(text, "{:.0} {noun}/s", state.per_sec());
             };
             bar.set_style(
                 style
@@ -69,6 +76,7 @@ impl Progress {
             Shown::Lines(now, Mutex::new(now))
         };
         Self {
+            noun,
             all,
             done: AtomicU64::new(0),
             shown,
@@ -104,7 +112,8 @@ impl Progress {
         let left = elapsed.as_secs_f64() * (1.0 / share - 1.0);
         let all = self.all;
         format!(
-            "{done} of {all} poses, {:.0} %, {left:.0} s left\n",
+            "{done} of {all} {}, {:.0} %, {left:.0} s left\n",
+            self.noun,
             share * 100.0
         )
     }

@@ -245,6 +245,8 @@ pub enum Copied {
 pub enum LibraryEvent {
     /// Its list.
     List(Result<Vec<LibraryEntry>, String>),
+    /// The names of the models beside it.
+    Models(Vec<String>),
     /// The names of its shapes that were deleted.
     Trash(Result<Vec<String>, String>),
     /// Some of its shapes, by their place in the list.

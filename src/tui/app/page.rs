@@ -7,6 +7,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::imprint::Imprint;
+use crate::recognition::PlacedSource;
 use crate::tui::app::message::Message;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
@@ -27,6 +28,15 @@ pub enum Slot {
     Prompt,
     /// In place of a notice, over the page below.
     Question,
+}
+
+/// Poses that are drawn over the matrix.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PoseLayer<'a> {
+    /// The likeliest one first.
+    pub sources: &'a [PlacedSource],
+    /// Whether they are shown; None for what suits the room.
+    pub shown: Option<bool>,
 }
 
 /// A page that lies over the matrix. The top one receives the keys.
@@ -68,6 +78,12 @@ pub trait Page {
     /// The imprint that the matrix is compared with: taxels that differ have marks. None for no comparison.
     fn compared_with(&self) -> Option<&Imprint> {
         None
+    }
+
+    /// Shapes in poses that may have left the imprint on the matrix, which are drawn over it; none unless the page says
+    /// otherwise.
+    fn poses(&self) -> PoseLayer<'_> {
+        PoseLayer::default()
     }
 
     /// Whether keys, clicks and the cursor that it has no use for are the matrix's.

@@ -123,11 +123,11 @@ impl Arguments {
         }
     }
 
-    /// Whether the rest of the line is the name of a shape or a file, which may have spaces.
+    /// Whether the rest of the line is the name of a shape, a model or a file, which may have spaces.
     pub fn is_name(self) -> bool {
         matches!(
             self,
-            Self::Shape(_) | Self::Deleted | Self::Name | Self::File(_)
+            Self::Shape(_) | Self::Deleted | Self::Name | Self::Model | Self::File(_)
         )
     }
 }
@@ -288,6 +288,7 @@ actions! {
         NEXT_SET "next-set" [] Recognise(RecogniseMessage::NextSet(1));
         PREVIOUS_SET "previous-set" [] Recognise(RecogniseMessage::NextSet(-1));
         CONFUSION "confusion" [] Recognise(RecogniseMessage::Confusion);
+        POSES "poses" [] Recognise(RecogniseMessage::Poses);
         SEPARATE "separate" [] Recognise(RecogniseMessage::Separate(SeparationFlags::NONE));
         LOWER_ERROR "lower-error" [] Recognise(RecogniseMessage::Want(-1));
         HIGHER_ERROR "higher-error" [] Recognise(RecogniseMessage::Want(1));

@@ -315,6 +315,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "set" "next, previous set of shapes";
         [Char('v') => CONFUSION] "confusion" "which shapes are taken for which";
         [Char('V') => SEPARATE] "" "the error against the size of the shapes";
+        [Char('P') => POSES] "" "outlines of the likeliest pose and of others";
         [Enter => ACCEPT] "" "train the set, after that was stopped";
         [Esc => CANCEL, Char('r') => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]
             "close" "stop training; back to the descriptors";

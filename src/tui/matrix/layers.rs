@@ -9,6 +9,7 @@ use ratatui::style::Modifier;
 
 use crate::description::Description;
 use crate::geometry::{Ellipse, Pen, Point, Side, Solid};
+use crate::recognition::PlacedSource;
 use crate::source::Source;
 use crate::tui::matrix::layout::{TaxelGrid, TaxelSize};
 use crate::tui::widget::dots::{DOTS, DotCanvas, Place, glyph};
@@ -40,6 +41,10 @@ impl Layers {
 struct DotGrid<'a> {
     grid: &'a TaxelGrid,
     canvas: DotCanvas,
+    /// By how many cells what is drawn is moved.
+    by: [f64; 2],
+    /// Whether only some of the dots of a line are set.
+    faint: bool,
 }
 
 impl<'a> DotGrid<'a> {
@@ -48,7 +53,19 @@ impl<'a> DotGrid<'a> {
         Self {
             grid,
             canvas: DotCanvas::new(columns, lines),
+            by: [0.0; 2],
+            faint: false,
         }
+    }
+
+    /// A line between two places, faint or not.
+    fn stroke(&mut self, from: Place, to: Place) {
+        let faint = self.faint;
+        // By place, so that short pieces of a curve are as faint as a long line.
+        let start = from.0 + from.1;
+        self.canvas.dashed(from, to, |step| {
+            !faint || (start + f64::from(step)).rem_euclid(3.0) < 1.0
+        });
     }
 
     /// The dots of a taxel across and down.
@@ -62,8 +79,8 @@ impl<'a> DotGrid<'a> {
         let (across, down) = self.dots();
         let (left, top) = (self.grid.columns.first, self.grid.rows.first);
         (
-            (x - f64::from(left)) * f64::from(across),
-            (y - f64::from(top)) * f64::from(down),
+            (x + self.by[0] - f64::from(left)) * f64::from(across),
+            (y + self.by[1] - f64::from(top)) * f64::from(down),
         )
     }
 }
@@ -76,7 +93,7 @@ impl Pen<f64> for DotGrid<'_> {
         if length > 0.0 {
             let aside = (-dy / length * INSIDE, dx / length * INSIDE);
             let moved = |place: Place| (place.0 + aside.0, place.1 + aside.1);
-            self.canvas.line(moved(from), moved(to));
+            self.stroke(moved(from), moved(to));
         }
     }
 
@@ -98,7 +115,7 @@ impl Pen<f64> for DotGrid<'_> {
         };
         let places: Vec<Place> = (0..=PIECES).map(at).collect();
         for pair in places.windows(2) {
-            self.canvas.line(pair[0], pair[1]);
+            self.stroke(pair[0], pair[1]);
         }
     }
 }
@@ -109,6 +126,8 @@ pub(in crate::tui) struct Overlay<'a> {
     pub outline: Option<&'a Source>,
     /// The region whose rectangle, CG and CD are drawn.
     pub region: Option<Description>,
+    /// Shapes in poses that may have left the imprint: the first one as a line, the others faintly.
+    pub poses: &'a [PlacedSource],
 }
 
 impl Overlay<'_> {
@@ -127,6 +146,11 @@ impl Overlay<'_> {
         if let Some(source) = self.outline {
             source.draw(&mut dots);
         }
+        for (index, placed) in self.poses.iter().enumerate() {
+            (dots.by, dots.faint) = (placed.by, index > 0);
+            placed.source.draw(&mut dots);
+        }
+        (dots.by, dots.faint) = ([0.0; 2], false);
         for (column, row, shape) in dots.canvas.characters() {
             let place = Position::new(grid.x + column, grid.y + row);
             let Some(cell) = buffer.cell_mut(place) else {

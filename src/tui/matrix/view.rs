@@ -18,7 +18,7 @@ use crate::description::{Region, RegionKind};
 use crate::imprint::Imprint;
 use crate::source::Source;
 use crate::tui::app::document::Reading;
-use crate::tui::app::page::Page;
+use crate::tui::app::page::{Page, PoseLayer};
 use crate::tui::app::state::{App, Display};
 use crate::tui::matrix::layers::{Layers, Overlay};
 use crate::tui::matrix::layout::{TaxelGrid, TaxelSize};
@@ -44,6 +44,8 @@ pub struct MatrixView<'a> {
     pub source: Option<&'a Source>,
     /// What is shown over the taxels.
     pub layers: Layers,
+    /// Poses that may have left the imprint.
+    pub poses: PoseLayer<'a>,
 }
 
 impl<'a> MatrixView<'a> {
@@ -58,6 +60,7 @@ impl<'a> MatrixView<'a> {
             compared: app.pane().and_then(Page::compared_with),
             source: app.shown().source.as_ref(),
             layers: app.layers,
+            poses: app.pane().map_or(PoseLayer::default(), Page::poses),
         }
     }
 
@@ -151,6 +154,10 @@ impl<'a> MatrixView<'a> {
                 .filter(|_| Layers::shown(self.layers.outline, grid)),
             region: (self.reading.description(self.chosen))
                 .filter(|_| Layers::shown(self.layers.rectangle, grid)),
+            poses: match Layers::shown(self.poses.shown, grid) {
+                true => self.poses.sources,
+                false => &[],
+            },
         };
         overlay.draw(grid, theme, buffer, active);
     }

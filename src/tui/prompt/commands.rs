@@ -23,7 +23,6 @@ use crate::tui::keys::binding::Context;
 use crate::tui::keys::default_keys::DEFAULT_KEYS;
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::separate::request::SeparationFlags;
-use crate::tui::recognise::sets::ModelChoice;
 
 /// A command: all lines that begin with one word.
 #[derive(Clone, Debug)]
@@ -229,10 +228,6 @@ fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
         }
         (Some(Arguments::Sizes), said) => {
             words(SeparationFlags::NAMES.map(str::to_owned).to_vec(), said)
-        }
-        (Some(Arguments::Model), []) => {
-            let sets = ModelChoice::BUILT_IN;
-            sets.iter().map(|set| set.name().to_owned()).collect()
         }
         (_, []) => {
             let words = command.words.iter().filter(|(word, _)| !word.is_empty());

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::formats::Name;
 use crate::imprint::Imprint;
-use crate::recognition::{Nearest, PoseEstimate};
+use crate::recognition::{Nearest, PlacedSource, PoseEstimate};
 use crate::tui::recognise::separate::found::SizesFound;
 use crate::tui::recognise::separate::request::SeparationFlags;
 use crate::tui::recognise::sets::{ModelChoice, TrainedModel};
@@ -24,6 +24,8 @@ pub enum RecogniseMessage {
     Keep,
     /// To forget the touches that were kept.
     Forget,
+    /// To show the outlines of the poses that may have left the imprint, or hide them.
+    Poses,
     /// The confusion matrix.
     Confusion,
     /// The limit of the set against the size of its shapes.
@@ -52,6 +54,8 @@ pub struct Look {
     /// The number of the shape that the answer names, or of that of the nearest imprint, and in which poses it leaves that
     /// imprint.
     pub pose: Option<(usize, PoseEstimate)>,
+    /// Some of these poses, the likeliest first.
+    pub poses: Vec<PlacedSource>,
 }
 
 /// A model, or why there is none.

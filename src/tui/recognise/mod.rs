@@ -29,6 +29,6 @@ pub mod confusion;
 
 pub mod separate;
 
-mod reach;
+pub(in crate::tui) mod reach;
 
 pub mod update;

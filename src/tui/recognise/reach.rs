@@ -6,6 +6,7 @@ use crate::tui::app::change::begin;
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Document;
 use crate::tui::app::state::App;
+use crate::tui::recognise::sets::ModelChoice;
 use crate::tui::recognise::state::Recognition;
 
 /// The state, wherever it is: on the page, or kept while that is closed.
@@ -16,6 +17,16 @@ pub(super) fn state(app: &mut App) -> Option<&mut Recognition> {
         _ => None,
     });
     open.or(app.recognition.as_mut()).map(|page| &mut **page)
+}
+
+/// The set that is chosen.
+pub(in crate::tui) fn chosen_set(app: &App) -> Option<&ModelChoice> {
+    let open = app.dialogs.iter().find_map(|dialog| match dialog {
+        Dialog::Recognition(page) => Some(page),
+        _ => None,
+    });
+    let page = open.or(app.recognition.as_ref())?;
+    Some(page.choice())
 }
 
 /// Puts an imprint onto the matrix as if it were drawn: nothing says what made it.

@@ -70,6 +70,8 @@ pub struct Recognition {
     look: Option<Box<Look>>,
     /// Whether a search is under way.
     looking: bool,
+    /// Whether outlines of poses are shown; None for where taxels are large.
+    outlines: Option<bool>,
     /// The page of sizes, while it is closed.
     pub(super) separate: Option<Box<Separate>>,
     /// The score of the exercise.
@@ -91,10 +93,16 @@ impl Recognition {
             answer: None,
             look: None,
             looking: false,
+            outlines: None,
             separate: None,
             score: Score::default(),
             random: Pcg64::seed_from_u64(seed),
         }
+    }
+
+    /// Chooses the set that is there at first, without a model.
+    pub fn begin_with(&mut self, choice: ModelChoice) {
+        self.choice = choice;
     }
 
     /// The set.
@@ -289,6 +297,16 @@ impl Recognition {
         self.looking = true;
         let shape = self.answer().and_then(|answer| answer.shape);
         Some((trained, self.present, shape))
+    }
+
+    /// Whether outlines of poses are shown; None for where taxels are large.
+    pub fn outlines(&self) -> Option<bool> {
+        self.outlines
+    }
+
+    /// Shows outlines of poses, or hides them.
+    pub fn show_outlines(&mut self, shown: bool) {
+        self.outlines = Some(shown);
     }
 
     /// Takes what was searched.

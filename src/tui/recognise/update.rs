@@ -13,6 +13,8 @@ use crate::tui::app::state::{App, NarrowPage};
 use crate::tui::explore::message::SweepProgress;
 use crate::tui::keys::action;
 use crate::tui::matrix;
+use crate::tui::matrix::layers::Layers;
+use crate::tui::matrix::layout::TaxelGrid;
 use crate::tui::recognise::confusion::Confusion;
 use crate::tui::recognise::exercise::Exercise;
 use crate::tui::recognise::message::{Prepared, RecogniseMessage, RecognitionEvent};
@@ -74,6 +76,10 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
             }
             None
         }
+        RecogniseMessage::Poses => {
+            show_poses(app);
+            None
+        }
         RecogniseMessage::WriteSizes(name) => separate::update::write(app, name),
         RecogniseMessage::Seed(seed) => {
             state(app)?.random = Pcg64::seed_from_u64(seed);
@@ -105,6 +111,24 @@ fn open(app: &mut App, choice: Option<ModelChoice>) -> Option<Effect> {
 
 fn not_trained(app: &mut App) {
     refuse(app, "the set is not trained yet");
+}
+
+/// Shows the outlines of poses if they are not seen, otherwise hides them.
+fn show_poses(app: &mut App) {
+    let Some(panes) = app.panes() else { return };
+    let grid = TaxelGrid::of(panes.matrix, &app.reading().imprint, app.cursor());
+    let Some(page) = state(app) else { return };
+    let seen = Layers::shown(page.outlines(), &grid);
+    page.show_outlines(!seen);
+    let none = page.look().is_none_or(|look| look.poses.is_empty());
+    inform(
+        app,
+        match (seen, none) {
+            (true, _) => "without poses",
+            (false, true) => "no pose: nothing that the set knows touches the matrix",
+            (false, false) => "the likeliest pose; others of the 95 % faintly",
+        },
+    );
 }
 
 /// Begins an exercise.

@@ -23,7 +23,7 @@ use crate::formats::value::{counted, grouped};
 use crate::imprint::Imprint;
 use crate::pose::{Anchor, Axis};
 use crate::recognition::{Answer, AnswerState, Nearest, PoseEstimate};
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::page::{Page, PoseLayer, Slot};
 use crate::tui::explore::running::gauge;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
@@ -86,6 +86,13 @@ impl Page for Recognition {
     fn compared_with(&self) -> Option<&Imprint> {
         let nearest = self.look()?.nearest.as_ref()?;
         (nearest.distance > 0).then_some(&nearest.imprint)
+    }
+
+    fn poses(&self) -> PoseLayer<'_> {
+        PoseLayer {
+            sources: self.look().map_or(&[], |look| &look.poses),
+            shown: self.outlines(),
+        }
     }
 
     fn leaves_matrix(&self) -> bool {

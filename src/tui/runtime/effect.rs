@@ -93,6 +93,8 @@ pub enum Work {
 pub enum LibraryRequest {
     /// List its shapes.
     List,
+    /// List the names of stored models.
+    Models,
     /// List the names of deleted shapes.
     Trash,
     /// Read shapes, given by index in the list and name.

@@ -59,12 +59,14 @@ use crate::tui::runtime::write_access::WriteAccess;
 use crate::formats::value::counted;
 use crate::formats::{Name, StoredShape};
 use crate::storage::{
-    CommandFile, Expected, Journal, Library, LibraryError, LoadedShape, ModelCache, Orphan,
-    ScratchFolder, UNNAMED,
+    ChosenSetFile, CommandFile, Expected, Journal, Library, LibraryError, LoadedShape, ModelCache,
+    Orphan, ScratchFolder, UNNAMED,
 };
 use crate::tui::app::message::{Leftover, LibraryEvent, Message};
 use crate::tui::app::state::App;
 use crate::tui::app::update::update;
+use crate::tui::recognise::reach::chosen_set;
+use crate::tui::recognise::sets::ModelChoice;
 use crate::tui::runtime::effect::{Effect, LibraryRequest, TerminalEffect};
 
 /// The outside world: a library, unsaved work that crashed programs left in it, this program's journal, and workers.
@@ -76,6 +78,8 @@ pub struct World {
     orphan: Option<(Orphan, usize)>,
     /// Where unsaved work is kept.
     journal: JournalWriter,
+    /// Where the set of shapes that was chosen last is remembered, None for nowhere; and which it is.
+    chosen: Option<(ChosenSetFile, Option<ModelChoice>)>,
     /// Where the commands of the prompt are remembered, None for nowhere.
     commands: Option<CommandFile>,
     /// How many of them are.
@@ -94,6 +98,7 @@ impl World {
         let journal = JournalWriter::new(Journal::new(&library));
         let workers = Workers::with(ModelStore::beside(&library));
         let mut world = Self {
+            chosen: Some((ChosenSetFile::of(&library), None)),
             commands: Some(CommandFile::of(&library)),
             log: ShapeLog::default(),
             remembered: 0,
@@ -113,6 +118,7 @@ impl World {
         Self {
             library,
             orphan: None,
+            chosen: None,
             commands: None,
             remembered: 0,
             log: ShapeLog::default(),
@@ -196,11 +202,18 @@ impl World {
         self
     }
 
-    /// Gives the program the commands of earlier runs.
+    /// Gives the program the commands of earlier runs, and the set of shapes that was chosen last.
     pub fn remind(&mut self, app: &mut App) {
         if let Some(file) = &self.commands {
             app.commands = file.read();
             self.remembered = app.commands.len();
+        }
+        if let Some((file, chosen)) = &mut self.chosen {
+            let own = file.read().map(ModelChoice::from_name);
+            if let (Some(own), Some(page)) = (own, app.recognition.as_mut()) {
+                page.begin_with(own);
+            }
+            *chosen = chosen_set(app).cloned();
         }
     }
 
@@ -246,7 +259,20 @@ impl World {
             file.write(&app.commands);
             self.remembered = app.commands.len();
         }
+        self.remember_set(app);
         terminal
+    }
+
+    /// Remembers the set of shapes if another one has been chosen.
+    fn remember_set(&mut self, app: &App) {
+        let Some((file, chosen)) = &mut self.chosen else {
+            return;
+        };
+        let now = chosen_set(app).filter(|now| chosen.as_ref() != Some(*now));
+        if let Some(now) = now {
+            file.write(now.name());
+            *chosen = Some(now.clone());
+        }
     }
 
     /// Whether frames have come, or something else is to be said of their source.
@@ -280,6 +306,7 @@ impl World {
                 }
                 LibraryEvent::List(listed.map_err(|error| error.to_string()))
             }
+            LibraryRequest::Models => LibraryEvent::Models(self.workers.model_names()),
             LibraryRequest::Trash => {
                 LibraryEvent::Trash(self.library.in_trash().map_err(|error| error.to_string()))
             }

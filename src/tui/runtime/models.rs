@@ -45,7 +45,7 @@ impl ModelStore {
     }
 
     /// The names of the user's models; none of a folder that cannot be read.
-    fn names(&self) -> Vec<Name> {
+    pub(super) fn names(&self) -> Vec<Name> {
         let names = |folder: &ModelFolder| folder.names().into_iter().flatten();
         self.folder.iter().flat_map(names).collect()
     }
@@ -175,6 +175,9 @@ fn prepare(
     }))
 }
 
+/// So many outlines of poses can be told apart over a matrix.
+const POSES: usize = 13;
+
 /// Searches a model, on a thread of its own or at once.
 pub(super) fn look(
     trained: Arc<TrainedModel>,
@@ -184,16 +187,19 @@ pub(super) fn look(
 ) -> Option<WorkerEvent> {
     let search = move || {
         let nearest = trained.model.nearest(&imprint);
-        let pose = nearest.as_ref().and_then(|nearest| {
+        let found = nearest.as_ref().and_then(|nearest| {
             let shape = shape.or(Some(nearest.shape))?;
-            let pose = trained.model.pose_of(shape, &nearest.imprint, &|_| true);
-            Some((shape, pose?))
+            let all = &|_| true;
+            let (pose, poses) = (trained.model).poses_of(shape, &nearest.imprint, POSES, all)?;
+            Some(((shape, pose), poses))
         });
+        let (pose, poses) = found.unzip();
         WorkerEvent::Recognition(RecognitionEvent::Looked(Box::new(Look {
             trained,
             imprint: *imprint,
             nearest,
             pose,
+            poses: poses.into_iter().flatten().collect(),
         })))
     };
     let Some(post) = post else {

@@ -82,6 +82,12 @@ impl Workers {
         self.models.store.keep_in(cache);
     }
 
+    /// The names of stored models.
+    pub(super) fn model_names(&self) -> Vec<String> {
+        let names = self.models.store.names().into_iter();
+        names.map(|name| name.to_string()).collect()
+    }
+
     /// Measures how long a sweep would take, in place of the measurement before. Without threads, nothing: the answer would
     /// be another one each time.
     fn measure(&mut self, grid: Box<PoseGrid>) -> Option<WorkerEvent> {

@@ -16,6 +16,7 @@ use crate::tui::form::state::FormDialog;
 use crate::tui::keys::action::{self, Arguments};
 use crate::tui::keys::binding::Context;
 use crate::tui::prompt::commands::wants_names;
+use crate::tui::recognise::sets::ModelChoice;
 use crate::tui::runtime::effect::{Effect, LibraryRequest};
 use crate::tui::shapes::state::ListDialog;
 
@@ -44,6 +45,12 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
             app.dialogs
                 .pop_if(|dialog| matches!(dialog, Dialog::List(_)));
             refuse(app, reason);
+        }
+        LibraryEvent::Models(names) => {
+            if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
+                let sets = ModelChoice::BUILT_IN.map(|set| set.name().to_owned());
+                command.complete(&[&sets[..], &names].concat());
+            }
         }
         LibraryEvent::Trash(Ok(names)) => {
             if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
@@ -149,6 +156,7 @@ fn on_change(app: &mut App, change: LibraryEvent) {
         }
         LibraryEvent::List(_)
         | LibraryEvent::Trash(_)
+        | LibraryEvent::Models(_)
         | LibraryEvent::Read(_)
         | LibraryEvent::Named(..)
         | LibraryEvent::Failed(_) => {}

@@ -7,7 +7,7 @@
 //! taxel model confusion figures --given na,p           as if only these descriptors were known
 //! taxel model confusion figures --greedy | --pairs     which descriptors; which two shapes
 //! taxel model confusion figures --classifier knn       by another method
-//! taxel model confusion figures --noise 0:0.1:0.02     from touches whose taxels flip
+//! taxel model confusion figures --noise 0:0.1:0.02     from touches whose taxels flip; with --given from descriptors
 //! taxel model confusion figures --test half-step       from touches between the learned poses
 //! ```
 
@@ -75,6 +75,8 @@ pub(crate) struct NoiseArguments {
     pub(crate) noise: DecimalRange,
     /// Numbers of dead taxels; for each the whole range of noise is simulated.
     pub(crate) dead: Vec<u32>,
+    /// The descriptors that are known in place of the imprint.
+    pub(crate) given: Option<GivenDescriptors>,
     /// Touches of each shape.
     pub(crate) touches: u64,
     /// Seed of the poses, flips and dead taxels that are drawn.
@@ -93,14 +95,12 @@ pub(super) fn command() -> Command {
         .arg(which_model())
         .args(questions())
         .group(ArgGroup::new("descriptors").args(["given", "greedy"]))
-        .group(ArgGroup::new("of").args([
-            "given",
-            "greedy",
-            "pairs",
-            "classifier",
-            "noise",
-            "test",
-        ]))
+        .group(ArgGroup::new("of").args(["greedy", "pairs", "classifier", "noise", "test"]))
+        .group(
+            ArgGroup::new("not_given")
+                .args(["greedy", "pairs", "classifier", "test"])
+                .conflicts_with("given"),
+        )
         .arg(
             option(
                 "round",
@@ -160,7 +160,7 @@ fn of_classifiers() -> [Arg; 3] {
 fn output() -> [Arg; 5] {
     let export = option("export", "FILE", "Write the matrix as .csv, .svg or .png")
         .value_parser(parse_report)
-        .conflicts_with_all(["greedy", "pairs", "noise", "test"]);
+        .conflicts_with_all(["greedy", "pairs", "test"]);
     let csv =
         switch("csv", "Print a table of commas").conflicts_with_all(["json", "greedy", "pairs"]);
     [export, replace(), json(), quiet(), csv]
@@ -253,11 +253,11 @@ impl Evaluated {
         if let Some(name) = matches.get_one::<String>("classifier") {
             return Peer::from_name(name).map_or(Self::AllPeers, Self::Peer);
         }
-        if let Some(given) = matches.get_one::<GivenDescriptors>("given") {
-            return Self::Given(given.clone());
-        }
         if let Some(&noise) = matches.get_one::<DecimalRange>("noise") {
             return Self::Noise(NoiseArguments::of(matches, noise));
+        }
+        if let Some(given) = matches.get_one::<GivenDescriptors>("given") {
+            return Self::Given(given.clone());
         }
         match (matches.get_flag("greedy"), matches.get_flag("pairs")) {
             (true, _) => Self::Greedy,
@@ -274,6 +274,7 @@ impl NoiseArguments {
         Self {
             noise,
             dead: dead.map_or_else(|| vec![0], |dead| dead.copied().collect()),
+            given: matches.get_one("given").cloned(),
             touches: number(matches, "touches", 1000),
             seed: number(matches, "seed", 0),
             size: matches.get_one("matrix").copied(),
