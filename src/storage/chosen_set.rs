@@ -29,13 +29,17 @@ impl ChosenSetFile {
         Name::new(text.trim_end()).ok()
     }
 
-    /// Remembers a set by its name.
+    /// Remembers a set by its name, in a new folder if there is none.
     pub fn write(&self, name: &str) {
+        if let Some(folder) = self.0.parent() {
+            // Without it nothing can be written, which is no matter.
+            let _ = fs::create_dir_all(folder);
+        }
         let written = UnfinishedFile::new(&self.0, Existing::Replaced).and_then(|mut file| {
             file.write(format!("{name}\n").as_bytes())?;
             file.finish()?.persist()
         });
-        // Without a folder, or on a full disk, it is not worth a message.
+        // On a full disk, it is not worth a message.
         drop(written);
     }
 }

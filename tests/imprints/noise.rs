@@ -229,6 +229,20 @@ fn names_are_right_as_often_as_published_and_as_claimed() {
 }
 
 #[test]
+fn what_is_claimed_is_reached_at_every_noise() {
+    for (name, set) in [("S1", s1()), ("S4", s4())] {
+        let model = train(set, 32, published());
+        for flip in [0.001, 0.01, 0.05] {
+            let noise = Noise::new(flip).expect("in range");
+            let rate = model.recognition_rate((16, 16), &noise, &noise, 150, 11, &|_| true);
+            let rate = rate.expect("not stopped");
+            let apart = (rate.claimed() - rate.accuracy()).abs() / rate.standard_error();
+            assert!(apart < 3.0, "{name} at {flip}: {rate:?}");
+        }
+    }
+}
+
+#[test]
 fn touches_until_certain_are_as_published() {
     // Expected number of touches until one shape has a posterior of 0.99: 6.68 for S1, 4.96 for S4.
     for (set, expected) in [(s1(), 6.68), (s4(), 4.96)] {

@@ -13,6 +13,8 @@ mod live;
 
 mod prompt;
 
+mod recognise;
+
 mod screens;
 
 mod scripts;

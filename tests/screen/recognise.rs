@@ -1,0 +1,171 @@
+//! Recognition on the screen: stored models, the cache, work that is stopped, what is remembered.
+
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::sync::mpsc::{Receiver, channel};
+use std::time::Duration;
+
+use taxel::figure::Figure;
+use taxel::formats::Name;
+use taxel::pose::{Anchor, Axis, Ranges};
+use taxel::recognition::{NamedShape, Training};
+use taxel::sensor::Sensor;
+use taxel::storage::{Existing, Library, ModelCache, ModelFolder};
+use taxel::tui::app::message::Message;
+use taxel::tui::explore::message::WorkerEvent;
+use taxel::tui::runtime::World;
+use taxel::tui::script::Session;
+
+use crate::session::{press, started, world};
+
+/// The longest time that work may take.
+const DEADLINE: Duration = Duration::from_secs(120);
+
+/// A library with a stored model: a bar, and one shape under two names.
+fn with_model(folder: &Path) -> Library {
+    let library = Library::open(folder.join("library"));
+    let sensor = Sensor::default();
+    let bar = |length: f64, width: f64| Figure::rectangle(length, width).on(&sensor);
+    let shapes = [
+        NamedShape::new("bar", bar(6.0, 2.0).expect("in range")),
+        NamedShape::new("one", bar(4.0, 4.0).expect("in range")),
+        NamedShape::new("other", bar(4.0, 4.0).expect("in range")),
+    ];
+    let ranges = Ranges::default().with(Axis::Angle, "0:80:10".parse().expect("a range"));
+    let training = Training::new(shapes, sensor, Anchor::Centre, ranges).expect("a set");
+    let model = training.run().expect("not stopped");
+    let name = Name::new("my parts").expect("a name");
+    let models = ModelFolder::beside(library.folder());
+    fs::create_dir_all(models.path()).expect("a folder");
+    let going = AtomicBool::new(false);
+    models
+        .save(&model, &name, Existing::Kept, &going)
+        .expect("written");
+    library
+}
+
+fn shows(session: &Session, texts: &[&str]) {
+    let screen = session.screen();
+    for text in texts {
+        assert!(screen.contains(text), "no {text:?} on\n{screen}");
+    }
+}
+
+#[test]
+fn a_stored_model_is_completed_answers_and_is_remembered() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let library = with_model(folder.path());
+    let begin = |keys: &str| started(World::new(library.clone()), keys);
+    let mut session = begin(":recognise my<Tab><Enter>");
+    shows(&session, &["Recognise: model my parts"]);
+    press(
+        &mut session,
+        ":figure rectangle --length 4 --width 4 --x0 5 --y0 5<Enter>",
+    );
+    shows(&session, &["tied: one, other", "50.0 %"]);
+    // Two taxels that no shape of the set leaves.
+    press(&mut session, "n<Space><Right><Right><Space>");
+    shows(
+        &session,
+        &["unknown: no shape of the set leaves this", "nearest: "],
+    );
+    shows(&begin("r"), &["Recognise: model my parts"]);
+    // With another one chosen, that is remembered.
+    begin("rO");
+    shows(&begin("r"), &["Recognise: the shapes that come with it"]);
+    shows(&begin(":recognise <Tab>"), &["figures-30", "my parts"]);
+}
+
+#[test]
+fn a_damaged_or_older_model_of_the_cache_is_made_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let cache = folder.path().join("cache");
+    let open = || {
+        let world = world().with_model_cache(Some(ModelCache::in_folder(&cache)));
+        let session = started(world, "r");
+        shows(
+            &session,
+            &["Recognise: the seven figures", "certain 100.0 %"],
+        );
+    };
+    open();
+    let path = fs::read_dir(&cache)
+        .expect("a folder")
+        .flatten()
+        .map(|file| file.path())
+        .find(|path| path.extension().is_some_and(|ending| ending == "npz"));
+    let path = path.expect("the model is kept");
+    let whole = fs::read(&path).expect("read");
+    let format: &[u8] = b"taxel-model/1";
+    let place = whole.windows(format.len()).position(|own| own == format);
+    let mut older = whole.clone();
+    older[place.expect("the header names its form") + format.len() - 1] = b'0';
+    for damaged in [&whole[..whole.len() / 2], &older[..], b""] {
+        fs::write(&path, damaged).expect("written");
+        open();
+        assert!(fs::read(&path).expect("read") == whole, "it is made again");
+    }
+}
+
+/// A program whose workers run beside it, and what they tell.
+struct Beside {
+    session: Session,
+    told: Receiver<WorkerEvent>,
+}
+
+impl Beside {
+    fn new(keys: &str) -> Self {
+        let (post, told) = channel();
+        let world = world().with_workers(Arc::new(move |told| {
+            // The test may be over.
+            let _ = post.send(told);
+        }));
+        let session = started(world, keys);
+        Self { session, told }
+    }
+
+    /// Passes on what workers tell until something is on the screen.
+    fn until(&mut self, text: &str) {
+        while !self.session.screen().contains(text) {
+            let told = self.told.recv_timeout(DEADLINE);
+            let told = told.unwrap_or_else(|_| panic!("no {text:?} on\n{}", self.session.screen()));
+            self.session.send(Message::Worker(told));
+        }
+    }
+}
+
+#[test]
+fn escape_stops_a_training_and_enter_begins_it_again() {
+    let mut program = Beside::new(":recognise shapes<Enter>");
+    program.until("training: ");
+    shows(&program.session, &["Esc stops"]);
+    press(&mut program.session, "<Esc>");
+    program.until("training was stopped");
+    shows(&program.session, &["not trained; Enter trains it"]);
+    press(&mut program.session, "<Enter>");
+    program.until("training: ");
+    press(&mut program.session, "<Esc>");
+    program.until("not trained");
+}
+
+#[test]
+fn escape_stops_the_sizes_and_what_was_found_stays() {
+    let mut program = Beside::new("r");
+    program.until("best possible error");
+    press(
+        &mut program.session,
+        ":separate --scale 0.5:3:0.01 --positions 20<Enter>",
+    );
+    program.until("1 of 251 sizes; Esc stops");
+    press(&mut program.session, "<Esc>");
+    program.until("stopped; what was found stays");
+    shows(&program.session, &["stopped; V goes on", "\n0.5 "]);
+    press(&mut program.session, "V");
+    shows(&program.session, &["of 251 sizes; Esc stops"]);
+    press(&mut program.session, "<Esc>");
+    program.until("stopped; V goes on");
+    press(&mut program.session, "<Esc>");
+    shows(&program.session, &["Recognise: the seven figures"]);
+}
