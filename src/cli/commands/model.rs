@@ -25,7 +25,7 @@ use crate::cli::error::CliError;
 use crate::cli::input::shape_set;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
-use crate::cli::output::evaluation;
+use crate::cli::output::evaluation::{self, NamedBy};
 use crate::cli::output::progress::Progress;
 use crate::cli::output::report;
 use crate::cli::signals::Signals;
@@ -95,8 +95,8 @@ pub(crate) fn train(
         text.insert("file".to_owned(), json!(name));
         json::text(&text) + "\n"
     } else {
-        let summary = evaluation::summary(&limit, evaluation::NamedBy::Imprint, charset);
-        charset.lines(&format!("written: {name}\n")) + &summary
+        charset.lines(&format!("written: {name}\n"))
+            + &evaluation::summary(&limit, NamedBy::Imprint, charset)
     })
 }
 
@@ -303,7 +303,7 @@ pub(crate) fn show(
         text += &format!(", {cut} of all cut off by the sensor");
     }
     text.push('\n');
-    text += &evaluation::summary(&limit, evaluation::NamedBy::Imprint, charset);
+    text += &evaluation::summary(&limit, NamedBy::Imprint, charset);
     let never = model.never_certain();
     if !never.is_empty() {
         let names = never

@@ -103,14 +103,7 @@ pub(crate) fn degradation(
         }
     }
     progress.finish();
-    if let Some(path) = export {
-        let content = match ending(path).as_str() {
-            "svg" => noise_plot(&table).svg().into_bytes(),
-            "png" => noise_plot(&table).png().map_err(CliError::Write)?,
-            _ => noise_csv(&table).into_bytes(),
-        };
-        put(path, &content, all_asked.existing)?;
-    }
+    write_noise(&table, all_asked)?;
     Ok(match all_asked.form {
         EvaluationForm::Json => noise_json(&table, (columns, rows), asked.seed),
         EvaluationForm::Csv => noise_csv(&table),
@@ -119,6 +112,22 @@ pub(crate) fn degradation(
             charset.lines(&(text + &noise_curves(&table, charset)))
         }
     })
+}
+
+/// Writes the table as numbers or as curves, if a file is asked for.
+///
+/// # Errors
+/// If it cannot be written.
+fn write_noise(table: &[NoiseRow], asked: &ConfusionArguments) -> Result<(), CliError> {
+    let Some(path) = asked.export.as_deref() else {
+        return Ok(());
+    };
+    let content = match ending(path).as_str() {
+        "svg" => noise_plot(table).svg().into_bytes(),
+        "png" => noise_plot(table).png().map_err(CliError::Write)?,
+        _ => noise_csv(table).into_bytes(),
+    };
+    put(path, &content, asked.existing)
 }
 
 /// The descriptors that are known, measured in the steps that are asked for; None for the whole imprint.

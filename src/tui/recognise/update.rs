@@ -20,6 +20,7 @@ use crate::tui::recognise::exercise::Exercise;
 use crate::tui::recognise::message::{Prepared, RecogniseMessage, RecognitionEvent};
 use crate::tui::recognise::reach::{put, state};
 use crate::tui::recognise::separate;
+use crate::tui::recognise::separate::request::SeparationFlags;
 use crate::tui::recognise::sets::ModelChoice;
 use crate::tui::recognise::state::{ModelState, Recognition};
 use crate::tui::runtime::effect::{Effect, Work};
@@ -52,11 +53,7 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
             None
         }
         RecogniseMessage::Forget => {
-            if state(app)?.forget() {
-                inform(app, "the kept touches are forgotten");
-            } else {
-                inform(app, "no touches are kept");
-            }
+            forget(app);
             None
         }
         RecogniseMessage::Confusion => {
@@ -70,10 +67,7 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
             None
         }
         RecogniseMessage::Separate(flags) => {
-            match state(app)?.trained().cloned() {
-                Some(trained) => separate::update::open(app, flags.request(trained)),
-                None => not_trained(app),
-            }
+            separate(app, &flags);
             None
         }
         RecogniseMessage::Poses => {
@@ -151,6 +145,21 @@ fn touch_again(app: &mut App, mut exercise: Exercise) {
     }
     let_go(app);
     app.dialogs.push(Dialog::Exercise(Box::new(exercise)));
+}
+
+/// Opens the page of sizes.
+fn separate(app: &mut App, flags: &SeparationFlags) {
+    match state(app).and_then(|page| page.trained().cloned()) {
+        Some(trained) => separate::update::open(app, flags.request(trained)),
+        None => not_trained(app),
+    }
+}
+
+/// Forgets the touches that were kept.
+fn forget(app: &mut App) {
+    let any = state(app).is_some_and(Recognition::forget);
+    let text = ["no touches are kept", "the kept touches are forgotten"][usize::from(any)];
+    inform(app, text);
 }
 
 /// Keeps the touch on the matrix.
