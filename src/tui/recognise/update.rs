@@ -110,7 +110,12 @@ fn not_trained(app: &mut App) {
 /// Shows the outlines of poses if they are not seen, otherwise hides them.
 fn show_poses(app: &mut App) {
     let Some(panes) = app.panes() else { return };
-    let grid = TaxelGrid::of(panes.matrix, &app.reading().imprint, app.cursor());
+    let grid = TaxelGrid::of(
+        panes.matrix,
+        &app.reading().imprint,
+        app.cursor(),
+        app.halves(),
+    );
     let Some(page) = state(app) else { return };
     let seen = Layers::shown(page.outlines(), &grid);
     page.show_outlines(!seen);
