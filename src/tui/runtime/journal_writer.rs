@@ -10,8 +10,9 @@
 //! Changes within the interval are written together, the last one only. The thread sleeps while there is nothing to
 //! write.
 
+use std::cell::Cell;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::thread::JoinHandle;
+use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
 use crate::formats::StoredShape;
@@ -23,6 +24,9 @@ use crate::tui::runtime::progress::WorkerEventSink;
 /// Changes are gathered for this time before they are written, so a crash loses less than a second of work.
 const GATHER: Duration = Duration::from_millis(400);
 
+/// How long the end of the program waits for the disk.
+const PATIENCE: Duration = Duration::from_millis(1500);
+
 /// The program's end of the channel to the thread.
 #[derive(Debug)]
 pub(in crate::tui) struct JournalWriter {
@@ -32,6 +36,10 @@ pub(in crate::tui) struct JournalWriter {
     thread: Option<JoinHandle<()>>,
     /// The work that was noted last.
     last: Option<StoredShape>,
+    /// Why there is no thread, where the system gives none.
+    refused: Option<String>,
+    /// Whether the disk has not answered in time: then the program ends without it.
+    hangs: Cell<bool>,
 }
 
 /// A request to the thread.
@@ -56,11 +64,19 @@ impl JournalWriter {
             post: None,
             reported: false,
         };
-        let thread = std::thread::spawn(move || writer.run(&inbox));
-        Self {
-            notes: Some(notes),
-            thread: Some(thread),
-            last: None,
+        match Builder::new().spawn(move || writer.run(&inbox)) {
+            Ok(thread) => Self {
+                notes: Some(notes),
+                thread: Some(thread),
+                last: None,
+                refused: None,
+                hangs: Cell::new(false),
+            },
+            Err(error) => {
+                let mut idle = Self::idle();
+                idle.refused = Some(error.to_string());
+                idle
+            }
         }
     }
 
@@ -70,11 +86,18 @@ impl JournalWriter {
             notes: None,
             thread: None,
             last: None,
+            refused: None,
+            hangs: Cell::new(false),
         }
     }
 
     /// Reports errors to `post` from now on.
     pub(in crate::tui) fn report_to(&self, post: WorkerEventSink) {
+        if let Some(error) = &self.refused {
+            let message =
+                format!("unsaved work cannot be kept: the system gives no thread: {error}");
+            post(WorkerEvent::Refused(message));
+        }
         self.send(JournalRequest::ReportTo(post));
     }
 
@@ -106,20 +129,24 @@ impl JournalWriter {
         }
     }
 
-    /// Waits until everything is written; false if that failed.
+    /// Waits until everything is written, but not for ever: a disk may hang. False if it is not written.
     pub(in crate::tui) fn flush(&self) -> bool {
         let (done, written) = channel();
         self.send(JournalRequest::Flush(done));
-        written
-            .recv_timeout(Duration::from_secs(5))
-            .unwrap_or(false)
+        let answer = written.recv_timeout(PATIENCE);
+        self.hangs.set(answer == Err(RecvTimeoutError::Timeout));
+        answer.unwrap_or(false)
     }
 }
 
 impl Drop for JournalWriter {
     fn drop(&mut self) {
+        if self.thread.is_some() && !self.hangs.get() {
+            self.flush();
+        }
         self.notes = None;
-        if let Some(thread) = self.thread.take() {
+        // One that hangs ends with the program.
+        if let Some(thread) = self.thread.take().filter(|_| !self.hangs.get()) {
             // A panic of the thread has been reported.
             let _ = thread.join();
         }

@@ -291,9 +291,10 @@ impl World {
         events.map(Message::Worker).collect()
     }
 
-    /// Writes unsaved work at once, because the program is about to end.
-    pub fn secure(&mut self) {
-        self.journal.flush();
+    /// Writes unsaved work at once, because the program is about to end. False if it is not on the disk, because of an
+    /// error or because the disk does not answer.
+    pub fn secure(&mut self) -> bool {
+        self.journal.flush()
     }
 
     /// Performs a request to the library; the answer is a message.

@@ -19,7 +19,9 @@ use crate::sweep::Shard;
 use crate::tui::explore::message::WorkerEvent;
 use crate::tui::recognise::message::{Look, Prepared, RecognitionEvent};
 use crate::tui::recognise::sets::{ModelChoice, TrainedModel};
-use crate::tui::runtime::progress::{ProgressReporter, WorkerEventSink, guarded, proceed};
+use crate::tui::runtime::progress::{
+    ProgressReporter, WorkerEventSink, guarded, on_a_thread, proceed,
+};
 
 /// Where models are.
 #[derive(Clone, Debug, Default)]
@@ -128,8 +130,8 @@ impl ModelWorker {
             let event = prepare(&store, number, choice, &|_| (), &|_| true);
             return Some(WorkerEvent::Recognition(event));
         };
-        self.thread = Some(std::thread::spawn(move || {
-            let clock = ProgressReporter::new(number, &post);
+        let thread = on_a_thread(number, &post, move |post| {
+            let clock = ProgressReporter::new(number, post);
             let begun = |poses| {
                 post(WorkerEvent::Recognition(RecognitionEvent::Begun(
                     number, poses,
@@ -140,7 +142,11 @@ impl ModelWorker {
                 WorkerEvent::Recognition(prepare(&store, number, choice, &begun, &progress))
             });
             post(event);
-        }));
+        });
+        match thread {
+            Ok(thread) => self.thread = Some(thread),
+            Err(refused) => return Some(refused),
+        }
         None
     }
 
@@ -205,6 +211,5 @@ pub(super) fn look(
     let Some(post) = post else {
         return Some(search());
     };
-    std::thread::spawn(move || post(guarded(0, search)));
-    None
+    on_a_thread(0, &post, move |post| post(guarded(0, search))).err()
 }

@@ -3,6 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
+use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
 use crate::tui::explore::message::{SweepProgress, WorkerEvent};
@@ -55,6 +56,23 @@ impl<'a> ProgressReporter<'a> {
             ));
         }
     }
+}
+
+/// Does a piece of work on a thread of its own, which gets the number and the sink of its events.
+///
+/// # Errors
+/// The event that says so, where the system gives no thread.
+pub(super) fn on_a_thread(
+    number: u64,
+    post: &WorkerEventSink,
+    work: impl FnOnce(&WorkerEventSink) + Send + 'static,
+) -> Result<JoinHandle<()>, WorkerEvent> {
+    let own = Arc::clone(post);
+    let thread = Builder::new().spawn(move || work(&own));
+    thread.map_err(|error| {
+        let message = format!("the system gives no thread for it: {error}");
+        WorkerEvent::Failed(number, message)
+    })
 }
 
 /// Turns a panic into an event; without it the program would wait for ever.

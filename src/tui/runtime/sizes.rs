@@ -10,7 +10,9 @@ use crate::tui::recognise::confused::ConfusedPair;
 use crate::tui::recognise::message::RecognitionEvent;
 use crate::tui::recognise::separate::found::{SizeFound, SizesFound};
 use crate::tui::recognise::separate::request::SeparationRequest;
-use crate::tui::runtime::progress::{ProgressReporter, WorkerEventSink, guarded, proceed};
+use crate::tui::runtime::progress::{
+    ProgressReporter, WorkerEventSink, guarded, on_a_thread, proceed,
+};
 
 /// The work in progress.
 #[derive(Debug, Default)]
@@ -37,8 +39,8 @@ impl SizeWorker {
             return Some(event(number, sizes, Some(end)));
         };
         let stop = Arc::clone(&self.stop);
-        std::thread::spawn(move || {
-            let clock = ProgressReporter::new(number, &post);
+        let thread = on_a_thread(number, &post, move |post| {
+            let clock = ProgressReporter::new(number, post);
             let progress = |poses| proceed(poses, &stop, Some(&clock));
             let last = guarded(number, || {
                 let mut take = |size| post(event(number, vec![size], None));
@@ -47,7 +49,7 @@ impl SizeWorker {
             });
             post(last);
         });
-        None
+        thread.err()
     }
 
     /// Stops the work in progress.

@@ -26,7 +26,9 @@ use crate::tui::runtime::frames::FrameWatcher;
 use crate::tui::runtime::memory::MemoryGuard;
 use crate::tui::runtime::models::{self, ModelStore, ModelWorker};
 use crate::tui::runtime::naming::ShapeNamer;
-use crate::tui::runtime::progress::{ProgressReporter, WorkerEventSink, guarded, proceed};
+use crate::tui::runtime::progress::{
+    ProgressReporter, WorkerEventSink, guarded, on_a_thread, proceed,
+};
 use crate::tui::runtime::sizes::SizeWorker;
 use crate::tui::runtime::write_access::WriteAccess;
 
@@ -190,6 +192,37 @@ impl Workers {
         }
     }
 
+    /// Estimates the time of a sweep, on a thread of its own; without a receiver nobody waits for it.
+    fn measure(&mut self, grid: Box<PoseGrid>) -> Option<WorkerEvent> {
+        self.measuring.store(true, Ordering::Relaxed);
+        let post = self.post.clone()?;
+        self.measuring = Arc::default();
+        let stop = Arc::clone(&self.measuring);
+        let thread = on_a_thread(0, &post, move |post| {
+            if let Some(time) = measure(&grid, &stop) {
+                post(WorkerEvent::Estimate(grid, time));
+            }
+        });
+        // Without a thread there is no estimate.
+        drop(thread);
+        None
+    }
+
+    /// Sweeps a grid, on a thread of its own if there is a receiver.
+    fn sweep(&mut self, number: u64, grid: Box<PoseGrid>) -> Option<WorkerEvent> {
+        let stop = self.begin();
+        let Some(post) = self.post.clone() else {
+            return Some(sweep(number, &grid, &stop, None));
+        };
+        let thread = on_a_thread(number, &post, move |post| {
+            let clock = ProgressReporter::new(number, post);
+            post(guarded(number, || {
+                sweep(number, &grid, &stop, Some(&clock))
+            }));
+        });
+        thread.err()
+    }
+
     /// Writes what was found to a file, on a thread of its own if there is a receiver.
     fn write(
         &mut self,
@@ -205,12 +238,14 @@ impl Workers {
         let Some(post) = self.post.clone() else {
             return Some(run(None));
         };
-        let thread = std::thread::spawn(move || {
-            let clock = ProgressReporter::new(number, &post);
-            let event = guarded(number, || run(Some(&clock)));
-            post(event);
+        let thread = on_a_thread(number, &post, move |post| {
+            let clock = ProgressReporter::new(number, post);
+            post(guarded(number, || run(Some(&clock))));
         });
-        self.writing = Some(thread);
+        match thread {
+            Ok(thread) => self.writing = Some(thread),
+            Err(refused) => return Some(refused),
+        }
         None
     }
 

@@ -65,7 +65,11 @@ pub(in crate::tui) fn run(
         let _ = event_loop
             .world
             .handle(&mut event_loop.app, Message::Terminate);
-        event_loop.world.secure();
+        if !event_loop.world.secure() && event_loop.app.unsaved_work().is_some() {
+            session::tell_later(
+                "unsaved work may not be on the disk, which refuses it or does not answer\n",
+            );
+        }
     }
     let left = session::leave();
     match ended {
