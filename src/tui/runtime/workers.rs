@@ -90,35 +90,6 @@ impl Workers {
         names.map(|name| name.to_string()).collect()
     }
 
-    /// Measures how long a sweep would take, in place of the measurement before. Without threads, nothing: the answer would
-    /// be another one each time.
-    fn measure(&mut self, grid: Box<PoseGrid>) -> Option<WorkerEvent> {
-        self.measuring.store(true, Ordering::Relaxed);
-        let post = self.post.clone()?;
-        self.measuring = Arc::default();
-        let stop = Arc::clone(&self.measuring);
-        std::thread::spawn(move || {
-            if let Some(time) = measure(&grid, &stop) {
-                post(WorkerEvent::Estimate(grid, time));
-            }
-        });
-        None
-    }
-
-    /// Sweeps all poses of a grid, and tells how far it is where there are threads.
-    fn sweep(&mut self, number: u64, grid: Box<PoseGrid>) -> Option<WorkerEvent> {
-        let stop = self.begin();
-        let Some(post) = self.post.clone() else {
-            return Some(sweep(number, &grid, &stop, None));
-        };
-        std::thread::spawn(move || {
-            let clock = ProgressReporter::new(number, &post);
-            let event = guarded(number, || sweep(number, &grid, &stop, Some(&clock)));
-            post(event);
-        });
-        None
-    }
-
     /// Begins a piece of work. Without threads, does it and returns its last event.
     pub(in crate::tui) fn perform(&mut self, work: Work) -> Option<WorkerEvent> {
         match work {
