@@ -22,9 +22,11 @@ use crate::tui::widget::number::around;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Columns of a symbol, of a value, and of the row ruler.
+/// Columns of the symbol of a descriptor.
 const SYMBOL: usize = 6;
+/// Columns of a value.
 const VALUE: usize = 11;
+/// Columns of the row ruler.
 const RULER: u16 = 3;
 
 /// Columns of the descriptors of both and their differences.
@@ -49,8 +51,11 @@ const VIEWS: [ComparedView; 3] = [Difference, First, Second];
 /// Two imprints of one size, and what they are.
 #[derive(Clone, Debug)]
 pub struct Comparison {
+    /// Both, brought to one size.
     imprints: Box<[Imprint; 2]>,
+    /// What each is, for the headings.
     names: [String; 2],
+    /// The main region of each; None where nothing is active.
     described: Box<[Option<Description>; 2]>,
     /// The index of the view that is shown.
     view: usize,

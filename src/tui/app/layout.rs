@@ -23,12 +23,14 @@ const WIDE_PANEL: u16 = 44;
 /// A form can stand beside the matrix from this width on.
 const FORM: u16 = 22;
 
-/// A form gets this width beside the descriptors, or at least the narrow one: then ranges stand under the fields.
+/// A form gets this width beside the descriptors where there is room for it.
 const WIDE_FORM: u16 = 40;
+/// It gets this width at least: then ranges stand under the fields.
 const NARROW_FORM: u16 = 32;
 
-/// Lines of a form above the descriptors, and lines that these need at least.
+/// Lines of a form above the descriptors.
 const LONGEST_FORM: u16 = 18;
+/// Lines that the descriptors below it need at least.
 const LOW_PANEL: u16 = 10;
 
 /// From this many lines on there is one for the title: neither descriptors nor the default sensor lose any.

@@ -23,11 +23,14 @@ pub fn difference(from: &Document, to: &Document) -> String {
     parts.join(", ")
 }
 
+/// What changed of the sensor.
 fn of_sensor(from: &Sensor, to: &Sensor) -> String {
     let value = |sensor: &Sensor, parameter| sensor.get(parameter);
     values(&SENSOR_PARAMETERS, |p| value(from, p), |p| value(to, p))
 }
 
+/// What changed of the source: its values where it is the same kind of figure or the same picture, otherwise all of
+/// the new one. Nothing where there is none any more.
 fn of_source(from: Option<&Source>, to: Option<&Source>) -> String {
     match (from, to) {
         (_, None) => String::new(),
@@ -69,6 +72,7 @@ fn values(
     changed.collect::<Vec<_>>().join(", ")
 }
 
+/// What was set by hand: a single taxel by its column and row, more of them by their number.
 fn of_edits(from: &Document, to: &Document) -> String {
     let switched = from.edits.differing(&to.edits);
     match (switched.count(), switched.active().next()) {

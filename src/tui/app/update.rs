@@ -31,6 +31,8 @@ pub fn update(app: &mut App, message: Message) -> Option<Effect> {
 }
 
 /// Handles a message, without reading the document anew.
+/// A count repeats what can be repeated, such as a step of the cursor; anything else is done once. A repetition ends at
+/// the first effect that the runtime has to take care of.
 fn handle(app: &mut App, message: Message) -> Option<Effect> {
     match message {
         Message::Redraw => return Some(Effect::Terminal(TerminalEffect::Redraw)),
@@ -104,6 +106,7 @@ fn unknown(app: &mut App, key: Key) {
 }
 
 /// Handles a message over a page, which was taken off the stack and goes back unless it is done with.
+/// Help opens over any page, with the keys of that page.
 fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> {
     let page = dialog.page();
     match message {
@@ -156,8 +159,8 @@ fn in_help(app: &mut App, mut help: Help, message: &Message) -> Option<Effect> {
     None
 }
 
-/// Handles the answer to a question. Without an answer the question stays.
 /// Moves in the list of steps, or goes to the state after the selected one.
+/// To compare leaves the list open below.
 fn in_history(app: &mut App, mut list: HistoryDialog, message: &Message) -> Option<Effect> {
     match *message {
         Message::Scroll(lines) => list.scroll(lines),
@@ -185,6 +188,7 @@ fn in_history(app: &mut App, mut list: HistoryDialog, message: &Message) -> Opti
     None
 }
 
+/// Handles the answer to a question. Without an answer the question stays.
 fn at_question(app: &mut App, question: Question, message: &Message) -> Option<Effect> {
     if *message == Message::Save && question.yes == Message::QuitNow && app.unsaved() {
         let effect = matrix::update::act(app, Message::Save);

@@ -37,6 +37,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     update: choose_descriptor,
 };
 
+/// Draws the page: the descriptor with its unit, its numbers, and a bar for each bin that there is a line for.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
     let (result, feature) = (results.sweep(), results.feature());
     let statistic = &result.statistics[results.feature_number()];

@@ -53,6 +53,7 @@ pub(crate) fn in_filter(
 }
 
 /// The prompt that asks for a letter; None, and a notice, where there is nothing to mark or to go to.
+/// A mark is of a pose, so that it holds on every page and under every filter.
 pub(crate) fn mark_dialog(
     app: &mut App,
     results: &Results,
@@ -124,6 +125,7 @@ pub(crate) fn in_mark(app: &mut App, dialog: MarkDialog, message: &Message) -> O
 
 /// Goes to a marked pose: on the map and at the angles to the pose itself, elsewhere to its imprint, in the list or among
 /// the points.
+/// The map has all poses; the list has only imprints that pass the filter, so there a mark may be out of reach.
 fn go_to(results: &mut Results, pose: u64) -> Result<(), String> {
     if matches!(results.page(), ExplorePage::Map | ExplorePage::Angles) {
         results.go_to_pose(pose);

@@ -32,6 +32,8 @@ use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::runtime::effect::Effect;
 
 /// Does what a message says over the results.
+/// The page was taken off the stack: an arm that opens another page puts it back first, below that one. Closed results
+/// are kept, and Explore opens them again for the same shape.
 pub(crate) fn in_results(
     app: &mut App,
     mut results: Box<Results>,
@@ -44,12 +46,7 @@ pub(crate) fn in_results(
             return None;
         }
         Message::Compare => {
-            let row = results.selected();
-            let entry = results.rows_from(row).next();
-            app.dialogs.push(Dialog::Results(results));
-            if let Some((_, entry)) = entry {
-                compare_with(app, &format!("imprint {}", entry.id), &entry.imprint);
-            }
+            compare(app, results);
             return None;
         }
         Message::Paste(_) => inform(app, "pasted text goes into fields only"),
@@ -94,6 +91,16 @@ pub(crate) fn in_results(
     None
 }
 
+/// Opens the comparison of the selected imprint with the one on the matrix, over the results. An empty list has none to
+/// compare.
+fn compare(app: &mut App, results: Box<Results>) {
+    let entry = results.rows_from(results.selected()).next();
+    app.dialogs.push(Dialog::Results(results));
+    if let Some((_, entry)) = entry {
+        compare_with(app, &format!("imprint {}", entry.id), &entry.imprint);
+    }
+}
+
 /// The name that an export proposes: of the page's drawing where it has one, otherwise of the table of imprints.
 fn proposed(results: &Results) -> String {
     let name = name_of(results.sweep().grid.source());
@@ -105,6 +112,7 @@ fn proposed(results: &Results) -> String {
 }
 
 /// What changes only what is looked at.
+/// None of these touches the document, so there is nothing to undo.
 fn look(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
     match *asked {
         ExploreMessage::Page(page) => results.turn_to(page),
@@ -122,6 +130,8 @@ fn look(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
 }
 
 /// Selects the imprint on the matrix, or the same one at another place.
+/// The same imprint elsewhere counts: a shape moved by whole cells leaves it moved by as many taxels. The notice says
+/// which way it lies on the matrix, seen from the one in the list.
 fn find(app: &mut App, results: &mut Results) {
     let imprint = app.reading().imprint;
     if let Some(id) = results.id(&imprint) {
@@ -166,6 +176,7 @@ fn select(app: &mut App, results: &mut Results, id: u32) -> bool {
 }
 
 /// From the list and the points to the first pose on the map, from the map and the angles to the imprint in the list.
+/// A sweep that was stopped has poses without an imprint: these are refused.
 fn follow(app: &mut App, results: &mut Results) {
     let Some(pose) = results.pose() else { return };
     if !matches!(results.page(), ExplorePage::Map | ExplorePage::Angles) {
@@ -183,6 +194,8 @@ fn follow(app: &mut App, results: &mut Results) {
 }
 
 /// The shape in the pose that is looked at, with just the imprint that the sweep found.
+/// The user may have another sensor by now. What that one reads differently is set by hand, taxel by taxel, so that
+/// the imprint is the one that was selected.
 fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
     let grid = &results.sweep().grid;
     let Some(pose) = results.pose().map(|number| grid.pose(number)) else {
@@ -217,6 +230,7 @@ fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
 }
 
 /// The name of a file to write.
+/// One prompt serves the pages of Explore and the curve of the page of sizes; a name that is refused stays in it.
 pub(crate) fn in_export(
     app: &mut App,
     mut dialog: ExportDialog,

@@ -58,6 +58,7 @@ pub(crate) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
 }
 
 /// Opens the last results if they are of the shape on the matrix, otherwise the form.
+/// Results of another shape stay kept: the form comes, and they are there again with their shape.
 fn open(app: &mut App) -> Option<Effect> {
     app.mode = Mode::Draw;
     match app.results.take() {
@@ -140,6 +141,7 @@ pub(crate) fn in_ranges(
 }
 
 /// Handles a message over work in progress. To close it means to stop the work.
+/// The page stays until the worker has answered: only then it is known what is complete.
 pub(crate) fn in_running(app: &mut App, mut running: Running, message: &Message) -> Option<Effect> {
     let stops = matches!(
         message,
@@ -224,6 +226,7 @@ fn running(app: &mut App, number: u64) -> Option<&mut Running> {
 }
 
 /// Closes the work of a number. Returns its index among the pages, None if nobody waits for it.
+/// Its notice, such as "stopping", goes with it.
 fn finish(app: &mut App, number: u64) -> Option<usize> {
     let own =
         |dialog: &Dialog| matches!(dialog, Dialog::Running(running) if running.number == number);
@@ -234,6 +237,7 @@ fn finish(app: &mut App, number: u64) -> Option<usize> {
 }
 
 /// Results in place of the work, and of earlier results.
+/// A stopped sweep gives results of what was complete, as the notice says; one stopped before that gives none.
 fn take_findings(app: &mut App, number: u64, findings: Arc<Findings>) {
     let Some(place) = finish(app, number) else {
         return;

@@ -45,6 +45,7 @@ macro_rules! contexts {
                 }
             }
 
+            /// What it does with a key that has no binding here.
             fn unbound(self) -> Unbound {
                 match self {
                     $(Self::$place => $unbound,)+

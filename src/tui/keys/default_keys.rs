@@ -27,9 +27,9 @@ const UP: Key = Key::Arrow(Up);
 const DOWN: Key = Key::Arrow(Down);
 
 /// Rows by place: `[key => ACTION, ...] hint help`. A macro, so that a row stays a line where the formatter would make
-/// eight of it.
+/// eight of it. What is worth knowing of a place stands above it.
 macro_rules! table {
-    ($($place:ident {$(
+    ($($(#[$doc:meta])* $place:ident {$(
         [$($key:expr => $action:ident),+] $hint:literal $help:literal;
     )+})+) => {
         &[$($(Binding::row(Context::$place, &[$(($key, &action::$action)),+], $hint, $help)),+),+]
@@ -38,6 +38,8 @@ macro_rules! table {
 
 /// The default keys, in the order of help and hints; the first seven rows are the paper's options and make the menu.
 pub static DEFAULT_KEYS: &[Binding] = table! {
+    /// The first seven rows are the menu, in its order. A digit does nothing by itself: it is a count for the key that
+    /// follows.
     Matrix {
         [Char('n') => NEW] "" "New: empty the matrix, to draw by hand";
         [Char('l') => LOAD] "" "Load: bring a stored shape onto the matrix";
@@ -84,6 +86,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('?') => HELP] "help" "Help: this list";
     }
 
+    /// Only what differs from the matrix: any other key does what it does there.
     Grab {
         [LEFT => NUDGE_LEFT, RIGHT => NUDGE_RIGHT, UP => NUDGE_UP, DOWN => NUDGE_DOWN]
             "move" "move the shape by a step";
@@ -93,6 +96,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Esc => PUT_BACK] "put back" "put it back to where it was taken, and let go";
     }
 
+    /// Characters that have no row are typed into the field with the focus.
     Form {
         [Tab => NEXT, BackTab => PREVIOUS] "field" "next, previous field";
         [LEFT => LEFT, RIGHT => RIGHT, UP => UP, DOWN => DOWN]
@@ -107,6 +111,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('?') => HELP] "help" "these keys";
     }
 
+    /// Where a question has no "no" of its own, `n` only closes it. A key without a row leaves it open.
     Question {
         [Char('y') => ACCEPT] "yes" "yes";
         [Char('n') => DECLINE] "no" "no";
@@ -115,6 +120,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('?') => HELP] "help" "these keys";
     }
 
+    /// Letters are typed into the filter, so that `q` does not close this page as it does others.
     List {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "choose" "previous, next shape";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten shapes back, on";
@@ -126,6 +132,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('?') => HELP] "help" "these keys";
     }
 
+    /// To move in the list changes nothing; the matrix follows only on Enter.
     History {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "choose" "earlier, later step";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten steps back, on";
@@ -144,6 +151,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('?') => HELP] "help" "these keys";
     }
 
+    /// `?` may be typed in a line of text, so help is F1 here and in the prompts below.
     Name {
         [Enter => ACCEPT] "save" "save under this name";
         [LEFT => LEFT, RIGHT => RIGHT] "" "move in the name";
@@ -154,6 +162,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [F1 => HELP] "help" "these keys";
     }
 
+    /// Up and Down are for earlier commands, as in a shell; fields that stand one above the other have them to move.
     Command {
         [Enter => ACCEPT] "run" "run the command";
         [Tab => NEXT] "complete" "complete the word";
@@ -178,12 +187,14 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('?') => HELP] "help" "these keys";
     }
 
+    /// Ctrl+C ends the program here: nothing else would while a worker hangs. Elsewhere it closes a page, or asks.
     Running {
         [Esc => STOP, Char('s') => STOP, Ctrl('g') => STOP]
             "stop" "stop; a sweep keeps what is complete";
         [Ctrl('c') => QUIT_AT_ONCE] "quit" "quit at once; unsaved work is offered next time";
     }
 
+    /// A page of Explore looks here for keys that it has no row for.
     Explore {
         [Char('1') => IMPRINTS,
             Char('2') => STATISTICS,
@@ -205,6 +216,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "close" "back to the matrix; what was found is kept";
     }
 
+    /// Enter takes the first pose of the selected imprint: of its poses the one that the sweep came to first.
     Imprints {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "" "previous, next imprint";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten imprints back, on";
@@ -239,6 +251,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Home => FIRST, End => LAST] "" "first, last descriptor";
     }
 
+    /// Keys move in the grid of poses, never between its points: each pose that can be reached was asked for.
     Map {
         [LEFT => CURSOR_LEFT, RIGHT => CURSOR_RIGHT, UP => CURSOR_UP, DOWN => CURSOR_DOWN]
             "" "to the next pose; each letter or colour is an imprint";
@@ -282,6 +295,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('g') => FOLLOW] "list" "go to the imprint of that pose in the list";
     }
 
+    /// The list follows as one types; Esc brings back the filter and the row that were there before.
     Filter {
         [Enter => ACCEPT] "keep" "keep the filter; an empty one shows all imprints";
         [LEFT => LEFT, RIGHT => RIGHT] "" "move in the line";
@@ -292,6 +306,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [F1 => HELP] "help" "these keys";
     }
 
+    /// Any letter is an answer, so no letter can be bound here.
     Mark {
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "no letter now; any letter marks, or goes there";
         [F1 => HELP] "help" "these keys";
@@ -307,6 +322,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [F1 => HELP] "help" "these keys";
     }
 
+    /// What has no row goes to the matrix: one draws, moves and turns while the answer follows.
     Recognise {
         [Char('t') => TOUCH] "touch" "a random shape of the set touches: name it";
         [Char('a') => KEEP, Char('x') => FORGET]
@@ -321,6 +337,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "close" "stop training; back to the descriptors";
     }
 
+    /// Letters choose a shape by the beginning of its name, and digits name one at once; so help is F1.
     Guess {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "choose" "previous, next shape, or by its first letter";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten shapes back, on";
@@ -342,6 +359,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL] "close" "back to the matrix";
     }
 
+    /// While sizes are still looked at, Enter is refused, and Esc stops the work and leaves the page open.
     Separate {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "size" "previous, next size";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten sizes back, on";
@@ -356,6 +374,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "close" "stop the work; back to the matrix";
     }
 
+    /// All four arrows go through the history of frames: the page has no cursor that they could move.
     Live {
         [Char('t') => TARE, Char('T') => NO_TARE]
             "tare" "take off the median of the last 30 frames; nothing";
@@ -387,6 +406,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             Ctrl('g') => CANCEL] "close" "close";
     }
 
+    /// Looked up last, so that any place can give these keys another meaning.
     Everywhere {
         [Ctrl('l') => REDRAW] "" "draw the screen anew";
         [Ctrl('z') => SUSPEND] "" "back to the shell; fg returns here";

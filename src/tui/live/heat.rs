@@ -24,7 +24,9 @@ pub(super) struct HeatMap<'a> {
     theme: &'a Theme,
     reading: &'a LiveReading,
     layer: HeatLayer,
+    /// The values that the first and the last shade stand for.
     range: (f64, f64),
+    /// Which taxels are visible, and in which form.
     grid: HeatGrid,
 }
 
@@ -113,6 +115,8 @@ impl<'a> HeatMap<'a> {
         near && !both(Some(column))
     }
 
+    /// Draws a taxel of two columns. The second repeats the first, unless it bears the mark of the edge or the taxel is
+    /// low: then it stays empty, so that a field of nothing is not twice as dense.
     fn wide(&self, buffer: &mut Buffer, area: Rect, at: (u16, u16), (column, row): (u8, u8)) {
         let (sign, style) = self.taxel(column, row);
         let second = match sign {
@@ -132,6 +136,8 @@ impl<'a> HeatMap<'a> {
         }
     }
 
+    /// Draws two taxels in one character: with colours one above the other, otherwise the larger of the two, so that no
+    /// touch disappears. With an odd number of rows the last character has an upper taxel only.
     fn half(&self, buffer: &mut Buffer, area: Rect, at: (u16, u16), (column, row): (u8, u8)) {
         let has_lower = row + 1 < self.reading.values.rows();
         let upper = self.share(column, row);
@@ -175,6 +181,8 @@ impl<'a> HeatMap<'a> {
         put(buffer, area, at, sign, style);
     }
 
+    /// Draws a taxel as a number. One too wide for its columns becomes arrows, up or down by its sign; a cell without a
+    /// value stays empty.
     fn number(&self, buffer: &mut Buffer, area: Rect, at: (u16, u16), (column, row): (u8, u8)) {
         let Some(value) = self.reading.values.get(column, row) else {
             return;
@@ -222,6 +230,7 @@ fn is_edge(imprint: &Imprint, column: u8, row: u8) -> bool {
     imprint.get(column, row) && !is_inside
 }
 
+/// Sets a character, at a place counted from the corner of the area; nothing outside of the area.
 fn put(buffer: &mut Buffer, area: Rect, (x, y): (u16, u16), sign: char, style: Style) {
     let position = Position::new(area.x.saturating_add(x), area.y.saturating_add(y));
     if area.contains(position) {

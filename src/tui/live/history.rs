@@ -16,9 +16,11 @@ pub(in crate::tui) fn bytes_of(frame: &Frame) -> usize {
 /// Frames, each with a number of its own that counts on over all that have come.
 #[derive(Clone, Debug)]
 pub struct FrameHistory {
+    /// The oldest first.
     frames: VecDeque<Arc<Frame>>,
     /// The number of the first one that is still here.
     first: u64,
+    /// The memory that they take.
     bytes: usize,
     /// No more than these are kept, but for the newest frame.
     most: usize,

@@ -46,6 +46,7 @@ impl CellForm {
 /// The visible taxels.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HeatGrid {
+    /// The form of all taxels: it does not differ within a map.
     pub(super) form: CellForm,
     pub(super) columns: AxisWindow,
     pub(super) rows: AxisWindow,
@@ -88,8 +89,11 @@ impl HeatGrid {
 /// The panes of the page.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LivePanes {
+    /// One line: the source and the frame.
     pub(super) title: Rect,
+    /// The taxels.
     pub(super) map: Rect,
+    /// The numbers; on a low screen only those that there are lines for.
     pub(super) panel: Rect,
 }
 

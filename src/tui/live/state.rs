@@ -82,7 +82,9 @@ pub struct Live {
     request: Arc<WatchRequest>,
     /// The number of the piece of work that watches it.
     number: u64,
+    /// What is done with a frame before it is shown: view, tare, threshold.
     processing: Processing,
+    /// The threshold, and whether the file, an option or a key set it.
     rule: Option<SetRule>,
     history: FrameHistory,
     /// The number in the history of the frame that is shown; None follows the source.
@@ -92,18 +94,23 @@ pub struct Live {
     /// Whether no more frames are taken from the source.
     stopped: bool,
     layer: HeatLayer,
+    /// Whether values are numbers and not shades.
     numbers: bool,
+    /// Whether shades go over the values of this frame only.
     own_range: bool,
     /// The largest value that each cell has had, while that is shown.
     held: Option<Arc<Frame>>,
     /// The first frames, until they are enough for the tare that was asked for.
     first: Option<TareFrames>,
+    /// How the tare was made; None if nothing is taken off.
     tare: Option<TareMark>,
     /// The upper end of the fixed range.
     top: f64,
     /// The least value that was shown, at most 0.
     bottom: f64,
+    /// Frames that came between two pictures of the screen and were never seen.
     not_drawn: u64,
+    /// The name of the file that is written.
     recording: Option<String>,
     /// The frames that were marked, in the order of their numbers.
     marks: Vec<FrameMark>,
@@ -111,6 +118,7 @@ pub struct Live {
     marked: Vec<FrameMark>,
     /// The model that names imprints, and its last answer.
     naming: Option<Naming>,
+    /// The frame that is shown, processed; None before the first.
     reading: Option<LiveReading>,
     /// Why the frame cannot be processed.
     error: Option<String>,
@@ -378,6 +386,7 @@ impl Live {
         }
     }
 
+    /// Takes a new frame into the history, the held peak and a tare being made. The top of the range only grows.
     fn add(&mut self, frame: &Arc<Frame>) {
         let largest = frame.values().iter().copied().fold(0.0, f64::max);
         self.top = self.top.max(round_up(largest));
@@ -403,6 +412,7 @@ impl Live {
         }
     }
 
+    /// Puts the tare into use, and notes of which frame it is, to say its age. An error leaves the one before.
     fn end_tare(&mut self, frames: TareFrames, last: &Frame) {
         match frames.finish() {
             Ok(tare) => {
@@ -450,12 +460,14 @@ impl Live {
         any
     }
 
+    /// Notes a rule with where it is from, and has frames read by it from now on.
     fn set_rule(&mut self, rule: Option<SetRule>) {
         self.rule = rule;
         self.processing.rule = rule.map(|set| set.rule);
         self.processing.least = rule.map_or(0, |set| set.least);
     }
 
+    /// Takes a rule that a key leads to, and reads the frame anew; a value out of range changes nothing.
     fn choose(&mut self, rule: &Result<Rule, FrameError>) {
         if let &Ok(rule) = rule {
             let (least, from) = (self.processing.least, "key");
@@ -464,7 +476,8 @@ impl Live {
         }
     }
 
-    /// The threshold up or down by a step; without one, a tenth of the range.
+    /// The threshold up or down by a step, a hundredth of the largest value so far in round numbers; without one, a
+    /// twentieth of that. In percent the step is 5 %, in deviations of the noise it is 1.
     pub fn step_threshold(&mut self, direction: i8) {
         let by = f64::from(direction);
         let step = round_up(self.top / 100.0) * by;

@@ -20,6 +20,7 @@ use crate::tui::live::state::Live;
 use crate::tui::runtime::effect::{Effect, Work};
 
 /// Handles what is asked for over the matrix.
+/// What concerns the open page only, such as a tare, does nothing here: there is no page to do it on.
 pub(in crate::tui) fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> {
     match asked {
         LiveMessage::Watch(request) => Some(watch(app, Arc::clone(request))),
@@ -33,6 +34,7 @@ pub(in crate::tui) fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> 
 }
 
 /// Opens a page for a source, in place of the one before.
+/// What is still reported of the source before has its own number, and is dropped.
 fn watch(app: &mut App, request: Arc<WatchRequest>) -> Effect {
     app.works += 1;
     let mut page = Live::new(Arc::clone(&request), app.works);
@@ -48,6 +50,7 @@ fn watch(app: &mut App, request: Arc<WatchRequest>) -> Effect {
 }
 
 /// Opens the page of the last source, which is watched again if it was left.
+/// Its history, marks and settings are still there; frames that came while it was left are not.
 fn open(app: &mut App) -> Option<Effect> {
     let Some(mut page) = app.live.take() else {
         refuse(
@@ -70,6 +73,7 @@ fn open(app: &mut App) -> Option<Effect> {
 }
 
 /// Handles a message over the page.
+/// Closing ends the source and keeps the page; Enter keeps both, because one often comes back for the next imprint.
 pub(in crate::tui) fn in_live(
     app: &mut App,
     mut page: Box<Live>,
@@ -100,6 +104,8 @@ pub(in crate::tui) fn in_live(
 }
 
 /// The imprint that is shown, as if it were drawn; None without one.
+/// The sensor has the size of the frame, and its pitch in mm where that is known and the same both ways; otherwise the
+/// default pitch stands.
 fn document(page: &Live) -> Option<Document> {
     let imprint = page.reading()?.imprint?;
     let sensor = Sensor::new(imprint.columns(), imprint.rows()).ok()?;
@@ -135,6 +141,7 @@ fn take(app: &mut App, page: Box<Live>, document: Document) {
     }
 }
 
+/// Says why there is no imprint to take: no frame has come, or no threshold says which cells are active.
 fn refuse_imprint(app: &mut App, page: &Live) {
     let key = app.keymap().label(Context::Live, &action::THRESHOLD_UP);
     let text = match page.reading() {
@@ -215,6 +222,8 @@ pub(in crate::tui) fn follow(app: &mut App) -> Option<Effect> {
 }
 
 /// Begins a recording, or ends it.
+/// The description of the recording says how its frames were looked at when it began. The frames are written as they
+/// come, without view, tare or threshold.
 fn record(page: &Live) -> Effect {
     if page.recording().is_some() {
         return Effect::Work(Work::StopRecording);
@@ -243,6 +252,7 @@ fn page(app: &mut App) -> Option<&mut Live> {
 }
 
 /// Takes what the source reports.
+/// Events of a source that is no longer watched are dropped, by their number.
 pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
     let Some(page) = page(app).filter(|page| page.number() == number && !page.stopped()) else {
         return;

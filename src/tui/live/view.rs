@@ -89,6 +89,7 @@ impl Page for Live {
 }
 
 /// What is shown, and how.
+/// What is the usual state, such as following the source, is not said; a channel is named only where there are several.
 fn title(live: &Live) -> Vec<(String, Role)> {
     let mut pieces = vec![(live.request().name(), Role::Title)];
     let mut say = |text: String, role| pieces.push((format!("  {text}"), role));
@@ -135,11 +136,14 @@ fn title(live: &Live) -> Vec<(String, Role)> {
 
 /// A number with its name.
 struct PanelLine {
+    /// Its name.
     label: &'static str,
+    /// The number with its unit, or why there is none.
     text: String,
 }
 
 /// All numbers, the most important ones first.
+/// A low screen cuts them off at the foot: what the touch is like comes before what the source is like.
 fn lines(live: &Live, theme: &Theme, keymap: &Keymap) -> Vec<PanelLine> {
     let mut lines = Vec::new();
     let mut say = |label, text: String| lines.push(PanelLine { label, text });
@@ -242,6 +246,7 @@ fn named(naming: &Naming, shown: Option<&Imprint>) -> [(&'static str, Option<Str
 }
 
 /// The rule of the imprint, and where it is from.
+/// "of the file" marks one that came with a recording; one set by a key is said without a remark.
 fn threshold(live: &Live, keymap: &Keymap) -> String {
     let Some(set) = live.rule() else {
         let key = keymap.label(Context::Live, &action::THRESHOLD_UP);
@@ -263,6 +268,7 @@ fn threshold(live: &Live, keymap: &Keymap) -> String {
 }
 
 /// How many frames the tare was made of, and how long ago.
+/// In seconds where the frames have times, otherwise in frames; no age for a tare made after the frame shown.
 fn tare(live: &Live) -> String {
     let Some(mark) = live.tare() else {
         return "none".to_owned();
@@ -292,6 +298,7 @@ fn lost(live: &Live) -> String {
     }
 }
 
+/// Draws the lines from the top; those below the area are left out.
 fn draw_lines(lines: &[PanelLine], theme: &Theme, buffer: &mut Buffer, area: Rect) {
     for (index, line) in lines.iter().enumerate() {
         let label = format!("{:LABEL$}", line.label);

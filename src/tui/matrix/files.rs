@@ -120,6 +120,7 @@ fn opened(app: &App, file: OpenedFile) -> Result<Document, String> {
     }
 }
 
+/// What a file of taxels does not say, such as pitch and threshold, is taken from the sensor in use.
 fn of_imprint(app: &App, imprint: &Imprint) -> Result<Document, String> {
     let sensor = app.history.present().sensor;
     let sensor = sensor

@@ -39,7 +39,9 @@ impl Layers {
 
 /// Where the dots of the grid are.
 struct DotGrid<'a> {
+    /// Where the taxels are.
     grid: &'a TaxelGrid,
+    /// The dots set so far.
     canvas: DotCanvas,
     /// By how many cells what is drawn is moved.
     by: [f64; 2],
@@ -48,6 +50,7 @@ struct DotGrid<'a> {
 }
 
 impl<'a> DotGrid<'a> {
+    /// An empty canvas over the grid, nothing moved and lines drawn in full.
     fn new(grid: &'a TaxelGrid) -> Self {
         let (columns, lines) = grid.characters();
         Self {

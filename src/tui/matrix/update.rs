@@ -33,9 +33,12 @@ use crate::tui::widget::number::around;
 use crate::tui::{explore, live, recognise};
 
 /// What there is to say of an empty matrix.
+/// Copied descriptors, the rectangle and the choice of a region all need one, and say the same where there is none.
 const NO_REGION: &str = "no region: the matrix is empty";
 
 /// Handles a message.
+/// A message that no arm knows is tried as a request to the library, then as a page, and last as an edit.
+/// Right after a shape was deleted, Undo brings that shape back, before any step of the drawing.
 pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
     let sensor = app.history.present().sensor;
     match message {
@@ -83,6 +86,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
 }
 
 /// Opens the page that a message asks for; does on the matrix what any other message says.
+/// The picture has two pages: with a picture on the matrix its form opens, otherwise the list to choose one from.
 fn open_page(app: &mut App, message: &Message) -> Option<Effect> {
     match message {
         Message::Load => return Some(open_list(app, Purpose::Load)),
@@ -128,6 +132,8 @@ fn library_request(message: Message) -> Result<LibraryRequest, Message> {
 }
 
 /// Opens the form of the picture that is on the matrix.
+/// Its name is that of the picture, else of the document; the notice says how to get to another shape, because the
+/// key for a picture leads here and no longer to the list.
 fn edit_picture(app: &mut App) {
     let present = app.history.present();
     if let Some(Source::Picture(picture)) = &present.source {
@@ -145,6 +151,7 @@ fn ask(app: &mut App, text: String, yes: Message) {
 }
 
 /// Opens the prompt for a name. It proposes the name of the document, if that is a shape of the user's own.
+/// A shipped shape cannot be replaced, so for it, as for a drawing without a name, a new name is proposed.
 fn save(app: &mut App) {
     if app.reading().imprint.is_empty() {
         return refuse(app, "nothing to save: the matrix is empty");
@@ -183,6 +190,8 @@ fn proposed_name(app: &App) -> String {
 }
 
 /// Quits, after a question if work would be lost.
+/// The imprint on the matrix can be saved from the question; an earlier drawing must be brought back first, so there
+/// is no key for it.
 fn quit(app: &mut App) {
     let what = if app.unsaved() {
         "The imprint"
@@ -202,6 +211,7 @@ fn quit(app: &mut App) {
 }
 
 /// Switches the mouse: it sets taxels, or the terminal selects text with it.
+/// A terminal gives the mouse either to a program or to its own selection, never to both.
 fn switch_mouse(app: &mut App) -> Effect {
     app.mouse = !app.mouse;
     let key = app.key_of(&action::MOUSE);
@@ -215,6 +225,7 @@ fn switch_mouse(app: &mut App) -> Effect {
 }
 
 /// Handles what needs nothing from outside: the cursor, what is shown, and the shape.
+/// Coverage is refused without a source: it is the share of a taxel that a shape covers, which a drawing has not.
 fn edit(app: &mut App, message: &Message) {
     let sensor = app.history.present().sensor;
     match *message {
@@ -274,6 +285,7 @@ fn edit(app: &mut App, message: &Message) {
 }
 
 /// The text goes to the terminal, which puts it into its clipboard or does not: it never says.
+/// Descriptors are one to a line, key and value with a tab between; the imprint is in the form of its text files.
 fn copy(app: &mut App, what: Copied) -> Option<Effect> {
     let seen = app.reading();
     let (name, text) = match (what, seen.description(app.chosen)) {
@@ -313,6 +325,7 @@ fn open_list(app: &mut App, purpose: Purpose) -> Effect {
 }
 
 /// Shows a layer or hides it; says which, and why there is nothing to see of it.
+/// A layer that nobody has asked for depends on the size of taxels, so the switch starts from what is seen.
 fn switch_layer(app: &mut App, layer: Layer) {
     let Some(grid) = app.grid() else { return };
     let (name, now, missing) = match layer {
@@ -366,6 +379,7 @@ fn move_cursor(app: &mut App, arrow: Arrow) {
 }
 
 /// Selects the region that comes `by` further on, the first after the last.
+/// Until one is chosen it is the main region that is described, and the next one counts from there.
 fn choose_region(app: &mut App, by: i8) {
     let seen = app.reading();
     let Some((now, _)) = seen.region(app.chosen) else {

@@ -112,6 +112,7 @@ struct Layout {
 const DETAIL: u16 = 2;
 
 impl Layout {
+    /// Divides the page; the cell under the cursor is always among the visible ones.
     fn of(area: Rect, page: &Confusion) -> Self {
         let count = page.count();
         let names = (0..count).map(|shape| write::width(page.trained.name(shape)));

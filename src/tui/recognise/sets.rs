@@ -140,6 +140,8 @@ impl TrainedModel {
     }
 }
 
+/// The poses of a shape on the sensor of its model, in these ranges: those of the model, or finer ones to try poses
+/// between.
 fn grid_of(model: &Model, shape: usize, ranges: Ranges) -> Option<PoseGrid> {
     let source = model.shapes().get(shape)?.source.clone();
     PoseGrid::new(source, *model.sensor(), model.anchor(), ranges).ok()

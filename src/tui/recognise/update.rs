@@ -86,6 +86,8 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
 }
 
 /// Opens the page, if it is not open, and has the model prepared, of another set or where there is none.
+/// A training may take long: the set that is there or on its way is not prepared again.
+/// The model comes as an event with the number given here; one of another number is out of date.
 fn open(app: &mut App, choice: Option<ModelChoice>) -> Option<Effect> {
     if let Some(page) = app.recognition.take() {
         app.dialogs.push(Dialog::Recognition(page));
@@ -103,11 +105,13 @@ fn open(app: &mut App, choice: Option<ModelChoice>) -> Option<Effect> {
     Some(Effect::Work(Work::Prepare(number, choice)))
 }
 
+/// Says that what was asked for needs a model: the confusion matrix, the sizes, or an exercise.
 fn not_trained(app: &mut App) {
     refuse(app, "the set is not trained yet");
 }
 
 /// Shows the outlines of poses if they are not seen, otherwise hides them.
+/// They start shown or hidden by how large taxels are, so the switch asks what is seen, not what was set.
 fn show_poses(app: &mut App) {
     let Some(panes) = app.panes() else { return };
     let grid = TaxelGrid::of(
@@ -131,6 +135,7 @@ fn show_poses(app: &mut App) {
 }
 
 /// Begins an exercise.
+/// Touches kept before are forgotten: they were of another shape, and the answer is about one shape only.
 fn touch(app: &mut App) {
     let Some(page) = state(app) else { return };
     let Some(trained) = page.trained().cloned() else {
@@ -142,6 +147,7 @@ fn touch(app: &mut App) {
 }
 
 /// Puts another touch of the shape onto the matrix, and goes on asking for its name.
+/// The shape stays, and its pose is another one: further touches narrow down what it may be.
 fn touch_again(app: &mut App, mut exercise: Exercise) {
     let sensor = app.history.present().sensor;
     let Some(page) = state(app) else { return };
@@ -168,6 +174,7 @@ fn forget(app: &mut App) {
 }
 
 /// Keeps the touch on the matrix.
+/// Kept touches count as touches of one and the same shape; the answer takes them all together.
 fn keep(app: &mut App) {
     let Some(page) = state(app) else { return };
     let kept = page.keep();
@@ -181,6 +188,8 @@ fn keep(app: &mut App) {
 }
 
 /// Handles a message over the page. What it does not know goes to the matrix.
+/// To close it during a training stops the training first, and the page stays; a second time closes it.
+/// A closed page is kept with its model and its touches.
 pub(in crate::tui) fn in_recognition(
     app: &mut App,
     mut page: Box<Recognition>,
@@ -209,6 +218,7 @@ pub(in crate::tui) fn in_recognition(
 }
 
 /// Handles a message in the exercise.
+/// Enter or a digit names the shape; to close the page is to give up, which counts as asked and not as right.
 pub(in crate::tui) fn in_exercise(
     app: &mut App,
     mut exercise: Box<Exercise>,
@@ -234,6 +244,8 @@ pub(in crate::tui) fn in_exercise(
 }
 
 /// Ends the exercise with the selected shape as its name, or without one.
+/// Its touches become the kept ones, so that the panel shows what could be known of them. `best` counts how often the
+/// most probable shape was the right one: nobody is right more often in the long run.
 fn guess(app: &mut App, exercise: Exercise, named: bool) {
     let (shape, selected) = (exercise.shape(), exercise.selected());
     let (right, name) = (named && shape == selected, exercise.name(shape).to_owned());
@@ -254,12 +266,14 @@ fn guess(app: &mut App, exercise: Exercise, named: bool) {
     inform(app, text);
 }
 
+/// The key that begins an exercise, for the notice at the end of one.
 fn action_key(app: &App) -> String {
     let context = crate::tui::keys::binding::Context::Recognise;
     app.keymap().label(context, &action::TOUCH)
 }
 
 /// Handles a message over the confusion matrix.
+/// Enter puts the imprint of the cell onto the matrix and closes the page; a cell that stands for no touch is refused.
 pub(in crate::tui) fn in_confusion(
     app: &mut App,
     mut page: Box<Confusion>,
@@ -294,6 +308,7 @@ pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) {
 }
 
 /// Takes that a training failed for a reason that nobody expected.
+/// The number is of a training or of the work on sizes; the page that waits for another number takes no notice.
 pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) {
     separate::update::on_failure(app, number, reason);
     let prepared = Prepared {

@@ -110,6 +110,7 @@ struct Panel<'a> {
     keymap: &'a Keymap,
     buffer: &'a mut Buffer,
     area: Rect,
+    /// Counted from the top of the area.
     line: usize,
 }
 
@@ -134,6 +135,7 @@ impl Panel<'_> {
         self.line += usize::from(self.area.height >= 16);
     }
 
+    /// The key of an action on this page, as the user has set it.
     fn key(&self, action: &'static action::Action) -> String {
         self.keymap.label(Context::Recognise, action)
     }

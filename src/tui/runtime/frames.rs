@@ -29,14 +29,20 @@ use crate::tui::runtime::write_access::WriteAccess;
 /// The source that is watched.
 #[derive(Debug, Default)]
 pub(super) struct FrameWatcher {
+    /// None before the first source and after the page was closed.
     watched: Option<Watched>,
 }
 
+/// A source with the thread that reads it. The thread ends by itself when `stop` is set or the source ends.
 #[derive(Debug)]
 struct Watched {
+    /// The number of the piece of work, which its events carry.
     number: u64,
+    /// What was asked for: the source, the channel, how frames are read.
     request: Arc<WatchRequest>,
+    /// Shared with the thread that reads the source.
     feed: Arc<FrameFeed>,
+    /// Set to end that thread.
     stop: Arc<AtomicBool>,
     /// Frames that a script has taken.
     taken: usize,
@@ -45,6 +51,7 @@ struct Watched {
 /// What has come and was not taken yet.
 #[derive(Debug, Default)]
 struct FrameFeed {
+    /// Held for as long as it takes to add or to take frames, never while a file is written.
     pending: Mutex<Pending>,
     /// Locked apart, so that a slow disk holds up the source only.
     recorder: Mutex<Option<(PathBuf, FrameRecorder)>>,
@@ -52,9 +59,12 @@ struct FrameFeed {
     marks: Mutex<Option<Vec<FrameMark>>>,
 }
 
+/// What the screen takes at its next turn. It is swapped out under a short lock, so that the source hardly waits.
 #[derive(Debug, Default)]
 struct Pending {
+    /// The frames, and how the source is.
     batch: FrameBatch,
+    /// The memory that those frames take.
     bytes: usize,
     /// Whether there is something that was not taken yet.
     is_new: bool,
@@ -143,6 +153,7 @@ impl FrameWatcher {
     }
 
     /// Ends it.
+    /// The event says how many frames the file holds, or why it could not be finished.
     pub(super) fn stop_recording(&self) -> Option<WorkerEvent> {
         let watched = self.watched.as_ref()?;
         let event = watched.end_recording()?;
@@ -175,6 +186,7 @@ impl FrameWatcher {
     }
 
     /// Reads the next frames of the source, up to `count`, each as an event; for scripts, which have no clock.
+    /// Nothing reads ahead in a script: the source is read anew from its start, and what was taken is skipped.
     pub(super) fn next(&mut self, count: usize) -> Vec<WorkerEvent> {
         let Some(watched) = &mut self.watched else {
             return Vec::new();
@@ -217,6 +229,7 @@ impl Drop for FrameWatcher {
 }
 
 impl Watched {
+    /// Opens the file of a recording; from then on each frame goes into it. An earlier error is forgotten.
     fn begin_recording(
         &self,
         path: &Path,
@@ -371,6 +384,7 @@ impl FrameFeed {
     }
 
     /// Records a frame. Returns how many are recorded, None without a recording.
+    /// An error ends the recording; the frames go on being shown.
     fn record(&self, frame: &Frame, time: Option<f64>) -> Result<Option<u64>, String> {
         let mut recorder = locked(&self.recorder);
         let Some((_, own)) = &mut *recorder else {
@@ -385,6 +399,7 @@ impl FrameFeed {
     }
 
     /// Writes out what has waited for long enough.
+    /// Marks are written here, too: until a recording ends, only the thread of the source writes.
     fn write_out(&self) -> Result<Option<u64>, String> {
         let mut recorder = locked(&self.recorder);
         let Some((_, own)) = &mut *recorder else {
@@ -405,6 +420,7 @@ impl FrameFeed {
 
 impl Pending {
     /// Adds a frame; the oldest go where nobody takes them and there is no memory for more.
+    /// Half of them go at once, so that a full buffer does not move all frames for each new one. At least one stays.
     fn push(&mut self, frame: Arc<Frame>, most: usize) {
         self.batch.status.state = SourceState::Live;
         self.batch.provisional = None;

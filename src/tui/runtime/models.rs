@@ -166,6 +166,8 @@ impl Drop for ModelWorker {
     }
 }
 
+/// Reads a model from the cache or trains it, and evaluates it. The event also has the names of stored models, which
+/// may have changed.
 fn prepare(
     store: &ModelStore,
     number: u64,

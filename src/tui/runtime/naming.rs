@@ -25,8 +25,11 @@ use crate::tui::runtime::progress::{WorkerEventSink, guarded};
 /// A model that is asked on the thread that waits for its answer.
 #[derive(Debug)]
 struct OwnModel {
+    /// Where the model is read from.
     store: ModelStore,
+    /// Which set it is of.
     choice: ModelChoice,
+    /// The noise of the sensor; None to take each taxel as it is read.
     noise: Option<Noise>,
     /// The model, or why there is none.
     model: OnceCell<Result<Model, String>>,
@@ -35,12 +38,15 @@ struct OwnModel {
 /// Names imprints by the model that was chosen last.
 #[derive(Debug, Default)]
 pub(super) struct ShapeNamer {
+    /// The number of the source whose frames are named.
     number: u64,
     /// What is named by, where there is no thread; the model is prepared when the first imprint comes.
     here: Option<OwnModel>,
+    /// The way to the thread; dropped to end it. None without a thread.
     imprints: Option<Sender<Imprint>>,
     /// Set to break off a training.
     stop: Arc<AtomicBool>,
+    /// Joined at the end of the program, so that a model is written as a whole.
     thread: Option<JoinHandle<()>>,
 }
 
@@ -125,6 +131,8 @@ impl Drop for ShapeNamer {
     }
 }
 
+/// Names an imprint, with the noise of the sensor where that is known. One touch is all the evidence: frames of a
+/// source may be of different shapes.
 fn named(
     model: &Model,
     noisy: Option<&mut NoisyRecogniser<'_>>,

@@ -83,6 +83,7 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
 }
 
 /// Handles the list of shapes: for the page of that name, or for completion in the `:` prompt.
+/// After a command that deletes or replaces, only shapes of the user's own are offered: shipped ones are read-only.
 fn on_list(app: &mut App, mut entries: Vec<LibraryEntry>) -> Option<Effect> {
     match app.dialogs.last_mut() {
         Some(Dialog::List(list)) => {
@@ -103,6 +104,7 @@ fn on_list(app: &mut App, mut entries: Vec<LibraryEntry>) -> Option<Effect> {
 }
 
 /// Handles what has changed in the library, and unsaved work.
+/// A removal or a restoring also reaches the history, where earlier states bear the name of that shape.
 fn on_change(app: &mut App, change: LibraryEvent) {
     match change {
         LibraryEvent::Stored(name, stamp) => {
@@ -164,6 +166,7 @@ fn on_change(app: &mut App, change: LibraryEvent) {
 }
 
 /// Asks whether to bring back the unsaved work of a program that crashed.
+/// Work of several crashes is offered one after the other; no answer keeps it for the next start.
 fn offer(app: &mut App, before: &str, left: &Leftover) {
     let key = |answer| app.keymap().label(Context::Question, answer);
     let (yes, no) = (key(&action::ACCEPT), key(&action::DECLINE));
@@ -186,6 +189,7 @@ fn offer(app: &mut App, before: &str, left: &Leftover) {
 }
 
 /// Reads the shapes of the list that have come into sight.
+/// A library may be large, and only rows in sight need their size and preview.
 fn look(app: &App) -> Option<Effect> {
     let Some(Dialog::List(list)) = app.dialogs.last() else {
         return None;
@@ -195,6 +199,8 @@ fn look(app: &App) -> Option<Effect> {
 }
 
 /// The selected shape of a list is taken, for what the list is for.
+/// A shape that cannot be read, or that does not fit, leaves the list open for another choice. Only to delete needs no
+/// reading: a broken file can be removed, too.
 fn choose(app: &mut App, list: ListDialog) -> Option<Effect> {
     let purpose = list.purpose();
     let chosen = list

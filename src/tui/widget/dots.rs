@@ -16,8 +16,11 @@ pub type Place = (f64, f64);
 /// A field of dots, as large as some characters of the screen.
 #[derive(Clone, Debug)]
 pub struct DotCanvas {
+    /// Characters across.
     columns: u16,
+    /// Characters down.
     rows: u16,
+    /// The dots of each character as bits, row by row; 0 for a blank one.
     characters: Vec<u8>,
 }
 

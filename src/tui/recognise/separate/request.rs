@@ -11,9 +11,10 @@ use crate::tui::recognise::sets::TrainedModel;
 /// The sizes that are looked at unless others are asked for: half as large to three times as large.
 const SIZES: &str = "0.5:3:0.1";
 
-/// Steps of a cell and degrees between angles, unless others are asked for. Finer ones show more kinds of imprints,
-/// and take longer.
+/// Steps of a cell in each direction, unless others are asked for. Finer ones show more kinds of imprints, and take
+/// longer.
 const POSITIONS: u8 = 10;
+/// Degrees between angles, unless others are asked for.
 const DEGREES: u32 = 2;
 
 /// The error that is looked for unless another one is asked for.

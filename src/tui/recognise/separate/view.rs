@@ -55,6 +55,7 @@ struct Layout {
 }
 
 impl Layout {
+    /// Below ten lines the curve is left out, because the table says the same in numbers.
     fn of(area: Rect, page: &Separate) -> Self {
         let body = write::below(area, 2);
         let body = Rect {
