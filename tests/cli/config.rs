@@ -193,7 +193,7 @@ fn menu_hints_help_and_notices_name_the_keys_of_the_file() {
         &[
             "Ctrl-N New   l Load",
             "q Quit   K Help",
-            "empty: x draws, f places a figure",
+            "drawn by hand: x draws, f places a figure",
             "x toggle  ? undo",
         ],
     );

@@ -1,6 +1,7 @@
 //! What a sweep leaves: whole files, none that was there unless asked for, nothing where it is stopped.
 
 use std::fs;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use super::finish;
@@ -18,7 +19,7 @@ fn an_interrupt_stops_at_once_and_leaves_nothing() {
     let path = |name: &str| folder.join(name).display().to_string();
     // Hours of work.
     let line = format!(
-        "sweep heptagon --side 3 --thickness 1 --x0 5:5.999:0.001 --y0 5:5.999:0.001 --angle 0:359.999:0.001 --quiet --atlas {} --poses {}",
+        "sweep heptagon --side 3 --thickness 1 --x0 5:5.999:0.001 --y0 5:5.999:0.001 --angle 0:359.999:0.001 --quiet --memory 900000T --atlas {} --poses {}",
         path("a.npz"),
         path("p.npy")
     );
@@ -27,8 +28,15 @@ fn an_interrupt_stops_at_once_and_leaves_nothing() {
         .spawn()
         .expect("the program starts");
     let id = i32::try_from(child.id()).expect("a process");
-    // It listens to signals before it opens a file.
-    while names(folder).is_empty() {
+    // It listens to signals before it opens a file, which may have no name yet.
+    let opened = format!("/proc/{id}/fd");
+    let is_open = || {
+        let files = fs::read_dir(&opened).into_iter().flatten().flatten();
+        let mut targets = files.filter_map(|file| fs::read_link(file.path()).ok());
+        targets.any(|target| target.starts_with(folder)) || !names(folder).is_empty()
+    };
+    while !is_open() {
+        assert!(Path::new(&opened).exists(), "it runs still");
         std::thread::sleep(Duration::from_millis(5));
     }
     // Somewhere on its way.

@@ -272,6 +272,7 @@ mod tests {
         assert_eq!(wrong("\"marks\":[]"), "right");
         assert!(wrong("\"rule\":{\"percent\":0}").contains("above 0"));
         assert!(wrong("\"tare_frames\":1,\"tare\":[[1],[2,3]]").contains("rows of one length"));
-        assert!(wrong("\"unit\":3").contains("string"));
+        let unit = wrong("\"unit\":3");
+        assert_eq!(unit, "found the number 3, expected a text");
     }
 }
