@@ -1,4 +1,5 @@
-//! Help: the list of the keys that mean something in a place, as they are now.
+//! Help: the list of the keys that mean something in a place, as they are now. It can be searched:
+//! [`crate::tui::search`].
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -8,6 +9,7 @@ use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::{HelpLine, Keymap, help};
 use crate::tui::widget::columns::broken;
+use crate::tui::widget::found::{contains, marked};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -18,20 +20,40 @@ pub struct Help {
     context: Context,
     /// The index of the first visible line.
     top: usize,
+    /// What is searched for, None for nothing.
+    search: Option<Search>,
 }
+
+/// A search that found something.
+#[derive(Clone, Debug)]
+struct Search {
+    /// What is searched for.
+    wanted: String,
+    /// The entry that one has come to.
+    entry: usize,
+}
+
+/// The lines of the list as they are drawn, each with the index of its entry: a long entry has several.
+type Lines = Vec<(usize, HelpLine)>;
 
 impl Help {
     /// The list of a place, from its first line on.
     pub fn new(context: Context) -> Self {
-        Self { context, top: 0 }
+        Self {
+            context,
+            top: 0,
+            search: None,
+        }
     }
 
     /// Its lines in an area of this many columns and rows, and the index of the first visible one.
-    pub fn lines(&self, keymap: &Keymap, (columns, rows): (u16, u16)) -> (Vec<HelpLine>, usize) {
-        let lines: Vec<HelpLine> = help(self.context, keymap)
-            .into_iter()
-            .flat_map(|line| broken_line(line, columns.into()))
-            .collect();
+    fn lines(&self, keymap: &Keymap, (columns, rows): (u16, u16)) -> (Lines, usize) {
+        let broken = |(entry, line)| {
+            let lines = broken_line(line, columns.into()).into_iter();
+            lines.map(move |line| (entry, line))
+        };
+        let entries = (0..).zip(help(self.context, keymap));
+        let lines: Lines = entries.flat_map(broken).collect();
         let last_top = lines.len().saturating_sub(rows.into());
         let top = self.top.min(last_top);
         (lines, top)
@@ -42,6 +64,104 @@ impl Help {
         let (_, top) = self.lines(keymap, room);
         self.top = top.saturating_add_signed(isize::from(lines));
         (_, self.top) = self.lines(keymap, room);
+    }
+
+    /// Searches for a text from the first visible line on, then from the start, and goes to the first match. Answers
+    /// which match that is, counted from 1, and of how many; (0, 0) for none.
+    pub fn search(&mut self, wanted: &str, keymap: &Keymap, room: (u16, u16)) -> (usize, usize) {
+        let entries = matches(self.context, keymap, wanted);
+        let (lines, top) = self.lines(keymap, room);
+        let from = lines.get(top).map_or(0, |(entry, _)| *entry);
+        let ahead = entries.iter().find(|&&entry| entry >= from);
+        let Some(&entry) = ahead.or(entries.first()) else {
+            return (0, 0);
+        };
+        self.search = Some(Search {
+            wanted: wanted.to_owned(),
+            entry,
+        });
+        self.show(entry, keymap, room);
+        self.number(keymap).map_or((0, 0), |number| number)
+    }
+
+    /// Goes to the match this many further on, the first follows the last. Answers whether anything was searched for.
+    pub fn go_to_match(&mut self, by: i8, keymap: &Keymap, room: (u16, u16)) -> bool {
+        let Some(search) = &mut self.search else {
+            return false;
+        };
+        let entries = matches(self.context, keymap, &search.wanted);
+        let ahead = |&&entry: &&usize| entry > search.entry;
+        let back = |&&entry: &&usize| entry < search.entry;
+        let next = if by > 0 {
+            entries.iter().find(ahead).or(entries.first())
+        } else {
+            entries.iter().rev().find(back).or(entries.last())
+        };
+        let Some(&entry) = next else {
+            return false;
+        };
+        search.entry = entry;
+        self.show(entry, keymap, room);
+        true
+    }
+
+    /// Forgets what was searched for.
+    pub fn leave_search(&mut self) {
+        self.search = None;
+    }
+
+    /// Which match one has come to, counted from 1, and of how many; None without a search.
+    fn number(&self, keymap: &Keymap) -> Option<(usize, usize)> {
+        let search = self.search.as_ref()?;
+        let entries = matches(self.context, keymap, &search.wanted);
+        let before = entries.iter().filter(|&&entry| entry < search.entry);
+        Some((before.count() + 1, entries.len()))
+    }
+
+    /// Scrolls, where an entry is out of sight, so that it has a third of the lines above it.
+    fn show(&mut self, entry: usize, keymap: &Keymap, room: (u16, u16)) {
+        let (lines, top) = self.lines(keymap, room);
+        let rows = usize::from(room.1);
+        let own = |(index, _): &(usize, HelpLine)| *index == entry;
+        let (first, last) = (lines.iter().position(own), lines.iter().rposition(own));
+        if let (Some(first), Some(last)) = (first, last)
+            && (first < top || last >= top + rows)
+        {
+            self.top = first.saturating_sub(rows / 3);
+            (_, self.top) = self.lines(keymap, room);
+        }
+    }
+
+    /// A line in pieces, with what is searched for marked; `here`: it is the match that one has come to, and has a sign,
+    /// for terminals that cannot reverse.
+    fn draw_line(
+        &self,
+        theme: &Theme,
+        line: &HelpLine,
+        here: bool,
+        buffer: &mut Buffer,
+        row: Rect,
+    ) {
+        let wanted = self.search.as_ref().map_or("", |search| &search.wanted);
+        let indent = indent(row.width.into());
+        let mut pieces = Vec::new();
+        let pad;
+        match line {
+            HelpLine::Place(context) => pieces.extend(marked(context.title(), wanted, Role::Title)),
+            HelpLine::Keys(keys, text) => {
+                pieces.push((if here { "> " } else { "  " }, Role::Key));
+                pieces.extend(marked(keys, wanted, Role::Key));
+                pad = " ".repeat(indent.saturating_sub(2 + write::width(keys)));
+                pieces.push((&pad, Role::Key));
+                pieces.extend(marked(text, wanted, Role::Text));
+            }
+            HelpLine::More(text) => {
+                pad = " ".repeat(indent);
+                pieces.push((&pad, Role::Text));
+                pieces.extend(marked(text, wanted, Role::Text));
+            }
+        }
+        write::line(buffer, row, theme, pieces);
     }
 }
 
@@ -63,51 +183,70 @@ impl Page for Help {
     ) -> Option<Position> {
         write::clear(buffer, area);
         let (lines, top) = self.lines(keymap, area.as_size().into());
-        let indent = indent(area.width.into());
-        for (index, line) in lines.into_iter().skip(top).enumerate() {
+        let here = self.search.as_ref().map(|search| search.entry);
+        let mut cursor = None;
+        for (index, (entry, line)) in lines.iter().skip(top).enumerate() {
             let row = write::row(area, index);
-            match line {
-                HelpLine::Place(context) => {
-                    write::line(buffer, row, theme, [(context.title(), Role::Title)]);
-                }
-                HelpLine::Keys(keys, text) => {
-                    let keys = format!("{:indent$}", format!("  {keys}"));
-                    let pieces = [(keys.as_str(), Role::Key), (text, Role::Text)];
-                    write::line(buffer, row, theme, pieces);
-                }
-                HelpLine::More(text) => {
-                    let text = format!("{:indent$}{text}", "");
-                    write::line(buffer, row, theme, [(text.as_str(), Role::Text)]);
-                }
+            let here = here == Some(*entry);
+            self.draw_line(theme, line, here, buffer, row);
+            if here && row.height > 0 && cursor.is_none() {
+                cursor = Some(Position::new(row.x, row.y));
             }
         }
-        None
+        cursor
     }
 
     fn scrolls(&self) -> bool {
         true
     }
 
-    /// Which lines are visible, where not all of them are.
+    /// Its update leaves the search first.
+    fn cancels_itself(&self) -> bool {
+        self.search.is_some()
+    }
+
+    /// Which match one has come to, and which lines are visible, where not all of them are.
     fn remark(&self, keymap: &Keymap, body: Rect) -> Option<(String, Role)> {
         let (lines, top) = self.lines(keymap, body.as_size().into());
         let last = lines.len().min(top + usize::from(body.height));
         let key = |action| keymap.label(Context::Help, action);
         let more = match (top, last == lines.len()) {
-            (0, true) => return None,
-            (_, true) => "the end".to_owned(),
-            (_, false) => format!(
+            (0, true) => None,
+            (_, true) => Some("the end".to_owned()),
+            (_, false) => Some(format!(
                 "more below: {}, {}",
                 key(&action::SCROLL_DOWN),
                 key(&action::PAGE_DOWN)
-            ),
+            )),
         };
-        let text = format!("lines {}-{last} of {}; {more}", top + 1, lines.len());
+        let visible =
+            more.map(|more| format!("lines {}-{last} of {}; {more}", top + 1, lines.len()));
+        let found = self.number(keymap);
+        let found = found.map(|(number, all)| format!("match {number} of {all}"));
         // A second line would hide the last one of the list.
-        let short = format!("{last} of {}", lines.len());
+        let (text, short) = match (found, visible) {
+            (None, None) => return None,
+            (None, Some(visible)) => (visible, format!("{last} of {}", lines.len())),
+            (Some(found), None) => (found.clone(), found),
+            (Some(found), Some(visible)) => (format!("{found}; {visible}"), found),
+        };
         let fitting = write::first_fitting(&[&text, &short], body.width.into());
         Some((fitting.to_owned(), Role::Key))
     }
+}
+
+/// The entries of a place's list that have a text, in their keys or in what these do.
+fn matches(context: Context, keymap: &Keymap, wanted: &str) -> Vec<usize> {
+    let has = |line: &HelpLine| match line {
+        HelpLine::Place(context) => contains(context.title(), wanted),
+        HelpLine::Keys(keys, text) => contains(keys, wanted) || contains(text, wanted),
+        HelpLine::More(text) => contains(text, wanted),
+    };
+    let entries = (0..).zip(help(context, keymap));
+    entries
+        .filter(|(_, line)| has(line))
+        .map(|(entry, _)| entry)
+        .collect()
 }
 
 /// The column where the meaning of the keys begins: to the right of the keys, or near the left edge, under them, on a

@@ -23,6 +23,8 @@ pub mod app;
 
 pub mod help;
 
+pub mod search;
+
 pub mod history;
 
 pub mod compare;

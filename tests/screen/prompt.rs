@@ -181,7 +181,7 @@ fn help_is_everywhere() {
             "l?",
             "filter:",
             "In the list of shapes",
-            "clear the filter",
+            "delete a character of the filter",
             "On the matrix",
         ),
         (

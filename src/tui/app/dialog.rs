@@ -27,6 +27,7 @@ use crate::tui::recognise::confusion::Confusion;
 use crate::tui::recognise::exercise::Exercise;
 use crate::tui::recognise::separate::state::Separate;
 use crate::tui::recognise::state::Recognition;
+use crate::tui::search::SearchDialog;
 use crate::tui::shapes::state::ListDialog;
 use crate::tui::widget::theme::{Role, Theme};
 
@@ -45,6 +46,8 @@ pub enum Dialog {
     Question(Question),
     /// The list of keys.
     Help(Help),
+    /// What is searched for in it.
+    Search(SearchDialog),
     /// Two imprints.
     Compare(Comparison),
     /// The steps of the history.
@@ -83,6 +86,7 @@ impl Dialog {
             Self::Command(page) => page,
             Self::Question(page) => page,
             Self::Help(page) => page,
+            Self::Search(page) => page,
             Self::History(page) => page,
             Self::Compare(page) => page,
             Self::Ranges(page) => &**page,

@@ -147,10 +147,11 @@ fn of_menu(context: Context, keymap: &Keymap) -> Vec<&Binding> {
 }
 
 /// What leads on from a page, out of it, or to its keys.
-const LEADING: [Message; 6] = [
+const LEADING: [Message; 7] = [
     Message::Accept,
     Message::Decline,
     Message::Cancel,
+    Message::Quit,
     Message::Help,
     Message::Explore(ExploreMessage::Stop),
     Message::Terminate,

@@ -103,6 +103,10 @@ pub enum Message {
     Scroll(i16),
     /// To the first or the last line of a list.
     ScrollTo(Endpoint),
+    /// Open the prompt that searches in help.
+    Search,
+    /// Go to the match this many further on; negative goes back. The first follows the last.
+    Match(i8),
     /// The form of the sensor.
     Sensor,
     /// Scale the shape up or down.

@@ -12,10 +12,12 @@ use crate::tui::app::state::{App, Notice, RunState};
 use crate::tui::help::Help;
 use crate::tui::history::HistoryDialog;
 use crate::tui::keys::action;
+use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Key;
 
 use crate::tui::matrix::files;
 use crate::tui::runtime::effect::{Effect, TerminalEffect};
+use crate::tui::search::SearchDialog;
 use crate::tui::{explore, form, live, matrix, prompt, recognise, shapes};
 
 /// No message is done more often by a count.
@@ -125,6 +127,7 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
         Dialog::Command(command) => prompt::update::in_command(app, command, message),
         Dialog::Question(question) => at_question(app, question, &message),
         Dialog::Help(help) => in_help(app, help, &message),
+        Dialog::Search(dialog) => in_search(app, dialog, &message),
         Dialog::Compare(mut page) => {
             if let Message::Field(by) = message {
                 page.next_view(by);
@@ -147,15 +150,61 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
     }
 }
 
-/// Handles a message in help, which stays open.
+/// Handles a message in help, which stays open unless it is closed while something was searched for.
 fn in_help(app: &mut App, mut help: Help, message: &Message) -> Option<Effect> {
-    if let Message::Scroll(lines) = message {
-        let room = app
-            .panes()
-            .map_or((0, 0), |panes| panes.body.as_size().into());
-        help.scroll(*lines, app.keymap(), room);
+    let (keymap, room) = (app.keymap(), room(app));
+    let mut refused = None;
+    match *message {
+        Message::Scroll(lines) => help.scroll(lines, keymap, room),
+        Message::Match(by) if !help.go_to_match(by, keymap, room) => {
+            let key = keymap.label(Context::Help, &action::SEARCH);
+            refused = Some(format!("nothing to go to: {key} searches"));
+        }
+        Message::Search => {
+            let dialog = SearchDialog::new(help.clone());
+            app.dialogs
+                .extend([Dialog::Help(help), Dialog::Search(dialog)]);
+            return None;
+        }
+        Message::Cancel => help.leave_search(),
+        Message::Quit => return None,
+        _ => {}
     }
     app.dialogs.push(Dialog::Help(help));
+    if let Some(text) = refused {
+        refuse(app, text);
+    }
+    None
+}
+
+/// Columns and rows of the list of keys.
+fn room(app: &App) -> (u16, u16) {
+    app.panes()
+        .map_or((0, 0), |panes| panes.body.as_size().into())
+}
+
+/// Handles a message in the prompt: the list below follows what is typed, Enter keeps its matches, and Esc takes it back
+/// to where it was.
+fn in_search(app: &mut App, mut dialog: SearchDialog, message: &Message) -> Option<Effect> {
+    let help = match message {
+        Message::Cancel | Message::Quit => dialog.before().clone(),
+        _ => {
+            dialog.edit(message);
+            dialog.searched(app.keymap(), room(app))
+        }
+    };
+    if let Some(Dialog::Help(below)) = app.dialogs.last_mut() {
+        *below = help;
+    }
+    match message {
+        Message::Cancel | Message::Quit => {}
+        Message::Accept => {
+            if let Some(text) = dialog.unfound() {
+                refuse(app, format!("no match for {text:?}"));
+            }
+        }
+        _ => app.dialogs.push(Dialog::Search(dialog)),
+    }
     None
 }
 

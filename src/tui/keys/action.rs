@@ -245,6 +245,9 @@ actions! {
         PAGE_DOWN "page-down" [] Message::Scroll(10);
         FIRST "first" [] Message::ScrollTo(Endpoint::First);
         LAST "last" [] Message::ScrollTo(Endpoint::Last);
+        SEARCH "search" [] Message::Search;
+        NEXT_MATCH "next-match" [] Message::Match(1);
+        PREVIOUS_MATCH "previous-match" [] Message::Match(-1);
         EXPLORE "explore" [] Explore(ExploreMessage::Open);
         RANGES "ranges" [] Explore(ExploreMessage::Ranges);
         STOP "stop" [] Explore(ExploreMessage::Stop);

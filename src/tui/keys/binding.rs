@@ -122,6 +122,8 @@ contexts! {
     Question "question" "At a question" Ignored, EVERYWHERE;
     /// In the list of keys.
     Help "help" "In this list" Ignored, EVERYWHERE;
+    /// In the field for what is searched for in that list.
+    Search "search" "Searching in this list" Typed, EVERYWHERE;
     /// Everywhere, unless the key means something else there.
     Everywhere "everywhere" "Everywhere" Ignored, None;
 }

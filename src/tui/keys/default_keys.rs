@@ -126,8 +126,9 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten shapes back, on";
         [Home => FIRST, End => LAST] "" "first, last shape";
         [Enter => ACCEPT] "accept" "accept the selected shape";
+        [Char('/') => ERASE_ALL, Ctrl('u') => ERASE_ALL]
+            "search anew" "search anew; what is typed leaves names that have it";
         [Backspace => ERASE_BEFORE] "" "delete a character of the filter";
-        [Ctrl('u') => ERASE_ALL] "clear" "clear the filter";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "close it and change nothing";
         [Char('?') => HELP] "help" "these keys";
     }
@@ -399,11 +400,25 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "close" "leave the source; the history is kept";
     }
 
+    /// Esc leaves the search first, so that it does not close more than is meant; the other keys close help at once.
     Help {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN, PageUp => PAGE_UP, PageDown => PAGE_DOWN]
             "scroll" "scroll";
-        [Char('q') => CANCEL, Char('?') => CANCEL, F1 => CANCEL, Enter => CANCEL, Esc => CANCEL,
-            Ctrl('g') => CANCEL] "close" "close";
+        [Char('/') => SEARCH] "search" "search for a key, or for what one does";
+        [Char('n') => NEXT_MATCH, Char('N') => PREVIOUS_MATCH] "match" "next, previous match";
+        [Char('q') => QUIT, Char('?') => QUIT, F1 => QUIT, Enter => QUIT] "close" "close";
+        [Esc => CANCEL, Ctrl('g') => CANCEL] "" "leave the search; without one: close";
+    }
+
+    /// Help follows as one types; Esc brings back the lines and the search that were there before.
+    Search {
+        [Enter => ACCEPT] "keep" "keep the search, for the next matches";
+        [LEFT => LEFT, RIGHT => RIGHT] "" "move in the line";
+        [Home => TO_START, End => TO_END] "" "to its start, its end";
+        [Backspace => ERASE_BEFORE, Delete => ERASE_UNDER] "" "delete a character";
+        [Ctrl('u') => ERASE_ALL] "clear" "clear the line";
+        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "back to where the search began";
+        [F1 => HELP] "help" "these keys";
     }
 
     /// Looked up last, so that any place can give these keys another meaning.

@@ -86,15 +86,9 @@ fn draw(
         Purpose::Compare => "Compare",
     };
     let filter = format!("  filter: {}", dialog.filter());
-    let count = format!("   {} of {}", dialog.rows().len(), dialog.total());
     let head = [(title, Role::Title), (filter.as_str(), Role::Text)];
     let end = write::line(buffer, area, theme, head);
-    write::line(
-        buffer,
-        write::right_of(area, end),
-        theme,
-        [(count.as_str(), Role::Quiet)],
-    );
+    draw_count(theme, dialog, buffer, write::right_of(area, end));
     if dialog.rows().len() == 0 {
         let text = match (dialog.total(), dialog.purpose()) {
             (0, Purpose::Delete) => "there are no shapes of your own".to_owned(),
@@ -127,6 +121,19 @@ fn draw(
         draw_preview(theme, entry, read, buffer, preview);
     }
     Position::new(end.min(area.right().saturating_sub(1)), area.y)
+}
+
+/// Draws how many shapes the filter leaves, and that typing makes one as long as there is none.
+fn draw_count(theme: &Theme, dialog: &ListDialog, buffer: &mut Buffer, area: Rect) {
+    let count = format!("   {} of {}", dialog.rows().len(), dialog.total());
+    let hinted = format!("{count}; type to search");
+    let hinted = if dialog.filter().is_empty() && dialog.total() > 0 {
+        &hinted
+    } else {
+        &count
+    };
+    let text = write::first_fitting(&[hinted, &count], area.width.into());
+    write::line(buffer, area, theme, [(text, Role::Quiet)]);
 }
 
 /// Draws a row: a sign, the name, the size, where the shape comes from.

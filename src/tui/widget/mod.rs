@@ -3,7 +3,7 @@
 //! ```text
 //! text_field   a line of text that is edited         theme       styles and characters
 //! number       numbers of columns, lines, taxels     write       text into the buffer
-//! curve        a curve with axes
+//! curve        a curve with axes                  found       a text that was searched for, marked
 //! columns      widths and word wrap                  thumbnail   a small imprint
 //! dots         lines and points in Braille           plot        two axes around a field of dots
 //! ```
@@ -15,6 +15,8 @@ pub mod number;
 pub mod columns;
 
 pub mod theme;
+
+pub mod found;
 
 pub mod heat;
 

@@ -41,6 +41,8 @@ pub enum Role {
     Cursor,
     /// The field that has the focus.
     Focus,
+    /// A text that was searched for.
+    Match,
     /// Something is wrong.
     Error,
 }
@@ -180,7 +182,9 @@ impl Theme {
             Role::Key | Role::Title | Role::Error | Role::Surplus | Role::Missing => {
                 Style::new().add_modifier(Modifier::BOLD)
             }
-            Role::Cursor | Role::Focus => Style::new().add_modifier(Modifier::REVERSED),
+            Role::Cursor | Role::Focus | Role::Match => {
+                Style::new().add_modifier(Modifier::REVERSED)
+            }
             Role::Text | Role::Active | Role::Chosen | Role::Hole => Style::new(),
         };
         match tone(role, self.palette) {
