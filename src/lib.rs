@@ -91,8 +91,8 @@
 //! png                 formats::Drawing::png
 //! library             storage                                          json
 //! acquire             acquire                                          frames, library
-//! tui                 tui                                              library, recognition, acquire
-//! cli (the default)   cli, and the program                             tui, png
+//! tui                 tui                                              library, recognition, acquire, png
+//! cli (the default)   cli, and the program                             tui
 //! ```
 //!
 //! A controller that only touches and describes takes `default-features = false`.

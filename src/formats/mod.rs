@@ -69,9 +69,12 @@ mod named_shape;
 pub(crate) mod separation;
 
 pub use described::DescribedImprint;
-pub use drawing::{ConfusionMap, Drawing, LinePlot, PointPlot, PoseMap};
 #[cfg(feature = "tui")]
-pub(crate) use drawing::{axis_ends, axis_marks};
+pub(crate) use drawing::axis_ends;
+pub use drawing::{ConfusionMap, Drawing, LinePlot, PointPlot, PoseMap};
+
+#[cfg(any(test, feature = "tui"))]
+pub(crate) use drawing::axis_marks;
 pub use imprint_file::{ImprintFormat, ImprintFormatError, read as read_imprint};
 pub use name::{Name, NameError};
 

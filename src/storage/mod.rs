@@ -51,6 +51,7 @@ mod journal;
 #[cfg(feature = "library")]
 mod chosen_set;
 
+#[cfg(feature = "library")]
 mod commands;
 
 #[cfg(feature = "sweep")]
@@ -65,7 +66,8 @@ mod models;
 pub use atomic_file::{Existing, FinishedFile, UnfinishedFile, persist_pair};
 
 pub use error::FileError;
-#[cfg(feature = "library")]
+
+#[cfg(feature = "tui")]
 pub(crate) use temporary::ScratchFolder;
 
 #[cfg(feature = "library")]
@@ -73,6 +75,8 @@ pub use error::LibraryError;
 
 #[cfg(feature = "library")]
 pub use chosen_set::ChosenSetFile;
+
+#[cfg(feature = "library")]
 pub use commands::CommandFile;
 
 #[cfg(feature = "library")]

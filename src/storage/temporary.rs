@@ -219,7 +219,7 @@ fn link(_: &File, _: &Path) -> io::Result<()> {
 
 /// A folder that only its owner can look into, removed with this. Its program holds the lock on the file `.lock` in it:
 /// a folder whose lock is free was left by a program that died, and the next one removes it.
-#[cfg(feature = "library")]
+#[cfg(feature = "tui")]
 #[derive(Debug)]
 pub(crate) struct ScratchFolder {
     folder: tempfile::TempDir,
@@ -227,7 +227,7 @@ pub(crate) struct ScratchFolder {
     _lock: File,
 }
 
-#[cfg(feature = "library")]
+#[cfg(feature = "tui")]
 impl ScratchFolder {
     /// A new folder where the system keeps temporary ones.
     ///
@@ -259,7 +259,7 @@ impl ScratchFolder {
 }
 
 /// The file in a temporary folder that its program holds the lock of.
-#[cfg(feature = "library")]
+#[cfg(feature = "tui")]
 const LOCK: &str = ".lock";
 
 /// Removes the temporary files that programs have left in a folder when they died. What cannot be removed stays.
@@ -353,7 +353,7 @@ mod tests {
         assert_eq!(left, stays);
     }
 
-    #[cfg(all(unix, feature = "library"))]
+    #[cfg(all(unix, feature = "tui"))]
     #[test]
     fn a_scratch_folder_is_its_owners_alone() {
         use std::os::unix::fs::PermissionsExt;

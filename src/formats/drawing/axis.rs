@@ -43,6 +43,7 @@ impl Ticks {
 }
 
 /// The numbers that an axis from `low` to `high` is marked with, and how each is written: at most about `steps` of them.
+#[cfg(any(test, feature = "tui"))]
 pub(crate) fn axis_marks(ends: (f64, f64), steps: u16) -> Vec<(f64, String)> {
     let steps = f64::from(steps.max(1));
     Ticks::between(ends, 0.0, steps).0

@@ -192,7 +192,7 @@ impl TaxelGrid {
                 self.rows.at(narrow(row))?,
             ))
         };
-        let second = if self.size == TaxelSize::Half { 1 } else { 0 };
+        let second = u16::from(self.size == TaxelSize::Half);
         (0..=second).filter_map(found)
     }
 

@@ -154,9 +154,10 @@ impl<'a> MatrixView<'a> {
                 .filter(|_| Layers::shown(self.layers.outline, grid)),
             region: (self.reading.description(self.chosen))
                 .filter(|_| Layers::shown(self.layers.rectangle, grid)),
-            poses: match Layers::shown(self.poses.shown, grid) {
-                true => self.poses.sources,
-                false => &[],
+            poses: if Layers::shown(self.poses.shown, grid) {
+                self.poses.sources
+            } else {
+                &[]
             },
         };
         overlay.draw(grid, theme, buffer, active);
