@@ -14,6 +14,10 @@ pub(crate) struct SeparationCurve {
     /// The limit in each size.
     pub(crate) points: Vec<SeparationPoint>,
     /// The smallest size that reaches the wanted error; None if none does, or none is wanted.
+    #[cfg_attr(
+        not(feature = "cli"),
+        expect(dead_code, reason = "the screen has it elsewhere")
+    )]
     pub(crate) smallest: Option<SmallestSize>,
 }
 
