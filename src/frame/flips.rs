@@ -35,7 +35,7 @@ pub struct FlipCounter {
     taxels: Vec<TaxelCounts>,
 }
 
-/// What a recording tells of its taxels.
+/// What a recording shows about its taxels.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FlipReport {
@@ -169,7 +169,7 @@ impl FlipCounter {
     }
 }
 
-/// The probability e of a flip for which so many of the repeated states differ meanwhile.
+/// The flip probability e at which the given share of repeated states differs.
 fn noise(flips: u64, repeated: u64) -> Option<f64> {
     if repeated == 0 {
         return None;

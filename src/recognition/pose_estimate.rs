@@ -67,7 +67,7 @@ impl Model {
             .map(|(estimate, _)| estimate)
     }
 
-    /// Returns the same with at most so many of the poses: first the one nearest to the mean, which is the likeliest since
+    /// Returns the same with at most `most` of the poses: first the one nearest to the mean, which is the likeliest since
     /// all are equally likely by themselves, then others spread over the 95 % of the poses that are nearest to it.
     pub fn poses_of(
         &self,

@@ -3,7 +3,7 @@
 //! A flag beats the environment, the environment beats the file, the file beats the default. `taxel config` prints the
 //! result as a settings file in which a comment names the origin of each line:
 //! ```text
-//! # /home/ana/.config/taxel/config.toml
+//! # ~/.config/taxel/config.toml
 //! theme = "light"                        # file, line 1
 //! color = "never"                        # environment, NO_COLOR
 //! mouse = true                           # default
@@ -11,7 +11,7 @@
 //!
 //! Empty environment variables count as unset, as programs that follow `NO_COLOR` do it. What stands in the user's own
 //! file is read for every command whose output depends on it; an error in the file is an error of the command, with its
-//! place: `/home/ana/.config/taxel/config.toml:3:9: …`.
+//! place: `~/.config/taxel/config.toml:3:9: …`.
 
 use std::ffi::OsString;
 use std::fmt;

@@ -66,7 +66,7 @@ impl PointPlot {
         self
     }
 
-    /// With a curve through points, in their order; it has a gap where a coordinate is not finite. A dashed one is told from
+    /// With a curve through points, in their order; it has a gap where a coordinate is not finite. A dashed one differs from
     /// the others without colours.
     #[must_use]
     pub fn with_curve(mut self, name: &str, points: &[(f64, f64)], dashed: bool) -> Self {

@@ -10,7 +10,7 @@ pub(crate) fn side(length: impl TryInto<u16>) -> Option<u16> {
     length.filter(|side| (1..=MAX_FRAME_SIDE).contains(side))
 }
 
-/// Rows and columns; None if a frame cannot have so many of one.
+/// Rows and columns; None if either exceeds the largest side of a frame.
 pub(crate) fn shape<T: TryInto<u16>>(rows: T, columns: T) -> Option<(u16, u16)> {
     side(rows).zip(side(columns))
 }

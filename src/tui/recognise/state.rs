@@ -34,7 +34,7 @@ pub struct Preparation {
     pub poses: Option<u64>,
     /// Poses that are done.
     pub done: u64,
-    /// Whether it was told to stop.
+    /// Whether a stop was requested.
     pub stopping: bool,
 }
 
@@ -178,7 +178,7 @@ impl Recognition {
         }
     }
 
-    /// Notes that the model on its way was told to stop; `false` if there is none, or it was told already.
+    /// Notes that the model on its way should stop; `false` if there is none, or a stop was requested already.
     pub fn stop(&mut self) -> bool {
         match &mut self.state {
             ModelState::Preparing(preparation) => {

@@ -5,7 +5,7 @@
 //! Look(model, imprint)  -> Looked: the nearest imprint and the pose
 //! ```
 //! A built-in set is trained once; the cache keeps its model, if the world has one. A stored model is read from the folder
-//! beside the library. Training goes on while a sweep begins, and stops only when it is told to.
+//! beside the library. Training goes on while a sweep begins, and stops only on request.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

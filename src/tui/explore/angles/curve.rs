@@ -1,8 +1,8 @@
 //! What a descriptor does over the angles of a sweep: at each angle its smallest, mean and largest value over the
 //! positions.
 //!
-//! The imprints of an angle are found by going through its positions again. Of a large grid only every so many-th angle
-//! and every so many-th y0 are gone through, so that it takes no longer than one looks.
+//! The imprints of an angle are found by sweeping its positions again. A large grid is sampled: only every n-th angle
+//! and every m-th y0 are swept, so that the plot is there at once.
 
 use std::collections::BTreeMap;
 
@@ -22,9 +22,9 @@ const MOST_ROWS: u64 = 8_000;
 pub struct AngleCurve {
     /// The zooms, as a place at the first position and angle.
     zooms: PoseIndex,
-    /// One angle in so many is gone through.
+    /// The step between the angles that are sampled; 1 for all of them.
     pub every_angle: u64,
-    /// One y0 in so many.
+    /// The step between the rows of positions that are sampled; 1 for all of them.
     pub every_row: u64,
     /// For each of these angles its index and its imprints, by number, with how many of its positions leave them.
     angles: Vec<(u64, BTreeMap<u32, u32>)>,

@@ -46,7 +46,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     update: choose_descriptor,
 };
 
-/// What the page shows: the spread at each angle; none before the angles were gone through.
+/// What the page shows: the spread at each angle; none before the angles were swept.
 fn spread(results: &Results) -> Vec<AngleSpread> {
     let curve = results.angle_curve();
     curve.map_or(Vec::new(), |curve| {

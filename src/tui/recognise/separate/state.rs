@@ -25,7 +25,7 @@ pub struct SizeWork {
     pub all: u64,
     /// The error that it looks for.
     wanted: f64,
-    /// Whether it was told to stop.
+    /// Whether a stop was requested.
     pub stopping: bool,
 }
 
@@ -40,7 +40,7 @@ pub struct Separate {
     smallest: Option<SmallestSize>,
     /// Whether it was searched.
     searched: bool,
-    /// Whether the work was stopped, or failed: it goes on only when it is told to.
+    /// Whether the work was stopped, or failed: it continues only on request.
     stopped: bool,
     /// The work in progress.
     work: Option<SizeWork>,
@@ -131,7 +131,7 @@ impl Separate {
         self.stopped = false;
     }
 
-    /// Notes that the work was told to stop; `false` if there is none, or it was told already.
+    /// Notes that the work should stop; `false` if there is none, or a stop was requested already.
     pub fn stop(&mut self) -> bool {
         let work = self.work.as_mut();
         work.is_some_and(|work| !std::mem::replace(&mut work.stopping, true))
