@@ -142,9 +142,9 @@ impl Surroundings {
                     Exported::Said(said) => print(&(charset.line(&said).into_owned() + "\n"))?,
                 }
             }
-            Request::Batch(sensor) => {
+            Request::Batch(sensor, jobs) => {
                 let by_name = |name: &str| shelf.imprint(name).map_err(|error| error.to_string());
-                batch::answer_lines(sensor, &by_name, io::stdin().lock(), io::stdout().lock())?;
+                batch::answer_lines(sensor, jobs, &by_name, io::stdin(), io::stdout().lock())?;
             }
             Request::Sweep(asked) => self.sweep(*asked)?,
             Request::Merge(files, wanted) => print(&sweep::merge(&files, &wanted, charset)?)?,

@@ -171,6 +171,7 @@ fn batch() -> Command {
         .about("Answer poses, one JSON object a line, on standard input")
         .after_help(BATCH_EXAMPLES)
         .args(sensor_of_imprints())
+        .arg(jobs())
 }
 
 /// `taxel sweep KIND`, or `taxel sweep --picture NAME|FILE`.

@@ -64,8 +64,8 @@ pub(crate) enum Request {
     Describe(OsString, Form),
     /// Write a stored shape or a file in another form.
     Export(OsString, Export, Pitch),
-    /// Answer lines of JSON; the sensor is for lines without one.
-    Batch(Sensor),
+    /// Answer lines of JSON by so many threads (0: one per core); the sensor is for lines without one.
+    Batch(Sensor, usize),
     /// Sweep a grid of poses.
     Sweep(Box<SweepArguments>),
     /// Merge the shards in these files.
@@ -284,7 +284,7 @@ fn request(
             own,
             pitch(own, settings)?.of(None),
         ))),
-        _ => Request::Batch(settings.sensor()),
+        _ => Request::Batch(settings.sensor(), flags::jobs_of(own)),
     })
 }
 

@@ -5,6 +5,8 @@
 //! ```
 
 use std::io::{Read, Write};
+use std::num::NonZero;
+use std::thread;
 
 use crate::cli::error::CliError;
 use crate::cli::input::lines;
@@ -14,23 +16,31 @@ use crate::quote::legible;
 use crate::sensor::Sensor;
 use crate::touch::Plane;
 
-/// Answers each line of `input`. `sensor` is for lines without one; `lookup` finds pictures given by name.
+/// Answers each line of `input` by up to `jobs` threads (0: one per core). `sensor` is for lines without one; `lookup`
+/// finds pictures given by name.
 ///
 /// # Errors
-/// Those of [`lines::answer_each`].
+/// Those of [`lines::answer_all`].
 pub(crate) fn answer_lines(
     sensor: Sensor,
-    lookup: &dyn Fn(&str) -> Result<Imprint, String>,
-    input: impl Read,
+    jobs: usize,
+    lookup: &(dyn Fn(&str) -> Result<Imprint, String> + Sync),
+    input: impl Read + Send + 'static,
     output: impl Write,
 ) -> Result<(), CliError> {
-    let mut plane = Plane::new(sensor);
-    lines::answer_each(input, output, "pose", |line, answer| {
-        let job = Job::read(line, sensor, lookup);
-        let imprint = job
-            .map_err(|error| legible(&error.to_string()))?
-            .imprint(&mut plane);
-        serde_json::to_writer(answer, &DescribedImprint(&imprint))
-            .map_err(|error| error.to_string())
+    let jobs = match jobs {
+        0 => thread::available_parallelism().map_or(1, NonZero::get),
+        jobs => jobs,
+    };
+    lines::answer_all(jobs, input, output, "pose", || {
+        let mut plane = Plane::new(sensor);
+        move |line: &[u8], answer: &mut Vec<u8>| {
+            let job = Job::read(line, sensor, lookup);
+            let imprint = job
+                .map_err(|error| legible(&error.to_string()))?
+                .imprint(&mut plane);
+            serde_json::to_writer(answer, &DescribedImprint(&imprint))
+                .map_err(|error| error.to_string())
+        }
     })
 }

@@ -3,12 +3,12 @@
 //! A `NAME|FILE` argument is looked up in this order: `-` is standard input; then a shape of the library; then a file.
 //! A path such as `./washer.json` cannot be a name, so it always means the file.
 
-use std::cell::RefCell;
 use std::collections::HashMap;
 use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{self, ErrorKind};
 use std::path::PathBuf;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use crate::cli::error::CliError;
 use crate::cli::input::content;
@@ -25,9 +25,9 @@ pub(crate) struct Shelf {
     /// Whether `--library` names the folder.
     asked: bool,
     /// The library once it has been opened.
-    library: RefCell<Option<Library>>,
+    library: OnceLock<Option<Library>>,
     /// What [`Shelf::imprint`] has found. A batch keeps using a shape as it was when it was first looked up.
-    found: RefCell<HashMap<String, Imprint>>,
+    found: Arc<Mutex<HashMap<String, Imprint>>>,
 }
 
 /// What a `NAME|FILE` argument means.
@@ -48,8 +48,8 @@ impl Shelf {
         Self {
             folder,
             asked,
-            library: RefCell::default(),
-            found: RefCell::default(),
+            library: OnceLock::new(),
+            found: Arc::default(),
         }
     }
 
@@ -58,10 +58,8 @@ impl Shelf {
     /// # Errors
     /// [`LibraryError::NoPlace`] if there is no folder for one.
     pub(crate) fn library(&self) -> Result<Library, LibraryError> {
-        let mut library = self.library.borrow_mut();
-        if library.is_none() {
-            *library = self.folder.clone().map(Library::open);
-        }
+        let library = || self.folder.clone().map(Library::open);
+        let library = self.library.get_or_init(library);
         library.clone().ok_or(LibraryError::NoPlace)
     }
 
@@ -122,14 +120,17 @@ impl Shelf {
     /// # Errors
     /// If there is no such shape, or it cannot be read.
     pub(crate) fn imprint(&self, name: &str) -> Result<Imprint, LibraryError> {
-        if let Some(imprint) = self.found.borrow().get(name) {
+        // It is whole at any time, whether or not a thread has panicked.
+        let found = || self.found.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(imprint) = found().get(name) {
             return Ok(*imprint);
         }
         let shape = self.library()?.load(name)?.shape;
         // Only shapes that exist are kept, each under its stored name and not as it was spelled in the input: so the
         // map never outgrows the library, whatever the input asks for.
-        let mut found = self.found.borrow_mut();
-        Ok(*found.entry(shape.name.to_string()).or_insert(shape.imprint))
+        Ok(*found()
+            .entry(shape.name.to_string())
+            .or_insert(shape.imprint))
     }
 
     /// Stores a shape and returns the name that it has in the library, which may differ in upper and lower case. With

@@ -1,0 +1,189 @@
+//! Input in blocks of whole lines.
+
+use std::io::{self, Read};
+
+/// The longest line, in bytes. Longer ones are refused, so that a line cannot use up all memory.
+pub(crate) const MAX_LINE: usize = 1 << 20;
+
+/// The number of bytes to read at a time: about a hundred lines, so that several threads have work of a short input too.
+const CHUNK: usize = 1 << 14;
+
+/// Whole lines that follow each other.
+#[derive(Debug)]
+pub(crate) struct Block {
+    /// The lines. Only the last line of the input may be without its line end.
+    text: Vec<u8>,
+    /// The number of its first line, counted from 1.
+    first: u64,
+    /// Whether it stands for one line longer than [`MAX_LINE`], which was read over.
+    is_long: bool,
+}
+
+impl Block {
+    /// Returns each line with its number, without its line end; None for one that is longer than [`MAX_LINE`].
+    pub(crate) fn lines(&self) -> impl Iterator<Item = (u64, Option<&[u8]>)> {
+        let text = self.text.strip_suffix(b"\n").unwrap_or(&self.text);
+        let lines = text.split(|&byte| byte == b'\n');
+        let lines = lines.map(|line| (!self.is_long && line.len() <= MAX_LINE).then_some(line));
+        (self.first..).zip(lines)
+    }
+}
+
+/// Reads blocks. Each is what one read has given, up to the last line end in it, so that nothing that has come waits for
+/// what has not.
+#[derive(Debug)]
+pub(crate) struct BlockReader<R> {
+    /// Where bytes come from.
+    input: R,
+    /// What has been read of the next block.
+    rest: Vec<u8>,
+    /// The number of the next line.
+    number: u64,
+    /// Whether the next line is longer than [`MAX_LINE`]; its bytes are not kept.
+    is_long: bool,
+}
+
+impl<R: Read> BlockReader<R> {
+    /// Reads nothing yet.
+    pub(crate) fn new(input: R) -> Self {
+        Self {
+            input,
+            rest: Vec::new(),
+            number: 1,
+            is_long: false,
+        }
+    }
+
+    /// Returns the next block; None at the end.
+    ///
+    /// # Errors
+    /// Those of the input.
+    pub(crate) fn next_block(&mut self) -> Option<io::Result<Block>> {
+        let mut searched = 0;
+        loop {
+            let new = &self.rest[searched..];
+            let end = if self.is_long {
+                new.iter().position(|&byte| byte == b'\n')
+            } else {
+                new.iter().rposition(|&byte| byte == b'\n')
+            };
+            if let Some(end) = end {
+                return Some(Ok(self.cut(searched + end + 1)));
+            }
+            if self.rest.len() > MAX_LINE {
+                self.is_long = true;
+            }
+            if self.is_long {
+                self.rest.clear();
+            }
+            searched = self.rest.len();
+            match self.fill() {
+                Err(error) => return Some(Err(error)),
+                Ok(0) if self.rest.is_empty() && !self.is_long => return None,
+                Ok(0) => return Some(Ok(self.cut(searched))),
+                Ok(_) => {}
+            }
+        }
+    }
+
+    /// Takes a block of the first bytes.
+    fn cut(&mut self, length: usize) -> Block {
+        let rest = self.rest.split_off(length);
+        let mut text = std::mem::replace(&mut self.rest, rest);
+        let (first, is_long) = (self.number, std::mem::take(&mut self.is_long));
+        if is_long {
+            text.clear();
+            self.number += 1;
+        } else {
+            let ends = text.iter().map(|&byte| u64::from(byte == b'\n'));
+            self.number += ends.sum::<u64>();
+        }
+        Block {
+            text,
+            first,
+            is_long,
+        }
+    }
+
+    /// Reads what has come, or waits for more. Returns the number of bytes, 0 at the end.
+    fn fill(&mut self) -> io::Result<usize> {
+        let old = self.rest.len();
+        self.rest.resize(old + CHUNK, 0);
+        let read = loop {
+            match self.input.read(&mut self.rest[old..]) {
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                read => break read,
+            }
+        };
+        self.rest.truncate(old + *read.as_ref().unwrap_or(&0));
+        read
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::VecDeque;
+
+    use super::*;
+
+    /// All lines, of input that comes in pieces.
+    fn lines(pieces: &[&[u8]]) -> Vec<(u64, Option<Vec<u8>>)> {
+        struct Pieces(VecDeque<Vec<u8>>);
+        impl Read for Pieces {
+            fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+                let Some(mut piece) = self.0.pop_front() else {
+                    return Ok(0);
+                };
+                let length = piece.len().min(buffer.len());
+                buffer[..length].copy_from_slice(&piece[..length]);
+                let rest = piece.split_off(length);
+                if !rest.is_empty() {
+                    self.0.push_front(rest);
+                }
+                Ok(length)
+            }
+        }
+        let pieces = pieces.iter().map(|piece| piece.to_vec()).collect();
+        let mut blocks = BlockReader::new(Pieces(pieces));
+        let mut lines = Vec::new();
+        while let Some(block) = blocks.next_block() {
+            let block = block.expect("read");
+            let own = block.lines();
+            lines.extend(own.map(|(number, line)| (number, line.map(<[u8]>::to_vec))));
+        }
+        lines
+    }
+
+    #[test]
+    fn lines_are_numbered_however_they_come() {
+        let expected = vec![
+            (1, Some(b"a".to_vec())),
+            (2, Some(Vec::new())),
+            (3, Some(b"bc".to_vec())),
+        ];
+        for pieces in [
+            &[&b"a\n\nbc\n"[..]][..],
+            &[b"a\n\nbc"],
+            &[b"a", b"\n", b"\nb", b"c"],
+            &[b"a\n", b"\n", b"bc", b"\n"],
+        ] {
+            assert_eq!(lines(pieces), expected, "{pieces:?}");
+        }
+        assert_eq!(lines(&[]), []);
+    }
+
+    #[test]
+    fn a_long_line_is_read_over() {
+        let longest = vec![b'y'; MAX_LINE];
+        let longer = vec![b'z'; MAX_LINE + 1];
+        let found = lines(&[&longest, b"\n", &longer, b"\na\n", &longer, &longer]);
+        let lengths: Vec<_> = found
+            .iter()
+            .map(|(number, line)| (*number, line.as_ref().map(Vec::len)))
+            .collect();
+        assert_eq!(
+            lengths,
+            [(1, Some(MAX_LINE)), (2, None), (3, Some(1)), (4, None)]
+        );
+    }
+}

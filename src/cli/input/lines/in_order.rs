@@ -1,0 +1,257 @@
+//! Items worked on by several threads, their results in the order of the items.
+//!
+//! ```text
+//! source, on a thread of its own -> this thread -> workers -> this thread: sorts -> sink
+//! ```
+//! Only so many items are under way at a time, so that memory is bounded whatever the source gives. The thread of the
+//! source is not waited for when the sink fails: it may be reading from a terminal.
+
+use std::collections::BTreeMap;
+use std::panic::resume_unwind;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread;
+
+/// The items under way for each worker: one in work, and others so that it need not wait when another is slow.
+const UNDER_WAY: usize = 4;
+
+/// What happens on the other threads.
+enum Event<T, R> {
+    /// The source has given an item.
+    Item(T),
+    /// The source has no more.
+    End,
+    /// The item of this number is done.
+    Done(usize, R),
+    /// A thread has panicked.
+    Panicked,
+}
+
+/// Sends a last word if its thread panics: others would wait for it for ever.
+struct PanicReport<T, R>(Sender<Event<T, R>>);
+
+impl<T, R> Drop for PanicReport<T, R> {
+    fn drop(&mut self) {
+        if thread::panicking() {
+            // Without a receiver nobody waits.
+            let _ = self.0.send(Event::Panicked);
+        }
+    }
+}
+
+/// Gives each item of `source` to one of up to `jobs` workers, and the results to `sink`, in the order of the items.
+/// Each thread makes itself a worker by `worker`. With one job, and where the system gives no threads, all is done on
+/// this thread.
+///
+/// # Errors
+/// The first of `sink`; then nothing more is begun.
+pub(crate) fn in_order<T, R, E, S, W>(
+    jobs: usize,
+    source: S,
+    worker: impl Fn() -> W + Sync,
+    mut sink: impl FnMut(R) -> Result<(), E>,
+) -> Result<(), E>
+where
+    T: Send + 'static,
+    R: Send + 'static,
+    S: FnMut() -> Option<T> + Send + 'static,
+    W: FnMut(T) -> R,
+{
+    // Shared, because a thread that cannot be started does not give back what it was to run.
+    let source = Arc::new(Mutex::new(source));
+    let (events, heard) = channel();
+    let (work, jobs_given) = channel();
+    let jobs_given = Mutex::new(jobs_given);
+    let begun = thread::scope(|scope| {
+        // Dropped here, which ends the workers.
+        let work = work;
+        let started = (0..if jobs > 1 { jobs } else { 0 }).take_while(|_| {
+            let (jobs_given, worker) = (&jobs_given, &worker);
+            let events = PanicReport(events.clone());
+            let thread = thread::Builder::new();
+            let body = move || work_off(jobs_given, worker(), &events.0);
+            thread.spawn_scoped(scope, body).is_ok()
+        });
+        let workers = started.count();
+        let reader = (workers > 0).then(|| read_ahead(&source, workers, events));
+        let next = reader.flatten()?;
+        Some(hand_over(&heard, &work, &next, &mut sink))
+    });
+    if let Some(done) = begun {
+        return done;
+    }
+    let (mut next, mut worker) = (locked(&source), worker());
+    while let Some(item) = next() {
+        sink(worker(item))?;
+    }
+    Ok(())
+}
+
+/// A panic while it was locked is reported by [`PanicReport`].
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Works on items until there are no more, on a thread of its own.
+fn work_off<T, R>(
+    given: &Mutex<Receiver<(usize, T)>>,
+    mut worker: impl FnMut(T) -> R,
+    events: &Sender<Event<T, R>>,
+) {
+    loop {
+        let next = locked(given).recv();
+        let Ok((number, item)) = next else {
+            return;
+        };
+        if events.send(Event::Done(number, worker(item))).is_err() {
+            return;
+        }
+    }
+}
+
+/// Starts the thread of the source. It gives an item for each message that is sent to it; some are sent already.
+/// Returns None if there is no such thread.
+fn read_ahead<T, R, S>(
+    source: &Arc<Mutex<S>>,
+    workers: usize,
+    events: Sender<Event<T, R>>,
+) -> Option<Sender<()>>
+where
+    T: Send + 'static,
+    R: Send + 'static,
+    S: FnMut() -> Option<T> + Send + 'static,
+{
+    let (next, asked) = channel();
+    for () in std::iter::repeat_n((), workers * UNDER_WAY) {
+        // Its receiver is here.
+        let _ = next.send(());
+    }
+    let source = Arc::clone(source);
+    let events = PanicReport(events);
+    let body = move || {
+        let mut source = locked(&source);
+        for () in asked {
+            let item = source();
+            let last = item.is_none();
+            let event = item.map_or(Event::End, Event::Item);
+            if events.0.send(event).is_err() || last {
+                return;
+            }
+        }
+    };
+    thread::Builder::new().spawn(body).ok().map(|_| next)
+}
+
+/// Hands items to the workers as they come, and results on in order, until both have ended.
+///
+/// # Errors
+/// The first of `sink`.
+fn hand_over<T, R, E>(
+    events: &Receiver<Event<T, R>>,
+    work: &Sender<(usize, T)>,
+    next: &Sender<()>,
+    sink: &mut impl FnMut(R) -> Result<(), E>,
+) -> Result<(), E> {
+    let mut early = BTreeMap::new();
+    let (mut given, mut delivered, mut ended) = (0, 0, false);
+    while !ended || delivered < given {
+        match events.recv() {
+            Ok(Event::Item(item)) => {
+                // Its receiver outlives this function.
+                let _ = work.send((given, item));
+                given += 1;
+            }
+            Ok(Event::End) => ended = true,
+            Ok(Event::Done(number, result)) => {
+                early.insert(number, result);
+                while let Some(result) = early.remove(&delivered) {
+                    sink(result)?;
+                    delivered += 1;
+                    // After its last item the source listens no more.
+                    let _ = next.send(());
+                }
+            }
+            Ok(Event::Panicked) | Err(_) => resume_unwind(Box::new("a worker panicked")),
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    #[test]
+    fn results_come_in_the_order_of_the_items() {
+        for jobs in [1, 2, 5] {
+            let mut items = 0..1000_u64;
+            let mut results = Vec::new();
+            let slow = |item: u64| {
+                // Those in between are done first.
+                if item.is_multiple_of(7) {
+                    thread::yield_now();
+                }
+                item * item
+            };
+            let done = in_order(
+                jobs,
+                move || items.next(),
+                || slow,
+                |result| {
+                    results.push(result);
+                    Ok::<_, ()>(())
+                },
+            );
+            assert_eq!(done, Ok(()));
+            assert!(results.into_iter().eq((0..1000).map(|item| item * item)));
+        }
+    }
+
+    #[test]
+    fn a_bounded_number_is_under_way() {
+        let given = Arc::new(AtomicUsize::new(0));
+        let counter = Arc::clone(&given);
+        let mut taken = 0;
+        let done = in_order(
+            2,
+            move || {
+                let number = counter.fetch_add(1, Ordering::SeqCst);
+                (number < 10_000).then_some(number)
+            },
+            || |item| item,
+            |_| {
+                let ahead = given.load(Ordering::SeqCst) - taken;
+                taken += 1;
+                assert!(ahead <= 2 * UNDER_WAY, "{ahead} items are under way");
+                Ok::<_, ()>(())
+            },
+        );
+        assert_eq!((done, taken), (Ok(()), 10_000));
+    }
+
+    #[test]
+    fn an_error_of_the_sink_ends_all() {
+        // The source never ends.
+        let done = in_order(
+            2,
+            || Some(1),
+            || |item| item,
+            |item| if item == 1 { Err("full") } else { Ok(()) },
+        );
+        assert_eq!(done, Err("full"));
+    }
+
+    #[test]
+    fn a_panic_of_a_worker_is_not_waited_for() {
+        let run = std::panic::catch_unwind(|| {
+            in_order(
+                2,
+                || Some(1),
+                || |_: i32| -> i32 { resume_unwind(Box::new("broken")) },
+                |_| Ok::<_, ()>(()),
+            )
+        });
+        assert!(run.is_err());
+    }
+}

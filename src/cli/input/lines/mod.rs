@@ -1,0 +1,211 @@
+//! Lines answered by lines, in the same order, as `taxel batch` and `taxel recognise` do.
+//!
+//! Lines are read, answered and written in blocks of whole lines (`block`), by one thread or by several (`in_order`).
+//! Memory does not grow with the number of lines. The answers of a block are written out at once, and a block ends where
+//! the input pauses: so a program that sends a line and waits for its answer gets it. Blank lines are skipped, but count
+//! in line numbers.
+//! ```text
+//! input -> BlockReader -> blocks -> workers: a line each to `answer` -> answers of a block -> output
+//! ```
+
+use std::io::{self, Read, Write};
+
+use crate::cli::error::CliError;
+use crate::cli::input::lines::block::{Block, BlockReader};
+use crate::cli::output::report;
+
+pub(crate) mod block;
+pub(crate) mod in_order;
+
+pub(crate) use block::MAX_LINE;
+
+/// Answers each line of `input` on this thread: `answer` appends its answer, without a line end, or says what is wrong
+/// with the line. `noun` is what a line holds, for the message about one that is too long.
+///
+/// # Errors
+/// [`CliError::Lines`] at the end if some lines were wrong; [`CliError::Read`] or [`CliError::Write`] at once.
+pub(crate) fn answer_each(
+    input: impl Read,
+    output: impl Write,
+    noun: &str,
+    mut answer: impl FnMut(&[u8], &mut Vec<u8>) -> Result<(), String>,
+) -> Result<(), CliError> {
+    let mut blocks = BlockReader::new(input);
+    let mut output = AnswerWriter::new(output);
+    while let Some(block) = blocks.next_block() {
+        output.write(block.map(|block| answer_block(&block, noun, &mut answer)))?;
+    }
+    output.finish()
+}
+
+/// The same by up to `jobs` threads; the answers do not depend on their number. Each thread answers by a closure of its
+/// own, which `answerer` makes.
+///
+/// # Errors
+/// Those of [`answer_each`].
+pub(crate) fn answer_all<A>(
+    jobs: usize,
+    input: impl Read + Send + 'static,
+    output: impl Write,
+    noun: &str,
+    answerer: impl Fn() -> A + Sync,
+) -> Result<(), CliError>
+where
+    A: FnMut(&[u8], &mut Vec<u8>) -> Result<(), String>,
+{
+    let mut blocks = BlockReader::new(input);
+    let mut output = AnswerWriter::new(output);
+    in_order::in_order(
+        jobs,
+        move || blocks.next_block(),
+        || {
+            let mut answer = answerer();
+            move |block: io::Result<Block>| {
+                block.map(|block| answer_block(&block, noun, &mut answer))
+            }
+        },
+        |answers| output.write(answers),
+    )?;
+    output.finish()
+}
+
+/// The answers to the lines of a block.
+#[derive(Debug, Default)]
+struct BlockAnswers {
+    /// A line each.
+    text: Vec<u8>,
+    /// How many lines are answered.
+    answered: u64,
+    /// How many of these were wrong.
+    bad: u64,
+}
+
+/// Answers the lines of a block.
+fn answer_block(
+    block: &Block,
+    noun: &str,
+    answer: &mut impl FnMut(&[u8], &mut Vec<u8>) -> Result<(), String>,
+) -> BlockAnswers {
+    let mut answers = BlockAnswers::default();
+    for (number, line) in block.lines() {
+        let begin = answers.text.len();
+        let result = match line {
+            Some(content) if content.trim_ascii().is_empty() => continue,
+            Some(content) => answer(content, &mut answers.text),
+            None => Err(format!("longer than 1 MiB, which no {noun} is")),
+        };
+        if let Err(message) = result {
+            answers.bad += 1;
+            answers.text.truncate(begin);
+            refuse(&mut answers.text, &format!("line {number}: {message}"));
+        }
+        answers.answered += 1;
+        answers.text.push(b'\n');
+    }
+    answers
+}
+
+/// Writes the answer to a wrong line.
+fn refuse(answer: &mut Vec<u8>, message: &str) {
+    let json = serde_json::json!({ "error": message }).to_string();
+    answer.extend(report::ascii_json(&json).bytes());
+}
+
+/// Writes answers, block by block, and counts them.
+struct AnswerWriter<W> {
+    /// Where they go.
+    output: W,
+    /// How many lines have been answered.
+    answered: u64,
+    /// How many of these were wrong.
+    bad: u64,
+}
+
+impl<W: Write> AnswerWriter<W> {
+    /// Nothing is written yet.
+    fn new(output: W) -> Self {
+        Self {
+            output,
+            answered: 0,
+            bad: 0,
+        }
+    }
+
+    /// Writes the answers of a block out.
+    ///
+    /// # Errors
+    /// [`CliError::Read`] if there is no block because the input failed, and [`CliError::Write`].
+    fn write(&mut self, answers: io::Result<BlockAnswers>) -> Result<(), CliError> {
+        let answers = answers.map_err(CliError::Read)?;
+        self.answered += answers.answered;
+        self.bad += answers.bad;
+        let written = self.output.write_all(&answers.text);
+        written
+            .and_then(|()| self.output.flush())
+            .map_err(CliError::Write)
+    }
+
+    /// Ends the output.
+    ///
+    /// # Errors
+    /// [`CliError::Lines`] if some lines were wrong.
+    fn finish(self) -> Result<(), CliError> {
+        if self.bad > 0 {
+            return Err(CliError::Lines {
+                bad: self.bad,
+                lines: self.answered,
+            });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Answers a line by its number of bytes; one with an `x` is wrong.
+    fn answers(jobs: usize, input: &'static [u8]) -> (String, Option<(u64, u64)>) {
+        let mut output = Vec::new();
+        let done = answer_all(jobs, input, &mut output, "line", || {
+            |line: &[u8], text: &mut Vec<u8>| {
+                text.extend(line.len().to_string().bytes());
+                if line.contains(&b'x') {
+                    return Err("an x".to_owned());
+                }
+                Ok(())
+            }
+        });
+        let wrong = match done {
+            Err(CliError::Lines { bad, lines }) => Some((bad, lines)),
+            _ => None,
+        };
+        (String::from_utf8(output).expect("text"), wrong)
+    }
+
+    #[test]
+    fn answers_do_not_depend_on_the_number_of_threads() {
+        let mut lines = String::new();
+        for length in 0..20_000 {
+            lines += &"a".repeat(length % 97);
+            lines += if length % 1000 == 7 { "x\n" } else { "\n" };
+        }
+        let lines: &'static [u8] = lines.leak().as_bytes();
+        let one = answers(1, lines);
+        assert_eq!(one.1, Some((20, 20_000 - 206)));
+        for jobs in [2, 3, 16] {
+            assert_eq!(answers(jobs, lines), one, "{jobs} threads");
+        }
+    }
+
+    #[test]
+    fn the_last_line_needs_no_end() {
+        for jobs in [1, 2] {
+            assert_eq!(answers(jobs, b"abc\n\nab").0, "3\n2\n");
+            assert_eq!(answers(jobs, b"").0, "");
+            let wrong = answers(jobs, b"a\n\nx");
+            assert_eq!(wrong.0, "1\n{\"error\":\"line 3: an x\"}\n");
+            assert_eq!(wrong.1, Some((1, 2)));
+        }
+    }
+}
