@@ -8,7 +8,6 @@ use std::io;
 use crate::acquire::RecorderError;
 use crate::cli::input::content::InputError;
 use crate::cli::output::charset::Charset;
-use crate::formats::ArchiveError;
 use crate::formats::recording::RecordingError;
 use crate::pose::GridError;
 use crate::quote::legible;
@@ -211,15 +210,19 @@ pub(crate) enum CliError {
         /// What is wrong, and what would be right.
         message: String,
     },
-    /// An atlas cannot be read.
-    #[error("{name}: {error}")]
-    Atlas {
-        /// The file's name.
+    /// `--resume` finds a file that is not this shard.
+    #[error(
+        "{name} is {what} ({reason}), so it is not taken up; remove it, or replace it by --force instead of --resume"
+    )]
+    NotResumed {
+        /// Its name.
         name: String,
-        /// What is wrong with it.
-        error: ArchiveError,
+        /// What it is: damaged, or of another study.
+        what: &'static str,
+        /// Why.
+        reason: String,
     },
-    /// An atlas, or the file of all poses, cannot be written.
+    /// An atlas cannot be read; or it cannot be written, or the file of all poses.
     #[error(transparent)]
     SweepFile(ArchiveFileError),
     /// The shards are not those of one grid, or some are missing or given twice.

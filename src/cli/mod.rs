@@ -49,8 +49,8 @@ use commands::export::Exported;
 use commands::frames::FramesOutput;
 use commands::naming::FrameNamer;
 use commands::{
-    batch, completions, confusion, describe, export, frames, library, man, model, noise, recognise,
-    screen, script, separate, sweep, touch, watch,
+    batch, completions, confusion, describe, export, frames, library, man, merge, model, noise,
+    recognise, screen, script, separate, sweep, touch, watch,
 };
 use error::CliError;
 use input::shapes::Shelf;
@@ -147,7 +147,7 @@ impl Surroundings {
                 batch::answer_lines(sensor, jobs, &by_name, io::stdin(), io::stdout().lock())?;
             }
             Request::Sweep(asked) => self.sweep(*asked)?,
-            Request::Merge(files, wanted) => print(&sweep::merge(&files, &wanted, charset)?)?,
+            Request::Merge(files, wanted) => print(&merge::merge(&files, &wanted, charset)?)?,
             Request::Model(request) => self.model(request)?,
             Request::Frames(asked, form, kept) => self.frames(&asked, form, kept)?,
             Request::Library(chore) => self.library(chore)?,

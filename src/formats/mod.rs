@@ -88,7 +88,7 @@ pub use record::RecordError;
 pub use shape::{ShapeError, StoredShape};
 
 #[cfg(feature = "sweep")]
-pub use npz::{ArchiveError, format_of as archive_format};
+pub use npz::{ArchiveError, ArchiveKind, kind_of as archive_kind};
 
 #[cfg(feature = "recognition")]
 pub use model::{FORMAT as MODEL_FORMAT, read as read_model, write as write_model};

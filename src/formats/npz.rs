@@ -11,7 +11,7 @@ use crate::formats::npy;
 use crate::formats::npy::Dtype;
 use crate::formats::record::RecordError;
 use crate::pose::{GridError, RangeError};
-use crate::sweep::{PartsError, ShardError};
+use crate::sweep::{PartsError, Shard, ShardError};
 
 /// The array that says what an archive holds: JSON as bytes.
 pub(crate) const HEADER: &str = "header";
@@ -112,12 +112,31 @@ pub(crate) fn little_endian(words: &[u64]) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
 
-/// Returns the value of the key `format` in the header of an archive: what kind of file it is.
+/// What the header of an archive says first: what kind of file it is, and which shard.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ArchiveKind {
+    /// The value of the key `format`.
+    pub format: String,
+    /// The part of the study that the file holds.
+    pub shard: Shard,
+}
+
+/// Returns what an archive is, without reading more than its header.
 ///
 /// # Errors
-/// If it is not an archive with a header.
-pub fn format_of(input: impl Read + Seek) -> Result<String, ArchiveError> {
-    format_in(&ArrayReader::new(input)?.header()?)
+/// If it is not an archive with such a header.
+pub fn kind_of(input: impl Read + Seek) -> Result<ArchiveKind, ArchiveError> {
+    #[derive(serde::Deserialize)]
+    struct Part {
+        shard: String,
+    }
+    let header = ArrayReader::new(input)?.header()?;
+    let format = format_in(&header)?;
+    let part: Part = serde_json::from_slice(&header)
+        .map_err(|error| ArchiveError::Header(crate::formats::json::message(&error)))?;
+    let shard = part.shard.parse()?;
+    Ok(ArchiveKind { format, shard })
 }
 
 /// What a header says that its archive holds; whatever else is in it.

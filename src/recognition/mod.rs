@@ -53,7 +53,7 @@ pub use evaluation::Evaluation;
 pub use given::{GivenDescriptors, GivenError, GivenTable, Rounding, ShapeDescriptor, greedy};
 pub use half_step::HalfStep;
 pub use key::{ImprintKey, KeyTable};
-pub use model::{Model, ModelError, ModelParts, NamedShape, ShapeCount};
+pub use model::{Model, ModelError, ModelMerge, ModelParts, NamedShape, ShapeCount};
 pub use nearest::Nearest;
 pub use noise::{Distances, Method, Noise, NoiseError, Scanner};
 pub use noisy::NoisyRecogniser;

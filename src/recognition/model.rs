@@ -279,54 +279,22 @@ impl Model {
         })
     }
 
-    /// Puts all shards of one training together: the same model as that of one run.
+    /// Puts all shards of one training together: the same model as that of one run. [`ModelMerge`] needs less memory.
     ///
     /// # Errors
     /// If a shard is missing, there twice, or of another training.
     pub fn merge(shards: impl IntoIterator<Item = Self>) -> Result<Self, ModelError> {
         let mut shards: Vec<Self> = shards.into_iter().collect();
         shards.sort_by_key(|model| model.shard.number());
-        let first = shards.first().ok_or(ModelError::Shapes { found: 0 })?;
-        let of = first.shard.of();
-        for (model, number) in shards.iter().zip(1..) {
-            let shard = model.shard;
-            if !model.same_training(first) {
-                return Err(ModelError::Foreign { shard });
-            }
-            if shard.number() < number {
-                return Err(ModelError::Twice { shard });
-            }
-            if shard.number() > number {
-                return Err(ModelError::Missing { number, of });
-            }
-        }
-        if let Ok(given) = u32::try_from(shards.len())
-            && given < of
-        {
-            let number = given + 1;
-            return Err(ModelError::Missing { number, of });
-        }
-        let mut head = first.head();
-        head.shard = Shard::WHOLE;
-        head.poses = shards.iter().map(|model| model.poses).sum();
-        for (shape, cut) in head.cut.iter_mut().enumerate() {
-            *cut = shards.iter().map(|model| model.cut[shape]).sum();
-        }
-        let mut gathered = Gathered::default();
+        let mut merge = ModelMerge::default();
         for model in &shards {
-            for index in 0..model.keys.len() {
-                let slot = gathered.slot(&model.keys, index);
-                for &count in model.counts(index) {
-                    slot_add(&mut gathered.counts[slot], count);
-                }
-            }
+            merge.add(model)?;
         }
-        Self::of_table(head, &gathered.keys, |index| {
-            gathered.counts[index].iter().copied()
-        })
+        merge.finish()
     }
 
-    fn same_training(&self, other: &Self) -> bool {
+    /// Whether both are parts of one training.
+    fn same_training(&self, other: &ModelParts) -> bool {
         self.shapes == other.shapes
             && self.sensor == other.sensor
             && self.anchor == other.anchor
@@ -450,6 +418,71 @@ impl Gathered {
             self.counts.push(Vec::new());
         }
         slot
+    }
+}
+
+/// The shards of a training, put together one after another: memory holds what is merged and one shard.
+#[derive(Debug, Default)]
+pub struct ModelMerge {
+    /// What the first shard says of the training, with the poses of all so far and the number of the last.
+    head: Option<ModelParts>,
+    gathered: Gathered,
+}
+
+impl ModelMerge {
+    /// Adds the next shard: the first, then the second, and so on.
+    ///
+    /// # Errors
+    /// If it is not the next one, or of another training than the first.
+    pub fn add(&mut self, model: &Model) -> Result<(), ModelError> {
+        let (shard, of) = (model.shard, model.shard.of());
+        let next = match &mut self.head {
+            None => {
+                self.head = Some(model.head());
+                1
+            }
+            Some(head) => {
+                if !model.same_training(head) {
+                    return Err(ModelError::Foreign { shard });
+                }
+                let next = head.shard.number() + 1;
+                head.shard = shard;
+                head.poses += model.poses;
+                for (sum, cut) in head.cut.iter_mut().zip(&model.cut) {
+                    *sum += cut;
+                }
+                next
+            }
+        };
+        if shard.number() < next {
+            return Err(ModelError::Twice { shard });
+        }
+        if shard.number() > next {
+            return Err(ModelError::Missing { number: next, of });
+        }
+        for index in 0..model.keys.len() {
+            let slot = self.gathered.slot(&model.keys, index);
+            for &count in model.counts(index) {
+                slot_add(&mut self.gathered.counts[slot], count);
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the model of all shards.
+    ///
+    /// # Errors
+    /// If some are missing.
+    pub fn finish(self) -> Result<Model, ModelError> {
+        let mut head = self.head.ok_or(ModelError::Shapes { found: 0 })?;
+        let (last, of) = (head.shard.number(), head.shard.of());
+        if last < of {
+            let number = last + 1;
+            return Err(ModelError::Missing { number, of });
+        }
+        head.shard = Shard::WHOLE;
+        let Gathered { keys, counts } = self.gathered;
+        Model::of_table(head, &keys, |index| counts[index].iter().copied())
     }
 }
 

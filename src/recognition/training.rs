@@ -165,6 +165,16 @@ impl<'a> Training<'a> {
             .sum()
     }
 
+    /// Returns the shapes of the set, in order.
+    pub fn shapes(&self) -> &[NamedShape] {
+        &self.shapes
+    }
+
+    /// Returns the part of the poses that it takes.
+    pub fn part(&self) -> Shard {
+        self.shard
+    }
+
     /// Returns the grid of poses of each shape, in the order of the set.
     pub fn grids(&self) -> &[PoseGrid] {
         &self.grids

@@ -3,7 +3,8 @@
 //!
 //! At every time there is all of a file or what was there before ([`crate::storage::atomic_file`]).
 
-use std::io::{self, Seek, SeekFrom, Write};
+use std::fs::File;
+use std::io::{self, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -86,6 +87,11 @@ impl AtlasFile {
         Ok(Self { path, format })
     }
 
+    /// Whether it is an archive, which can be read again.
+    pub fn is_archive(&self) -> bool {
+        self.format == AtlasFormat::Archive
+    }
+
     /// Returns its path.
     pub fn path(&self) -> &Path {
         &self.path
@@ -137,6 +143,16 @@ impl AtlasFile {
         written.map_err(|error| ArchiveFileError::new(&self.path, error))?;
         Ok(file.finish()?)
     }
+}
+
+/// Reads the atlas of an archive.
+///
+/// # Errors
+/// What is wrong with it, with the file's name.
+pub fn load_atlas(path: &Path) -> Result<SweepResult, ArchiveFileError> {
+    let refused = |error| ArchiveFileError::new(path, error);
+    let file = File::open(path).map_err(|error| refused(error.into()))?;
+    archive::read(BufReader::new(file)).map_err(refused)
 }
 
 /// Whether a file of that name can hold the atlas number of every pose: it ends in `.npy`, in capitals or not.

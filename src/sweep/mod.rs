@@ -50,6 +50,8 @@ mod ideal;
 
 mod result;
 
+mod merge;
+
 mod run;
 
 mod sample;
@@ -57,8 +59,9 @@ mod sample;
 mod count;
 
 pub use count::{CountedImprints, PoseRun};
+pub use merge::{MergeError, SweepMerge};
 pub use plan::{Shard, ShardError};
 pub(crate) use result::Parts;
-pub use result::{MergeError, PartsError, SweepResult};
+pub use result::{PartsError, SweepResult};
 pub use run::{Sweep, TakeRow};
 pub use sample::TimingSample;

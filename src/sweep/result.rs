@@ -1,5 +1,5 @@
-//! What a sweep found: the atlas of distinct imprints, the statistics of their features, and what shards are merged
-//! from.
+//! What a sweep found: the atlas of distinct imprints, the statistics of their features, and the numbers that a file of
+//! it holds.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -73,51 +73,6 @@ impl SweepResult {
             statistics,
             spread,
         }
-    }
-
-    /// Merges all shards of a grid into one result, the same as that of one sweep of the whole grid.
-    ///
-    /// # Errors
-    /// If a shard is missing, given twice, incomplete, or of another grid.
-    pub fn merge(results: impl IntoIterator<Item = Self>) -> Result<Self, MergeError> {
-        let mut results: Vec<Self> = results.into_iter().collect();
-        results.sort_by_key(|result| result.shard.number());
-        let first = results.first().ok_or(MergeError::Nothing)?;
-        let (grid, of) = (first.grid.clone(), first.shard.of());
-        let turn = grid.row_length() * grid.rows_per_orientation();
-        let mut atlas = Atlas::new(grid.sensor().columns(), grid.sensor().rows());
-        let (mut spread, mut poses, mut partly_off) = (VarianceParts::new(turn), 0, 0);
-        let mut expected = 1..=of;
-        for result in results {
-            let number = expected.next();
-            if result.grid != grid || result.shard.of() != of {
-                return Err(MergeError::Foreign {
-                    shard: result.shard,
-                });
-            }
-            if number != Some(result.shard.number()) {
-                return Err(MergeError::Count {
-                    shard: result.shard,
-                });
-            }
-            if !result.complete() {
-                return Err(MergeError::Incomplete {
-                    shard: result.shard,
-                });
-            }
-            // Shards follow on each other in the order of the grid, so first occurrences stay the first.
-            atlas.add_all(&result.atlas);
-            spread.merge(result.spread);
-            poses += result.poses;
-            partly_off += result.partly_off;
-        }
-        if let Some(number) = expected.next() {
-            return Err(MergeError::Missing { number, of });
-        }
-        let mut table = Table::default();
-        table.extend(atlas.summaries());
-        let poses = (poses, partly_off);
-        Ok(Self::new(grid, Shard::WHOLE, poses, atlas, &table, spread))
     }
 
     /// The atlas numbers of the poses with these indices of x0 and y0, row after row, at the angle and the zooms of
@@ -265,41 +220,6 @@ pub(crate) struct Parts {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct PartsError(&'static str);
-
-/// The error of a merge.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum MergeError {
-    /// There are none.
-    #[error("no shards to merge")]
-    Nothing,
-    /// A shard of another grid than the first one, or of another number of shards.
-    #[error("shard {shard} is of another grid than the first one")]
-    Foreign {
-        /// The shard.
-        shard: Shard,
-    },
-    /// A shard that is given twice, or follows on a missing one.
-    #[error("shard {shard} comes out of turn: another one is missing or there twice")]
-    Count {
-        /// The shard.
-        shard: Shard,
-    },
-    /// A shard whose sweep was stopped early.
-    #[error("shard {shard} was stopped early, run it again")]
-    Incomplete {
-        /// The shard.
-        shard: Shard,
-    },
-    /// The last shards are missing.
-    #[error("shard {number}/{of} is missing")]
-    Missing {
-        /// The first of them.
-        number: u32,
-        /// The number of shards.
-        of: u32,
-    },
-}
 
 #[cfg(test)]
 mod tests {

@@ -273,6 +273,58 @@ fn shards_and_threads_give_the_same_bytes() {
 }
 
 #[test]
+fn a_training_is_taken_up_where_it_was_left() {
+    let place = Place::new();
+    let train = |more: &str| {
+        let coarse = "--positions 5 --angle 0:350:10 --quiet --resume --out part.npz";
+        place.run(&format!("model train {coarse} {more}"), "")
+    };
+    let of = "washer parts.jsonl --shard 2/3";
+    let first = train(of);
+    assert_eq!(first.status, Some(0), "{}", first.stderr);
+    let written = place.read("part.npz");
+    let again = train(of);
+    let kept = first
+        .stdout
+        .replace("written: ", "kept, whole and of this study: ");
+    assert_eq!((again.status, again.stdout), (Some(0), kept));
+    assert!(place.read("part.npz") == written);
+    for (more, reason) in [
+        (
+            "washer parts.jsonl --shard 1/3",
+            "its shard is 2/3, not 1/3",
+        ),
+        (
+            "parts.jsonl washer --shard 2/3",
+            "is not in its place there",
+        ),
+        (
+            "washer --shard 2/3 --columns 16 --rows 16",
+            "it has more shapes",
+        ),
+        (
+            "washer parts.jsonl --shard 2/3 --threshold 0.4",
+            "its sensor is ",
+        ),
+    ] {
+        let run = train(more);
+        assert!(
+            run.status == Some(1) && run.stderr.contains(reason),
+            "{}",
+            run.stderr
+        );
+        assert!(run.stderr.contains("error: part.npz is of another study ("));
+    }
+    fs::write(place.path("part.npz"), &written[..100]).expect("written");
+    let run = train(of);
+    assert!(
+        run.status == Some(1) && run.stderr.contains("part.npz is not whole ("),
+        "{}",
+        run.stderr
+    );
+}
+
+#[test]
 fn models_have_names_and_cards() {
     let place = Place::new();
     assert_eq!(place.done("model list"), "");

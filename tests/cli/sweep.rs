@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::paper::RING_IMPRINTS;
 
 use super::refused;
-use super::taxel;
+use super::{Run, taxel};
 
 /// The paper's ring over one cell.
 const RING: &str = "sweep ellipse --radius-x 4 --radius-y 4 --thickness 2 --angle 0 --x0 1:1.99:0.01 --y0 1:1.99:0.01";
@@ -208,7 +208,7 @@ fn shards_merge_into_the_same_bytes() {
         .map(|number| path(&format!("{number}.npz")))
         .into();
     let mut merged = json(&format!(
-        "merge {} --json --atlas {}",
+        "merge {} --json --quiet --atlas {}",
         files.join(" "),
         path("merged.npz")
     ));
@@ -220,7 +220,7 @@ fn shards_merge_into_the_same_bytes() {
         "the archives differ"
     );
     json(&format!(
-        "merge {} --json --atlas {}",
+        "merge {} --json --quiet --atlas {}",
         path("whole.npz"),
         path("again.csv")
     ));
@@ -240,6 +240,98 @@ fn shards_merge_into_the_same_bytes() {
 }
 
 #[test]
+fn a_study_is_taken_up_where_it_was_left() {
+    let scratch = folder();
+    let folder = scratch.path();
+    let path = |name: &str| folder.join(name).display().to_string();
+    let sweep = "sweep hexagon --side 3 --x0 5:5.9:0.1 --y0 5:5.9:0.1 --angle 0:50:10";
+    let part = |more: &str| taxel(&format!("{sweep} {more} --atlas {}", path("2.npz")), "");
+    let first = part("--shard 2/3 --resume --json");
+    assert_eq!(first.status, Some(0), "{}", first.stderr);
+    let written = fs::read(path("2.npz")).expect("an atlas");
+    let again = part("--shard 2/3 --resume --json");
+    assert!(again.stderr.contains("kept, whole and of this study: "));
+    let of = |run: &Run| {
+        let mut answer: Value = serde_json::from_str(&run.stdout).expect("an answer");
+        answer["seconds"] = Value::Null;
+        answer
+    };
+    assert_eq!(of(&again), of(&first), "it is summed up as if it had run");
+    for (more, reason) in [
+        ("--shard 3/3", "its shard is 2/3, not 3/3"),
+        ("--shard 2/3 --columns 20", "its sensor is 16 x 16 with"),
+        (
+            "--shard 2/3 --anchor centre",
+            "its anchor is corner, not centre",
+        ),
+        ("--shard 2/3 --thickness 1", "its shape is another one"),
+    ] {
+        let run = part(&format!("{more} --resume"));
+        let said = format!("2.npz is of another study ({reason}");
+        assert!(
+            run.status == Some(1) && run.stderr.contains(&said),
+            "{}",
+            run.stderr
+        );
+    }
+    let run = part("--shard 2/3 --angle 0:40:10 --resume");
+    assert_eq!(run.status, Some(2), "an axis is given twice");
+    fs::write(path("2.npz"), &written[..written.len() / 2]).expect("written");
+    let run = part("--shard 2/3 --resume");
+    assert!(
+        run.status == Some(1) && run.stderr.contains("2.npz is not whole ("),
+        "{}",
+        run.stderr
+    );
+    assert_eq!(part("--shard 2/3 --force --quiet").status, Some(0));
+    assert_eq!(fs::read(path("2.npz")).ok(), Some(written));
+    let table = taxel(&format!("{sweep} --resume --atlas {}", path("2.csv")), "");
+    let said = "2.csv: an atlas for --resume is written as .npz";
+    assert!(
+        table.status == Some(1) && table.stderr.contains(said),
+        "{}",
+        table.stderr
+    );
+    for wrong in ["--resume --force", "--resume --poses p.npy"] {
+        assert_eq!(part(wrong).status, Some(2), "{wrong}");
+    }
+}
+
+#[test]
+fn what_a_merge_costs_is_bounded_and_printed() {
+    let scratch = folder();
+    let path = |name: &str| scratch.path().join(name).display().to_string();
+    let (one, two) = (path("1.npz"), path("2.npz"));
+    for (number, name) in [(1, &one), (2, &two)] {
+        json(&format!("{RING} --json --shard {number}/2 --atlas {name}"));
+    }
+    let merge = |more: &str| taxel(&format!("merge {two} {one} {more}"), "");
+    let run = merge(&format!("--atlas {}", path("m.npz")));
+    assert_eq!(run.status, Some(0), "{}", run.stderr);
+    let lines: Vec<&str> = run.stderr.lines().collect();
+    assert!(
+        lines[0].starts_with("2 files of ") && lines[0].ends_with(" of memory"),
+        "{}",
+        run.stderr
+    );
+    assert!(
+        lines[1].starts_with("merged: 393 imprints, "),
+        "{}",
+        run.stderr
+    );
+    let run = merge(&format!("--atlas {} --quiet", path("q.npz")));
+    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
+    let run = merge(&format!("--atlas {} --memory 1M", path("no.npz")));
+    let said = "of memory and may use 1.0M; allow more (--memory)";
+    assert!(
+        run.status == Some(1) && run.stderr.contains(said),
+        "{}",
+        run.stderr
+    );
+    assert!(!scratch.path().join("no.npz").exists());
+}
+
+#[test]
 fn damaged_archives_are_refused() {
     let scratch = folder();
     let folder = scratch.path();
@@ -252,7 +344,11 @@ fn damaged_archives_are_refused() {
         bad[place] ^= 0x55;
         fs::write(path("bad.npz"), &bad).expect("a file");
         let run = taxel(
-            &format!("merge {} --json --atlas {}", path("bad.npz"), path("x.csv")),
+            &format!(
+                "merge {} --json --quiet --atlas {}",
+                path("bad.npz"),
+                path("x.csv")
+            ),
             "",
         );
         assert!(matches!(run.status, Some(0 | 1)), "{place}: {}", run.stderr);

@@ -17,7 +17,7 @@ use clap::{Arg, ArgGroup, Command, value_parser};
 
 use crate::cli::arguments::flags::{
     anchor, force, jobs, json, memory, name, of_sensor, option, parse_name, parse_npy, quiet,
-    range, replace, sensor, sensor_of_imprints, shard, switch, what,
+    range, replace, resume, sensor, sensor_of_imprints, shard, switch, what,
 };
 use crate::cli::arguments::help::{
     ABOUT, BATCH_EXAMPLES, CHECK_EXAMPLES, DELETE_EXAMPLES, DESCRIBE_EXAMPLES, EXAMPLES,
@@ -218,6 +218,7 @@ fn sweep() -> Command {
             jobs(),
             memory(),
             shard(),
+            resume().requires("atlas").conflicts_with("poses"),
             json(),
             quiet(),
         ])
@@ -240,6 +241,7 @@ fn merge() -> Command {
             files,
             atlas().alias("out").required(true),
             replace(),
+            memory(),
             json(),
             quiet(),
         ])

@@ -104,6 +104,15 @@ pub(super) fn shard_of(matches: &ArgMatches) -> Shard {
     matches.get_one("shard").copied().unwrap_or(Shard::WHOLE)
 }
 
+/// `--resume`, for shards of a study that was interrupted.
+pub(super) fn resume() -> Arg {
+    switch(
+        "resume",
+        "Skip it if the file is there, whole and of this\nstudy; another file is refused",
+    )
+    .conflicts_with("force")
+}
+
 /// A range of the grid, such as `5:5.99:0.01`.
 pub(super) fn parse_range(text: &str) -> Result<DecimalRange, RangeError> {
     text.parse()

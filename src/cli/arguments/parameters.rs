@@ -194,6 +194,36 @@ impl Given {
     }
 }
 
+/// What becomes of the file of a shard that is there already.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ShardFile {
+    /// It is in the way: an error.
+    Refused,
+    /// It is replaced: `--force`.
+    Replaced,
+    /// If it is this shard, whole, nothing is computed; otherwise it is an error: `--resume`.
+    Resumed,
+}
+
+impl ShardFile {
+    /// What the flags ask for. A merge has no `--resume`.
+    pub(super) fn of(matches: &ArgMatches) -> Self {
+        match (existing(matches), matches.try_get_one("resume")) {
+            (Existing::Replaced, _) => Self::Replaced,
+            (Existing::Kept, Ok(Some(true))) => Self::Resumed,
+            (Existing::Kept, _) => Self::Refused,
+        }
+    }
+
+    /// Whether a file that appears meanwhile is replaced.
+    pub(crate) fn existing(self) -> Existing {
+        match self {
+            Self::Replaced => Existing::Replaced,
+            Self::Refused | Self::Resumed => Existing::Kept,
+        }
+    }
+}
+
 /// What to do about files that exist: with `--force` they are replaced.
 pub(crate) fn existing(matches: &ArgMatches) -> Existing {
     if matches.get_flag("force") {

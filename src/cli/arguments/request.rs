@@ -16,7 +16,7 @@ use crate::cli::arguments::frames::FramesArguments;
 use crate::cli::arguments::groups;
 use crate::cli::arguments::model::ModelRequest;
 use crate::cli::arguments::parameters;
-use crate::cli::arguments::parameters::Given;
+use crate::cli::arguments::parameters::{Given, ShardFile};
 use crate::cli::arguments::program::Script;
 use crate::cli::arguments::recognise::RecogniseArguments;
 use crate::cli::arguments::watch::WatchArguments;
@@ -34,7 +34,6 @@ use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::storage::AtlasFile;
 use crate::sweep::Shard;
-use crate::tui::runtime::memory::MemorySize;
 
 /// What the arguments ask for.
 #[derive(Clone, Debug)]
@@ -326,14 +325,10 @@ fn wanted(matches: &ArgMatches) -> Wanted {
     Wanted {
         atlas: matches.get_one::<AtlasFile>("atlas").cloned(),
         poses: poses.ok().flatten().cloned(),
-        existing: parameters::existing(matches),
+        there: ShardFile::of(matches),
         json: matches.get_flag("json"),
         quiet: matches.get_flag("quiet"),
-        memory: match matches.try_get_one::<MemorySize>("memory") {
-            Ok(size) => size.copied(),
-            // Merging has no such flag.
-            Err(_) => None,
-        },
+        memory: flags::memory_of(matches),
     }
 }
 

@@ -14,7 +14,11 @@ pub(super) mod library;
 
 pub(super) mod batch;
 
+pub(super) mod resume;
+
 pub(super) mod sweep;
+
+pub(super) mod merge;
 
 pub(super) mod model;
 

@@ -21,6 +21,8 @@ use serde_json::json;
 
 use crate::cli::arguments::model::DEFAULT_MODEL;
 use crate::cli::arguments::model::train::{ModelTarget, TrainArguments};
+use crate::cli::arguments::parameters::ShardFile;
+use crate::cli::commands::resume::{self, KEPT};
 use crate::cli::error::CliError;
 use crate::cli::input::shape_set;
 use crate::cli::input::shapes::Shelf;
@@ -57,12 +59,17 @@ pub(crate) fn train(
     let shapes = shape_set::read(&asked.set, shelf)?;
     let (sensor, anchor, ranges) = grid(asked, &shapes)?;
     let signals = Signals::heard().map_err(CliError::System)?;
-    // Whether a file can be begun there is found out before the work rather than after it.
-    drop(UnfinishedFile::new(&path, asked.existing)?);
     let stopped = &signals.stopped;
     let training = Training::new(shapes, sensor, anchor, ranges)?
         .shard(asked.shard)
         .allow_cut(asked.allow_cut);
+    if asked.there == ShardFile::Resumed
+        && let Some(model) = resume::model(&path, &training, asked.allow_cut)?
+    {
+        return trained(&model, &path, KEPT, asked, charset);
+    }
+    // Whether a file can be begun there is found out before the work rather than after it.
+    drop(UnfinishedFile::new(&path, asked.there.existing())?);
     if !asked.quiet {
         crate::cli::note(&grid_text(&sensor, anchor, &ranges), charset);
     }
@@ -83,19 +90,33 @@ pub(crate) fn train(
         TrainingError::Stopped => signals.failure(),
         error => error.into(),
     })?;
-    let saved = save_model(&model, &path, asked.existing, stopped);
+    let saved = save_model(&model, &path, asked.there.existing(), stopped);
     if stopped.load(Ordering::Relaxed) {
         return Err(signals.failure());
     }
     saved?;
-    let limit = Evaluation::of(&model);
+    trained(&model, &path, "written", asked, charset)
+}
+
+/// What is printed of a model whose file is `done`: written, or there already.
+///
+/// # Errors
+/// As [`card_json`].
+fn trained(
+    model: &Model,
+    path: &Path,
+    done: &str,
+    asked: &TrainArguments,
+    charset: Charset,
+) -> Result<String, CliError> {
+    let limit = Evaluation::of(model);
     let name = path.to_string_lossy();
     Ok(if asked.json {
-        let mut text = card_json(&model, &limit)?;
+        let mut text = card_json(model, &limit)?;
         text.insert("file".to_owned(), json!(name));
         json::text(&text) + "\n"
     } else {
-        charset.lines(&format!("written: {name}\n"))
+        charset.lines(&format!("{done}: {name}\n"))
             + &evaluation::summary(&limit, NamedBy::Imprint, charset)
     })
 }

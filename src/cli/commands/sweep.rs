@@ -1,5 +1,4 @@
-//! `taxel sweep` and `taxel merge`: sweeps a grid of poses or puts shards together, writes the atlas, prints
-//! statistics.
+//! `taxel sweep`: sweeps a grid of poses, writes the atlas, prints statistics.
 //!
 //! Files are written under another name in the same folder and renamed when all of them are complete. A file that
 //! exists is replaced only with `--force`; this is checked before the work begins.
@@ -9,31 +8,24 @@
 //! program at once.
 //!
 //! The ways of a sweep's result: `--atlas` writes every distinct imprint with its number of poses, `--poses` for each
-//! pose the number of its imprint, and standard output gets a summary. `merge` reads shards of atlases or of models and
-//! checks that they are of one grid and complete.
+//! pose the number of its imprint, and standard output gets a summary.
 
-use std::fs::File;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
+use crate::cli::arguments::parameters::ShardFile;
+use crate::cli::commands::resume::{self, KEPT};
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
-use crate::cli::output::evaluation::{self, EvaluationJson};
 use crate::cli::output::progress::Progress;
-use crate::cli::output::report;
 use crate::cli::output::sweep_summary::SweepSummary;
 use crate::cli::signals::Signals;
-use crate::formats::{ArchiveError, MODEL_FORMAT, archive, archive_format, json};
 use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, Ranges, common_ranges, default_ranges};
-use crate::recognition::{Evaluation, Model, TrainingError};
 use crate::sensor::Sensor;
 use crate::source::Source;
-use crate::storage::{
-    ArchiveFileError, AtlasFile, Existing, FinishedFile, PoseFile, load_model, persist_pair,
-    save_model,
-};
+use crate::storage::{ArchiveFileError, AtlasFile, FinishedFile, PoseFile, persist_pair};
 use crate::sweep::{Shard, Sweep, SweepResult};
 use crate::tui::runtime::memory::{MemoryGuard, MemorySize};
 
@@ -44,22 +36,14 @@ pub(crate) struct Wanted {
     pub(crate) atlas: Option<AtlasFile>,
     /// `--poses`: the file of each pose's imprint.
     pub(crate) poses: Option<PathBuf>,
-    /// What to do about files that exist.
-    pub(crate) existing: Existing,
+    /// What becomes of files that exist.
+    pub(crate) there: ShardFile,
     /// Whether the summary is one line of JSON.
     pub(crate) json: bool,
     /// Whether to show no progress.
     pub(crate) quiet: bool,
     /// `--memory`: the most that it may use.
     pub(crate) memory: Option<MemorySize>,
-}
-
-/// The error for an atlas that cannot be read.
-fn refused(path: &Path, error: impl Into<ArchiveError>) -> CliError {
-    CliError::Atlas {
-        name: path.to_string_lossy().into_owned(),
-        error: error.into(),
-    }
 }
 
 /// Returns the grid to sweep, and what to say about it beforehand: the ranges of x0 and y0 that were not given, and how
@@ -122,14 +106,23 @@ pub(crate) fn sweep(
     let signals = Signals::heard().map_err(CliError::System)?;
     let stopped = &signals.stopped;
     if let Some(file) = &wanted.atlas {
-        file.check(wanted.existing)?;
+        if wanted.there == ShardFile::Resumed
+            && let Some(kept) = kept(file, grid, shard)?
+        {
+            if !wanted.quiet {
+                let name = file.path().to_string_lossy();
+                crate::cli::note(&format!("{KEPT}: {name}"), charset);
+            }
+            return Ok(summary(&kept, start, wanted, charset));
+        }
+        file.check(wanted.there.existing())?;
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
     let pool = pool.map_err(|error| CliError::System(io::Error::other(error)))?;
     let memory = MemoryGuard::new(wanted.memory);
     memory.check(grid).map_err(CliError::Memory)?;
     let mut poses = match &wanted.poses {
-        Some(path) => Some(PoseFile::new(path, grid, wanted.existing)?),
+        Some(path) => Some(PoseFile::new(path, grid, wanted.there.existing())?),
         None => None,
     };
     let rows = shard.rows(grid.rows());
@@ -160,70 +153,8 @@ pub(crate) fn sweep(
     leave(&result, start, wanted, poses, charset, &signals)
 }
 
-/// Merges the shards in `files`, writes the atlas, and returns the summary to print.
-///
-/// # Errors
-/// If a file cannot be read, or the shards are not all those of one grid, each once.
-pub(crate) fn merge(
-    files: &[PathBuf],
-    wanted: &Wanted,
-    charset: Charset,
-) -> Result<String, CliError> {
-    let start = Instant::now();
-    if let Some(file) = &wanted.atlas {
-        file.check(wanted.existing)?;
-    }
-    if let Some(path) = files.first()
-        && archive_format(open(path)?).map_err(|error| refused(path, error))? == MODEL_FORMAT
-    {
-        return merge_models(files, wanted, charset);
-    }
-    let mut results = Vec::with_capacity(files.len());
-    for path in files {
-        let result = archive::read(open(path)?);
-        results.push(result.map_err(|error| refused(path, error))?);
-    }
-    let result = SweepResult::merge(results)?;
-    // Until here nothing is written, so a signal may simply end the program.
-    let signals = Signals::heard().map_err(CliError::System)?;
-    leave(&result, start, wanted, None, charset, &signals)
-}
-
-/// Opens the file of a shard.
-fn open(path: &Path) -> Result<io::BufReader<File>, CliError> {
-    let file = File::open(path).map_err(|error| refused(path, error))?;
-    Ok(io::BufReader::new(file))
-}
-
-/// Merges the shards of a training, and returns what is printed.
-fn merge_models(files: &[PathBuf], wanted: &Wanted, charset: Charset) -> Result<String, CliError> {
-    let mut shards = Vec::with_capacity(files.len());
-    for path in files {
-        shards.push(load_model(path)?);
-    }
-    let model = Model::merge(shards).map_err(TrainingError::from)?;
-    let signals = Signals::heard().map_err(CliError::System)?;
-    if let Some(file) = &wanted.atlas {
-        let saved = save_model(&model, file.path(), wanted.existing, &signals.stopped);
-        if signals.stopped.load(Ordering::Relaxed) {
-            return Err(signals.failure());
-        }
-        saved?;
-    }
-    let limit = Evaluation::of(&model);
-    Ok(if wanted.json {
-        let line = json::text(&EvaluationJson {
-            evaluation: &limit,
-            peer: None,
-        });
-        report::ascii_json(&line) + "\n"
-    } else {
-        evaluation::summary(&limit, evaluation::NamedBy::Imprint, charset)
-    })
-}
-
 /// Writes the atlas, gives the files their names, and returns the summary to print.
-fn leave(
+pub(super) fn leave(
     result: &SweepResult,
     start: Instant,
     wanted: &Wanted,
@@ -233,7 +164,7 @@ fn leave(
 ) -> Result<String, CliError> {
     let atlas = match &wanted.atlas {
         Some(file) => {
-            let whole = file.prepare(result, wanted.existing, &signals.stopped);
+            let whole = file.prepare(result, wanted.there.existing(), &signals.stopped);
             if signals.stopped.load(Ordering::Relaxed) {
                 return Err(signals.failure());
             }
@@ -247,10 +178,30 @@ fn leave(
         (None, None) => Ok(()),
     };
     named.map_err(ArchiveFileError::from)?;
+    Ok(summary(result, start, wanted, charset))
+}
+
+/// What is printed of a result.
+fn summary(result: &SweepResult, start: Instant, wanted: &Wanted, charset: Charset) -> String {
     let summary = SweepSummary::new(result, start.elapsed());
-    Ok(if wanted.json {
+    if wanted.json {
         summary.json()
     } else {
         summary.text(charset)
-    })
+    }
+}
+
+/// The atlas of an earlier run of this shard, for `--resume`.
+///
+/// # Errors
+/// If there is a file that is not that, or if its form could not be read again.
+fn kept(file: &AtlasFile, grid: &PoseGrid, shard: Shard) -> Result<Option<SweepResult>, CliError> {
+    if !file.is_archive() {
+        return Err(CliError::Ending {
+            name: file.path().to_string_lossy().into_owned(),
+            what: "an atlas for --resume",
+            expected: ".npz",
+        });
+    }
+    resume::atlas(file.path(), grid, shard)
 }

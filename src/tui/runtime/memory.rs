@@ -118,6 +118,14 @@ impl MemoryGuard {
         true
     }
 
+    /// As [`Self::allows`], for work in few and large steps: memory is looked at each time.
+    pub(crate) fn allows_now(&self) -> bool {
+        if let Ok(mut due) = self.due.lock() {
+            *due = Instant::now();
+        }
+        self.allows()
+    }
+
     /// Whether it has stopped the work.
     pub(crate) fn exceeded(&self) -> bool {
         self.exceeded.load(Ordering::Relaxed)
@@ -130,6 +138,29 @@ impl MemoryGuard {
             "stopped: it needs more memory than the {allowed} that it may use; take coarser steps, sweep it in shards \
              (--shard 1/8, ..., then taxel merge), or allow more (--memory)"
         )
+    }
+
+    /// The message where shards cannot be merged within the bound.
+    pub(crate) fn message_of_merge(&self) -> String {
+        let allowed = self.allowed.unwrap_or(MemorySize(0));
+        format!(
+            "stopped: what is merged needs more memory than half of the {allowed} that it may use, and writing it the \
+             other half; allow more (--memory), or merge on a machine that has more"
+        )
+    }
+
+    /// Refuses work that is known to need this much.
+    ///
+    /// # Errors
+    /// A message with both numbers.
+    pub(crate) fn check_bytes(&self, needed: MemorySize) -> Result<(), String> {
+        match self.allowed {
+            Some(allowed) if needed > allowed => Err(format!(
+                "it needs about {needed} of memory and may use {allowed}; allow more (--memory), or merge on a machine \
+                 that has more"
+            )),
+            _ => Ok(()),
+        }
     }
 
     /// Refuses the sweep of a grid that needs far more than is allowed, before it starts.
@@ -183,6 +214,12 @@ fn used() -> Option<MemorySize> {
     listed("/proc/self/status", "VmRSS:")
 }
 
+/// The most memory that the program has had in use; None where the system does not tell.
+#[cfg(target_os = "linux")]
+pub(crate) fn peak() -> Option<MemorySize> {
+    listed("/proc/self/status", "VmHWM:")
+}
+
 /// What the program may use: what the machine has free, with what it uses already, or less where a limit is set for the
 /// process or its control group.
 #[cfg(target_os = "linux")]
@@ -206,6 +243,12 @@ fn free() -> Option<MemorySize> {
 }
 
 /// Elsewhere the system is not asked.
+#[cfg(not(target_os = "linux"))]
+pub(crate) fn peak() -> Option<MemorySize> {
+    None
+}
+
+/// Nor how much is in use now.
 #[cfg(not(target_os = "linux"))]
 fn used() -> Option<MemorySize> {
     None

@@ -5,18 +5,17 @@ use std::path::PathBuf;
 use clap::{ArgGroup, ArgMatches, Command, value_parser};
 
 use crate::cli::arguments::flags::{
-    self, anchor, jobs, json, memory, option, parse_name, quiet, range, replace,
+    self, anchor, jobs, json, memory, option, parse_name, quiet, range, replace, resume,
     sensor_of_imprints, shard, switch,
 };
 use crate::cli::arguments::help::MODEL_TRAIN_EXAMPLES;
 use crate::cli::arguments::model::shape_set::{self, SetArguments};
-use crate::cli::arguments::parameters::{self, Given};
+use crate::cli::arguments::parameters::{Given, ShardFile};
 use crate::cli::error::CliError;
 use crate::formats::Name;
 use crate::parameter::Parameter;
 use crate::pose::{Anchor, Axis, GivenRanges};
 use crate::sensor::Sensor;
-use crate::storage::Existing;
 use crate::sweep::Shard;
 use crate::tui::runtime::memory::MemorySize;
 
@@ -45,8 +44,8 @@ pub(crate) struct TrainArguments {
     pub(crate) allow_cut: bool,
     /// Where the model is written.
     pub(crate) to: ModelTarget,
-    /// Whether a model of that name is replaced.
-    pub(crate) existing: Existing,
+    /// What becomes of a model of that name.
+    pub(crate) there: ShardFile,
     /// Whether the answer is a line of JSON.
     pub(crate) json: bool,
     /// Whether the chosen grid and the progress are left out.
@@ -100,6 +99,7 @@ pub(super) fn command() -> Command {
             jobs(),
             memory(),
             shard(),
+            resume(),
             replace(),
             json(),
             quiet(),
@@ -131,7 +131,7 @@ impl TrainArguments {
             memory: flags::memory_of(matches),
             allow_cut: matches.get_flag("allow-cut"),
             to,
-            existing: parameters::existing(matches),
+            there: ShardFile::of(matches),
             json: matches.get_flag("json"),
             quiet: matches.get_flag("quiet"),
         })

@@ -1,0 +1,184 @@
+//! `taxel merge`: puts the shards of a sweep or of a training together.
+//!
+//! Their headers tell what they are and bring them into order; then they are read one after another. Memory holds what is
+//! merged and one shard, and what that can be at most follows from the sizes of the files: it is said before, and what it
+//! was is said after:
+//! ```text
+//! 8 files of 155.2M: at most 682.8M of memory
+//! merged: 212907 imprints, 402.3M of memory
+//! ```
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use crate::cli::commands::sweep::{Wanted, leave};
+use crate::cli::error::CliError;
+use crate::cli::output::charset::Charset;
+use crate::cli::output::evaluation::{self, EvaluationJson};
+use crate::cli::output::report;
+use crate::cli::signals::Signals;
+use crate::formats::{MODEL_FORMAT, archive_kind, json};
+use crate::recognition::{Evaluation, Model, ModelMerge, TrainingError};
+use crate::storage::{ArchiveFileError, load_atlas, load_model, save_model};
+use crate::sweep::{Shard, SweepMerge};
+use crate::tui::runtime::memory::{MemoryGuard, MemorySize, peak};
+
+/// What the program needs without any shard.
+const BYTES_OF_PROGRAM: u64 = 24 << 20;
+
+/// What a byte of a file is at most in memory once it is merged, with what writing it needs.
+const TIMES_MERGED: u64 = 3;
+
+/// What a byte of a file is at most in memory while it is read.
+const TIMES_READ: u64 = 4;
+
+/// A file of a shard.
+struct Part {
+    path: PathBuf,
+    format: String,
+    shard: Shard,
+    bytes: u64,
+}
+
+impl Part {
+    /// Reads what the file says of itself.
+    fn of(path: &PathBuf) -> Result<Self, ArchiveFileError> {
+        let refused = |error| ArchiveFileError::new(path, error);
+        let file = File::open(path).map_err(|error| refused(error.into()))?;
+        let bytes = file
+            .metadata()
+            .map_err(|error| refused(error.into()))?
+            .len();
+        let kind = archive_kind(BufReader::new(file)).map_err(refused)?;
+        Ok(Self {
+            path: path.clone(),
+            format: kind.format,
+            shard: kind.shard,
+            bytes,
+        })
+    }
+}
+
+/// Merges the shards in `files`, writes the atlas or the model, and returns the summary to print.
+///
+/// # Errors
+/// If a file cannot be read, if the shards are not all those of one study, each once, or if it needs too much memory.
+pub(crate) fn merge(
+    files: &[PathBuf],
+    wanted: &Wanted,
+    charset: Charset,
+) -> Result<String, CliError> {
+    let start = Instant::now();
+    if let Some(file) = &wanted.atlas {
+        file.check(wanted.there.existing())?;
+    }
+    let parts = files.iter().map(Part::of);
+    let mut parts = parts.collect::<Result<Vec<_>, _>>()?;
+    let is_model = parts
+        .first()
+        .is_some_and(|part| part.format == MODEL_FORMAT);
+    parts.sort_by_key(|part| part.shard.number());
+    let memory = MemoryGuard::new(wanted.memory);
+    let say = |text: &str| {
+        if !wanted.quiet {
+            crate::cli::note(text, charset);
+        }
+    };
+    let bound = bound(&parts, &memory)?;
+    // Where shards are missing or there twice, the merge says only that.
+    if parts
+        .iter()
+        .zip(1..)
+        .all(|(part, k)| part.shard.number() == k)
+        && parts
+            .last()
+            .is_some_and(|part| part.shard.number() == part.shard.of())
+    {
+        say(&bound);
+    }
+    let (imprints, summary) = if is_model {
+        let model = models(&parts, &memory)?;
+        (model.keys().len(), leave_model(&model, wanted, charset)?)
+    } else {
+        let mut merge = SweepMerge::default();
+        for part in &parts {
+            merge.add(load_atlas(&part.path)?)?;
+            within(&memory)?;
+        }
+        let result = merge.finish()?;
+        // Until here nothing is written, so a signal may simply end the program.
+        let signals = Signals::heard().map_err(CliError::System)?;
+        let summary = leave(&result, start, wanted, None, charset, &signals)?;
+        (result.atlas.len(), summary)
+    };
+    if let Some(peak) = peak() {
+        say(&format!("merged: {imprints} imprints, {peak} of memory"));
+    }
+    Ok(summary)
+}
+
+/// What merging needs at most, in words.
+///
+/// # Errors
+/// If even the largest of the files is too much for what may be used. Whether all are cannot be known before: how many
+/// imprints they share is not written anywhere.
+fn bound(parts: &[Part], memory: &MemoryGuard) -> Result<String, CliError> {
+    let sum: u64 = parts.iter().map(|part| part.bytes).sum();
+    let largest = parts.iter().map(|part| part.bytes).max().unwrap_or(0);
+    let least = BYTES_OF_PROGRAM + TIMES_READ * largest;
+    let most = MemorySize(least + TIMES_MERGED * sum);
+    memory
+        .check_bytes(MemorySize(least))
+        .map_err(CliError::Memory)?;
+    let (files, sum) = (parts.len(), MemorySize(sum));
+    Ok(format!("{files} files of {sum}: at most {most} of memory"))
+}
+
+/// Stops a merge that comes near to what it may use.
+fn within(memory: &MemoryGuard) -> Result<(), CliError> {
+    if memory.allows_now() {
+        return Ok(());
+    }
+    Err(CliError::Memory(memory.message_of_merge()))
+}
+
+/// The model of all shards of a training.
+fn models(parts: &[Part], memory: &MemoryGuard) -> Result<Model, CliError> {
+    let mut merge = ModelMerge::default();
+    for part in parts {
+        let model = load_model(&part.path)?;
+        merge.add(&model).map_err(TrainingError::from)?;
+        within(memory)?;
+    }
+    Ok(merge.finish().map_err(TrainingError::from)?)
+}
+
+/// Writes a merged model, and returns what is printed.
+fn leave_model(model: &Model, wanted: &Wanted, charset: Charset) -> Result<String, CliError> {
+    let signals = Signals::heard().map_err(CliError::System)?;
+    if let Some(file) = &wanted.atlas {
+        let saved = save_model(
+            model,
+            file.path(),
+            wanted.there.existing(),
+            &signals.stopped,
+        );
+        if signals.stopped.load(Ordering::Relaxed) {
+            return Err(signals.failure());
+        }
+        saved?;
+    }
+    let limit = Evaluation::of(model);
+    Ok(if wanted.json {
+        let line = json::text(&EvaluationJson {
+            evaluation: &limit,
+            peer: None,
+        });
+        report::ascii_json(&line) + "\n"
+    } else {
+        evaluation::summary(&limit, evaluation::NamedBy::Imprint, charset)
+    })
+}

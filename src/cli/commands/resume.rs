@@ -1,0 +1,164 @@
+//! `--resume`: takes up the work on a large study. A shard whose file is there, whole and of the same study is not
+//! computed again.
+//!
+//! A file appears under its name only when all of it is written, so a killed shard leaves none and is computed. What is
+//! there all the same, but damaged or of another study, is refused by its name: it is never merged by mistake, and
+//! never replaced either.
+
+use std::path::Path;
+
+use crate::cli::error::CliError;
+use crate::formats::ArchiveError;
+use crate::pose::{Anchor, Axis, PoseGrid, Ranges};
+use crate::recognition::{Model, Training};
+use crate::sensor::Sensor;
+use crate::storage::{ArchiveFileError, load_atlas, load_model};
+use crate::sweep::{Shard, SweepResult};
+
+/// What is said before the name of a file that is there already.
+pub(crate) const KEPT: &str = "kept, whole and of this study";
+
+/// The atlas of a shard that was swept before; None if there is no such file.
+///
+/// # Errors
+/// [`CliError::NotResumed`] if the file is damaged or of another study.
+pub(crate) fn atlas(
+    path: &Path,
+    grid: &PoseGrid,
+    shard: Shard,
+) -> Result<Option<SweepResult>, CliError> {
+    let Some(found) = whole(path, load_atlas(path))? else {
+        return Ok(None);
+    };
+    let own = Poses::of(&found.grid, found.shard);
+    if let Some(difference) = own.difference(&Poses::of(grid, shard)) {
+        return Err(foreign(path, &difference));
+    }
+    if found.grid.source() != grid.source() {
+        return Err(foreign(path, "its shape is another one"));
+    }
+    if !found.complete() {
+        return Err(torn(path, "not all of its poses were swept"));
+    }
+    Ok(Some(found))
+}
+
+/// The model of a shard that was trained before; None if there is no such file.
+///
+/// # Errors
+/// [`CliError::NotResumed`] if the file is damaged or of another study.
+pub(crate) fn model(
+    path: &Path,
+    training: &Training<'_>,
+    allow_cut: bool,
+) -> Result<Option<Model>, CliError> {
+    let Some(found) = whole(path, load_model(path))? else {
+        return Ok(None);
+    };
+    let grid = &training.grids()[0];
+    let own = Poses {
+        sensor: *found.sensor(),
+        anchor: found.anchor(),
+        ranges: *found.ranges(),
+        shard: found.shard(),
+    };
+    if let Some(difference) = own.difference(&Poses::of(grid, training.part())) {
+        return Err(foreign(path, &difference));
+    }
+    let (mut shapes, asked) = (found.shapes().iter(), training.shapes());
+    let other = asked.iter().find(|&shape| shapes.next() != Some(shape));
+    if let Some(shape) = other {
+        let difference = format!("the shape {:?} is not in its place there", shape.name);
+        return Err(foreign(path, &difference));
+    }
+    if shapes.next().is_some() {
+        return Err(foreign(path, "it has more shapes"));
+    }
+    if !allow_cut && found.cut().iter().any(|&cut| cut > 0) {
+        return Err(foreign(path, "it has poses that the sensor cuts off"));
+    }
+    if found.poses() * asked.len() as u64 != training.poses() {
+        return Err(torn(path, "not all of its poses were trained"));
+    }
+    Ok(Some(found))
+}
+
+/// What was read of a file: None if it is not there; a damaged one is an error that names it.
+fn whole<T>(path: &Path, read: Result<T, ArchiveFileError>) -> Result<Option<T>, CliError> {
+    match read {
+        Ok(found) => Ok(Some(found)),
+        Err(error) if error.is_missing() => Ok(None),
+        Err(ArchiveFileError {
+            error: ArchiveError::Io(error),
+            ..
+        }) if error.raw_os_error().is_some() => Err(ArchiveFileError::new(path, error).into()),
+        Err(error) => Err(torn(path, &error.error.to_string())),
+    }
+}
+
+/// The error of a file that is damaged.
+fn torn(path: &Path, reason: &str) -> CliError {
+    CliError::NotResumed {
+        name: path.to_string_lossy().into_owned(),
+        what: "not whole",
+        reason: reason.to_owned(),
+    }
+}
+
+/// The error of a file of another study.
+fn foreign(path: &Path, reason: &str) -> CliError {
+    CliError::NotResumed {
+        name: path.to_string_lossy().into_owned(),
+        what: "of another study",
+        reason: reason.to_owned(),
+    }
+}
+
+/// Which poses a shard was to take, without the shapes.
+#[derive(Clone, Copy, Debug)]
+struct Poses {
+    sensor: Sensor,
+    anchor: Anchor,
+    ranges: Ranges,
+    shard: Shard,
+}
+
+impl Poses {
+    fn of(grid: &PoseGrid, shard: Shard) -> Self {
+        Self {
+            sensor: *grid.sensor(),
+            anchor: grid.anchor(),
+            ranges: *grid.ranges(),
+            shard,
+        }
+    }
+
+    /// The first thing in which a file differs from what is asked, in words; None if nothing does.
+    fn difference(&self, asked: &Self) -> Option<String> {
+        let unlike = |what: &str, own: String, asked: String| {
+            (own != asked).then(|| format!("its {what} is {own}, not {asked}"))
+        };
+        let axis = |axis: Axis| {
+            let (own, asked) = (self.ranges[axis], asked.ranges[axis]);
+            unlike(axis.name(), own.to_string(), asked.to_string())
+        };
+        unlike("shard", self.shard.to_string(), asked.shard.to_string())
+            .or_else(|| unlike("sensor", sensor(&self.sensor), sensor(&asked.sensor)))
+            .or_else(|| {
+                let (own, asked) = (self.anchor.name(), asked.anchor.name());
+                unlike("anchor", own.to_owned(), asked.to_owned())
+            })
+            .or_else(|| Axis::ALL.into_iter().find_map(axis))
+    }
+}
+
+/// A sensor in a few words: `16 x 16 with threshold 0.5 and pitch 1 mm`.
+fn sensor(sensor: &Sensor) -> String {
+    format!(
+        "{} x {} with threshold {} and pitch {} mm",
+        sensor.columns(),
+        sensor.rows(),
+        sensor.threshold(),
+        sensor.pitch_mm()
+    )
+}

@@ -1,0 +1,167 @@
+//! Puts the shards of a sweep together.
+//!
+//! Shards follow on each other in the order of the grid, so first poses stay the first, and the numbers of imprints are
+//! those of one sweep. They are taken one after another: memory holds what is merged and one shard.
+
+use crate::atlas::{Atlas, Table, VarianceParts};
+use crate::pose::PoseGrid;
+use crate::sweep::plan::Shard;
+use crate::sweep::result::SweepResult;
+
+/// The shards of a sweep, as far as they were given.
+///
+/// ```
+/// use taxel::prelude::*;
+/// use taxel::sweep::{Shard, SweepMerge};
+///
+/// let square = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
+/// let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
+/// let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
+/// let mut merge = SweepMerge::default();
+/// for number in 1..=2 {
+///     merge.add(Sweep::new(&grid).shard(Shard::new(number, 2).unwrap()).run())?;
+/// }
+/// assert_eq!(merge.finish()?.poses, 10_000);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Default)]
+pub struct SweepMerge(Option<Begun>);
+
+/// What is merged of the first shards.
+#[derive(Debug)]
+struct Begun {
+    grid: PoseGrid,
+    /// How many shards there are.
+    of: u32,
+    /// The number of the last one.
+    last: u32,
+    atlas: Atlas,
+    spread: VarianceParts,
+    poses: u64,
+    partly_off: u64,
+}
+
+impl Begun {
+    /// Nothing yet of the study that this shard belongs to.
+    fn of(first: &SweepResult) -> Self {
+        let (grid, sensor) = (first.grid.clone(), first.grid.sensor());
+        Self {
+            of: first.shard.of(),
+            last: 0,
+            atlas: Atlas::new(sensor.columns(), sensor.rows()),
+            spread: VarianceParts::new(grid.row_length() * grid.rows_per_orientation()),
+            grid,
+            poses: 0,
+            partly_off: 0,
+        }
+    }
+}
+
+impl SweepMerge {
+    /// Adds the next shard: the first, then the second, and so on.
+    ///
+    /// # Errors
+    /// If it is not the next one, incomplete, or of another grid than the first.
+    pub fn add(&mut self, result: SweepResult) -> Result<(), MergeError> {
+        let shard = result.shard;
+        let begun = self.0.get_or_insert_with(|| Begun::of(&result));
+        if result.grid != begun.grid || shard.of() != begun.of {
+            return Err(MergeError::Foreign { shard });
+        }
+        if shard.number() != begun.last + 1 {
+            return Err(MergeError::Count { shard });
+        }
+        if !result.complete() {
+            return Err(MergeError::Incomplete { shard });
+        }
+        begun.last = shard.number();
+        begun.atlas.add_all(&result.atlas);
+        begun.spread.merge(result.spread);
+        begun.poses += result.poses;
+        begun.partly_off += result.partly_off;
+        Ok(())
+    }
+
+    /// Returns what all shards found together.
+    ///
+    /// # Errors
+    /// If some are missing.
+    pub fn finish(self) -> Result<SweepResult, MergeError> {
+        let Begun {
+            grid,
+            of,
+            last,
+            atlas,
+            spread,
+            poses,
+            partly_off,
+        } = self.0.ok_or(MergeError::Nothing)?;
+        if last < of {
+            let number = last + 1;
+            return Err(MergeError::Missing { number, of });
+        }
+        let mut table = Table::default();
+        table.extend(atlas.summaries());
+        let poses = (poses, partly_off);
+        Ok(SweepResult::new(
+            grid,
+            Shard::WHOLE,
+            poses,
+            atlas,
+            &table,
+            spread,
+        ))
+    }
+}
+
+impl SweepResult {
+    /// Merges all shards of a grid into one result, the same as that of one sweep of the whole grid. [`SweepMerge`] needs
+    /// less memory.
+    ///
+    /// # Errors
+    /// If a shard is missing, given twice, incomplete, or of another grid.
+    pub fn merge(results: impl IntoIterator<Item = Self>) -> Result<Self, MergeError> {
+        let mut results: Vec<Self> = results.into_iter().collect();
+        results.sort_by_key(|result| result.shard.number());
+        let mut merge = SweepMerge::default();
+        for result in results {
+            merge.add(result)?;
+        }
+        merge.finish()
+    }
+}
+
+/// The error of a merge.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MergeError {
+    /// There are none.
+    #[error("no shards to merge")]
+    Nothing,
+    /// A shard of another grid than the first one, or of another number of shards.
+    #[error("shard {shard} is of another grid than the first one")]
+    Foreign {
+        /// The shard.
+        shard: Shard,
+    },
+    /// A shard that is given twice, or follows on a missing one.
+    #[error("shard {shard} comes out of turn: another one is missing or there twice")]
+    Count {
+        /// The shard.
+        shard: Shard,
+    },
+    /// A shard whose sweep was stopped early.
+    #[error("shard {shard} was stopped early, run it again")]
+    Incomplete {
+        /// The shard.
+        shard: Shard,
+    },
+    /// The last shards are missing.
+    #[error("shard {number}/{of} is missing")]
+    Missing {
+        /// The first of them.
+        number: u32,
+        /// The number of shards.
+        of: u32,
+    },
+}
