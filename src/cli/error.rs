@@ -84,8 +84,11 @@ pub(crate) enum CliError {
         /// The ending that is right.
         expected: &'static str,
     },
-    /// The argument is neither the name of a model nor a file.
-    #[error("no model is called {name:?}, and no file either; 'taxel model list' shows all")]
+    /// The argument is neither the name of a set of shapes nor a file.
+    #[error("{0}, or a file of a model")]
+    NoSet(String),
+    /// There is no model of that name beside the library.
+    #[error("no model is called {name:?}; 'taxel model list' shows all")]
     NoModel {
         /// The argument.
         name: String,

@@ -9,7 +9,8 @@
 //! ```text
 //! FOLDER/washer.json                    a shape
 //! FOLDER/.commands                      what was typed after `:`, a line each
-//! FOLDER/.recognise                     the set of shapes that was chosen last
+//! FOLDER/.recognise                     the set of shapes that was recognised last
+//! FOLDER/.forms                         the values that forms were accepted with, a line each
 //! FOLDER/.lock                          held while writing
 //! FOLDER/.taxel-tmp                     being written
 //! FOLDER/.trash/0000000007 washer.json  deleted
@@ -49,10 +50,7 @@ mod library;
 mod journal;
 
 #[cfg(feature = "library")]
-mod chosen_set;
-
-#[cfg(feature = "library")]
-mod commands;
+mod remembered;
 
 #[cfg(feature = "sweep")]
 mod first_error;
@@ -74,10 +72,7 @@ pub(crate) use temporary::ScratchFolder;
 pub use error::LibraryError;
 
 #[cfg(feature = "library")]
-pub use chosen_set::ChosenSetFile;
-
-#[cfg(feature = "library")]
-pub use commands::CommandFile;
+pub use remembered::RememberedFile;
 
 #[cfg(feature = "library")]
 pub use journal::{Journal, Orphan, UNNAMED};

@@ -9,7 +9,7 @@ use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::{HelpLine, Keymap, help};
 use crate::tui::widget::columns::broken;
-use crate::tui::widget::found::{contains, marked};
+use crate::tui::widget::found::{Search, contains, marked};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -22,15 +22,6 @@ pub struct Help {
     top: usize,
     /// What is searched for, None for nothing.
     search: Option<Search>,
-}
-
-/// A search that found something.
-#[derive(Clone, Debug)]
-struct Search {
-    /// What is searched for.
-    wanted: String,
-    /// The entry that one has come to.
-    entry: usize,
 }
 
 /// The lines of the list as they are drawn, each with the index of its entry: a long entry has several.
@@ -72,16 +63,13 @@ impl Help {
         let entries = matches(self.context, keymap, wanted);
         let (lines, top) = self.lines(keymap, room);
         let from = lines.get(top).map_or(0, |(entry, _)| *entry);
-        let ahead = entries.iter().find(|&&entry| entry >= from);
-        let Some(&entry) = ahead.or(entries.first()) else {
+        let Some(search) = Search::new(wanted, &entries, from) else {
             return (0, 0);
         };
-        self.search = Some(Search {
-            wanted: wanted.to_owned(),
-            entry,
-        });
+        let (entry, number) = (search.entry(), search.number(&entries));
+        self.search = Some(search);
         self.show(entry, keymap, room);
-        self.number(keymap).map_or((0, 0), |number| number)
+        number
     }
 
     /// Goes to the match this many further on, the first follows the last. Answers whether anything was searched for.
@@ -89,20 +77,11 @@ impl Help {
         let Some(search) = &mut self.search else {
             return false;
         };
-        let entries = matches(self.context, keymap, &search.wanted);
-        let ahead = |&&entry: &&usize| entry > search.entry;
-        let back = |&&entry: &&usize| entry < search.entry;
-        let next = if by > 0 {
-            entries.iter().find(ahead).or(entries.first())
-        } else {
-            entries.iter().rev().find(back).or(entries.last())
-        };
-        let Some(&entry) = next else {
-            return false;
-        };
-        search.entry = entry;
+        let entries = matches(self.context, keymap, search.wanted());
+        let found = search.go(search.entry(), by, &entries);
+        let entry = search.entry();
         self.show(entry, keymap, room);
-        true
+        found
     }
 
     /// Forgets what was searched for.
@@ -113,9 +92,8 @@ impl Help {
     /// Which match one has come to, counted from 1, and of how many; None without a search.
     fn number(&self, keymap: &Keymap) -> Option<(usize, usize)> {
         let search = self.search.as_ref()?;
-        let entries = matches(self.context, keymap, &search.wanted);
-        let before = entries.iter().filter(|&&entry| entry < search.entry);
-        Some((before.count() + 1, entries.len()))
+        let entries = matches(self.context, keymap, search.wanted());
+        Some(search.number(&entries))
     }
 
     /// Scrolls, where an entry is out of sight, so that it has a third of the lines above it.
@@ -142,7 +120,7 @@ impl Help {
         buffer: &mut Buffer,
         row: Rect,
     ) {
-        let wanted = self.search.as_ref().map_or("", |search| &search.wanted);
+        let wanted = self.search.as_ref().map_or("", Search::wanted);
         let indent = indent(row.width.into());
         let mut pieces = Vec::new();
         let pad;
@@ -183,7 +161,7 @@ impl Page for Help {
     ) -> Option<Position> {
         write::clear(buffer, area);
         let (lines, top) = self.lines(keymap, area.as_size().into());
-        let here = self.search.as_ref().map(|search| search.entry);
+        let here = self.search.as_ref().map(Search::entry);
         let mut cursor = None;
         for (index, (entry, line)) in lines.iter().skip(top).enumerate() {
             let row = write::row(area, index);

@@ -1,4 +1,5 @@
 //! The steps of the history as a list: what each did, the present state marked; Enter goes to the state after a step.
+//! `/` searches: [`crate::tui::search`].
 //!
 //! ```text
 //! History   4 steps
@@ -16,6 +17,7 @@ use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::page::{Page, Slot};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
+use crate::tui::widget::found::{Search, contains, marked};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -28,7 +30,12 @@ pub struct HistoryDialog {
     present: usize,
     /// The selected row; row 0 is the state before all steps.
     selected: usize,
+    /// What is searched for, None for nothing.
+    search: Option<Search>,
 }
+
+/// What row 0 is called.
+const START: &str = "the start";
 
 impl HistoryDialog {
     /// The list, the present state selected.
@@ -37,6 +44,7 @@ impl HistoryDialog {
             steps,
             present,
             selected: present,
+            search: None,
         }
     }
 
@@ -57,6 +65,48 @@ impl HistoryDialog {
             Endpoint::First => 0,
             Endpoint::Last => self.steps.len(),
         };
+    }
+
+    /// Searches for a text from the selected row on, then from the start, and selects the first match. Answers which
+    /// match that is, counted from 1, and of how many; (0, 0) for none.
+    pub fn search(&mut self, wanted: &str) -> (usize, usize) {
+        let rows = self.matches(wanted);
+        let Some(search) = Search::new(wanted, &rows, self.selected) else {
+            return (0, 0);
+        };
+        self.selected = search.entry();
+        let number = search.number(&rows);
+        self.search = Some(search);
+        number
+    }
+
+    /// Selects the match this many further on, the first follows the last. Answers whether anything was searched for.
+    pub fn go_to_match(&mut self, by: i8) -> bool {
+        let Some(mut search) = self.search.take() else {
+            return false;
+        };
+        let rows = self.matches(search.wanted());
+        let found = search.go(self.selected, by, &rows);
+        self.selected = search.entry();
+        self.search = Some(search);
+        found
+    }
+
+    /// Forgets what was searched for.
+    pub fn leave_search(&mut self) {
+        self.search = None;
+    }
+
+    /// What each row says, the start first.
+    fn rows(&self) -> impl Iterator<Item = &str> {
+        std::iter::once(START).chain(self.steps.iter().map(String::as_str))
+    }
+
+    /// The rows that have a text.
+    fn matches(&self, wanted: &str) -> Vec<usize> {
+        let rows = self.rows().enumerate();
+        let having = rows.filter(|(_, text)| contains(text, wanted));
+        having.map(|(row, _)| row).collect()
     }
 
     /// The first visible row in an area.
@@ -89,20 +139,19 @@ impl Page for HistoryDialog {
         let first = self.first(area);
         let visible = usize::from(area.height.saturating_sub(1));
         let width = self.steps.len().to_string().len();
-        let start = ["the start"];
-        let rows = start
-            .into_iter()
-            .chain(self.steps.iter().map(String::as_str));
+        let wanted = self.search.as_ref().map_or("", Search::wanted);
         let mut cursor = None;
-        for (index, text) in rows.enumerate().skip(first).take(visible) {
+        for (index, text) in self.rows().enumerate().skip(first).take(visible) {
             let row = write::row(area, index - first + 1);
             let selected = index == self.selected;
             // Signs beside the reversed row, for terminals that cannot reverse.
             let sign = if selected { '>' } else { ' ' };
             let present = if index == self.present { '*' } else { ' ' };
-            let line = format!("{sign}{present}{index:>width$}  {text}");
             let role = if selected { Role::Focus } else { Role::Text };
-            write::line(buffer, row, theme, [(line.as_str(), role)]);
+            let number = format!("{sign}{present}{index:>width$}  ");
+            let text = marked(text, wanted, role);
+            let pieces = std::iter::once((number.as_str(), role)).chain(text);
+            write::line(buffer, row, theme, pieces);
             if selected {
                 cursor = Some(Position::new(row.x, row.y));
             }
@@ -123,5 +172,18 @@ impl Page for HistoryDialog {
 
     fn scrolls(&self) -> bool {
         true
+    }
+
+    /// Its update leaves the search first.
+    fn cancels_itself(&self) -> bool {
+        self.search.is_some()
+    }
+
+    /// Which match is selected.
+    fn remark(&self, _keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
+        let search = self.search.as_ref()?;
+        let rows = self.matches(search.wanted());
+        let at = rows.iter().position(|&row| row == self.selected)?;
+        Some((format!("match {} of {}", at + 1, rows.len()), Role::Key))
     }
 }

@@ -1,30 +1,31 @@
-//! The search in help: a prompt at its foot. Help follows as one types.
+//! The search in help and in the history: a prompt at the foot of the list, which follows as one types.
 //!
 //! ```text
 //! Search: undo   1 of 3          which match is in sight, of how many
-//! Search: unod   no match        help stays where it was
+//! Search: unod   no match        the list stays where it was
 //! ```
 
-use ratatui::buffer::Buffer;
-use ratatui::layout::{Position, Rect};
+use std::borrow::Cow;
 
+use crate::tui::app::line_prompt::LinePrompt;
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Page, Slot};
 use crate::tui::help::Help;
+use crate::tui::history::HistoryDialog;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::text_field::TextField;
-use crate::tui::widget::theme::Theme;
-use crate::tui::widget::write;
 
 /// Nobody searches for more.
 const LONGEST: usize = 60;
 
-/// The label of the field.
-const LABEL: &str = "Search: ";
-
-/// What stands behind an empty field.
-const EXAMPLE: &str = "   a key, or a word of what it does";
+/// A list that can be searched.
+#[derive(Clone, Debug)]
+pub enum Searched {
+    /// The keys of a place.
+    Help(Help),
+    /// The steps of the history.
+    History(HistoryDialog),
+}
 
 /// The field, and the list as it was before.
 #[derive(Clone, Debug)]
@@ -32,14 +33,14 @@ pub struct SearchDialog {
     /// What was typed.
     field: TextField,
     /// The list as the search found it.
-    before: Help,
+    before: Searched,
     /// Which match is in sight, counted from 1, and of how many; (0, 0) for none.
     found: (usize, usize),
 }
 
 impl SearchDialog {
     /// An empty field over a list.
-    pub fn new(before: Help) -> Self {
+    pub fn new(before: Searched) -> Self {
         Self {
             field: TextField::new("", LONGEST),
             before,
@@ -53,7 +54,7 @@ impl SearchDialog {
     }
 
     /// The list as the search found it.
-    pub fn before(&self) -> &Help {
+    pub fn before(&self) -> &Searched {
         &self.before
     }
 
@@ -63,42 +64,47 @@ impl SearchDialog {
         (self.found.1 == 0 && !text.is_empty()).then_some(text)
     }
 
-    /// The list with what was typed searched for, from where it stood; as it stood where nothing is found.
-    pub fn searched(&mut self, keymap: &Keymap, room: (u16, u16)) -> Help {
-        let mut help = self.before.clone();
-        help.leave_search();
-        self.found = help.search(self.field.text(), keymap, room);
-        help
+    /// The list with what was typed searched for, from where it stood; as it stood where nothing is found. `room` has the
+    /// columns and lines of the list.
+    pub fn searched(&mut self, keymap: &Keymap, room: (u16, u16)) -> Searched {
+        let (wanted, mut list) = (self.field.text(), self.before.clone());
+        self.found = match &mut list {
+            Searched::Help(help) => {
+                help.leave_search();
+                help.search(wanted, keymap, room)
+            }
+            Searched::History(history) => {
+                history.leave_search();
+                history.search(wanted)
+            }
+        };
+        list
     }
 }
 
-impl Page for SearchDialog {
-    fn context(&self) -> Context {
-        Context::Search
+impl LinePrompt for SearchDialog {
+    const CONTEXT: Context = Context::Search;
+    const RESTORES: bool = true;
+
+    fn label(&self) -> &'static str {
+        "Search: "
     }
 
-    fn slot(&self) -> Slot {
-        Slot::Prompt
+    fn field(&self) -> &TextField {
+        &self.field
     }
 
-    fn draw(
-        &self,
-        theme: &Theme,
-        _keymap: &Keymap,
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Option<Position> {
-        let remark = match self.found {
-            _ if self.field.text().is_empty() => EXAMPLE.to_owned(),
-            (_, 0) => "   no match".to_owned(),
-            (number, all) => format!("   {number} of {all}"),
-        };
-        let cursor = write::prompt(buffer, area, theme, LABEL, &self.field, &remark);
-        Some(cursor)
-    }
-
-    /// Its update takes the list back to where it was.
-    fn cancels_itself(&self) -> bool {
-        true
+    /// Which match is in sight; behind an empty field, what can be searched for.
+    fn behind(&self, _columns: u16) -> Cow<'_, str> {
+        match (self.found, &self.before) {
+            (_, Searched::Help(_)) if self.field.text().is_empty() => {
+                "   a key, or a word of what it does".into()
+            }
+            (_, Searched::History(_)) if self.field.text().is_empty() => {
+                "   a word of what a step did".into()
+            }
+            ((_, 0), _) => "   no match".into(),
+            ((number, all), _) => format!("   {number} of {all}").into(),
+        }
     }
 }

@@ -360,7 +360,7 @@ fn models_have_names_and_cards() {
     refused(
         &place.run("model delete parts", ""),
         1,
-        "no model is called \"parts\", and no file either; 'taxel model list' shows all",
+        "no model is called \"parts\"; 'taxel model list' shows all",
     );
 }
 
@@ -458,7 +458,7 @@ fn sets_that_make_no_sense_are_refused_in_one_sentence() {
     refused(
         &taxel("model confusion nowhere", ""),
         1,
-        "no model is called \"nowhere\", and no file either; 'taxel model list' shows all",
+        "no set is called \"nowhere\"; there are figures, figures-30, shapes, or a file of a model",
     );
     misused(
         "model train parts.jsonl",

@@ -143,7 +143,7 @@ fn the_exit_status_says_whether_the_answer_was_expected() {
     refused(
         &place.run("recognise square.txt --model nobody", ""),
         1,
-        "no model is called \"nobody\", and no file either; 'taxel model list' shows all",
+        "no set is called \"nobody\"; there are figures, figures-30, shapes, r, twins, or a file of a model",
     );
     refused(
         &place.run("recognise nothing.txt --model r", ""),

@@ -311,8 +311,19 @@ fn bash_completes_names_of_shapes() {
         let child = bash.stdin(pipe()).stdout(pipe()).stderr(pipe()).spawn();
         super::finish(child.expect("it starts"), completions.as_bytes()).stdout
     };
+    let other = folder.path().join("other");
+    let other = other.to_str().expect("UTF-8");
+    let there = ["library", "save", "Weg", "washer", "--library", other];
+    assert_eq!(
+        program(&there, "C.UTF-8").status().expect("it runs").code(),
+        Some(0)
+    );
     for (words, names) in [
-        (&["picture", "wa"][..], "washer\n"),
+        (&["picture", "--library", other, "We"][..], "Weg\n"),
+        (&["--library", other, "describe", "We"], "Weg\n"),
+        (&["library", "--library", "=", other, "show", "We"], "Weg\n"),
+        (&["picture", "We"], "\n"),
+        (&["picture", "wa"], "washer\n"),
         (&["describe", "Me"], "Mein\\ Ring\n"),
         (&["export", "Mein\\ R"], "Mein\\ Ring\n"),
         (&["library", "show", "\"Mein R"], "Mein Ring\n"),

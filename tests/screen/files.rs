@@ -101,3 +101,35 @@ fn the_prompt_offers_commands_and_remembers_lines_between_runs() {
     );
     then(&mut second, "<Enter>", &["hexagon side 3.00"]);
 }
+
+#[test]
+fn forms_begin_with_the_values_that_were_accepted_last() {
+    let folder = folder();
+    let world = || World::new(Library::open(folder.path().to_owned()));
+    press(&mut started(world(), ""), "f<Tab>2.5<Enter>u");
+    // Nothing is left behind that would be offered. What is given up is not remembered.
+    press(&mut started(world(), ""), "f<Tab>7<Esc>");
+    press(
+        &mut started(world(), ""),
+        "fr<Tab>5<Enter>e<Down><Down><C-u>0:80:20<Enter>qu",
+    );
+    let mut third = started(world(), "f");
+    shows(&third, &["rectangle length 5.00"]);
+    // Each kind has its own; one that was never accepted has its defaults.
+    then(&mut third, "e", &["ellipse rx 2.50"]);
+    then(&mut third, "<Left>", &["octagon side"]);
+    // The angles suit any shape, the places of x0 and y0 are proposed anew.
+    press(&mut third, "<Esc>lcross<Enter>e");
+    shows(&third, &["0:80:20"]);
+    // A shape on the matrix goes before.
+    then(
+        &mut third,
+        "<Esc>:figure ellipse --radius-x 1<Enter>f",
+        &["ellipse rx 1.00"],
+    );
+    // Without reminders, as a script and a record have it, a form begins with the defaults.
+    shows(
+        &started(world().forgetful(), "f"),
+        &["ellipse rx 4.00 ry 4.00"],
+    );
+}

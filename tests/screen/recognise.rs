@@ -76,6 +76,10 @@ fn a_stored_model_is_completed_answers_and_is_remembered() {
     begin("rO");
     shows(&begin("r"), &["Recognise: the shapes that come with it"]);
     shows(&begin(":recognise <Tab>"), &["figures-30", "my parts"]);
+    // One that does not exist is refused by what there is, and not remembered.
+    let all = "no set is called \"nonsense\"; there are figures, figures-30, shapes, my parts";
+    shows(&begin(":recognise nonsense<Enter>"), &[all]);
+    shows(&begin("r"), &["Recognise: the shapes that come with it"]);
 }
 
 #[test]

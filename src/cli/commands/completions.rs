@@ -37,15 +37,28 @@ impl Shell {
     }
 }
 
+/// The names are those of the folder that `--library` on the line names, else of the user's library.
 /// For bash: what clap wrote, and names of shapes where a command takes one. A blank in a name is escaped, unless the
 /// word was begun with a quotation mark: that is no part of what bash replaces.
 const SHAPES_OF_BASH: &str = r#"
 _taxel_shapes() {
     _taxel "$@"
-    local cur="${COMP_WORDS[COMP_CWORD]}" command="${COMP_WORDS[1]}" first=2 quote="" name
+    local cur="${COMP_WORDS[COMP_CWORD]}" first=2 quote="" name at
+    local -a words=() library=()
+    for ((at = 0; at <= COMP_CWORD; at++)); do
+        if [[ "${COMP_WORDS[at]}" != --library ]]; then
+            words+=("${COMP_WORDS[at]}")
+            continue
+        fi
+        [[ "${COMP_WORDS[at + 1]}" == "=" ]] && ((at++))
+        ((++at < COMP_CWORD)) || return 0
+        name="${COMP_WORDS[at]//[\\\"\']/}"
+        library=(--library "${name/#\~/$HOME}")
+    done
+    local command="${words[1]}"
     case "$command" in
         library | model)
-            command+=" ${COMP_WORDS[2]}"
+            command+=" ${words[2]}"
             first=3
             ;;
     esac
@@ -54,7 +67,7 @@ _taxel_shapes() {
             [[ "$3" == --* ]] && return 0
             ;;
         picture | describe | export | recognise | "library show" | "library delete")
-            [[ $COMP_CWORD -eq $first || "$3" == --json ]] || return 0
+            ((${#words[@]} - 1 == first)) || [[ "$3" == --json ]] || return 0
             ;;
         sweep)
             [[ "$3" == --picture ]] || return 0
@@ -63,7 +76,7 @@ _taxel_shapes() {
             return 0
             ;;
     esac
-    [[ $COMP_CWORD -ge $first && "$cur" != -* ]] || return 0
+    ((${#words[@]} > first)) && [[ "$cur" != -* ]] || return 0
     case "$cur" in
         \"* | \'*)
             quote="${cur:0:1}"
@@ -78,7 +91,7 @@ _taxel_shapes() {
         [[ "$name" == "$cur"* ]] || continue
         [[ -n "$quote" ]] || printf -v name %q "$name"
         COMPREPLY+=("$name")
-    done < <(taxel library list --names 2> /dev/null)
+    done < <(taxel library list --names "${library[@]}" 2> /dev/null)
 }
 
 complete -F _taxel_shapes -o bashdefault -o default taxel
@@ -87,8 +100,17 @@ complete -F _taxel_shapes -o bashdefault -o default taxel
 /// For zsh: the function that offers names of shapes, or files.
 const SHAPES_OF_ZSH: &str = r#"(( $+functions[_taxel_shapes] )) ||
 _taxel_shapes() {
-    local -a shapes
-    shapes=(${(f)"$(_call_program shapes taxel library list --names 2> /dev/null)"})
+    local -a shapes library line
+    line=(${(z)LBUFFER})
+    local at=${line[(I)--library]} joined=${line[(r)--library=*]} folder=""
+    if (( at && at < $#line )); then
+        folder=${line[at+1]}
+    elif [[ -n $joined ]]; then
+        folder=${joined#--library=}
+    fi
+    folder=${(Q)folder}
+    [[ -n $folder ]] && library=(--library "${folder/#\~/$HOME}")
+    shapes=(${(f)"$(_call_program shapes taxel library list --names ${(q)library} 2> /dev/null)"})
     _alternative 'shapes:shape:compadd -a shapes' 'files:file:_files'
 }
 
@@ -105,7 +127,18 @@ const NAMES_OF_ZSH: [(&str, &str); 4] = [
 /// For fish, which escapes what it inserts.
 const SHAPES_OF_FISH: &str = r#"
 function __fish_taxel_shapes
-    taxel library list --names 2> /dev/null
+    set -l words (commandline -opc)
+    set -l folder
+    if set -l at (contains -i -- --library $words); and test $at -lt (count $words)
+        set folder $words[(math $at + 1)]
+    else
+        set folder (string replace -f -- --library= "" $words)
+    end
+    set -l library
+    if test -n "$folder[1]"
+        set library --library (string replace -r '^~' $HOME -- $folder[1])
+    end
+    taxel library list --names $library 2> /dev/null
 end
 complete -c taxel -n "__fish_taxel_using_subcommand picture describe export recognise" -a "(__fish_taxel_shapes)" -d shape
 complete -c taxel -n "__fish_taxel_using_subcommand library; and __fish_seen_subcommand_from show save delete" -a "(__fish_taxel_shapes)" -d shape

@@ -19,7 +19,6 @@ use std::sync::atomic::Ordering;
 
 use serde_json::json;
 
-use crate::cli::arguments::model::DEFAULT_MODEL;
 use crate::cli::arguments::model::train::{ModelTarget, TrainArguments};
 use crate::cli::arguments::parameters::ShardFile;
 use crate::cli::commands::resume::{self, KEPT};
@@ -33,12 +32,10 @@ use crate::cli::output::report;
 use crate::cli::signals::Signals;
 use crate::formats::{Name, json};
 use crate::pose::{Anchor, Axis, GivenRanges, GridError, Ranges, common_ranges, smallest_sensor};
-use crate::recognition::{
-    Evaluation, GridSteps, Model, NamedShape, Training, TrainingError, default_figures,
-};
+use crate::recognition::{Evaluation, GridSteps, Model, NamedShape, Training, TrainingError};
 use crate::sensor::Sensor;
 use crate::storage::{ModelCache, ModelFolder, UnfinishedFile, load_model, model_hash, save_model};
-use crate::tui::recognise::sets::ModelChoice;
+use crate::tui::recognise::sets::{ModelChoice, unknown_set};
 use crate::tui::runtime::memory::MemoryGuard;
 
 /// The smallest side of a sensor that training chooses.
@@ -225,30 +222,22 @@ pub(crate) fn is_kept(name: &Name, shelf: &Shelf) -> bool {
     folder(shelf).is_ok_and(|models| models.file(name).exists())
 }
 
-/// Finds a model: one beside the library, then a file, then the seven figures if they are asked for.
+/// Finds a model: one beside the library, then a file, then a built-in set, which is trained if the cache has not got it.
 ///
 /// # Errors
-/// [`CliError::NoModel`] if nothing has that name; otherwise why the file cannot be read.
+/// [`CliError::NoSet`] if nothing has that name; otherwise why the file cannot be read.
 pub(crate) fn find(which: &OsStr, shelf: &Shelf) -> Result<Model, CliError> {
-    let own = which
-        .to_str()
-        .and_then(|name| Name::new(name).ok())
-        .and_then(|name| folder(shelf).ok().map(|models| models.file(&name)));
-    if let Some(path) = own.filter(|path| path.exists()) {
-        return Ok(load_model(&path)?);
-    }
-    if !Path::new(which).exists() && which == DEFAULT_MODEL {
-        return figures();
-    }
-    match load_model(Path::new(which)) {
-        Err(error) if error.is_missing() => Err(CliError::NoModel {
-            name: which.to_string_lossy().into_owned(),
-        }),
-        loaded => Ok(loaded?),
+    match choice(which, shelf)? {
+        ModelChoice::Stored(name) => Ok(load_model(&folder(shelf)?.file(&name))?),
+        ModelChoice::File(path) => Ok(load_model(&path)?),
+        own => match own.training() {
+            Some(training) => trained(training?),
+            None => Err(unknown(which, shelf)),
+        },
     }
 }
 
-/// The set of shapes that a name or a file means on the screen, found as by [`find`] but not read yet.
+/// The set of shapes that a name or a file means, not read yet.
 ///
 /// # Errors
 /// If there is none.
@@ -264,24 +253,28 @@ pub(crate) fn choice(which: &OsStr, shelf: &Shelf) -> Result<ModelChoice, CliErr
     }
     let built_in = name.map(ModelChoice::from_name);
     let built_in = built_in.filter(|own| ModelChoice::BUILT_IN.contains(own));
-    built_in.ok_or_else(|| CliError::NoModel {
-        name: which.to_string_lossy().into_owned(),
-    })
+    built_in.ok_or_else(|| unknown(which, shelf))
 }
 
-/// The model of the seven figures at their default sizes, from the cache or trained now.
+/// That nothing has a name, and which sets there are.
+fn unknown(which: &OsStr, shelf: &Shelf) -> CliError {
+    let stored = folder(shelf).ok().and_then(|models| models.names().ok());
+    let stored: Vec<Name> = stored.into_iter().flatten().collect();
+    CliError::NoSet(unknown_set(&which.to_string_lossy(), &stored))
+}
+
+/// The model of a built-in set, from the cache or trained now.
 /// Training takes some seconds, so the model is kept in the user's cache, under a name made of shapes, grid and
 /// version. Without a cache, or if it cannot be written, the model is trained each time; that is not an error.
-pub(crate) fn figures() -> Result<Model, CliError> {
-    let training = || Training::fitting(default_figures(), GridSteps::FINE);
+fn trained(training: Training<'static>) -> Result<Model, CliError> {
     let Some(cache) = ModelCache::of_user() else {
-        return Ok(training()?.run()?);
+        return Ok(training.run()?);
     };
-    if let Some(model) = cache.load(&training()?) {
+    if let Some(model) = cache.load(&training) {
         return Ok(model);
     }
-    let path = cache.file(&training()?);
-    let model = training()?.run()?;
+    let path = cache.file(&training);
+    let model = training.run()?;
     cache.keep(&path, &model);
     Ok(model)
 }

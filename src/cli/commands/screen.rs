@@ -68,7 +68,7 @@ pub(crate) fn screen(
     let mut world = World::new(library).with_model_cache(ModelCache::of_user());
     if record.borrow().is_some() {
         let record = Rc::clone(&record);
-        world = world.with_shape_log(Box::new(move |shape| {
+        world = world.forgetful().with_shape_log(Box::new(move |shape| {
             if let Some(record) = &mut *record.borrow_mut() {
                 let line = record.recorder.shape(shape);
                 record.write(&line);

@@ -11,7 +11,6 @@ use std::path::Path;
 use std::sync::atomic::Ordering;
 
 use crate::cli::arguments::flags::EvaluationForm;
-use crate::cli::arguments::model::DEFAULT_MODEL;
 use crate::cli::arguments::model::separate::SeparateArguments;
 use crate::cli::commands::export::{ending, put};
 use crate::cli::commands::model;
@@ -28,6 +27,7 @@ use crate::pose::{Axis, DecimalRange, Ranges};
 use crate::recognition::{Model, Separation, TrainingError};
 use crate::sensor::Sensor;
 use crate::storage::UnfinishedFile;
+use crate::tui::recognise::sets::ModelChoice;
 
 /// Between two sizes of a scan, a search looks at so many more.
 const REFINED: u64 = 9;
@@ -167,7 +167,11 @@ fn is_model(what: &OsStr, shelf: &Shelf) -> bool {
         what.to_str()
             .is_some_and(|name| shelf.imprint(name).is_ok())
     };
-    kept || ending(path) == "npz" || what == DEFAULT_MODEL && !path.exists() && !known()
+    let built_in = || {
+        let mut own = ModelChoice::BUILT_IN.iter();
+        own.any(|own| what == own.name()) && !path.exists() && !known()
+    };
+    kept || ending(path) == "npz" || built_in()
 }
 
 /// The positions of a model's cell in each direction; 100 where it has another grid than one cell.

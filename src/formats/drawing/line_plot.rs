@@ -1,10 +1,9 @@
 //! Curves over one axis, such as an error against a size. Both axes begin at 0.
 
 use crate::formats::drawing::axis::Ticks;
-use crate::formats::drawing::page::{ADVANCE, DrawingPage, MARGIN, ROW, TEXT};
-use crate::formats::drawing::scene::{
-    Element, Position, Segment, Stroke, TextAnchor, circle, rectangle,
-};
+use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT};
+use crate::formats::drawing::plane::{axes, label, path_of, width};
+use crate::formats::drawing::scene::{Position, Segment, Stroke, TextAnchor, circle};
 use crate::formats::drawing::svg;
 
 /// Width and height of the plane, in points.
@@ -12,13 +11,6 @@ const PLANE: Position = (324.0, 200.0);
 
 /// Each curve has its own dashes; after these they repeat.
 const DASHES: [Option<[f64; 2]>; 4] = [None, Some([6.0, 3.0]), Some([1.0, 3.0]), Some([12.0, 4.0])];
-
-/// The lines at the marks of both axes.
-pub(super) const GRID: Stroke = Stroke {
-    width: 0.4,
-    grey: 200,
-    dash: None,
-};
 
 /// The largest number of curves.
 const MOST: usize = 32;
@@ -104,8 +96,8 @@ impl LinePlot {
         // A twentieth of the plane stays free beyond the last point.
         let scale = (PLANE.0 / (end_x * 1.05), PLANE.1 / (end_y * 1.05));
         let place = |(x, y): Position| (corner.0 + x * scale.0, end.1 - y * scale.1);
-        let mut marks = Vec::new();
-        self.axes(&mut marks, (&across, &upwards), (corner, end), &place);
+        let labels = [&self.labels[0], &self.labels[1]].map(String::as_str);
+        let mut marks = axes(labels, (&across, &upwards), (corner, end), &place);
         let (mut right, mut last) = (end.0, end.1 + TEXT * 2.0 + 6.0);
         for (index, (name, points)) in (0_u8..).zip(&self.curves) {
             let line = Stroke {
@@ -136,64 +128,5 @@ impl LinePlot {
             title: format!("{} against {}", self.labels[1], self.labels[0]),
             marks,
         }
-    }
-
-    /// The frame, lines at the marks of both axes, and what they are.
-    fn axes(
-        &self,
-        marks: &mut Vec<Element>,
-        (across, upwards): (&Ticks, &Ticks),
-        (from, to): (Position, Position),
-        place: &dyn Fn(Position) -> Position,
-    ) {
-        let mut grid = Vec::new();
-        for (value, text) in &across.0 {
-            let (x, _) = place((*value, 0.0));
-            grid.extend([Segment::Move((x, from.1)), Segment::Line((x, to.1))]);
-            marks.push(label(text, (x, to.1 + TEXT + 3.0), TextAnchor::Middle));
-        }
-        for (value, text) in &upwards.0 {
-            let (_, y) = place((0.0, *value));
-            grid.extend([Segment::Move((from.0, y)), Segment::Line((to.0, y))]);
-            let at = (from.0 - 5.0, y + TEXT * 0.35);
-            marks.push(label(text, at, TextAnchor::End));
-        }
-        marks.push(path_of("grid", grid, GRID));
-        marks.push(path_of("axes", rectangle(from, to), Stroke::black(0.6)));
-        let middle = (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1));
-        let below = (middle.0, to.1 + TEXT * 2.0 + 6.0);
-        marks.push(label(&self.labels[0], below, TextAnchor::Middle));
-        marks.push(Element::Text {
-            text: self.labels[1].clone(),
-            place: (MARGIN + TEXT, middle.1),
-            anchor: TextAnchor::Middle,
-            upright: true,
-        });
-    }
-}
-
-/// The width of a text of that many characters.
-#[expect(clippy::cast_precision_loss, reason = "far fewer than 2^53 characters")]
-pub(super) fn width(characters: usize) -> f64 {
-    TEXT * ADVANCE * characters as f64
-}
-
-/// A line of the page, by the name of what it is.
-pub(super) fn path_of(what: &'static str, steps: Vec<Segment>, line: Stroke) -> Element {
-    Element::Line {
-        what,
-        steps,
-        line,
-        clipped: false,
-    }
-}
-
-/// A text of the page.
-pub(super) fn label(text: &str, place: Position, anchor: TextAnchor) -> Element {
-    Element::Text {
-        text: text.to_owned(),
-        place,
-        anchor,
-        upright: false,
     }
 }

@@ -31,6 +31,8 @@ mod confusion_map;
 
 mod line_plot;
 
+mod plane;
+
 mod point_plot;
 
 mod pose_map;

@@ -3,11 +3,9 @@
 use std::collections::BTreeSet;
 
 use crate::formats::drawing::axis::{Ticks, axis_ends};
-use crate::formats::drawing::line_plot::{GRID, label, path_of, width};
 use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT};
-use crate::formats::drawing::scene::{
-    Element, Position, Segment, Stroke, TextAnchor, circle, rectangle,
-};
+use crate::formats::drawing::plane::{axes, label, path_of, width};
+use crate::formats::drawing::scene::{Position, Segment, Stroke, TextAnchor, circle};
 use crate::formats::drawing::svg;
 
 /// Width and height of the plane, in points.
@@ -125,7 +123,8 @@ impl PointPlot {
             (corner.0, MARGIN + TEXT),
             TextAnchor::Start,
         )];
-        self.axes(&mut marks, (&across, &upwards), (corner, end), &place);
+        let labels = [&self.labels[0], &self.labels[1]].map(String::as_str);
+        marks.extend(axes(labels, (&across, &upwards), (corner, end), &place));
         marks.push(path_of("points", self.specks(&place), Stroke::black(2.0)));
         let mut last = end.1 + TEXT * 2.0 + 6.0;
         let mut right = end.0.max(corner.0 + width(self.title.chars().count()));
@@ -169,39 +168,6 @@ impl PointPlot {
             }
         }
         specks
-    }
-
-    /// The frame, lines at the marks of both axes, and what they are.
-    fn axes(
-        &self,
-        marks: &mut Vec<Element>,
-        (across, upwards): (&Ticks, &Ticks),
-        (from, to): (Position, Position),
-        place: &dyn Fn(Position) -> Position,
-    ) {
-        let mut grid = Vec::new();
-        for (value, text) in &across.0 {
-            let (x, _) = place((*value, 0.0));
-            grid.extend([Segment::Move((x, from.1)), Segment::Line((x, to.1))]);
-            marks.push(label(text, (x, to.1 + TEXT + 3.0), TextAnchor::Middle));
-        }
-        for (value, text) in &upwards.0 {
-            let (_, y) = place((0.0, *value));
-            grid.extend([Segment::Move((from.0, y)), Segment::Line((to.0, y))]);
-            let at = (from.0 - 5.0, y + TEXT * 0.35);
-            marks.push(label(text, at, TextAnchor::End));
-        }
-        marks.push(path_of("grid", grid, GRID));
-        marks.push(path_of("axes", rectangle(from, to), Stroke::black(0.6)));
-        let middle = (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1));
-        let below = (middle.0, to.1 + TEXT * 2.0 + 6.0);
-        marks.push(label(&self.labels[0], below, TextAnchor::Middle));
-        marks.push(Element::Text {
-            text: self.labels[1].clone(),
-            place: (MARGIN + TEXT, middle.1),
-            anchor: TextAnchor::Middle,
-            upright: true,
-        });
     }
 }
 

@@ -106,6 +106,7 @@ pub fn menu(app: &App, area: Rect) -> Vec<Item<'_>> {
 /// The hints: the keys that mean something now and are not in the menu, as many as fit.
 pub fn hints<'a>(app: &'a App, panes: &Panes) -> Vec<Item<'a>> {
     let (context, keymap) = (app.context(), app.keymap());
+    let line = context.outer().filter(|&outer| outer == Context::Line);
     let screen = context.screen().filter(|&screen| screen != context);
     let taken: Vec<Key> = keymap
         .of(context)
@@ -115,7 +116,10 @@ pub fn hints<'a>(app: &'a App, panes: &Panes) -> Vec<Item<'a>> {
     let free = move |row: &&Binding| {
         (row.keys.first()).is_some_and(|(key, _)| row.context == context || !taken.contains(key))
     };
-    let outer = screen.into_iter().flat_map(|screen| keymap.of(screen));
+    let outer = screen
+        .into_iter()
+        .chain(line)
+        .flat_map(|screen| keymap.of(screen));
     let all = keymap.of(context).chain(outer).filter(free);
     let menu = menu(app, panes.menu);
     let rest = all.filter(|row| {

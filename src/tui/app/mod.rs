@@ -4,6 +4,7 @@
 //! document   what is on the matrix, and its reading      history: all its states
 //! message    what a key means
 //! page       what the screen knows of a page            dialog: the table of pages
+//! line_prompt  pages that are one line of text
 //! state      App                                        update: the only writer of it
 //! steps      what a step of the history did, in words
 //! layout     the panes of the screen                    view: draws them
@@ -15,6 +16,8 @@ pub mod document;
 pub mod message;
 
 pub mod page;
+
+pub mod line_prompt;
 
 pub mod layout;
 

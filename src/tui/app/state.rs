@@ -12,6 +12,7 @@ use crate::tui::app::layout::Panes;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Page;
 use crate::tui::explore::results::Results;
+use crate::tui::form::memory::FormMemory;
 use crate::tui::keys::action::{self, Action};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Key;
@@ -186,6 +187,8 @@ pub struct App {
     pub(in crate::tui) works: u64,
     /// The commands that were given, the last one last.
     pub(in crate::tui) commands: Vec<String>,
+    /// The values that forms were accepted with.
+    pub(in crate::tui) forms: FormMemory,
     /// Whether the mouse is wanted.
     pub(in crate::tui) mouse: bool,
     /// What was on the matrix when the shape was taken hold of.
@@ -233,6 +236,7 @@ impl App {
             live: None,
             works: 0,
             commands: Vec::new(),
+            forms: FormMemory::default(),
             mouse: options.mouse,
             held: None,
             moves: None,

@@ -14,10 +14,11 @@ use crate::tui::history::HistoryDialog;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Key;
+use crate::tui::keys::keymap::Keymap;
 
 use crate::tui::matrix::files;
 use crate::tui::runtime::effect::{Effect, TerminalEffect};
-use crate::tui::search::SearchDialog;
+use crate::tui::search::{SearchDialog, Searched};
 use crate::tui::{explore, form, live, matrix, prompt, recognise, shapes};
 
 /// No message is done more often by a count.
@@ -157,11 +158,10 @@ fn in_help(app: &mut App, mut help: Help, message: &Message) -> Option<Effect> {
     match *message {
         Message::Scroll(lines) => help.scroll(lines, keymap, room),
         Message::Match(by) if !help.go_to_match(by, keymap, room) => {
-            let key = keymap.label(Context::Help, &action::SEARCH);
-            refused = Some(format!("nothing to go to: {key} searches"));
+            refused = Some(no_search(keymap, Context::Help));
         }
         Message::Search => {
-            let dialog = SearchDialog::new(help.clone());
+            let dialog = SearchDialog::new(Searched::Help(help.clone()));
             app.dialogs
                 .extend([Dialog::Help(help), Dialog::Search(dialog)]);
             return None;
@@ -177,7 +177,13 @@ fn in_help(app: &mut App, mut help: Help, message: &Message) -> Option<Effect> {
     None
 }
 
-/// Columns and rows of the list of keys.
+/// What is said where one asks for the next match and searched for nothing.
+fn no_search(keymap: &Keymap, context: Context) -> String {
+    let key = keymap.label(context, &action::SEARCH);
+    format!("nothing to go to: {key} searches")
+}
+
+/// Columns and rows of a list over the whole body.
 fn room(app: &App) -> (u16, u16) {
     app.panes()
         .map_or((0, 0), |panes| panes.body.as_size().into())
@@ -186,15 +192,18 @@ fn room(app: &App) -> (u16, u16) {
 /// Handles a message in the prompt: the list below follows what is typed, Enter keeps its matches, and Esc takes it back
 /// to where it was.
 fn in_search(app: &mut App, mut dialog: SearchDialog, message: &Message) -> Option<Effect> {
-    let help = match message {
+    let list = match message {
         Message::Cancel | Message::Quit => dialog.before().clone(),
         _ => {
             dialog.edit(message);
             dialog.searched(app.keymap(), room(app))
         }
     };
-    if let Some(Dialog::Help(below)) = app.dialogs.last_mut() {
-        *below = help;
+    if let Some(below) = app.dialogs.last_mut() {
+        *below = match list {
+            Searched::Help(help) => Dialog::Help(help),
+            Searched::History(list) => Dialog::History(list),
+        };
     }
     match message {
         Message::Cancel | Message::Quit => {}
@@ -208,7 +217,7 @@ fn in_search(app: &mut App, mut dialog: SearchDialog, message: &Message) -> Opti
     None
 }
 
-/// Moves in the list of steps, or goes to the state after the selected one.
+/// Moves in the list of steps, searches in it, or goes to the state after the selected one.
 /// To compare leaves the list open below.
 fn in_history(app: &mut App, mut list: HistoryDialog, message: &Message) -> Option<Effect> {
     match *message {
@@ -226,6 +235,19 @@ fn in_history(app: &mut App, mut list: HistoryDialog, message: &Message) -> Opti
             }
             return None;
         }
+        Message::Match(by) if !list.go_to_match(by) => {
+            app.dialogs.push(Dialog::History(list));
+            refuse(app, no_search(app.keymap(), Context::History));
+            return None;
+        }
+        Message::Search => {
+            let dialog = SearchDialog::new(Searched::History(list.clone()));
+            app.dialogs
+                .extend([Dialog::History(list), Dialog::Search(dialog)]);
+            return None;
+        }
+        Message::Cancel => list.leave_search(),
+        Message::Quit => return None,
         Message::Accept => {
             app.history.go_to(list.selected());
             settle(app);

@@ -1,23 +1,16 @@
 //! The prompt for the name of the file that results are exported to. The ending decides the format.
 
-use ratatui::buffer::Buffer;
-use ratatui::layout::{Position, Rect};
+use std::borrow::Cow;
 
 use crate::quote::shortened;
 use crate::storage::{AtlasFile, is_poses};
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::line_prompt::LinePrompt;
 use crate::tui::explore::drawing::drawn_form;
 use crate::tui::keys::binding::Context;
-use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::text_field::TextField;
-use crate::tui::widget::theme::Theme;
-use crate::tui::widget::write;
 
 /// No name is longer: that of a Linux file with its folders.
 const LONGEST: usize = 4096;
-
-/// The label of the field.
-const LABEL: &str = "Export to: ";
 
 /// What is exported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,31 +96,20 @@ impl ExportDialog {
     }
 }
 
-impl Page for ExportDialog {
-    fn context(&self) -> Context {
-        Context::Export
+impl LinePrompt for ExportDialog {
+    const CONTEXT: Context = Context::Export;
+
+    fn label(&self) -> &'static str {
+        "Export to: "
     }
 
-    fn slot(&self) -> Slot {
-        Slot::Prompt
+    fn field(&self) -> &TextField {
+        &self.field
     }
 
-    fn draw(
-        &self,
-        theme: &Theme,
-        _keymap: &Keymap,
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Option<Position> {
-        let endings = format!("   ({})", self.what.endings());
-        Some(write::prompt(
-            buffer,
-            area,
-            theme,
-            LABEL,
-            &self.field,
-            &endings,
-        ))
+    /// What a name can end in.
+    fn behind(&self, _columns: u16) -> Cow<'_, str> {
+        format!("   ({})", self.what.endings()).into()
     }
 }
 

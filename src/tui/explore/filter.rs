@@ -5,24 +5,17 @@
 //! Filter: na>=40 weight<3                      what is wrong with it stands above the line
 //! ```
 
-use ratatui::buffer::Buffer;
-use ratatui::layout::{Position, Rect};
+use std::borrow::Cow;
 
 use crate::atlas::{AtlasFilter, FilterError};
 use crate::formats::value::grouped;
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::line_prompt::LinePrompt;
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
-use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::text_field::TextField;
-use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::write;
 
 /// Nobody types a longer one.
 const LONGEST: usize = 200;
-
-/// The label of the field.
-const LABEL: &str = "Filter: ";
 
 /// What stands behind an empty field.
 const EXAMPLE: &str = "   such as na>=40 holes=0; empty shows all";
@@ -82,46 +75,29 @@ impl FilterDialog {
     }
 }
 
-impl Page for FilterDialog {
-    fn context(&self) -> Context {
-        Context::Filter
+impl LinePrompt for FilterDialog {
+    const CONTEXT: Context = Context::Filter;
+    const RESTORES: bool = true;
+
+    fn label(&self) -> &'static str {
+        "Filter: "
     }
 
-    fn slot(&self) -> Slot {
-        Slot::Prompt
+    fn field(&self) -> &TextField {
+        &self.field
     }
 
-    fn draw(
-        &self,
-        theme: &Theme,
-        _keymap: &Keymap,
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Option<Position> {
+    /// How many imprints it keeps.
+    fn behind(&self, _columns: u16) -> Cow<'_, str> {
         let count = |count: usize| grouped(count as u64);
-        let remark = match self.kept {
-            _ if self.field.text().trim().is_empty() => EXAMPLE.to_owned(),
-            Ok((kept, all)) => format!("   {} of {}", count(kept), count(all)),
-            Err(_) => String::new(),
-        };
-        Some(write::prompt(
-            buffer,
-            area,
-            theme,
-            LABEL,
-            &self.field,
-            &remark,
-        ))
+        match self.kept {
+            _ if self.field.text().trim().is_empty() => EXAMPLE.into(),
+            Ok((kept, all)) => format!("   {} of {}", count(kept), count(all)).into(),
+            Err(_) => "".into(),
+        }
     }
 
-    /// Its update restores the list.
-    fn cancels_itself(&self) -> bool {
-        true
-    }
-
-    /// What is wrong with what was typed.
-    fn remark(&self, _keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
-        let error = self.error()?;
-        Some((format!("! {error}"), Role::Error))
+    fn wrong(&self) -> Option<String> {
+        self.error().map(FilterError::to_string)
     }
 }

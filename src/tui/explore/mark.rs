@@ -5,15 +5,11 @@
 //! Go to the mark: a imprint 12, b imprint 60    after ', with the marks that there are
 //! ```
 
-use ratatui::buffer::Buffer;
-use ratatui::layout::{Position, Rect};
+use std::borrow::Cow;
 
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::line_prompt::LinePrompt;
 use crate::tui::keys::binding::Context;
-use crate::tui::keys::keymap::Keymap;
-use crate::tui::widget::number::narrow;
-use crate::tui::widget::theme::{Role, Theme};
-use crate::tui::widget::write;
+use crate::tui::widget::text_field::TextField;
 
 /// What a letter is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,35 +27,34 @@ pub struct MarkDialog {
     pub purpose: MarkPurpose,
     /// What stands before the cursor.
     text: String,
+    /// The place of the letter.
+    field: TextField,
 }
 
 impl MarkDialog {
     /// A prompt with a text of what the letter does.
     pub fn new(purpose: MarkPurpose, text: String) -> Self {
-        Self { purpose, text }
+        Self {
+            purpose,
+            text: text + " ",
+            field: TextField::new("", 1),
+        }
     }
 }
 
-impl Page for MarkDialog {
-    fn context(&self) -> Context {
-        Context::Mark
+impl LinePrompt for MarkDialog {
+    const CONTEXT: Context = Context::Mark;
+
+    fn label(&self) -> &str {
+        &self.text
     }
 
-    fn slot(&self) -> Slot {
-        Slot::Prompt
+    /// Always empty: the first letter is the answer.
+    fn field(&self) -> &TextField {
+        &self.field
     }
 
-    fn draw(
-        &self,
-        theme: &Theme,
-        _keymap: &Keymap,
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Option<Position> {
-        write::clear(buffer, area);
-        write::line(buffer, area, theme, [(self.text.as_str(), Role::Text)]);
-        let end = narrow(write::width(&self.text)).saturating_add(1);
-        let last = area.width.saturating_sub(1);
-        Some(Position::new(area.x + end.min(last), area.y))
+    fn behind(&self, _columns: u16) -> Cow<'_, str> {
+        "".into()
     }
 }

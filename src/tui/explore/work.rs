@@ -91,7 +91,8 @@ fn open_ranges(app: &mut App) -> Option<Effect> {
         refuse(app, app.nothing_to_explore());
         return None;
     };
-    let mut form = RangesForm::new(present, source, below.as_ref());
+    let last = app.forms.ranges();
+    let mut form = RangesForm::new(present, source, below.as_ref(), last);
     let effect = measure(&mut form);
     app.dialogs.push(Dialog::Ranges(Box::new(form)));
     effect
@@ -125,7 +126,10 @@ pub(crate) fn in_ranges(
 ) -> Option<Effect> {
     match message {
         Message::Accept => match form.grid() {
-            Ok(grid) => return Some(start(app, grid)),
+            Ok(grid) => {
+                app.forms.note_ranges(form.remembered());
+                return Some(start(app, grid));
+            }
             Err(trouble) => {
                 if trouble.field.is_some() {
                     form.set_focus(trouble.field);

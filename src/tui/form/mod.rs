@@ -3,12 +3,14 @@
 //! ```text
 //! fields   text fields of parameters                       layout   which line a field has
 //! state    a form, and the document that it makes          update   keys
-//! view     impl Page for FormDialog
+//! view     impl Page for FormDialog                        memory   the last values
 //! ```
 
 pub mod fields;
 
 pub mod state;
+
+pub mod memory;
 
 pub mod layout;
 

@@ -15,6 +15,7 @@ use crate::source::Source;
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
 use crate::tui::form::fields::{ParameterField, ParameterForm};
+use crate::tui::form::memory::FormMemory;
 use crate::tui::keys::key::Arrow;
 use crate::tui::widget::number::around;
 
@@ -38,6 +39,8 @@ pub struct FormDialog {
     form: ParameterForm,
     /// Fields of other kinds of figure, kept as they were typed.
     hidden: Vec<ParameterField>,
+    /// The values of figures that were accepted before.
+    memory: FormMemory,
     /// What the fields had at first: the shape on the matrix, or a new one.
     begun: Option<Source>,
     /// What is on the matrix without the form.
@@ -52,17 +55,30 @@ pub struct FormDialog {
 }
 
 impl FormDialog {
-    /// The form of a figure: of the one on the matrix, or a new ellipse.
-    pub fn figure(before: &Document) -> Self {
-        let figure = match before.source {
-            Some(Source::Figure(figure)) => figure,
-            _ => Figure::default_of(FigureKind::Ellipse, &before.sensor),
+    /// The form of a figure: of the one on the matrix, or a new one with the values that were accepted last; at first an
+    /// ellipse.
+    pub fn figure(before: &Document, memory: &FormMemory) -> Self {
+        let figure = if let Some(Source::Figure(figure)) = before.source {
+            figure
+        } else {
+            let kind = memory.last_kind().unwrap_or(FigureKind::Ellipse);
+            new_figure(kind, &before.sensor, memory)
         };
-        Self::new(
+        let mut dialog = Self::new(
             FormSubject::Figure(figure.kind()),
             before,
             Document::touched(before.sensor, Source::Figure(figure)),
-        )
+        );
+        dialog.memory = memory.clone();
+        dialog
+    }
+
+    /// The figure that its fields make; None if they make another thing.
+    pub fn made_figure(&self) -> Option<&Figure> {
+        match (&self.subject, &self.shown.source) {
+            (FormSubject::Figure(_), Some(Source::Figure(figure))) => Some(figure),
+            _ => None,
+        }
     }
 
     /// The form of a picture, which starts just where it is.
@@ -88,6 +104,7 @@ impl FormDialog {
             subject,
             form,
             hidden: Vec::new(),
+            memory: FormMemory::default(),
             begun: shown.source.clone(),
             before: before.clone(),
             before_imprint: Reading::of(before).imprint,
@@ -173,14 +190,14 @@ impl FormDialog {
         self.form.set_focus(focus);
     }
 
-    /// A field with the value of the shape that the form began with, or the default; a figure of another kind has its
-    /// defaults.
+    /// A field with the value of the shape that the form began with, or the default; a figure of another kind has the values
+    /// that one was accepted with last, or its defaults.
     fn new_field(&self, parameter: Parameter, sensor: &Sensor) -> ParameterField {
         let own = match (&self.subject, &self.begun) {
             (FormSubject::Figure(kind), begun)
                 if begun.as_ref().and_then(Source::kind) != Some(*kind) =>
             {
-                Figure::default_of(*kind, sensor).get(parameter)
+                new_figure(*kind, sensor, &self.memory).get(parameter)
             }
             (_, begun) => begun.as_ref().and_then(|source| source.get(parameter)),
         };
@@ -289,4 +306,10 @@ impl FormDialog {
             self.edit(|_| {});
         }
     }
+}
+
+/// A figure of a kind: as it was accepted last, or with the defaults.
+fn new_figure(kind: FigureKind, sensor: &Sensor, memory: &FormMemory) -> Figure {
+    let known = memory.figure(kind, sensor);
+    known.unwrap_or_else(|| Figure::default_of(kind, sensor))
 }

@@ -20,6 +20,9 @@ pub(in crate::tui) fn update(
     match message {
         Message::Accept => match dialog.form().error() {
             None => {
+                if let Some(figure) = dialog.made_figure() {
+                    app.forms.note_figure(figure);
+                }
                 replace(app, dialog.shown().clone());
                 return None;
             }

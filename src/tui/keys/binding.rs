@@ -64,6 +64,8 @@ macro_rules! contexts {
 
 /// The outer place of most places.
 const EVERYWHERE: Option<Context> = Some(Context::Everywhere);
+/// The outer place of what has a field.
+const LINE: Option<Context> = Some(Context::Line);
 /// The outer place of the pages of Explore.
 const EXPLORE: Option<Context> = Some(Context::Explore);
 
@@ -73,7 +75,7 @@ contexts! {
     /// On the matrix, while a shape is held.
     Grab "grab" "While a shape is held" Ignored, Some(Self::Matrix);
     /// In a form.
-    Form "form" "In a form" Typed, EVERYWHERE;
+    Form "form" "In a form" Typed, LINE;
     /// In the list of shapes.
     List "list" "In the list of shapes" Typed, EVERYWHERE;
     /// In the list of steps.
@@ -81,11 +83,11 @@ contexts! {
     /// Where two imprints are compared.
     Compare "compare" "Comparing" Ignored, EVERYWHERE;
     /// In the field for a name.
-    Name "name" "Saving" Typed, EVERYWHERE;
+    Name "name" "Saving" Typed, LINE;
     /// In the `:` prompt.
-    Command "command" "In the command line" Typed, EVERYWHERE;
+    Command "command" "In the command line" Typed, LINE;
     /// In the form of ranges.
-    Ranges "ranges" "Ranges of a sweep" Typed, EVERYWHERE;
+    Ranges "ranges" "Ranges of a sweep" Typed, LINE;
     /// While a worker runs.
     Running "running" "While work is under way" Ignored, EVERYWHERE;
     /// On every page of Explore.
@@ -103,11 +105,11 @@ contexts! {
     /// On its page of angles.
     Angles "angles" "At the plot of angles" Ignored, EXPLORE;
     /// In the field for a filter of the list of imprints.
-    Filter "filter" "Filtering the list of imprints" Typed, EVERYWHERE;
+    Filter "filter" "Filtering the list of imprints" Typed, LINE;
     /// Where a letter is asked for, to mark something or to go to a mark.
     Mark "mark" "Choosing the letter of a mark" Typed, EVERYWHERE;
     /// In the field for the name of an exported file.
-    Export "export" "Exporting" Typed, EVERYWHERE;
+    Export "export" "Exporting" Typed, LINE;
     /// On the matrix, with recognition beside it.
     Recognise "recognise" "Recognising" Ignored, Some(Self::Matrix);
     /// In the exercise.
@@ -123,7 +125,9 @@ contexts! {
     /// In the list of keys.
     Help "help" "In this list" Ignored, EVERYWHERE;
     /// In the field for what is searched for in that list.
-    Search "search" "Searching in this list" Typed, EVERYWHERE;
+    Search "search" "Searching in this list" Typed, LINE;
+    /// In any field that is typed into, unless its page gives the key another meaning.
+    Line "line" "In a line of text" Typed, EVERYWHERE;
     /// Everywhere, unless the key means something else there.
     Everywhere "everywhere" "Everywhere" Ignored, None;
 }

@@ -103,9 +103,6 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "" "choose the kind (or by its letter); move, change field";
         [PageUp => INCREASE, PageDown => DECREASE]
             "step" "change the number by its last decimal";
-        [Backspace => ERASE_BEFORE, Delete => ERASE_UNDER] "" "delete a character";
-        [Ctrl('u') => ERASE_ALL] "clear" "clear the field";
-        [Home => TO_START, End => TO_END] "" "to the start, the end of the field";
         [Enter => ACCEPT] "accept" "accept; refused while a field is invalid";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "close it and change nothing";
         [Char('?') => HELP] "help" "these keys";
@@ -140,8 +137,10 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Home => FIRST, End => LAST] "" "the start, the latest step";
         [Enter => ACCEPT] "go there" "go to the state after this step";
         [Char('=') => COMPARE] "compare" "compare that state with the present one";
-        [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL, Char('H') => CANCEL]
-            "close" "leave everything as it is";
+        [Char('/') => SEARCH] "search" "search for a word of what a step did";
+        [Char('n') => NEXT_MATCH, Char('N') => PREVIOUS_MATCH] "match" "next, previous match";
+        [Esc => CANCEL, Ctrl('g') => CANCEL] "close" "leave the search; without one: close";
+        [Char('q') => QUIT, Char('H') => QUIT] "" "leave everything as it is";
         [Char('?') => HELP] "help" "these keys";
     }
 
@@ -155,10 +154,6 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     /// `?` may be typed in a line of text, so help is F1 here and in the prompts below.
     Name {
         [Enter => ACCEPT] "save" "save under this name";
-        [LEFT => LEFT, RIGHT => RIGHT] "" "move in the name";
-        [Home => TO_START, End => TO_END] "" "to its start, its end";
-        [Backspace => ERASE_BEFORE, Delete => ERASE_UNDER] "" "delete a character";
-        [Ctrl('u') => ERASE_ALL] "clear" "clear the name";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "do not save";
         [F1 => HELP] "help" "these keys";
     }
@@ -168,10 +163,6 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Enter => ACCEPT] "run" "run the command";
         [Tab => NEXT] "complete" "complete the word";
         [UP => UP, DOWN => DOWN] "earlier" "earlier commands, those that are offered";
-        [LEFT => LEFT, RIGHT => RIGHT] "" "move in the line";
-        [Home => TO_START, End => TO_END] "" "to its start, its end";
-        [Backspace => ERASE_BEFORE, Delete => ERASE_UNDER] "" "delete a character";
-        [Ctrl('u') => ERASE_ALL] "" "clear the line";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "run nothing";
         [F1 => HELP] "help" "these keys";
     }
@@ -180,9 +171,6 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Tab => NEXT, BackTab => PREVIOUS] "field" "next, previous field";
         [LEFT => LEFT, RIGHT => RIGHT, UP => UP, DOWN => DOWN]
             "" "move in a field, to other fields; the other anchor";
-        [Backspace => ERASE_BEFORE, Delete => ERASE_UNDER] "" "delete a character";
-        [Ctrl('u') => ERASE_ALL] "clear" "clear the field";
-        [Home => TO_START, End => TO_END] "" "to the start, the end of the field";
         [Enter => ACCEPT] "start" "sweep all poses; refused while a range is invalid";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "close it and change nothing";
         [Char('?') => HELP] "help" "these keys";
@@ -299,10 +287,6 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     /// The list follows as one types; Esc brings back the filter and the row that were there before.
     Filter {
         [Enter => ACCEPT] "keep" "keep the filter; an empty one shows all imprints";
-        [LEFT => LEFT, RIGHT => RIGHT] "" "move in the line";
-        [Home => TO_START, End => TO_END] "" "to its start, its end";
-        [Backspace => ERASE_BEFORE, Delete => ERASE_UNDER] "" "delete a character";
-        [Ctrl('u') => ERASE_ALL] "clear" "clear the line";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "leave the list as it was";
         [F1 => HELP] "help" "these keys";
     }
@@ -315,10 +299,6 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
 
     Export {
         [Enter => ACCEPT] "write" "write the file";
-        [LEFT => LEFT, RIGHT => RIGHT] "" "move in the name";
-        [Home => TO_START, End => TO_END] "" "to its start, its end";
-        [Backspace => ERASE_BEFORE, Delete => ERASE_UNDER] "" "delete a character";
-        [Ctrl('u') => ERASE_ALL] "clear" "clear the name";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "write nothing";
         [F1 => HELP] "help" "these keys";
     }
@@ -413,12 +393,16 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     /// Help follows as one types; Esc brings back the lines and the search that were there before.
     Search {
         [Enter => ACCEPT] "keep" "keep the search, for the next matches";
+        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "back to where the search began";
+        [F1 => HELP] "help" "these keys";
+    }
+
+    /// Forms and prompts look here for keys that they have no row for.
+    Line {
         [LEFT => LEFT, RIGHT => RIGHT] "" "move in the line";
         [Home => TO_START, End => TO_END] "" "to its start, its end";
         [Backspace => ERASE_BEFORE, Delete => ERASE_UNDER] "" "delete a character";
         [Ctrl('u') => ERASE_ALL] "clear" "clear the line";
-        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "back to where the search began";
-        [F1 => HELP] "help" "these keys";
     }
 
     /// Looked up last, so that any place can give these keys another meaning.

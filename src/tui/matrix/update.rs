@@ -95,7 +95,10 @@ fn open_page(app: &mut App, message: &Message) -> Option<Effect> {
             edit_picture(app);
         }
         Message::Picture => return Some(open_list(app, Purpose::Picture)),
-        Message::Figure => open_form(app, FormDialog::figure(app.history.present())),
+        Message::Figure => {
+            let form = FormDialog::figure(app.history.present(), &app.forms);
+            open_form(app, form);
+        }
         Message::Sensor => open_form(app, FormDialog::sensor(app.history.present())),
         Message::Save => save(app),
         Message::Command => {

@@ -4,22 +4,21 @@
 //! Save as: my shape█                                  the name to save under; a broken rule stands above
 //! :figure hex█   hexagon heptagon … 2 more            a command, and what the last word could become
 //! ```
-//! A text that is too long scrolls with its cursor. Candidates that do not fit are counted.
+//! Candidates that do not fit are counted.
+
+use std::borrow::Cow;
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::{Position, Rect};
+use ratatui::layout::Rect;
 
 use crate::formats::NameError;
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::line_prompt::LinePrompt;
 use crate::tui::keys::binding::Context;
-use crate::tui::keys::keymap::Keymap;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::widget::number::narrow;
+use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
-
-/// The label of the name to save under.
-const NAME_LABEL: &str = "Save as: ";
 
 /// Most lines that are offered at once.
 const MOST_OFFERS: u16 = 9;
@@ -27,71 +26,49 @@ const MOST_OFFERS: u16 = 9;
 /// Most columns of a line before what it does.
 const MOST_INDENT: usize = 40;
 
-impl Page for NameDialog {
-    fn context(&self) -> Context {
-        Context::Name
+impl LinePrompt for NameDialog {
+    const CONTEXT: Context = Context::Name;
+
+    fn label(&self) -> &'static str {
+        "Save as: "
     }
 
-    fn slot(&self) -> Slot {
-        Slot::Prompt
+    fn field(&self) -> &TextField {
+        &self.field
     }
 
-    fn draw(
-        &self,
-        theme: &Theme,
-        _keymap: &Keymap,
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Option<Position> {
-        Some(write::prompt(
-            buffer,
-            area,
-            theme,
-            NAME_LABEL,
-            &self.field,
-            "",
-        ))
+    fn behind(&self, _columns: u16) -> Cow<'_, str> {
+        "".into()
     }
 
     /// The rule that the name breaks.
-    fn remark(&self, _keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
+    fn wrong(&self) -> Option<String> {
         let error = self.name().err();
         let error = error.filter(|error| *error != NameError::Empty)?;
-        Some((format!("! {error}"), Role::Error))
+        Some(error.to_string())
     }
 }
 
-impl Page for CommandDialog {
-    fn context(&self) -> Context {
-        Context::Command
+impl LinePrompt for CommandDialog {
+    const CONTEXT: Context = Context::Command;
+
+    fn label(&self) -> &'static str {
+        ":"
     }
 
-    fn slot(&self) -> Slot {
-        Slot::Prompt
+    fn field(&self) -> &TextField {
+        &self.field
     }
 
-    fn draw(
-        &self,
-        theme: &Theme,
-        _keymap: &Keymap,
-        buffer: &mut Buffer,
-        area: Rect,
-    ) -> Option<Position> {
+    /// What the last word could become.
+    fn behind(&self, columns: u16) -> Cow<'_, str> {
         let used = 1 + write::width(self.field.text());
-        let room = usize::from(area.width).saturating_sub(used);
-        let candidates = as_many_as_fit(&self.candidates, room);
-        Some(write::prompt(
-            buffer,
-            area,
-            theme,
-            ":",
-            &self.field,
-            &candidates,
-        ))
+        let room = usize::from(columns).saturating_sub(used);
+        as_many_as_fit(&self.candidates, room).into()
     }
 
     /// What is offered, as a list over the foot of the body.
-    fn draw_over(&self, theme: &Theme, buffer: &mut Buffer, body: Rect) {
+    fn draw_offers(&self, theme: &Theme, buffer: &mut Buffer, body: Rect) {
         let (offers, picked) = self.offers();
         let room = body.height.min(MOST_OFFERS);
         let height = room.min(narrow(offers.len()));

@@ -19,14 +19,14 @@ pub(super) fn state(app: &mut App) -> Option<&mut Recognition> {
     open.or(app.recognition.as_mut()).map(|page| &mut **page)
 }
 
-/// The set that is chosen.
-pub(in crate::tui) fn chosen_set(app: &App) -> Option<&ModelChoice> {
+/// The chosen set, once its model is there.
+pub(in crate::tui) fn trained_set(app: &App) -> Option<&ModelChoice> {
     let open = app.dialogs.iter().find_map(|dialog| match dialog {
         Dialog::Recognition(page) => Some(page),
         _ => None,
     });
     let page = open.or(app.recognition.as_ref())?;
-    Some(page.choice())
+    page.trained().map(|trained| &trained.choice)
 }
 
 /// Puts an imprint onto the matrix as if it were drawn: nothing says what made it.

@@ -10,6 +10,7 @@ use rand_pcg::Pcg64;
 use crate::formats::{Name, StoredShape};
 use crate::picture::Picture;
 use crate::pose::{Axis, DecimalRange, PoseGrid, Ranges};
+use crate::quote::shortened;
 use crate::recognition::{
     Evaluation, GridSteps, Model, NamedShape, Training, TrainingError, below, default_figures,
     equal_figures,
@@ -73,6 +74,14 @@ impl ModelChoice {
         };
         Some(Training::fitting(shapes, steps))
     }
+}
+
+/// That there is no set of a name, and which ones there are: the built-in ones and `stored` models.
+pub(crate) fn unknown_set(name: &str, stored: &[Name]) -> String {
+    let own = ModelChoice::BUILT_IN.iter().map(ModelChoice::name);
+    let all: Vec<&str> = own.chain(stored.iter().map(Name::as_str)).collect();
+    let (name, all) = (shortened(name), all.join(", "));
+    format!("no set is called {name:?}; there are {all}")
 }
 
 impl fmt::Display for ModelChoice {

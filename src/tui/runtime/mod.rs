@@ -41,6 +41,8 @@ mod write_access;
 
 mod shape_log;
 
+mod reminders;
+
 pub(crate) mod memory;
 
 pub use crate::tui::runtime::progress::WorkerEventSink;
@@ -51,6 +53,7 @@ use std::sync::Arc;
 
 use crate::tui::runtime::journal_writer::JournalWriter;
 use crate::tui::runtime::models::ModelStore;
+use crate::tui::runtime::reminders::Reminders;
 use crate::tui::runtime::shape_log::ShapeLog;
 pub use crate::tui::runtime::shape_log::ShapeSink;
 use crate::tui::runtime::workers::Workers;
@@ -59,14 +62,12 @@ use crate::tui::runtime::write_access::WriteAccess;
 use crate::formats::value::counted;
 use crate::formats::{Name, StoredShape};
 use crate::storage::{
-    ChosenSetFile, CommandFile, Expected, Journal, Library, LibraryError, LoadedShape, ModelCache,
-    Orphan, ScratchFolder, UNNAMED,
+    Expected, Journal, Library, LibraryError, LoadedShape, ModelCache, Orphan, ScratchFolder,
+    UNNAMED,
 };
 use crate::tui::app::message::{Leftover, LibraryEvent, Message};
 use crate::tui::app::state::App;
 use crate::tui::app::update::update;
-use crate::tui::recognise::reach::chosen_set;
-use crate::tui::recognise::sets::ModelChoice;
 use crate::tui::runtime::effect::{Effect, LibraryRequest, TerminalEffect};
 
 /// The outside world: a library, unsaved work that crashed programs left in it, this program's journal, and workers.
@@ -78,12 +79,8 @@ pub struct World {
     orphan: Option<(Orphan, usize)>,
     /// Where unsaved work is kept.
     journal: JournalWriter,
-    /// Where the set of shapes that was chosen last is remembered, None for nowhere; and which it is.
-    chosen: Option<(ChosenSetFile, Option<ModelChoice>)>,
-    /// Where the commands of the prompt are remembered, None for nowhere.
-    commands: Option<CommandFile>,
-    /// How many of them are.
-    remembered: usize,
+    /// What is remembered between runs, None for nothing.
+    reminders: Option<Reminders>,
     /// The stored shapes that were used.
     log: ShapeLog,
     /// Sweeps and exports in progress.
@@ -98,10 +95,8 @@ impl World {
         let journal = JournalWriter::new(Journal::new(&library));
         let workers = Workers::with(ModelStore::beside(&library));
         let mut world = Self {
-            chosen: Some((ChosenSetFile::of(&library), None)),
-            commands: Some(CommandFile::of(&library)),
+            reminders: Some(Reminders::of(&library)),
             log: ShapeLog::default(),
-            remembered: 0,
             library,
             orphan: None,
             journal,
@@ -118,9 +113,7 @@ impl World {
         Self {
             library,
             orphan: None,
-            chosen: None,
-            commands: None,
-            remembered: 0,
+            reminders: None,
             log: ShapeLog::default(),
             journal: JournalWriter::idle(),
             workers,
@@ -202,18 +195,17 @@ impl World {
         self
     }
 
-    /// Gives the program the commands of earlier runs, and the set of shapes that was chosen last.
+    /// Remembers nothing of earlier runs, and nothing for later ones: what is recorded as a script does the same again.
+    #[must_use]
+    pub fn forgetful(mut self) -> Self {
+        self.reminders = None;
+        self
+    }
+
+    /// Gives the program what earlier runs remembered: commands, the set of shapes, the values of forms.
     pub fn remind(&mut self, app: &mut App) {
-        if let Some(file) = &self.commands {
-            app.commands = file.read();
-            self.remembered = app.commands.len();
-        }
-        if let Some((file, chosen)) = &mut self.chosen {
-            let own = file.read().map(ModelChoice::from_name);
-            if let (Some(own), Some(page)) = (own, app.recognition.as_mut()) {
-                page.begin_with(own);
-            }
-            *chosen = chosen_set(app).cloned();
+        if let Some(reminders) = &mut self.reminders {
+            reminders.remind(app);
         }
     }
 
@@ -253,26 +245,10 @@ impl World {
             }
         };
         self.journal.note(app);
-        if let Some(file) = &self.commands
-            && app.commands.len() > self.remembered
-        {
-            file.write(&app.commands);
-            self.remembered = app.commands.len();
+        if let Some(reminders) = &mut self.reminders {
+            reminders.note(app);
         }
-        self.remember_set(app);
         terminal
-    }
-
-    /// Remembers the set of shapes if another one has been chosen.
-    fn remember_set(&mut self, app: &App) {
-        let Some((file, chosen)) = &mut self.chosen else {
-            return;
-        };
-        let now = chosen_set(app).filter(|now| chosen.as_ref() != Some(*now));
-        if let Some(now) = now {
-            file.write(now.name());
-            *chosen = Some(now.clone());
-        }
     }
 
     /// Whether frames have come, or something else is to be said of their source.

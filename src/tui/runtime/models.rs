@@ -18,7 +18,7 @@ use crate::storage::{Library, ModelCache, ModelFolder, load_model};
 use crate::sweep::Shard;
 use crate::tui::explore::message::WorkerEvent;
 use crate::tui::recognise::message::{Look, Prepared, RecognitionEvent};
-use crate::tui::recognise::sets::{ModelChoice, TrainedModel};
+use crate::tui::recognise::sets::{ModelChoice, TrainedModel, unknown_set};
 use crate::tui::runtime::progress::{
     ProgressReporter, WorkerEventSink, guarded, on_a_thread, proceed,
 };
@@ -93,7 +93,13 @@ impl ModelStore {
     fn stored(&self, name: &Name) -> Result<Model, String> {
         let folder = self.folder.as_ref();
         let folder = folder.ok_or_else(|| format!("there is no model {name}"))?;
-        let model = load_model(&folder.file(name)).map_err(|error| error.to_string())?;
+        let model = load_model(&folder.file(name)).map_err(|error| {
+            if error.is_missing() {
+                unknown_set(name.as_str(), &self.names())
+            } else {
+                error.to_string()
+            }
+        })?;
         if model.shard() != Shard::WHOLE {
             let shard = model.shard();
             return Err(format!(

@@ -46,6 +46,58 @@ fn first(text: &str, wanted: &str) -> Option<(usize, usize)> {
     })
 }
 
+/// A search in a list that found something.
+#[derive(Clone, Debug)]
+pub struct Search {
+    /// What is searched for.
+    wanted: String,
+    /// The entry of the list that one has come to.
+    entry: usize,
+}
+
+impl Search {
+    /// The search at the first entry that has it from `from` on, or else before that; None where no entry does. `matches`
+    /// are the entries that have it, in ascending order, here and below.
+    pub fn new(wanted: &str, matches: &[usize], from: usize) -> Option<Self> {
+        let ahead = matches.iter().find(|&&entry| entry >= from);
+        let &entry = ahead.or(matches.first())?;
+        let wanted = wanted.to_owned();
+        Some(Self { wanted, entry })
+    }
+
+    /// What is searched for.
+    pub fn wanted(&self) -> &str {
+        &self.wanted
+    }
+
+    /// The entry that one has come to.
+    pub fn entry(&self) -> usize {
+        self.entry
+    }
+
+    /// Goes from an entry to the next match, or to the previous one if `by` is negative; the first follows the last.
+    /// Answers whether there is one.
+    pub fn go(&mut self, from: usize, by: i8, matches: &[usize]) -> bool {
+        let next = if by > 0 {
+            let ahead = matches.iter().find(|&&entry| entry > from);
+            ahead.or(matches.first())
+        } else {
+            let back = matches.iter().rev().find(|&&entry| entry < from);
+            back.or(matches.last())
+        };
+        if let Some(&entry) = next {
+            self.entry = entry;
+        }
+        next.is_some()
+    }
+
+    /// Which match one has come to, counted from 1, and of how many.
+    pub fn number(&self, matches: &[usize]) -> (usize, usize) {
+        let before = matches.iter().filter(|&&entry| entry < self.entry);
+        (before.count() + 1, matches.len())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -64,6 +116,20 @@ mod tests {
         ] {
             assert_eq!(first(text, wanted), found, "{wanted:?} in {text:?}");
         }
+    }
+
+    #[test]
+    fn matches_are_gone_through_round_and_round() {
+        let matches = [2, 5, 9];
+        let mut search = Search::new("x", &matches, 6).expect("found");
+        assert_eq!((search.entry(), search.number(&matches)), (9, (3, 3)));
+        let mut gone = Vec::new();
+        for by in [1, 1, -1, -1] {
+            assert!(search.go(search.entry(), by, &matches));
+            gone.push(search.entry());
+        }
+        assert_eq!(gone, [2, 5, 2, 9]);
+        assert!(!search.go(9, 1, &[]) && Search::new("x", &[], 0).is_none());
     }
 
     #[test]

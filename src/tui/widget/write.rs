@@ -122,11 +122,12 @@ pub fn prompt(
     remark: &str,
 ) -> Position {
     clear(buffer, area);
-    let room = usize::from(area.width).saturating_sub(label.len());
+    let before = width(label);
+    let room = usize::from(area.width).saturating_sub(before);
     let (shown, column) = window(field.text(), field.cursor(), room);
     let pieces = [label, shown, remark].map(|piece| (piece, Role::Text));
     line(buffer, area, theme, pieces);
-    let column = narrow(label.len() + column);
+    let column = narrow(before + column).min(area.width.saturating_sub(1));
     Position::new(area.x.saturating_add(column), area.y)
 }
 

@@ -26,24 +26,69 @@ fn frames(numbers: std::ops::Range<u32>) -> String {
         .collect()
 }
 
-/// The program that watches a pipe in a folder, and the pipe's other end.
-fn watching(folder: &Path, fifo: &Path) -> (Program, fs::File) {
-    let line = format!(
-        "cd '{}' && exec {TAXEL} watch frames --format lines --at-least 9",
-        folder.display()
-    );
-    let program = Program::start(&Start {
-        command: &["sh", "-c", &line],
-        variables: &[
-            ("TERM", "xterm-256color"),
-            ("LANG", "C.UTF-8"),
-            ("PATH", "/usr/bin:/bin"),
-        ],
-        ..Start::default()
-    });
-    // Waits until the program reads it.
-    let pipe = fs::File::options().write(true).open(fifo);
-    (program, pipe.expect("the pipe opens"))
+/// The program that watches a pipe in a folder.
+struct Watched {
+    /// The program.
+    program: Program,
+    /// The pipe's other end.
+    pipe: fs::File,
+    /// The folder, which the program works in.
+    folder: tempfile::TempDir,
+}
+
+impl Watched {
+    /// Starts it; None where there is no mkfifo.
+    fn start() -> Option<Self> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let fifo = fifo(folder.path())?;
+        let line = format!(
+            "cd '{}' && exec {TAXEL} watch frames --format lines --at-least 9",
+            folder.path().display()
+        );
+        let program = Program::start(&Start {
+            command: &["sh", "-c", &line],
+            variables: &[
+                ("TERM", "xterm-256color"),
+                ("LANG", "C.UTF-8"),
+                ("PATH", "/usr/bin:/bin"),
+            ],
+            ..Start::default()
+        });
+        // Waits until the program reads it.
+        let pipe = fs::File::options().write(true).open(fifo);
+        Some(Self {
+            program,
+            pipe: pipe.expect("the pipe opens"),
+            folder,
+        })
+    }
+
+    /// Sends frames.
+    fn sends(&mut self, numbers: std::ops::Range<u32>) {
+        let bytes = frames(numbers);
+        self.pipe.write_all(bytes.as_bytes()).expect("it is read");
+    }
+
+    /// Sends the first frame, and waits until it is shown.
+    fn shows_the_first_frame(&mut self) {
+        self.sends(0..1);
+        self.program.shows("frame 0");
+    }
+
+    /// Records from here on; the file.
+    fn records(&mut self) -> PathBuf {
+        self.program.types(b"r");
+        self.program.shows("recording in touch-1.npy");
+        self.folder.path().join("touch-1.npy")
+    }
+
+    /// Leaves the page and the program.
+    fn ends(self) {
+        let mut program = self.program;
+        program.types(b"q");
+        program.types(b"q");
+        program.ends_well(0);
+    }
 }
 
 /// The number of records that an array counts.
@@ -56,50 +101,37 @@ fn records(path: &Path) -> Option<u64> {
 
 #[test]
 fn a_key_records_and_a_key_ends_it() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let Some(fifo) = fifo(folder.path()) else {
+    let Some(mut watched) = Watched::start() else {
         return;
     };
-    let (mut program, mut pipe) = watching(folder.path(), &fifo);
-    pipe.write_all(frames(0..3).as_bytes()).expect("it is read");
-    program.shows("frame 2");
-    program.types(b"r");
-    program.shows("recording in touch-1.npy");
-    pipe.write_all(frames(3..23).as_bytes())
-        .expect("it is read");
-    program.shows("frame 22");
-    program.types(b"m");
-    program.shows("frame 22: marked");
-    program.types(b"r");
-    program.shows("touch-1.npy: 20 frames recorded");
-    let file = folder.path().join("touch-1.npy");
+    watched.sends(0..3);
+    watched.program.shows("frame 2");
+    let file = watched.records();
+    watched.sends(3..23);
+    watched.program.shows("frame 22");
+    watched.program.types(b"m");
+    watched.program.shows("frame 22: marked");
+    watched.program.types(b"r");
+    watched.program.shows("touch-1.npy: 20 frames recorded");
     assert_eq!(records(&file), Some(20));
     let beside = fs::read_to_string(file.with_extension("json")).expect("it is there");
     let beside: serde_json::Value = serde_json::from_str(&beside).expect("JSON");
     assert_eq!(beside["marks"][0]["number"], 22, "{beside}");
     assert_eq!(beside["rule"]["at_least"], 9, "{beside}");
-    program.types(b"q");
-    program.types(b"q");
-    program.ends_well(0);
+    watched.ends();
 }
 
 #[test]
 fn a_terminal_that_is_not_read_holds_up_no_recording() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let Some(fifo) = fifo(folder.path()) else {
+    let Some(mut watched) = Watched::start() else {
         return;
     };
-    let (mut program, mut pipe) = watching(folder.path(), &fifo);
-    pipe.write_all(frames(0..1).as_bytes()).expect("it is read");
-    program.shows("frame 0");
-    program.types(b"r");
-    program.shows("recording in touch-1.npy");
+    watched.shows_the_first_frame();
+    let file = watched.records();
     // Nothing is read from the terminal while these come, far more than its buffers hold.
     for piece in 0..200 {
-        pipe.write_all(frames(piece * 20 + 1..piece * 20 + 21).as_bytes())
-            .expect("it is read");
+        watched.sends(piece * 20 + 1..piece * 20 + 21);
     }
-    let file = folder.path().join("touch-1.npy");
     let start = Instant::now();
     while records(&file) != Some(4000) {
         assert!(
@@ -110,34 +142,29 @@ fn a_terminal_that_is_not_read_holds_up_no_recording() {
         std::thread::sleep(Duration::from_millis(20));
     }
     // Now the newest picture comes.
-    program.shows("frame 4000");
-    program.types(b"r");
-    program.shows("4,000 frames recorded");
-    program.types(b"qq");
-    program.ends_well(0);
+    watched.program.shows("frame 4000");
+    watched.program.types(b"r");
+    watched.program.shows("4,000 frames recorded");
+    watched.ends();
 }
 
 #[test]
 fn it_is_drawn_at_most_thirty_times_a_second() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let Some(fifo) = fifo(folder.path()) else {
+    let Some(mut watched) = Watched::start() else {
         return;
     };
-    let (mut program, mut pipe) = watching(folder.path(), &fifo);
-    pipe.write_all(frames(0..1).as_bytes()).expect("it is read");
-    program.shows("frame 0");
+    watched.shows_the_first_frame();
     // A picture of so few taxels comes in one piece.
-    let before = program.reads;
+    let before = watched.program.reads;
     let start = Instant::now();
     // 500 frames, one every two milliseconds or slower.
     for number in 1..=500 {
-        pipe.write_all(frames(number..number + 1).as_bytes())
-            .expect("it is read");
-        program.read(Duration::from_millis(2));
+        watched.sends(number..number + 1);
+        watched.program.read(Duration::from_millis(2));
     }
-    program.shows("frame 500");
+    watched.program.shows("frame 500");
     let seconds = start.elapsed().as_secs_f64();
-    let drawn = program.reads - before;
+    let drawn = watched.program.reads - before;
     println!("{drawn} pictures of 500 frames in {seconds:.2} s");
     let drawn_f = f64::from(u32::try_from(drawn).expect("a few hundred"));
     assert!(
@@ -145,6 +172,5 @@ fn it_is_drawn_at_most_thirty_times_a_second() {
         "{drawn} pictures in {seconds:.2} s"
     );
     assert!(drawn >= 2, "{drawn}");
-    program.types(b"qq");
-    program.ends_well(0);
+    watched.ends();
 }

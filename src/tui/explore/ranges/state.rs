@@ -18,6 +18,7 @@ use crate::source::Source;
 use crate::tui::app::document::Document;
 use crate::tui::app::message::Message;
 use crate::tui::explore::message::name_of;
+use crate::tui::form::memory::RememberedRanges;
 use crate::tui::keys::key::Arrow;
 use crate::tui::widget::number::around;
 use crate::tui::widget::text_field::TextField;
@@ -107,23 +108,42 @@ struct Measured {
 }
 
 impl RangesForm {
-    /// The form for what is explored of a document. The ranges are those of an earlier sweep, or the defaults.
-    pub fn new(document: &Document, source: Source, earlier: Option<&PoseGrid>) -> Self {
+    /// The form for what is explored of a document. The ranges are those of an earlier sweep, or those that were accepted
+    /// last where they suit, or the defaults.
+    pub fn new(
+        document: &Document,
+        source: Source,
+        earlier: Option<&PoseGrid>,
+        last: Option<&RememberedRanges>,
+    ) -> Self {
         let by_hand = match document.source {
             Some(_) => document.edits.count(),
             None => 0,
         };
         let ranges = earlier.map_or_else(Ranges::default, |grid| *grid.ranges());
+        let last = last.filter(|_| earlier.is_none());
+        let known = |axis| last.and_then(|last| last.get(name_of(&source), axis));
         let fields = Axis::of(&source).map(|axis| RangeField {
             axis,
-            input: TextField::new(ranges[axis].to_string(), LONGEST),
+            input: TextField::new(
+                known(axis).map_or(ranges[axis], |own| own).to_string(),
+                LONGEST,
+            ),
             proposed: None,
         });
+        let fields: Vec<RangeField> = fields.collect();
+        let typed: Vec<Axis> = Axis::of(&source)
+            .filter(|&axis| known(axis).is_some())
+            .collect();
         let mut form = Self {
-            fields: fields.collect(),
+            fields,
             source,
             sensor: document.sensor,
-            anchor: earlier.map_or(Anchor::default(), PoseGrid::anchor),
+            anchor: match (earlier, last) {
+                (Some(grid), _) => grid.anchor(),
+                (None, Some(last)) => last.anchor,
+                (None, None) => Anchor::default(),
+            },
             focus: None,
             by_hand,
             measured: None,
@@ -131,6 +151,7 @@ impl RangesForm {
         if earlier.is_none() {
             for field in &mut form.fields {
                 let place = matches!(field.axis, Axis::X0 | Axis::Y0);
+                let place = place && typed.iter().all(|axis| *axis != field.axis);
                 field.proposed = place.then(|| field.input.text().to_owned());
             }
             form.propose();
@@ -171,6 +192,17 @@ impl RangesForm {
                 field.input = TextField::new(text.clone(), LONGEST);
                 field.proposed = Some(text);
             }
+        }
+    }
+
+    /// What is remembered of it: ranges that were typed or taken over, not those that follow the others.
+    pub fn remembered(&self) -> RememberedRanges {
+        let own = self.fields.iter().filter(|field| field.proposed.is_none());
+        let ranges = own.filter_map(|field| Some((field.axis, field.text().parse().ok()?)));
+        RememberedRanges {
+            of: name_of(&self.source).to_owned(),
+            anchor: self.anchor,
+            ranges: ranges.collect(),
         }
     }
 

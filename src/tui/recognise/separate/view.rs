@@ -167,6 +167,7 @@ impl Separate {
         let points: Vec<_> = points.map(|point| (point.value, point.error())).collect();
         let values: Vec<f64> = self.request().sizes.values().collect();
         let curve = Curve {
+            labels: ["error in %", self.size_name()],
             points: &points,
             values: &values,
             level: self.request().wanted,
@@ -175,12 +176,17 @@ impl Separate {
         curve.draw(theme, buffer, area);
     }
 
-    /// What was found of each size. Returns where the cursor is.
-    fn draw_table(&self, theme: &Theme, layout: &Layout, buffer: &mut Buffer) -> Option<Position> {
-        let name = match self.request().axis {
+    /// What the sizes are.
+    fn size_name(&self) -> &'static str {
+        match self.request().axis {
             SizeAxis::Pitch => "pitch/mm",
             _ => "scale",
-        };
+        }
+    }
+
+    /// What was found of each size. Returns where the cursor is.
+    fn draw_table(&self, theme: &Theme, layout: &Layout, buffer: &mut Buffer) -> Option<Position> {
+        let name = self.size_name();
         let head = format!("{name:<8}    error   certain       keys  sensor");
         write::line(buffer, layout.head, theme, [(head.as_str(), Role::Title)]);
         let mut cursor = None;

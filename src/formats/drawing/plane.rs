@@ -1,0 +1,71 @@
+//! The plane of a plot: its frame, its axes with their marks, and the elements that plots are made of.
+
+use crate::formats::drawing::axis::Ticks;
+use crate::formats::drawing::page::{ADVANCE, MARGIN, TEXT};
+use crate::formats::drawing::scene::{Element, Position, Segment, Stroke, TextAnchor, rectangle};
+
+/// The lines at the marks of both axes.
+const GRID: Stroke = Stroke {
+    width: 0.4,
+    grey: 200,
+    dash: None,
+};
+
+/// The frame between two corners, lines at the marks of both axes, and what the axes are: x, y.
+pub(super) fn axes(
+    labels: [&str; 2],
+    (across, upwards): (&Ticks, &Ticks),
+    (from, to): (Position, Position),
+    place: &dyn Fn(Position) -> Position,
+) -> Vec<Element> {
+    let (mut marks, mut grid) = (Vec::new(), Vec::new());
+    for (value, text) in &across.0 {
+        let (x, _) = place((*value, 0.0));
+        grid.extend([Segment::Move((x, from.1)), Segment::Line((x, to.1))]);
+        marks.push(label(text, (x, to.1 + TEXT + 3.0), TextAnchor::Middle));
+    }
+    for (value, text) in &upwards.0 {
+        let (_, y) = place((0.0, *value));
+        grid.extend([Segment::Move((from.0, y)), Segment::Line((to.0, y))]);
+        let at = (from.0 - 5.0, y + TEXT * 0.35);
+        marks.push(label(text, at, TextAnchor::End));
+    }
+    marks.push(path_of("grid", grid, GRID));
+    marks.push(path_of("axes", rectangle(from, to), Stroke::black(0.6)));
+    let middle = (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1));
+    let below = (middle.0, to.1 + TEXT * 2.0 + 6.0);
+    marks.push(label(labels[0], below, TextAnchor::Middle));
+    marks.push(Element::Text {
+        text: labels[1].to_owned(),
+        place: (MARGIN + TEXT, middle.1),
+        anchor: TextAnchor::Middle,
+        upright: true,
+    });
+    marks
+}
+
+/// The width of a text of that many characters.
+#[expect(clippy::cast_precision_loss, reason = "far fewer than 2^53 characters")]
+pub(super) fn width(characters: usize) -> f64 {
+    TEXT * ADVANCE * characters as f64
+}
+
+/// A line of the page, by the name of what it is.
+pub(super) fn path_of(what: &'static str, steps: Vec<Segment>, line: Stroke) -> Element {
+    Element::Line {
+        what,
+        steps,
+        line,
+        clipped: false,
+    }
+}
+
+/// A text of the page.
+pub(super) fn label(text: &str, place: Position, anchor: TextAnchor) -> Element {
+    Element::Text {
+        text: text.to_owned(),
+        place,
+        anchor,
+        upright: false,
+    }
+}

@@ -1,0 +1,104 @@
+//! What the screen remembers between runs, in small files of the library's folder: a line an entry, the last one last.
+//!
+//! It is a convenience. What cannot be read is none, and what cannot be written is forgotten.
+
+use std::fs;
+use std::path::PathBuf;
+
+use crate::storage::{Existing, Library, UnfinishedFile};
+
+/// No longer file is read: a hundred commands of the longest kind are shorter.
+const MOST_BYTES: u64 = 1 << 17;
+
+/// One of the files.
+#[derive(Clone, Debug)]
+pub struct RememberedFile {
+    /// Its path.
+    path: PathBuf,
+    /// The most lines that it keeps.
+    most: usize,
+}
+
+impl RememberedFile {
+    /// The commands that were typed.
+    pub fn commands(library: &Library) -> Self {
+        Self::of(library, ".commands", 100)
+    }
+
+    /// The set of shapes that was recognised last, by its name.
+    pub fn recognised_set(library: &Library) -> Self {
+        Self::of(library, ".recognise", 1)
+    }
+
+    /// The values that forms were accepted with.
+    pub fn forms(library: &Library) -> Self {
+        Self::of(library, ".forms", 20)
+    }
+
+    /// The file of that name in the folder of a library.
+    fn of(library: &Library, name: &str, most: usize) -> Self {
+        Self {
+            path: library.folder().join(name),
+            most,
+        }
+    }
+
+    /// Returns its lines, the last one last, without empty ones and such as have control characters; none if there is no
+    /// such file.
+    pub fn read(&self) -> Vec<String> {
+        let small = fs::symlink_metadata(&self.path)
+            .is_ok_and(|found| found.is_file() && found.len() <= MOST_BYTES);
+        let text = small.then(|| fs::read_to_string(&self.path));
+        let Some(Ok(text)) = text else {
+            return Vec::new();
+        };
+        let clean = |line: &&str| !line.is_empty() && !line.contains(char::is_control);
+        let lines: Vec<&str> = text.lines().filter(clean).collect();
+        let first = lines.len().saturating_sub(self.most);
+        lines[first..].iter().map(|&line| line.to_owned()).collect()
+    }
+
+    /// Puts lines in place of those that it has, as many of the last ones as it keeps; in a new folder if there is none.
+    pub fn write(&self, lines: &[String]) {
+        if let Some(folder) = self.path.parent() {
+            // Without it nothing can be written, which is no matter.
+            let _ = fs::create_dir_all(folder);
+        }
+        let kept = &lines[lines.len().saturating_sub(self.most)..];
+        let text: String = kept.iter().map(|line| format!("{line}\n")).collect();
+        let written = UnfinishedFile::new(&self.path, Existing::Replaced).and_then(|mut file| {
+            file.write(text.as_bytes())?;
+            file.finish()?.persist()
+        });
+        // On a full disk, it is not worth a message.
+        drop(written);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_lines_come_back_and_nonsense_is_left_out() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let library = Library::open(folder.path().join("new"));
+        let file = RememberedFile::commands(&library);
+        assert!(file.read().is_empty());
+        let lines: Vec<String> = (0..150).map(|number| format!("turn {number}")).collect();
+        file.write(&lines);
+        assert_eq!(file.read(), lines[50..]);
+        let path = library.folder().join(".commands");
+        fs::write(path, "new\n\u{1b}[31m\n\ngrab\n").expect("written");
+        assert_eq!(file.read(), ["new", "grab"]);
+        let set = RememberedFile::recognised_set(&library);
+        set.write(&["my parts".to_owned()]);
+        assert_eq!(
+            (set.read(), file.read().len()),
+            (vec!["my parts".to_owned()], 2)
+        );
+        let path = library.folder().join(".recognise");
+        fs::write(path, "x".repeat(1 << 18)).expect("written");
+        assert!(set.read().is_empty());
+    }
+}

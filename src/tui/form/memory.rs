@@ -1,0 +1,240 @@
+//! The values that forms were accepted with last: the next form begins with them, also in the next run.
+//!
+//! A line for each kind of figure, the last accepted one last, and one for the ranges of Explore:
+//! ```text
+//! figure ellipse radius_x 3 radius_y 4 x0 5 y0 5 angle 0
+//! ranges picture centre angle 0:89:1 zoom_x 1
+//! ```
+//! Ranges of x0 and y0 suit one shape, so they are taken only for another of its kind, and only where they were typed.
+
+use std::collections::BTreeMap;
+
+use crate::figure::{Figure, FigureKind};
+use crate::parameter::Parameter;
+use crate::pose::{Anchor, Axis, DecimalRange};
+use crate::sensor::Sensor;
+
+/// The word before a figure.
+const FIGURE: &str = "figure";
+/// The word before ranges.
+const RANGES: &str = "ranges";
+
+/// What is remembered. The default remembers nothing: forms begin with the defaults each time, as a script needs it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FormMemory {
+    /// Whether anything is remembered.
+    keeps: bool,
+    /// Figures, each kind once, the last accepted one last.
+    figures: Vec<RememberedFigure>,
+    /// Ranges.
+    ranges: Option<RememberedRanges>,
+}
+
+/// A figure as numbers: which are in range, a sensor says.
+#[derive(Clone, Debug, PartialEq)]
+struct RememberedFigure {
+    /// Its kind.
+    kind: FigureKind,
+    /// The values that it has.
+    values: Vec<(Parameter, f64)>,
+}
+
+/// Ranges of a sweep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RememberedRanges {
+    /// What the shape is called.
+    pub of: String,
+    /// What x0 and y0 place.
+    pub anchor: Anchor,
+    /// The ranges that were asked for, in the order of their fields.
+    pub ranges: Vec<(Axis, DecimalRange)>,
+}
+
+impl RememberedRanges {
+    /// The range for an axis of a shape; None if none is remembered that suits it.
+    pub fn get(&self, of: &str, axis: Axis) -> Option<DecimalRange> {
+        let place = matches!(axis, Axis::X0 | Axis::Y0);
+        let mut known = self.ranges.iter().filter(|(own, _)| *own == axis);
+        known
+            .next()
+            .filter(|_| !place || of == self.of)
+            .map(|(_, range)| *range)
+    }
+}
+
+impl FormMemory {
+    /// One that remembers, with what lines say; those that say nothing are left out.
+    pub fn read(lines: &[String]) -> Self {
+        let mut memory = Self {
+            keeps: true,
+            ..Self::default()
+        };
+        for line in lines {
+            let words: Vec<&str> = line.split_ascii_whitespace().collect();
+            match words[..] {
+                [FIGURE, kind, ref pairs @ ..] => {
+                    if let Some(figure) = figure_of(kind, pairs) {
+                        memory.add(figure);
+                    }
+                }
+                [RANGES, of, anchor, ref pairs @ ..] => {
+                    memory.ranges = ranges_of(of, anchor, pairs).or(memory.ranges);
+                }
+                _ => {}
+            }
+        }
+        memory
+    }
+
+    /// What is remembered, as lines.
+    pub fn lines(&self) -> Vec<String> {
+        let figure = |figure: &RememberedFigure| {
+            let mut line = format!("{FIGURE} {}", figure.kind.name());
+            for (parameter, value) in &figure.values {
+                line += &format!(" {} {value}", parameter.row().key);
+            }
+            line
+        };
+        let ranges = |known: &RememberedRanges| {
+            let mut line = format!("{RANGES} {} {}", known.of, known.anchor.name());
+            for (axis, range) in &known.ranges {
+                line += &format!(" {} {range}", axis.name());
+            }
+            line
+        };
+        let figures = self.figures.iter().map(figure);
+        figures.chain(self.ranges.iter().map(ranges)).collect()
+    }
+
+    /// Remembers a figure.
+    pub fn note_figure(&mut self, figure: &Figure) {
+        let parameters = figure.kind().parameters().iter();
+        let values = parameters.filter_map(|&own| Some((own, figure.get(own)?)));
+        self.add(RememberedFigure {
+            kind: figure.kind(),
+            values: values.collect(),
+        });
+    }
+
+    /// Remembers ranges.
+    pub fn note_ranges(&mut self, ranges: RememberedRanges) {
+        if self.keeps {
+            self.ranges = Some(ranges);
+        }
+    }
+
+    /// The kind of the last figure.
+    pub fn last_kind(&self) -> Option<FigureKind> {
+        self.figures.last().map(|figure| figure.kind)
+    }
+
+    /// The last figure of a kind; None if there is none, or not one for this sensor.
+    pub fn figure(&self, kind: FigureKind, sensor: &Sensor) -> Option<Figure> {
+        let own = self.figures.iter().find(|figure| figure.kind == kind)?;
+        let value = |parameter: Parameter| {
+            let mut values = own.values.iter();
+            let known = values.find(|(own, _)| *own == parameter);
+            known.map(|(_, value)| *value)
+        };
+        Figure::new(kind, sensor, value).ok()
+    }
+
+    /// The last ranges.
+    pub fn ranges(&self) -> Option<&RememberedRanges> {
+        self.ranges.as_ref()
+    }
+
+    /// A figure in place of the one of its kind, behind the others.
+    fn add(&mut self, figure: RememberedFigure) {
+        if self.keeps {
+            self.figures.retain(|other| other.kind != figure.kind);
+            self.figures.push(figure);
+        }
+    }
+}
+
+/// The figure that a line says; None if it says none.
+fn figure_of(kind: &str, pairs: &[&str]) -> Option<RememberedFigure> {
+    let kind = FigureKind::from_name(kind)?;
+    let mut known = BTreeMap::new();
+    for pair in pairs.chunks_exact(2) {
+        let value: f64 = pair[1]
+            .parse()
+            .ok()
+            .filter(|value: &f64| value.is_finite())?;
+        known.insert(pair[0], value);
+    }
+    let parameters = kind.parameters().iter();
+    let values = parameters.filter_map(|&own| Some((own, *known.get(own.row().key)?)));
+    Some(RememberedFigure {
+        kind,
+        values: values.collect(),
+    })
+}
+
+/// The ranges that a line says; None if it says none.
+fn ranges_of(of: &str, anchor: &str, pairs: &[&str]) -> Option<RememberedRanges> {
+    let anchor = Anchor::from_name(anchor)?;
+    let range = |pair: &[&str]| {
+        let axis = Axis::ALL.into_iter().find(|axis| axis.name() == pair[0]);
+        Some((axis?, pair[1].parse().ok()?))
+    };
+    let ranges: Option<Vec<_>> = pairs.chunks_exact(2).map(range).collect();
+    Some(RememberedRanges {
+        of: of.to_owned(),
+        anchor,
+        ranges: ranges?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_noted_comes_back_and_nonsense_is_left_out() {
+        let sensor = Sensor::default();
+        let mut memory = FormMemory::read(&[]);
+        let ellipse = Figure::ellipse(2.5, 1.005).at(-1.0, 3.0).on(&sensor);
+        let ellipse = ellipse.expect("in range");
+        let ring = Figure::default_of(FigureKind::Hexagon, &sensor);
+        memory.note_figure(&ellipse);
+        memory.note_figure(&ring);
+        memory.note_figure(&ellipse);
+        let range = |text: &str| text.parse::<DecimalRange>().expect("a range");
+        memory.note_ranges(RememberedRanges {
+            of: "ellipse".to_owned(),
+            anchor: Anchor::Centre,
+            ranges: vec![
+                (Axis::X0, range("5:5.9:0.1")),
+                (Axis::Angle, range("0:80:20")),
+            ],
+        });
+        let mut lines = memory.lines();
+        assert_eq!(lines.len(), 3, "{lines:?}");
+        for nonsense in [
+            "",
+            "figure",
+            "figure blob x0 1",
+            "figure ellipse x0 much",
+            "ranges",
+            "ranges a b",
+        ] {
+            lines.push(nonsense.to_owned());
+        }
+        let read = FormMemory::read(&lines);
+        assert_eq!(read, memory);
+        assert_eq!(read.last_kind(), Some(FigureKind::Ellipse));
+        assert_eq!(read.figure(FigureKind::Ellipse, &sensor), Some(ellipse));
+        assert_eq!(read.figure(FigureKind::Octagon, &sensor), None);
+        let ranges = read.ranges().expect("noted");
+        assert_eq!(ranges.get("ellipse", Axis::X0), Some(range("5:5.9:0.1")));
+        assert_eq!(ranges.get("picture", Axis::X0), None);
+        assert_eq!(ranges.get("picture", Axis::Angle), Some(range("0:80:20")));
+        let small = Sensor::new(2, 2).expect("in range");
+        assert_eq!(read.figure(FigureKind::Ellipse, &small), None);
+        let mut none = FormMemory::default();
+        none.note_figure(&ellipse);
+        assert_eq!(none, FormMemory::default());
+    }
+}
