@@ -231,7 +231,7 @@ pub(crate) fn find(which: &OsStr, shelf: &Shelf) -> Result<Model, CliError> {
         ModelChoice::Stored(name) => Ok(load_model(&folder(shelf)?.file(&name))?),
         ModelChoice::File(path) => Ok(load_model(&path)?),
         own => match own.training() {
-            Some(training) => trained(training?),
+            Some(training) => kept_or_trained(training?),
             None => Err(unknown(which, shelf)),
         },
     }
@@ -266,7 +266,7 @@ fn unknown(which: &OsStr, shelf: &Shelf) -> CliError {
 /// The model of a built-in set, from the cache or trained now.
 /// Training takes some seconds, so the model is kept in the user's cache, under a name made of shapes, grid and
 /// version. Without a cache, or if it cannot be written, the model is trained each time; that is not an error.
-fn trained(training: Training<'static>) -> Result<Model, CliError> {
+fn kept_or_trained(training: Training<'static>) -> Result<Model, CliError> {
     let Some(cache) = ModelCache::of_user() else {
         return Ok(training.run()?);
     };
