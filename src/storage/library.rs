@@ -6,6 +6,7 @@ use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::formats::name::{Name, folded};
 use crate::formats::shape::StoredShape;
@@ -70,6 +71,8 @@ const TEMPORARY: &str = ".taxel-tmp";
 pub struct Library {
     folder: PathBuf,
     names: Arc<NameIndex>,
+    /// Whether a thread waits for the lock.
+    waits: Arc<AtomicBool>,
 }
 
 impl Library {
@@ -85,7 +88,14 @@ impl Library {
         Self {
             folder,
             names: Arc::default(),
+            waits: Arc::default(),
         }
+    }
+
+    /// Whether a change, on another thread, waits because another program holds the lock. A change waits for at most
+    /// five seconds.
+    pub fn waits_for_lock(&self) -> bool {
+        self.waits.load(Ordering::Relaxed)
     }
 
     /// Its folder.
@@ -190,7 +200,7 @@ impl Library {
     pub fn save(&self, shape: &StoredShape, expected: Expected) -> Result<u64, LibraryError> {
         let name = &shape.name;
         folder::make(&self.folder)?;
-        let lock = Lock::wait(&self.folder)?;
+        let lock = Lock::wait(&self.folder, &self.waits)?;
         let own = self.own_name(name)?;
         match &own {
             Some(own) => self.check_replaceable(own, expected)?,
@@ -245,7 +255,7 @@ impl Library {
         if !self.folder.is_dir() {
             return Err(unknown());
         }
-        let _lock = Lock::wait(&self.folder)?;
+        let _lock = Lock::wait(&self.folder, &self.waits)?;
         let own = self.own_name(&name)?.ok_or_else(unknown)?;
         let path = self.path(&own);
         folder::regular(&path)?;
@@ -266,7 +276,7 @@ impl Library {
     /// What the system refuses; then the shape is stored nowhere.
     pub fn throw_away(&self, shape: &StoredShape) -> Result<String, LibraryError> {
         folder::make(&self.folder)?;
-        let _lock = Lock::wait(&self.folder)?;
+        let _lock = Lock::wait(&self.folder, &self.waits)?;
         folder::make_inner(&self.trash())?;
         let mut trash = Trash::read(self.trash())?;
         let free = |name: &Name| {
@@ -317,7 +327,7 @@ impl Library {
         if !self.folder.is_dir() {
             return Err(missing());
         }
-        let _lock = Lock::wait(&self.folder)?;
+        let _lock = Lock::wait(&self.folder, &self.waits)?;
         let trash = Trash::read(self.trash())?;
         let mut newest = trash.newest_first();
         let deleted = newest.find(|deleted| name.same(&deleted.name));

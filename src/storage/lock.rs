@@ -5,6 +5,7 @@
 use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::storage::error::{FileError, LibraryError};
@@ -35,25 +36,30 @@ pub(crate) enum LockAttempt {
 }
 
 impl Lock {
-    /// Waits for the lock of a folder; None on a file system without locks.
+    /// Waits for the lock of a folder, and sets `waits` while another program holds it; None on a file system without
+    /// locks.
     ///
     /// # Errors
     /// If another program holds it for [`PATIENCE`], or the system refuses.
-    pub(crate) fn wait(folder: &Path) -> Result<Option<Self>, LibraryError> {
+    pub(crate) fn wait(folder: &Path, waits: &AtomicBool) -> Result<Option<Self>, LibraryError> {
         let path = path_in(folder);
         let file = open(&path)?;
         let start = Instant::now();
-        loop {
-            match try_lock(&file, &path)? {
-                Some(true) => return Ok(Some(Self { _file: file })),
-                Some(false) if start.elapsed() < PATIENCE => std::thread::sleep(PAUSE),
-                Some(false) => {
-                    let busy = io::Error::other("another program has held it for five seconds");
-                    return Err(FileError::new("lock it", &path, busy).into());
+        let locked = loop {
+            match try_lock(&file, &path) {
+                Ok(Some(false)) if start.elapsed() < PATIENCE => {
+                    waits.store(true, Ordering::Relaxed);
+                    std::thread::sleep(PAUSE);
                 }
-                None => return Ok(None),
+                Ok(Some(false)) => {
+                    let busy = io::Error::other("another program has held it for five seconds");
+                    break Err(FileError::new("lock it", &path, busy));
+                }
+                locked => break locked,
             }
-        }
+        };
+        waits.store(false, Ordering::Relaxed);
+        Ok(locked?.map(|_| Self { _file: file }))
     }
 
     /// Tries once to take the lock at a path.

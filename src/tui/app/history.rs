@@ -102,10 +102,16 @@ impl History {
         });
     }
 
-    /// The present document is stored now; so it is found again.
-    pub fn stored(&mut self, name: StoredName) {
-        let saved = self.present.document.clone();
-        if let Some(origin) = self.origins.get_mut(self.present.origin) {
+    /// The number of the origin of a document; of the present one where there is no such document.
+    pub fn origin_of(&self, document: &Document) -> usize {
+        let mut states = std::iter::once(&self.present).chain(self.past.iter().rev());
+        let found = states.find(|state| state.document == *document);
+        found.map_or(self.present.origin, |state| state.origin)
+    }
+
+    /// A document of that origin is stored now; so it is found again.
+    pub fn stored(&mut self, origin: usize, saved: Document, name: StoredName) {
+        if let Some(origin) = self.origins.get_mut(origin) {
             origin.name = Some(name);
             origin.saved = saved;
         }

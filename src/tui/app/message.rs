@@ -259,6 +259,8 @@ pub enum LibraryEvent {
     Named(Purpose, Result<Box<LoadedShape>, String>),
     /// A shape was stored under this name, and this is what its file holds.
     Stored(String, u64),
+    /// It was not stored, and why.
+    NotStored(String),
     /// It was not stored, because the file holds something else; the question whether to replace it.
     Differs(Box<StoredShape>, u64, String),
     /// It was removed.

@@ -1,5 +1,7 @@
 //! The state of the program. Everybody may read it; only [`crate::tui::app::update`] writes it.
 
+use std::collections::VecDeque;
+
 use ratatui::layout::Rect;
 
 use crate::formats::{Name, StoredShape};
@@ -144,6 +146,17 @@ pub enum Notice {
     Refusal(String),
 }
 
+/// A shape that is being saved.
+#[derive(Clone, Debug)]
+pub(in crate::tui) struct UnfinishedSave {
+    /// The shape.
+    pub(in crate::tui) shape: Box<StoredShape>,
+    /// The document that it was made from.
+    pub(in crate::tui) document: Document,
+    /// The number of that document's origin.
+    pub(in crate::tui) origin: usize,
+}
+
 /// The state of the program.
 #[derive(Clone, Debug)]
 pub struct App {
@@ -173,6 +186,10 @@ pub struct App {
     pub(in crate::tui) dialogs: Vec<Dialog>,
     /// What the line of notices says.
     pub(in crate::tui) notice: Option<Notice>,
+    /// What a change of files waits for, if it takes long: the status line says it while there is no notice.
+    pub(in crate::tui) waiting: Option<String>,
+    /// What is being saved, in the order in which the library answers.
+    pub(in crate::tui) saving: VecDeque<UnfinishedSave>,
     /// The shape that was removed last, until something else is done: undo brings it back.
     pub(in crate::tui) removed: Option<String>,
     /// The results of the last sweep, while they are closed.
@@ -229,6 +246,8 @@ impl App {
             count: None,
             dialogs: Vec::new(),
             notice: None,
+            waiting: None,
+            saving: VecDeque::new(),
             removed: None,
             results: None,
             recognition: Some(Box::new(Recognition::new(options.seed))),
@@ -369,14 +388,18 @@ impl App {
         self.history.present() != &self.history.origin().saved
     }
 
-    /// What is on the matrix and would be lost, to be kept in the journal. At an end that was asked for, it was given up.
+    /// Whether what is on the matrix is being saved.
+    pub(in crate::tui) fn is_being_saved(&self) -> bool {
+        let present = self.history.present();
+        self.saving.iter().any(|save| save.document == *present)
+    }
+
+    /// What would be lost, to be kept in the journal: what is on the matrix, else what is being saved. At an end that was
+    /// asked for, the former was given up.
     pub fn unsaved_work(&self) -> Option<StoredShape> {
-        if self.run_state == RunState::Quit {
-            return None;
-        }
         let shown = self.shown();
-        if *shown == self.history.origin().saved {
-            return None;
+        if self.run_state == RunState::Quit || *shown == self.history.origin().saved {
+            return self.saving.back().map(|save| (*save.shape).clone());
         }
         let stored = self.stored_name().unwrap_or(UNNAMED);
         let name = Name::new(stored).or_else(|_| Name::new(UNNAMED)).ok()?;
@@ -407,6 +430,11 @@ impl App {
     /// Whether the program has come to its end.
     pub fn ended(&self) -> bool {
         self.run_state != RunState::Running
+    }
+
+    /// What a change of files waits for, if it takes long.
+    pub fn waiting(&self) -> Option<&str> {
+        self.waiting.as_deref()
     }
 
     /// How it looks.

@@ -152,15 +152,18 @@ fn taxel(app: &App, seen: &Reading, panes: &Panes) -> String {
     write::first_fitting(&lines.each_ref().map(String::as_str), width).to_owned()
 }
 
-/// The text of the top page, or the notice.
+/// A question, else the notice, else what a change of files waits for, else the text of the top page.
 fn notice(app: &App, panes: &Panes) -> Option<(String, Role)> {
     let top = app.dialogs.last().map(Dialog::page);
-    let remarks = top.filter(|page| app.notice.is_none() || page.slot() == Slot::Question);
-    let remark = remarks.and_then(|page| page.remark(app.keymap(), panes.body));
-    remark.or_else(|| {
-        app.notice.as_ref().map(|notice| match notice {
-            Notice::Info(text) => (text.clone(), Role::Key),
-            Notice::Refusal(text) => (format!("! {text}"), Role::Error),
-        })
-    })
+    let remark = top.and_then(|page| page.remark(app.keymap(), panes.body));
+    let is_question = top.is_some_and(|page| page.slot() == Slot::Question);
+    if is_question && remark.is_some() {
+        return remark;
+    }
+    let notice = app.notice.as_ref().map(|notice| match notice {
+        Notice::Info(text) => (text.clone(), Role::Key),
+        Notice::Refusal(text) => (format!("! {text}"), Role::Error),
+    });
+    let waiting = || Some((app.waiting()?.to_owned(), Role::Key));
+    notice.or_else(waiting).or(remark)
 }

@@ -135,6 +135,10 @@ pub enum WorkerEvent {
     Progress(u64, SweepProgress),
     /// How long a grid will take, about.
     Estimate(Box<PoseGrid>, Duration),
+    /// There is an answer to a change of files.
+    Saved,
+    /// What a change of files waits for; None if nothing is waited for.
+    Waiting(Option<String>),
     /// A sweep is over, at its end or because it was stopped.
     Swept(u64, Arc<Findings>),
     /// A file was written.

@@ -210,6 +210,9 @@ pub(crate) fn on_worker(app: &mut App, told: WorkerEvent) -> Option<Effect> {
         WorkerEvent::Recognition(event) => recognise::update::on_worker(app, event),
         WorkerEvent::Live(number, event) => live::update::on_worker(app, number, &event),
         WorkerEvent::Refused(reason) => refuse(app, reason),
+        WorkerEvent::Waiting(what) => app.waiting = what,
+        // The runtime takes the answer itself.
+        WorkerEvent::Saved => {}
     }
     None
 }

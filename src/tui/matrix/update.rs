@@ -4,7 +4,7 @@
 //! once.
 
 use crate::description::{DESCRIPTORS, Descriptor};
-use crate::formats::value;
+use crate::formats::{StoredShape, value};
 use crate::parameter::Parameter;
 use crate::parameter::number::short;
 use crate::source::Source;
@@ -17,7 +17,7 @@ use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::History;
 use crate::tui::app::message::{Copied, Endpoint, Layer, Message, Purpose};
-use crate::tui::app::state::{App, Display, Mode, NarrowPage, RunState};
+use crate::tui::app::state::{App, Display, Mode, NarrowPage, RunState, UnfinishedSave};
 use crate::tui::form::state::FormDialog;
 use crate::tui::help::Help;
 use crate::tui::history::HistoryDialog;
@@ -78,7 +78,12 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
             return Some(Effect::Library(LibraryRequest::Restore(name)));
         }
         other => match library_request(other) {
-            Ok(request) => return Some(Effect::Library(request)),
+            Ok(request) => {
+                if let LibraryRequest::Store(shape, _) = &request {
+                    begin_save(app, shape);
+                }
+                return Some(Effect::Library(request));
+            }
             Err(other) => return open_page(app, &other),
         },
     }
@@ -134,6 +139,22 @@ fn library_request(message: Message) -> Result<LibraryRequest, Message> {
     })
 }
 
+/// Takes note of what is being saved. Keys may change the matrix before the library answers.
+fn begin_save(app: &mut App, shape: &StoredShape) {
+    let present = app.history.present();
+    let own = present.to_shape(shape.name.clone(), &Reading::of(present));
+    let document = if own == *shape {
+        present.clone()
+    } else {
+        Document::of_shape(shape)
+    };
+    app.saving.push_back(UnfinishedSave {
+        shape: Box::new(shape.clone()),
+        origin: app.history.origin_of(&document),
+        document,
+    });
+}
+
 /// Opens the form of the picture that is on the matrix.
 /// Its name is that of the picture, else of the document; the notice says how to get to another shape, because the
 /// key for a picture leads here and no longer to the list.
@@ -158,6 +179,10 @@ fn ask(app: &mut App, text: String, yes: Message) {
 fn save(app: &mut App) {
     if app.reading().imprint.is_empty() {
         return refuse(app, "nothing to save: the matrix is empty");
+    }
+    if let Some(save) = app.saving.back() {
+        let text = format!("{} is still being saved", save.shape.name);
+        return refuse(app, text);
     }
     let own = app
         .stored()
@@ -194,9 +219,9 @@ fn proposed_name(app: &App) -> String {
 
 /// Quits, after a question if work would be lost.
 /// The imprint on the matrix can be saved from the question; an earlier drawing must be brought back first, so there
-/// is no key for it.
+/// is no key for it. What is being saved needs no question: the end waits for it, and says if it was in vain.
 fn quit(app: &mut App) {
-    let what = if app.unsaved() {
+    let what = if app.unsaved() && !app.is_being_saved() {
         "The imprint"
     } else if app.history.left_unsaved() {
         "An earlier drawing"

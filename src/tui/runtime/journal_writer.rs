@@ -16,7 +16,7 @@ use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
 use crate::formats::StoredShape;
-use crate::storage::Journal;
+use crate::storage::{Journal, Orphan};
 use crate::tui::app::state::App;
 use crate::tui::explore::message::WorkerEvent;
 use crate::tui::runtime::progress::WorkerEventSink;
@@ -46,6 +46,8 @@ pub(in crate::tui) struct JournalWriter {
 enum JournalRequest {
     /// Keep this unsaved work.
     Keep(Box<StoredShape>),
+    /// Keep this work of a program that crashed, and then take it out of that one's journal.
+    Adopt(Box<Orphan>),
     /// There is no unsaved work any more.
     Clear,
     /// Write now; the answer is whether everything is written.
@@ -61,6 +63,7 @@ impl JournalWriter {
         let writer = JournalThread {
             journal,
             pending: Pending::Nothing,
+            adopted: Vec::new(),
             post: None,
             reported: false,
         };
@@ -121,6 +124,12 @@ impl JournalWriter {
         self.send(JournalRequest::Keep(Box::new(shape)));
     }
 
+    /// Keeps the work of a program that crashed, in place of that one's journal.
+    pub(in crate::tui) fn adopt(&mut self, orphan: Orphan) {
+        self.last = Some(orphan.shape.clone());
+        self.send(JournalRequest::Adopt(Box::new(orphan)));
+    }
+
     /// Sends a request to the thread, if there is one.
     fn send(&self, note: JournalRequest) {
         if let Some(notes) = &self.notes {
@@ -130,10 +139,15 @@ impl JournalWriter {
     }
 
     /// Waits until everything is written, but not for ever: a disk may hang. False if it is not written.
-    pub(in crate::tui) fn flush(&self) -> bool {
+    fn flush(&self) -> bool {
+        self.written(PATIENCE)
+    }
+
+    /// Has everything written, and waits for that for at most `patience`. False if it is not written.
+    pub(in crate::tui) fn written(&self, patience: Duration) -> bool {
         let (done, written) = channel();
         self.send(JournalRequest::Flush(done));
-        let answer = written.recv_timeout(PATIENCE);
+        let answer = written.recv_timeout(patience);
         self.hangs.set(answer == Err(RecvTimeoutError::Timeout));
         answer.unwrap_or(false)
     }
@@ -170,6 +184,8 @@ struct JournalThread {
     journal: Journal,
     /// What is still to be written.
     pending: Pending,
+    /// Work of programs that crashed, which stays in their journals until it is written here.
+    adopted: Vec<Orphan>,
     /// Where errors are reported.
     post: Option<WorkerEventSink>,
     /// Whether the present error has been reported: once is enough.
@@ -193,6 +209,11 @@ impl JournalThread {
                         _ => Instant::now(),
                     };
                     self.pending = Pending::Since(shape, since);
+                }
+                Ok(JournalRequest::Adopt(orphan)) => {
+                    self.pending = Pending::Since(Box::new(orphan.shape.clone()), Instant::now());
+                    self.adopted.push(*orphan);
+                    self.write();
                 }
                 Ok(JournalRequest::Clear) => {
                     self.pending = Pending::Nothing;
@@ -221,7 +242,10 @@ impl JournalThread {
             return true;
         };
         match self.journal.keep(&shape) {
-            Ok(()) => self.reported = false,
+            Ok(()) => {
+                self.reported = false;
+                self.adopted.drain(..).for_each(Orphan::discard);
+            }
             Err(error) => {
                 self.pending = Pending::Failed(shape);
                 if let Some(post) = self.post.as_ref().filter(|_| !self.reported) {

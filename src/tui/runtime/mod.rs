@@ -10,6 +10,7 @@
 //! sizes            the limit of a set in several sizes
 //! frames           a source of frames: watched, recorded
 //! naming           the shapes that left the imprints of frames
+//! saves            changes of the library and of files
 //! journal_writer   unsaved work, written beside the program
 //! write_access     where files may be written
 //! memory           a bound on the memory of sweeps and trainings
@@ -39,6 +40,8 @@ pub mod mailbox;
 
 mod write_access;
 
+mod saves;
+
 mod shape_log;
 
 mod reminders;
@@ -50,10 +53,12 @@ pub use crate::tui::runtime::progress::WorkerEventSink;
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use crate::tui::runtime::journal_writer::JournalWriter;
 use crate::tui::runtime::models::ModelStore;
 use crate::tui::runtime::reminders::Reminders;
+use crate::tui::runtime::saves::{ChangeOutcome, FileChange, SaveQueue};
 use crate::tui::runtime::shape_log::ShapeLog;
 pub use crate::tui::runtime::shape_log::ShapeSink;
 use crate::tui::runtime::workers::Workers;
@@ -68,7 +73,11 @@ use crate::storage::{
 use crate::tui::app::message::{Leftover, LibraryEvent, Message};
 use crate::tui::app::state::App;
 use crate::tui::app::update::update;
-use crate::tui::runtime::effect::{Effect, LibraryRequest, TerminalEffect};
+use crate::tui::explore::message::WorkerEvent;
+use crate::tui::runtime::effect::{Effect, FileRequest, LibraryRequest, TerminalEffect};
+
+/// How long the end of the program waits for the disk.
+const PATIENCE: Duration = Duration::from_millis(1500);
 
 /// The outside world: a library, unsaved work that crashed programs left in it, this program's journal, and workers.
 #[derive(Debug)]
@@ -83,6 +92,10 @@ pub struct World {
     reminders: Option<Reminders>,
     /// The stored shapes that were used.
     log: ShapeLog,
+    /// Changes of the library and of files in progress.
+    saves: SaveQueue,
+    /// What is worth remembering, but not worth waiting for.
+    memories: SaveQueue,
     /// Sweeps and exports in progress.
     workers: Workers,
     /// The folder of a temporary library. The last field: it is dropped after the journal has been written.
@@ -97,6 +110,8 @@ impl World {
         let mut world = Self {
             reminders: Some(Reminders::of(&library)),
             log: ShapeLog::default(),
+            saves: SaveQueue::new(library.clone()),
+            memories: SaveQueue::new(library.clone()),
             library,
             orphan: None,
             journal,
@@ -111,6 +126,8 @@ impl World {
     pub fn quiet(library: Library) -> Self {
         let workers = Workers::with(ModelStore::beside(&library));
         Self {
+            saves: SaveQueue::new(library.clone()),
+            memories: SaveQueue::new(library.clone()),
             library,
             orphan: None,
             reminders: None,
@@ -167,6 +184,8 @@ impl World {
     #[must_use]
     pub fn with_workers(mut self, post: WorkerEventSink) -> Self {
         self.journal.report_to(Arc::clone(&post));
+        self.saves.post_to(Arc::clone(&post));
+        self.memories.post_to(Arc::clone(&post));
         self.workers.post_to(post);
         self
     }
@@ -182,7 +201,8 @@ impl World {
     /// was there before.
     #[must_use]
     pub fn confined_to(mut self, folder: PathBuf) -> Self {
-        self.workers.access = WriteAccess::below(folder);
+        self.workers.access = Arc::new(WriteAccess::below(folder));
+        self.saves.access = Arc::clone(&self.workers.access);
         self
     }
 
@@ -230,9 +250,24 @@ impl World {
     /// one for the terminal, which is returned.
     pub fn handle(&mut self, app: &mut App, message: Message) -> Option<TerminalEffect> {
         let mut next = message;
+        if next == Message::Worker(WorkerEvent::Saved) {
+            // Memories have no answer. That of a change may have been taken already.
+            let _ = self.memories.wait(Duration::ZERO);
+            let answer = self.saves.wait(Duration::ZERO);
+            next = answer.and_then(|answer| self.answer(answer))?;
+        }
         let terminal = loop {
             match update(app, next) {
-                Some(Effect::Library(request)) => next = self.perform(request),
+                Some(Effect::Library(request)) => match self.perform(request) {
+                    Some(answer) => next = answer,
+                    None => break None,
+                },
+                Some(Effect::File(request @ FileRequest::Write(..))) => {
+                    match self.change(FileChange::File(request)) {
+                        Some(answer) => next = answer,
+                        None => break None,
+                    }
+                }
                 Some(Effect::File(request)) => {
                     next = Message::File(files::perform(request, &self.workers.access));
                 }
@@ -246,7 +281,7 @@ impl World {
         };
         self.journal.note(app);
         if let Some(reminders) = &mut self.reminders {
-            reminders.note(app);
+            reminders.note(app, &mut self.memories);
         }
         terminal
     }
@@ -267,14 +302,94 @@ impl World {
         events.map(Message::Worker).collect()
     }
 
-    /// Writes unsaved work at once, because the program is about to end. False if it is not on the disk, because of an
-    /// error or because the disk does not answer.
-    pub fn secure(&mut self) -> bool {
-        self.journal.flush()
+    /// When it is to be looked at what changes wait for; None if there are none.
+    pub(in crate::tui) fn changes_due(&self) -> Option<Instant> {
+        self.saves.look_at()
     }
 
-    /// Performs a request to the library; the answer is a message.
-    fn perform(&mut self, request: LibraryRequest) -> Message {
+    /// What the first change waits for, if it takes long.
+    pub(in crate::tui) fn waiting(&self) -> Option<String> {
+        self.saves.status()
+    }
+
+    /// Finishes changes and writes unsaved work at once, because the program is about to end; but waits for at most
+    /// [`PATIENCE`]. Returns lines about what is not on the disk, because of an error or because the disk does not answer.
+    pub fn secure(&mut self, app: &mut App) -> Vec<String> {
+        let end = Instant::now() + PATIENCE;
+        // Half of the time: the journal keeps what could not be saved.
+        let saved_by = Instant::now() + PATIENCE / 2;
+        while !self.saves.is_idle() {
+            let time = saved_by.saturating_duration_since(Instant::now());
+            let Some(answer) = self.saves.wait(time) else {
+                break;
+            };
+            if let Some(answer) = self.answer(answer) {
+                // Nothing is begun any more.
+                let _ = update(app, answer);
+            }
+        }
+        while !self.memories.is_idle() {
+            let time = saved_by.saturating_duration_since(Instant::now());
+            if self.memories.wait(time).is_none() {
+                break;
+            }
+        }
+        self.journal.note(app);
+        let kept = (self.journal).written(end.saturating_duration_since(Instant::now()));
+        let mut lines = self.saves.left();
+        if app.unsaved_work().is_some() {
+            if !kept {
+                lines.push(
+                    "unsaved work may not be on the disk, which refuses it or does not answer\n"
+                        .to_owned(),
+                );
+            } else if !lines.is_empty() {
+                lines.push("the next start offers it as unsaved work\n".to_owned());
+            }
+        }
+        lines
+    }
+
+    /// Makes a change, or has it made. Returns the answer if there is one within a moment.
+    fn change(&mut self, change: FileChange) -> Option<Message> {
+        let answer = self.saves.make(change)?;
+        self.answer(answer)
+    }
+
+    /// The message that tells the program what became of a change.
+    fn answer(&mut self, changed: ChangeOutcome) -> Option<Message> {
+        let answer = match changed {
+            ChangeOutcome::Stored(shape, Ok(stamp)) => {
+                self.log.stored(shape.name.as_str(), stamp);
+                LibraryEvent::Stored(shape.name.to_string(), stamp)
+            }
+            ChangeOutcome::Stored(shape, Err(error)) => match error {
+                LibraryError::Exists { stamp, .. } | LibraryError::Changed { stamp, .. } => {
+                    // A record needs what is in the way.
+                    let _ = self.load(shape.name.as_str());
+                    LibraryEvent::Differs(shape, stamp, error.to_string())
+                }
+                _ => LibraryEvent::NotStored(error.to_string()),
+            },
+            ChangeOutcome::Removed(removed) => done(removed, LibraryEvent::Removed),
+            ChangeOutcome::Restored(restored) => done(restored, LibraryEvent::Restored),
+            ChangeOutcome::ThrownAway(thrown) => self.given_up(thrown),
+            ChangeOutcome::File(event) => return Some(Message::File(event)),
+            ChangeOutcome::Panicked { was_save } => {
+                let text = "the work failed; this is a bug".to_owned();
+                if was_save {
+                    LibraryEvent::NotStored(text)
+                } else {
+                    LibraryEvent::Failed(text)
+                }
+            }
+            ChangeOutcome::Nothing => return None,
+        };
+        Some(Message::Library(answer))
+    }
+
+    /// Performs a request to the library; the answer is a message. A change may have no answer yet.
+    fn perform(&mut self, request: LibraryRequest) -> Option<Message> {
         let answer = match request {
             LibraryRequest::List => {
                 let listed = self.library.list();
@@ -297,39 +412,32 @@ impl World {
             LibraryRequest::Named(purpose, name) => {
                 LibraryEvent::Named(purpose, self.load(&name).map(Box::new))
             }
-            LibraryRequest::Store(shape, expected) => match self.library.save(&shape, expected) {
-                Ok(stamp) => {
-                    self.log.stored(shape.name.as_str(), stamp);
-                    LibraryEvent::Stored(shape.name.to_string(), stamp)
-                }
-                Err(error) => match error {
-                    LibraryError::Exists { stamp, .. } | LibraryError::Changed { stamp, .. } => {
-                        // A record needs what is in the way.
-                        let _ = self.load(shape.name.as_str());
-                        LibraryEvent::Differs(shape, stamp, error.to_string())
-                    }
-                    _ => LibraryEvent::Failed(error.to_string()),
-                },
-            },
-            LibraryRequest::Remove(name) => done(self.library.delete(&name), LibraryEvent::Removed),
-            LibraryRequest::Restore(name) => {
-                done(self.library.restore(&name), LibraryEvent::Restored)
+            LibraryRequest::Store(shape, expected) => {
+                return self.change(FileChange::Store(shape, expected));
             }
+            LibraryRequest::Remove(name) => return self.change(FileChange::Remove(name)),
+            LibraryRequest::Restore(name) => return self.change(FileChange::Restore(name)),
             LibraryRequest::Recover => match self.orphan.take() {
                 Some((orphan, _)) => {
                     let shape = orphan.shape.clone();
                     // Into this program's journal before it is taken out of the other one.
-                    self.journal.keep(shape.clone());
-                    if self.journal.flush() {
-                        orphan.discard();
-                    }
+                    self.journal.adopt(orphan);
                     LibraryEvent::Recovered(Box::new(shape))
                 }
                 None => LibraryEvent::Failed("no unsaved work is left".to_owned()),
             },
-            LibraryRequest::GiveUp => self.give_up(),
+            LibraryRequest::GiveUp => match &self.orphan {
+                Some((orphan, _)) => {
+                    let mut shape = orphan.shape.clone();
+                    if let Ok(name) = Name::new(UNNAMED) {
+                        shape = shape.renamed(name);
+                    }
+                    return self.change(FileChange::ThrowAway(Box::new(shape)));
+                }
+                None => LibraryEvent::Failed("no unsaved work is left".to_owned()),
+            },
         };
-        Message::Library(answer)
+        Some(Message::Library(answer))
     }
 
     /// Loads a shape by name, and logs it.
@@ -341,19 +449,15 @@ impl World {
         loaded.map_err(|error| error.to_string())
     }
 
-    /// Moves unwanted work to the trash, like a deleted shape. Other work is offered only after this succeeds; otherwise
-    /// the same work would be offered again without end.
-    fn give_up(&mut self) -> LibraryEvent {
-        let Some((orphan, _)) = self.orphan.take() else {
-            return LibraryEvent::Failed("no unsaved work is left".to_owned());
-        };
-        let mut shape = orphan.shape.clone();
-        if let Ok(name) = Name::new(UNNAMED) {
-            shape = shape.renamed(name);
-        }
-        match self.library.throw_away(&shape) {
+    /// Unwanted work is in the trash, like a deleted shape, or not. Other work is offered only after this succeeds;
+    /// otherwise the same work would be offered again without end.
+    fn given_up(&mut self, thrown: Result<String, LibraryError>) -> LibraryEvent {
+        let orphan = self.orphan.take();
+        match thrown {
             Ok(name) => {
-                orphan.discard();
+                if let Some((orphan, _)) = orphan {
+                    orphan.discard();
+                }
                 self.orphan = self.newest_orphan();
                 LibraryEvent::GivenUp(name, self.left())
             }

@@ -8,6 +8,7 @@ use crate::tui::app::state::App;
 use crate::tui::form::memory::FormMemory;
 use crate::tui::recognise::reach::trained_set;
 use crate::tui::recognise::sets::ModelChoice;
+use crate::tui::runtime::saves::{FileChange, SaveQueue};
 
 /// The files, and what is in them as far as that is known.
 #[derive(Debug)]
@@ -55,18 +56,21 @@ impl Reminders {
     }
 
     /// Remembers what is new. A set counts once its model is there, so that none is remembered that does not exist.
-    pub(super) fn note(&mut self, app: &App) {
+    pub(super) fn note(&mut self, app: &App, queue: &mut SaveQueue) {
+        let mut write = |file: &RememberedFile, lines| {
+            queue.make_beside(FileChange::Remember(file.clone(), lines))
+        };
         if app.commands.len() > self.remembered {
-            self.commands.write(&app.commands);
+            write(&self.commands, app.commands.clone());
             self.remembered = app.commands.len();
         }
         let now = trained_set(app).filter(|now| self.chosen.as_ref() != Some(*now));
         if let Some(now) = now {
-            self.set.write(&[now.name().to_owned()]);
+            write(&self.set, vec![now.name().to_owned()]);
             self.chosen = Some(now.clone());
         }
         if app.forms != self.values {
-            self.forms.write(&app.forms.lines());
+            write(&self.forms, app.forms.lines());
             self.values = app.forms.clone();
         }
     }

@@ -32,6 +32,12 @@ use crate::tui::runtime::progress::{
 use crate::tui::runtime::sizes::SizeWorker;
 use crate::tui::runtime::write_access::WriteAccess;
 
+/// How long the end of the program waits for a file that is being written.
+const PATIENCE: Duration = Duration::from_millis(400);
+
+/// The pause between two looks at it.
+const PAUSE: Duration = Duration::from_millis(5);
+
 /// An estimate is the best of all runs within this time.
 const MEASURED: Duration = Duration::from_millis(30);
 
@@ -55,7 +61,7 @@ pub(in crate::tui) struct Workers {
     /// Names the imprints of its frames.
     namer: ShapeNamer,
     /// Where files may be written.
-    pub(super) access: WriteAccess,
+    pub(super) access: Arc<WriteAccess>,
 }
 
 impl std::fmt::Debug for Workers {
@@ -233,8 +239,11 @@ impl Drop for Workers {
     fn drop(&mut self) {
         self.begin();
         if let Some(thread) = self.writing.take() {
-            // It catches its own panics.
-            let _ = thread.join();
+            // It removes what it has half-written; but a disk may hang.
+            let end = Instant::now() + PATIENCE;
+            while !thread.is_finished() && Instant::now() < end {
+                std::thread::sleep(PAUSE);
+            }
         }
     }
 }

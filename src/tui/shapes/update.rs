@@ -107,18 +107,13 @@ fn on_list(app: &mut App, mut entries: Vec<LibraryEntry>) -> Option<Effect> {
 /// A removal or a restoring also reaches the history, where earlier states bear the name of that shape.
 fn on_change(app: &mut App, change: LibraryEvent) {
     match change {
-        LibraryEvent::Stored(name, stamp) => {
-            inform(app, format!("saved as {name}"));
-            if app.quits_when_saved {
-                app.run_state = RunState::Quit;
-            }
-            app.history.stored(StoredName {
-                name,
-                stamp,
-                owner: ShapeOrigin::Own,
-            });
+        LibraryEvent::Stored(name, stamp) => on_stored(app, name, stamp),
+        LibraryEvent::NotStored(reason) => {
+            app.saving.pop_front();
+            refuse(app, reason);
         }
         LibraryEvent::Differs(shape, stamp, text) => {
+            app.saving.pop_front();
             let yes = Message::Store(shape, Expected::Stamp(stamp));
             let question = Question::new(format!("{text}. Replace it?"), yes);
             app.dialogs.push(Dialog::Question(question));
@@ -162,6 +157,22 @@ fn on_change(app: &mut App, change: LibraryEvent) {
         | LibraryEvent::Read(_)
         | LibraryEvent::Named(..)
         | LibraryEvent::Failed(_) => {}
+    }
+}
+
+/// A shape is saved, as it was when that was asked for.
+fn on_stored(app: &mut App, name: String, stamp: u64) {
+    inform(app, format!("saved as {name}"));
+    if app.quits_when_saved {
+        app.run_state = RunState::Quit;
+    }
+    if let Some(save) = app.saving.pop_front() {
+        let name = StoredName {
+            name,
+            stamp,
+            owner: ShapeOrigin::Own,
+        };
+        app.history.stored(save.origin, save.document, name);
     }
 }
 

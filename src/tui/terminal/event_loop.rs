@@ -65,11 +65,9 @@ pub(in crate::tui) fn run(
         let _ = event_loop
             .world
             .handle(&mut event_loop.app, Message::Terminate);
-        if !event_loop.world.secure() && event_loop.app.unsaved_work().is_some() {
-            session::tell_later(
-                "unsaved work may not be on the disk, which refuses it or does not answer\n",
-            );
-        }
+    }
+    for line in event_loop.world.secure(&mut event_loop.app) {
+        session::tell_later(&line);
     }
     let left = session::leave();
     match ended {
@@ -209,6 +207,7 @@ impl<'a> EventLoop<'a> {
                 }
                 self.read(&ready)?;
                 self.take_frames()?;
+                self.look_at_changes()?;
                 self.draw()?;
             }
         }
@@ -221,7 +220,18 @@ impl<'a> EventLoop<'a> {
         let reader = reader.map(|patience| patience.saturating_sub(self.read_at.elapsed()));
         let frames = self.frames_due;
         let frames = frames.map(|due| due.saturating_duration_since(Instant::now()));
-        reader.into_iter().chain(frames).min()
+        let changes = self.world.changes_due();
+        let changes = changes.map(|due| due.saturating_duration_since(Instant::now()));
+        reader.into_iter().chain(frames).chain(changes).min()
+    }
+
+    /// Says what changes of files wait for, if that is another thing than before.
+    fn look_at_changes(&mut self) -> io::Result<()> {
+        let waiting = self.world.waiting();
+        if waiting.as_deref() == self.app.waiting() {
+            return Ok(());
+        }
+        self.update(Message::Worker(WorkerEvent::Waiting(waiting)))
     }
 
     /// Takes the frames that have come, if the last picture is old enough; those that come meanwhile are taken together.
@@ -412,7 +422,7 @@ impl<'a> EventLoop<'a> {
             self.refuse("there is no shell to go back to");
             return Ok(());
         }
-        self.world.secure();
+        self.world.secure(&mut self.app);
         session::leave()?;
         // From here on a "continue" is the answer to this stop.
         let before = self.signals.received();

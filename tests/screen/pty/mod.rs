@@ -20,6 +20,10 @@ mod mouse;
 
 mod record;
 
+mod saves;
+
+mod hostile;
+
 mod live;
 
 /// Becomes the program; see `program`.

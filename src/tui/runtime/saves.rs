@@ -1,0 +1,257 @@
+//! Changes to files, one after the other on a thread of their own, so that no key waits for a disk or for the lock of
+//! another program.
+//!
+//! ```text
+//! request -> thread -> answer within QUICK: handled at once, before the next key
+//!                      later: a message wakes the loop, keys have gone on meanwhile; after SLOW it is said what is
+//!                      waited for
+//! ```
+//! Without a receiver of events, as in a script, a change is made at once.
+
+use std::collections::VecDeque;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::Builder;
+use std::time::{Duration, Instant};
+
+use crate::formats::StoredShape;
+use crate::storage::{Expected, Library, LibraryError, RememberedFile};
+use crate::tui::app::message::FileEvent;
+use crate::tui::explore::message::WorkerEvent;
+use crate::tui::runtime::effect::FileRequest;
+use crate::tui::runtime::files;
+use crate::tui::runtime::progress::WorkerEventSink;
+use crate::tui::runtime::write_access::WriteAccess;
+
+/// How long a key waits for a change. Nearly all are made within it, so that the next key finds them done.
+const QUICK: Duration = Duration::from_millis(100);
+
+/// After this time it is said what a change waits for.
+const SLOW: Duration = Duration::from_millis(300);
+
+/// The time after which that is looked at again.
+const AGAIN: Duration = Duration::from_millis(500);
+
+/// A change.
+#[derive(Debug)]
+pub(super) enum FileChange {
+    /// Save a shape.
+    Store(Box<StoredShape>, Expected),
+    /// Delete the shape of that name.
+    Remove(String),
+    /// Restore the shape of that name that was deleted last.
+    Restore(String),
+    /// Move unsaved work of a program that crashed to the trash.
+    ThrowAway(Box<StoredShape>),
+    /// Write a file.
+    File(FileRequest),
+    /// Remember lines for the next run.
+    Remember(RememberedFile, Vec<String>),
+}
+
+/// What became of a change.
+#[derive(Debug)]
+pub(super) enum ChangeOutcome {
+    /// The shape was saved, and this is the stamp of its file.
+    Stored(Box<StoredShape>, Result<u64, LibraryError>),
+    /// The shape of that name was deleted.
+    Removed(Result<String, LibraryError>),
+    /// The shape of that name was restored.
+    Restored(Result<String, LibraryError>),
+    /// The work is in the trash under that name.
+    ThrownAway(Result<String, LibraryError>),
+    /// The file was written, or not.
+    File(FileEvent),
+    /// It failed by a fault of this program.
+    Panicked {
+        /// Whether a shape was to be saved.
+        was_save: bool,
+    },
+    /// Nobody asks.
+    Nothing,
+}
+
+impl FileChange {
+    /// What it does, in a few words for a message.
+    fn words(&self) -> String {
+        match self {
+            Self::Store(shape, _) => format!("Saving {}", shape.name),
+            Self::Remove(name) => format!("Deleting {name}"),
+            Self::Restore(name) => format!("Restoring {name}"),
+            Self::ThrowAway(_) => "Moving it to the trash".to_owned(),
+            Self::File(FileRequest::Write(name, ..)) => format!("Writing {name}"),
+            Self::File(_) => "Reading a file".to_owned(),
+            Self::Remember(..) => "Remembering it".to_owned(),
+        }
+    }
+
+    /// Makes it.
+    fn make(self, library: &Library, access: &WriteAccess) -> ChangeOutcome {
+        match self {
+            Self::Store(shape, expected) => {
+                let stored = library.save(&shape, expected);
+                ChangeOutcome::Stored(shape, stored)
+            }
+            Self::Remove(name) => ChangeOutcome::Removed(library.delete(&name)),
+            Self::Restore(name) => ChangeOutcome::Restored(library.restore(&name)),
+            Self::ThrowAway(shape) => ChangeOutcome::ThrownAway(library.throw_away(&shape)),
+            Self::File(request) => ChangeOutcome::File(files::perform(request, access)),
+            Self::Remember(file, lines) => {
+                file.write(&lines);
+                ChangeOutcome::Nothing
+            }
+        }
+    }
+}
+
+/// The changes under way.
+#[derive(Debug)]
+pub(super) struct SaveQueue {
+    /// The library that is changed.
+    library: Library,
+    /// Where files may be written.
+    pub(super) access: Arc<WriteAccess>,
+    /// The thread, once there is one.
+    thread: Option<SaveThread>,
+    /// What each change does, and when it was asked for; the first is being made.
+    pending: VecDeque<(String, Instant)>,
+    /// Where the thread says that it has an answer; None without a thread.
+    post: Option<Post>,
+}
+
+/// A sink of events, which has no text of its own.
+struct Post(WorkerEventSink);
+
+impl std::fmt::Debug for Post {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Post")
+    }
+}
+
+/// The ends of the channels to the thread.
+#[derive(Debug)]
+struct SaveThread {
+    /// Changes to make.
+    changes: Sender<FileChange>,
+    /// What became of them, in their order.
+    answers: Receiver<ChangeOutcome>,
+}
+
+impl SaveQueue {
+    /// Changes of a library, made at once.
+    pub(super) fn new(library: Library) -> Self {
+        Self {
+            library,
+            access: Arc::default(),
+            thread: None,
+            pending: VecDeque::new(),
+            post: None,
+        }
+    }
+
+    /// Has changes made on a thread.
+    pub(super) fn post_to(&mut self, post: WorkerEventSink) {
+        self.post = Some(Post(post));
+    }
+
+    /// Makes a change, or has it made. Returns what became of it if that is known within a moment.
+    pub(super) fn make(&mut self, change: FileChange) -> Option<ChangeOutcome> {
+        if let Some(made) = self.begin(change) {
+            return Some(made);
+        }
+        // Behind another one it takes long.
+        let is_first = self.pending.len() == 1;
+        is_first.then(|| self.wait(QUICK)).flatten()
+    }
+
+    /// Makes a change that nobody waits for.
+    pub(super) fn make_beside(&mut self, change: FileChange) {
+        // Such a change has no answer.
+        let _ = self.begin(change);
+    }
+
+    /// Gives a change to the thread. Without one, makes it, and returns what became of it.
+    fn begin(&mut self, change: FileChange) -> Option<ChangeOutcome> {
+        self.start();
+        let Some(thread) = &self.thread else {
+            return Some(change.make(&self.library, &self.access));
+        };
+        self.pending.push_back((change.words(), Instant::now()));
+        // It ends only after this end of the channel.
+        let _ = thread.changes.send(change);
+        None
+    }
+
+    /// Starts the thread where it is wanted and there is none. Without one, changes are made at once.
+    fn start(&mut self) {
+        let Some(Post(post)) = self.post.as_ref().filter(|_| self.thread.is_none()) else {
+            return;
+        };
+        let (changes, asked) = channel::<FileChange>();
+        let (answer, answers) = channel();
+        let (library, access, post) = (
+            self.library.clone(),
+            Arc::clone(&self.access),
+            Arc::clone(post),
+        );
+        let body = move || {
+            for change in asked {
+                let was_save = matches!(change, FileChange::Store(..));
+                let made = catch_unwind(AssertUnwindSafe(|| change.make(&library, &access)));
+                let made = made.unwrap_or(ChangeOutcome::Panicked { was_save });
+                if answer.send(made).is_err() {
+                    return;
+                }
+                post(WorkerEvent::Saved);
+            }
+        };
+        if Builder::new().spawn(body).is_ok() {
+            self.thread = Some(SaveThread { changes, answers });
+        }
+    }
+
+    /// The next answer, if there is one within `time`.
+    pub(super) fn wait(&mut self, time: Duration) -> Option<ChangeOutcome> {
+        let answer = self.thread.as_ref()?.answers.recv_timeout(time).ok()?;
+        self.pending.pop_front();
+        Some(answer)
+    }
+
+    /// Whether all changes are made.
+    pub(super) fn is_idle(&self) -> bool {
+        self.pending.is_empty()
+    }
+
+    /// When to look again at what is waited for; None if nothing is.
+    pub(super) fn look_at(&self) -> Option<Instant> {
+        let (_, since) = self.pending.front()?;
+        let now = Instant::now();
+        let slow = *since + SLOW;
+        Some(if slow > now { slow } else { now + AGAIN })
+    }
+
+    /// What the first change waits for, if it takes long.
+    pub(super) fn status(&self) -> Option<String> {
+        let (words, since) = self.pending.front()?;
+        let what = if self.library.waits_for_lock() {
+            "another taxel to release the library"
+        } else {
+            "the disk"
+        };
+        (since.elapsed() >= SLOW).then(|| format!("{words}: waiting for {what}"))
+    }
+
+    /// What may not be done when the program ends now, a line each.
+    pub(super) fn left(&self) -> Vec<String> {
+        let lines = self.pending.iter();
+        let why = if self.library.waits_for_lock() {
+            "another program holds the library"
+        } else {
+            "the disk does not answer"
+        };
+        lines
+            .map(|(words, _)| format!("{words}: not done yet, because {why}\n"))
+            .collect()
+    }
+}

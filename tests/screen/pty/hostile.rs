@@ -1,0 +1,123 @@
+//! A system that does not answer or refuses, as `strace` makes it: a disk that hangs, threads that cannot be started.
+//! Where there is no `strace` that may trace, nothing is tested, which is said.
+
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+use rustix::process::Signal;
+
+use super::program::{Program, Start, TAXEL};
+
+/// Starts the program with some of its calls tampered with; None where that is not possible.
+fn tampered(calls: &str, how: &str) -> Option<Program> {
+    let traced = Command::new("strace")
+        .args(["-qq", "-o", "/dev/null", "-e", "trace=?openat", "true"])
+        .stderr(Stdio::null())
+        .status();
+    if !traced.is_ok_and(|status| status.success()) {
+        println!("SKIPPED, there is no strace that may trace");
+        return None;
+    }
+    let (trace, inject) = (format!("trace={calls}"), format!("inject={calls}:{how}"));
+    // As a grandchild (-D): the program itself has the number that signals are sent to.
+    let command = [
+        "strace",
+        "-D",
+        "-f",
+        "-qq",
+        "-o",
+        "/dev/null",
+        "-e",
+        &trace,
+        "-e",
+        &inject,
+        TAXEL,
+    ];
+    let path = std::env::var("PATH").unwrap_or_default();
+    Some(Program::started(&Start {
+        command: &command,
+        variables: &[
+            ("TERM", "xterm-256color"),
+            ("LANG", "C.UTF-8"),
+            ("PATH", &path),
+        ],
+        ..Start::default()
+    }))
+}
+
+/// Every sync takes eight seconds.
+fn hanging() -> Option<Program> {
+    tampered("?fsync,?fdatasync", "delay_enter=8000000")
+}
+
+#[test]
+fn a_hanging_disk_holds_neither_keys_nor_the_end() {
+    for (keys, signal, status) in [
+        (&b"q"[..], None, 0),
+        (b"", Some(Signal::TERM), 143),
+        (b"", Some(Signal::HUP), 129),
+    ] {
+        let Some(mut program) = hanging() else { return };
+        program.types(b" sname\r");
+        program.shows("Saving name: waiting for the disk");
+        program.types(b"\x1b[C ");
+        program.shows("NA 2 in all");
+        // Back to what is being saved: nothing else is lost.
+        program.types(b"u");
+        program.shows("undone");
+        program.types(keys);
+        if let Some(signal) = signal {
+            program.signal(signal);
+        }
+        let begun = Instant::now();
+        program.shows("Saving name: not done yet, because the disk does not answer");
+        program.shows("unsaved work may not be on the disk");
+        program.is_left();
+        println!("the shell has the terminal after {:?}", begun.elapsed());
+        // The system waits for the one who traces.
+        let (ended, _) = program.ends();
+        assert_eq!(ended.code(), Some(status));
+    }
+}
+
+#[test]
+fn an_export_to_a_hanging_disk_does_not_hold_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let Some(mut program) = hanging() else { return };
+    let path = folder.path().join("a.csv");
+    program.types(format!(" :write {}\r", path.display()).as_bytes());
+    program.shows("waiting for the disk");
+    program.types(b"\x1b[C ");
+    program.shows("NA 2 in all");
+    program.types(b"qy");
+    let (ended, _) = program.ends();
+    assert_eq!(ended.code(), Some(0));
+    program.is_left();
+    program.shows("not done yet, because the disk does not answer");
+}
+
+/// All threads but the first, and all but the first three, are refused.
+#[test]
+fn threads_that_cannot_be_started_are_done_without() {
+    for which in ["1+", "4+"] {
+        let how = format!("error=EAGAIN:when={which}");
+        let Some(mut program) = tampered("?clone,?clone3", &how) else {
+            return;
+        };
+        program.types(b"f\r");
+        program.shows("NA ");
+        // A sweep, a training, a save, an export: each is done or says why not.
+        program.types(b":explore --x0 0:0.99:0.1 --y0 0 --angle 0\r");
+        program.until("a sweep or a reason", |program| {
+            let screen = program.screen().contents();
+            screen.contains("distinct") || screen.contains("the system gives no thread")
+        });
+        program.types(b"\x1b\x1b");
+        program.types(b"\x1b");
+        program.shows("? Help");
+        program.types(b"sname\r");
+        program.shows("saved as name");
+        program.types(b"q");
+        program.ends_well(0);
+    }
+}

@@ -1,0 +1,98 @@
+//! Saving while another program holds the library: keys go on, the status line says what is waited for, and the end does
+//! not wait.
+
+use std::fs::File;
+use std::path::Path;
+
+use rustix::process::Signal;
+use taxel::storage::{Library, Orphan};
+
+use super::program::{Program, Start};
+
+/// Draws a taxel and saves it in a library that is locked, until it is said what is waited for.
+fn saving(library: &Path) -> (Program, File) {
+    let lock = File::create(library.join(".lock")).expect("a lock");
+    lock.lock().expect("it is free");
+    let mut program = Program::started(&Start {
+        library: Some(library),
+        ..Start::default()
+    });
+    program.types(b" sname\r");
+    program.shows("Saving name: waiting for another taxel to release the library");
+    (program, lock)
+}
+
+#[test]
+fn keys_go_on_while_another_program_holds_the_library() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mut program, lock) = saving(folder.path());
+    program.types(b"\x1b[C \x1b[C ");
+    program.shows("NA 3 in all");
+    // Another save would be mistaken for this one.
+    program.types(b"s");
+    program.shows("name is still being saved");
+    lock.unlock().expect("held");
+    program.shows("saved as name");
+    let library = Library::open(folder.path().to_owned());
+    let saved = library.load("name").expect("saved");
+    assert_eq!(
+        saved.shape.imprint.count(),
+        1,
+        "as it was when it was saved"
+    );
+    // What was drawn meanwhile is not saved.
+    program.types(b"q");
+    program.shows("The imprint is not saved");
+    program.types(b"nuuq");
+    program.ends_well(0);
+    assert!(Orphan::all(&library).is_empty());
+}
+
+#[test]
+fn the_end_does_not_wait_for_another_program() {
+    for (keys, signal, status) in [
+        (&b"q"[..], None, 0),
+        (b"", Some(Signal::TERM), 143),
+        (b"", Some(Signal::HUP), 129),
+    ] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (mut program, _lock) = saving(folder.path());
+        program.types(keys);
+        if let Some(signal) = signal {
+            program.signal(signal);
+        }
+        let (ended, took) = program.ends();
+        assert_eq!(ended.code(), Some(status));
+        println!("ended within {took:?}");
+        program.is_left();
+        // A save that was waited for would have failed.
+        program.shows("Saving name: not done yet, because another program holds the library");
+        program.shows("the next start offers it as unsaved work");
+        let library = Library::open(folder.path().to_owned());
+        assert!(library.load("name").is_err());
+        let left = Orphan::all(&library);
+        let taxels: Vec<u32> = left.iter().map(|left| left.shape.imprint.count()).collect();
+        assert_eq!(taxels, [1]);
+    }
+}
+
+#[test]
+fn a_deletion_waits_too() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut program = Program::started(&Start {
+        library: Some(folder.path()),
+        ..Start::default()
+    });
+    program.types(b" sname\r");
+    program.shows("saved as name");
+    let lock = File::open(folder.path().join(".lock")).expect("a lock");
+    lock.lock().expect("it is free");
+    program.types(b":delete name\ry");
+    program.shows("Deleting name: waiting for another taxel to release the library");
+    program.types(b"\x1b[C ");
+    program.shows("NA 2 in all");
+    lock.unlock().expect("held");
+    program.shows("name deleted");
+    program.types(b"\x03y");
+    program.ends_well(0);
+}
