@@ -117,6 +117,11 @@
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+// So are those of the guide to the library, which need its rooms.
+#[cfg(all(doctest, feature = "recognition"))]
+#[doc = include_str!("../docs/library.md")]
+struct LibraryGuide;
+
 mod quote;
 
 mod index;

@@ -30,6 +30,8 @@ mod sweep_files;
 
 mod model;
 
+mod python;
+
 mod recognise;
 
 mod separate;

@@ -26,6 +26,7 @@ const BLOCKS: &[Block] = &[
     ("screen", screen::text),
     ("result", commands::result),
     ("tour", screen::tour),
+    ("first-steps", screen::first_steps),
     ("keys", tables::keys),
     ("prompt", tables::prompt),
     ("descriptors", tables::descriptors),
@@ -156,7 +157,7 @@ fn every_generated_part_is_up_to_date() {
 #[test]
 fn every_picture_is_drawn_by_the_program() {
     hold(Path::new("docs/screen.svg"), &screen::svg());
-    for (name, drawn) in screen::explore_svgs() {
+    for (name, drawn) in [screen::explore_svgs(), screen::first_steps_svgs()].concat() {
         hold(&Path::new("docs").join(name).with_extension("svg"), &drawn);
     }
     hold(Path::new("docs/touch.svg"), &screen::touch_svg());

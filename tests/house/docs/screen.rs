@@ -18,6 +18,7 @@ use crate::common;
 /// What `tests/scripts.rs` runs, too.
 const FIGURE: &str = include_str!("../../scripts/paper_figure.taxel");
 const TOUR: &str = include_str!("../../scripts/tour.taxel");
+const FIRST_STEPS: &str = include_str!("../../scripts/first_steps.taxel");
 
 /// The screens that a script shows, by their names: as text, and drawn under a title each.
 fn screens(script: &str, title: impl Fn(&str) -> String) -> Vec<(String, String, String)> {
@@ -130,6 +131,35 @@ pub(crate) fn tour() -> String {
         text += &format!("{number}. **{title}:** {keys}.<br>\n   {rest}\n");
     }
     text + "\n"
+}
+
+/// The first steps, each with its picture: the keys are those of the script before its screen.
+pub(crate) fn first_steps() -> String {
+    let mut text = String::new();
+    for (number, step) in (1..).zip(FIRST_STEPS.split("\n\n")) {
+        let comments = step.lines().filter_map(|line| line.strip_prefix("# "));
+        let said = comments.collect::<Vec<_>>().join("\n");
+        let (title, rest) = said.split_once(": ").expect("a step has a title");
+        let name = step.lines().find_map(|line| line.strip_prefix("Screen "));
+        let before = step.lines().take_while(|line| !line.starts_with("Screen "));
+        let keys = before.filter_map(pressed).collect::<Vec<_>>().join(", ");
+        text += &format!("\n## {number}. {title}\n\n");
+        if let Some((first, others)) = keys.split_at_checked(1) {
+            text += &format!("{}{others}. ", first.to_uppercase());
+        }
+        text += &format!("{rest}\n");
+        if let Some(name) = name {
+            text += &format!("\n![The screen after this step: {title}]({name}.svg)\n");
+        }
+    }
+    text + "\n"
+}
+
+/// The pictures of the first steps, by the names of their files.
+pub(crate) fn first_steps_svgs() -> Vec<(String, String)> {
+    let title = |name: &str| format!("taxel: {}", name.replace('-', " "));
+    let all = screens(FIRST_STEPS, title).into_iter();
+    all.map(|(name, _, drawn)| (name, drawn)).collect()
 }
 
 /// How people write what a line of the script presses or types; none for lines that only check.

@@ -1,0 +1,71 @@
+//! The programs of `examples/python`, each run where Python has what it needs; skipped aloud where not.
+
+use std::process::{Command, Output};
+
+/// Runs an example, if Python has these modules, and returns what it prints.
+fn printed(name: &str, modules: &str) -> Option<String> {
+    let python = |arguments: &[&str]| -> Option<Output> {
+        let mut python = Command::new("python3");
+        python
+            .args(arguments)
+            .env("TAXEL", env!("CARGO_BIN_EXE_taxel"))
+            .env("TAXEL_CONFIG", "/dev/null")
+            .env("PYTHONIOENCODING", "utf-8");
+        python.output().ok()
+    };
+    let found = python(&["-c", &format!("import {modules}")]);
+    if !found.is_some_and(|output| output.status.success()) {
+        eprintln!("SKIPPED: python3 with {modules} is not there");
+        return None;
+    }
+    let path = format!("{}/examples/python/{name}", env!("CARGO_MANIFEST_DIR"));
+    let output = python(&[&path]).expect("it was found before");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{name}: {said}");
+    Some(String::from_utf8(output.stdout).expect("text"))
+}
+
+#[test]
+fn an_atlas_is_arrays() {
+    let Some(printed) = printed("atlas.py", "numpy") else {
+        return;
+    };
+    for line in [
+        "406 imprints in 24000 poses, an array of (406, 16, 16)",
+        "active taxels: 23.03 ± 1.06; the continuous hexagon covers 23.38 cells",
+        "poses: an array of (60, 20, 20); at 17 degrees 80 imprints",
+    ] {
+        assert!(printed.contains(line), "{line:?} in\n{printed}");
+    }
+}
+
+#[test]
+fn no_classifier_passes_the_limit() {
+    let Some(printed) = printed("classifier.py", "numpy, sklearn") else {
+        return;
+    };
+    let number = |start: &str| -> f64 {
+        let line = printed.lines().find_map(|line| line.strip_prefix(start));
+        let number = line.and_then(|rest| rest.split_whitespace().next());
+        number.expect("a line").parse().expect("a number")
+    };
+    let descriptors = number("the limit of any method that knows these descriptors:");
+    let imprint = number("the limit of any method that knows the imprint:");
+    let tree = number("a decision tree that learns all touches, on the same touches:");
+    assert!(imprint < descriptors && descriptors <= tree, "{printed}");
+}
+
+#[test]
+fn frames_are_named_as_they_come() {
+    let Some(printed) = printed("live.py", "json") else {
+        return;
+    };
+    let of = |name: &str| {
+        let named = format!(": {name} (certain)");
+        printed
+            .lines()
+            .filter(|line| line.ends_with(&named))
+            .count()
+    };
+    assert_eq!((of("disc"), of("bar")), (12, 12), "{printed}");
+}
