@@ -145,7 +145,7 @@ pub(crate) fn first_steps() -> String {
         let keys = before.filter_map(pressed).collect::<Vec<_>>().join(", ");
         text += &format!("\n## {number}. {title}\n\n");
         if let Some((first, others)) = keys.split_at_checked(1) {
-            text += &format!("{}{others}. ", first.to_uppercase());
+            text += &format!("{}{others}.\n\n", first.to_uppercase());
         }
         text += &format!("{rest}\n");
         if let Some(name) = name {
