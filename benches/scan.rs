@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use taxel::prelude::*;
-use taxel::recognition::{Model, ModelParts, NamedShape, Noise, Scanner, ShapeCount};
+use taxel::recognition::{Model, ModelParts, NamedShape, Noise, ShapeCount};
 use taxel::sweep::Shard;
 
 /// A simple generator: the same templates on every machine.
@@ -76,24 +76,23 @@ fn scan(criterion: &mut Criterion) {
 
     // Nothing is skipped: at e = 0.4 every distance matters.
     let model_of_10_000 = model(10_000);
-    let scanner = Scanner::new(&model_of_10_000, 16, 16);
     let every = Noise::new(0.45).expect("in range");
-    group.throughput(Throughput::Elements(scanner.pairs()));
+    group.throughput(Throughput::Elements(model_of_10_000.pairs((16, 16))));
     group.bench_function("every pair, 10,000 keys, 1 thread", |bencher| {
-        bencher.iter(|| single.install(|| black_box(scanner.distances(&touch, &every))));
+        bencher.iter(|| single.install(|| black_box(model_of_10_000.distances(&touch, &every))));
     });
 
     let start = Instant::now();
     let million = model(1_000_000);
-    let scanner = Scanner::new(&million, 16, 16);
+    black_box(million.pairs((16, 16)));
     println!(
         "a million keys prepared in {:.1} s",
         start.elapsed().as_secs_f64()
     );
     let usual = Noise::new(0.01).expect("in range");
-    group.throughput(Throughput::Elements(scanner.pairs()));
+    group.throughput(Throughput::Elements(million.pairs((16, 16))));
     group.bench_function("a query on 1,000,000 keys, 1 thread", |bencher| {
-        bencher.iter(|| single.install(|| black_box(scanner.distances(&touch, &usual))));
+        bencher.iter(|| single.install(|| black_box(million.distances(&touch, &usual))));
     });
     group.finish();
 }

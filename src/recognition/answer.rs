@@ -1,8 +1,9 @@
 //! The answer to one touch, or to several of one shape.
 
 use crate::imprint::Imprint;
-use crate::recognition::model::Model;
+use crate::recognition::model::{Model, NamedShape};
 use crate::recognition::nearest::Nearest;
+use crate::recognition::noise::{Method, Noise};
 
 /// How far an answer can be trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,20 +34,32 @@ impl AnswerState {
     }
 }
 
-/// What was touched: imprints of one shape in poses that do not depend on each other, and the least probability that is
-/// good enough for an answer.
+/// What was touched: imprints of one shape in poses that do not depend on each other, how often taxels fail, and the least
+/// probability that is good enough for an answer.
 #[derive(Clone, Copy, Debug)]
 pub struct Evidence<'a> {
     touches: &'a [Imprint],
+    noise: Option<&'a Noise>,
     reject_below: Option<f64>,
 }
 
 impl<'a> Evidence<'a> {
-    /// These touches; any probability will do.
+    /// These touches of a sensor whose taxels never fail; any probability will do.
     pub fn of(touches: &'a [Imprint]) -> Self {
         Self {
             touches,
+            noise: None,
             reject_below: None,
+        }
+    }
+
+    /// The taxels fail like this. The prior then is that of every pose in every place on the matrix. Without a noise they
+    /// never fail.
+    #[must_use]
+    pub fn under(self, noise: impl Into<Option<&'a Noise>>) -> Self {
+        Self {
+            noise: noise.into(),
+            ..self
         }
     }
 
@@ -74,13 +87,16 @@ pub struct Answer {
     pub at_rim: bool,
     /// Every shape of positive probability, the likeliest first, equals in the order of the set.
     pub ranking: Vec<(usize, f64)>,
+    /// Which keys it took, of several touches the most.
+    pub method: Method,
 }
 
 /// Logarithms of products of the same whole numbers in another order differ by less.
 const SAME: f64 = 1e-12;
 
 impl Model {
-    /// Says which shape was touched. Nothing was touched, nothing is known: the answer to no touch is the prior.
+    /// Says which shape was touched. Nothing was touched, nothing is known: the answer to no touch is the prior. Under noise
+    /// no answer is certain, since any shape may leave any imprint.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -101,8 +117,37 @@ impl Model {
     /// ```
     pub fn recognise(&self, evidence: Evidence<'_>) -> Answer {
         let at_rim = evidence.touches.iter().any(Imprint::touches_rim);
-        let ranking = self.ranking(evidence.touches);
-        judged(ranking, at_rim, evidence.reject_below)
+        let Some(noise) = evidence.noise else {
+            let ranking = self.ranking(evidence.touches);
+            return judged(ranking, at_rim, evidence.reject_below);
+        };
+        let (ranking, method) = self.ranking_under(noise, evidence.touches);
+        let mut answer = judged(ranking, at_rim, evidence.reject_below);
+        if answer.state == AnswerState::Certain && noise.flip() > 0.0 {
+            answer.state = AnswerState::Likely;
+        }
+        Answer { method, ..answer }
+    }
+
+    /// The shapes of positive probability under a noise, the likeliest first, and which keys that took.
+    fn ranking_under(&self, noise: &Noise, touches: &[Imprint]) -> (Vec<(usize, f64)>, Method) {
+        let weight = |shape: &NamedShape| f64::from(shape.weight).ln();
+        let mut logarithms: Vec<f64> = self.shapes().iter().map(weight).collect();
+        let mut method = Method::Exact;
+        for touch in touches {
+            let Some(distances) = self.distances(touch, noise) else {
+                logarithms.fill(f64::NEG_INFINITY);
+                continue;
+            };
+            method = method.max(distances.method);
+            let likelihoods = self.likelihoods(touch, &distances, noise);
+            let shapes = self.shapes().iter().zip(likelihoods);
+            for (sum, (shape, likelihood)) in logarithms.iter_mut().zip(shapes) {
+                *sum += likelihood.ln() - weight(shape);
+            }
+        }
+        let finite = |logarithm: f64| Some(logarithm).filter(|own| own.is_finite());
+        (shares(logarithms.into_iter().map(finite)), method)
     }
 
     /// The shapes of positive probability, the likeliest first.
@@ -128,15 +173,7 @@ impl Model {
                 *logarithm = logarithm.zip(more).map(|(sum, more)| sum + more);
             }
         }
-        let most = logarithms
-            .iter()
-            .flatten()
-            .copied()
-            .fold(f64::NEG_INFINITY, f64::max);
-        let odds = |logarithm: Option<f64>| logarithm.map_or(0.0, |own| (own - most).exp());
-        let odds: Vec<f64> = logarithms.into_iter().map(odds).collect();
-        let sum: f64 = odds.iter().sum();
-        ranked(odds.into_iter().map(|odds| odds / sum).enumerate())
+        shares(logarithms.into_iter())
     }
 
     /// Returns the imprint of the model that is most like the touch that explains the answer least: the first that no
@@ -160,6 +197,7 @@ pub(super) fn judged(
         tied: Vec::new(),
         at_rim,
         ranking,
+        method: Method::Exact,
     };
     let Some(&(first, most)) = answer.ranking.first() else {
         return answer;
@@ -180,6 +218,17 @@ pub(super) fn judged(
         AnswerState::Likely
     };
     answer
+}
+
+/// The ranking of odds whose logarithms are given; None for odds of 0.
+fn shares(logarithms: impl Iterator<Item = Option<f64>> + Clone) -> Vec<(usize, f64)> {
+    let most = logarithms
+        .clone()
+        .flatten()
+        .fold(f64::NEG_INFINITY, f64::max);
+    let odds = |logarithm: Option<f64>| logarithm.map_or(0.0, |own| (own - most).exp());
+    let sum: f64 = logarithms.clone().map(odds).sum();
+    ranked(logarithms.map(|own| odds(own) / sum).enumerate())
 }
 
 /// Those of positive probability, the likeliest first, equals in their order.

@@ -106,6 +106,11 @@ pub(super) struct KeyRef<'a> {
 }
 
 impl KeyRef<'_> {
+    /// The number of its active taxels.
+    pub(super) fn count(self) -> u32 {
+        self.bits.iter().map(|word| word.count_ones()).sum()
+    }
+
     /// Its rows from the top, bit `i` for column `i`.
     pub(super) fn rows(self) -> impl Iterator<Item = u64> {
         let mask = u64::MAX.unbounded_shr(64 - u32::from(self.width));

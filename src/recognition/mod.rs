@@ -46,7 +46,7 @@ mod simulation;
 
 mod half_step;
 
-mod noisy;
+mod scan;
 
 pub use answer::{Answer, AnswerState, Evidence};
 pub use evaluation::Evaluation;
@@ -55,8 +55,7 @@ pub use half_step::HalfStep;
 pub use key::{ImprintKey, KeyTable};
 pub use model::{Model, ModelError, ModelMerge, ModelParts, NamedShape, ShapeCount};
 pub use nearest::Nearest;
-pub use noise::{Distances, Method, Noise, NoiseError, Scanner};
-pub use noisy::NoisyRecogniser;
+pub use noise::{Distances, Method, Noise, NoiseError};
 pub use peers::{Peer, PeerEvaluation, PeerSettings};
 pub use pose_estimate::{AngleEstimate, PlacedSource, PoseEstimate};
 pub use separation::{Separation, SeparationPoint, SizeAxis, SmallestSize};

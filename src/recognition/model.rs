@@ -1,11 +1,13 @@
 //! The model of a set of shapes: in how many poses each shape leaves each key.
 
 use std::collections::HashSet;
+use std::sync::OnceLock;
 
 use crate::imprint::Imprint;
 use crate::pose::{Anchor, Ranges};
 use crate::quote::shortened;
 use crate::recognition::key::{ImprintKey, KeyTable};
+use crate::recognition::scan::KeyIndex;
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::sweep::Shard;
@@ -76,6 +78,16 @@ pub struct Model {
     starts: Vec<usize>,
     /// For each key its shapes in the order of the set.
     counts: Vec<ShapeCount>,
+    /// The keys again, in the order in which a scan compares them; made by the first one.
+    scan: OnceLock<ScanTables>,
+}
+
+/// What scans of a model need besides its keys.
+#[derive(Clone, Debug)]
+struct ScanTables {
+    index: KeyIndex,
+    /// For each box of the index the poses of each shape.
+    poses: Vec<u64>,
 }
 
 /// What a model is made of, as its file holds it.
@@ -276,6 +288,7 @@ impl Model {
             keys,
             starts,
             counts,
+            scan: OnceLock::new(),
         })
     }
 
@@ -383,6 +396,29 @@ impl Model {
             posterior[usize::from(count.shape)] = share(self.weighted(count), total);
         }
         Some(posterior)
+    }
+
+    /// The keys in the order in which scans compare them.
+    pub(super) fn index(&self) -> &KeyIndex {
+        &self.scan_tables().index
+    }
+
+    /// For each box of the index the poses in which each shape leaves a key of that box.
+    pub(super) fn poses_by_box(&self) -> impl Iterator<Item = &[u64]> {
+        self.scan_tables().poses.chunks(self.shapes.len())
+    }
+
+    fn scan_tables(&self) -> &ScanTables {
+        self.scan.get_or_init(|| {
+            let index = KeyIndex::new(&self.keys);
+            let mut poses = vec![0; index.boxes().len() * self.shapes.len()];
+            for (own, sums) in (index.boxes().iter()).zip(poses.chunks_mut(self.shapes.len())) {
+                for count in own.keys.clone().flat_map(|key| self.counts(key)) {
+                    sums[usize::from(count.shape)] += count.poses;
+                }
+            }
+            ScanTables { index, poses }
+        })
     }
 
     /// A count times the weight of its shape.

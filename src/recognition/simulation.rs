@@ -12,7 +12,8 @@ use rayon::prelude::*;
 use crate::imprint::Imprint;
 use crate::recognition::key::ImprintKey;
 use crate::recognition::model::{Model, share};
-use crate::recognition::noise::{Noise, Scanner};
+use crate::recognition::noise::Noise;
+use crate::recognition::scan::places;
 
 /// How often noisy touches are named right.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -150,9 +151,8 @@ impl Model {
         seed: u64,
         progress: &(dyn Fn(u64) -> bool + Sync),
     ) -> Option<RecognitionRate> {
-        let scanner = Scanner::new(self, columns, rows);
         let judge = |rate: &mut RecognitionRate, shape: usize, touch: &Imprint| {
-            rate.add(self, &scanner, told, shape, touch);
+            rate.add(self, told, shape, touch);
         };
         self.simulated((columns, rows), noise, per_shape, seed, progress, &judge)
     }
@@ -170,9 +170,7 @@ impl Model {
         const CHUNK: u64 = 50;
         let places = |key: usize| {
             let key = self.keys().get(key);
-            let fits =
-                |side: u8, of: u8| u64::from(of.checked_sub(side).map_or(0, |rest| rest + 1));
-            fits(key.width, columns) * fits(key.height, rows)
+            places((key.width, key.height), (columns, rows))
         };
         let draws: Vec<Draw> = (0..self.shapes().len())
             .map(|shape| Draw::new(self, shape, places))
@@ -328,17 +326,10 @@ impl RecognitionRate {
     }
 
     /// Names one touch.
-    fn add(
-        &mut self,
-        model: &Model,
-        scanner: &Scanner<'_>,
-        told: &Noise,
-        shape: usize,
-        touch: &Imprint,
-    ) {
+    fn add(&mut self, model: &Model, told: &Noise, shape: usize, touch: &Imprint) {
         self.touches += 1;
         self.held += u64::from(model.keys().find(&ImprintKey::of(touch)).is_some());
-        let Some(posterior) = scanner.posterior(touch, told) else {
+        let Some(posterior) = model.posterior_under(touch, told) else {
             return;
         };
         // The first of equals, as everywhere.

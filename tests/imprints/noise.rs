@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 use taxel::prelude::*;
-use taxel::recognition::{Method, Model, NamedShape, Noise, Scanner};
+use taxel::recognition::{Method, Model, NamedShape, Noise};
 
 use crate::recognition::{float, published, ranges, s1, s4, sensor, train};
 
@@ -82,7 +82,6 @@ fn imprints() -> impl Iterator<Item = Imprint> {
 #[test]
 fn posteriors_are_those_of_the_definition() {
     let model = tiny();
-    let scanner = Scanner::new(&model, 5, 5);
     let mut dead = Imprint::empty(5, 5);
     dead.set(2, 2, true);
     dead.set(0, 4, true);
@@ -91,7 +90,7 @@ fn posteriors_are_those_of_the_definition() {
         for imprint in imprints() {
             for (noise, dead) in [(noise, Imprint::empty(5, 5)), (noise.without(dead), dead)] {
                 let expected = by_definition(&model, &imprint, flip, &dead);
-                let found = scanner.posterior(&imprint, &noise).expect("keys fit");
+                let found = model.posterior_under(&imprint, &noise).expect("keys fit");
                 for (found, expected) in found.iter().zip(&expected) {
                     assert!(
                         (found - expected).abs() < 2e-9,
@@ -107,7 +106,6 @@ fn posteriors_are_those_of_the_definition() {
 fn probabilities_of_all_imprints_sum_up_to_one() {
     // On 3 × 3: Σ over all 512 imprints of P(imprint | s) is 1 if the likelihoods are what they say.
     let model = tiny();
-    let scanner = Scanner::new(&model, 3, 3);
     let noise = Noise::new(0.2).expect("in range");
     let mut mean = [0.0; 2];
     for bits in 0_u64..512 {
@@ -115,7 +113,7 @@ fn probabilities_of_all_imprints_sum_up_to_one() {
         for row in 0..3 {
             imprint.set_word(row, bits >> (3 * row));
         }
-        let posterior = scanner.posterior(&imprint, &noise).expect("keys fit");
+        let posterior = model.posterior_under(&imprint, &noise).expect("keys fit");
         let expected = by_definition(&model, &imprint, 0.2, &Imprint::empty(3, 3));
         for shape in 0..2 {
             assert!((posterior[shape] - expected[shape]).abs() < 2e-9);
@@ -128,13 +126,12 @@ fn probabilities_of_all_imprints_sum_up_to_one() {
 #[test]
 fn small_noise_is_looked_up_and_larger_noise_scanned() {
     let model = tiny();
-    let scanner = Scanner::new(&model, 5, 5);
     let touch: Imprint = ".....\n.##..\n.....\n.....\n....."
         .parse()
         .expect("an imprint");
     let noise = |flip| Noise::new(flip).expect("in range");
     let method = |flip| {
-        scanner
+        model
             .distances(&touch, &noise(flip))
             .expect("keys fit")
             .method
@@ -145,8 +142,8 @@ fn small_noise_is_looked_up_and_larger_noise_scanned() {
     let nothing: Imprint = "#...#\n.....\n.....\n.....\n#...#"
         .parse()
         .expect("an imprint");
-    assert_eq!(scanner.posterior(&nothing, &noise(0.0)), None);
-    assert!(scanner.posterior(&nothing, &noise(0.01)).is_some());
+    assert_eq!(model.posterior_under(&nothing, &noise(0.0)), None);
+    assert!(model.posterior_under(&nothing, &noise(0.01)).is_some());
     for wrong in [-0.1, 0.5, 1.0, f64::NAN, f64::INFINITY] {
         assert!(Noise::new(wrong).is_err(), "{wrong}");
     }
@@ -155,7 +152,6 @@ fn small_noise_is_looked_up_and_larger_noise_scanned() {
 #[test]
 fn answers_do_not_depend_on_threads() {
     let model = train(s4(), 32, ranges("10:10.9:0.1", "10:10.9:0.1", "0:350:10"));
-    let scanner = Scanner::new(&model, 16, 16);
     let mut touch = Imprint::empty(16, 16);
     for row in 3..7 {
         touch.set_word(row, 0b1111_1000);
@@ -165,7 +161,7 @@ fn answers_do_not_depend_on_threads() {
     let with = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.expect("threads")
-            .install(|| scanner.distances(&touch, &noise))
+            .install(|| model.distances(&touch, &noise))
     };
     assert_eq!(with(1), with(2));
     assert!(with(1).is_some());
@@ -187,7 +183,6 @@ fn independent_posteriors_agree() {
         return;
     };
     let model = train(s4(), 32, published());
-    let scanner = Scanner::new(&model, 16, 16);
     assert!(text.lines().count() >= 7, "the file is cut short");
     for line in text.lines() {
         let case: Value = serde_json::from_str(line).expect("a line of JSON");
@@ -195,7 +190,7 @@ fn independent_posteriors_agree() {
         let rows = rows.iter().map(|row| row.as_str().expect("a row"));
         let imprint = Imprint::from_rows(rows).expect("an imprint");
         let noise = Noise::new(case["noise"].as_f64().expect("a number")).expect("in range");
-        let posterior = scanner.posterior(&imprint, &noise).expect("keys fit");
+        let posterior = model.posterior_under(&imprint, &noise).expect("keys fit");
         for (shape, found) in model.shapes().iter().zip(posterior) {
             let expected = case["posterior"][&shape.name].as_f64().expect("a number");
             assert!(

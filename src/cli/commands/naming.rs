@@ -10,7 +10,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::report;
 use crate::formats::json;
 use crate::imprint::Imprint;
-use crate::recognition::{Answer, Evidence, Method, Model, Noise, NoisyRecogniser};
+use crate::recognition::{Evidence, Model, Noise};
 
 /// Which model names imprints, and how often a taxel of the sensor flips.
 #[derive(Clone, Debug, Default)]
@@ -43,7 +43,6 @@ impl NamingArguments {
 pub(crate) struct FrameNamer<'a> {
     model: &'a Model,
     noise: Option<Noise>,
-    noisy: Option<NoisyRecogniser<'a>>,
 }
 
 impl<'a> FrameNamer<'a> {
@@ -52,21 +51,16 @@ impl<'a> FrameNamer<'a> {
         Self {
             model,
             noise: noise.copied(),
-            noisy: noise.map(|noise| NoisyRecogniser::new(model, *noise)),
         }
     }
 
-    fn answer(&mut self, imprint: &Imprint) -> (Answer, Method) {
-        let touches = [*imprint];
-        match &mut self.noisy {
-            Some(noisy) => noisy.recognise(&touches, None),
-            None => (self.model.recognise(Evidence::of(&touches)), Method::Exact),
-        }
+    fn evidence<'b>(&'b self, touches: &'b [Imprint]) -> Evidence<'b> {
+        Evidence::of(touches).under(self.noise.as_ref())
     }
 
     /// The line of JSON of a frame, with a key `recognition` at its end: what `taxel recognise` answers to the imprint,
     /// null where nothing is active.
-    pub(crate) fn extend(&mut self, line: &mut Vec<u8>, imprint: Option<&Imprint>) {
+    pub(crate) fn extend(&self, line: &mut Vec<u8>, imprint: Option<&Imprint>) {
         let Some(end) = line.iter().rposition(|&byte| byte == b'}') else {
             return;
         };
@@ -75,13 +69,13 @@ impl<'a> FrameNamer<'a> {
         match imprint.filter(|imprint| !imprint.is_empty()) {
             None => line.extend(b"null"),
             Some(imprint) => {
-                let (answer, method) = self.answer(imprint);
+                let touches = [*imprint];
+                let evidence = self.evidence(&touches);
                 let text = json::text(&AnswerJson {
                     model: self.model,
-                    answer: &answer,
-                    method,
+                    answer: &self.model.recognise(evidence),
                     noise: self.noise,
-                    nearest: self.model.nearest_of(Evidence::of(&[*imprint])),
+                    nearest: self.model.nearest_of(evidence),
                     top: None,
                     asks_pose: false,
                     pose: None,
@@ -94,11 +88,12 @@ impl<'a> FrameNamer<'a> {
     }
 
     /// The answer in words, as by `taxel recognise`; empty where nothing is active.
-    pub(crate) fn text(&mut self, imprint: &Imprint, charset: Charset) -> String {
+    pub(crate) fn text(&self, imprint: &Imprint, charset: Charset) -> String {
         if imprint.is_empty() {
             return String::new();
         }
-        let (answer, _) = self.answer(imprint);
+        let touches = [*imprint];
+        let answer = self.model.recognise(self.evidence(&touches));
         let text = AnswerText {
             model: self.model,
             touch: imprint,

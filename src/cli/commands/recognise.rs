@@ -29,7 +29,7 @@ use crate::formats::framed::{FrameRows, RuleRecord};
 use crate::formats::json;
 use crate::imprint::Imprint;
 use crate::quote::legible;
-use crate::recognition::{Answer, AnswerState, Evidence, Method, Model, NoisyRecogniser};
+use crate::recognition::{Answer, AnswerState, Evidence, Model, Noise};
 
 /// The exit status if the answer is not the expected one.
 const UNEXPECTED: u8 = 3;
@@ -47,7 +47,7 @@ pub(crate) fn recognise(
     output: &mut dyn Write,
 ) -> Result<u8, CliError> {
     let model = model::find(&asked.model, shelf)?;
-    let mut recogniser = Recogniser::new(asked, &model, shelf)?;
+    let recogniser = Recogniser::new(asked, &model, shelf)?;
     let expected = match input(&asked.what, shelf)? {
         Asked::Imprint(imprint) => recogniser.answer_imprint(&imprint, charset, output)?,
         Asked::Lines(input) => recogniser.answer_lines(input, output)?,
@@ -61,8 +61,8 @@ struct Recogniser<'a> {
     asked: &'a RecogniseArguments,
     /// The shapes to choose from.
     model: &'a Model,
-    /// The same under a noise, if one is given.
-    noisy: Option<NoisyRecogniser<'a>>,
+    /// How often its taxels fail, and which always do, if that is given.
+    noise: Option<Noise>,
 }
 
 impl<'a> Recogniser<'a> {
@@ -84,25 +84,24 @@ impl<'a> Recogniser<'a> {
         {
             return Err(CliError::NotInModel { name: name.clone() });
         }
-        let noisy = noise.map(|noise| NoisyRecogniser::new(model, noise));
         Ok(Self {
             asked,
             model,
-            noisy,
+            noise,
         })
     }
 
     /// Answers one imprint, as text or JSON. Returns whether the answer is the expected one.
     fn answer_imprint(
-        &mut self,
+        &self,
         imprint: &Imprint,
         charset: Charset,
         output: &mut dyn Write,
     ) -> Result<bool, CliError> {
         let touches = [*imprint];
-        let (answer, method) = self.answer(&touches)?;
+        let answer = self.answer(&touches)?;
         let text = if self.asked.json {
-            let line = json::text(&self.json(&touches, (&answer, method), None));
+            let line = json::text(&self.json(&touches, &answer, None));
             report::ascii_json(&line) + "\n"
         } else {
             let text = AnswerText {
@@ -122,33 +121,30 @@ impl<'a> Recogniser<'a> {
     }
 
     /// Answers each line by a line of JSON. Returns whether all answers are the expected one.
-    fn answer_lines(
-        &mut self,
-        input: Box<dyn Read>,
-        output: &mut dyn Write,
-    ) -> Result<bool, CliError> {
+    fn answer_lines(&self, input: Box<dyn Read>, output: &mut dyn Write) -> Result<bool, CliError> {
         let mut expected = true;
         lines::answer_each(input, output, "touch", |line, text| {
             let line = Line::read(line)?;
             let answered = self.answer(&line.touches);
-            let (answer, method) = answered.map_err(|error| error.to_string())?;
+            let answer = answered.map_err(|error| error.to_string())?;
             expected &= self.expected(&answer);
-            let own = json::text(&self.json(&line.touches, (&answer, method), Some(&line)));
+            let own = json::text(&self.json(&line.touches, &answer, Some(&line)));
             text.extend(report::ascii_json(&own).bytes());
             Ok(())
         })?;
         Ok(expected)
     }
 
-    /// Names the shape that left all these touches, and says by which method.
+    /// Names the shape that left all these touches.
     ///
     /// # Errors
     /// [`CliError::Mask`] if the mask of dead taxels has another size than a touch.
-    fn answer(&mut self, touches: &[Imprint]) -> Result<(Answer, Method), CliError> {
-        if let Some(noisy) = &mut self.noisy {
+    fn answer(&self, touches: &[Imprint]) -> Result<Answer, CliError> {
+        let mut evidence = Evidence::of(touches).under(self.noise.as_ref());
+        if let Some(noise) = &self.noise {
+            let size = |imprint: &Imprint| (imprint.columns(), imprint.rows());
             for touch in touches {
-                let size = |imprint: &Imprint| (imprint.columns(), imprint.rows());
-                if let Some(mask) = noisy.noise().dead()
+                if let Some(mask) = noise.dead()
                     && size(mask) != size(touch)
                 {
                     return Err(CliError::Mask {
@@ -157,27 +153,23 @@ impl<'a> Recogniser<'a> {
                     });
                 }
             }
-            return Ok(noisy.recognise(touches, self.asked.reject));
         }
-        let evidence = Evidence::of(touches);
-        let answer = self.model.recognise(match self.asked.reject {
-            Some(least) => evidence.reject_below(least),
-            None => evidence,
-        });
-        Ok((answer, Method::Exact))
+        if let Some(least) = self.asked.reject {
+            evidence = evidence.reject_below(least);
+        }
+        Ok(self.model.recognise(evidence))
     }
 
     /// An answer as JSON; `line` is the question, if it was one of many.
     fn json<'b>(
         &'b self,
         touches: &[Imprint],
-        (answer, method): (&'b Answer, Method),
+        answer: &'b Answer,
         line: Option<&'b Line>,
     ) -> AnswerJson<'b> {
         AnswerJson {
             model: self.model,
             answer,
-            method,
             noise: self.asked.noise,
             nearest: self.model.nearest_of(Evidence::of(touches)),
             top: self.asked.top,

@@ -142,7 +142,7 @@ fn line_writer(asked: &WatchArguments, shelf: &Shelf) -> Result<LineWriter, CliE
         let Some(model) = naming.load(&shelf)? else {
             return lines.write(&mut |_, _| ());
         };
-        let mut namer = FrameNamer::new(&model, noise.as_ref());
+        let namer = FrameNamer::new(&model, noise.as_ref());
         lines.write(&mut |line, imprint| namer.extend(line, imprint))
     }))
 }

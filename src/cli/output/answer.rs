@@ -10,7 +10,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{bar, percent};
 use crate::cli::output::pose::PoseReport;
 use crate::imprint::Imprint;
-use crate::recognition::{Answer, AnswerState, Evidence, Method, Model, Nearest, Noise};
+use crate::recognition::{Answer, AnswerState, Evidence, Model, Nearest, Noise};
 
 /// How many shapes a text shows, unless another number is asked for.
 const SHOWN: usize = 8;
@@ -36,8 +36,6 @@ pub(crate) struct AnswerJson<'a> {
     pub(crate) model: &'a Model,
     /// The posterior, and what follows from it.
     pub(crate) answer: &'a Answer,
-    /// How the posterior was found: from equal imprints, or compared under noise.
-    pub(crate) method: Method,
     /// The noise that was assumed.
     pub(crate) noise: Option<Noise>,
     /// The nearest imprint of the model; None if all are larger than the matrix.
@@ -66,7 +64,7 @@ impl Serialize for AnswerJson<'_> {
             let tied: Vec<&str> = answer.tied.iter().map(|&shape| name(shape)).collect();
             map.serialize_entry("tied", &tied)?;
         }
-        map.serialize_entry("method", self.method.name())?;
+        map.serialize_entry("method", answer.method.name())?;
         map.serialize_entry("noise", &self.noise.map(|noise| noise.flip()))?;
         map.serialize_entry("at_rim", &answer.at_rim)?;
         let ranking = answer.ranking.iter().take(self.top.unwrap_or(usize::MAX));

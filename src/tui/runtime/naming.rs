@@ -14,7 +14,7 @@ use std::sync::mpsc::{Sender, channel};
 use std::thread::JoinHandle;
 
 use crate::imprint::Imprint;
-use crate::recognition::{Evidence, Model, Noise, NoisyRecogniser};
+use crate::recognition::{Evidence, Model, Noise};
 use crate::tui::explore::message::WorkerEvent;
 use crate::tui::live::message::LiveEvent;
 use crate::tui::live::naming::NamedImprint;
@@ -81,9 +81,8 @@ impl ShapeNamer {
                     Ok(model) => model,
                     Err(reason) => return WorkerEvent::Live(number, LiveEvent::NotNamed(reason)),
                 };
-                let mut noisy = noise.map(|noise| NoisyRecogniser::new(&model, noise));
                 while let Ok(imprint) = waiting.recv() {
-                    let named = named(&model, noisy.as_mut(), &imprint);
+                    let named = named(&model, noise.as_ref(), &imprint);
                     post(WorkerEvent::Live(number, LiveEvent::Named(Box::new(named))));
                 }
                 WorkerEvent::Live(number, LiveEvent::Waiting)
@@ -102,10 +101,7 @@ impl ShapeNamer {
         let own = self.here.as_ref()?;
         let train = || own.store.model(&own.choice, &|_| (), &|_| true);
         let event = match own.model.get_or_init(train) {
-            Ok(model) => {
-                let mut noisy = own.noise.map(|noise| NoisyRecogniser::new(model, noise));
-                LiveEvent::Named(Box::new(named(model, noisy.as_mut(), imprint)))
-            }
+            Ok(model) => LiveEvent::Named(Box::new(named(model, own.noise.as_ref(), imprint))),
             Err(reason) => LiveEvent::NotNamed(reason.clone()),
         };
         Some(WorkerEvent::Live(self.number, event))
@@ -133,15 +129,8 @@ impl Drop for ShapeNamer {
 
 /// Names an imprint, with the noise of the sensor where that is known. One touch is all the evidence: frames of a
 /// source may be of different shapes.
-fn named(
-    model: &Model,
-    noisy: Option<&mut NoisyRecogniser<'_>>,
-    imprint: &Imprint,
-) -> NamedImprint {
+fn named(model: &Model, noise: Option<&Noise>, imprint: &Imprint) -> NamedImprint {
     let touches = [*imprint];
-    let answer = match noisy {
-        Some(noisy) => noisy.recognise(&touches, None).0,
-        None => model.recognise(Evidence::of(&touches)),
-    };
-    NamedImprint::new(model, imprint, &answer)
+    let evidence = Evidence::of(&touches).under(noise);
+    NamedImprint::new(model, imprint, &model.recognise(evidence))
 }
