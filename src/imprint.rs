@@ -232,26 +232,23 @@ impl Imprint {
             if row > usize::from(MAX_SIDE) {
                 return Err(ImprintError::Rows);
             }
-            let mut word = 0;
-            let mut length = 0_usize;
-            for character in text.chars() {
-                let column = length + 1;
-                match character {
-                    '#' if length < usize::from(MAX_SIDE) => word |= 1 << length,
-                    '#' | '.' => {}
-                    found => return Err(ImprintError::Character { row, column, found }),
-                }
-                length = column;
+            let foreign = |character: char| !matches!(character, '#' | '.');
+            if let Some((column, found)) = text.chars().enumerate().find(|(_, own)| foreign(*own)) {
+                let column = column + 1;
+                return Err(ImprintError::Character { row, column, found });
             }
-            let columns = u8::try_from(length)
-                .ok()
-                .filter(|columns| (1..=MAX_SIDE).contains(columns));
-            let columns = columns.ok_or(ImprintError::Columns { row, found: length })?;
+            let found = text.len();
+            let columns = u8::try_from(found).ok();
+            let columns = columns
+                .filter(|columns| (1..=MAX_SIDE).contains(columns))
+                .ok_or(ImprintError::Columns { row, found })?;
+            let active = text.bytes().map(|byte| u64::from(byte == b'#'));
+            let word = active.rev().fold(0, |word, active| word << 1 | active);
             let imprint = imprint.get_or_insert_with(|| Self::empty(columns, MAX_SIDE));
             if columns != imprint.columns {
                 return Err(ImprintError::Ragged {
                     row,
-                    found: length,
+                    found,
                     expected: imprint.columns,
                 });
             }

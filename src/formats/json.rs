@@ -1,5 +1,8 @@
 //! Values as JSON text, and the messages of its parser without the position that callers report themselves.
 
+#[cfg(feature = "cli")]
+use std::io::{self, Write};
+
 use serde::Serialize;
 
 use crate::quote::legible;
@@ -8,6 +11,58 @@ use crate::quote::legible;
 #[cfg(feature = "tui")]
 pub(crate) fn text(value: &(impl Serialize + ?Sized)) -> String {
     serde_json::to_string(value).unwrap_or_else(|error| failure(&error))
+}
+
+/// A value on one line, with everything but ASCII escaped: the same bytes in every locale, and safe to print even if it
+/// quotes text from files.
+#[cfg(feature = "cli")]
+pub(crate) fn ascii(value: &(impl Serialize + ?Sized)) -> String {
+    let mut text = Vec::new();
+    extend_ascii(&mut text, value);
+    String::from_utf8_lossy(&text).into_owned()
+}
+
+/// Appends [`ascii`] of a value to a text.
+#[cfg(feature = "cli")]
+pub(crate) fn extend_ascii(text: &mut Vec<u8>, value: &(impl Serialize + ?Sized)) {
+    let start = text.len();
+    let mut writer = serde_json::Serializer::with_formatter(&mut *text, AsciiFormatter);
+    if let Err(error) = value.serialize(&mut writer) {
+        text.truncate(start);
+        text.extend(failure(&error).bytes());
+    }
+}
+
+/// Writes JSON in ASCII. What has to be escaped can only stand inside of a text, where `\u` may stand for it.
+#[cfg(feature = "cli")]
+struct AsciiFormatter;
+
+#[cfg(feature = "cli")]
+impl serde_json::ser::Formatter for AsciiFormatter {
+    fn write_string_fragment<W: ?Sized + Write>(
+        &mut self,
+        writer: &mut W,
+        fragment: &str,
+    ) -> io::Result<()> {
+        if fragment.bytes().all(|byte| matches!(byte, b' '..=b'~')) {
+            return writer.write_all(fragment.as_bytes());
+        }
+        for unit in fragment.encode_utf16() {
+            match u8::try_from(unit) {
+                Ok(byte @ b' '..=b'~') => writer.write_all(&[byte])?,
+                _ => write!(writer, "\\u{unit:04x}")?,
+            }
+        }
+        Ok(())
+    }
+
+    fn write_raw_fragment<W: ?Sized + Write>(
+        &mut self,
+        writer: &mut W,
+        fragment: &str,
+    ) -> io::Result<()> {
+        self.write_string_fragment(writer, fragment)
+    }
 }
 
 /// A value over several lines.

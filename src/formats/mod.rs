@@ -5,13 +5,13 @@
 
 pub mod value;
 
-mod described;
+pub(crate) mod described;
 
 #[cfg(feature = "json")]
 pub(crate) mod json;
 
 #[cfg(feature = "json")]
-mod record;
+pub(crate) mod record;
 
 #[cfg(feature = "json")]
 pub(crate) mod framed;

@@ -9,9 +9,11 @@
 //! group in a place, and the most taxels that any place has inside bound it in all places: most groups and places are
 //! never looked at. What remains are dense loops over keys, compiled for the widest registers there are.
 
+use std::cmp::Reverse;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::imprint::Imprint;
@@ -44,12 +46,13 @@ pub(super) struct KeyBox {
     length: usize,
     /// The numbers of its keys in the table.
     pub(super) keys: Range<usize>,
+    /// Its groups, in the order of their numbers of taxels.
+    groups: Range<usize>,
 }
 
 /// Keys of one box and one number of taxels.
 #[derive(Clone, Debug)]
 struct Group {
-    of: usize,
     count: u32,
     keys: Range<usize>,
     /// Where its taxels start.
@@ -104,21 +107,11 @@ impl Sums {
         Self { width, sums }
     }
 
-    /// Taxels inside of a box, in each of its places in reading order.
-    fn inside(
-        &self,
-        (across, down): (usize, usize),
-        (width, height): (usize, usize),
-    ) -> impl Iterator<Item = u32> {
-        (0..down).flat_map(move |row| {
-            let top = &self.sums[row * self.width..][..across + width];
-            let bottom = &self.sums[(row + height) * self.width..][..across + width];
-            (0..across).map(move |column| {
-                let (left, right) = (column, column + width);
-                let below = u32::from(bottom[right]) + u32::from(top[left]);
-                below - u32::from(top[right]) - u32::from(bottom[left])
-            })
-        })
+    /// Taxels inside of a box whose first taxel is in some column and row.
+    fn inside(&self, (column, row): (usize, usize), (width, height): (usize, usize)) -> u32 {
+        let at = |column: usize, row: usize| u32::from(self.sums[row * self.width + column]);
+        let (right, bottom) = (column + width, row + height);
+        at(right, bottom) + at(column, row) - at(right, row) - at(column, bottom)
     }
 }
 
@@ -158,40 +151,25 @@ impl Observed {
         (self.seen.columns(), self.seen.rows())
     }
 
-    /// All places of a box, in reading order; none if it does not fit.
-    fn places(&self, (width, height): (u8, u8)) -> impl Iterator<Item = Place> {
+    /// Visits all places of a box in reading order; none if it does not fit.
+    fn each_place(&self, (width, height): (u8, u8), mut visit: impl FnMut(Place)) {
         let (columns, rows) = self.size();
-        let fits = width <= columns && height <= rows;
-        let across = if fits {
-            usize::from(columns - width) + 1
-        } else {
-            0
-        };
-        let down = if fits {
-            usize::from(rows - height) + 1
-        } else {
-            0
-        };
         let size = (usize::from(width), usize::from(height));
-        let inside = self.active.inside((across, down), size);
-        let mut dead = self
-            .dead
-            .as_ref()
-            .map(|dead| dead.inside((across, down), size));
-        let corners = (0..=u8::MAX)
-            .take(down)
-            .flat_map(move |row| (0..=u8::MAX).take(across).map(move |column| (column, row)));
-        corners
-            .zip(inside)
-            .map(move |((column, row), inside)| Place {
-                column,
-                row,
-                inside,
-                dead: dead
-                    .as_mut()
-                    .and_then(Iterator::next)
-                    .map_or(0, |dead| dead),
-            })
+        if width > columns {
+            return;
+        }
+        for row in 0..(rows + 1).saturating_sub(height) {
+            for column in 0..=columns - width {
+                let corner = (usize::from(column), usize::from(row));
+                let dead = self.dead.as_ref();
+                visit(Place {
+                    column,
+                    row,
+                    inside: self.active.inside(corner, size),
+                    dead: dead.map_or(0, |dead| dead.inside(corner, size)),
+                });
+            }
+        }
     }
 
     /// The least distance of a key of `count` taxels in a place. It grows with neither of the place's numbers.
@@ -206,37 +184,50 @@ impl Observed {
     }
 }
 
-/// What a group is compared with: parts of the observed imprint as large as its box, those of the least bounds first.
+/// What the keys of a box are compared with: parts of the observed imprint as large as the box, those with the most taxels
+/// first.
 struct Windows {
-    places: Vec<(Place, u32)>,
+    places: Vec<Place>,
+    /// Words of each.
+    length: usize,
     /// For each place the taxels inside, as a key would have them, and which of them are not dead.
     bits: Vec<u64>,
     living: Vec<u64>,
 }
 
 impl Windows {
-    /// Those in which keys of a group may have a distance of at most `most`.
-    fn new(observed: &Observed, of: &KeyBox, count: u32, most: u32) -> Self {
-        let places = observed.places((of.width, of.height));
-        let bounded = places.map(|place| (place, observed.bound(count, place)));
-        let mut places: Vec<_> = bounded.filter(|&(_, bound)| bound <= most).collect();
-        // Stable: of equal bounds the first in reading order.
-        places.sort_by_key(|&(_, bound)| bound);
+    /// Those outside of which at most `most` taxels are active.
+    fn new(observed: &Observed, of: &KeyBox, most: u32) -> Self {
+        let mut places = Vec::new();
+        observed.each_place((of.width, of.height), |place| {
+            if observed.count - place.inside <= most {
+                places.push(place);
+            }
+        });
+        // Stable: of equals the first in reading order.
+        places.sort_by_key(|place| Reverse(place.inside));
         let mut bits = vec![0; places.len() * of.length];
         let mut living = vec![u64::MAX; places.len() * of.length];
-        for (index, (place, _)) in places.iter().enumerate() {
+        for (index, &place) in places.iter().enumerate() {
             let own = index * of.length..(index + 1) * of.length;
-            cut(&observed.seen, of, *place, &mut bits[own.clone()]);
+            cut(&observed.seen, of, place, &mut bits[own.clone()]);
             if let Some(imprint) = &observed.living {
                 living[own.clone()].fill(0);
-                cut(imprint, of, *place, &mut living[own]);
+                cut(imprint, of, place, &mut living[own]);
             }
         }
         Self {
             places,
+            length: of.length,
             bits,
             living,
         }
+    }
+
+    /// The least distance of a key of `count` taxels in any of them.
+    fn bound(&self, observed: &Observed, count: u32) -> Option<u32> {
+        let bounds = self.places.iter();
+        bounds.map(|&place| observed.bound(count, place)).min()
     }
 }
 
@@ -269,16 +260,10 @@ impl KeyIndex {
             let first = keys.get(own[0].1);
             // The table is in the order of boxes, too.
             let end = start + own.len();
-            index.boxes.push(KeyBox {
-                width,
-                height,
-                length: first.bits.len(),
-                keys: start..end,
-            });
+            let groups = index.groups.len();
             for own in own.chunk_by(|one, other| one.0 == other.0) {
                 let start = index.numbers.len();
                 index.groups.push(Group {
-                    of: index.boxes.len() - 1,
                     count: own[0].0.1,
                     keys: start..start + own.len(),
                     bits: index.bits.len(),
@@ -288,6 +273,13 @@ impl KeyIndex {
                     index.bits.extend_from_slice(keys.get(number).bits);
                 }
             }
+            index.boxes.push(KeyBox {
+                width,
+                height,
+                length: first.bits.len(),
+                keys: start..end,
+                groups: groups..index.groups.len(),
+            });
         }
         index
     }
@@ -304,46 +296,56 @@ impl KeyIndex {
         observed: &Observed,
         rank: impl Fn(usize) -> R + Sync,
     ) -> Option<PlacedKey> {
-        let bounds = self.bounds(observed);
-        // The most promising group rules out most others.
-        let mut groups: Vec<(u32, usize)> = bounds.collect();
-        groups.sort_unstable();
         let least = AtomicU32::new(u32::MAX);
-        let task = |group: &Group, bound: u32, keys: Range<usize>| {
+        let task = |group: &Group, windows: &Windows, keys: Range<usize>| {
             let mut best: Option<(u32, R, usize, (u8, u8))> = None;
             let most = least.load(Ordering::Relaxed);
-            if bound > most {
-                return best;
-            }
-            let windows = Windows::new(observed, &self.boxes[group.of], group.count, most);
-            self.compare(
-                group,
-                keys,
-                &windows,
-                observed,
-                most,
-                |key, place, distance| {
-                    let key = wide(self.numbers[key]);
-                    let own = (distance, rank(key), key, (place.row, place.column));
-                    if best.as_ref().is_none_or(|best| own < *best) {
-                        least.fetch_min(distance, Ordering::Relaxed);
-                        best = Some(own);
-                    }
-                    distance
-                },
-            );
+            let take = |key: usize, place: Place, distance: u32| {
+                let key = wide(self.numbers[key]);
+                let own = (distance, rank(key), key, (place.row, place.column));
+                if best.as_ref().is_none_or(|best| own < *best) {
+                    least.fetch_min(distance, Ordering::Relaxed);
+                    best = Some(own);
+                }
+                distance
+            };
+            self.compare(group, keys, windows, observed, most, take);
             best
         };
-        let best = self.over(&groups, task, |one, other| match (one, other) {
-            (Some(one), Some(other)) => Some(one.min(other)),
+        let better = |one, other| match (one, other) {
+            (Some(one), Some(other)) => Some(std::cmp::min(one, other)),
             (one, other) => one.or(other),
+        };
+        // What the most promising group has rules out most others.
+        let (of, group) = self.promising(observed)?;
+        let windows = Windows::new(observed, of, u32::MAX);
+        let keys = group.keys.start..group.keys.end.min(group.keys.start + TASK);
+        let first = task(group, &windows, keys);
+        let others = self.over(observed, &least, task, better);
+        let (distance, _, key, (row, column)) = better(first, others.flatten())?;
+        Some(PlacedKey {
+            distance,
+            key,
+            place: (column, row),
+        })
+    }
+
+    /// The group of the least bound, with its box. None if no key fits the matrix.
+    fn promising(&self, observed: &Observed) -> Option<(&KeyBox, &Group)> {
+        let bounds = self.boxes.iter().filter_map(|of| {
+            let mut most: Option<Place> = None;
+            observed.each_place((of.width, of.height), |place| {
+                let most = most.get_or_insert(place);
+                most.inside = most.inside.max(place.inside);
+                most.dead = most.dead.max(place.dead);
+            });
+            let most = most?;
+            let groups = self.groups[of.groups.clone()].iter();
+            let bounds = groups.map(|group| (observed.bound(group.count, most), of, group));
+            bounds.min_by_key(|&(bound, ..)| bound)
         });
-        best.flatten()
-            .map(|(distance, _, key, (row, column))| PlacedKey {
-                distance,
-                key,
-                place: (column, row),
-            })
+        let (_, of, group) = bounds.min_by_key(|&(bound, ..)| bound)?;
+        Some((of, group))
     }
 
     /// How many places each key has at each distance from `least` to `most`: `take` adds them to a sum of type `S`, key by
@@ -356,31 +358,20 @@ impl KeyIndex {
         take: impl Fn(&mut S, usize, &[u32]) + Sync,
         add: impl Fn(S, S) -> S + Send + Sync,
     ) -> S {
-        let groups: Vec<(u32, usize)> = self
-            .bounds(observed)
-            .filter(|&(bound, _)| bound <= most)
-            .collect();
         let width = wide(most - least) + 1;
-        let task = |group: &Group, _: u32, keys: Range<usize>| {
+        let task = |group: &Group, windows: &Windows, keys: Range<usize>| {
             let mut sum = none();
-            let windows = Windows::new(observed, &self.boxes[group.of], group.count, most);
             let mut at = vec![0_u32; BLOCK * width];
             for start in keys.clone().step_by(BLOCK) {
                 let block = start..keys.end.min(start + BLOCK);
                 // A bit for each key that has such a place.
                 let mut found = 0_u64;
-                self.compare(
-                    group,
-                    block,
-                    &windows,
-                    observed,
-                    most,
-                    |key, _, distance| {
-                        found |= 1 << (key - start);
-                        at[(key - start) * width + wide(distance - least)] += 1;
-                        most
-                    },
-                );
+                let count = |key: usize, _: Place, distance: u32| {
+                    found |= 1 << (key - start);
+                    at[(key - start) * width + wide(distance - least)] += 1;
+                    most
+                };
+                self.compare(group, block, windows, observed, most, count);
                 while found != 0 {
                     let key = wide(found.trailing_zeros());
                     found &= found - 1;
@@ -391,56 +382,47 @@ impl KeyIndex {
             }
             sum
         };
-        self.over(&groups, task, &add).unwrap_or_else(none)
+        let sum = self.over(observed, &AtomicU32::new(most), task, add);
+        sum.unwrap_or_else(none)
     }
 
-    /// For each group that fits the matrix a bound of its distances in all places, and its number.
-    fn bounds(&self, observed: &Observed) -> impl Iterator<Item = (u32, usize)> {
-        let mut bounds = Vec::with_capacity(self.boxes.len());
-        for of in &self.boxes {
-            let most = observed.places((of.width, of.height));
-            bounds.push(most.reduce(|one, other| Place {
-                inside: one.inside.max(other.inside),
-                dead: one.dead.max(other.dead),
-                ..one
-            }));
-        }
-        let groups = self.groups.iter().enumerate();
-        groups.filter_map(move |(number, group)| {
-            Some((observed.bound(group.count, bounds[group.of]?), number))
-        })
-    }
-
-    /// Gives each piece of some groups to `task`, in parallel where there are many keys, and adds up the results.
+    /// Gives each piece of the groups that may have a distance of at most `most` to `task`, in parallel where there are
+    /// many keys, and adds up the results.
     fn over<S: Send>(
         &self,
-        groups: &[(u32, usize)],
-        task: impl Fn(&Group, u32, Range<usize>) -> S + Sync,
+        observed: &Observed,
+        most: &AtomicU32,
+        task: impl Fn(&Group, &Windows, Range<usize>) -> S + Sync,
         add: impl Fn(S, S) -> S + Send + Sync,
     ) -> Option<S> {
-        let pieces = groups.iter().flat_map(|&(bound, number)| {
-            let group = &self.groups[number];
-            let keys = group.keys.clone();
-            let starts = keys.clone().step_by(TASK);
-            starts.map(move |start| (group, bound, start..keys.end.min(start + TASK)))
-        });
-        let run = |(group, bound, keys): (&Group, u32, Range<usize>)| {
-            pulp::Arch::new().dispatch(|| task(group, bound, keys))
+        let most = || most.load(Ordering::Relaxed);
+        let whole_box = |of: &KeyBox| {
+            let windows = Windows::new(observed, of, most());
+            let groups = self.groups[of.groups.clone()].iter();
+            let near = groups.filter(|group| {
+                let bound = windows.bound(observed, group.count);
+                bound.is_some_and(|bound| bound <= most())
+            });
+            let pieces = near.flat_map(|group| {
+                let starts = group.keys.clone().step_by(TASK);
+                starts.map(move |start| (group, start..group.keys.end.min(start + TASK)))
+            });
+            let run = |(group, keys): (&Group, Range<usize>)| task(group, &windows, keys);
+            if of.keys.len() < TASK {
+                return pieces.map(run).reduce(&add);
+            }
+            let pieces: Vec<_> = pieces.collect();
+            pieces.into_par_iter().map(run).reduce_with(&add)
         };
         if self.numbers.len() < TASK {
-            return pieces.map(run).reduce(add);
+            return self.boxes.iter().filter_map(whole_box).reduce(&add);
         }
-        let pieces: Vec<_> = pieces.collect();
-        pieces.into_par_iter().map(run).reduce_with(add)
+        let boxes = self.boxes.par_iter().filter_map(whole_box);
+        boxes.reduce_with(&add)
     }
 
-    /// Calls `take` for each key and window whose distance is at most `most`, with the place of the key in this index; it
-    /// answers up to which distance the next ones matter.
-    #[expect(
-        clippy::inline_always,
-        reason = "so that it is compiled for the registers that are there"
-    )]
-    #[inline(always)]
+    /// Calls `take` for each of some keys of a group and each window whose distance is at most `most`, with the place of
+    /// the key in this index; it answers up to which distance the next ones matter.
     fn compare(
         &self,
         group: &Group,
@@ -450,99 +432,110 @@ impl KeyIndex {
         most: u32,
         take: impl FnMut(usize, Place, u32) -> u32,
     ) {
-        match self.boxes[group.of].length {
-            1 => self.compare_words::<1>(group, keys, windows, observed, most, take),
-            2 => self.compare_words::<2>(group, keys, windows, observed, most, take),
-            3 => self.compare_words::<3>(group, keys, windows, observed, most, take),
-            4 => self.compare_words::<4>(group, keys, windows, observed, most, take),
-            _ => self.compare_words::<0>(group, keys, windows, observed, most, take),
-        }
+        let skipped = group.bits + (keys.start - group.keys.start) * windows.length;
+        pulp::Arch::new().dispatch(Comparison {
+            bits: &self.bits[skipped..][..keys.len() * windows.length],
+            keys,
+            count: group.count,
+            windows,
+            observed,
+            most,
+            take,
+        });
     }
+}
 
-    /// The same for keys of `N` words; 0 for any number.
-    #[expect(
-        clippy::inline_always,
-        reason = "so that it is compiled for the registers that are there"
-    )]
+/// Keys of one group, and the windows that they are compared with.
+struct Comparison<'a, F> {
+    keys: Range<usize>,
+    /// Their taxels.
+    bits: &'a [u64],
+    /// The number of taxels of each.
+    count: u32,
+    windows: &'a Windows,
+    observed: &'a Observed,
+    /// Up to which distance they matter.
+    most: u32,
+    take: F,
+}
+
+// All of it is inlined, so that it is compiled for the registers that are there.
+impl<F: FnMut(usize, Place, u32) -> u32> WithSimd for Comparison<'_, F> {
+    type Output = ();
+
     #[inline(always)]
-    fn compare_words<const N: usize>(
-        &self,
-        group: &Group,
-        keys: Range<usize>,
-        windows: &Windows,
-        observed: &Observed,
-        mut most: u32,
-        mut take: impl FnMut(usize, Place, u32) -> u32,
-    ) {
-        let length = self.boxes[group.of].length;
-        let mut distances = [0_u32; BLOCK];
-        for start in keys.clone().step_by(BLOCK) {
-            let end = keys.end.min(start + BLOCK);
-            let distances = &mut distances[..end - start];
-            let skipped = start - group.keys.start;
-            let bits = &self.bits[group.bits + skipped * length..][..distances.len() * length];
-            for (index, &(place, bound)) in windows.places.iter().enumerate() {
-                // Windows are in the order of their bounds.
-                if bound > most {
-                    break;
-                }
-                let outside = observed.count - place.inside;
-                let window = &windows.bits[index * length..][..length];
-                let living = &windows.living[index * length..][..length];
-                if N == 0 {
-                    differing(bits, window, living, outside, distances);
-                } else {
-                    differing_words::<N>(bits, window, living, outside, distances);
-                }
-                if distances.iter().all(|&distance| distance > most) {
-                    continue;
-                }
-                for (key, &distance) in (start..end).zip(&*distances) {
-                    if distance <= most {
-                        most = take(key, place, distance);
-                    }
-                }
-            }
+    fn with_simd<S: Simd>(self, _: S) {
+        match self.windows.length {
+            1 => self.words::<1>(),
+            2 => self.words::<2>(),
+            3 => self.words::<3>(),
+            4 => self.words::<4>(),
+            _ => self.words::<0>(),
         }
     }
 }
 
-/// The distance of each key of `N` words from a window: the taxels that differ inside, and those outside.
+#[expect(
+    clippy::inline_always,
+    reason = "so that it is compiled for the registers that are there"
+)]
+impl<F: FnMut(usize, Place, u32) -> u32> Comparison<'_, F> {
+    /// Compares keys of `N` words; 0 for any number.
+    #[inline(always)]
+    fn words<const N: usize>(mut self) {
+        let length = self.windows.length;
+        let mut distances = [0_u32; BLOCK];
+        let mut start = 0;
+        while start < self.keys.len() {
+            let distances = &mut distances[..BLOCK.min(self.keys.len() - start)];
+            let bits = &self.bits[start * length..][..distances.len() * length];
+            for (index, &place) in self.windows.places.iter().enumerate() {
+                if self.observed.bound(self.count, place) > self.most {
+                    continue;
+                }
+                let window = &self.windows.bits[index * length..][..length];
+                let living = &self.windows.living[index * length..][..length];
+                let outside = self.observed.count - place.inside;
+                differing::<N>(bits, window, living, outside, distances);
+                let mut any = false;
+                for &distance in &*distances {
+                    any |= distance <= self.most;
+                }
+                if any {
+                    for (key, &distance) in distances.iter().enumerate() {
+                        if distance <= self.most {
+                            let key = self.keys.start + start + key;
+                            self.most = (self.take)(key, place, distance);
+                        }
+                    }
+                }
+            }
+            start += BLOCK;
+        }
+    }
+}
+
+/// The distance of each key of `N` words (0 for any number) from a window: the taxels that differ inside, and those outside.
 #[expect(
     clippy::inline_always,
     reason = "so that it is compiled for the registers that are there"
 )]
 #[inline(always)]
-fn differing_words<const N: usize>(
+fn differing<const N: usize>(
     keys: &[u64],
     window: &[u64],
     living: &[u64],
     outside: u32,
     distances: &mut [u32],
 ) {
-    let (Some(window), Some(living)) = (window.first_chunk::<N>(), living.first_chunk::<N>())
-    else {
-        return;
-    };
-    for (distance, key) in distances.iter_mut().zip(keys.chunks_exact(N)) {
+    let length = if N == 0 { window.len() } else { N };
+    let (window, living) = (&window[..length], &living[..length]);
+    let keys = &keys[..distances.len() * length];
+    for (index, distance) in distances.iter_mut().enumerate() {
+        let key = &keys[index * length..][..length];
         *distance = outside;
-        for word in 0..N {
+        for word in 0..length {
             *distance += ((key[word] ^ window[word]) & living[word]).count_ones();
         }
-    }
-}
-
-/// The same for keys of any number of words, even none.
-#[expect(
-    clippy::inline_always,
-    reason = "so that it is compiled for the registers that are there"
-)]
-#[inline(always)]
-fn differing(keys: &[u64], window: &[u64], living: &[u64], outside: u32, distances: &mut [u32]) {
-    for (index, distance) in distances.iter_mut().enumerate() {
-        let key = &keys[index * window.len()..][..window.len()];
-        let words = key.iter().zip(window).zip(living);
-        let inside = words.map(|((key, window), living)| ((key ^ window) & living).count_ones());
-        *distance = outside + inside.sum::<u32>();
     }
 }

@@ -11,7 +11,7 @@ use std::ffi::OsString;
 use clap::{ArgMatches, Command, value_parser};
 
 use crate::cli::arguments::flags::{
-    self, json, of_sensor, option, parse_probability, switch, what,
+    self, jobs, json, of_sensor, option, parse_probability, switch, what,
 };
 use crate::cli::arguments::help::RECOGNISE_EXAMPLES;
 use crate::cli::arguments::model::DEFAULT_MODEL;
@@ -40,6 +40,8 @@ pub(crate) struct RecogniseArguments {
     pub(crate) pose: bool,
     /// In mm; the place of the shape is then given in mm too.
     pub(crate) pitch_mm: Option<f64>,
+    /// Threads that answer lines; 0 for one per core.
+    pub(crate) jobs: usize,
     /// Whether the answer is a line of JSON; lines of touches are answered so anyway.
     pub(crate) json: bool,
 }
@@ -90,7 +92,7 @@ pub(super) fn command() -> Command {
         ))
         .args([model, top, reject, expect, noise, mask, pose])
         .args(of_sensor(&[Parameter::Pitch]))
-        .arg(json())
+        .args([jobs(), json()])
 }
 
 /// The probability that a taxel flips: 0 or more, below 0.5.
@@ -115,6 +117,7 @@ impl RecogniseArguments {
             mask: matches.get_one::<OsString>("mask").cloned(),
             pose: matches.get_flag("pose"),
             pitch_mm,
+            jobs: flags::jobs_of(matches),
             json: matches.get_flag("json"),
         }
     }

@@ -5,8 +5,6 @@
 //! ```
 
 use std::io::{Read, Write};
-use std::num::NonZero;
-use std::thread;
 
 use crate::cli::error::CliError;
 use crate::cli::input::lines;
@@ -28,10 +26,6 @@ pub(crate) fn answer_lines(
     input: impl Read + Send + 'static,
     output: impl Write,
 ) -> Result<(), CliError> {
-    let jobs = match jobs {
-        0 => thread::available_parallelism().map_or(1, NonZero::get),
-        jobs => jobs,
-    };
     lines::answer_all(jobs, input, output, "pose", || {
         let mut plane = Plane::new(sensor);
         move |line: &[u8], answer: &mut Vec<u8>| {

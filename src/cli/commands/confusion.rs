@@ -16,7 +16,6 @@ use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, EvaluationJson, NamedBy};
-use crate::cli::output::report;
 use crate::formats::{ConfusionMap, json};
 use crate::recognition::{Evaluation, Model, Peer, PeerEvaluation, greedy};
 
@@ -75,8 +74,7 @@ fn pairs(model: &Model, as_json: bool, charset: Charset) -> String {
     if !as_json {
         return evaluation::pairs(&labels, &errors, charset);
     }
-    let line = json!({"labels": labels, "errors": errors}).to_string();
-    report::ascii_json(&line) + "\n"
+    json::ascii(&json!({"labels": labels, "errors": errors})) + "\n"
 }
 
 /// The errors of all other classifiers beside the limit. Writes them to a file of commas too, if one is asked for.
@@ -128,11 +126,10 @@ fn shown(
     }
     Ok(match asked.form {
         EvaluationForm::Json => {
-            let line = json::text(&EvaluationJson {
+            json::ascii(&EvaluationJson {
                 evaluation: own,
                 peer,
-            });
-            report::ascii_json(&line) + "\n"
+            }) + "\n"
         }
         EvaluationForm::Csv => evaluation::csv(own),
         EvaluationForm::Text => {

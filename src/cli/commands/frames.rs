@@ -585,7 +585,7 @@ impl Selection {
             rule: Some(self.rule),
             tare: self.tare,
         };
-        let mut line = report::ascii_json(&json::text(&answer)).into_bytes();
+        let mut line = json::ascii(&answer).into_bytes();
         match &mut output.namer {
             Some(namer) => namer.extend(&mut line, Some(imprint)),
             None => line.push(b'\n'),

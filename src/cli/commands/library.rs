@@ -20,7 +20,6 @@ use crate::cli::error::CliError;
 use crate::cli::input::content::Content;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
-use crate::cli::output::report;
 use crate::description::{RegionKind, regions};
 use crate::formats::{Name, StoredShape, json};
 use crate::quote::legible;
@@ -135,7 +134,7 @@ pub(crate) fn names(shelf: &Shelf) -> Result<String, CliError> {
 pub(crate) fn list(shelf: &Shelf, as_json: bool, charset: Charset) -> Result<String, CliError> {
     let lines = lines(&shelf.library()?)?;
     if as_json {
-        return Ok(report::ascii_json(&json::text(&lines)) + "\n");
+        return Ok(json::ascii(&lines) + "\n");
     }
     let names: Vec<_> = lines.iter().map(|line| charset.line(&line.name)).collect();
     let widths = names.iter().map(|name| name.chars().count());

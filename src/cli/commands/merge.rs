@@ -18,7 +18,6 @@ use crate::cli::commands::sweep::{Wanted, leave};
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, EvaluationJson};
-use crate::cli::output::report;
 use crate::cli::signals::Signals;
 use crate::formats::{MODEL_FORMAT, archive_kind, json};
 use crate::recognition::{Evaluation, Model, ModelMerge, TrainingError};
@@ -173,11 +172,10 @@ fn leave_model(model: &Model, wanted: &Wanted, charset: Charset) -> Result<Strin
     }
     let limit = Evaluation::of(model);
     Ok(if wanted.json {
-        let line = json::text(&EvaluationJson {
+        json::ascii(&EvaluationJson {
             evaluation: &limit,
             peer: None,
-        });
-        report::ascii_json(&line) + "\n"
+        }) + "\n"
     } else {
         evaluation::summary(&limit, evaluation::NamedBy::Imprint, charset)
     })

@@ -28,7 +28,6 @@ use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, NamedBy};
 use crate::cli::output::progress::Progress;
-use crate::cli::output::report;
 use crate::cli::signals::Signals;
 use crate::formats::{Name, json};
 use crate::pose::{Anchor, Axis, GivenRanges, GridError, Ranges, common_ranges, smallest_sensor};
@@ -290,7 +289,7 @@ pub(crate) fn show(
     let model = find(which, shelf)?;
     let limit = Evaluation::of(&model);
     if json {
-        return Ok(report::ascii_json(&json::text(&card_json(&model, &limit)?)) + "\n");
+        return Ok(json::ascii(&card_json(&model, &limit)?) + "\n");
     }
     let mut text = format!(
         "{}\n",
@@ -429,7 +428,7 @@ pub(crate) fn list(json: bool, shelf: &Shelf, charset: Charset) -> Result<String
                 }),
                 Err(error) => json!({"name": name.as_str(), "error": error.to_string()}),
             };
-            text += &report::ascii_json(&line.to_string());
+            text += &json::ascii(&line);
             text.push('\n');
             continue;
         }

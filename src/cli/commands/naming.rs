@@ -7,7 +7,6 @@ use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::answer::{AnswerJson, AnswerText};
 use crate::cli::output::charset::Charset;
-use crate::cli::output::report;
 use crate::formats::json;
 use crate::imprint::Imprint;
 use crate::recognition::{Evidence, Model, Noise};
@@ -71,7 +70,7 @@ impl<'a> FrameNamer<'a> {
             Some(imprint) => {
                 let touches = [*imprint];
                 let evidence = self.evidence(&touches);
-                let text = json::text(&AnswerJson {
+                let answer = AnswerJson {
                     model: self.model,
                     answer: &self.model.recognise(evidence),
                     noise: self.noise,
@@ -80,8 +79,8 @@ impl<'a> FrameNamer<'a> {
                     asks_pose: false,
                     pose: None,
                     copied: Vec::new(),
-                });
-                line.extend(report::ascii_json(&text).bytes());
+                };
+                json::extend_ascii(line, &answer);
             }
         }
         line.extend(b"}\n");

@@ -29,7 +29,6 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, bar, percent};
 use crate::cli::output::plot;
 use crate::cli::output::progress::Progress;
-use crate::cli::output::report;
 use crate::cli::signals::Signals;
 use crate::formats::{LinePlot, json};
 use crate::recognition::{
@@ -310,7 +309,7 @@ pub(crate) fn touches(
     let shapes: Vec<_> = names.zip(&results).collect();
     let all = mean(&results);
     Ok(if asked.json {
-        report::ascii_json(&touches_json(asked, &shapes, all)) + "\n"
+        touches_json(asked, &shapes, all) + "\n"
     } else {
         charset.lines(&touches_text(asked, &shapes, all))
     })
@@ -352,7 +351,7 @@ fn touches_json(
         "standard_error": error,
         "shapes": shapes,
     });
-    answer.to_string()
+    json::ascii(&answer)
 }
 
 /// A line for each shape, the mean and its standard error, with the number of runs that did not get there; and one for

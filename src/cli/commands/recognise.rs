@@ -11,6 +11,7 @@
 
 use std::ffi::OsStr;
 use std::io::{self, BufRead, BufReader, Cursor, Read, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::Deserialize;
 use serde_json::value::RawValue;
@@ -24,9 +25,9 @@ use crate::cli::input::shapes::{Located, Shelf};
 use crate::cli::output::answer::{AnswerJson, AnswerText};
 use crate::cli::output::charset::Charset;
 use crate::cli::output::pose::PoseReport;
-use crate::cli::output::report;
 use crate::formats::framed::{FrameRows, RuleRecord};
 use crate::formats::json;
+use crate::formats::record::Text;
 use crate::imprint::Imprint;
 use crate::quote::legible;
 use crate::recognition::{Answer, AnswerState, Evidence, Model, Noise};
@@ -101,8 +102,7 @@ impl<'a> Recogniser<'a> {
         let touches = [*imprint];
         let answer = self.answer(&touches)?;
         let text = if self.asked.json {
-            let line = json::text(&self.json(&touches, &answer, None));
-            report::ascii_json(&line) + "\n"
+            json::ascii(&self.json(&touches, &answer, None)) + "\n"
         } else {
             let text = AnswerText {
                 model: self.model,
@@ -121,18 +121,24 @@ impl<'a> Recogniser<'a> {
     }
 
     /// Answers each line by a line of JSON. Returns whether all answers are the expected one.
-    fn answer_lines(&self, input: Box<dyn Read>, output: &mut dyn Write) -> Result<bool, CliError> {
-        let mut expected = true;
-        lines::answer_each(input, output, "touch", |line, text| {
+    fn answer_lines(
+        &self,
+        input: Box<dyn Read + Send>,
+        output: &mut dyn Write,
+    ) -> Result<bool, CliError> {
+        let all_expected = AtomicBool::new(true);
+        let answer = |line: &[u8], text: &mut Vec<u8>| {
             let line = Line::read(line)?;
-            let answered = self.answer(&line.touches);
-            let answer = answered.map_err(|error| error.to_string())?;
-            expected &= self.expected(&answer);
-            let own = json::text(&self.json(&line.touches, &answer, Some(&line)));
-            text.extend(report::ascii_json(&own).bytes());
+            let answer = self.answer(&line.touches);
+            let answer = answer.map_err(|error| error.to_string())?;
+            if !self.expected(&answer) {
+                all_expected.store(false, Ordering::Relaxed);
+            }
+            json::extend_ascii(text, &self.json(&line.touches, &answer, Some(&line)));
             Ok(())
-        })?;
-        Ok(expected)
+        };
+        lines::answer_all(self.asked.jobs, input, output, "touch", || answer)?;
+        Ok(all_expected.into_inner())
     }
 
     /// Names the shape that left all these touches.
@@ -214,12 +220,12 @@ enum Asked {
     /// One touch.
     Imprint(Imprint),
     /// Lines of JSON, not read yet.
-    Lines(Box<dyn Read>),
+    Lines(Box<dyn Read + Send>),
 }
 
 /// Finds out what the argument means: a shape of the library, a file or standard input; and whether that holds lines.
 fn input(what: &OsStr, shelf: &Shelf) -> Result<Asked, CliError> {
-    let (name, input): (String, Box<dyn Read>) = match shelf.locate(what)? {
+    let (name, input): (String, Box<dyn Read + Send>) = match shelf.locate(what)? {
         Located::Shape(shape) => return Ok(Asked::Imprint(shape.imprint)),
         Located::File(path, file) => (path.to_string_lossy().into_owned(), Box::new(file)),
         Located::Standard => ("standard input".to_owned(), Box::new(io::stdin())),
@@ -272,10 +278,10 @@ fn is_line(text: &[u8]) -> bool {
 struct Keys<'a> {
     /// One touch: a text for each row, `#` for an active taxel.
     #[serde(borrow)]
-    imprint: Option<Vec<std::borrow::Cow<'a, str>>>,
+    imprint: Option<Vec<Text<'a>>>,
     /// Several touches of one shape.
     #[serde(borrow)]
-    touches: Option<Vec<Vec<std::borrow::Cow<'a, str>>>>,
+    touches: Option<Vec<Vec<Text<'a>>>>,
     /// The number of a frame, as `taxel frames --json` writes it.
     frame: Option<Box<RawValue>>,
     /// What the recording calls that frame.
@@ -318,8 +324,8 @@ impl Line {
                 json::message(&error)
             )
         })?;
-        let imprint = |key: &str, rows: &[std::borrow::Cow<'_, str>]| {
-            Imprint::from_rows(rows.iter().map(AsRef::as_ref))
+        let imprint = |key: &str, rows: &[Text<'_>]| {
+            Imprint::from_rows(rows.iter().map(|row| &*row.0))
                 .map_err(|error| legible(&format!("{key}: {error}")))
         };
         let framed = framed(line, keys.frame.as_deref())?;

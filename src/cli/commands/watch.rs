@@ -25,7 +25,6 @@ use crate::cli::commands::naming::FrameNamer;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::line_writer::LineWriter;
-use crate::cli::output::report;
 use crate::cli::signals::Signals;
 use crate::formats::json;
 use crate::formats::recording::{
@@ -349,7 +348,7 @@ impl Watcher<'_> {
             rule: self.rule,
             tare,
         };
-        let line = report::ascii_json(&json::text(&answer)) + "\n";
+        let line = json::ascii(&answer) + "\n";
         let may_give_up = self.live && self.recorder.is_some();
         if self
             .lines

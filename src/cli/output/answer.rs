@@ -9,6 +9,7 @@ use serde_json::value::RawValue;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{bar, percent};
 use crate::cli::output::pose::PoseReport;
+use crate::formats::described::Rows;
 use crate::imprint::Imprint;
 use crate::recognition::{Answer, AnswerState, Evidence, Model, Nearest, Noise};
 
@@ -27,7 +28,7 @@ struct NearestJson<'a> {
     /// How many taxels differ in the best position.
     distance: u32,
     /// Its rows, in the matrix of the touch.
-    imprint: Vec<String>,
+    imprint: Rows<'a>,
 }
 
 /// An answer as an object of JSON, its keys in the order of the documentation.
@@ -76,7 +77,7 @@ impl Serialize for AnswerJson<'_> {
         let nearest = self.nearest.as_ref().map(|nearest| NearestJson {
             name: name(nearest.shape),
             distance: nearest.distance,
-            imprint: nearest.imprint.lines().collect(),
+            imprint: Rows(&nearest.imprint),
         });
         map.serialize_entry("nearest", &nearest)?;
         if self.asks_pose {

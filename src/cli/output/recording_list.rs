@@ -15,7 +15,6 @@
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::cli::output::charset::Charset;
-use crate::cli::output::report;
 use crate::formats::json;
 use crate::formats::recording::{ChannelInfo, RecordingFormat};
 use crate::formats::value::counted;
@@ -100,7 +99,7 @@ impl Serialize for ListedRecording<'_> {
 
 /// One line of JSON.
 pub(crate) fn json(format: Option<RecordingFormat>, channels: &[ListedChannel]) -> String {
-    report::ascii_json(&json::text(&ListedRecording(format, channels))) + "\n"
+    json::ascii(&ListedRecording(format, channels)) + "\n"
 }
 
 /// A heading, then a few lines a channel.

@@ -36,20 +36,6 @@ pub(crate) fn json(imprint: &Imprint) -> String {
     line
 }
 
-/// JSON with everything but ASCII escaped: the same bytes in every locale, and safe to print even if it quotes text
-/// from files.
-pub(crate) fn ascii_json(json: &str) -> String {
-    let mut ascii = String::with_capacity(json.len());
-    for unit in json.encode_utf16() {
-        match u8::try_from(unit) {
-            Ok(byte @ b' '..=b'~') => ascii.push(char::from(byte)),
-            // Cannot fail: a String takes everything.
-            _ => drop(write!(ascii, "\\u{unit:04x}")),
-        }
-    }
-    ascii
-}
-
 /// The lines that say what made an imprint, and that it reaches beyond the sensor if it does.
 pub(crate) fn made(source: &Source, sensor: &Sensor) -> Vec<String> {
     let mut lines = vec![source.to_string()];

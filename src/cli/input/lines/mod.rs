@@ -9,40 +9,24 @@
 //! ```
 
 use std::io::{self, Read, Write};
+use std::num::NonZero;
+use std::thread;
 
 use crate::cli::error::CliError;
 use crate::cli::input::lines::block::{Block, BlockReader};
-use crate::cli::output::report;
+use crate::formats::json;
 
 pub(crate) mod block;
 pub(crate) mod in_order;
 
 pub(crate) use block::MAX_LINE;
 
-/// Answers each line of `input` on this thread: `answer` appends its answer, without a line end, or says what is wrong
-/// with the line. `noun` is what a line holds, for the message about one that is too long.
+/// Answers each line of `input` by up to `jobs` threads (0: one per core): the answers do not depend on their number. Each
+/// thread answers by a closure of its own, which `answerer` makes: it appends an answer, without a line end, or says what
+/// is wrong with the line. `noun` is what a line holds, for the message about one that is too long.
 ///
 /// # Errors
 /// [`CliError::Lines`] at the end if some lines were wrong; [`CliError::Read`] or [`CliError::Write`] at once.
-pub(crate) fn answer_each(
-    input: impl Read,
-    output: impl Write,
-    noun: &str,
-    mut answer: impl FnMut(&[u8], &mut Vec<u8>) -> Result<(), String>,
-) -> Result<(), CliError> {
-    let mut blocks = BlockReader::new(input);
-    let mut output = AnswerWriter::new(output);
-    while let Some(block) = blocks.next_block() {
-        output.write(block.map(|block| answer_block(&block, noun, &mut answer)))?;
-    }
-    output.finish()
-}
-
-/// The same by up to `jobs` threads; the answers do not depend on their number. Each thread answers by a closure of its
-/// own, which `answerer` makes.
-///
-/// # Errors
-/// Those of [`answer_each`].
 pub(crate) fn answer_all<A>(
     jobs: usize,
     input: impl Read + Send + 'static,
@@ -53,6 +37,10 @@ pub(crate) fn answer_all<A>(
 where
     A: FnMut(&[u8], &mut Vec<u8>) -> Result<(), String>,
 {
+    let jobs = match jobs {
+        0 => thread::available_parallelism().map_or(1, NonZero::get),
+        jobs => jobs,
+    };
     let mut blocks = BlockReader::new(input);
     let mut output = AnswerWriter::new(output);
     in_order::in_order(
@@ -107,8 +95,7 @@ fn answer_block(
 
 /// Writes the answer to a wrong line.
 fn refuse(answer: &mut Vec<u8>, message: &str) {
-    let json = serde_json::json!({ "error": message }).to_string();
-    answer.extend(report::ascii_json(&json).bytes());
+    json::extend_ascii(answer, &serde_json::json!({ "error": message }));
 }
 
 /// Writes answers, block by block, and counts them.
