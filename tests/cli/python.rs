@@ -4,6 +4,11 @@ use std::process::{Command, Output};
 
 /// Runs an example, if Python has these modules, and returns what it prints.
 fn printed(name: &str, modules: &str) -> Option<String> {
+    printed_with(name, modules, &[])
+}
+
+/// The same with arguments.
+fn printed_with(name: &str, modules: &str, arguments: &[&str]) -> Option<String> {
     let python = |arguments: &[&str]| -> Option<Output> {
         let mut python = Command::new("python3");
         python
@@ -19,7 +24,11 @@ fn printed(name: &str, modules: &str) -> Option<String> {
         return None;
     }
     let path = format!("{}/examples/python/{name}", env!("CARGO_MANIFEST_DIR"));
-    let output = python(&[&path]).expect("it was found before");
+    let whole: Vec<&str> = [path.as_str()]
+        .into_iter()
+        .chain(arguments.iter().copied())
+        .collect();
+    let output = python(&whole).expect("it was found before");
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{name}: {said}");
     Some(String::from_utf8(output.stdout).expect("text"))
@@ -68,4 +77,35 @@ fn frames_are_named_as_they_come() {
             .count()
     };
     assert_eq!((of("disc"), of("bar")), (12, 12), "{printed}");
+}
+
+#[test]
+fn real_footsteps_are_named() {
+    let recording = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../shared/reference/data/pressuRe/fscan_testL.asf"
+    );
+    if !std::path::Path::new(recording).exists() {
+        eprintln!("SKIPPED: no recording of an insole at {recording}");
+        return;
+    }
+    let Some(printed) = printed_with("footsteps.py", "json", &[recording]) else {
+        return;
+    };
+    // The recording is of a left foot. Each step begins with the heel, and goes on over the whole foot to the ball.
+    let steps = printed.lines().filter(|line| line.starts_with("step"));
+    let phases = ": left heel, left whole, left ball";
+    assert_eq!(
+        steps.filter(|line| line.contains(phases)).count(),
+        5,
+        "{printed}"
+    );
+    let last = printed.lines().last().expect("a line");
+    let left: u32 = last
+        .split(' ')
+        .next()
+        .expect("a word")
+        .parse()
+        .expect("a number");
+    assert!(left >= 95 && last.contains(" of 102 frames"), "{printed}");
 }
