@@ -176,3 +176,57 @@ fn netpbm_reads_and_is_read() {
     let compared = others(path, "pamfile", &["plain.pbm"]).expect("it is there");
     assert!(compared.contains("16 by 16"), "{compared}");
 }
+
+/// Chunks of each packing, written by the package of the format's authors.
+#[test]
+fn recordings_of_the_mcap_package_are_read() {
+    let Some(python) = python("mcap, lz4, zstandard") else {
+        return;
+    };
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let script = "
+import struct
+from mcap.writer import CompressionType, Writer
+
+def message(values):
+    def sequence(size, label, stride):
+        return struct.pack('<I', len(label) + 1) + label + b'\\0' * (1 + -(len(label) + 1) % 4) + struct.pack('<II', size, stride)
+    layout = struct.pack('<I', 2) + sequence(3, b'row', 12) + sequence(4, b'col', 4) + struct.pack('<I', 0)
+    data = struct.pack('<I', len(values)) + struct.pack('<%dH' % len(values), *values)
+    return b'\\0\\1\\0\\0' + layout + data
+
+for name, packing in [('none', CompressionType.NONE), ('lz4', CompressionType.LZ4), ('zstd', CompressionType.ZSTD)]:
+    with open(name + '.mcap', 'wb') as file:
+        writer = Writer(file, compression=packing, chunk_size=500)
+        writer.start('ros2', 'test')
+        schema = writer.register_schema('std_msgs/msg/UInt16MultiArray', 'ros2msg', b'')
+        channel = writer.register_channel('/pad', 'cdr', schema)
+        for frame in range(40):
+            values = [100 * (index % 12 == frame % 12) + frame for index in range(12)]
+            writer.add_message(channel, log_time=frame * 10_000_000, data=message(values), publish_time=0)
+        writer.finish()
+";
+    others(folder.path(), python, &["-c", script]).expect("Python is there");
+    for name in ["none", "lz4", "zstd"] {
+        let file = format!("{name}.mcap");
+        let arguments = ["frames", &file, "--all", "--at-least", "100", "--json"];
+        let mut command = program(&arguments, "C.UTF-8");
+        let child = command.current_dir(folder.path()).spawn();
+        let run = finish(child.expect("the program starts"), b"");
+        assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""), "{name}");
+        let lines: Vec<serde_json::Value> = (run.stdout.lines())
+            .map(|line| serde_json::from_str(line).expect("a line of JSON"))
+            .collect();
+        assert_eq!(lines.len(), 40, "{name}");
+        for (frame, line) in lines.iter().enumerate() {
+            let mut rows = vec![vec!['.'; 4]; 3];
+            rows[frame % 12 / 4][frame % 12 % 4] = '#';
+            let rows: Vec<String> = rows.into_iter().map(String::from_iter).collect();
+            assert_eq!(
+                line["imprint"],
+                serde_json::json!(rows),
+                "{name}, frame {frame}"
+            );
+        }
+    }
+}
