@@ -53,8 +53,8 @@ struct ArchiveHeader<Shape, Size> {
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write(result: &SweepResult, output: impl Write + Seek) -> Result<(), ArchiveError> {
-    let mut archive = ArrayWriter::new(output);
+pub fn write(result: &SweepResult, mut output: impl Write + Seek) -> Result<(), ArchiveError> {
+    let mut archive = ArrayWriter::new(&mut output);
     let (grid, parts) = (&result.grid, result.parts());
     let header = header(result, &parts)?;
     archive.add(HEADER, Dtype::U8, &[header.len() as u64], &header)?;

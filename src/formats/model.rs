@@ -71,8 +71,8 @@ struct ShapeHeader<Shape> {
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write(model: &Model, output: impl Write + Seek) -> Result<(), ArchiveError> {
-    let mut archive = ArrayWriter::new(output);
+pub fn write(model: &Model, mut output: impl Write + Seek) -> Result<(), ArchiveError> {
+    let mut archive = ArrayWriter::new(&mut output);
     let header = header(model)?;
     archive.add(HEADER, Dtype::U8, &[header.len() as u64], &header)?;
     let keys = model.keys();

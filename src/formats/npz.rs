@@ -22,11 +22,18 @@ const MAX_HEADER: u64 = 1 << 26;
 /// No array of an archive may be larger; what is larger is not read.
 const MAX_BYTES: u64 = 1 << 34;
 
-/// Writes arrays one after the other.
-pub(crate) struct ArrayWriter<W: Write + Seek>(ZipWriter<W>);
+/// Where an archive is written to. Behind a reference to this, the code that writes one is there once, not once for each
+/// kind of output: that of zip is large.
+pub(crate) trait WriteSeek: Write + Seek {}
 
-impl<W: Write + Seek> ArrayWriter<W> {
-    pub(crate) fn new(output: W) -> Self {
+impl<W: Write + Seek> WriteSeek for W {}
+
+/// Writes arrays one after the other.
+pub(crate) struct ArrayWriter<'a>(ZipWriter<&'a mut dyn WriteSeek>);
+
+impl<'a> ArrayWriter<'a> {
+    /// An archive without arrays yet.
+    pub(crate) fn new(output: &'a mut dyn WriteSeek) -> Self {
         Self(ZipWriter::new(output))
     }
 
