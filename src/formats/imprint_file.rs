@@ -148,7 +148,9 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ImprintFormatError> {
     } else {
         text
     };
-    if is_table(text) {
+    if let Some(imprint) = text::of_other_signs(text) {
+        Ok(imprint)
+    } else if is_table(text) {
         table::read(text).map_err(ImprintFormatError::Table)
     } else {
         text::read(text).map_err(ImprintFormatError::Text)

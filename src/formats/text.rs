@@ -147,6 +147,27 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, TextError> {
     })
 }
 
+/// Reads rows of `0` and `1` without separators, and rows of `#` and `.` with a blank between the taxels, as other programs
+/// write them; None for anything else.
+///
+/// A row of one digit is left to tables, where it is a column.
+pub(crate) fn of_other_signs(bytes: &[u8]) -> Option<Imprint> {
+    let taxels = |row: &str| {
+        let row = row.trim_end_matches([' ', '\t']).as_bytes();
+        let spaced = row.len() > 1 && row.iter().skip(1).step_by(2).all(|&byte| byte == b' ');
+        let signs = row.iter().step_by(if spaced { 2 } else { 1 });
+        let taxel = |&byte: &u8| match (byte, spaced || row.len() < 2) {
+            (b'1', false) | (b'#', true) => Some('#'),
+            (b'0', false) | (b'.', true) => Some('.'),
+            _ => None,
+        };
+        signs.map(taxel).collect::<Option<String>>()
+    };
+    let text = str::from_utf8(bytes).ok()?;
+    let rows: Option<Vec<String>> = lines(text).into_iter().map(taxels).collect();
+    Imprint::from_rows(rows?.iter().map(String::as_str)).ok()
+}
+
 /// What is wrong first in bytes that are UTF-8 only up to an end.
 fn no_text(bytes: &[u8], end: usize) -> TextError {
     let valid = String::from_utf8_lossy(&bytes[..end]);
@@ -184,4 +205,21 @@ pub(crate) fn lines(text: &str) -> Vec<&str> {
 /// The text, with a line end after each row.
 pub fn write(imprint: &Imprint) -> String {
     format!("{imprint}\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_and_spaced_signs_are_read_and_nothing_else() {
+        let shown = |text: &str| of_other_signs(text.as_bytes()).map(|imprint| write(&imprint));
+        assert_eq!(shown("010\n111 \r\n\n").as_deref(), Some(".#.\n###\n"));
+        assert_eq!(shown(". # .\n# # #\n").as_deref(), Some(".#.\n###\n"));
+        for other in [
+            "", "0\n1", "0 1\n1 0", "01\n2#", "01\n011", "0,1", ".#", "#", "10\n\n10",
+        ] {
+            assert_eq!(shown(other), None, "{other:?}");
+        }
+    }
 }

@@ -438,7 +438,7 @@ fn recognise_goes_through_sets_and_takes_one_by_name() {
         &[
             "Recognise: model nothing",
             "not trained; Enter trains it",
-            "models/nothing.npz",
+            "no set is called \"nothing\"; there are figures, figures-30, shapes",
         ],
     );
     shows(

@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use ratatui::layout::Rect;
 
 use crate::formats::{Name, StoredShape};
+use crate::imprint::Imprint;
 use crate::sensor::Sensor;
 use crate::storage::{Expected, ShapeOrigin, UNNAMED};
 use crate::tui::app::dialog::Dialog;
@@ -425,6 +426,14 @@ impl App {
     /// The name that the document was loaded from or stored under.
     pub fn stored_name(&self) -> Option<&str> {
         self.stored().map(|stored| stored.name.as_str())
+    }
+
+    /// The imprint of a stored shape that nothing made, and its name; None where a source made what is on the matrix, or it
+    /// has no name.
+    pub(in crate::tui) fn loaded_imprint(&self) -> Option<(&str, &Imprint)> {
+        let document = self.history.present();
+        let name = self.stored_name().filter(|_| document.source.is_none())?;
+        (!document.edits.is_empty()).then_some((name, &document.edits))
     }
 
     /// Whether the program has come to its end.

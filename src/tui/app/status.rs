@@ -85,6 +85,10 @@ fn source(app: &App, panes: &Panes) -> String {
     let Some(source) = &document.source else {
         // The same before and after the first taxel: that saves a dozen bytes then.
         let (draw, figure) = (app.key_of(&action::TOGGLE), app.key_of(&action::FIGURE));
+        if app.loaded_imprint().is_some() {
+            let place = app.key_of(&action::PICTURE);
+            return format!("{name}stored shape: {place} moves and turns it, {draw} draws");
+        }
         return format!("{name}drawn by hand: {draw} draws, {figure} places a figure");
     };
     let mut text = name + &source.to_string();

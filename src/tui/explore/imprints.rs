@@ -360,10 +360,11 @@ fn draw_gallery(theme: &Theme, results: &Results, buffer: &mut Buffer, area: Rec
         let sign = if index == results.selected() {
             ">"
         } else {
-            "#"
+            " "
         };
-        let caption = format!("{sign}{}", entry.id);
-        write::line(buffer, place, theme, [(caption.as_str(), Role::Key)]);
+        let captions = [" imprint ", ""].map(|word| format!("{sign}{word}{}", entry.id));
+        let caption = write::first_fitting(&[&captions[0], &captions[1]], place.width.into());
+        write::line(buffer, place, theme, [(caption, Role::Key)]);
         thumbnail::draw(theme, &entry.imprint, buffer, write::below(place, 1));
     }
 }

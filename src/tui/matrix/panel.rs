@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! Region 1 of 2: exterior
-//! NA     36                                    symbol, value, and a remark if there is room for all of it:
+//! NA     36                                    symbol, value, and where there is room:
 //! P      16.97            8.49 mm              the value in millimetres if a pitch is set,
 //! xg     5.5              centroid, x          otherwise the name of the descriptor
 //! ```
@@ -74,16 +74,16 @@ fn draw_descriptor(
         value::in_millimetres(measured, descriptor.dimension, pitch_mm).filter(|_| pitch_mm != 1.0);
     let symbol = format!("{:SYMBOL$}", descriptor.symbol);
     let value = format!("{text:VALUE$}");
-    // A word that is cut tells nothing.
     let name = description.map_or(descriptor.name, |described| {
         descriptor.name_of(described.kind)
     });
-    let remark = scaled.as_deref().unwrap_or(name);
+    // A word that is cut tells nothing, and names of some descriptors only look as if the others had none.
     let room = usize::from(row.width).saturating_sub(SYMBOL + VALUE);
-    let remark = if remark.chars().count() <= room {
-        remark
-    } else {
-        ""
+    let named = DESCRIPTORS.iter().all(|own| write::width(own.name) <= room);
+    let remark = match scaled.as_deref() {
+        Some(scaled) if write::width(scaled) <= room => scaled,
+        None if named && write::width(name) <= room => name,
+        _ => "",
     };
     // Where the value needs more room, the remark gives way.
     let gap = if text.chars().count() < VALUE {

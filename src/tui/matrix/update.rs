@@ -7,6 +7,7 @@ use crate::description::{DESCRIPTORS, Descriptor};
 use crate::formats::{StoredShape, value};
 use crate::parameter::Parameter;
 use crate::parameter::number::short;
+use crate::picture::Picture;
 use crate::source::Source;
 use crate::storage::{Existing, Expected, ShapeOrigin};
 use crate::tui::app::change::{
@@ -91,15 +92,16 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
 }
 
 /// Opens the page that a message asks for; does on the matrix what any other message says.
-/// The picture has two pages: with a picture on the matrix its form opens, otherwise the list to choose one from.
+/// The picture has two pages: with a picture or a stored shape on the matrix its form opens, otherwise the list to choose
+/// one from.
 fn open_page(app: &mut App, message: &Message) -> Option<Effect> {
     match message {
         Message::Load => return Some(open_list(app, Purpose::Load)),
         Message::Delete => return Some(open_list(app, Purpose::Delete)),
-        Message::Picture if matches!(app.history.present().source, Some(Source::Picture(_))) => {
-            edit_picture(app);
+        Message::Picture if !edit_picture(app) => {
+            return Some(open_list(app, Purpose::Picture));
         }
-        Message::Picture => return Some(open_list(app, Purpose::Picture)),
+        Message::Picture => {}
         Message::Figure => {
             let form = FormDialog::figure(app.history.present(), &app.forms);
             open_form(app, form);
@@ -155,18 +157,25 @@ fn begin_save(app: &mut App, shape: &StoredShape) {
     });
 }
 
-/// Opens the form of the picture that is on the matrix.
+/// Opens the form of the picture that is on the matrix, or of the stored shape there as a picture. Answers whether there is
+/// one.
 /// Its name is that of the picture, else of the document; the notice says how to get to another shape, because the
 /// key for a picture leads here and no longer to the list.
-fn edit_picture(app: &mut App) {
+fn edit_picture(app: &mut App) -> bool {
     let present = app.history.present();
-    if let Some(Source::Picture(picture)) = &present.source {
-        let name = picture.name().or(app.stored_name()).unwrap_or("imprint");
-        let form = FormDialog::picture(present, picture.clone(), name.to_owned());
-        open_form(app, form);
-        let load = app.key_of(&action::LOAD);
-        inform(app, format!("{load} loads another shape"));
-    }
+    let (picture, name) = match (&present.source, app.loaded_imprint()) {
+        (Some(Source::Picture(picture)), _) => {
+            let name = picture.name().or(app.stored_name());
+            (picture.clone(), name.unwrap_or("imprint"))
+        }
+        (None, Some((name, imprint))) => (Picture::at_home(*imprint).named(name), name),
+        _ => return false,
+    };
+    let form = FormDialog::picture(present, picture, name.to_owned());
+    open_form(app, form);
+    let load = app.key_of(&action::LOAD);
+    inform(app, format!("{load} loads another shape"));
+    true
 }
 
 /// Asks a question where only yes does something.

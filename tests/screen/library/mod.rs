@@ -102,15 +102,19 @@ fn undo_brings_back_the_name_too() {
     then(
         &mut session,
         "laaa<Enter>lbbb<Enter>",
-        &["· bbb\n", "\ndrawn by hand", "NA 2 in all"],
+        &["· bbb\n", "\nstored shape: p moves", "NA 2 in all"],
     );
     then(
         &mut session,
         "u",
-        &["· aaa\n", "\ndrawn by hand", "NA 1 in all"],
+        &["· aaa\n", "\nstored shape: p moves", "NA 1 in all"],
     );
     then(&mut session, "s", &["Save as: aaa"]);
-    then(&mut session, "<Esc>U", &["· bbb\n", "\ndrawn by hand"]);
+    then(
+        &mut session,
+        "<Esc>U",
+        &["· bbb\n", "\nstored shape: p moves"],
+    );
     // Nothing is left to save of an empty matrix.
     press(&mut session, "lwasher<Enter>nq");
     assert!(session.app().ended());
@@ -135,7 +139,7 @@ fn deleting_asks_and_is_undone() {
 
 #[test]
 fn a_picture_starts_where_it_is_and_follows() {
-    let mut session = session("<Space><Right><Space>spair<Enter>ppair<Enter>");
+    let mut session = session("<Space><Right><Space>spair<Enter>p");
     shows(
         &session,
         &[

@@ -124,12 +124,13 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
             .iter()
             .map(|at| Some(field.dot((at.degrees, of(at)?))));
         let places: Vec<_> = places.collect();
+        // Dashes go on from one piece of the curve to the next, however long the pieces are.
+        let mut gone = 0.0;
         for pair in places.windows(2) {
             if let [Some(from), Some(to)] = *pair {
-                let shown = |place: f64| !dashed || place.rem_euclid(6.0) < 3.0;
-                if shown(from.0) {
-                    canvas.line(from, to);
-                }
+                let shown = |step: u32| !dashed || (gone + f64::from(step)).rem_euclid(6.0) < 3.0;
+                canvas.dashed(from, to, shown);
+                gone += (to.0 - from.0).abs().max((to.1 - from.1).abs());
             }
         }
         if let [Some(only)] = places[..] {

@@ -30,8 +30,10 @@ use crate::tui::widget::write;
 
 /// Columns of a label.
 const LABEL: usize = 8;
-/// Columns of the text of a field.
-const INPUT: usize = 14;
+/// Columns of the text of a field: `-15.5:-14.51:0.01` is about the longest that is proposed.
+const INPUT: usize = 16;
+/// The same in a narrow pane.
+const NARROW_INPUT: usize = 14;
 
 /// A pane from this width on has room for what is allowed beside the field.
 const WIDE: u16 = 40;
@@ -79,7 +81,7 @@ fn draw(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rect) -> Op
         let at = draw_field(theme, field, marked, buffer, row);
         cursor = cursor.or(marked.then_some(at));
         let under = write::right_of(write::row(area, usize::from(line) + 1), area.x + 2);
-        let beside = write::right_of(row, area.x.saturating_add(narrow(LABEL + INPUT + 1)));
+        let beside = write::right_of(row, area.x.saturating_add(narrow(LABEL + input(row) + 1)));
         let allowed = format!(
             "{} {}",
             form.allowed(field),
@@ -110,14 +112,26 @@ fn draw_field(
     row: Rect,
 ) -> Position {
     let label = format!("{:LABEL$}", field.parameter().row().label);
-    let (shown, cursor) = write::window(field.text(), field.cursor(), INPUT);
-    let shown = write::fitted(shown, INPUT, theme);
-    let padded = format!("{shown}{}", " ".repeat(INPUT - write::width(&shown)));
+    let room = input(row);
+    // A field is read from its start; what is typed must be seen.
+    let at = if focused { field.cursor() } else { 0 };
+    let (shown, cursor) = write::window(field.text(), at, room);
+    let shown = write::fitted(shown, room, theme);
+    let padded = format!("{shown}{}", " ".repeat(room - write::width(&shown)));
     let role = if focused { Role::Focus } else { Role::Text };
     let pieces = [(label.as_str(), Role::Text), (padded.as_str(), role)];
     write::line(buffer, row, theme, pieces);
     let column = narrow(LABEL + cursor);
     Position::new(row.x.saturating_add(column), row.y)
+}
+
+/// The columns of the text of a field in a row.
+fn input(row: Rect) -> usize {
+    if row.width >= WIDE {
+        INPUT
+    } else {
+        NARROW_INPUT
+    }
 }
 
 /// The anchor between angle brackets.
@@ -137,7 +151,7 @@ fn draw_anchor(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, row: Rect)
         (label.as_str(), Role::Text),
         ("< ", Role::Quiet),
         (name, role),
-        (" >     ", Role::Quiet),
+        (" >       ", Role::Quiet),
         (meaning, Role::Quiet),
     ];
     write::line(buffer, row, theme, pieces);
@@ -150,7 +164,9 @@ fn draw_summary(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rec
         Ok(grid) => {
             let poses = counted(grid.poses(), "pose");
             let time = form.estimate().map(|time| format!(", {}", about(time)));
-            (poses + time.as_deref().unwrap_or(""), Role::Text)
+            let timed = poses.clone() + time.as_deref().unwrap_or("");
+            let text = write::first_fitting(&[&timed, &poses], area.width.into());
+            (text.to_owned(), Role::Text)
         }
         // A wrong field says so itself.
         Err(trouble) if trouble.field.is_some() => (String::new(), Role::Text),
