@@ -4,7 +4,9 @@
 //! counts the records that are in the file already: they are written first, the count after them, at least twice a second,
 //! so a killed program loses less than half a second. A thread syncs the file each second, so a power cut loses hardly more;
 //! it never holds up the frames. Values are f64, as every form of frame is read: nothing is rounded.
-//! Beside `touch.npy` lies `touch.json`, which says where the frames are from and how they were looked at.
+//! Beside `touch.npy` lies `touch.json`, which says where the frames are from and how they were looked at. The two get
+//! their names together, so there is never one of these beside an older one of the other. `touch.json` says whether the
+//! recording was ended; that of a killed program does not.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -15,7 +17,7 @@ use std::time::{Duration, Instant};
 
 use crate::formats::recording::{FrameMark, RecordingMetadata};
 use crate::frame::Frame;
-use crate::storage::{Existing, UnfinishedFile};
+use crate::storage::{Existing, FileError, FinishedFile, UnfinishedFile, persist_pair};
 
 /// Bytes of the header's text: with the ten before it, 256. The longest has about 150.
 const HEADER_TEXT: u16 = 246;
@@ -87,14 +89,16 @@ struct Syncer {
 impl Syncer {
     fn new(file: &File) -> Self {
         let (ask, asked) = sync_channel::<()>(1);
-        let thread = file.try_clone().ok().map(|file| {
-            std::thread::spawn(move || {
+        let thread = file.try_clone().and_then(|file| {
+            std::thread::Builder::new().spawn(move || {
                 while asked.recv().is_ok() {
                     // What the disk refuses is reported by the next write, or at the end.
                     let _ = file.sync_data();
                 }
             })
         });
+        // Without it the file is synced at its end.
+        let thread = thread.ok();
         Self {
             ask: thread.is_some().then_some(ask),
             thread,
@@ -124,33 +128,28 @@ impl Drop for Syncer {
 }
 
 impl FrameRecorder {
-    /// Creates the file, and `.json` beside it.
+    /// Creates the file, and `.json` beside it: both, or none.
     ///
     /// # Errors
-    /// If there is a file that is to be kept, or it cannot be created.
+    /// If one of the two is there and is to be kept, or they cannot be created.
     pub fn create(
         path: &Path,
         existing: Existing,
         metadata: &RecordingMetadata,
     ) -> Result<Self, RecorderError> {
-        let mut options = File::options();
-        options.write(true);
-        match existing {
-            Existing::Replaced => options.create(true).truncate(true),
-            _ => options.create_new(true),
+        let mut metadata = metadata.clone();
+        metadata.ended = Some(false);
+        let array = || {
+            let mut array = UnfinishedFile::new(path, existing)?;
+            array.write(&header(None, 0))?;
+            Ok((array.handle()?, array.finish()?))
         };
-        let file = options.open(path).map_err(|error| match error.kind() {
-            io::ErrorKind::AlreadyExists => RecorderError::Exists {
-                path: path.to_owned(),
-            },
-            _ => RecorderError::Io {
-                path: path.to_owned(),
-                error,
-            },
-        })?;
-        let mut recorder = Self {
+        let (file, array) = array().map_err(refused)?;
+        let description = prepared(path, existing, &metadata)?;
+        persist_pair(array, description).map_err(refused)?;
+        Ok(Self {
             path: path.to_owned(),
-            metadata: metadata.clone(),
+            metadata,
             syncer: Syncer::new(&file),
             times: None,
             file,
@@ -158,10 +157,7 @@ impl FrameRecorder {
             buffer: Vec::new(),
             records: 0,
             written: Instant::now(),
-        };
-        recorder.write_description()?;
-        recorder.count()?;
-        Ok(recorder)
+        })
     }
 
     /// Writes the description beside the file anew.
@@ -170,6 +166,7 @@ impl FrameRecorder {
     /// What the system reports.
     pub fn describe(&mut self, metadata: &RecordingMetadata) -> Result<(), RecorderError> {
         self.metadata.clone_from(metadata);
+        self.metadata.ended = Some(false);
         self.write_description()
     }
 
@@ -183,18 +180,8 @@ impl FrameRecorder {
     }
 
     fn write_description(&self) -> Result<(), RecorderError> {
-        let path = self.path.with_extension("json");
-        let refuse = |error: io::Error| RecorderError::Io {
-            path: path.clone(),
-            error,
-        };
-        let json = self.metadata.text().map_err(|error| refuse(error.into()))?;
-        let write = || {
-            let mut file = UnfinishedFile::new(&path, Existing::Replaced)?;
-            file.write(&json)?;
-            file.finish()?.persist()
-        };
-        write().map_err(|error| refuse(error.into_io()))
+        let file = prepared(&self.path, Existing::Replaced, &self.metadata)?;
+        file.persist().map_err(refused)
     }
 
     /// Number of frames that were recorded.
@@ -264,17 +251,7 @@ impl FrameRecorder {
 
     /// Writes the header with the number of records, in one piece.
     fn count(&mut self) -> Result<(), RecorderError> {
-        // Until the first frame comes: no records of one cell, which numpy opens too.
-        let (rows, columns) = self.shape.unwrap_or((1, 1));
-        let records = self.records;
-        let text = format!(
-            "{{'descr': [('time', '<f8'), ('number', '<u8'), ('values', '<f8', ({rows}, {columns}))], \
-             'fortran_order': False, 'shape': ({records},), }}"
-        );
-        let mut header = b"\x93NUMPY\x01\x00".to_vec();
-        header.extend(HEADER_TEXT.to_le_bytes());
-        let width = usize::from(HEADER_TEXT) - 1;
-        header.extend(format!("{text:<width$}\n").bytes());
+        let header = header(self.shape, self.records);
         let written = self
             .file
             .seek(SeekFrom::Start(0))
@@ -301,9 +278,55 @@ impl FrameRecorder {
             && self.metadata.seconds_per_frame.is_none()
         {
             self.metadata.seconds_per_frame = Some(step);
-            self.write_description()?;
         }
+        self.metadata.ended = Some(true);
+        self.write_description()?;
         Ok(self.records)
+    }
+}
+
+/// The header of an array of records. Before the first frame comes: no records of one cell, which numpy opens too.
+fn header(shape: Option<(u16, u16)>, records: u64) -> Vec<u8> {
+    let (rows, columns) = shape.unwrap_or((1, 1));
+    let text = format!(
+        "{{'descr': [('time', '<f8'), ('number', '<u8'), ('values', '<f8', ({rows}, {columns}))], \
+         'fortran_order': False, 'shape': ({records},), }}"
+    );
+    let mut header = b"\x93NUMPY\x01\x00".to_vec();
+    header.extend(HEADER_TEXT.to_le_bytes());
+    let width = usize::from(HEADER_TEXT) - 1;
+    header.extend(format!("{text:<width$}\n").bytes());
+    header
+}
+
+/// The description beside an array, on disk but without its name.
+///
+/// # Errors
+/// What the system reports.
+fn prepared(
+    array: &Path,
+    existing: Existing,
+    metadata: &RecordingMetadata,
+) -> Result<FinishedFile, RecorderError> {
+    let path = array.with_extension("json");
+    let json = metadata.text().map_err(|error| RecorderError::Io {
+        path: path.clone(),
+        error: error.into(),
+    })?;
+    let prepare = || {
+        let mut file = UnfinishedFile::new(&path, existing)?;
+        file.write(&json)?;
+        file.finish()
+    };
+    prepare().map_err(refused)
+}
+
+/// What the system refuses of a file.
+fn refused(error: FileError) -> RecorderError {
+    let path = error.path.clone();
+    match error.into_io() {
+        exists if exists.kind() == io::ErrorKind::AlreadyExists => RecorderError::Exists { path },
+        error => RecorderError::Io { path, error },
     }
 }
 

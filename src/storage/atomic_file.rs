@@ -101,6 +101,15 @@ impl UnfinishedFile {
         &self.path
     }
 
+    /// The same open file, for what is written into it once it has its name.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub fn handle(&self) -> Result<File, FileError> {
+        let handle = self.output.get_ref().file().try_clone();
+        handle.map_err(|error| FileError::new("open it", &self.path, error))
+    }
+
     /// Writes a part of the content.
     ///
     /// # Errors

@@ -41,6 +41,14 @@ impl FileError {
         self.doing == Self::SYNC_FOLDER
     }
 
+    /// Whether there is no such file, nor a folder where one is expected.
+    pub fn is_missing(&self) -> bool {
+        matches!(
+            self.error.kind(),
+            io::ErrorKind::NotFound | io::ErrorKind::NotADirectory
+        )
+    }
+
     /// The error for a message that names the file itself.
     #[must_use]
     pub fn into_io(self) -> io::Error {

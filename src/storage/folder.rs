@@ -45,8 +45,10 @@ fn in_the_way(path: &Path, what: &'static str, expected: &'static str) -> Librar
 /// A regular file's content, at most one byte more than a shape may have.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, LibraryError> {
     // Checked before opening: opening a pipe waits for a writer.
-    regular(path)?;
-    let mut content = Vec::new();
+    let found = regular(path)?;
+    // One byte more, so that the end is found without growing: two reads a file count where a library is large.
+    let length = usize::try_from(found.len()).map_or(MAX_BYTES, |length| length.min(MAX_BYTES));
+    let mut content = Vec::with_capacity(length + 1);
     let file = File::open(path).map_err(|error| FileError::new("open it", path, error))?;
     file.take(MAX_BYTES as u64 + 1)
         .read_to_end(&mut content)

@@ -161,19 +161,28 @@ impl Library {
     /// If there is none, or its file is broken or cannot be read.
     pub fn load(&self, name: &str) -> Result<LoadedShape, LibraryError> {
         let name = Name::new(name)?;
-        let Some(own) = self.own_name(&name)? else {
-            let unknown = || LibraryError::Unknown {
-                name: name.to_string(),
-            };
-            let (shape, stamp) = shipped::load(&name).ok_or_else(unknown)??;
-            return Ok(LoadedShape {
-                shape,
-                stamp,
-                origin: ShapeOrigin::Shipped,
-            });
+        // The usual case needs no search, and no look at the file before it is read.
+        let mut own = name.to_string();
+        let read = match folder::read(&self.path(&own)) {
+            Err(LibraryError::System(refused)) if refused.is_missing() => {
+                let found = self.names.find(&self.folder, &name, || self.own_names())?;
+                let Some(found) = found else {
+                    let unknown = || LibraryError::Unknown {
+                        name: name.to_string(),
+                    };
+                    let (shape, stamp) = shipped::load(&name).ok_or_else(unknown)??;
+                    return Ok(LoadedShape {
+                        shape,
+                        stamp,
+                        origin: ShapeOrigin::Shipped,
+                    });
+                };
+                own = found;
+                folder::read(&self.path(&own))
+            }
+            read => read,
         };
-        let path = self.path(&own);
-        let content = folder::read(&path)?;
+        let (content, path) = (read?, self.path(&own));
         let shape =
             StoredShape::read(&content).map_err(|error| LibraryError::Broken { path, error })?;
         // A file that was renamed by hand goes by its new name.

@@ -13,6 +13,8 @@ mod strace;
 
 mod calls;
 
+mod recording;
+
 mod random;
 
 mod disk;
@@ -24,9 +26,13 @@ use std::time::Instant;
 /// What a campaign has seen, in one line.
 type Campaign = fn() -> String;
 
-const CAMPAIGNS: [(&str, Campaign); 6] = [
+const CAMPAIGNS: [(&str, Campaign); 7] = [
     ("killed_at_every_call", calls::killed),
     ("every_error_is_told", calls::refused),
+    (
+        "recordings_appear_with_their_description",
+        recording::killed,
+    ),
     ("killed_at_random", random::killed),
     ("naive_writing_is_caught", random::naive),
     ("a_full_disk_loses_nothing", disk::full),

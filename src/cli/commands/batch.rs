@@ -27,14 +27,18 @@ pub(crate) fn answer_lines(
     output: impl Write,
 ) -> Result<(), CliError> {
     lines::answer_all(jobs, input, output, "pose", || {
-        let mut plane = Plane::new(sensor);
+        let (mut plane, mut other) = (Plane::new(sensor), Plane::new(sensor));
         move |line: &[u8], answer: &mut Vec<u8>| {
             let job = Job::read(line, sensor, lookup);
-            let imprint = job
-                .map_err(|error| legible(&error.to_string()))?
-                .imprint(&mut plane);
-            serde_json::to_writer(answer, &DescribedImprint(&imprint))
-                .map_err(|error| error.to_string())
+            let job = job.map_err(|error| legible(&error.to_string()))?;
+            let plane = match &job {
+                // Lines with a sensor of their own do not take the plane of the others.
+                Job::Touch(own, _) if *own != sensor => &mut other,
+                _ => &mut plane,
+            };
+            let imprint = job.imprint(plane);
+            DescribedImprint(&imprint).write(answer);
+            Ok(())
         }
     })
 }

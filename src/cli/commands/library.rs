@@ -12,6 +12,7 @@
 use std::ffi::OsStr;
 use std::fmt::Write;
 
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::cli::arguments::request::{Form, Saving};
@@ -110,13 +111,18 @@ impl Serialize for ListLine {
     }
 }
 
-/// Reads every shape of the library, own and shipped.
+/// Reads every shape of the library, own and shipped, on all cores: a library may be large.
 ///
 /// # Errors
 /// If the folder cannot be listed. A shape that cannot be read is not an error here, but a line of its own.
 fn lines(library: &Library) -> Result<Vec<ListLine>, CliError> {
-    let entries = library.list()?.into_iter();
-    Ok(entries.map(|entry| ListLine::of(library, entry)).collect())
+    let entries = library.list()?;
+    let line = |entry| ListLine::of(library, entry);
+    Ok(match rayon::ThreadPoolBuilder::new().build() {
+        Ok(pool) => pool.install(|| entries.into_par_iter().map(line).collect()),
+        // No threads: on this one.
+        Err(_) => entries.into_iter().map(line).collect(),
+    })
 }
 
 /// The answer of `taxel library list --names`: for scripts and for what a shell completes. No file is read, and a file

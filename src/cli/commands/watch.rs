@@ -137,13 +137,13 @@ fn line_writer(asked: &WatchArguments, shelf: &Shelf) -> Result<LineWriter, CliE
     let naming = asked.naming.clone();
     let noise = naming.noise_with(frames::mask(&asked.processing)?.as_ref());
     let shelf = shelf.clone();
-    Ok(LineWriter::start(move |lines| {
+    LineWriter::start(move |lines| {
         let Some(model) = naming.load(&shelf)? else {
             return lines.write(&mut |_, _| ());
         };
         let namer = FrameNamer::new(&model, noise.as_ref());
         lines.write(&mut |line, imprint| namer.extend(line, imprint))
-    }))
+    })
 }
 
 /// The same as a page of the screen.

@@ -53,7 +53,10 @@ impl RecordingFile {
             }
         };
         let (description, complaint) = match description_beside(path) {
-            Some(Ok(description)) => (Some(description), None),
+            Some(Ok(description)) => {
+                let killed = description.ended == Some(false);
+                (Some(description), killed.then(|| unended(path)))
+            }
             Some(Err(complaint)) => (None, Some(complaint)),
             None => (None, None),
         };
@@ -132,6 +135,15 @@ pub(crate) fn dead_cells(path: &Path) -> Result<Imprint, CliError> {
             error,
         }),
     }
+}
+
+/// That a recording has not been ended.
+fn unended(path: &Path) -> String {
+    let beside = path.with_extension("json");
+    format!(
+        "{}: not ended: it is being recorded, or its program was killed; the last half second may be missing",
+        beside.display()
+    )
 }
 
 /// A copy of all that comes, which has no name.

@@ -3,7 +3,7 @@
 
 use std::io::{self, Write};
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, sync_channel};
-use std::thread::JoinHandle;
+use std::thread::{Builder, JoinHandle};
 
 use crate::cli::error::CliError;
 use crate::imprint::Imprint;
@@ -30,15 +30,21 @@ pub(crate) struct LineWriter {
 
 impl LineWriter {
     /// Starts the thread, which calls `run` once with what waits to be written.
+    ///
+    /// # Errors
+    /// Where the system gives no thread.
     pub(crate) fn start(
         run: impl FnOnce(&WaitingLines) -> Result<(), CliError> + Send + 'static,
-    ) -> Self {
+    ) -> Result<Self, CliError> {
         let (lines, receiver) = sync_channel(WAITING);
-        Self {
+        let thread = Builder::new().spawn(move || run(&WaitingLines(receiver)));
+        let refused =
+            |error| io::Error::other(format!("the system gives no thread for it: {error}"));
+        Ok(Self {
             lines,
-            thread: std::thread::spawn(move || run(&WaitingLines(receiver))),
+            thread: thread.map_err(|error| CliError::Write(refused(error)))?,
             given_up: 0,
-        }
+        })
     }
 
     /// Whether nothing can be written any more.

@@ -3,8 +3,11 @@
 //!
 //! ```text
 //! {"format":"taxel-touch/1","source":"/dev/ttyUSB0","unit":"kPa","pitch_mm":[2.0,2.0],"seconds_per_frame":0.01,
-//!  "rule":{"at_least":10,"from":"flag"},"tare_frames":30,"tare":[[0.5,null],…],"marks":[{"number":65,"time":6.5}]}
+//!  "rule":{"at_least":10,"from":"flag"},"tare_frames":30,"tare":[[0.5,null],…],"marks":[{"number":65,"time":6.5}],
+//!  "ended":true}
 //! ```
+//! `ended` is false while frames are recorded, and stays so when the program is killed.
+//!
 //! Everything but `format` may be missing. The values in the array are as the sensor sent them, in f64: what is said here
 //! is done again when they are read, unless flags say otherwise.
 
@@ -51,6 +54,9 @@ pub struct RecordingMetadata {
     pub tare: Option<Tare>,
     /// Frames that were marked.
     pub marks: Vec<FrameMark>,
+    /// Whether the recording was ended: false while frames are recorded, and after the program was killed. None where
+    /// nothing is said of it.
+    pub ended: Option<bool>,
 }
 
 /// The object as it stands.
@@ -69,6 +75,7 @@ struct Described {
     tare_spread: Option<Rows>,
     tare_step: Option<f64>,
     marks: Vec<FrameMark>,
+    ended: Option<bool>,
 }
 
 /// A rule, read and written in different ways: it is from a file as soon as it is read.
@@ -153,6 +160,7 @@ impl RecordingMetadata {
             rule,
             tare,
             marks: described.marks,
+            ended: described.ended,
         })
     }
 
@@ -174,6 +182,7 @@ impl RecordingMetadata {
             tare_spread: tare.map(|tare| rows(tare.spread())),
             tare_step: tare.map(Tare::step),
             marks: self.marks.clone(),
+            ended: self.ended,
         })
     }
 }
@@ -243,6 +252,7 @@ mod tests {
                     number: 65,
                     time: None,
                 }],
+                ended: Some(true),
             };
             let text = metadata.text().expect("JSON");
             let read = RecordingMetadata::read(&text).expect("a description");
@@ -256,6 +266,7 @@ mod tests {
                 (read.rule, read.marks, read.unit, read.seconds_per_frame),
                 (metadata.rule, metadata.marks, metadata.unit, Some(0.01))
             );
+            assert_eq!(read.ended, Some(true));
         }
     }
 

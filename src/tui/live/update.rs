@@ -237,6 +237,7 @@ fn record(page: &Live) -> Effect {
         tare: page.tare_values().cloned(),
         seconds_per_frame: channel.and_then(|channel| channel.seconds_per_frame),
         marks: page.marks().to_vec(),
+        ended: None,
     };
     Effect::Work(Work::Record(Box::new(metadata)))
 }

@@ -107,7 +107,7 @@ impl FrameWatcher {
         if let Some(post) = post {
             let (feed, stop) = (Arc::clone(&watched.feed), Arc::clone(&watched.stop));
             // It is not joined: opening a pipe waits for its other end.
-            std::thread::spawn(move || {
+            let thread = std::thread::Builder::new().spawn(move || {
                 let source = source(&request.source);
                 let post = || post(WorkerEvent::Live(number, LiveEvent::Waiting));
                 feed.run(&source, &request, &request.options, &stop, &mut |_| {
@@ -115,6 +115,12 @@ impl FrameWatcher {
                     ControlFlow::Continue(())
                 });
             });
+            if let Err(error) = thread {
+                let reason = format!("the system gives no thread for it: {error}");
+                watched.feed.change(|pending| {
+                    pending.batch.status.state = SourceState::Failed(reason);
+                });
+            }
         }
         self.watched = Some(watched);
         refused.map(|reason| WorkerEvent::Live(number, LiveEvent::NotRecorded(reason)))

@@ -74,7 +74,8 @@ impl ShapeNamer {
         };
         let (imprints, waiting) = channel::<Imprint>();
         self.imprints = Some(imprints);
-        self.thread = Some(std::thread::spawn(move || {
+        let refused = Arc::clone(&post);
+        let thread = std::thread::Builder::new().spawn(move || {
             let ended = guarded(number, || {
                 let progress = |_: u64| !stop.load(Ordering::Relaxed);
                 let model = match store.model(&choice, &|_| (), &progress) {
@@ -88,7 +89,14 @@ impl ShapeNamer {
                 WorkerEvent::Live(number, LiveEvent::Waiting)
             });
             post(ended);
-        }));
+        });
+        match thread {
+            Ok(thread) => self.thread = Some(thread),
+            Err(error) => {
+                let reason = format!("the system gives no thread for it: {error}");
+                refused(WorkerEvent::Live(number, LiveEvent::NotNamed(reason)));
+            }
+        }
     }
 
     /// Answers an imprint: at once, or later by an event.

@@ -6,7 +6,7 @@ use std::io::{self, Read};
 pub(crate) const MAX_LINE: usize = 1 << 20;
 
 /// The number of bytes to read at a time: about a hundred lines, so that several threads have work of a short input too.
-const CHUNK: usize = 1 << 14;
+const CHUNK: usize = 1 << 13;
 
 /// Whole lines that follow each other.
 #[derive(Debug)]

@@ -47,9 +47,9 @@ where
         jobs,
         move || blocks.next_block(),
         || {
-            let mut answer = answerer();
+            let (mut answer, mut room) = (answerer(), 0);
             move |block: io::Result<Block>| {
-                block.map(|block| answer_block(&block, noun, &mut answer))
+                block.map(|block| answer_block(&block, noun, &mut room, &mut answer))
             }
         },
         |answers| output.write(answers),
@@ -68,13 +68,17 @@ struct BlockAnswers {
     bad: u64,
 }
 
-/// Answers the lines of a block.
+/// Answers the lines of a block. `room` is the memory that the answers to a block took so far: so much is taken at once.
 fn answer_block(
     block: &Block,
     noun: &str,
+    room: &mut usize,
     answer: &mut impl FnMut(&[u8], &mut Vec<u8>) -> Result<(), String>,
 ) -> BlockAnswers {
-    let mut answers = BlockAnswers::default();
+    let mut answers = BlockAnswers {
+        text: Vec::with_capacity(*room),
+        ..BlockAnswers::default()
+    };
     for (number, line) in block.lines() {
         let begin = answers.text.len();
         let result = match line {
@@ -90,6 +94,7 @@ fn answer_block(
         answers.answered += 1;
         answers.text.push(b'\n');
     }
+    *room = (*room).max(answers.text.len()).min(MAX_LINE);
     answers
 }
 

@@ -1,0 +1,91 @@
+//! Lines of `taxel batch` a second, as the README has them: on one core, on all of them, and what writing the answers
+//! takes beside serde.
+//!
+//! Ratios of runs that take turns, the fastest of each: what else the machine does slows both.
+
+use std::fs::{self, File};
+use std::process::{Command, Stdio};
+use std::thread::available_parallelism;
+use std::time::{Duration, Instant};
+
+use taxel::formats::DescribedImprint;
+use taxel::prelude::*;
+
+/// How often the lines of the README's file are repeated.
+const TIMES: usize = 40_000;
+
+/// How many turns are taken.
+const TURNS: usize = 7;
+
+/// The fastest of several turns of each.
+fn fastest<const N: usize>(mut run: [&mut dyn FnMut(); N]) -> [Duration; N] {
+    let mut best = [Duration::MAX; N];
+    for _ in 0..TURNS {
+        for (run, best) in run.iter_mut().zip(&mut best) {
+            let start = Instant::now();
+            run();
+            *best = start.elapsed().min(*best);
+        }
+    }
+    best
+}
+
+/// Answers a file by so many threads.
+fn batch(input: &std::path::Path, jobs: usize) {
+    let status = Command::new(env!("CARGO_BIN_EXE_taxel"))
+        .args(["batch", "--jobs", &jobs.to_string()])
+        .stdin(File::open(input).expect("it is there"))
+        .stdout(Stdio::null())
+        .status();
+    assert!(status.is_ok_and(|status| status.success()));
+}
+
+/// Threads: one, and one for each core.
+fn lines() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let input = folder.path().join("lines.jsonl");
+    let poses = include_str!("../examples/poses.jsonl");
+    fs::write(&input, poses.repeat(TIMES)).expect("written");
+    let lines = poses.lines().count() * TIMES;
+    let cores = available_parallelism().map_or(1, Into::into);
+    let mut one = || batch(&input, 1);
+    let mut all = || batch(&input, cores);
+    let [one, all] = fastest([&mut one, &mut all]);
+    #[expect(clippy::cast_precision_loss, reason = "a rate")]
+    let rate = |time: Duration| lines as f64 / time.as_secs_f64();
+    println!("one thread: {:.0} lines a second", rate(one));
+    println!("{cores} threads: {:.0} lines a second", rate(all));
+    let ratio = one.as_secs_f64() / all.as_secs_f64();
+    println!("{cores} threads / one thread: {ratio:.2}");
+}
+
+/// The answers: written by serde, and as `taxel batch` writes them.
+fn answers() {
+    let sensor = Sensor::default();
+    let ring = Figure::ellipse(4.0, 4.0).at(1.99, 1.47).thickness(2.0);
+    let ring = ring.on(&sensor).expect("the paper's Fig. 1");
+    let imprint = Plane::new(sensor).touch(&ring);
+    let mut text = Vec::new();
+    let mut serde = || {
+        for _ in 0..TIMES {
+            text.clear();
+            serde_json::to_writer(&mut text, &DescribedImprint(&imprint)).expect("JSON");
+        }
+    };
+    let mut own_text = Vec::new();
+    let mut own = || {
+        for _ in 0..TIMES {
+            own_text.clear();
+            DescribedImprint(&imprint).write(&mut own_text);
+        }
+    };
+    let [serde, own] = fastest([&mut serde, &mut own]);
+    assert_eq!(text, own_text, "both write the same");
+    let ratio = serde.as_secs_f64() / own.as_secs_f64();
+    println!("an answer described and written by serde / by taxel batch: {ratio:.2}");
+}
+
+fn main() {
+    lines();
+    answers();
+}

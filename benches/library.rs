@@ -1,0 +1,50 @@
+//! `taxel library list` of 100,000 shapes, beside reading their files one after the other.
+
+use std::fs;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use taxel::formats::{Name, StoredShape};
+use taxel::prelude::*;
+
+/// How many shapes there are.
+const SHAPES: usize = 100_000;
+
+/// How many turns are taken; the fastest counts.
+const TURNS: usize = 5;
+
+fn main() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let sensor = Sensor::default();
+    let ring = Figure::ellipse(4.0, 4.0).at(1.99, 1.47).thickness(2.0);
+    let ring = ring.on(&sensor).expect("the paper's Fig. 1");
+    let imprint = Plane::new(sensor).touch(&ring);
+    for number in 0..SHAPES {
+        let name = format!("shape {number}");
+        let shape = StoredShape::new(Name::new(&name).expect("a name"), sensor, imprint, None);
+        let text = shape.expect("of one size").write();
+        fs::write(folder.path().join(name + ".json"), text).expect("written");
+    }
+    let (mut list, mut plain) = (Duration::MAX, Duration::MAX);
+    for _ in 0..TURNS {
+        let start = Instant::now();
+        let status = Command::new(env!("CARGO_BIN_EXE_taxel"))
+            .args(["library", "list", "--library"])
+            .arg(folder.path())
+            .stdout(Stdio::null())
+            .status();
+        assert!(status.is_ok_and(|status| status.success()));
+        list = list.min(start.elapsed());
+        let start = Instant::now();
+        let files = fs::read_dir(folder.path()).expect("a folder").flatten();
+        let bytes = files.map(|file| fs::read(file.path()).expect("read").len());
+        assert!(bytes.sum::<usize>() > SHAPES);
+        plain = plain.min(start.elapsed());
+    }
+    println!(
+        "library list of {SHAPES} shapes: {:.2} s",
+        list.as_secs_f64()
+    );
+    let ratio = list.as_secs_f64() / plain.as_secs_f64();
+    println!("library list / reading the files one by one: {ratio:.2}");
+}

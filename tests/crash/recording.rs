@@ -1,0 +1,83 @@
+//! A recording that replaces another one, killed at each call: array and description are always of the same recording,
+//! and the description of a killed one says so.
+
+use std::fs;
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::process::Command;
+
+use super::state::{each, program};
+use super::strace;
+
+/// Three frames.
+const SOURCE: &str = "0,1\n2,3\n\n4,5\n6,7\n\n8,9\n1,2\n\n";
+
+/// A folder with a recording of one frame, made by the program from another source.
+fn before() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    fs::write(folder.path().join("new.txt"), SOURCE).expect("written");
+    fs::write(folder.path().join("old.txt"), "1,2\n3,4\n\n").expect("written");
+    let run = record(folder.path(), "old.txt").output().expect("it runs");
+    assert!(run.status.success(), "{run:?}");
+    folder
+}
+
+/// Records a source over what is there.
+fn record(folder: &Path, source: &str) -> Command {
+    let path = |name: &str| folder.join(name).to_string_lossy().into_owned();
+    let (source, touch) = (path(source), path("touch.npy"));
+    program(
+        &["watch", &source, "--once", "--write", &touch, "--force"],
+        folder,
+    )
+}
+
+/// What is there: of which source, how many frames, ended or not; None without the description or the array.
+fn found(folder: &Path) -> Option<(bool, u32, bool)> {
+    let array = fs::read(folder.join("touch.npy")).ok()?;
+    let header = String::from_utf8_lossy(&array[..256]).into_owned();
+    let frames = header.split("'shape': (").nth(1).expect("a header");
+    let frames = frames
+        .split(',')
+        .next()
+        .and_then(|frames| frames.parse().ok());
+    let text = fs::read_to_string(folder.join("touch.json")).ok()?;
+    let json: serde_json::Value = serde_json::from_str(&text).expect("whole");
+    let source = json["source"].as_str().expect("a source");
+    let ended = json["ended"].as_bool().expect("said");
+    Some((
+        source.ends_with("new.txt"),
+        frames.expect("a number"),
+        ended,
+    ))
+}
+
+pub(crate) fn killed() -> String {
+    if !strace::works() {
+        return "SKIPPED, strace is missing or may not trace".to_owned();
+    }
+    let folder = before();
+    let calls = strace::calls(&record(folder.path(), "new.txt"), folder.path());
+    assert_eq!(found(folder.path()), Some((true, 3, true)), "{calls:?}");
+    each(&calls, |call| {
+        let folder = before();
+        let command = record(folder.path(), "new.txt");
+        let output = strace::tampered(&command, call, "signal=KILL");
+        assert_eq!(output.status.signal(), Some(9), "{call:?}: {output:?}");
+        match found(folder.path()) {
+            // The old one as it was; the new one, begun or whole.
+            Some((false, 1, true) | (true, _, false) | (true, 3, true)) => {}
+            // Without its description, which the next recording writes.
+            None => assert!(folder.path().join("touch.npy").exists(), "{call:?}"),
+            other => panic!("{call:?}: {other:?}"),
+        }
+        // Whatever it was, it is read, and recorded over again.
+        let again = record(folder.path(), "new.txt").output().expect("it runs");
+        assert!(again.status.success(), "{call:?}: {again:?}");
+        assert_eq!(found(folder.path()), Some((true, 3, true)), "{call:?}");
+    });
+    format!(
+        "{} kills: array and description of one recording, or no description",
+        calls.len()
+    )
+}
