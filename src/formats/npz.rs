@@ -157,6 +157,15 @@ pub(crate) fn format_in(header: &[u8]) -> Result<String, ArchiveError> {
     Ok(format.format)
 }
 
+/// What is wrong with an archive, in words that do not suppose that one knows its layout.
+fn zip_reason(error: &ZipError) -> String {
+    match error {
+        ZipError::Io(error) => error.to_string(),
+        ZipError::UnsupportedArchive(what) => what.to_string(),
+        _ => "cut short, damaged, or a file of another kind".to_owned(),
+    }
+}
+
 /// Why an archive cannot be written or read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -165,7 +174,7 @@ pub enum ArchiveError {
     #[error(transparent)]
     Io(#[from] std::io::Error),
     /// No zip, or a broken one.
-    #[error("no archive of arrays: {0}")]
+    #[error("no archive of arrays: {}", zip_reason(.0))]
     Zip(#[from] ZipError),
     /// An array that is not what it should be.
     #[error("array {0:?} is not as taxel writes it")]

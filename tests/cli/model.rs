@@ -337,7 +337,7 @@ fn models_have_names_and_cards() {
     for line in [
         "16 x 16 sensor, threshold 0.4, centre at x0 7:7.9:0.1, y0 7:7.9:0.1, angle 0:355:5",
         "  d: rectangle length 4.20, width 4.20, recognised in 100.0 %",
-        "7200 poses each",
+        "7,200 poses each",
     ] {
         assert!(card.lines().any(|own| own == line), "{line}\n{card}");
     }

@@ -141,7 +141,7 @@ fn shown(
                 (Evaluated::Given(_), None) => NamedBy::Descriptors,
                 _ => NamedBy::Imprint,
             };
-            let summary = evaluation::summary(own, named, charset);
+            let summary = evaluation::summary(own, named);
             format!("{summary}\n{matrix}{worst}{features}")
         }
     })

@@ -100,7 +100,7 @@ pub(crate) fn merge(
     }
     let (imprints, summary) = if is_model {
         let model = models(&parts, &memory)?;
-        (model.keys().len(), leave_model(&model, wanted, charset)?)
+        (model.keys().len(), leave_model(&model, wanted)?)
     } else {
         let mut merge = SweepMerge::default();
         for part in &parts {
@@ -156,7 +156,7 @@ fn models(parts: &[Part], memory: &MemoryGuard) -> Result<Model, CliError> {
 }
 
 /// Writes a merged model, and returns what is printed.
-fn leave_model(model: &Model, wanted: &Wanted, charset: Charset) -> Result<String, CliError> {
+fn leave_model(model: &Model, wanted: &Wanted) -> Result<String, CliError> {
     let signals = Signals::heard().map_err(CliError::System)?;
     if let Some(file) = &wanted.atlas {
         let saved = save_model(
@@ -177,6 +177,6 @@ fn leave_model(model: &Model, wanted: &Wanted, charset: Charset) -> Result<Strin
             peer: None,
         }) + "\n"
     } else {
-        evaluation::summary(&limit, evaluation::NamedBy::Imprint, charset)
+        evaluation::summary(&limit, evaluation::NamedBy::Imprint)
     })
 }

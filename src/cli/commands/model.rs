@@ -29,6 +29,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, NamedBy};
 use crate::cli::output::progress::Progress;
 use crate::cli::signals::Signals;
+use crate::formats::value::counted;
 use crate::formats::{Name, json};
 use crate::pose::{Anchor, Axis, GivenRanges, GridError, Ranges, common_ranges, smallest_sensor};
 use crate::recognition::{Evaluation, GridSteps, Model, NamedShape, Training, TrainingError};
@@ -112,8 +113,7 @@ fn trained(
         text.insert("file".to_owned(), json!(name));
         json::text(&text) + "\n"
     } else {
-        charset.lines(&format!("{done}: {name}\n"))
-            + &evaluation::summary(&limit, NamedBy::Imprint, charset)
+        charset.lines(&format!("{done}: {name}\n")) + &evaluation::summary(&limit, NamedBy::Imprint)
     })
 }
 
@@ -307,7 +307,14 @@ pub(crate) fn show(
             evaluation::percent(limit.recall(index))
         );
     }
-    text += &format!("{} poses each", model.poses());
+    let first = model.shapes().first().map(|shape| shape.weight);
+    let is_even = |shape: &NamedShape| Some(shape.weight) == first;
+    text += if model.shapes().iter().all(is_even) {
+        "prior: all shapes are equally likely\n"
+    } else {
+        "prior: shapes are as likely as their weights say\n"
+    };
+    text += &format!("{} each", counted(model.poses(), "pose"));
     if model.shard() != crate::sweep::Shard::WHOLE {
         text += &format!(", shard {}", model.shard());
     }
@@ -316,15 +323,15 @@ pub(crate) fn show(
         text += &format!(", {cut} of all cut off by the sensor");
     }
     text.push('\n');
-    text += &evaluation::summary(&limit, NamedBy::Imprint, charset);
+    text += &evaluation::summary(&limit, NamedBy::Imprint);
     let never = model.never_certain();
-    if !never.is_empty() {
-        let names = never
-            .iter()
-            .map(|&shape| model.shapes()[shape].name.clone());
-        let names: Vec<_> = names.collect();
-        text += &format!("never certain: {}\n", names.join(", "));
-    }
+    let names = never.iter().map(|&shape| &*model.shapes()[shape].name);
+    text += &match names.collect::<Vec<_>>().join(", ") {
+        none if none.is_empty() => {
+            "never certain: none; each leaves imprints of its own\n".to_owned()
+        }
+        names => format!("never certain: {names}; other shapes leave all their imprints, too\n"),
+    };
     text += &format!(
         "hash {}, taxel {}\n",
         model_hash(&model)?,
@@ -434,9 +441,9 @@ pub(crate) fn list(json: bool, shelf: &Shelf, charset: Charset) -> Result<String
         }
         let said = match &model {
             Ok(model) => format!(
-                "{} shapes, {} keys, error {}",
-                model.shapes().len(),
-                model.keys().len(),
+                "{}, {}, error {}",
+                counted(model.shapes().len() as u64, "shape"),
+                counted(model.keys().len() as u64, "key"),
                 evaluation::percent(Evaluation::of(model).error())
             ),
             Err(error) => error.to_string(),

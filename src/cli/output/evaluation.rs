@@ -21,6 +21,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::json;
 
 use crate::cli::output::charset::Charset;
+use crate::formats::value::{counted, grouped};
 use crate::recognition::{Evaluation, Peer, PeerEvaluation, ShapeDescriptor};
 
 /// An evaluation as an object of JSON, its keys in the order of the documentation.
@@ -70,23 +71,6 @@ pub(crate) fn number(count: u128) -> serde_json::Value {
     }
 }
 
-/// A number with a narrow space between its thousands; a plain one in ASCII.
-/// Numbers of four digits stay as they are, as usual in print.
-fn grouped(number: u128, charset: Charset) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) && digits.len() > 4 {
-            text.push(match charset {
-                Charset::Ascii => ',',
-                Charset::Unicode => '\u{202f}',
-            });
-        }
-        text.push(digit);
-    }
-    text
-}
-
 /// A share as percent.
 /// One decimal: `98.4 %`. A share of 0.99999 is shown as `100.0 %`.
 pub(crate) fn percent(share: f64) -> String {
@@ -132,8 +116,8 @@ impl NamedBy {
 }
 
 /// What an evaluation says, in lines: touches, error, certain, top two, information.
-pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy, charset: Charset) -> String {
-    let number = |number| grouped(number, charset);
+pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy) -> String {
+    let number = |count: u128| grouped(count);
     let share = |part: u128| percent(ratio(part, evaluation.touches));
     let Evaluation {
         touches,
@@ -144,9 +128,9 @@ pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy, charset: Charset)
         ..
     } = evaluation;
     let mut text = format!(
-        "{} touches of {} shapes, {} distinct\n",
+        "{} touches of {}, {} distinct\n",
         number(*touches),
-        evaluation.labels.len(),
+        counted(evaluation.labels.len() as u64, "shape"),
         number(evaluation.keys as u128)
     );
     let mut line = |name: &str, value: u128, note: &str| {

@@ -32,7 +32,7 @@ pub(super) fn command() -> Command {
         .default_value("0.99");
     let runs = option("runs", "N", "Runs of each shape")
         .value_parser(value_parser!(u64).range(1..=1_000_000_000))
-        .default_value("1000");
+        .default_value("10000");
     Command::new("touches")
         .about("Simulate how many touches it takes to name a shape")
         .after_help(MODEL_TOUCHES_EXAMPLES)
@@ -45,7 +45,7 @@ impl TouchesArguments {
         Self {
             model: flags::word(matches, "model"),
             until: number(matches, "until", 0.99),
-            runs: number(matches, "runs", 1000),
+            runs: number(matches, "runs", 10_000),
             seed: number(matches, "seed", 0),
             json: matches.get_flag("json"),
             quiet: matches.get_flag("quiet"),
