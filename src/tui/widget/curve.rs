@@ -91,7 +91,7 @@ mod tests {
         assert!(rows[1].contains('\\'), "{rows:#?}");
         assert!(rows.iter().any(|row| row.starts_with("40 +")), "{rows:#?}");
         assert!(rows.iter().any(|row| row.starts_with(" 0 +")), "{rows:#?}");
-        assert!(rows[11].contains("1.0") && rows[11].trim_end().ends_with("scale"));
+        assert!(rows[11].contains(" 1 ") && rows[11].trim_end().ends_with("scale"));
         for small in [Rect::new(0, 0, 3, 5), Rect::new(0, 0, 30, 2)] {
             let mut empty = Buffer::empty(small);
             curve.draw(&Theme::plain(true), &mut empty, small);
