@@ -223,6 +223,12 @@ fn a_pose_is_told_in_cells_degrees_and_mm() {
         "{text}"
     );
     // Nothing has no pose, and a disc no angle.
+    let noisy = place.run("recognise - --model r --noise 0.01 --pose", SPECK);
+    assert!(
+        noisy.stdout.ends_with(
+            "no pose: the shape leaves just this imprint in none of the model's poses\n"
+        )
+    );
     let unknown = answer(&place.run("recognise - --model r --pose --json", SPECK));
     assert!(unknown["pose"].is_null() && unknown.get("pose").is_some());
     place.done(&format!("model train parts.jsonl {COARSE} --name parts"));

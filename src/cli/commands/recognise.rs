@@ -112,7 +112,14 @@ impl<'a> Recogniser<'a> {
                 noise: self.asked.noise,
             };
             let pose = self.pose(&touches, &answer);
-            let pose = pose.map_or_else(String::new, |pose| pose.text(imprint, charset));
+            let pose = match pose {
+                Some(pose) => pose.text(imprint, charset),
+                None if self.asked.pose && answer.shape.is_some() => {
+                    "no pose: the shape leaves just this imprint in none of the model's poses\n"
+                        .to_owned()
+                }
+                None => String::new(),
+            };
             text.text(charset) + &pose
         };
         output.write_all(text.as_bytes()).map_err(CliError::Write)?;
