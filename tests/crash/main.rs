@@ -19,6 +19,8 @@ mod random;
 
 mod disk;
 
+mod lacking;
+
 use std::panic::catch_unwind;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -26,7 +28,7 @@ use std::time::Instant;
 /// What a campaign has seen, in one line.
 type Campaign = fn() -> String;
 
-const CAMPAIGNS: [(&str, Campaign); 7] = [
+const CAMPAIGNS: [(&str, Campaign); 9] = [
     ("killed_at_every_call", calls::killed),
     ("every_error_is_told", calls::refused),
     (
@@ -35,6 +37,8 @@ const CAMPAIGNS: [(&str, Campaign); 7] = [
     ),
     ("killed_at_random", random::killed),
     ("naive_writing_is_caught", random::naive),
+    ("file_systems_that_lack_something", lacking::done_without),
+    ("crafted_folders_do_no_harm", lacking::crafted),
     ("a_full_disk_loses_nothing", disk::full),
     ("a_read_only_disk_can_be_read", disk::read_only),
 ];

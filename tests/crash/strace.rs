@@ -63,6 +63,16 @@ pub(crate) fn tampered(command: &Command, call: &Call, how: &str) -> Output {
     )
 }
 
+/// Runs a command with every call of some names, as of `trace=`, refused.
+pub(crate) fn refused(command: &Command, names: &str, error: &str) -> Output {
+    let trace = format!("trace={names}");
+    let inject = format!("inject={names}:error={error}");
+    traced(
+        command,
+        &["-f", "-qq", "-o", "/dev/null", "-e", &trace, "-e", &inject],
+    )
+}
+
 fn traced(command: &Command, options: &[&str]) -> Output {
     let mut strace = Command::new("strace");
     strace

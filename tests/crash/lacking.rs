@@ -1,0 +1,73 @@
+//! File systems that lack something, as `strace` makes them: locks, names without replacing, hard links, room. And
+//! folders that a stranger has filled.
+
+use std::fs;
+
+use taxel::storage::{Library, Orphan};
+
+use super::state::{State, program, shape, taxel};
+use super::strace;
+
+pub(crate) fn done_without() -> String {
+    if !strace::works() {
+        return "SKIPPED, strace is missing or may not trace".to_owned();
+    }
+    for error in ["ENOLCK", "EPERM", "EINVAL"] {
+        let state = State::new();
+        let new = state.new.to_string_lossy();
+        let save = program(&["library", "save", "fresh", &new], &state.folder);
+        let run = strace::refused(&save, "?flock", error);
+        assert_eq!(run.status.code(), Some(0), "{error}: {run:?}");
+        assert_eq!(state.version("fresh"), Some(9), "{error}");
+    }
+    let state = State::new();
+    let target = state.folder.join("fresh.svg");
+    let name = target.to_string_lossy();
+    let export = program(&["figure", "hexagon", "--export", &name], &state.folder);
+    let run = strace::refused(&export, "?renameat2,?link,?linkat", "EPERM");
+    assert_eq!(run.status.code(), Some(0), "{run:?}");
+    let text = fs::read_to_string(&target).expect("written");
+    assert!(text.ends_with("</svg>\n"), "whole");
+    // The message names the file that was asked for, not the temporary one.
+    fs::remove_file(&target).expect("removed");
+    let run = strace::refused(&export, "?fsync,?fdatasync", "EIO");
+    let message = String::from_utf8_lossy(&run.stderr).into_owned();
+    assert_eq!(run.status.code(), Some(1), "{run:?}");
+    assert!(
+        message.contains("fresh.svg: ") && !message.contains(".taxel-"),
+        "{message}"
+    );
+    "no locks, no links, no names without replacing: saved; what is refused is told by its own name"
+        .to_owned()
+}
+
+pub(crate) fn crafted() -> String {
+    let state = State::new();
+    // The last number but one: later deletions must not be lost.
+    let crafted = state.folder.join(".trash/18446744073709551614 z.json");
+    fs::write(&crafted, shape("z", 5).write()).expect("written");
+    assert!(
+        taxel(&["library", "delete", "one"], &state.folder)
+            .status
+            .success()
+    );
+    assert!(
+        taxel(&["library", "restore", "one"], &state.folder)
+            .status
+            .success()
+    );
+    assert_eq!(state.version("one"), Some(1));
+    // More unsaved work than a program may open files.
+    let journal = state.folder.join(".journal");
+    fs::create_dir(&journal).expect("made");
+    for number in 0..1500 {
+        fs::write(journal.join(format!("{number}-0.lock")), "").expect("written");
+        let work = shape(&format!("work {number}"), 7).write();
+        fs::write(journal.join(format!("{number}-0.json")), work).expect("written");
+    }
+    let waiting = Orphan::all(&Library::open(state.folder.clone()));
+    assert_eq!(waiting.len(), 100, "at once; the others wait");
+    let list = taxel(&["library", "list"], &state.folder);
+    assert!(list.status.success(), "{list:?}");
+    "a crafted number in the trash, 1,500 journals: nothing lost, nothing refused".to_owned()
+}
