@@ -459,10 +459,13 @@ struct Comparison<'a, F> {
     take: F,
 }
 
-// All of it is inlined, so that it is compiled for the registers that are there.
 impl<F: FnMut(usize, Place, u32) -> u32> WithSimd for Comparison<'_, F> {
     type Output = ();
 
+    #[expect(
+        clippy::inline_always,
+        reason = "so that it is compiled for the registers that are there"
+    )]
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         match self.windows.length {
