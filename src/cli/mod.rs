@@ -209,7 +209,7 @@ impl Surroundings {
         let model = asked.naming.load(&self.shelf)?;
         let noise = asked
             .naming
-            .noise_with(frames::mask(&asked.processing)?.as_ref());
+            .noise_with(input::processing::mask(&asked.processing)?.as_ref());
         let mut answers = BufWriter::new(io::stdout().lock());
         let output = FramesOutput {
             form,

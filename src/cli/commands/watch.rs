@@ -19,10 +19,10 @@ use std::time::{Duration, Instant};
 
 use crate::acquire::{AcquireError, AcquireEvent, FrameRecorder, FrameSource, acquire};
 use crate::cli::arguments::watch::WatchArguments;
-use crate::cli::commands::frames;
 use crate::cli::commands::model;
 use crate::cli::commands::naming::FrameNamer;
 use crate::cli::error::CliError;
+use crate::cli::input::processing;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::line_writer::LineWriter;
 use crate::cli::signals::Signals;
@@ -89,7 +89,7 @@ pub(crate) fn watch(
 ) -> Result<u8, CliError> {
     let source = FrameSource::new(&asked.source);
     let signals = Signals::heard().map_err(CliError::System)?;
-    let processing = frames::processing(&asked.processing)?;
+    let processing = processing::processing(&asked.processing)?;
     let rule = asked.processing.set_rule();
     let metadata = RecordingMetadata {
         source: source.name(),
@@ -135,7 +135,7 @@ pub(crate) fn watch(
 /// recording.
 fn line_writer(asked: &WatchArguments, shelf: &Shelf) -> Result<LineWriter, CliError> {
     let naming = asked.naming.clone();
-    let noise = naming.noise_with(frames::mask(&asked.processing)?.as_ref());
+    let noise = naming.noise_with(processing::mask(&asked.processing)?.as_ref());
     let shelf = shelf.clone();
     LineWriter::start(move |lines| {
         let Some(model) = naming.load(&shelf)? else {
@@ -153,7 +153,7 @@ fn line_writer(asked: &WatchArguments, shelf: &Shelf) -> Result<LineWriter, CliE
 pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequest, CliError> {
     let mut request = WatchRequest::new(&asked.source);
     request.options = asked.options.clone();
-    request.processing = frames::processing(&asked.processing)?;
+    request.processing = processing::processing(&asked.processing)?;
     request.rule = asked.processing.set_rule();
     request.history_bytes = asked.history_bytes;
     request.processing.least = asked.processing.least;
@@ -252,7 +252,7 @@ impl Watcher<'_> {
             self.set_rule(info.own_rule(self.asked.processing.least));
         }
         if self.asked.processing.tare.is_none() {
-            self.processing.tare = frames::own_tare(info, &self.processing.view);
+            self.processing.tare = processing::own_tare(info, &self.processing.view);
             self.metadata.tare.clone_from(&self.processing.tare);
         }
         self.metadata.seconds_per_frame = info.seconds_per_frame;

@@ -15,7 +15,8 @@ use crate::formats::value::fitting;
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::tui::live::layout::{CellForm, HeatGrid, NUMBER};
-use crate::tui::live::state::{HeatLayer, Live, LiveReading};
+use crate::tui::live::reading::{HeatLayer, LiveReading};
+use crate::tui::live::state::Live;
 use crate::tui::widget::heat;
 use crate::tui::widget::theme::{Role, Theme};
 

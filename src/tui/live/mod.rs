@@ -5,7 +5,8 @@
 //! message    what keys ask for, and what the source reports
 //! history    the frames that have come, as many as fit into some memory
 //! naming     what a model says of the imprint
-//! state      which frame is shown and how; its imprint and descriptors
+//! reading    what is read off one frame: values, imprint, descriptors
+//! state      which frame is shown and how
 //! layout     where taxels and numbers stand
 //! heat       the heat map, with the edge of the imprint
 //! view       the page: heat map, and beside it what can be said of the frame
@@ -19,6 +20,8 @@ pub mod message;
 pub mod history;
 
 pub mod naming;
+
+pub mod reading;
 
 pub mod state;
 

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::description::{Description, main_region, regions};
 use crate::formats::recording::{ChannelInfo, FrameMark, SetRule};
 use crate::frame::{Frame, FrameError, Processing, Rule, Tare, TareFrames};
 use crate::imprint::Imprint;
@@ -10,6 +9,7 @@ use crate::matrix::Matrix;
 use crate::tui::live::history::FrameHistory;
 use crate::tui::live::message::{FeedStatus, FrameBatch, SourceState};
 use crate::tui::live::naming::{NamedImprint, Naming};
+use crate::tui::live::reading::{HeatLayer, LiveReading, round_up, tidy};
 use crate::tui::live::request::WatchRequest;
 use crate::tui::recognise::sets::ModelChoice;
 
@@ -18,51 +18,6 @@ const TARED: usize = 30;
 
 /// The rate is that of at most so many frames.
 const RATED: usize = 32;
-
-/// What is shown of a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum HeatLayer {
-    /// What the sensor has sent.
-    Raw,
-    /// The same after tare and gain.
-    Tared,
-    /// Which taxels are active.
-    Imprint,
-}
-
-impl HeatLayer {
-    /// Its name on the screen.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Raw => "raw",
-            Self::Tared => "tared",
-            Self::Imprint => "imprint",
-        }
-    }
-}
-
-/// What can be said of the frame that is shown.
-#[derive(Clone, Debug)]
-pub struct LiveReading {
-    /// The frame.
-    pub frame: Arc<Frame>,
-    /// The values that are shown; NaN where there is no cell.
-    pub values: Matrix<f64>,
-    /// The sum of the raw values.
-    pub sum: f64,
-    /// The largest of the values that are shown, and its column and row; None without cells.
-    pub max: Option<(f64, (u8, u8))>,
-    /// The least of them, at most 0.
-    pub least: f64,
-    /// The active taxels; None without a threshold.
-    pub imprint: Option<Imprint>,
-    /// Those of the main region; empty where there is none.
-    pub main: Imprint,
-    /// The main region.
-    pub description: Option<Description>,
-    /// Number of pieces and holes.
-    pub regions: usize,
-}
 
 /// How a tare was made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -607,51 +562,18 @@ impl Live {
             _ => self.shown(),
         };
         let Some(frame) = shown else { return };
-        let processed = match self.processing.run(&frame) {
-            Ok(processed) => processed,
+        match LiveReading::of(frame, &mut self.processing, self.layer) {
+            Ok(reading) => {
+                self.bottom = self.bottom.min(reading.least);
+                self.reading = Some(reading);
+                self.error = None;
+            }
             Err(error) => {
                 self.error = Some(error.to_string());
                 self.reading = None;
-                return;
-            }
-        };
-        let values = match self.layer {
-            HeatLayer::Raw => processed.raw,
-            HeatLayer::Tared | HeatLayer::Imprint => processed.tared,
-        };
-        let imprint = processed.imprint;
-        let found = imprint.as_ref().map_or_else(Vec::new, regions);
-        let main = main_region(&found).and_then(|main| found.get(main));
-        let empty = || Imprint::empty(values.columns(), values.rows());
-        let least = values.values().iter().copied().fold(0.0, f64::min);
-        self.bottom = self.bottom.min(least);
-        self.reading = Some(LiveReading {
-            max: largest(values),
-            least,
-            values: values.clone(),
-            sum: processed.sum,
-            imprint,
-            main: main.map_or_else(empty, |region| *region.taxels()),
-            description: main.map(Description::of),
-            regions: found.len(),
-            frame,
-        });
-        self.error = None;
-    }
-}
-
-/// The largest value and where it is, the first of equals; None without cells.
-fn largest(values: &Matrix<f64>) -> Option<(f64, (u8, u8))> {
-    let mut largest: Option<(f64, (u8, u8))> = None;
-    for row in 0..values.rows() {
-        for (column, &value) in (0..values.columns()).zip(values.row(row)) {
-            let is_more = largest.is_none_or(|(most, _)| value > most);
-            if !value.is_nan() && is_more {
-                largest = Some((value, (column, row)));
             }
         }
     }
-    largest
 }
 
 /// Lifts the values of a frame to those of another one where these are larger; takes the other one if its size differs.
@@ -665,36 +587,5 @@ fn hold(held: &mut Frame, frame: &Frame) {
         held.time = frame.time;
     } else {
         held.copy_from(frame);
-    }
-}
-
-/// The least of 1, 2, 5, 10, 20, 50 … and their tenths, hundredths … that is not below a value; 1 for none above 0.
-fn round_up(value: f64) -> f64 {
-    if value <= 0.0 || !value.is_finite() {
-        return 1.0;
-    }
-    let unit = 10_f64.powf(value.log10().floor());
-    let steps = [1.0, 2.0, 5.0, 10.0];
-    let fits = steps.map(|step| step * unit).into_iter();
-    // What rounding has made a little too large is not rounded up once more.
-    let mut fits = fits.filter(|step| *step >= value * (1.0 - 1e-12));
-    fits.next().map_or(10.0 * unit, tidy)
-}
-
-/// Rounds to nine digits, so that steps do not drift.
-fn tidy(value: f64) -> f64 {
-    let text = format!("{value:.8e}");
-    text.parse::<f64>().map_or(value, |value| value + 0.0)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ranges_end_at_round_numbers() {
-        let rounded = [0.0, 0.03, 1.0, 1.2, 45.0, 100.0, 255.0, 1e300].map(round_up);
-        assert_eq!(rounded, [1.0, 0.05, 1.0, 2.0, 50.0, 100.0, 500.0, 1e300]);
-        assert_eq!(tidy(0.1 + 0.2), 0.3);
     }
 }

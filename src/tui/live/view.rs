@@ -23,7 +23,8 @@ use crate::tui::live::heat::{HeatMap, cells, scale};
 use crate::tui::live::layout::LivePanes;
 use crate::tui::live::message::SourceState;
 use crate::tui::live::naming::Naming;
-use crate::tui::live::state::{Live, LiveReading};
+use crate::tui::live::reading::LiveReading;
+use crate::tui::live::state::Live;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 

@@ -1,0 +1,157 @@
+//! How the frames of a recording are processed: what the flags ask for, and what needs all frames first.
+
+use std::ops::ControlFlow;
+
+use crate::cli::arguments::frames::ProcessingArguments;
+use crate::cli::error::CliError;
+use crate::cli::input::recording::{RecordingFile, dead_cells};
+use crate::cli::output::recording_list::ListedChannel;
+use crate::formats::recording::{ChannelInfo, ReadOptions, RecordingEvent, SetRule};
+use crate::frame::{FrameError, Peak, Processing, Tare, TareFrames, View};
+use crate::imprint::Imprint;
+use crate::matrix::Matrix;
+
+/// How frames are looked at; without tare and rule, which need the recording.
+/// Crop, flips, turn and mask are applied in this order, then the tare, then the gain.
+///
+/// # Errors
+/// If the mask or the gain cannot be read.
+pub(crate) fn processing(asked: &ProcessingArguments) -> Result<Processing, CliError> {
+    let mut processing = Processing::default();
+    processing.view = View {
+        crop: asked.crop,
+        flip_x: asked.flip_x,
+        flip_y: asked.flip_y,
+        quarter_turns: asked.quarter_turns,
+        mask: mask(asked)?,
+    };
+    if let Some(path) = &asked.gain {
+        processing.gain = Some(gain(path)?);
+    }
+    Ok(processing)
+}
+
+/// The dead cells; None if no mask is given.
+pub(crate) fn mask(asked: &ProcessingArguments) -> Result<Option<Imprint>, CliError> {
+    asked.mask.as_deref().map(dead_cells).transpose()
+}
+
+/// A table of factors, in any form that a recording of one frame may have.
+/// The first frame counts; further ones are not read. Its size must be that of the cropped frames, which is checked
+/// when the first of them is processed.
+///
+/// # Errors
+/// If the file is damaged or has no frame.
+fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
+    let mut file = RecordingFile::open(path, ReadOptions::default())?;
+    let mut gain = Matrix::filled(1, 1, 1.0);
+    let mut found = Err(FrameError::Tare {
+        frames: 0,
+        wanted: 1,
+    });
+    let read = file.read(&mut |event| {
+        if let RecordingEvent::Frame(frame) = event {
+            found = View::default().of(frame, &mut gain);
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    });
+    read.map_err(|error| file.damaged(error))?;
+    found.map_err(|error| file.refused(&error))?;
+    Ok(gain)
+}
+
+/// The rule of the flags, else that of the recording.
+/// A threshold of the recording is the one that its maker's program would draw its pictures with; it counts from it on.
+///
+/// # Errors
+/// If neither gives one. There is no default: what a value means differs from sensor to sensor.
+pub(crate) fn rule(
+    recording: &RecordingFile,
+    asked: &ProcessingArguments,
+    info: &ChannelInfo,
+) -> Result<SetRule, CliError> {
+    let own = asked.set_rule().or_else(|| info.own_rule(asked.least));
+    own.ok_or_else(|| {
+        recording.refused(
+            "the recording has no threshold of its own: set one with --at-least, --percent, \
+             --low and --high, or --deviations",
+        )
+    })
+}
+
+/// The tare that a recording's description names, if it is of the size of what is seen of the frames.
+pub(crate) fn own_tare(info: &ChannelInfo, view: &View) -> Option<Tare> {
+    let (rows, columns) = info.shape?;
+    let tare = info.tare.as_ref()?;
+    let baseline = tare.baseline();
+    let size = (baseline.columns().into(), baseline.rows().into());
+    (size == view.size(columns, rows)).then(|| tare.clone())
+}
+
+/// Gathers the tare of the channel's first frames.
+/// The median of each cell over these frames is its value at rest, and is taken off from then on.
+///
+/// # Errors
+/// If the channel has fewer frames than wanted: `a tare of 5 frames, but there are 3: …`.
+pub(crate) fn tare(
+    recording: &mut RecordingFile,
+    channel: usize,
+    wanted: u64,
+    processing: &mut Processing,
+) -> Result<(), CliError> {
+    let mut frames = TareFrames::new(wanted);
+    let mut seen = Matrix::filled(1, 1, f64::NAN);
+    let mut failure = None;
+    let view = processing.view.clone();
+    // A damage behind the frames of the tare is none of its business.
+    let _ = recording.read(&mut |event| {
+        if let RecordingEvent::Frame(frame) = event
+            && frame.channel == channel
+        {
+            let added = view.of(frame, &mut seen).and_then(|()| frames.add(&seen));
+            failure = added.err();
+            if failure.is_some() || frames.missing() == 0 {
+                return ControlFlow::Break(());
+            }
+        }
+        ControlFlow::Continue(())
+    });
+    let tare = failure.map_or_else(|| frames.finish(), Err);
+    processing.tare = Some(tare.map_err(|error| recording.refused(&error))?);
+    Ok(())
+}
+
+/// The frame with the greatest sum of tared values.
+/// Without tare and gain the listing knows it already; with them the recording is read once more. Of several such
+/// frames the first one counts. None if no frame has a value.
+pub(crate) fn peak(
+    recording: &mut RecordingFile,
+    channel: usize,
+    listed: &ListedChannel,
+    processing: &mut Processing,
+) -> Result<Option<u64>, CliError> {
+    if processing.tare.is_none() && processing.gain.is_none() {
+        return Ok(listed.peak.number());
+    }
+    let mut peak = Peak::default();
+    let mut failure = None;
+    let _ = recording.read(&mut |event| {
+        if let RecordingEvent::Frame(frame) = event
+            && frame.channel == channel
+        {
+            match processing.run(frame) {
+                Ok(processed) => drop(peak.add(frame.number, processed.tared_sum)),
+                Err(error) => {
+                    failure = Some(error);
+                    return ControlFlow::Break(());
+                }
+            }
+        }
+        ControlFlow::Continue(())
+    });
+    match failure {
+        Some(error) => Err(recording.refused(&error)),
+        None => Ok(peak.number()),
+    }
+}

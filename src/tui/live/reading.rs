@@ -1,0 +1,131 @@
+//! What the live page reads off the frame that it shows.
+
+use std::sync::Arc;
+
+use crate::description::{Description, main_region, regions};
+use crate::frame::{Frame, FrameError, Processing};
+use crate::imprint::Imprint;
+use crate::matrix::Matrix;
+
+/// What is shown of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HeatLayer {
+    /// What the sensor has sent.
+    Raw,
+    /// The same after tare and gain.
+    Tared,
+    /// Which taxels are active.
+    Imprint,
+}
+
+impl HeatLayer {
+    /// Its name on the screen.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Raw => "raw",
+            Self::Tared => "tared",
+            Self::Imprint => "imprint",
+        }
+    }
+}
+
+/// What can be said of the frame that is shown.
+#[derive(Clone, Debug)]
+pub struct LiveReading {
+    /// The frame.
+    pub frame: Arc<Frame>,
+    /// The values that are shown; NaN where there is no cell.
+    pub values: Matrix<f64>,
+    /// The sum of the raw values.
+    pub sum: f64,
+    /// The largest of the values that are shown, and its column and row; None without cells.
+    pub max: Option<(f64, (u8, u8))>,
+    /// The least of them, at most 0.
+    pub least: f64,
+    /// The active taxels; None without a threshold.
+    pub imprint: Option<Imprint>,
+    /// Those of the main region; empty where there is none.
+    pub main: Imprint,
+    /// The main region.
+    pub description: Option<Description>,
+    /// Number of pieces and holes.
+    pub regions: usize,
+}
+
+impl LiveReading {
+    /// Processes a frame, and shows that layer of it.
+    ///
+    /// # Errors
+    /// If the processing does not fit the frame.
+    pub(super) fn of(
+        frame: Arc<Frame>,
+        processing: &mut Processing,
+        layer: HeatLayer,
+    ) -> Result<Self, FrameError> {
+        let processed = processing.run(&frame)?;
+        let values = match layer {
+            HeatLayer::Raw => processed.raw,
+            HeatLayer::Tared | HeatLayer::Imprint => processed.tared,
+        };
+        let imprint = processed.imprint;
+        let found = imprint.as_ref().map_or_else(Vec::new, regions);
+        let main = main_region(&found).and_then(|main| found.get(main));
+        let empty = || Imprint::empty(values.columns(), values.rows());
+        Ok(Self {
+            max: largest(values),
+            least: values.values().iter().copied().fold(0.0, f64::min),
+            values: values.clone(),
+            sum: processed.sum,
+            imprint,
+            main: main.map_or_else(empty, |region| *region.taxels()),
+            description: main.map(Description::of),
+            regions: found.len(),
+            frame,
+        })
+    }
+}
+
+/// The largest value and where it is, the first of equals; None without cells.
+fn largest(values: &Matrix<f64>) -> Option<(f64, (u8, u8))> {
+    let mut largest: Option<(f64, (u8, u8))> = None;
+    for row in 0..values.rows() {
+        for (column, &value) in (0..values.columns()).zip(values.row(row)) {
+            let is_more = largest.is_none_or(|(most, _)| value > most);
+            if !value.is_nan() && is_more {
+                largest = Some((value, (column, row)));
+            }
+        }
+    }
+    largest
+}
+
+/// The least of 1, 2, 5, 10, 20, 50 … and their tenths, hundredths … that is not below a value; 1 for none above 0.
+pub(super) fn round_up(value: f64) -> f64 {
+    if value <= 0.0 || !value.is_finite() {
+        return 1.0;
+    }
+    let unit = 10_f64.powf(value.log10().floor());
+    let steps = [1.0, 2.0, 5.0, 10.0];
+    let fits = steps.map(|step| step * unit).into_iter();
+    // What rounding has made a little too large is not rounded up once more.
+    let mut fits = fits.filter(|step| *step >= value * (1.0 - 1e-12));
+    fits.next().map_or(10.0 * unit, tidy)
+}
+
+/// Rounds to nine digits, so that steps do not drift.
+pub(super) fn tidy(value: f64) -> f64 {
+    let text = format!("{value:.8e}");
+    text.parse::<f64>().map_or(value, |value| value + 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_end_at_round_numbers() {
+        let rounded = [0.0, 0.03, 1.0, 1.2, 45.0, 100.0, 255.0, 1e300].map(round_up);
+        assert_eq!(rounded, [1.0, 0.05, 1.0, 2.0, 50.0, 100.0, 500.0, 1e300]);
+        assert_eq!(tidy(0.1 + 0.2), 0.3);
+    }
+}
