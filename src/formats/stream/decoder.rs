@@ -211,51 +211,83 @@ impl StreamDecoder {
     }
 }
 
-/// The form of what begins with these bytes; None if more are needed.
+/// The form of what begins with these bytes; None if more are needed. However the bytes come, the same beginning tells.
+///
 /// Bytes that are no text are `FlexiTac` if two markers are a frame apart, otherwise `MatSense`. Of text the first line
-/// that only one form can have tells; what has none is numbers.
+/// that only one form can have tells: an object, what `ros2 topic echo` prints, or numbers. The first line may be the end
+/// of another one, so numbers in it tell nothing. What has no such line is numbers, too.
 fn form(bytes: &[u8], shape: Option<(u16, u16)>, ended: bool) -> Option<StreamFormat> {
+    const MARK: &[u8] = b"\xef\xbb\xbf";
+    if bytes.len() < MARK.len() && MARK.starts_with(bytes) && !ended {
+        return None;
+    }
+    let bytes = &bytes[..bytes.len().min(LOOKED_AT)];
+    let ended = ended || bytes.len() == LOOKED_AT;
+    let text = bytes.strip_prefix(MARK).unwrap_or(bytes);
     let is_binary = |byte: &u8| !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c | b' '..=b'~');
-    let enough = ended || bytes.len() >= LOOKED_AT;
-    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    if text.iter().any(is_binary) {
-        let cells = shape.map_or(0, |(rows, columns)| {
-            usize::from(rows) * usize::from(columns)
-        });
-        let has_marker = |at: usize| bytes.get(at..at + 2) == Some(&[0xaa, 0x55]);
-        let markers = || (0..bytes.len()).filter(|&at| has_marker(at));
-        let period = cells + 2;
-        if cells > 0 && markers().any(|at| has_marker(at + period)) {
-            return Some(StreamFormat::Flexitac);
+    let mut lines = text.split(|&byte| byte == b'\n').peekable();
+    let mut first = true;
+    while let Some(line) = lines.next() {
+        if line.iter().any(is_binary) {
+            return form_of_bytes(bytes, shape, ended);
         }
-        // In two frames and a half a marker and the next would have been found.
-        let waited = cells == 0 || bytes.len() > 3 * period + 2;
-        let is_flexitac = cells == 0 && has_marker(0) || ended && has_marker(0);
-        return (enough || waited).then_some(if is_flexitac {
+        // The last one is not ended, unless all is.
+        if lines.peek().is_none() && !ended {
+            return None;
+        }
+        match line.trim_ascii() {
+            [b'{', ..] => return Some(StreamFormat::JsonLines),
+            line if is_ros(line) => return Some(StreamFormat::Ros2),
+            line if !first && is_numbers(line) => return Some(StreamFormat::Lines),
+            _ => first = false,
+        }
+    }
+    ended.then_some(StreamFormat::Lines)
+}
+
+/// Whether only `ros2 topic echo` prints such a line.
+fn is_ros(line: &[u8]) -> bool {
+    line == b"---"
+        || line.starts_with(b"array(")
+        || line.starts_with(b"layout:")
+        || line.starts_with(b"data:")
+        || ros_text::is_layout(line)
+}
+
+/// Whether a line holds numbers only, at least one.
+fn is_numbers(line: &[u8]) -> bool {
+    let Ok(line) = std::str::from_utf8(line) else {
+        return false;
+    };
+    let separators = [' ', '\t', ',', ';'];
+    let mut words = line.split(separators).filter(|word| !word.is_empty());
+    let is_number = |word: &str| word.parse::<f64>().is_ok();
+    words.next().is_some_and(is_number) && words.all(is_number)
+}
+
+/// The form of bytes that are no text.
+fn form_of_bytes(bytes: &[u8], shape: Option<(u16, u16)>, ended: bool) -> Option<StreamFormat> {
+    let has_marker = |bytes: &[u8], at: usize| bytes.get(at..at + 2) == Some(&[0xaa, 0x55]);
+    let Some((rows, columns)) = shape else {
+        let known = ended || bytes.len() >= 2;
+        return known.then_some(if has_marker(bytes, 0) {
             StreamFormat::Flexitac
         } else {
             StreamFormat::Matsense
         });
-    }
-    // Of the first line the beginning may be missing.
-    if text.split(|&byte| byte == b'\n').nth(2).is_none() && !enough {
-        return None;
-    }
-    let mut lines = text
-        .split(|&byte| byte == b'\n')
-        .map(<[u8]>::trim_ascii)
-        .filter(|line| !line.is_empty());
-    let is_ros = |line: &[u8]| {
-        line == b"---"
-            || line.starts_with(b"array(")
-            || line.starts_with(b"layout:")
-            || line.starts_with(b"data:")
-            || ros_text::is_layout(line)
     };
-    let found = lines.find_map(|line| match line {
-        [b'{', ..] => Some(StreamFormat::JsonLines),
-        line if is_ros(line) => Some(StreamFormat::Ros2),
-        _ => None,
-    });
-    Some(found.unwrap_or(StreamFormat::Lines))
+    let period = usize::from(rows) * usize::from(columns) + 2;
+    // In two frames and a half a marker and the next would have been found.
+    let enough = 3 * period + 3;
+    let ended = ended || bytes.len() >= enough;
+    let bytes = &bytes[..bytes.len().min(enough)];
+    let pair = |at: usize| has_marker(bytes, at) && has_marker(bytes, at + period);
+    if (0..bytes.len()).any(pair) {
+        return Some(StreamFormat::Flexitac);
+    }
+    ended.then_some(if bytes.len() < enough && has_marker(bytes, 0) {
+        StreamFormat::Flexitac
+    } else {
+        StreamFormat::Matsense
+    })
 }

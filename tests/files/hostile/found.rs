@@ -66,3 +66,21 @@ fn unknown_words_are_quoted_in_short() {
     body("script")(&[&b"Set "[..], &[0x05; 200]].concat());
     body("script")(&[&b"Set ascii "[..], &[0x05; 200]].concat());
 }
+
+/// Which form a stream has was told by all that had come so far, so it depended on how the stream was cut.
+#[test]
+fn the_form_of_a_stream_does_not_depend_on_its_pieces() {
+    // Rows and columns are known, and the first piece has 304 bytes.
+    let begin = [38];
+    let frame: Vec<u8> = [0xaa, 0x55].into_iter().chain([0; 20]).collect();
+    body("stream")(&[&begin[..], &[0; 304], &frame.repeat(4)].concat());
+    let objects = "{\"frame\":[[1]]}\n".repeat(9);
+    body("stream")(
+        &[
+            &begin[..],
+            "1 2\n".repeat(76).as_bytes(),
+            objects.as_bytes(),
+        ]
+        .concat(),
+    );
+}
