@@ -9,6 +9,8 @@
 //!
 //! ```text
 //! shapes + poses -> Training -> Model -> Answer       of an imprint: posterior, state, nearest imprint
+//!                                     -> Noise        the same where taxels flip or are dead
+//!                                     -> scan         all keys in all places: the nearest, and those within a distance
 //!                                     -> Evaluation   of the model: the limit of one touch
 //!                                     -> given        the same where only some descriptors are known
 //!                                     -> peers        the paper's way: classifiers on descriptors
