@@ -1,5 +1,4 @@
-//! Lines of `taxel batch` a second, as the README has them: on one core, on all of them, and what writing the answers
-//! takes beside serde.
+//! Lines of `taxel batch` a second, as the README has them: on one core, and on all of them.
 //!
 //! Ratios of runs that take turns, the fastest of each: what else the machine does slows both.
 
@@ -7,9 +6,6 @@ use std::fs::{self, File};
 use std::process::{Command, Stdio};
 use std::thread::available_parallelism;
 use std::time::{Duration, Instant};
-
-use taxel::formats::DescribedImprint;
-use taxel::prelude::*;
 
 /// How often the lines of the README's file are repeated.
 const TIMES: usize = 40_000;
@@ -59,33 +55,6 @@ fn lines() {
     println!("{cores} threads / one thread: {ratio:.2}");
 }
 
-/// The answers: written by serde, and as `taxel batch` writes them.
-fn answers() {
-    let sensor = Sensor::default();
-    let ring = Figure::ellipse(4.0, 4.0).at(1.99, 1.47).thickness(2.0);
-    let ring = ring.on(&sensor).expect("the paper's Fig. 1");
-    let imprint = Plane::new(sensor).touch(&ring);
-    let mut text = Vec::new();
-    let mut serde = || {
-        for _ in 0..TIMES {
-            text.clear();
-            serde_json::to_writer(&mut text, &DescribedImprint(&imprint)).expect("JSON");
-        }
-    };
-    let mut own_text = Vec::new();
-    let mut own = || {
-        for _ in 0..TIMES {
-            own_text.clear();
-            DescribedImprint(&imprint).write(&mut own_text);
-        }
-    };
-    let [serde, own] = fastest([&mut serde, &mut own]);
-    assert_eq!(text, own_text, "both write the same");
-    let ratio = serde.as_secs_f64() / own.as_secs_f64();
-    println!("an answer described and written by serde / by taxel batch: {ratio:.2}");
-}
-
 fn main() {
     lines();
-    answers();
 }

@@ -37,8 +37,8 @@ pub(crate) fn answer_lines(
                 _ => &mut plane,
             };
             let imprint = job.imprint(plane);
-            DescribedImprint(&imprint).write(answer);
-            Ok(())
+            serde_json::to_writer(answer, &DescribedImprint(&imprint))
+                .map_err(|error| error.to_string())
         }
     })
 }
