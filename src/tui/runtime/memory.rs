@@ -119,6 +119,7 @@ impl MemoryGuard {
     }
 
     /// As [`Self::allows`], for work in few and large steps: memory is looked at each time.
+    #[cfg(feature = "cli")]
     pub(crate) fn allows_now(&self) -> bool {
         if let Ok(mut due) = self.due.lock() {
             *due = Instant::now();
@@ -141,6 +142,7 @@ impl MemoryGuard {
     }
 
     /// The message where shards cannot be merged within the bound.
+    #[cfg(feature = "cli")]
     pub(crate) fn message_of_merge(&self) -> String {
         let allowed = self.allowed.unwrap_or(MemorySize(0));
         format!(
@@ -153,6 +155,7 @@ impl MemoryGuard {
     ///
     /// # Errors
     /// A message with both numbers.
+    #[cfg(feature = "cli")]
     pub(crate) fn check_bytes(&self, needed: MemorySize) -> Result<(), String> {
         match self.allowed {
             Some(allowed) if needed > allowed => Err(format!(
@@ -215,7 +218,7 @@ fn used() -> Option<MemorySize> {
 }
 
 /// The most memory that the program has had in use; None where the system does not tell.
-#[cfg(target_os = "linux")]
+#[cfg(all(feature = "cli", target_os = "linux"))]
 pub(crate) fn peak() -> Option<MemorySize> {
     listed("/proc/self/status", "VmHWM:")
 }
@@ -243,7 +246,7 @@ fn free() -> Option<MemorySize> {
 }
 
 /// Elsewhere the system is not asked.
-#[cfg(not(target_os = "linux"))]
+#[cfg(all(feature = "cli", not(target_os = "linux")))]
 pub(crate) fn peak() -> Option<MemorySize> {
     None
 }
