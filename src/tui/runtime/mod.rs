@@ -313,7 +313,7 @@ impl World {
     }
 
     /// Finishes changes and writes unsaved work at once, because the program is about to end; but waits for at most
-    /// [`PATIENCE`]. Returns lines about what is not on the disk, because of an error or because the disk does not answer.
+    /// two seconds. Returns lines about what is not on the disk, because of an error or because the disk does not answer.
     pub fn secure(&mut self, app: &mut App) -> Vec<String> {
         let end = Instant::now() + PATIENCE;
         // Half of the time: the journal keeps what could not be saved.
