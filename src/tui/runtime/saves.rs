@@ -68,7 +68,7 @@ pub(super) enum ChangeOutcome {
         /// Whether a shape was to be saved.
         was_save: bool,
     },
-    /// Nobody asks.
+    /// No answer is wanted.
     Nothing,
 }
 
