@@ -7,7 +7,8 @@
 //! Keys stand in groups of one box and one number of taxels, n. If the imprint has C taxels and i of them lie inside of
 //! the box, then C − i differ outside and at least |i − n| inside. So a sum over the box bounds the distance of a whole
 //! group in a place, and the most taxels that any place has inside bound it in all places: most groups and places are
-//! never looked at. What remains are dense loops over keys, compiled for the widest registers there are.
+//! never looked at. What remains are dense loops over keys, compiled more than once: `pulp` picks the code for the registers
+//! that the processor has.
 
 use std::cmp::Reverse;
 use std::ops::Range;
@@ -20,7 +21,7 @@ use crate::imprint::Imprint;
 use crate::index::{narrow, wide};
 use crate::recognition::key::{KeyRef, KeyTable, or_bits};
 
-/// Keys that are compared with all windows before the next ones, so that their distances stay in the nearest cache.
+/// Keys that are compared with all windows before the next ones are, so that what is counted of them stays in the cache.
 const BLOCK: usize = 64;
 
 /// Keys of one task. Fewer keys than this are compared on the calling thread.
