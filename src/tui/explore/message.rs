@@ -135,8 +135,8 @@ pub enum WorkerEvent {
     Progress(u64, SweepProgress),
     /// How long a grid will take, about.
     Estimate(Box<PoseGrid>, Duration),
-    /// There is an answer to a change of files.
-    Saved,
+    /// The disk has answered a request.
+    Answered,
     /// What a change of files waits for; None if nothing is waited for.
     Waiting(Option<String>),
     /// A sweep is over, at its end or because it was stopped.

@@ -212,7 +212,7 @@ pub(crate) fn on_worker(app: &mut App, told: WorkerEvent) -> Option<Effect> {
         WorkerEvent::Refused(reason) => refuse(app, reason),
         WorkerEvent::Waiting(what) => app.waiting = what,
         // The runtime takes the answer itself.
-        WorkerEvent::Saved => {}
+        WorkerEvent::Answered => {}
     }
     None
 }

@@ -55,6 +55,8 @@ pub enum LiveEvent {
     Recorded(String, u64),
     /// It cannot be begun, and why.
     NotRecorded(String),
+    /// It could not be finished, and why.
+    NotFinished(String),
     /// What the model says of an imprint.
     Named(Box<NamedImprint>),
     /// There is no model, and why.

@@ -224,8 +224,9 @@ pub(in crate::tui) fn follow(app: &mut App) -> Option<Effect> {
 /// Begins a recording, or ends it.
 /// The description of the recording says how its frames were looked at when it began. The frames are written as they
 /// come, without view, tare or threshold.
-fn record(page: &Live) -> Effect {
+fn record(page: &mut Live) -> Effect {
     if page.recording().is_some() {
+        page.set_recording(None);
         return Effect::Work(Work::StopRecording);
     }
     let channel = page.status().channel.as_deref();
@@ -253,22 +254,26 @@ fn page(app: &mut App) -> Option<&mut Live> {
 }
 
 /// Takes what the source reports.
-/// Events of a source that is no longer watched are dropped, by their number.
+/// Events of a source that is no longer watched are dropped, by their number; but not what became of a recording, which
+/// is finished after the source is left.
 pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
+    match event {
+        LiveEvent::Recorded(name, frames) => {
+            let frames = counted(*frames, "frame");
+            return inform(app, format!("{name}: {frames} recorded"));
+        }
+        LiveEvent::NotFinished(reason) => return refuse(app, reason.clone()),
+        _ => {}
+    }
     let Some(page) = page(app).filter(|page| page.number() == number && !page.stopped()) else {
         return;
     };
     match event {
-        LiveEvent::Waiting => {}
+        LiveEvent::Waiting | LiveEvent::Recorded(..) | LiveEvent::NotFinished(_) => {}
         LiveEvent::Arrived(batch) => page.take(batch),
         LiveEvent::Recording(name) => {
             page.set_recording(Some(name.clone()));
             inform(app, format!("recording in {name}"));
-        }
-        LiveEvent::Recorded(name, frames) => {
-            page.set_recording(None);
-            let frames = counted(*frames, "frame");
-            inform(app, format!("{name}: {frames} recorded"));
         }
         LiveEvent::Named(named) => page.take_name(Ok((**named).clone())),
         LiveEvent::NotNamed(reason) => page.take_name(Err(reason.clone())),

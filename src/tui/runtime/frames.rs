@@ -1,7 +1,7 @@
 //! Watches a source of frames on a thread of its own, so that neither a key nor a slow terminal holds it up.
 //!
 //! ```text
-//! acquire -> recording: every frame
+//! acquire -> Recording: every frame
 //!         -> FrameFeed: what has not been taken yet, bounded in bytes -> at most 30 times a second -> Arrived
 //! ```
 //! Without a receiver of events, as in a script, nothing is watched: frames are read when they are asked for.
@@ -9,22 +9,19 @@
 use std::ffi::OsStr;
 use std::mem::take;
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
-use crate::acquire::{
-    AcquireError, AcquireEvent, AcquireOptions, FrameRecorder, FrameSource, acquire,
-};
+use crate::acquire::{AcquireError, AcquireEvent, AcquireOptions, FrameSource, acquire};
 use crate::formats::recording::{FrameMark, RecordingMetadata};
 use crate::frame::Frame;
-use crate::storage::{Existing, location};
+use crate::storage::location;
 use crate::tui::explore::message::WorkerEvent;
 use crate::tui::live::history::bytes_of;
 use crate::tui::live::message::{FrameBatch, LiveEvent, SourceState};
 use crate::tui::live::request::WatchRequest;
 use crate::tui::runtime::progress::WorkerEventSink;
-use crate::tui::runtime::write_access::WriteAccess;
+use crate::tui::runtime::recording::{Recording, locked};
 
 /// The source that is watched.
 #[derive(Debug, Default)]
@@ -46,6 +43,8 @@ struct Watched {
     stop: Arc<AtomicBool>,
     /// Frames that a script has taken.
     taken: usize,
+    /// Whether a file is being created for a recording.
+    begins: bool,
 }
 
 /// What has come and was not taken yet.
@@ -53,10 +52,8 @@ struct Watched {
 struct FrameFeed {
     /// Held for as long as it takes to add or to take frames, never while a file is written.
     pending: Mutex<Pending>,
-    /// Locked apart, so that a slow disk holds up the source only.
-    recorder: Mutex<Option<(PathBuf, FrameRecorder)>>,
-    /// Marks that are not in the recording's description yet.
-    marks: Mutex<Option<Vec<FrameMark>>>,
+    /// What is recorded in. Held for a moment only: a slow disk holds up the source, and nobody else.
+    recording: Mutex<Option<Arc<Recording>>>,
 }
 
 /// What the screen takes at its next turn. It is swapped out under a short lock, so that the source hardly waits.
@@ -74,102 +71,111 @@ struct Pending {
     channel: Option<usize>,
 }
 
-/// A panic while it was locked does not matter: what it holds is always whole.
-fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 impl FrameWatcher {
-    /// Watches a source. Returns an event where the recording that is asked for cannot be begun.
+    /// Watches a source. Returns an event where the recording that is asked for cannot be begun. The source before has to
+    /// be stopped first.
     pub(super) fn watch(
         &mut self,
         number: u64,
         request: Arc<WatchRequest>,
         post: Option<WorkerEventSink>,
     ) -> Option<WorkerEvent> {
-        self.stop();
         let watched = Watched {
             number,
             request: Arc::clone(&request),
             feed: Arc::default(),
             stop: Arc::default(),
             taken: 0,
+            begins: false,
         };
-        let mut refused = None;
-        if let Some((path, existing)) = &request.write {
-            let metadata = RecordingMetadata {
-                source: request.source.to_string_lossy().into_owned(),
-                rule: request.rule,
-                ..RecordingMetadata::default()
-            };
-            refused = watched.begin_recording(path, *existing, &metadata).err();
+        let feed = Arc::clone(&watched.feed);
+        if let Some((path, _)) = &request.write {
+            *locked(&feed.recording) = Some(Recording::new(path.clone()));
         }
-        if let Some(post) = post {
-            let (feed, stop) = (Arc::clone(&watched.feed), Arc::clone(&watched.stop));
-            // It is not joined: opening a pipe waits for its other end.
-            let thread = std::thread::Builder::new().spawn(move || {
-                let source = source(&request.source);
-                let post = || post(WorkerEvent::Live(number, LiveEvent::Waiting));
-                feed.run(&source, &request, &request.options, &stop, &mut |_| {
-                    post();
-                    ControlFlow::Continue(())
-                });
-            });
-            if let Err(error) = thread {
-                let reason = format!("the system gives no thread for it: {error}");
-                watched.feed.change(|pending| {
-                    pending.batch.status.state = SourceState::Failed(reason);
-                });
+        let Some(post) = post else {
+            self.watched = Some(watched);
+            let refused = feed.begin_recording(&request).err()?;
+            return Some(WorkerEvent::Live(number, LiveEvent::NotRecorded(refused)));
+        };
+        let stop = Arc::clone(&watched.stop);
+        // It is not joined: opening a pipe waits for its other end.
+        let thread = std::thread::Builder::new().spawn(move || {
+            // Before the first frame: each one is wanted. Not on the screen's thread: the disk may hang.
+            if let Err(refused) = feed.begin_recording(&request) {
+                post(WorkerEvent::Live(number, LiveEvent::NotRecorded(refused)));
             }
+            let source = source(&request.source);
+            let post = || post(WorkerEvent::Live(number, LiveEvent::Waiting));
+            feed.run(&source, &request, &request.options, &stop, &mut |_| {
+                post();
+                ControlFlow::Continue(())
+            });
+        });
+        if let Err(error) = thread {
+            let reason = format!("the system gives no thread for it: {error}");
+            let recording = locked(&watched.feed.recording).take();
+            watched.feed.change(|pending| {
+                pending.batch.status.state = SourceState::Failed(reason.clone());
+            });
+            self.watched = Some(watched);
+            recording?;
+            return Some(WorkerEvent::Live(number, LiveEvent::NotRecorded(reason)));
         }
         self.watched = Some(watched);
-        refused.map(|reason| WorkerEvent::Live(number, LiveEvent::NotRecorded(reason)))
+        None
     }
 
-    /// Takes no more frames; a recording is finished.
-    pub(super) fn stop(&mut self) {
+    /// Takes no more frames. Returns the recording, which is to be finished, and the number of the source.
+    pub(super) fn stop(&mut self) -> Option<(u64, Arc<Recording>)> {
+        let recording = self.end_recording();
         if let Some(watched) = self.watched.take() {
             watched.stop.store(true, Ordering::Relaxed);
-            watched.end_recording();
         }
+        recording
     }
 
-    /// Begins a recording in the first file `touch-1.npy`, `touch-2.npy` … that is not there.
-    pub(super) fn record(
-        &self,
-        metadata: &RecordingMetadata,
-        access: &WriteAccess,
-    ) -> Option<WorkerEvent> {
-        let watched = self.watched.as_ref()?;
-        let names = (1..10_000).map(|number| format!("touch-{number}.npy"));
-        let mut paths = names.map(|name| (access.path(&name, Existing::Kept), name));
-        let is_free = |(path, _): &(Result<PathBuf, String>, String)| match path {
-            Ok(path) => !path.exists() && !path.with_extension("json").exists(),
-            Err(_) => true,
-        };
-        let begun = match paths.find(is_free) {
-            Some((Ok(path), name)) => watched
-                .begin_recording(&path, Existing::Kept, metadata)
-                .map(|()| LiveEvent::Recording(name)),
-            Some((Err(refused), _)) => Err(refused),
-            None => Err("10,000 recordings are here already; move some elsewhere".to_owned()),
-        };
-        let event = begun.unwrap_or_else(LiveEvent::NotRecorded);
-        Some(WorkerEvent::Live(watched.number, event))
+    /// Notes that a recording is being begun. Returns the number of the source; None where there is no source, or it is
+    /// so already.
+    pub(super) fn begins(&mut self) -> Option<u64> {
+        let watched = self.watched.as_mut().filter(|watched| !watched.begins)?;
+        watched.begins = true;
+        Some(watched.number)
     }
 
-    /// Ends it.
-    /// The event says how many frames the file holds, or why it could not be finished.
-    pub(super) fn stop_recording(&self) -> Option<WorkerEvent> {
+    /// Notes that it has begun, or cannot be: from now on each frame of the source of that number goes into it. Returns
+    /// it if that source is gone.
+    pub(super) fn begun(
+        &mut self,
+        number: u64,
+        recording: Option<Arc<Recording>>,
+    ) -> Option<Arc<Recording>> {
+        let watched = self.watched.as_mut();
+        let Some(watched) = watched.filter(|watched| watched.number == number) else {
+            return recording;
+        };
+        watched.begins = false;
+        *locked(&watched.feed.recording) = Some(recording?);
+        let mut pending = locked(&watched.feed.pending);
+        pending.batch.status.recorded = Some(0);
+        pending.batch.status.record_error = None;
+        None
+    }
+
+    /// Records no more frames. Returns the recording, which is to be finished, and the number of the source.
+    pub(super) fn end_recording(&self) -> Option<(u64, Arc<Recording>)> {
         let watched = self.watched.as_ref()?;
-        let event = watched.end_recording()?;
-        Some(WorkerEvent::Live(watched.number, event))
+        let recording = locked(&watched.feed.recording).take()?;
+        locked(&watched.feed.pending).batch.status.recorded = None;
+        Some((watched.number, recording))
     }
 
     /// Has the marks written into the description of the recording, by the thread that records.
-    pub(super) fn mark(&self, marks: &[FrameMark]) -> Option<WorkerEvent> {
-        *locked(&self.watched.as_ref()?.feed.marks) = Some(marks.to_vec());
-        None
+    pub(super) fn mark(&self, marks: &[FrameMark]) {
+        let watched = self.watched.as_ref();
+        let recording = watched.and_then(|watched| watched.feed.recording());
+        if let Some(recording) = recording {
+            recording.mark(marks);
+        }
     }
 
     /// Whether there is something to take.
@@ -230,40 +236,10 @@ impl FrameWatcher {
 
 impl Drop for FrameWatcher {
     fn drop(&mut self) {
-        self.stop();
-    }
-}
-
-impl Watched {
-    /// Opens the file of a recording; from then on each frame goes into it. An earlier error is forgotten.
-    fn begin_recording(
-        &self,
-        path: &Path,
-        existing: Existing,
-        metadata: &RecordingMetadata,
-    ) -> Result<(), String> {
-        let recorder = FrameRecorder::create(path, existing, metadata);
-        let recorder = recorder.map_err(|error| error.to_string())?;
-        *locked(&self.feed.recorder) = Some((path.to_owned(), recorder));
-        let mut pending = locked(&self.feed.pending);
-        pending.batch.status.recorded = Some(0);
-        pending.batch.status.record_error = None;
-        Ok(())
-    }
-
-    /// Finishes the recording; None if there was none.
-    fn end_recording(&self) -> Option<LiveEvent> {
-        let (path, mut recorder) = locked(&self.feed.recorder).take()?;
-        let marked = match locked(&self.feed.marks).take() {
-            Some(marks) => recorder.mark(marks),
-            None => Ok(()),
-        };
-        locked(&self.feed.pending).batch.status.recorded = None;
-        let name = path.to_string_lossy().into_owned();
-        Some(match marked.and_then(|()| recorder.finish()) {
-            Ok(frames) => LiveEvent::Recorded(name, frames),
-            Err(error) => LiveEvent::NotRecorded(error.to_string()),
-        })
+        // At the end of a script. On a terminal it has been finished before.
+        if let Some((_, recording)) = self.stop() {
+            let _ = recording.finish();
+        }
     }
 }
 
@@ -279,6 +255,35 @@ fn source(name: &OsStr) -> FrameSource {
 }
 
 impl FrameFeed {
+    /// What is recorded in.
+    fn recording(&self) -> Option<Arc<Recording>> {
+        locked(&self.recording).clone()
+    }
+
+    /// Writes to it, if there is one. Returns how many frames are recorded then.
+    fn recorded(
+        &self,
+        write: impl FnOnce(&Recording) -> Result<Option<u64>, String>,
+    ) -> Result<Option<u64>, String> {
+        let recording = self.recording();
+        recording.map_or(Ok(None), |recording| write(&recording))
+    }
+
+    /// Creates the file of the recording that is asked for together with the source.
+    fn begin_recording(&self, request: &WatchRequest) -> Result<(), String> {
+        let (Some(recording), Some((_, existing))) = (self.recording(), &request.write) else {
+            return Ok(());
+        };
+        let metadata = RecordingMetadata {
+            source: request.source.to_string_lossy().into_owned(),
+            rule: request.rule,
+            ..RecordingMetadata::default()
+        };
+        recording.begin(*existing, &metadata)?;
+        locked(&self.pending).batch.status.recorded = Some(0);
+        Ok(())
+    }
+
     /// Reads a source to its end. `fresh` is called when there is something to take where there was nothing.
     fn run(
         &self,
@@ -347,7 +352,8 @@ impl FrameFeed {
                 if channel.is_some_and(|channel| channel != frame.channel) {
                     return false;
                 }
-                let recorded = self.record(frame, time);
+                // An error ends the recording; the frames go on being shown.
+                let recorded = self.recorded(|own| own.add(frame, time));
                 let mut own = frame.clone();
                 own.time = time;
                 self.change(|pending| {
@@ -361,7 +367,7 @@ impl FrameFeed {
             }
             AcquireEvent::Withdrawn => self.change(|pending| pending.batch.provisional = None),
             AcquireEvent::Tick(counts) => {
-                let written = self.write_out();
+                let written = self.recorded(Recording::tick);
                 let mut pending = locked(&self.pending);
                 let status = &mut pending.batch.status;
                 let is_new = status.lost != counts.dropped || written.is_err();
@@ -387,40 +393,6 @@ impl FrameFeed {
             }),
             _ => false,
         }
-    }
-
-    /// Records a frame. Returns how many are recorded, None without a recording.
-    /// An error ends the recording; the frames go on being shown.
-    fn record(&self, frame: &Frame, time: Option<f64>) -> Result<Option<u64>, String> {
-        let mut recorder = locked(&self.recorder);
-        let Some((_, own)) = &mut *recorder else {
-            return Ok(None);
-        };
-        let added = own.add(frame, time).map(|()| Some(own.frames()));
-        added.map_err(|error| {
-            // What is recorded so far stays.
-            let _ = recorder.take().map(|(_, recorder)| recorder.finish());
-            error.to_string()
-        })
-    }
-
-    /// Writes out what has waited for long enough.
-    /// Marks are written here, too: until a recording ends, only the thread of the source writes.
-    fn write_out(&self) -> Result<Option<u64>, String> {
-        let mut recorder = locked(&self.recorder);
-        let Some((_, own)) = &mut *recorder else {
-            return Ok(None);
-        };
-        let marked = match locked(&self.marks).take() {
-            Some(marks) => own.mark(marks),
-            None => Ok(()),
-        };
-        let written = marked.and_then(|()| own.tick());
-        let written = written.map(|()| Some(own.frames()));
-        written.map_err(|error| {
-            let _ = recorder.take();
-            error.to_string()
-        })
     }
 }
 

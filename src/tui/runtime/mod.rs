@@ -9,8 +9,9 @@
 //! models           models for recognition: trained, read, searched
 //! sizes            the limit of a set in several sizes
 //! frames           a source of frames: watched, recorded
+//! recording        the file that frames are recorded in
 //! naming           the shapes that left the imprints of frames
-//! saves            changes of the library and of files
+//! disk             work with the disk, which may answer late
 //! journal_writer   unsaved work, written beside the program
 //! write_access     where files may be written
 //! memory           a bound on the memory of sweeps and trainings
@@ -30,6 +31,8 @@ mod sizes;
 
 mod frames;
 
+mod recording;
+
 mod naming;
 
 pub mod progress;
@@ -40,7 +43,7 @@ pub mod mailbox;
 
 mod write_access;
 
-mod saves;
+mod disk;
 
 mod shape_log;
 
@@ -50,15 +53,17 @@ pub(crate) mod memory;
 
 pub use crate::tui::runtime::progress::WorkerEventSink;
 
+use std::collections::VecDeque;
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use crate::tui::runtime::disk::{DiskAnswer, DiskQueue, DiskRequest};
 use crate::tui::runtime::journal_writer::JournalWriter;
 use crate::tui::runtime::models::ModelStore;
+use crate::tui::runtime::recording::Recording;
 use crate::tui::runtime::reminders::Reminders;
-use crate::tui::runtime::saves::{ChangeOutcome, FileChange, SaveQueue};
 use crate::tui::runtime::shape_log::ShapeLog;
 pub use crate::tui::runtime::shape_log::ShapeSink;
 use crate::tui::runtime::workers::Workers;
@@ -74,7 +79,8 @@ use crate::tui::app::message::{Leftover, LibraryEvent, Message};
 use crate::tui::app::state::App;
 use crate::tui::app::update::update;
 use crate::tui::explore::message::WorkerEvent;
-use crate::tui::runtime::effect::{Effect, FileRequest, LibraryRequest, TerminalEffect};
+use crate::tui::live::message::LiveEvent;
+use crate::tui::runtime::effect::{Effect, FileRequest, LibraryRequest, TerminalEffect, Work};
 
 /// How long the end of the program waits for the disk.
 const PATIENCE: Duration = Duration::from_millis(1500);
@@ -93,9 +99,11 @@ pub struct World {
     /// The stored shapes that were used.
     log: ShapeLog,
     /// Changes of the library and of files in progress.
-    saves: SaveQueue,
+    saves: DiskQueue,
     /// What is worth remembering, but not worth waiting for.
-    memories: SaveQueue,
+    memories: DiskQueue,
+    /// Messages that come after the present one.
+    later: VecDeque<Message>,
     /// Sweeps and exports in progress.
     workers: Workers,
     /// The folder of a temporary library. The last field: it is dropped after the journal has been written.
@@ -110,8 +118,9 @@ impl World {
         let mut world = Self {
             reminders: Some(Reminders::of(&library)),
             log: ShapeLog::default(),
-            saves: SaveQueue::new(library.clone()),
-            memories: SaveQueue::new(library.clone()),
+            saves: DiskQueue::new(library.clone()),
+            memories: DiskQueue::new(library.clone()),
+            later: VecDeque::new(),
             library,
             orphan: None,
             journal,
@@ -126,8 +135,9 @@ impl World {
     pub fn quiet(library: Library) -> Self {
         let workers = Workers::with(ModelStore::beside(&library));
         Self {
-            saves: SaveQueue::new(library.clone()),
-            memories: SaveQueue::new(library.clone()),
+            saves: DiskQueue::new(library.clone()),
+            memories: DiskQueue::new(library.clone()),
+            later: VecDeque::new(),
             library,
             orphan: None,
             reminders: None,
@@ -246,44 +256,78 @@ impl World {
         Some(Leftover { what, waiting })
     }
 
-    /// Updates the state by a message, performs the effect, and goes on with the answer until there is no effect left or
-    /// one for the terminal, which is returned.
+    /// Updates the state by a message, performs the effect, and goes on with the answer until there is no effect left.
+    /// Returns the effect for the terminal, if there is one.
     pub fn handle(&mut self, app: &mut App, message: Message) -> Option<TerminalEffect> {
-        let mut next = message;
-        if next == Message::Worker(WorkerEvent::Saved) {
-            // Memories have no answer. That of a change may have been taken already.
-            let _ = self.memories.wait(Duration::ZERO);
-            let answer = self.saves.wait(Duration::ZERO);
-            next = answer.and_then(|answer| self.answer(answer))?;
+        let mut terminal = None;
+        if message == Message::Worker(WorkerEvent::Answered) {
+            self.collect_answers();
+        } else {
+            self.later.push_back(message);
         }
-        let terminal = loop {
-            match update(app, next) {
-                Some(Effect::Library(request)) => match self.perform(request) {
-                    Some(answer) => next = answer,
-                    None => break None,
-                },
-                Some(Effect::File(request @ FileRequest::Write(..))) => {
-                    match self.change(FileChange::File(request)) {
-                        Some(answer) => next = answer,
-                        None => break None,
+        while let Some(mut next) = self.later.pop_front() {
+            loop {
+                let answer = match update(app, next) {
+                    Some(Effect::Terminal(effect)) => {
+                        terminal = Some(effect);
+                        None
                     }
+                    Some(Effect::Library(request)) => self.perform(request),
+                    Some(Effect::File(request @ FileRequest::Write(..))) => {
+                        self.change(DiskRequest::File(request))
+                    }
+                    Some(Effect::File(request)) => {
+                        Some(Message::File(files::perform(request, &self.workers.access)))
+                    }
+                    Some(Effect::Work(work)) => self.work(work),
+                    None => None,
+                };
+                match answer {
+                    Some(answer) => next = answer,
+                    None => break,
                 }
-                Some(Effect::File(request)) => {
-                    next = Message::File(files::perform(request, &self.workers.access));
-                }
-                Some(Effect::Work(work)) => match self.workers.perform(work) {
-                    Some(event) => next = Message::Worker(event),
-                    None => break None,
-                },
-                Some(Effect::Terminal(effect)) => break Some(effect),
-                None => break None,
             }
-        };
+        }
         self.journal.note(app);
         if let Some(reminders) = &mut self.reminders {
             reminders.note(app, &mut self.memories);
         }
         terminal
+    }
+
+    /// Takes the answers of the disk that are there. They may have been taken already.
+    fn collect_answers(&mut self) {
+        // Memories have no answer.
+        while self.memories.wait(Duration::ZERO).is_some() {}
+        while let Some(answer) = self.saves.wait(Duration::ZERO) {
+            let message = self.answer(answer);
+            self.later.extend(message);
+        }
+    }
+
+    /// Begins a piece of work. Returns its event if it is known already.
+    fn work(&mut self, work: Work) -> Option<Message> {
+        match work {
+            Work::Record(metadata) => {
+                let Some(number) = self.workers.frames.begins() else {
+                    let text = "a recording is being begun already".to_owned();
+                    return Some(Message::Worker(WorkerEvent::Refused(text)));
+                };
+                return self.change(DiskRequest::BeginRecording(number, metadata));
+            }
+            Work::StopRecording => {
+                let (number, recording) = self.workers.frames.end_recording()?;
+                return self.change(DiskRequest::EndRecording(number, recording));
+            }
+            Work::Watch(..) | Work::StopWatching => {
+                if let Some((number, recording)) = self.workers.frames.stop() {
+                    let ended = self.change(DiskRequest::EndRecording(number, recording));
+                    self.later.extend(ended);
+                }
+            }
+            _ => {}
+        }
+        self.workers.perform(work).map(Message::Worker)
     }
 
     /// Whether frames have come, or something else is to be said of their source.
@@ -312,22 +356,18 @@ impl World {
         self.saves.status()
     }
 
-    /// Finishes changes and writes unsaved work at once, because the program is about to end; but waits for at most
-    /// two seconds. Returns lines about what is not on the disk, because of an error or because the disk does not answer.
+    /// Finishes changes and recordings and writes unsaved work at once, because the program is about to end; but waits for
+    /// at most two seconds. Returns lines about what is not on the disk, because of an error or because the disk does not
+    /// answer.
     pub fn secure(&mut self, app: &mut App) -> Vec<String> {
         let end = Instant::now() + PATIENCE;
         // Half of the time: the journal keeps what could not be saved.
         let saved_by = Instant::now() + PATIENCE / 2;
-        while !self.saves.is_idle() {
-            let time = saved_by.saturating_duration_since(Instant::now());
-            let Some(answer) = self.saves.wait(time) else {
-                break;
-            };
-            if let Some(answer) = self.answer(answer) {
-                // Nothing is begun any more.
-                let _ = update(app, answer);
-            }
+        if let Some((number, recording)) = self.workers.frames.stop() {
+            let request = DiskRequest::EndRecording(number, recording);
+            self.saves.make_beside(request);
         }
+        let mut lines = self.finish_changes(app, saved_by);
         while !self.memories.is_idle() {
             let time = saved_by.saturating_duration_since(Instant::now());
             if self.memories.wait(time).is_none() {
@@ -336,7 +376,10 @@ impl World {
         }
         self.journal.note(app);
         let kept = (self.journal).written(end.saturating_duration_since(Instant::now()));
-        let mut lines = self.saves.left();
+        // What the journal has left of the time.
+        lines.extend(self.finish_changes(app, end));
+        self.journal.note(app);
+        lines.extend(self.saves.left());
         if app.unsaved_work().is_some() {
             if !kept {
                 lines.push(
@@ -350,20 +393,39 @@ impl World {
         lines
     }
 
+    /// Waits for changes and recordings until `end`. Returns lines about recordings that could not be finished.
+    fn finish_changes(&mut self, app: &mut App, end: Instant) -> Vec<String> {
+        let mut lines = Vec::new();
+        while !self.saves.is_idle() {
+            let time = end.saturating_duration_since(Instant::now());
+            let Some(answer) = self.saves.wait(time) else {
+                break;
+            };
+            if let DiskAnswer::Live(_, LiveEvent::NotFinished(reason)) = &answer {
+                lines.push(format!("{reason}\n"));
+            }
+            if let Some(answer) = self.answer(answer) {
+                // Nothing is begun any more.
+                let _ = update(app, answer);
+            }
+        }
+        lines
+    }
+
     /// Makes a change, or has it made. Returns the answer if there is one within a moment.
-    fn change(&mut self, change: FileChange) -> Option<Message> {
+    fn change(&mut self, change: DiskRequest) -> Option<Message> {
         let answer = self.saves.make(change)?;
         self.answer(answer)
     }
 
     /// The message that tells the program what became of a change.
-    fn answer(&mut self, changed: ChangeOutcome) -> Option<Message> {
+    fn answer(&mut self, changed: DiskAnswer) -> Option<Message> {
         let answer = match changed {
-            ChangeOutcome::Stored(shape, Ok(stamp)) => {
+            DiskAnswer::Stored(shape, Ok(stamp)) => {
                 self.log.stored(shape.name.as_str(), stamp);
                 LibraryEvent::Stored(shape.name.to_string(), stamp)
             }
-            ChangeOutcome::Stored(shape, Err(error)) => match error {
+            DiskAnswer::Stored(shape, Err(error)) => match error {
                 LibraryError::Exists { stamp, .. } | LibraryError::Changed { stamp, .. } => {
                     // A record needs what is in the way.
                     let _ = self.load(shape.name.as_str());
@@ -371,11 +433,11 @@ impl World {
                 }
                 _ => LibraryEvent::NotStored(error.to_string()),
             },
-            ChangeOutcome::Removed(removed) => done(removed, LibraryEvent::Removed),
-            ChangeOutcome::Restored(restored) => done(restored, LibraryEvent::Restored),
-            ChangeOutcome::ThrownAway(thrown) => self.given_up(thrown),
-            ChangeOutcome::File(event) => return Some(Message::File(event)),
-            ChangeOutcome::Panicked { was_save } => {
+            DiskAnswer::Removed(removed) => done(removed, LibraryEvent::Removed),
+            DiskAnswer::Restored(restored) => done(restored, LibraryEvent::Restored),
+            DiskAnswer::ThrownAway(thrown) => self.given_up(thrown),
+            DiskAnswer::File(event) => return Some(Message::File(event)),
+            DiskAnswer::Panicked { was_save } => {
                 let text = "the work failed; this is a bug".to_owned();
                 if was_save {
                     LibraryEvent::NotStored(text)
@@ -383,9 +445,30 @@ impl World {
                     LibraryEvent::Failed(text)
                 }
             }
-            ChangeOutcome::Nothing => return None,
+            DiskAnswer::Recording(number, begun) => return self.recording(number, begun),
+            DiskAnswer::Live(number, event) => {
+                return Some(Message::Worker(WorkerEvent::Live(number, event)));
+            }
+            DiskAnswer::Nothing => return None,
         };
         Some(Message::Library(answer))
+    }
+
+    /// A file for a recording has been created, or not.
+    fn recording(
+        &mut self,
+        number: u64,
+        begun: Result<(String, Arc<Recording>), String>,
+    ) -> Option<Message> {
+        let (event, recording) = match begun {
+            Ok((name, recording)) => (LiveEvent::Recording(name), Some(recording)),
+            Err(refused) => (LiveEvent::NotRecorded(refused), None),
+        };
+        match self.workers.frames.begun(number, recording) {
+            // The source was left meanwhile.
+            Some(unused) => self.change(DiskRequest::EndRecording(number, unused)),
+            None => Some(Message::Worker(WorkerEvent::Live(number, event))),
+        }
     }
 
     /// Performs a request to the library; the answer is a message. A change may have no answer yet.
@@ -413,10 +496,10 @@ impl World {
                 LibraryEvent::Named(purpose, self.load(&name).map(Box::new))
             }
             LibraryRequest::Store(shape, expected) => {
-                return self.change(FileChange::Store(shape, expected));
+                return self.change(DiskRequest::Store(shape, expected));
             }
-            LibraryRequest::Remove(name) => return self.change(FileChange::Remove(name)),
-            LibraryRequest::Restore(name) => return self.change(FileChange::Restore(name)),
+            LibraryRequest::Remove(name) => return self.change(DiskRequest::Remove(name)),
+            LibraryRequest::Restore(name) => return self.change(DiskRequest::Restore(name)),
             LibraryRequest::Recover => match self.orphan.take() {
                 Some((orphan, _)) => {
                     let shape = orphan.shape.clone();
@@ -432,7 +515,7 @@ impl World {
                     if let Ok(name) = Name::new(UNNAMED) {
                         shape = shape.renamed(name);
                     }
-                    return self.change(FileChange::ThrowAway(Box::new(shape)));
+                    return self.change(DiskRequest::ThrowAway(Box::new(shape)));
                 }
                 None => LibraryEvent::Failed("no unsaved work is left".to_owned()),
             },

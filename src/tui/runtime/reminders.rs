@@ -8,7 +8,7 @@ use crate::tui::app::state::App;
 use crate::tui::form::memory::FormMemory;
 use crate::tui::recognise::reach::trained_set;
 use crate::tui::recognise::sets::ModelChoice;
-use crate::tui::runtime::saves::{FileChange, SaveQueue};
+use crate::tui::runtime::disk::{DiskQueue, DiskRequest};
 
 /// The files, and what is in them as far as that is known.
 #[derive(Debug)]
@@ -56,9 +56,9 @@ impl Reminders {
     }
 
     /// Remembers what is new. A set counts once its model is there, so that none is remembered that does not exist.
-    pub(super) fn note(&mut self, app: &App, queue: &mut SaveQueue) {
+    pub(super) fn note(&mut self, app: &App, queue: &mut DiskQueue) {
         let mut write = |file: &RememberedFile, lines| {
-            queue.make_beside(FileChange::Remember(file.clone(), lines));
+            queue.make_beside(DiskRequest::Remember(file.clone(), lines));
         };
         if app.commands.len() > self.remembered {
             write(&self.commands, app.commands.clone());

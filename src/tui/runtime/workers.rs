@@ -146,14 +146,14 @@ impl Workers {
                 None
             }
             Work::Name(imprint) => self.namer.name(&imprint),
-            Work::Mark(marks) => self.frames.mark(&marks),
-            Work::StopWatching => {
-                self.namer.end();
-                self.frames.stop();
+            Work::Mark(marks) => {
+                self.frames.mark(&marks);
                 None
             }
-            Work::Record(metadata) => self.frames.record(&metadata, &self.access),
-            Work::StopRecording => self.frames.stop_recording(),
+            Work::StopWatching => {
+                self.namer.end();
+                None
+            }
             _ => None,
         }
     }

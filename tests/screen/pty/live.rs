@@ -1,4 +1,5 @@
-//! The live page in a terminal: recording by a key, a terminal that is not read for a while, and how often it is drawn.
+//! The live page in a terminal: recording by a key, a disk that hangs meanwhile, a terminal that is not read for a while,
+//! and how often it is drawn.
 
 use std::fs;
 use std::io::Write;
@@ -6,6 +7,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
+use rustix::process::Signal;
+
+use super::hanging::Hanging;
 use super::program::{Program, Start, TAXEL};
 
 /// A pipe with a name in a folder; None where there is no mkfifo.
@@ -118,6 +122,120 @@ fn a_key_records_and_a_key_ends_it() {
     let beside: serde_json::Value = serde_json::from_str(&beside).expect("JSON");
     assert_eq!(beside["marks"][0]["number"], 22, "{beside}");
     assert_eq!(beside["rule"]["at_least"], 9, "{beside}");
+    watched.ends();
+}
+
+/// What the description beside an array says of its end.
+fn is_ended(path: &Path) -> bool {
+    let beside = fs::read_to_string(path.with_extension("json")).expect("it is there");
+    beside.contains("\"ended\":true") || beside.contains("\"ended\": true")
+}
+
+/// A source that is watched and recorded, and a disk that hangs then.
+fn recorded_on_a_hanging_disk() -> Option<(Watched, PathBuf, Hanging)> {
+    let mut watched = Watched::start()?;
+    watched.shows_the_first_frame();
+    let file = watched.records();
+    watched.sends(1..21);
+    watched.program.shows("frame 20");
+    let hanging = Hanging::new(&mut watched.program, "?fsync,?fdatasync", &[])?;
+    Some((watched, file, hanging))
+}
+
+#[test]
+fn leaving_the_page_says_what_was_recorded() {
+    let Some(mut watched) = Watched::start() else {
+        return;
+    };
+    watched.shows_the_first_frame();
+    let file = watched.records();
+    watched.sends(1..6);
+    watched.program.shows("frame 5");
+    watched.program.types(b"\x1b");
+    watched.program.shows("touch-1.npy: 5 frames recorded");
+    assert_eq!(records(&file), Some(5));
+    watched.program.types(b"q");
+    watched.program.ends_well(0);
+}
+
+#[test]
+fn keys_go_on_while_a_hanging_disk_takes_a_recording() {
+    for leaves in [false, true] {
+        let Some((mut watched, file, hanging)) = recorded_on_a_hanging_disk() else {
+            return;
+        };
+        watched.program.types(if leaves { b"\x1b" } else { b"r" });
+        (watched.program).shows("Saving touch-1.npy: waiting for the disk");
+        if leaves {
+            watched.program.types(b" ");
+            watched.program.shows("NA 1 in all");
+        } else {
+            watched.sends(21..31);
+            watched.program.shows("frame 30");
+        }
+        hanging.answers();
+        watched.program.shows("touch-1.npy: 20 frames recorded");
+        assert_eq!(records(&file), Some(20), "none of those after the key");
+        assert!(is_ended(&file));
+        // What was drawn is given up; the page of the source comes before the end.
+        let keys: [&[u8]; 2] = if leaves { [b"q", b"y"] } else { [b"q", b"q"] };
+        for key in keys {
+            watched.program.types(key);
+        }
+        watched.program.ends_well(0);
+    }
+}
+
+#[test]
+fn the_end_does_not_wait_for_a_recording_on_a_hanging_disk() {
+    for (keys, signal, status) in [
+        (&b"qq"[..], None, 0),
+        (b"", Some(Signal::TERM), 143),
+        (b"", Some(Signal::HUP), 129),
+    ] {
+        let Some((mut watched, file, hanging)) = recorded_on_a_hanging_disk() else {
+            return;
+        };
+        let begun = Instant::now();
+        for key in keys {
+            watched.program.types(&[*key]);
+        }
+        if let Some(signal) = signal {
+            watched.program.signal(signal);
+        }
+        let why = "Saving touch-1.npy: not done yet, because the disk does not answer";
+        watched.program.shows(why);
+        watched.program.is_left();
+        println!("the shell has the terminal after {:?}", begun.elapsed());
+        // The system waits for the one who traces.
+        hanging.answers();
+        let (ended, _) = watched.program.ends();
+        assert_eq!(ended.code(), Some(status));
+        assert_eq!(records(&file), Some(20), "written, though not synced");
+    }
+}
+
+#[test]
+fn frames_are_shown_while_a_hanging_disk_creates_a_recording() {
+    let Some(mut watched) = Watched::start() else {
+        return;
+    };
+    watched.shows_the_first_frame();
+    let Some(hanging) = Hanging::new(&mut watched.program, "?fsync,?fdatasync", &[]) else {
+        return;
+    };
+    watched.program.types(b"r");
+    (watched.program).shows("Beginning a recording: waiting for the disk");
+    watched.sends(1..11);
+    watched.program.shows("frame 10");
+    watched.program.types(b"r");
+    watched.program.shows("a recording is being begun already");
+    hanging.answers();
+    watched.program.shows("recording in touch-1.npy");
+    watched.sends(11..14);
+    watched.program.shows("frame 13");
+    watched.program.types(b"r");
+    watched.program.shows("touch-1.npy: 3 frames recorded");
     watched.ends();
 }
 

@@ -22,6 +22,8 @@ mod record;
 
 mod saves;
 
+mod hanging;
+
 mod hostile;
 
 mod live;

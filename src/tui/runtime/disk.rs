@@ -1,12 +1,12 @@
-//! Changes to files, one after the other on a thread of their own, so that no key waits for a disk or for the lock of
-//! another program.
+//! Work with the disk, one request after the other on a thread of their own, so that no key waits for a disk or for the
+//! lock of another program.
 //!
 //! ```text
 //! request -> thread -> answer within QUICK: handled at once, before the next key
 //!                      later: a message wakes the loop, keys have gone on meanwhile; after SLOW it is said what is
 //!                      waited for
 //! ```
-//! Without a receiver of events, as in a script, a change is made at once.
+//! Without a receiver of events, as in a script, a request is carried out at once.
 
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -16,12 +16,15 @@ use std::thread::Builder;
 use std::time::{Duration, Instant};
 
 use crate::formats::StoredShape;
+use crate::formats::recording::RecordingMetadata;
 use crate::storage::{Expected, Library, LibraryError, RememberedFile};
 use crate::tui::app::message::FileEvent;
 use crate::tui::explore::message::WorkerEvent;
+use crate::tui::live::message::LiveEvent;
 use crate::tui::runtime::effect::FileRequest;
 use crate::tui::runtime::files;
 use crate::tui::runtime::progress::WorkerEventSink;
+use crate::tui::runtime::recording::Recording;
 use crate::tui::runtime::write_access::WriteAccess;
 
 /// How long a key waits for a change. Nearly all are made within it, so that the next key finds them done.
@@ -33,9 +36,9 @@ const SLOW: Duration = Duration::from_millis(300);
 /// The time after which that is looked at again.
 const AGAIN: Duration = Duration::from_millis(500);
 
-/// A change.
+/// What the disk is wanted for.
 #[derive(Debug)]
-pub(super) enum FileChange {
+pub(super) enum DiskRequest {
     /// Save a shape.
     Store(Box<StoredShape>, Expected),
     /// Delete the shape of that name.
@@ -48,11 +51,15 @@ pub(super) enum FileChange {
     File(FileRequest),
     /// Remember lines for the next run.
     Remember(RememberedFile, Vec<String>),
+    /// Create a file and record the frames of the source of that number in it.
+    BeginRecording(u64, Box<RecordingMetadata>),
+    /// Finish a recording of the source of that number.
+    EndRecording(u64, Arc<Recording>),
 }
 
-/// What became of a change.
+/// What became of a request.
 #[derive(Debug)]
-pub(super) enum ChangeOutcome {
+pub(super) enum DiskAnswer {
     /// The shape was saved, and this is the stamp of its file.
     Stored(Box<StoredShape>, Result<u64, LibraryError>),
     /// The shape of that name was deleted.
@@ -68,11 +75,15 @@ pub(super) enum ChangeOutcome {
         /// Whether a shape was to be saved.
         was_save: bool,
     },
+    /// Frames of the source of that number can be recorded in the file of that name, or not.
+    Recording(u64, Result<(String, Arc<Recording>), String>),
+    /// What is to be said on the page of a source.
+    Live(u64, LiveEvent),
     /// No answer is wanted.
     Nothing,
 }
 
-impl FileChange {
+impl DiskRequest {
     /// What it does, in a few words for a message.
     fn words(&self) -> String {
         match self {
@@ -83,41 +94,69 @@ impl FileChange {
             Self::File(FileRequest::Write(name, ..)) => format!("Writing {name}"),
             Self::File(_) => "Reading a file".to_owned(),
             Self::Remember(..) => "Remembering it".to_owned(),
+            Self::BeginRecording(..) => "Beginning a recording".to_owned(),
+            Self::EndRecording(_, recording) => format!("Saving {}", recording.path().display()),
         }
     }
 
+    /// Whether it needs the lock of the library, which another program may hold.
+    fn locks(&self) -> bool {
+        matches!(
+            self,
+            Self::Store(..) | Self::Remove(_) | Self::Restore(_) | Self::ThrowAway(_)
+        )
+    }
+
     /// Makes it.
-    fn make(self, library: &Library, access: &WriteAccess) -> ChangeOutcome {
+    fn make(self, library: &Library, access: &WriteAccess) -> DiskAnswer {
         match self {
             Self::Store(shape, expected) => {
                 let stored = library.save(&shape, expected);
-                ChangeOutcome::Stored(shape, stored)
+                DiskAnswer::Stored(shape, stored)
             }
-            Self::Remove(name) => ChangeOutcome::Removed(library.delete(&name)),
-            Self::Restore(name) => ChangeOutcome::Restored(library.restore(&name)),
-            Self::ThrowAway(shape) => ChangeOutcome::ThrownAway(library.throw_away(&shape)),
-            Self::File(request) => ChangeOutcome::File(files::perform(request, access)),
+            Self::Remove(name) => DiskAnswer::Removed(library.delete(&name)),
+            Self::Restore(name) => DiskAnswer::Restored(library.restore(&name)),
+            Self::ThrowAway(shape) => DiskAnswer::ThrownAway(library.throw_away(&shape)),
+            Self::File(request) => DiskAnswer::File(files::perform(request, access)),
             Self::Remember(file, lines) => {
                 file.write(&lines);
-                ChangeOutcome::Nothing
+                DiskAnswer::Nothing
+            }
+            Self::BeginRecording(number, metadata) => {
+                DiskAnswer::Recording(number, Recording::in_free_file(access, &metadata))
+            }
+            Self::EndRecording(number, recording) => {
+                let ended = recording.finish();
+                ended.map_or(DiskAnswer::Nothing, |event| DiskAnswer::Live(number, event))
             }
         }
     }
 }
 
-/// The changes under way.
+/// The requests under way.
 #[derive(Debug)]
-pub(super) struct SaveQueue {
+pub(super) struct DiskQueue {
     /// The library that is changed.
     library: Library,
     /// Where files may be written.
     pub(super) access: Arc<WriteAccess>,
     /// The thread, once there is one.
-    thread: Option<SaveThread>,
-    /// What each change does, and when it was asked for; the first is being made.
-    pending: VecDeque<(String, Instant)>,
+    thread: Option<DiskThread>,
+    /// The requests without an answer; the first is being carried out.
+    pending: VecDeque<PendingRequest>,
     /// Where the thread says that it has an answer; None without a thread.
     post: Option<Post>,
+}
+
+/// A request without an answer.
+#[derive(Debug)]
+struct PendingRequest {
+    /// What it does, in a few words.
+    words: String,
+    /// When it was asked for.
+    since: Instant,
+    /// Whether it needs the lock of the library.
+    locks: bool,
 }
 
 /// A sink of events, which has no text of its own.
@@ -131,14 +170,14 @@ impl std::fmt::Debug for Post {
 
 /// The ends of the channels to the thread.
 #[derive(Debug)]
-struct SaveThread {
+struct DiskThread {
     /// Changes to make.
-    changes: Sender<FileChange>,
+    changes: Sender<DiskRequest>,
     /// What became of them, in their order.
-    answers: Receiver<ChangeOutcome>,
+    answers: Receiver<DiskAnswer>,
 }
 
-impl SaveQueue {
+impl DiskQueue {
     /// Changes of a library, made at once.
     pub(super) fn new(library: Library) -> Self {
         Self {
@@ -156,7 +195,7 @@ impl SaveQueue {
     }
 
     /// Makes a change, or has it made. Returns what became of it if that is known within a moment.
-    pub(super) fn make(&mut self, change: FileChange) -> Option<ChangeOutcome> {
+    pub(super) fn make(&mut self, change: DiskRequest) -> Option<DiskAnswer> {
         if let Some(made) = self.begin(change) {
             return Some(made);
         }
@@ -166,18 +205,22 @@ impl SaveQueue {
     }
 
     /// Makes a change that nobody waits for.
-    pub(super) fn make_beside(&mut self, change: FileChange) {
+    pub(super) fn make_beside(&mut self, change: DiskRequest) {
         // Such a change has no answer.
         let _ = self.begin(change);
     }
 
     /// Gives a change to the thread. Without one, makes it, and returns what became of it.
-    fn begin(&mut self, change: FileChange) -> Option<ChangeOutcome> {
+    fn begin(&mut self, change: DiskRequest) -> Option<DiskAnswer> {
         self.start();
         let Some(thread) = &self.thread else {
             return Some(change.make(&self.library, &self.access));
         };
-        self.pending.push_back((change.words(), Instant::now()));
+        self.pending.push_back(PendingRequest {
+            words: change.words(),
+            since: Instant::now(),
+            locks: change.locks(),
+        });
         // It ends only after this end of the channel.
         let _ = thread.changes.send(change);
         None
@@ -188,7 +231,7 @@ impl SaveQueue {
         let Some(Post(post)) = self.post.as_ref().filter(|_| self.thread.is_none()) else {
             return;
         };
-        let (changes, asked) = channel::<FileChange>();
+        let (changes, asked) = channel::<DiskRequest>();
         let (answer, answers) = channel();
         let (library, access, post) = (
             self.library.clone(),
@@ -197,22 +240,22 @@ impl SaveQueue {
         );
         let body = move || {
             for change in asked {
-                let was_save = matches!(change, FileChange::Store(..));
+                let was_save = matches!(change, DiskRequest::Store(..));
                 let made = catch_unwind(AssertUnwindSafe(|| change.make(&library, &access)));
-                let made = made.unwrap_or(ChangeOutcome::Panicked { was_save });
+                let made = made.unwrap_or(DiskAnswer::Panicked { was_save });
                 if answer.send(made).is_err() {
                     return;
                 }
-                post(WorkerEvent::Saved);
+                post(WorkerEvent::Answered);
             }
         };
         if Builder::new().spawn(body).is_ok() {
-            self.thread = Some(SaveThread { changes, answers });
+            self.thread = Some(DiskThread { changes, answers });
         }
     }
 
     /// The next answer, if there is one within `time`.
-    pub(super) fn wait(&mut self, time: Duration) -> Option<ChangeOutcome> {
+    pub(super) fn wait(&mut self, time: Duration) -> Option<DiskAnswer> {
         let answer = self.thread.as_ref()?.answers.recv_timeout(time).ok()?;
         self.pending.pop_front();
         Some(answer)
@@ -225,33 +268,39 @@ impl SaveQueue {
 
     /// When to look again at what is waited for; None if nothing is.
     pub(super) fn look_at(&self) -> Option<Instant> {
-        let (_, since) = self.pending.front()?;
+        let since = self.pending.front()?.since;
         let now = Instant::now();
-        let slow = *since + SLOW;
+        let slow = since + SLOW;
         Some(if slow > now { slow } else { now + AGAIN })
     }
 
-    /// What the first change waits for, if it takes long.
+    /// What the first request waits for, if it takes long.
     pub(super) fn status(&self) -> Option<String> {
-        let (words, since) = self.pending.front()?;
-        let what = if self.library.waits_for_lock() {
+        let first = self.pending.front()?;
+        let what = if self.waits_for_lock() {
             "another taxel to release the library"
         } else {
             "the disk"
         };
-        (since.elapsed() >= SLOW).then(|| format!("{words}: waiting for {what}"))
+        (first.since.elapsed() >= SLOW).then(|| format!("{}: waiting for {what}", first.words))
+    }
+
+    /// Whether the first request waits for another program rather than for the disk.
+    fn waits_for_lock(&self) -> bool {
+        let locks = self.pending.front().is_some_and(|first| first.locks);
+        locks && self.library.waits_for_lock()
     }
 
     /// What may not be done when the program ends now, a line each.
     pub(super) fn left(&self) -> Vec<String> {
-        let lines = self.pending.iter();
-        let why = if self.library.waits_for_lock() {
+        let why = if self.waits_for_lock() {
             "another program holds the library"
         } else {
             "the disk does not answer"
         };
+        let lines = self.pending.iter().map(|request| &request.words);
         lines
-            .map(|(words, _)| format!("{words}: not done yet, because {why}\n"))
+            .map(|words| format!("{words}: not done yet, because {why}\n"))
             .collect()
     }
 }
