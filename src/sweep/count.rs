@@ -1,16 +1,9 @@
 //! The distinct imprints of a grid and nothing about them but how often each occurs, and the poses that leave one of
 //! them: what models of recognition are made of.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
-use rayon::prelude::*;
-
 use crate::atlas::{ImprintCounter, Layout};
 use crate::imprint::Imprint;
-use crate::pose::{Axis, PoseGrid};
-use crate::sweep::plan::{Task, tasks};
-use crate::sweep::run::{Sweep, portion};
-use crate::sweep::runs::{self, Found};
+use crate::sweep::run::Sweep;
 
 /// The distinct imprints of a grid, counted.
 #[derive(Clone, Debug)]
@@ -85,15 +78,17 @@ impl Sweep<'_> {
             partly_off,
         } = &mut counted;
         let width = self.grid.row_length();
-        self.each(layout, false, |task, found| {
-            let orientations = task.turns.len() as u64;
-            let own = &found.counter;
-            for (index, tally) in own.tallies().iter().enumerate() {
-                let count = tally.count * orientations;
-                counter.add(own.key(index), own.hash(index), count, tally.first);
+        self.each_portion(layout, false, |portion| {
+            for (task, found) in portion {
+                let orientations = task.turns.len() as u64;
+                let own = &found.counter;
+                for (index, tally) in own.tallies().iter().enumerate() {
+                    let count = tally.count * orientations;
+                    counter.add(own.key(index), own.hash(index), count, tally.first);
+                }
+                *poses += (task.rows.end - task.rows.start) * width * orientations;
+                *partly_off += found.partly_off * orientations;
             }
-            *poses += (task.rows.end - task.rows.start) * width * orientations;
-            *partly_off += found.partly_off * orientations;
         })
         .then_some(counted)
     }
@@ -106,86 +101,35 @@ impl Sweep<'_> {
         let sensor = self.grid.sensor();
         let layout = Layout::new(sensor.columns(), sensor.rows());
         let mut runs = Vec::new();
-        self.each(&layout, true, |task, found| {
-            let wanted: Vec<bool> = (0..found.counter.len())
-                .map(|index| wanted(&layout.imprint(found.counter.key(index))))
-                .collect();
-            for (row, y) in task.rows.clone().enumerate() {
-                let mut first = (task.turns[0] * height + y) * width;
-                for &(index, length) in found.runs.row(row) {
-                    if wanted[index as usize] {
-                        runs.push(PoseRun {
-                            first,
-                            poses: u64::from(length),
-                            orientations: task.turns.len() as u64,
-                        });
+        self.each_portion(&layout, true, |portion| {
+            for (task, found) in portion {
+                let wanted: Vec<bool> = (0..found.counter.len())
+                    .map(|index| wanted(&layout.imprint(found.counter.key(index))))
+                    .collect();
+                for (row, y) in task.rows.clone().enumerate() {
+                    let mut first = (task.turns[0] * height + y) * width;
+                    for &(index, length) in found.runs.row(row) {
+                        if wanted[index as usize] {
+                            runs.push(PoseRun {
+                                first,
+                                poses: u64::from(length),
+                                orientations: task.turns.len() as u64,
+                            });
+                        }
+                        first += u64::from(length);
                     }
-                    first += u64::from(length);
                 }
             }
         })
         .then_some(runs)
     }
-
-    /// Sweeps, and shows what each task found in the order of tasks. `false` if it was stopped.
-    fn each(self, layout: &Layout, keep_runs: bool, mut take: impl FnMut(&Task, &Found)) -> bool {
-        let Self {
-            grid,
-            shard,
-            progress,
-            ..
-        } = self;
-        let rows = shard.rows(grid.rows());
-        let stopped = AtomicBool::new(false);
-        let block_rows = grid.ranges()[Axis::Angle].count() * grid.rows_per_orientation();
-        for block in rows.start / block_rows..rows.end.div_ceil(block_rows) {
-            let mut tasks = tasks(grid, &rows, block).peekable();
-            while tasks.peek().is_some() {
-                let portion = portion(&mut tasks, grid.row_length());
-                let found: Vec<Option<Found>> = portion
-                    .par_iter()
-                    .map(|task| found(grid, layout, task, keep_runs, progress, &stopped))
-                    .collect();
-                if stopped.load(Ordering::Relaxed) {
-                    return false;
-                }
-                for (task, found) in portion.iter().zip(found) {
-                    if let Some(found) = found {
-                        take(task, &found);
-                    }
-                }
-            }
-        }
-        true
-    }
-}
-
-/// What a task found; None once the sweep was stopped.
-fn found(
-    grid: &PoseGrid,
-    layout: &Layout,
-    task: &Task,
-    keep_runs: bool,
-    progress: &(dyn Fn(u64) -> bool + Sync),
-    stopped: &AtomicBool,
-) -> Option<Found> {
-    let orientations = task.turns.len() as u64;
-    let go_on = |poses: u64| {
-        if !progress(poses * orientations) {
-            stopped.store(true, Ordering::Relaxed);
-        }
-        !stopped.load(Ordering::Relaxed)
-    };
-    go_on(0)
-        .then(|| runs::go(grid, layout, task, keep_runs, go_on))
-        .flatten()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::figure::{Figure, FigureKind};
-    use crate::pose::{Anchor, Ranges};
+    use crate::pose::{Anchor, Axis, PoseGrid, Ranges};
     use crate::sensor::Sensor;
 
     #[test]

@@ -1,21 +1,20 @@
 //! Runs a sweep: shares the tasks of a shard among all threads and puts together what they find.
 //!
 //! Tasks are worked off in portions. The tasks of a portion run side by side, each with a counter of its own; then
-//! these counters are added to the atlas one after the other, in the order of the grid. So the number of an imprint is
-//! that of its first occurrence, for any number of threads.
+//! these counters are added to the atlas one after the other, in the order of the grid, while the next portion is being
+//! swept. So the number of an imprint is that of its first occurrence, for any number of threads.
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use crate::atlas::{Atlas, OrientationSums, Table, VarianceParts};
+use crate::atlas::{Atlas, Layout, OrientationSums, Table, VarianceParts};
 use crate::index::{index, wide};
 use crate::pose::{Axis, PoseGrid};
 use crate::sweep::plan::{Shard, Task, tasks};
 use crate::sweep::result::SweepResult;
-use crate::sweep::runs;
-use crate::sweep::runs::Found;
+use crate::sweep::runs::{self, Found};
 
 /// Takes a row: its number in the grid, and the atlas number of each of its poses.
 pub type TakeRow<'a> = dyn FnMut(u64, &[u32]) + Send + 'a;
@@ -39,8 +38,8 @@ pub type TakeRow<'a> = dyn FnMut(u64, &[u32]) + Send + 'a;
 /// ```
 pub struct Sweep<'a> {
     pub(super) grid: &'a PoseGrid,
-    pub(super) shard: Shard,
-    pub(super) progress: &'a (dyn Fn(u64) -> bool + Sync),
+    shard: Shard,
+    progress: &'a (dyn Fn(u64) -> bool + Sync),
     rows: Option<&'a mut TakeRow<'a>>,
 }
 
@@ -90,44 +89,90 @@ impl<'a> Sweep<'a> {
 
     /// Runs it. If it is stopped early, the result holds what is complete: whole orientations or parts of them, and
     /// everything about these. What was under way is lost, a few seconds of work at most.
-    pub fn run(self) -> SweepResult {
+    pub fn run(mut self) -> SweepResult {
+        let (grid, shard) = (self.grid, self.shard);
+        let sensor = grid.sensor();
+        let mut done = Done {
+            grid,
+            atlas: Atlas::new(sensor.columns(), sensor.rows()),
+            table: Table::default(),
+            spread: VarianceParts::new(grid.row_length() * grid.rows_per_orientation()),
+            poses: 0,
+            partly_off: 0,
+            rows: self.rows.take(),
+        };
+        let (layout, keep_runs) = (done.atlas.layout().clone(), done.rows.is_some());
+        self.each_portion(&layout, keep_runs, |portion| done.add(portion));
+        SweepResult::new(
+            grid.clone(),
+            shard,
+            (done.poses, done.partly_off),
+            done.atlas,
+            &done.table,
+            done.spread,
+        )
+    }
+
+    /// Sweeps portion after portion. `take` receives what each found, in the order of the grid, while the next one is
+    /// being swept. A portion that is stopped is lost, and the result is `false`.
+    pub(super) fn each_portion(
+        self,
+        layout: &Layout,
+        keep_runs: bool,
+        mut take: impl FnMut(&Portion) + Send,
+    ) -> bool {
         let Self {
             grid,
             shard,
             progress,
-            rows,
+            ..
         } = self;
-        let shard_rows = shard.rows(grid.rows());
-        let (width, height) = (grid.row_length(), grid.rows_per_orientation());
-        let sensor = grid.sensor();
-        let mut under_way = UnderWay {
-            grid,
-            atlas: Atlas::new(sensor.columns(), sensor.rows()),
-            table: Table::default(),
-            spread: VarianceParts::new(width * height),
-            poses: 0,
-            partly_off: 0,
-            stopped: AtomicBool::new(false),
-            progress,
-            rows,
-        };
-        let block_rows = grid.ranges()[Axis::Angle].count() * height;
-        'all: for block in shard_rows.start / block_rows..shard_rows.end.div_ceil(block_rows) {
-            let mut tasks = tasks(grid, &shard_rows, block).peekable();
-            while tasks.peek().is_some() {
-                under_way.portion(&portion(&mut tasks, width));
-                if under_way.stopped.load(Ordering::Relaxed) {
-                    break 'all;
+        let rows = shard.rows(grid.rows());
+        let stopped = AtomicBool::new(false);
+        let found = |task: &Task| {
+            let turns = task.turns.len() as u64;
+            let go_on = |poses: u64| {
+                if !progress(poses * turns) {
+                    stopped.store(true, Ordering::Relaxed);
                 }
+                !stopped.load(Ordering::Relaxed)
+            };
+            (!stopped.load(Ordering::Relaxed))
+                .then(|| runs::go(grid, layout, task, keep_runs, go_on))
+                .flatten()
+        };
+        let block_rows = grid.ranges()[Axis::Angle].count() * grid.rows_per_orientation();
+        let blocks = rows.start / block_rows..rows.end.div_ceil(block_rows);
+        let mut tasks = blocks.flat_map(|block| tasks(grid, &rows, block));
+        let mut before = Portion::new();
+        loop {
+            let next = portion(&mut tasks, grid.row_length());
+            if next.is_empty() {
+                take(&before);
+                return true;
+            }
+            let sweep = || -> Option<Portion> {
+                let swept = next.into_par_iter().map(|task| {
+                    let found = found(&task)?;
+                    Some((task, found))
+                });
+                swept.collect()
+            };
+            let (swept, ()) = rayon::join(sweep, || take(&before));
+            match swept {
+                Some(swept) => before = swept,
+                None => return false,
             }
         }
-        under_way.finished(shard)
     }
 }
 
+/// Tasks, and what each of them found.
+pub(super) type Portion = Vec<(Task, Found)>;
+
 /// The next tasks that run side by side: enough to keep all threads busy till the end of them, few enough for the
 /// memory, which holds what each of them found. `width` is the number of poses in a row.
-pub(super) fn portion(tasks: &mut impl Iterator<Item = Task>, width: u64) -> Vec<Task> {
+fn portion(tasks: &mut impl Iterator<Item = Task>, width: u64) -> Vec<Task> {
     const POSES: u64 = 4_000_000;
     let threads = rayon::current_num_threads();
     let mut poses = 0;
@@ -140,83 +185,43 @@ pub(super) fn portion(tasks: &mut impl Iterator<Item = Task>, width: u64) -> Vec
     portion
 }
 
-/// A sweep under way.
-struct UnderWay<'a, 'w> {
+/// What a sweep has found so far.
+struct Done<'a, 'w> {
     grid: &'a PoseGrid,
     atlas: Atlas,
     table: Table,
     spread: VarianceParts,
     poses: u64,
     partly_off: u64,
-    stopped: AtomicBool,
-    progress: &'w (dyn Fn(u64) -> bool + Sync),
     rows: Option<&'w mut TakeRow<'w>>,
 }
 
-impl UnderWay<'_, '_> {
-    fn finished(self, shard: Shard) -> SweepResult {
-        let poses = (self.poses, self.partly_off);
-        SweepResult::new(
-            self.grid.clone(),
-            shard,
-            poses,
-            self.atlas,
-            &self.table,
-            self.spread,
-        )
-    }
-
-    fn portion(&mut self, tasks: &[Task]) {
+impl Done<'_, '_> {
+    fn add(&mut self, portion: &Portion) {
         let width = self.grid.row_length();
-        let (grid, layout, stopped) = (self.grid, self.atlas.layout(), &self.stopped);
-        let (keep_runs, progress) = (self.rows.is_some(), self.progress);
-        let found: Vec<Option<Found>> = tasks
-            .par_iter()
-            .map(|task| {
-                if stopped.load(Ordering::Relaxed) {
-                    return None;
-                }
-                let turns = task.turns.len() as u64;
-                let tell = |poses: u64| {
-                    if !progress(poses * turns) {
-                        stopped.store(true, Ordering::Relaxed);
-                    }
-                    !stopped.load(Ordering::Relaxed)
-                };
-                runs::go(grid, layout, task, keep_runs, tell)
-            })
-            .collect();
-        // Nothing of a portion that was stopped: describing what there is of it would take its time.
-        if self.stopped.load(Ordering::Relaxed) {
-            return;
-        }
-        let done: Vec<(&Task, Found, Vec<u32>)> = tasks
+        let ids: Vec<Vec<u32>> = portion
             .iter()
-            .zip(found)
-            .filter_map(|(task, found)| {
-                let found = found?;
-                let ids = self.atlas.add(&found.counter, task.turns.len() as u64);
-                Some((task, found, ids))
-            })
+            .map(|(task, found)| self.atlas.add(&found.counter, task.turns.len() as u64))
             .collect();
         self.atlas.describe();
         self.table.extend(self.atlas.summaries());
         let table = &self.table;
-        let sums: Vec<OrientationSums> = done
+        let sums: Vec<OrientationSums> = portion
             .par_iter()
-            .map(|(task, found, ids)| {
+            .zip(&ids)
+            .map(|((task, found), ids)| {
                 let counts = found.counter.tallies().iter().map(|tally| tally.count);
                 let counted = ids.iter().copied().zip(counts);
                 OrientationSums::of(table, task.turns.len() as u64, counted)
             })
             .collect();
-        for ((task, found, ids), sums) in done.iter().zip(sums) {
+        for (((task, found), ids), sums) in portion.iter().zip(&ids).zip(sums) {
             let times = task.turns.len() as u64;
             self.spread.add(task.turns[0], sums);
             self.poses += (task.rows.end - task.rows.start) * width * times;
             self.partly_off += found.partly_off * times;
             if let Some(rows) = &mut self.rows {
-                show_rows(grid, task, found, ids, rows);
+                show_rows(self.grid, task, found, ids, rows);
             }
         }
     }
