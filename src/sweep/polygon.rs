@@ -5,7 +5,7 @@
 //! pieces left of `x` have climbed: piecewise linear, with a corner at each piece's ends. Its integral `W` is piecewise
 //! quadratic, and the coverage at place `u` is `C(u) = W(u + 1) − W(u)`, with slope `w(u + 1) − w(u)`. Two pointers
 //! walk the corners of `w`, one cell apart. Between two stops `C` is one quadratic, which is solved for its crossings
-//! of the threshold.
+//! of the threshold. The slope is at most 1: as far as `C` is from the threshold, so far no stop is looked at.
 //!
 //! **Error.** `w` at a corner is a sum of shares of rises, each in [0, 1] of them, and `W` is summed up by
 //! trapezoids: nothing is extrapolated, so steep pieces do no harm. Below 1e-11.
@@ -177,10 +177,11 @@ impl Polygonal {
                 rise: edge.sign * (to - from),
                 steepness: edge.sign * (to - from) / (right - left),
             });
-            self.corners.push(left);
-            self.corners.push(right);
         }
-        sort(&mut self.corners);
+        sort(&mut self.pieces, |piece| piece.left);
+        let ends = self.pieces.iter().map(|piece| [piece.left, piece.right]);
+        self.corners.extend(ends.flatten());
+        sort(&mut self.corners, |&corner| corner);
     }
 
     /// The section's height and area from corner to corner, with nothing before and after.
@@ -190,18 +191,29 @@ impl Polygonal {
             return;
         };
         self.stretches.push(Stretch::far(first - 2.0, first, 0.0));
+        // Pieces come from left to right; what those before `open` have climbed, which are all behind, is `climbed`.
+        let (mut open, mut climbed) = (0, 0.0);
         let mut area = 0.0;
         for ends in self.corners.windows(2) {
             let (left, right) = (ends[0], ends[1]);
             if left >= right {
                 continue;
             }
-            let (mut from, mut to, mut flat) = (0.0, 0.0, true);
-            for piece in &self.pieces {
+            while let Some(piece) = self.pieces.get(open)
+                && piece.right <= left
+            {
+                climbed += piece.rise;
+                open += 1;
+            }
+            let (mut from, mut to, mut flat) = (climbed, climbed, true);
+            for piece in &self.pieces[open..] {
+                if piece.left >= right {
+                    break;
+                }
                 if piece.right <= left {
                     from += piece.rise;
                     to += piece.rise;
-                } else if piece.left < right {
+                } else {
                     from += piece.steepness * (left - piece.left);
                     to += piece.steepness * (right - piece.left);
                     flat = false;
@@ -236,6 +248,22 @@ impl Polygonal {
         while near < end {
             let (stop_behind, stop_ahead) = (behind.right, ahead.right - 1.0);
             let next = stop_behind.min(stop_ahead);
+            let excess = right - left - threshold;
+            let safe = u + excess.abs() - 2.0 * DOUBT;
+            if safe > next {
+                spans.turn(u, Level::of(excess));
+                while near < end && self.stretches[near].right <= safe {
+                    near += 1;
+                }
+                while far < end && self.stretches[far].right - 1.0 <= safe {
+                    far += 1;
+                }
+                (behind, ahead) = (&self.stretches[near], &self.stretches[far]);
+                (low, left) = behind.at(safe);
+                (high, right) = ahead.at(safe + 1.0);
+                u = safe;
+                continue;
+            }
             if next > u {
                 let from = (u, right - left - threshold, high - low);
                 (low, left) = behind.at(next);
@@ -263,11 +291,11 @@ impl Polygonal {
 }
 
 /// Insertion sort: the lists are short and nearly in order.
-fn sort(list: &mut [f64]) {
+fn sort<T: Copy>(list: &mut [T], place: impl Fn(&T) -> f64) {
     for end in 1..list.len() {
         let value = list[end];
         let mut at = end;
-        while at > 0 && list[at - 1] > value {
+        while at > 0 && place(&list[at - 1]) > place(&value) {
             list[at] = list[at - 1];
             at -= 1;
         }
