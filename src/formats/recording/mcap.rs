@@ -38,6 +38,12 @@ const LARGEST_CHUNK: u64 = 1 << 30;
 /// No file has more topics or sensors with frames.
 const MOST_CHANNELS: usize = 256;
 
+/// No file names more topics whose messages could have frames.
+const MOST_TOPICS: usize = 4096;
+
+/// No topic has a longer name, nor a topic with a sensor behind it; in bytes.
+const LONGEST_NAME: usize = 1024;
+
 /// Ends the records. What follows is the magic.
 const FOOTER: u8 = 2;
 /// A type of message: its number and name.
@@ -228,6 +234,18 @@ impl ChunkHead {
     }
 }
 
+/// Refuses a name that is too long: packed, thousands of them of many megabytes each take little of a file.
+fn check_name(name: &str) -> Result<(), RecordingError> {
+    if name.len() > LONGEST_NAME {
+        let message = format!(
+            "a name of {} bytes, expected {LONGEST_NAME} at most",
+            name.len()
+        );
+        return Err(RecordingError::damaged(message));
+    }
+    Ok(())
+}
+
 /// A text behind its length, and what follows it.
 fn text(bytes: &[u8]) -> Option<(&str, &[u8])> {
     let (length, rest) = bytes.split_first_chunk::<4>()?;
@@ -340,6 +358,12 @@ impl McapState<'_, '_> {
                 let found = self.schemas.iter().find(|(own, _)| *own == schema);
                 let known = self.topics.iter().any(|(own, ..)| *own == id);
                 if let Some(&(_, kind)) = found.filter(|_| encoding == "cdr" && !known) {
+                    check_name(topic)?;
+                    if self.topics.len() == MOST_TOPICS {
+                        return Err(RecordingError::damaged(format!(
+                            "more than {MOST_TOPICS} topics"
+                        )));
+                    }
                     self.topics.push((id, topic.to_owned(), kind));
                 }
             }
@@ -429,6 +453,7 @@ impl McapState<'_, '_> {
                 return Err(RecordingError::damaged(message));
             }
             None => {
+                check_name(name)?;
                 let info = ChannelInfo {
                     name: Some(name.to_owned()),
                     shape,

@@ -84,3 +84,39 @@ fn the_form_of_a_stream_does_not_depend_on_its_pieces() {
         .concat(),
     );
 }
+
+/// Packed, a name of sixteen megabytes takes a few kilobytes: 65,536 topics took all memory.
+#[cfg(feature = "mcap")]
+#[test]
+fn a_topic_has_a_short_name() {
+    let record = |kind: u8, fields: &[&[u8]]| {
+        let fields = fields.concat();
+        [&[kind][..], &(fields.len() as u64).to_le_bytes(), &fields].concat()
+    };
+    let text = |text: &[u8]| {
+        [
+            &u32::try_from(text.len()).expect("short").to_le_bytes(),
+            text,
+        ]
+        .concat()
+    };
+    let magic = b"\x89MCAP0\r\n";
+    let schema = record(
+        3,
+        &[
+            &[1, 0],
+            &text(b"std_msgs/msg/UInt8MultiArray"),
+            &text(b"ros2msg"),
+            &text(b""),
+        ],
+    );
+    let topic = vec![b'a'; 1025];
+    let channel = record(
+        4,
+        &[&[1, 0], &[1, 0], &text(&topic), &text(b"cdr"), &text(b"")],
+    );
+    let file = [&magic[..], &schema, &channel].concat();
+    let found = crate::frames::recorded(&file, None);
+    let message = found.error.expect("the name is long").to_string();
+    assert_eq!(message, "a name of 1025 bytes, expected 1024 at most");
+}
