@@ -253,8 +253,8 @@ pub enum LibraryEvent {
     Models(Vec<String>),
     /// The names of its shapes that were deleted.
     Trash(Result<Vec<String>, String>),
-    /// Some of its shapes, by their place in the list.
-    Read(Vec<(usize, Result<LoadedShape, String>)>),
+    /// Some of its shapes, by their names in the list.
+    Read(Vec<(String, Result<LoadedShape, String>)>),
     /// The shape that was asked for by its name, and what for.
     Named(Purpose, Result<Box<LoadedShape>, String>),
     /// A shape was stored under this name, and this is what its file holds.

@@ -137,8 +137,10 @@ pub enum WorkerEvent {
     Estimate(Box<PoseGrid>, Duration),
     /// The disk has answered a request.
     Answered,
-    /// What a change of files waits for; None if nothing is waited for.
+    /// What the disk is waited for; None if for nothing.
     Waiting(Option<String>),
+    /// Something that the disk is no longer waited for, in a few words.
+    GivenUp(String),
     /// A sweep is over, at its end or because it was stopped.
     Swept(u64, Arc<Findings>),
     /// A file was written.

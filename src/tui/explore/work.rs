@@ -211,6 +211,7 @@ pub(crate) fn on_worker(app: &mut App, told: WorkerEvent) -> Option<Effect> {
         WorkerEvent::Live(number, event) => live::update::on_worker(app, number, &event),
         WorkerEvent::Refused(reason) => refuse(app, reason),
         WorkerEvent::Waiting(what) => app.waiting = what,
+        WorkerEvent::GivenUp(what) => inform(app, format!("{what}: no longer waited for")),
         // The runtime takes the answer itself.
         WorkerEvent::Answered => {}
     }

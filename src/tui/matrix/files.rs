@@ -105,7 +105,7 @@ pub(in crate::tui) fn on_file(app: &mut App, answer: FileEvent) -> Option<Effect
         FileEvent::Failed(reason) => refuse(app, reason),
         FileEvent::Paths(paths) => {
             if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
-                command.complete(&paths);
+                command.complete_asked(&paths);
             }
         }
     }

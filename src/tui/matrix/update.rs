@@ -356,8 +356,7 @@ fn open_form(app: &mut App, form: FormDialog) {
 /// Opens the list of shapes, empty until the library answers.
 fn open_list(app: &mut App, purpose: Purpose) -> Effect {
     app.mode = Mode::Draw;
-    app.dialogs
-        .push(Dialog::List(ListDialog::new(purpose, Vec::new())));
+    app.dialogs.push(Dialog::List(ListDialog::new(purpose)));
     Effect::Library(LibraryRequest::List)
 }
 

@@ -53,6 +53,8 @@ pub struct CommandDialog {
     pub field: TextField,
     /// What the last word could become, after Tab.
     pub candidates: Vec<String>,
+    /// What was typed when names for the last word were asked for.
+    asked: Option<String>,
     /// Which of the earlier lines it shows, counted from the last one on; none: what is being typed.
     recalled: Option<usize>,
     /// What was typed before an earlier line was asked for.
@@ -71,6 +73,7 @@ impl CommandDialog {
             picked: None,
             field: TextField::new("", LONGEST_COMMAND),
             candidates: Vec::new(),
+            asked: None,
             recalled: None,
             draft: String::new(),
         }
@@ -135,6 +138,18 @@ impl CommandDialog {
         self.candidates = candidates;
         if self.candidates.len() == 1 {
             self.candidates.clear();
+        }
+    }
+
+    /// Notes that names for the last word were asked for.
+    pub fn ask(&mut self) {
+        self.asked = Some(self.field.text().to_owned());
+    }
+
+    /// Completes the last word by the names that were asked for, unless something else was typed meanwhile.
+    pub fn complete_asked(&mut self, names: &[String]) {
+        if self.asked.take().as_deref() == Some(self.field.text()) {
+            self.complete(names);
         }
     }
 

@@ -43,8 +43,9 @@ pub(in crate::tui) fn in_command(
         }
         Message::Field(_) => {
             let wanted = wants_names(dialog.field.text());
-            if wanted.is_none() {
-                dialog.complete(&[]);
+            match wanted {
+                None => dialog.complete(&[]),
+                Some(_) => dialog.ask(),
             }
             let line = dialog.field.text().trim_start();
             let rest = line.split_once(' ').map_or("", |(_, rest)| rest);

@@ -15,14 +15,17 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::Builder;
 use std::time::{Duration, Instant};
 
-use crate::formats::StoredShape;
 use crate::formats::recording::RecordingMetadata;
-use crate::storage::{Expected, Library, LibraryError, RememberedFile};
-use crate::tui::app::message::FileEvent;
+use crate::formats::{Name, StoredShape};
+use crate::storage::{
+    Expected, Library, LibraryError, LoadedShape, Orphan, RememberedFile, UNNAMED,
+};
+use crate::tui::app::message::{FileEvent, LibraryEvent, Purpose};
 use crate::tui::explore::message::WorkerEvent;
 use crate::tui::live::message::LiveEvent;
 use crate::tui::runtime::effect::FileRequest;
 use crate::tui::runtime::files;
+use crate::tui::runtime::models::ModelStore;
 use crate::tui::runtime::progress::WorkerEventSink;
 use crate::tui::runtime::recording::Recording;
 use crate::tui::runtime::write_access::WriteAccess;
@@ -45,10 +48,20 @@ pub(super) enum DiskRequest {
     Remove(String),
     /// Restore the shape of that name that was deleted last.
     Restore(String),
-    /// Move unsaved work of a program that crashed to the trash.
-    ThrowAway(Box<StoredShape>),
-    /// Write a file.
+    /// Move unsaved work of a program that crashed to the trash, and look for more of it.
+    ThrowAway(Box<Orphan>),
+    /// Read or write a file, or list some.
     File(FileRequest),
+    /// List the shapes of the library.
+    List,
+    /// List the deleted ones.
+    Trash,
+    /// List the names of stored models.
+    Models(ModelStore),
+    /// Read the shapes of these names.
+    Read(Vec<String>),
+    /// Read one, and what for.
+    Named(Purpose, String),
     /// Remember lines for the next run.
     Remember(RememberedFile, Vec<String>),
     /// Create a file and record the frames of the source of that number in it.
@@ -60,16 +73,22 @@ pub(super) enum DiskRequest {
 /// What became of a request.
 #[derive(Debug)]
 pub(super) enum DiskAnswer {
-    /// The shape was saved, and this is the stamp of its file.
-    Stored(Box<StoredShape>, Result<u64, LibraryError>),
+    /// The shape was saved, and this is the stamp of its file; or it was not, and this is what is in its way.
+    Stored(
+        Box<StoredShape>,
+        Result<u64, LibraryError>,
+        Option<Box<LoadedShape>>,
+    ),
     /// The shape of that name was deleted.
     Removed(Result<String, LibraryError>),
     /// The shape of that name was restored.
     Restored(Result<String, LibraryError>),
-    /// The work is in the trash under that name.
-    ThrownAway(Result<String, LibraryError>),
-    /// The file was written, or not.
+    /// The work is in the trash under that name; and the next one, and how many there are.
+    ThrownAway(Result<String, LibraryError>, Option<(Box<Orphan>, usize)>),
+    /// What became of a file.
     File(FileEvent),
+    /// What was read in the library.
+    Library(LibraryEvent),
     /// It failed by a fault of this program.
     Panicked {
         /// Whether a shape was to be saved.
@@ -92,7 +111,14 @@ impl DiskRequest {
             Self::Restore(name) => format!("Restoring {name}"),
             Self::ThrowAway(_) => "Moving it to the trash".to_owned(),
             Self::File(FileRequest::Write(name, ..)) => format!("Writing {name}"),
-            Self::File(_) => "Reading a file".to_owned(),
+            Self::File(FileRequest::Open(name)) => format!("Opening {name}"),
+            Self::File(FileRequest::Paths(_)) => "Listing files".to_owned(),
+            Self::List => "Listing the shapes".to_owned(),
+            Self::Trash => "Listing the deleted shapes".to_owned(),
+            Self::Models(_) => "Listing the models".to_owned(),
+            Self::Read(_) => "Reading the shapes".to_owned(),
+            Self::Named(Purpose::Load, name) => format!("Loading {name}"),
+            Self::Named(_, name) => format!("Reading {name}"),
             Self::Remember(..) => "Remembering it".to_owned(),
             Self::BeginRecording(..) => "Beginning a recording".to_owned(),
             Self::EndRecording(_, recording) => format!("Saving {}", recording.path().display()),
@@ -112,12 +138,42 @@ impl DiskRequest {
         match self {
             Self::Store(shape, expected) => {
                 let stored = library.save(&shape, expected);
-                DiskAnswer::Stored(shape, stored)
+                let in_the_way = match &stored {
+                    Err(LibraryError::Exists { .. } | LibraryError::Changed { .. }) => {
+                        library.load(shape.name.as_str()).ok()
+                    }
+                    _ => None,
+                };
+                DiskAnswer::Stored(shape, stored, in_the_way.map(Box::new))
             }
             Self::Remove(name) => DiskAnswer::Removed(library.delete(&name)),
             Self::Restore(name) => DiskAnswer::Restored(library.restore(&name)),
-            Self::ThrowAway(shape) => DiskAnswer::ThrownAway(library.throw_away(&shape)),
+            Self::ThrowAway(orphan) => throw_away(library, *orphan),
             Self::File(request) => DiskAnswer::File(files::perform(request, access)),
+            Self::List => {
+                let listed = library.list();
+                DiskAnswer::Library(LibraryEvent::List(listed.map_err(sentence)))
+            }
+            Self::Trash => {
+                let deleted = library.in_trash();
+                DiskAnswer::Library(LibraryEvent::Trash(deleted.map_err(sentence)))
+            }
+            Self::Models(store) => {
+                let names = store.names().into_iter();
+                let names = names.map(|name| name.to_string()).collect();
+                DiskAnswer::Library(LibraryEvent::Models(names))
+            }
+            Self::Read(names) => {
+                let read = names.into_iter().map(|name| {
+                    let loaded = library.load(&name).map_err(sentence);
+                    (name, loaded)
+                });
+                DiskAnswer::Library(LibraryEvent::Read(read.collect()))
+            }
+            Self::Named(purpose, name) => {
+                let loaded = library.load(&name).map(Box::new);
+                DiskAnswer::Library(LibraryEvent::Named(purpose, loaded.map_err(sentence)))
+            }
             Self::Remember(file, lines) => {
                 file.write(&lines);
                 DiskAnswer::Nothing
@@ -131,6 +187,35 @@ impl DiskRequest {
             }
         }
     }
+}
+
+/// An error of the library in a sentence.
+#[expect(clippy::needless_pass_by_value, reason = "for `map_err`")]
+fn sentence(error: LibraryError) -> String {
+    error.to_string()
+}
+
+/// Moves unsaved work to the trash. Other work is looked for only after this succeeds; otherwise the same work would be
+/// offered again without end.
+fn throw_away(library: &Library, orphan: Orphan) -> DiskAnswer {
+    let mut shape = orphan.shape.clone();
+    if let Ok(name) = Name::new(UNNAMED) {
+        shape = shape.renamed(name);
+    }
+    let thrown = library.throw_away(&shape);
+    let mut next = None;
+    if thrown.is_ok() {
+        orphan.discard();
+        next = newest_orphan(library);
+    }
+    DiskAnswer::ThrownAway(thrown, next)
+}
+
+/// The newest unsaved work, and how much there is. The others are offered after it, or by other programs.
+pub(super) fn newest_orphan(library: &Library) -> Option<(Box<Orphan>, usize)> {
+    let mut all = Orphan::all(library);
+    let count = all.len();
+    all.pop().map(|newest| (Box::new(newest), count))
 }
 
 /// The requests under way.
@@ -264,6 +349,18 @@ impl DiskQueue {
     /// Whether all changes are made.
     pub(super) fn is_idle(&self) -> bool {
         self.pending.is_empty()
+    }
+
+    /// How many requests have no answer.
+    pub(super) fn len(&self) -> usize {
+        self.pending.len()
+    }
+
+    /// Waits for none of them any more: the thread ends when the disk lets it. Returns what the first one does.
+    pub(super) fn abandon(&mut self) -> Option<String> {
+        self.thread = None;
+        let first = self.pending.drain(..).next()?;
+        Some(first.words)
     }
 
     /// When to look again at what is waited for; None if nothing is.

@@ -17,9 +17,9 @@ use crate::tui::recognise::sets::{ModelChoice, TrainedModel};
 /// An effect.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Effect {
-    /// A request to the library; its answer is the next message.
+    /// A request to the library; its answer is a message, perhaps much later: a disk may hang.
     Library(LibraryRequest),
-    /// A request about files; its answer is the next message.
+    /// A request about files; the same.
     File(FileRequest),
     /// Work for a worker.
     Work(Work),
@@ -97,8 +97,8 @@ pub enum LibraryRequest {
     Models,
     /// List the names of deleted shapes.
     Trash,
-    /// Read shapes, given by index in the list and name.
-    Read(Vec<(usize, String)>),
+    /// Read the shapes of these names.
+    Read(Vec<String>),
     /// Read one shape by name, and what for.
     Named(Purpose, String),
     /// Save a shape, given what its file is expected to hold.

@@ -12,6 +12,7 @@
 //! recording        the file that frames are recorded in
 //! naming           the shapes that left the imprints of frames
 //! disk             work with the disk, which may answer late
+//! reading          what is read from it, for the page that asked
 //! journal_writer   unsaved work, written beside the program
 //! write_access     where files may be written
 //! memory           a bound on the memory of sweeps and trainings
@@ -45,6 +46,8 @@ mod write_access;
 
 mod disk;
 
+mod reading;
+
 mod shape_log;
 
 mod reminders;
@@ -59,9 +62,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::tui::runtime::disk::{DiskAnswer, DiskQueue, DiskRequest};
+use crate::tui::runtime::disk::{DiskAnswer, DiskQueue, DiskRequest, newest_orphan};
 use crate::tui::runtime::journal_writer::JournalWriter;
 use crate::tui::runtime::models::ModelStore;
+use crate::tui::runtime::reading::Reader;
 use crate::tui::runtime::recording::Recording;
 use crate::tui::runtime::reminders::Reminders;
 use crate::tui::runtime::shape_log::ShapeLog;
@@ -69,16 +73,16 @@ pub use crate::tui::runtime::shape_log::ShapeSink;
 use crate::tui::runtime::workers::Workers;
 use crate::tui::runtime::write_access::WriteAccess;
 
+use crate::formats::StoredShape;
 use crate::formats::value::counted;
-use crate::formats::{Name, StoredShape};
 use crate::storage::{
-    Expected, Journal, Library, LibraryError, LoadedShape, ModelCache, Orphan, ScratchFolder,
-    UNNAMED,
+    Expected, Journal, Library, LibraryError, ModelCache, Orphan, ScratchFolder, UNNAMED,
 };
 use crate::tui::app::message::{Leftover, LibraryEvent, Message};
 use crate::tui::app::state::App;
 use crate::tui::app::update::update;
 use crate::tui::explore::message::WorkerEvent;
+use crate::tui::keys::key::Key;
 use crate::tui::live::message::LiveEvent;
 use crate::tui::runtime::effect::{Effect, FileRequest, LibraryRequest, TerminalEffect, Work};
 
@@ -91,7 +95,7 @@ pub struct World {
     /// The folder of stored shapes.
     library: Library,
     /// The unsaved work that is offered, and how many there are in all.
-    orphan: Option<(Orphan, usize)>,
+    orphan: Option<(Box<Orphan>, usize)>,
     /// Where unsaved work is kept.
     journal: JournalWriter,
     /// What is remembered between runs, None for nothing.
@@ -100,6 +104,8 @@ pub struct World {
     log: ShapeLog,
     /// Changes of the library and of files in progress.
     saves: DiskQueue,
+    /// What is being read.
+    reader: Reader,
     /// What is worth remembering, but not worth waiting for.
     memories: DiskQueue,
     /// Messages that come after the present one.
@@ -119,6 +125,7 @@ impl World {
             reminders: Some(Reminders::of(&library)),
             log: ShapeLog::default(),
             saves: DiskQueue::new(library.clone()),
+            reader: Reader::new(DiskQueue::new(library.clone())),
             memories: DiskQueue::new(library.clone()),
             later: VecDeque::new(),
             library,
@@ -127,7 +134,7 @@ impl World {
             workers,
             _scratch: None,
         };
-        world.orphan = world.newest_orphan();
+        world.orphan = newest_orphan(&world.library);
         world
     }
 
@@ -136,6 +143,7 @@ impl World {
         let workers = Workers::with(ModelStore::beside(&library));
         Self {
             saves: DiskQueue::new(library.clone()),
+            reader: Reader::new(DiskQueue::new(library.clone())),
             memories: DiskQueue::new(library.clone()),
             later: VecDeque::new(),
             library,
@@ -146,13 +154,6 @@ impl World {
             workers,
             _scratch: None,
         }
-    }
-
-    /// The newest unsaved work, and how many there are. The others are offered after it, or by other programs.
-    fn newest_orphan(&self) -> Option<(Orphan, usize)> {
-        let mut all = Orphan::all(&self.library);
-        let count = all.len();
-        all.pop().map(|newest| (newest, count))
     }
 
     /// A world with an empty library in a temporary folder, which is removed with it.
@@ -195,6 +196,7 @@ impl World {
     pub fn with_workers(mut self, post: WorkerEventSink) -> Self {
         self.journal.report_to(Arc::clone(&post));
         self.saves.post_to(Arc::clone(&post));
+        self.reader.queue.post_to(Arc::clone(&post));
         self.memories.post_to(Arc::clone(&post));
         self.workers.post_to(post);
         self
@@ -261,24 +263,22 @@ impl World {
     pub fn handle(&mut self, app: &mut App, message: Message) -> Option<TerminalEffect> {
         let mut terminal = None;
         if message == Message::Worker(WorkerEvent::Answered) {
-            self.collect_answers();
+            self.collect_changes();
         } else {
-            self.later.push_back(message);
+            self.take_in(app, message);
         }
-        while let Some(mut next) = self.later.pop_front() {
+        while let Some(mut next) = self.next_message(app) {
             loop {
                 let answer = match update(app, next) {
                     Some(Effect::Terminal(effect)) => {
                         terminal = Some(effect);
                         None
                     }
-                    Some(Effect::Library(request)) => self.perform(request),
+                    Some(Effect::Library(request)) => self.perform(app, request),
                     Some(Effect::File(request @ FileRequest::Write(..))) => {
                         self.change(DiskRequest::File(request))
                     }
-                    Some(Effect::File(request)) => {
-                        Some(Message::File(files::perform(request, &self.workers.access)))
-                    }
+                    Some(Effect::File(request)) => self.read(app, DiskRequest::File(request)),
                     Some(Effect::Work(work)) => self.work(work),
                     None => None,
                 };
@@ -295,14 +295,37 @@ impl World {
         terminal
     }
 
-    /// Takes the answers of the disk that are there. They may have been taken already.
-    fn collect_answers(&mut self) {
+    /// Takes what became of changes. It may have been taken already.
+    fn collect_changes(&mut self) {
         // Memories have no answer.
         while self.memories.wait(Duration::ZERO).is_some() {}
         while let Some(answer) = self.saves.wait(Duration::ZERO) {
             let message = self.answer(answer);
             self.later.extend(message);
         }
+    }
+
+    /// The next message; where there is none, what was read for the page that is on top.
+    fn next_message(&mut self, app: &App) -> Option<Message> {
+        let mut next = self.later.pop_front();
+        while next.is_none() {
+            let answer = self.reader.take(app.dialogs.len())?;
+            next = self.answer(answer);
+        }
+        next
+    }
+
+    /// Takes a message. Esc on the page that reads from the disk waits for it no longer.
+    fn take_in(&mut self, app: &App, message: Message) {
+        let esc = Message::Unknown(Key::Esc);
+        let leaves = matches!(message, Message::Cancel | Message::Quit) || message == esc;
+        let pages = app.dialogs.len();
+        let given_up = leaves.then(|| self.reader.give_up(pages)).flatten();
+        // On the matrix it means nothing else.
+        let is_done = given_up.is_some() && message == esc;
+        self.later.extend((!is_done).then_some(message));
+        let given_up = given_up.map(WorkerEvent::GivenUp);
+        self.later.extend(given_up.map(Message::Worker));
     }
 
     /// Begins a piece of work. Returns its event if it is known already.
@@ -346,14 +369,15 @@ impl World {
         events.map(Message::Worker).collect()
     }
 
-    /// When it is to be looked at what changes wait for; None if there are none.
+    /// When it is to be looked at what the disk is waited for; None if for nothing.
     pub(in crate::tui) fn changes_due(&self) -> Option<Instant> {
-        self.saves.look_at()
+        let changes = self.saves.look_at().into_iter();
+        changes.chain(self.reader.look_at()).min()
     }
 
-    /// What the first change waits for, if it takes long.
+    /// What is waited for, if it takes long: a change, else something to read.
     pub(in crate::tui) fn waiting(&self) -> Option<String> {
-        self.saves.status()
+        self.saves.status().or_else(|| self.reader.status())
     }
 
     /// Finishes changes and recordings and writes unsaved work at once, because the program is about to end; but waits for
@@ -418,25 +442,36 @@ impl World {
         self.answer(answer)
     }
 
-    /// The message that tells the program what became of a change.
+    /// Has something read. Returns the answer if there is one within a moment.
+    fn read(&mut self, app: &App, request: DiskRequest) -> Option<Message> {
+        let answer = self.reader.ask(request, app.dialogs.len())?;
+        self.answer(answer)
+    }
+
+    /// The message that tells the program what became of a request.
     fn answer(&mut self, changed: DiskAnswer) -> Option<Message> {
         let answer = match changed {
-            DiskAnswer::Stored(shape, Ok(stamp)) => {
+            DiskAnswer::Stored(shape, Ok(stamp), _) => {
                 self.log.stored(shape.name.as_str(), stamp);
                 LibraryEvent::Stored(shape.name.to_string(), stamp)
             }
-            DiskAnswer::Stored(shape, Err(error)) => match error {
+            DiskAnswer::Stored(shape, Err(error), in_the_way) => match error {
                 LibraryError::Exists { stamp, .. } | LibraryError::Changed { stamp, .. } => {
-                    // A record needs what is in the way.
-                    let _ = self.load(shape.name.as_str());
+                    if let Some(loaded) = in_the_way {
+                        self.log.shape(&loaded);
+                    }
                     LibraryEvent::Differs(shape, stamp, error.to_string())
                 }
                 _ => LibraryEvent::NotStored(error.to_string()),
             },
             DiskAnswer::Removed(removed) => done(removed, LibraryEvent::Removed),
             DiskAnswer::Restored(restored) => done(restored, LibraryEvent::Restored),
-            DiskAnswer::ThrownAway(thrown) => self.given_up(thrown),
+            DiskAnswer::ThrownAway(thrown, next) => self.given_up(thrown, next),
             DiskAnswer::File(event) => return Some(Message::File(event)),
+            DiskAnswer::Library(event) => {
+                self.log.event(&event);
+                event
+            }
             DiskAnswer::Panicked { was_save } => {
                 let text = "the work failed; this is a bug".to_owned();
                 if was_save {
@@ -471,29 +506,17 @@ impl World {
         }
     }
 
-    /// Performs a request to the library; the answer is a message. A change may have no answer yet.
-    fn perform(&mut self, request: LibraryRequest) -> Option<Message> {
+    /// Performs a request to the library; the answer is a message. There may be none yet.
+    fn perform(&mut self, app: &App, request: LibraryRequest) -> Option<Message> {
         let answer = match request {
-            LibraryRequest::List => {
-                let listed = self.library.list();
-                if let Ok(entries) = &listed {
-                    self.log.list(entries);
-                }
-                LibraryEvent::List(listed.map_err(|error| error.to_string()))
+            LibraryRequest::List => return self.read(app, DiskRequest::List),
+            LibraryRequest::Models => {
+                return self.read(app, DiskRequest::Models(self.workers.model_store()));
             }
-            LibraryRequest::Models => LibraryEvent::Models(self.workers.model_names()),
-            LibraryRequest::Trash => {
-                LibraryEvent::Trash(self.library.in_trash().map_err(|error| error.to_string()))
-            }
-            LibraryRequest::Read(names) => {
-                let read = names
-                    .iter()
-                    .map(|(index, name)| (*index, self.load(name)))
-                    .collect();
-                LibraryEvent::Read(read)
-            }
+            LibraryRequest::Trash => return self.read(app, DiskRequest::Trash),
+            LibraryRequest::Read(names) => return self.read(app, DiskRequest::Read(names)),
             LibraryRequest::Named(purpose, name) => {
-                LibraryEvent::Named(purpose, self.load(&name).map(Box::new))
+                return self.read(app, DiskRequest::Named(purpose, name));
             }
             LibraryRequest::Store(shape, expected) => {
                 return self.change(DiskRequest::Store(shape, expected));
@@ -504,46 +527,28 @@ impl World {
                 Some((orphan, _)) => {
                     let shape = orphan.shape.clone();
                     // Into this program's journal before it is taken out of the other one.
-                    self.journal.adopt(orphan);
+                    self.journal.adopt(*orphan);
                     LibraryEvent::Recovered(Box::new(shape))
                 }
                 None => LibraryEvent::Failed("no unsaved work is left".to_owned()),
             },
-            LibraryRequest::GiveUp => match &self.orphan {
-                Some((orphan, _)) => {
-                    let mut shape = orphan.shape.clone();
-                    if let Ok(name) = Name::new(UNNAMED) {
-                        shape = shape.renamed(name);
-                    }
-                    return self.change(DiskRequest::ThrowAway(Box::new(shape)));
-                }
+            LibraryRequest::GiveUp => match self.orphan.take() {
+                Some((orphan, _)) => return self.change(DiskRequest::ThrowAway(orphan)),
                 None => LibraryEvent::Failed("no unsaved work is left".to_owned()),
             },
         };
         Some(Message::Library(answer))
     }
 
-    /// Loads a shape by name, and logs it.
-    fn load(&mut self, name: &str) -> Result<LoadedShape, String> {
-        let loaded = self.library.load(name);
-        if let Ok(loaded) = &loaded {
-            self.log.shape(loaded);
-        }
-        loaded.map_err(|error| error.to_string())
-    }
-
-    /// Unwanted work is in the trash, like a deleted shape, or not. Other work is offered only after this succeeds;
-    /// otherwise the same work would be offered again without end.
-    fn given_up(&mut self, thrown: Result<String, LibraryError>) -> LibraryEvent {
-        let orphan = self.orphan.take();
+    /// Unwanted work is in the trash, like a deleted shape, or not. Other work is offered then.
+    fn given_up(
+        &mut self,
+        thrown: Result<String, LibraryError>,
+        next: Option<(Box<Orphan>, usize)>,
+    ) -> LibraryEvent {
+        self.orphan = next;
         match thrown {
-            Ok(name) => {
-                if let Some((orphan, _)) = orphan {
-                    orphan.discard();
-                }
-                self.orphan = self.newest_orphan();
-                LibraryEvent::GivenUp(name, self.left())
-            }
+            Ok(name) => LibraryEvent::GivenUp(name, self.left()),
             Err(error) => LibraryEvent::NotGivenUp(error.to_string()),
         }
     }

@@ -160,15 +160,11 @@ impl ModelWorker {
     pub(super) fn stop(&self) {
         self.stop.store(true, Ordering::Relaxed);
     }
-}
 
-impl Drop for ModelWorker {
-    fn drop(&mut self) {
+    /// Stops for good. Returns the thread, which ends by itself.
+    pub(super) fn end(&mut self) -> Option<JoinHandle<()>> {
         self.stop();
-        if let Some(thread) = self.thread.take() {
-            // It catches its own panics. A model that is being written to the cache is written first.
-            let _ = thread.join();
-        }
+        self.thread.take()
     }
 }
 

@@ -46,7 +46,7 @@ pub(super) struct ShapeNamer {
     imprints: Option<Sender<Imprint>>,
     /// Set to break off a training.
     stop: Arc<AtomicBool>,
-    /// Joined at the end of the program, so that a model is written as a whole.
+    /// Waited for at the end of the program, so that a model is written as a whole.
     thread: Option<JoinHandle<()>>,
 }
 
@@ -115,23 +115,19 @@ impl ShapeNamer {
         Some(WorkerEvent::Live(self.number, event))
     }
 
+    /// Names nothing any more. Returns the thread, which ends by itself.
+    pub(super) fn leave(&mut self) -> Option<JoinHandle<()>> {
+        let thread = self.thread.take();
+        self.end();
+        thread
+    }
+
     /// Names nothing any more. The thread ends by itself: an answer under way is not waited for.
     pub(super) fn end(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
         self.imprints = None;
         self.here = None;
         self.thread = None;
-    }
-}
-
-impl Drop for ShapeNamer {
-    fn drop(&mut self) {
-        self.stop.store(true, Ordering::Relaxed);
-        self.imprints = None;
-        if let Some(thread) = self.thread.take() {
-            // It catches its own panics. A model that is being written to the cache is written first.
-            let _ = thread.join();
-        }
     }
 }
 

@@ -10,6 +10,7 @@ use crate::formats::{Name, StoredShape};
 use crate::imprint::Imprint;
 use crate::sensor::Sensor;
 use crate::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
+use crate::tui::app::message::LibraryEvent;
 
 /// Takes each shape that is logged. One of the same name replaces the one before.
 pub type ShapeSink = Box<dyn FnMut(StoredShape)>;
@@ -39,8 +40,21 @@ impl ShapeLog {
         }
     }
 
+    /// Logs the shapes that were read in the library.
+    pub(super) fn event(&mut self, event: &LibraryEvent) {
+        match event {
+            LibraryEvent::List(Ok(entries)) => self.list(entries),
+            LibraryEvent::Read(read) => {
+                let loaded = read.iter().filter_map(|(_, loaded)| loaded.as_ref().ok());
+                loaded.for_each(|loaded| self.shape(loaded));
+            }
+            LibraryEvent::Named(_, Ok(loaded)) => self.shape(loaded),
+            _ => {}
+        }
+    }
+
     /// Logs the names of a list. Those that come with the program are there anyway.
-    pub(super) fn list(&mut self, entries: &[LibraryEntry]) {
+    fn list(&mut self, entries: &[LibraryEntry]) {
         let Some(sink) = &mut self.sink else { return };
         let own = entries.iter();
         for entry in own.filter(|entry| entry.origin == ShapeOrigin::Own) {

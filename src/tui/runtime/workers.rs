@@ -32,7 +32,7 @@ use crate::tui::runtime::progress::{
 use crate::tui::runtime::sizes::SizeWorker;
 use crate::tui::runtime::write_access::WriteAccess;
 
-/// How long the end of the program waits for a file that is being written.
+/// How long the end of the program waits for files that are being written.
 const PATIENCE: Duration = Duration::from_millis(400);
 
 /// The pause between two looks at it.
@@ -90,10 +90,9 @@ impl Workers {
         self.models.store.keep_in(cache);
     }
 
-    /// The names of stored models.
-    pub(super) fn model_names(&self) -> Vec<String> {
-        let names = self.models.store.names().into_iter();
-        names.map(|name| name.to_string()).collect()
+    /// Where models are.
+    pub(super) fn model_store(&self) -> ModelStore {
+        self.models.store.clone()
     }
 
     /// Begins a piece of work. Without threads, does it and returns its last event.
@@ -238,9 +237,10 @@ impl Workers {
 impl Drop for Workers {
     fn drop(&mut self) {
         self.begin();
-        if let Some(thread) = self.writing.take() {
-            // It removes what it has half-written; but a disk may hang.
-            let end = Instant::now() + PATIENCE;
+        // Files are removed where they are half-written, models are written to the cache as a whole; but a disk may hang.
+        let threads = [self.writing.take(), self.models.end(), self.namer.leave()];
+        let end = Instant::now() + PATIENCE;
+        for thread in threads.into_iter().flatten() {
             while !thread.is_finished() && Instant::now() < end {
                 std::thread::sleep(PAUSE);
             }

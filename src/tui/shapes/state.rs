@@ -3,7 +3,7 @@
 //! Matches come in this order: the name itself, names that begin with the filter, names that contain it; each in the
 //! order of the library. Shapes are read as they come into sight, so a large library opens at once.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::formats::name::{LONGEST, folded};
 use crate::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
@@ -26,26 +26,58 @@ pub struct ListDialog {
     matching: Vec<usize>,
     /// The index of the selected row among them.
     selected: usize,
-    /// The content of shapes that were read, by index in `entries`.
-    read: HashMap<usize, Result<LoadedShape, String>>,
+    /// The content of shapes that were read, by name.
+    read: HashMap<String, Result<LoadedShape, String>>,
+    /// The names of those that were asked for.
+    asked: HashSet<String>,
+    /// Whether the shapes of the list are known.
+    listed: bool,
+    /// Whether the selected shape is taken as soon as it has been read.
+    accepted: bool,
 }
 
 impl ListDialog {
-    /// The list of a library. Only the user's own shapes can be removed.
-    pub fn new(purpose: Purpose, mut entries: Vec<LibraryEntry>) -> Self {
-        if purpose == Purpose::Delete {
-            entries.retain(|entry| entry.origin == ShapeOrigin::Own);
-        }
-        let mut list = Self {
+    /// A list that waits for the library.
+    pub fn new(purpose: Purpose) -> Self {
+        Self {
             purpose,
-            entries,
+            entries: Vec::new(),
             filter: TextField::new("", LONGEST),
             matching: Vec::new(),
             selected: 0,
             read: HashMap::new(),
-        };
-        list.sift();
-        list
+            asked: HashSet::new(),
+            listed: false,
+            accepted: false,
+        }
+    }
+
+    /// Takes the shapes of the library, once; what was typed meanwhile filters them. Only the user's own can be removed.
+    pub fn fill(&mut self, mut entries: Vec<LibraryEntry>) {
+        if self.listed {
+            return;
+        }
+        if self.purpose == Purpose::Delete {
+            entries.retain(|entry| entry.origin == ShapeOrigin::Own);
+        }
+        self.entries = entries;
+        self.listed = true;
+        self.sift();
+    }
+
+    /// Whether the shapes of the list are known.
+    pub fn is_listed(&self) -> bool {
+        self.listed
+    }
+
+    /// Notes whether the selected shape is to be taken as soon as it has been read.
+    pub fn accept(&mut self, accepted: bool) {
+        self.accepted = accepted;
+    }
+
+    /// Whether that was asked for and can be done now.
+    pub fn is_accepted(&self) -> bool {
+        self.accepted && self.choice().is_some_and(|(_, read)| read.is_some())
     }
 
     /// What a shape is chosen for.
@@ -69,7 +101,8 @@ impl ListDialog {
     ) -> impl ExactSizeIterator<Item = (&LibraryEntry, Option<&Result<LoadedShape, String>>)> {
         self.matching
             .iter()
-            .map(|index| (&self.entries[*index], self.read.get(index)))
+            .map(|index| &self.entries[*index])
+            .map(|entry| (entry, self.read.get(&entry.name)))
     }
 
     /// Which of these rows is selected.
@@ -122,17 +155,21 @@ impl ListDialog {
         self.selected = 0;
     }
 
-    /// The shapes in sight that were not read yet, by their place in the list.
-    pub fn unread(&self) -> Vec<(usize, String)> {
+    /// The shapes in sight that were not asked for yet, by name; they are taken to be asked for now.
+    pub fn ask(&mut self) -> Vec<String> {
         let first = self.selected.saturating_sub(AHEAD);
         let near = self.matching.iter().skip(first).take(2 * AHEAD);
-        near.filter(|index| !self.read.contains_key(index))
-            .map(|&index| (index, self.entries[index].name.clone()))
-            .collect()
+        let near = near.map(|&index| &self.entries[index].name);
+        let unread: Vec<String> = near
+            .filter(|name| !self.asked.contains(*name))
+            .cloned()
+            .collect();
+        self.asked.extend(unread.iter().cloned());
+        unread
     }
 
-    /// Takes the content of shapes, by their place in the list.
-    pub fn take(&mut self, read: Vec<(usize, Result<LoadedShape, String>)>) {
+    /// Takes the content of shapes, by name.
+    pub fn take(&mut self, read: Vec<(String, Result<LoadedShape, String>)>) {
         self.read.extend(read);
     }
 }

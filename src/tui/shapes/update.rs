@@ -26,6 +26,7 @@ pub(in crate::tui) fn update(
     mut list: ListDialog,
     message: Message,
 ) -> Option<Effect> {
+    list.accept(false);
     match message {
         Message::Accept => return choose(app, list),
         Message::Scroll(lines) => list.go(lines),
@@ -49,18 +50,19 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
         LibraryEvent::Models(names) => {
             if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
                 let sets = ModelChoice::BUILT_IN.map(|set| set.name().to_owned());
-                command.complete(&[&sets[..], &names].concat());
+                command.complete_asked(&[&sets[..], &names].concat());
             }
         }
         LibraryEvent::Trash(Ok(names)) => {
             if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
-                command.complete(&names);
+                command.complete_asked(&names);
             }
         }
         LibraryEvent::Read(read) => {
             if let Some(Dialog::List(list)) = app.dialogs.last_mut() {
                 list.take(read);
             }
+            return choose_accepted(app);
         }
         LibraryEvent::Named(Purpose::Picture, Ok(loaded)) => {
             let name = loaded.shape.name.to_string();
@@ -87,8 +89,8 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
 fn on_list(app: &mut App, mut entries: Vec<LibraryEntry>) -> Option<Effect> {
     match app.dialogs.last_mut() {
         Some(Dialog::List(list)) => {
-            *list = ListDialog::new(list.purpose(), entries);
-            look(app)
+            list.fill(entries);
+            choose_accepted(app).or_else(|| look(app))
         }
         Some(Dialog::Command(command)) => {
             match wants_names(command.field.text()) {
@@ -96,7 +98,7 @@ fn on_list(app: &mut App, mut entries: Vec<LibraryEntry>) -> Option<Effect> {
                 _ => entries.retain(|entry| entry.origin == ShapeOrigin::Own),
             }
             let names: Vec<String> = entries.into_iter().map(|entry| entry.name).collect();
-            command.complete(&names);
+            command.complete_asked(&names);
             None
         }
         _ => None,
@@ -201,24 +203,39 @@ fn offer(app: &mut App, before: &str, left: &Leftover) {
 
 /// Reads the shapes of the list that have come into sight.
 /// A library may be large, and only rows in sight need their size and preview.
-fn look(app: &App) -> Option<Effect> {
-    let Some(Dialog::List(list)) = app.dialogs.last() else {
+fn look(app: &mut App) -> Option<Effect> {
+    let Some(Dialog::List(list)) = app.dialogs.last_mut() else {
         return None;
     };
-    let unread = list.unread();
+    let unread = list.ask();
     (!unread.is_empty()).then_some(Effect::Library(LibraryRequest::Read(unread)))
+}
+
+/// The selected shape is taken, if that was asked for before the list or the shape had been read.
+fn choose_accepted(app: &mut App) -> Option<Effect> {
+    let accepted = |dialog: &mut Dialog| matches!(dialog, Dialog::List(list) if list.is_accepted());
+    match app.dialogs.pop_if(accepted) {
+        Some(Dialog::List(mut list)) => {
+            list.accept(false);
+            choose(app, list)
+        }
+        _ => None,
+    }
 }
 
 /// The selected shape of a list is taken, for what the list is for.
 /// A shape that cannot be read, or that does not fit, leaves the list open for another choice. Only to delete needs no
 /// reading: a broken file can be removed, too.
-fn choose(app: &mut App, list: ListDialog) -> Option<Effect> {
+fn choose(app: &mut App, mut list: ListDialog) -> Option<Effect> {
     let purpose = list.purpose();
     let chosen = list
         .choice()
         .map(|(entry, read)| (entry.name.clone(), read.cloned()));
     match (chosen, purpose) {
-        (None, _) => app.dialogs.push(Dialog::List(list)),
+        (None, _) => {
+            list.accept(!list.is_listed());
+            app.dialogs.push(Dialog::List(list));
+        }
         (Some((name, _)), Purpose::Delete) => {
             let question = Question::new(format!("Delete {name}?"), Message::Remove(name));
             app.dialogs.push(Dialog::Question(question));
@@ -232,13 +249,16 @@ fn choose(app: &mut App, list: ListDialog) -> Option<Effect> {
         (Some((name, Some(Ok(loaded)))), Purpose::Picture) => {
             open_picture(app, &loaded.shape.imprint, name);
         }
-        (Some((name, read)), _) => {
+        (Some((_, None)), _) => {
+            list.accept(true);
             app.dialogs.push(Dialog::List(list));
-            let reason = read
-                .and_then(Result::err)
-                .unwrap_or_else(|| "it was not read".to_owned());
+        }
+        (Some((name, Some(Err(reason)))), _) => {
+            app.dialogs.push(Dialog::List(list));
             refuse(app, format!("{name}: {reason}"));
         }
+        // No list is for anything else.
+        (Some((_, Some(Ok(_)))), Purpose::Compare) => app.dialogs.push(Dialog::List(list)),
     }
     None
 }

@@ -91,6 +91,7 @@ fn draw(
     draw_count(theme, dialog, buffer, write::right_of(area, end));
     if dialog.rows().len() == 0 {
         let text = match (dialog.total(), dialog.purpose()) {
+            _ if !dialog.is_listed() => "the library is being read".to_owned(),
             (0, Purpose::Delete) => "there are no shapes of your own".to_owned(),
             (0, _) => "the library is empty".to_owned(),
             _ => {

@@ -41,13 +41,15 @@ const PICTURE: Duration = Duration::from_millis(34);
 
 /// Runs the program until it ends, and leaves the terminal as it was. A first message may be sent to it.
 pub(in crate::tui) fn run(
-    app: App,
+    mut app: App,
     first: Option<Message>,
-    world: World,
+    mut world: World,
     settings: &TerminalSettings,
     mailbox: Mailbox,
     watch: &mut dyn FnMut(&Input),
 ) -> io::Result<Outcome> {
+    // Before signals are taken: where the disk hangs here, they still end the program.
+    world.remind(&mut app);
     let device = Device::open()?;
     let signals = SignalReceiver::new()?;
     leave_on_panic();
@@ -184,7 +186,6 @@ impl<'a> EventLoop<'a> {
     fn run(&mut self) -> io::Result<Outcome> {
         session::enter(&self.device, &self.settings, self.mouse)?;
         self.tell_size();
-        self.world.remind(&mut self.app);
         if let Some(greeting) = self.world.greeting() {
             self.update(greeting)?;
         }

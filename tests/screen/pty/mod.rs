@@ -24,6 +24,8 @@ mod saves;
 
 mod hanging;
 
+mod reading;
+
 mod hostile;
 
 mod live;

@@ -1,0 +1,73 @@
+//! What the screen reads from the disk. An answer that comes late goes to the page that asked for it.
+//!
+//! ```text
+//! ask -> answer within a moment: the next message
+//!        later: as soon as no other page stands above the one that asked
+//!        Esc there: no longer waited for; the thread that hangs is left to itself
+//! ```
+
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
+
+use crate::tui::runtime::disk::{DiskAnswer, DiskQueue, DiskRequest};
+
+/// Requests to read, and their answers.
+#[derive(Debug)]
+pub(super) struct Reader {
+    /// The requests.
+    pub(super) queue: DiskQueue,
+    /// How many pages were open when each of them was made.
+    asked: VecDeque<usize>,
+    /// Answers that wait for their page, with the same number.
+    answers: VecDeque<(usize, DiskAnswer)>,
+}
+
+impl Reader {
+    /// One that makes its requests of a queue of its own, so that a save that hangs holds up no reading.
+    pub(super) fn new(queue: DiskQueue) -> Self {
+        Self {
+            queue,
+            asked: VecDeque::new(),
+            answers: VecDeque::new(),
+        }
+    }
+
+    /// Makes a request while so many pages are open. Returns the answer if there is one within a moment.
+    pub(super) fn ask(&mut self, request: DiskRequest, pages: usize) -> Option<DiskAnswer> {
+        let before = self.queue.len();
+        let answer = self.queue.make(request);
+        if self.queue.len() > before {
+            self.asked.push_back(pages);
+        }
+        answer
+    }
+
+    /// Takes the next answer whose page is on top now that so many are open.
+    pub(super) fn take(&mut self, pages: usize) -> Option<DiskAnswer> {
+        while let Some(answer) = self.queue.wait(Duration::ZERO) {
+            let asked = self.asked.pop_front();
+            self.answers.extend(asked.map(|asked| (asked, answer)));
+        }
+        let mut waiting = self.answers.iter();
+        let next = waiting.position(|(asked, _)| *asked >= pages)?;
+        self.answers.remove(next).map(|(_, answer)| answer)
+    }
+
+    /// Waits no longer, if the page that asked first is on top now that so many are open. Returns what was waited for.
+    pub(super) fn give_up(&mut self, pages: usize) -> Option<String> {
+        self.asked.front().filter(|asked| **asked >= pages)?;
+        self.asked.clear();
+        self.queue.abandon()
+    }
+
+    /// What is waited for, if it takes long.
+    pub(super) fn status(&self) -> Option<String> {
+        let status = self.queue.status()?;
+        Some(status + "; Esc gives up")
+    }
+
+    /// When to look at that again; None if nothing is waited for.
+    pub(super) fn look_at(&self) -> Option<Instant> {
+        self.queue.look_at()
+    }
+}

@@ -1,0 +1,230 @@
+//! Reading from a disk that hangs: keys go on, the status line says what is waited for, the answer comes to the page that
+//! asked, Esc gives up, and the end does not wait.
+
+use std::fs;
+use std::path::Path;
+
+use rustix::process::Signal;
+use taxel::formats::{Name, StoredShape};
+use taxel::imprint::Imprint;
+use taxel::sensor::Sensor;
+use taxel::storage::{Expected, Library};
+
+use super::hanging::Hanging;
+use super::program::{Program, Start};
+
+/// Opening a file or a folder.
+const OPENING: &str = "?openat";
+
+/// A library with one shape of seven taxels, `stripe`.
+fn library() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut imprint = Imprint::empty(16, 16);
+    for column in 0..7 {
+        imprint.set(column, 3, true);
+    }
+    let name = Name::new("stripe").expect("a name");
+    let sensor = Sensor::new(16, 16).expect("a sensor");
+    let shape = StoredShape::new(name, sensor, imprint, None).expect("of one size");
+    let library = Library::open(folder.path().to_owned());
+    library.save(&shape, Expected::Nothing).expect("saved");
+    folder
+}
+
+/// The program over a library.
+fn started(library: &Path) -> Program {
+    Program::started(&Start {
+        library: Some(library),
+        ..Start::default()
+    })
+}
+
+#[test]
+fn what_is_typed_while_the_list_is_read_is_not_lost() {
+    let folder = library();
+    let mut program = started(folder.path());
+    let Some(hanging) = Hanging::new(&mut program, OPENING, &[folder.path()]) else {
+        return;
+    };
+    program.types(b"l");
+    program.shows("the library is being read");
+    program.shows("Listing the shapes: waiting for the disk; Esc gives up");
+    program.resize((100, 30));
+    program.types(b"strip");
+    program.shows("filter: strip");
+    program.types(b"\r");
+    hanging.answers();
+    program.shows("stripe loaded");
+    program.shows("NA 7 in all");
+    program.types(b"q");
+    program.ends_well(0);
+}
+
+#[test]
+fn the_shapes_of_a_list_come_later_than_their_names() {
+    let folder = library();
+    let mut program = started(folder.path());
+    let file = folder.path().join("stripe.json");
+    let Some(hanging) = Hanging::new(&mut program, OPENING, &[&file]) else {
+        return;
+    };
+    program.types(b"l");
+    program.shows("stripe");
+    program.shows("Reading the shapes: waiting for the disk");
+    program.types(b"\x1b[B");
+    hanging.answers();
+    // Its preview.
+    program.types(b"\x1b[A");
+    program.shows("NA 7, pieces 1");
+    program.types(b"\x1b");
+    program.shows("? Help");
+    program.types(b"q");
+    program.ends_well(0);
+}
+
+#[test]
+fn esc_gives_up_waiting() {
+    let folder = library();
+    let mut program = started(folder.path());
+    let Some(hanging) = Hanging::new(&mut program, OPENING, &[folder.path()]) else {
+        return;
+    };
+    for _ in 0..2 {
+        program.types(b"l");
+        program.shows("Listing the shapes: waiting for the disk");
+        program.types(b"\x1b");
+        program.shows("Listing the shapes: no longer waited for");
+    }
+    program.types(b" ");
+    program.shows("NA 1 in all");
+    program.types(b"u");
+    program.shows("undone");
+    hanging.answers();
+    program.types(b"l");
+    program.shows("stripe");
+    program.types(b"strip\r");
+    program.shows("stripe loaded");
+    program.types(b"q");
+    program.ends_well(0);
+}
+
+#[test]
+fn a_shape_comes_when_the_page_opened_meanwhile_is_closed() {
+    let folder = library();
+    let mut program = started(folder.path());
+    let file = folder.path().join("stripe.json");
+    let Some(hanging) = Hanging::new(&mut program, OPENING, &[&file]) else {
+        return;
+    };
+    program.types(b":load stripe\r");
+    program.shows("Loading stripe: waiting for the disk; Esc gives up");
+    program.types(b":");
+    program.types(b"strange words");
+    program.shows("strange words");
+    hanging.answers();
+    program.types(b", typed on");
+    program.shows("strange words, typed on");
+    // Esc closes the prompt, and does not give up what another page waits for.
+    program.types(b"\x1b");
+    program.shows("stripe loaded");
+    program.shows("NA 7 in all");
+    program.types(b"q");
+    program.ends_well(0);
+}
+
+#[test]
+fn a_file_that_is_not_waited_for_is_not_opened() {
+    let folder = library();
+    let mut program = started(folder.path());
+    let file = folder.path().join("a.txt");
+    fs::write(&file, "#.#\n").expect("written");
+    let Some(hanging) = Hanging::new(&mut program, OPENING, &[&file]) else {
+        return;
+    };
+    let command = format!(":open {}\r", file.display());
+    program.types(command.as_bytes());
+    program.shows("waiting for the disk; Esc gives up");
+    program.types(b"\x1b");
+    program.shows("no longer waited for");
+    hanging.answers();
+    program.types(b" ");
+    program.shows("NA 1 in all");
+    // Asked again, it is.
+    program.types(command.as_bytes());
+    program.shows("NA 2 in all");
+    program.types(b"qy");
+    program.ends_well(0);
+}
+
+#[test]
+fn names_that_come_late_complete_nothing_else() {
+    let folder = library();
+    let mut program = started(folder.path());
+    let Some(hanging) = Hanging::new(&mut program, OPENING, &[folder.path()]) else {
+        return;
+    };
+    program.types(b":load stri\t");
+    program.shows("Listing the shapes: waiting for the disk");
+    program.types(b"x");
+    program.shows(":load strix");
+    hanging.answers();
+    program.types(b"\x7f\t");
+    program.shows(":load stripe");
+    program.types(b"\r");
+    program.shows("stripe loaded");
+    program.types(b"q");
+    program.ends_well(0);
+}
+
+#[test]
+fn the_end_does_not_wait_for_what_is_being_read() {
+    for (keys, signal, status) in [
+        (&b"\x03\x03"[..], None, 0),
+        (b"", Some(Signal::TERM), 143),
+        (b"", Some(Signal::HUP), 129),
+    ] {
+        let folder = library();
+        let mut program = started(folder.path());
+        let Some(hanging) = Hanging::new(&mut program, OPENING, &[folder.path()]) else {
+            return;
+        };
+        program.types(b"l");
+        program.shows("Listing the shapes: waiting for the disk");
+        for key in keys {
+            program.types(&[*key]);
+        }
+        if let Some(signal) = signal {
+            program.signal(signal);
+        }
+        ends_before(&mut program, hanging, status);
+    }
+}
+
+/// Waits for the end while the disk hangs.
+fn ends_before(program: &mut Program, hanging: Hanging, status: i32) {
+    // The system keeps what is left of it for the one who traces.
+    program.until("its end", |program| program.state() == 'Z');
+    hanging.answers();
+    program.ends_well(status);
+}
+
+#[test]
+fn the_end_does_not_wait_for_a_model() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let models = folder.path().join("models");
+    fs::create_dir(&models).expect("made");
+    let model = models.join("own.npz");
+    fs::write(&model, "").expect("written");
+    let mut program = started(&folder.path().join("library"));
+    let Some(hanging) = Hanging::new(&mut program, OPENING, &[&model]) else {
+        return;
+    };
+    program.types(b":recognise own\r");
+    program.shows("being prepared");
+    program.types(b"\x1b");
+    program.shows("stopping");
+    program.types(b"\x1b");
+    program.shows("? Help");
+    program.types(b"q");
+    ends_before(&mut program, hanging, 0);
+}
