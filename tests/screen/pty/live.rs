@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 
 use rustix::process::Signal;
 
-use super::hanging::Hanging;
 use super::program::{Program, Start, TAXEL};
+use super::tracer::Tracer;
 
 /// A pipe with a name in a folder; None where there is no mkfifo.
 fn fifo(folder: &Path) -> Option<PathBuf> {
@@ -132,13 +132,13 @@ fn is_ended(path: &Path) -> bool {
 }
 
 /// A source that is watched and recorded, and a disk that hangs then.
-fn recorded_on_a_hanging_disk() -> Option<(Watched, PathBuf, Hanging)> {
+fn recorded_on_a_hanging_disk() -> Option<(Watched, PathBuf, Tracer)> {
     let mut watched = Watched::start()?;
     watched.shows_the_first_frame();
     let file = watched.records();
     watched.sends(1..21);
     watched.program.shows("frame 20");
-    let hanging = Hanging::new(&mut watched.program, "?fsync,?fdatasync", &[])?;
+    let hanging = Tracer::hang(&mut watched.program, "?fsync,?fdatasync", &[])?;
     Some((watched, file, hanging))
 }
 
@@ -173,7 +173,7 @@ fn keys_go_on_while_a_hanging_disk_takes_a_recording() {
             watched.sends(21..31);
             watched.program.shows("frame 30");
         }
-        hanging.answers();
+        hanging.end();
         watched.program.shows("touch-1.npy: 20 frames recorded");
         assert_eq!(records(&file), Some(20), "none of those after the key");
         assert!(is_ended(&file));
@@ -208,7 +208,7 @@ fn the_end_does_not_wait_for_a_recording_on_a_hanging_disk() {
         watched.program.is_left();
         println!("the shell has the terminal after {:?}", begun.elapsed());
         // The system waits for the one who traces.
-        hanging.answers();
+        hanging.end();
         let (ended, _) = watched.program.ends();
         assert_eq!(ended.code(), Some(status));
         assert_eq!(records(&file), Some(20), "written, though not synced");
@@ -221,7 +221,7 @@ fn frames_are_shown_while_a_hanging_disk_creates_a_recording() {
         return;
     };
     watched.shows_the_first_frame();
-    let Some(hanging) = Hanging::new(&mut watched.program, "?fsync,?fdatasync", &[]) else {
+    let Some(hanging) = Tracer::hang(&mut watched.program, "?fsync,?fdatasync", &[]) else {
         return;
     };
     watched.program.types(b"r");
@@ -230,13 +230,60 @@ fn frames_are_shown_while_a_hanging_disk_creates_a_recording() {
     watched.program.shows("frame 10");
     watched.program.types(b"r");
     watched.program.shows("a recording is being begun already");
-    hanging.answers();
+    hanging.end();
     watched.program.shows("recording in touch-1.npy");
     watched.sends(11..14);
     watched.program.shows("frame 13");
     watched.program.types(b"r");
     watched.program.shows("touch-1.npy: 3 frames recorded");
     watched.ends();
+}
+
+#[test]
+fn frames_are_recorded_where_the_system_gives_no_more_threads() {
+    let Some(mut watched) = Watched::start() else {
+        return;
+    };
+    watched.shows_the_first_frame();
+    let Some(_tracer) = Tracer::refuse_threads(&mut watched.program, "1+") else {
+        return;
+    };
+    // Neither one for the disk nor one that syncs.
+    let file = watched.records();
+    watched.sends(1..6);
+    watched.program.shows("frame 5");
+    watched.program.types(b"r");
+    watched.program.shows("touch-1.npy: 5 frames recorded");
+    assert_eq!(records(&file), Some(5));
+    assert!(is_ended(&file));
+    // Nor one that names imprints.
+    watched.program.types(b"n");
+    watched.program.shows("the system gives no thread for it");
+    watched.sends(6..8);
+    watched.program.shows("frame 7");
+    watched.ends();
+}
+
+#[test]
+fn a_source_without_a_thread_is_said_not_to_be_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let source = folder.path().join("touch.txt");
+    fs::write(&source, frames(0..3)).expect("written");
+    let mut program = Program::started(&Start::default());
+    let Some(tracer) = Tracer::refuse_threads(&mut program, "1+") else {
+        return;
+    };
+    program.types(format!(":watch {}\r", source.display()).as_bytes());
+    program.shows("the system gives no thread for it");
+    program.types(b"\x1b");
+    program.shows("? Help");
+    // It is read when there are threads again.
+    tracer.end();
+    program.types(b"w");
+    program.shows("frame 2");
+    program.types(b"q");
+    program.types(b"q");
+    program.ends_well(0);
 }
 
 #[test]

@@ -22,7 +22,7 @@ mod record;
 
 mod saves;
 
-mod hanging;
+mod tracer;
 
 mod reading;
 

@@ -10,8 +10,8 @@ use taxel::imprint::Imprint;
 use taxel::sensor::Sensor;
 use taxel::storage::{Expected, Library};
 
-use super::hanging::Hanging;
 use super::program::{Program, Start};
+use super::tracer::Tracer;
 
 /// Opening a file or a folder.
 const OPENING: &str = "?openat";
@@ -43,7 +43,7 @@ fn started(library: &Path) -> Program {
 fn what_is_typed_while_the_list_is_read_is_not_lost() {
     let folder = library();
     let mut program = started(folder.path());
-    let Some(hanging) = Hanging::new(&mut program, OPENING, &[folder.path()]) else {
+    let Some(hanging) = Tracer::hang(&mut program, OPENING, &[folder.path()]) else {
         return;
     };
     program.types(b"l");
@@ -53,7 +53,7 @@ fn what_is_typed_while_the_list_is_read_is_not_lost() {
     program.types(b"strip");
     program.shows("filter: strip");
     program.types(b"\r");
-    hanging.answers();
+    hanging.end();
     program.shows("stripe loaded");
     program.shows("NA 7 in all");
     program.types(b"q");
@@ -65,14 +65,14 @@ fn the_shapes_of_a_list_come_later_than_their_names() {
     let folder = library();
     let mut program = started(folder.path());
     let file = folder.path().join("stripe.json");
-    let Some(hanging) = Hanging::new(&mut program, OPENING, &[&file]) else {
+    let Some(hanging) = Tracer::hang(&mut program, OPENING, &[&file]) else {
         return;
     };
     program.types(b"l");
     program.shows("stripe");
     program.shows("Reading the shapes: waiting for the disk");
     program.types(b"\x1b[B");
-    hanging.answers();
+    hanging.end();
     // Its preview.
     program.types(b"\x1b[A");
     program.shows("NA 7, pieces 1");
@@ -86,7 +86,7 @@ fn the_shapes_of_a_list_come_later_than_their_names() {
 fn esc_gives_up_waiting() {
     let folder = library();
     let mut program = started(folder.path());
-    let Some(hanging) = Hanging::new(&mut program, OPENING, &[folder.path()]) else {
+    let Some(hanging) = Tracer::hang(&mut program, OPENING, &[folder.path()]) else {
         return;
     };
     for _ in 0..2 {
@@ -99,7 +99,7 @@ fn esc_gives_up_waiting() {
     program.shows("NA 1 in all");
     program.types(b"u");
     program.shows("undone");
-    hanging.answers();
+    hanging.end();
     program.types(b"l");
     program.shows("stripe");
     program.types(b"strip\r");
@@ -113,7 +113,7 @@ fn a_shape_comes_when_the_page_opened_meanwhile_is_closed() {
     let folder = library();
     let mut program = started(folder.path());
     let file = folder.path().join("stripe.json");
-    let Some(hanging) = Hanging::new(&mut program, OPENING, &[&file]) else {
+    let Some(hanging) = Tracer::hang(&mut program, OPENING, &[&file]) else {
         return;
     };
     program.types(b":load stripe\r");
@@ -121,7 +121,7 @@ fn a_shape_comes_when_the_page_opened_meanwhile_is_closed() {
     program.types(b":");
     program.types(b"strange words");
     program.shows("strange words");
-    hanging.answers();
+    hanging.end();
     program.types(b", typed on");
     program.shows("strange words, typed on");
     // Esc closes the prompt, and does not give up what another page waits for.
@@ -138,7 +138,7 @@ fn a_file_that_is_not_waited_for_is_not_opened() {
     let mut program = started(folder.path());
     let file = folder.path().join("a.txt");
     fs::write(&file, "#.#\n").expect("written");
-    let Some(hanging) = Hanging::new(&mut program, OPENING, &[&file]) else {
+    let Some(hanging) = Tracer::hang(&mut program, OPENING, &[&file]) else {
         return;
     };
     let command = format!(":open {}\r", file.display());
@@ -146,7 +146,7 @@ fn a_file_that_is_not_waited_for_is_not_opened() {
     program.shows("waiting for the disk; Esc gives up");
     program.types(b"\x1b");
     program.shows("no longer waited for");
-    hanging.answers();
+    hanging.end();
     program.types(b" ");
     program.shows("NA 1 in all");
     // Asked again, it is.
@@ -160,14 +160,14 @@ fn a_file_that_is_not_waited_for_is_not_opened() {
 fn names_that_come_late_complete_nothing_else() {
     let folder = library();
     let mut program = started(folder.path());
-    let Some(hanging) = Hanging::new(&mut program, OPENING, &[folder.path()]) else {
+    let Some(hanging) = Tracer::hang(&mut program, OPENING, &[folder.path()]) else {
         return;
     };
     program.types(b":load stri\t");
     program.shows("Listing the shapes: waiting for the disk");
     program.types(b"x");
     program.shows(":load strix");
-    hanging.answers();
+    hanging.end();
     program.types(b"\x7f\t");
     program.shows(":load stripe");
     program.types(b"\r");
@@ -185,7 +185,7 @@ fn the_end_does_not_wait_for_what_is_being_read() {
     ] {
         let folder = library();
         let mut program = started(folder.path());
-        let Some(hanging) = Hanging::new(&mut program, OPENING, &[folder.path()]) else {
+        let Some(hanging) = Tracer::hang(&mut program, OPENING, &[folder.path()]) else {
             return;
         };
         program.types(b"l");
@@ -201,10 +201,10 @@ fn the_end_does_not_wait_for_what_is_being_read() {
 }
 
 /// Waits for the end while the disk hangs.
-fn ends_before(program: &mut Program, hanging: Hanging, status: i32) {
+fn ends_before(program: &mut Program, hanging: Tracer, status: i32) {
     // The system keeps what is left of it for the one who traces.
     program.until("its end", |program| program.state() == 'Z');
-    hanging.answers();
+    hanging.end();
     program.ends_well(status);
 }
 
@@ -216,7 +216,7 @@ fn the_end_does_not_wait_for_a_model() {
     let model = models.join("own.npz");
     fs::write(&model, "").expect("written");
     let mut program = started(&folder.path().join("library"));
-    let Some(hanging) = Hanging::new(&mut program, OPENING, &[&model]) else {
+    let Some(hanging) = Tracer::hang(&mut program, OPENING, &[&model]) else {
         return;
     };
     program.types(b":recognise own\r");
@@ -227,4 +227,19 @@ fn the_end_does_not_wait_for_a_model() {
     program.shows("? Help");
     program.types(b"q");
     ends_before(&mut program, hanging, 0);
+}
+
+#[test]
+fn shapes_are_read_where_the_system_gives_no_threads() {
+    let folder = library();
+    let mut program = started(folder.path());
+    let Some(_tracer) = Tracer::refuse_threads(&mut program, "1+") else {
+        return;
+    };
+    program.types(b"lstripe\r");
+    program.shows("stripe loaded");
+    program.types(b"s\x15copy\r");
+    program.shows("saved as copy");
+    program.types(b"q");
+    program.ends_well(0);
 }
