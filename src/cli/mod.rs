@@ -27,6 +27,8 @@ mod error;
 
 mod signals;
 
+mod threads;
+
 mod output;
 
 mod input;
@@ -147,7 +149,11 @@ impl Surroundings {
                 batch::answer_lines(sensor, jobs, &by_name, io::stdin(), io::stdout().lock())?;
             }
             Request::Sweep(asked) => self.sweep(*asked)?,
-            Request::Merge(files, wanted) => print(&merge::merge(&files, &wanted, charset)?)?,
+            Request::Merge(files, wanted) => {
+                print(&threads::on_all_cores(|| {
+                    merge::merge(&files, &wanted, charset)
+                })?)?;
+            }
             Request::Model(request) => self.model(request)?,
             Request::Frames(asked, form, kept) => self.frames(&asked, form, kept)?,
             Request::Library(chore) => self.library(chore)?,
@@ -236,7 +242,9 @@ impl Surroundings {
             ModelRequest::List(json) => model::list(json, shelf, charset)?,
             ModelRequest::Delete(name) => charset.lines(&model::delete(&name, shelf)?),
             ModelRequest::Confusion(asked) => confusion::confusion(&asked, shelf, charset)?,
-            ModelRequest::Touches(asked) => noise::touches(&asked, shelf, charset)?,
+            ModelRequest::Touches(asked) => {
+                threads::on_all_cores(|| noise::touches(&asked, shelf, charset))?
+            }
             ModelRequest::Separate(asked) => separate::separate(&asked, shelf, charset)?,
         };
         print(&text)

@@ -21,6 +21,8 @@ mod disk;
 
 mod lacking;
 
+mod threads;
+
 use std::panic::catch_unwind;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -28,7 +30,7 @@ use std::time::Instant;
 /// What a campaign has seen, in one line.
 type Campaign = fn() -> String;
 
-const CAMPAIGNS: [(&str, Campaign); 9] = [
+const CAMPAIGNS: [(&str, Campaign); 10] = [
     ("killed_at_every_call", calls::killed),
     ("every_error_is_told", calls::refused),
     (
@@ -39,6 +41,7 @@ const CAMPAIGNS: [(&str, Campaign); 9] = [
     ("naive_writing_is_caught", random::naive),
     ("file_systems_that_lack_something", lacking::done_without),
     ("crafted_folders_do_no_harm", lacking::crafted),
+    ("no_threads_are_done_without", threads::refused),
     ("a_full_disk_loses_nothing", disk::full),
     ("a_read_only_disk_can_be_read", disk::read_only),
 ];

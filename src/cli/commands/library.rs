@@ -21,6 +21,7 @@ use crate::cli::error::CliError;
 use crate::cli::input::content::Content;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
+use crate::cli::threads;
 use crate::description::{RegionKind, regions};
 use crate::formats::{Name, StoredShape, json};
 use crate::quote::legible;
@@ -118,11 +119,8 @@ impl Serialize for ListLine {
 fn lines(library: &Library) -> Result<Vec<ListLine>, CliError> {
     let entries = library.list()?;
     let line = |entry| ListLine::of(library, entry);
-    Ok(match rayon::ThreadPoolBuilder::new().build() {
-        Ok(pool) => pool.install(|| entries.into_par_iter().map(line).collect()),
-        // No threads: on this one.
-        Err(_) => entries.into_iter().map(line).collect(),
-    })
+    let lines = || Ok(entries.into_par_iter().map(line).collect());
+    threads::on_all_cores(lines)
 }
 
 /// The answer of `taxel library list --names`: for scripts and for what a shell completes. No file is read, and a file

@@ -13,7 +13,6 @@
 //! The hash is that of the content, so two trainings of one set on one grid have the same one, on any machine.
 
 use std::ffi::OsStr;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
@@ -29,6 +28,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, NamedBy};
 use crate::cli::output::progress::Progress;
 use crate::cli::signals::Signals;
+use crate::cli::threads;
 use crate::formats::value::counted;
 use crate::formats::{Name, json};
 use crate::pose::{Anchor, Axis, GivenRanges, GridError, Ranges, common_ranges, smallest_sensor};
@@ -76,10 +76,7 @@ pub(crate) fn train(
         progress.add(poses);
         !stopped.load(Ordering::Relaxed) && memory.allows()
     };
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(asked.jobs)
-        .build();
-    let pool = pool.map_err(|error| CliError::System(io::Error::other(error)))?;
+    let pool = threads::pool(asked.jobs)?;
     let model = pool.install(|| training.progress(&tell).run());
     progress.finish();
     let model = model.map_err(|error| match error {

@@ -6,7 +6,6 @@
 //! at which no sensor holds the shapes, a file that exists.
 
 use std::ffi::OsStr;
-use std::io;
 use std::path::Path;
 use std::sync::atomic::Ordering;
 
@@ -21,6 +20,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::progress::Progress;
 use crate::cli::output::separation;
 use crate::cli::signals::Signals;
+use crate::cli::threads;
 use crate::formats::Name;
 use crate::formats::separation::{SeparationCurve, csv, drawing};
 use crate::pose::{Axis, DecimalRange, Ranges};
@@ -58,10 +58,7 @@ pub(crate) fn separate(
         progress.add(poses);
         !signals.stopped.load(Ordering::Relaxed)
     };
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(asked.jobs)
-        .build();
-    let pool = pool.map_err(|error| CliError::System(io::Error::other(error)))?;
+    let pool = threads::pool(asked.jobs)?;
     let curves = pool.install(|| curves(asked, &separation, &thresholds, &tell));
     progress.finish();
     let curves = curves.map_err(|error| match error {

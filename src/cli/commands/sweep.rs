@@ -10,7 +10,6 @@
 //! The ways of a sweep's result: `--atlas` writes every distinct imprint with its number of poses, `--poses` for each
 //! pose the number of its imprint, and standard output gets a summary.
 
-use std::io;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -22,6 +21,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::progress::Progress;
 use crate::cli::output::sweep_summary::SweepSummary;
 use crate::cli::signals::Signals;
+use crate::cli::threads;
 use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, Ranges, common_ranges, default_ranges};
 use crate::sensor::Sensor;
 use crate::source::Source;
@@ -117,8 +117,7 @@ pub(crate) fn sweep(
         }
         file.check(wanted.there.existing())?;
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
-    let pool = pool.map_err(|error| CliError::System(io::Error::other(error)))?;
+    let pool = threads::pool(jobs)?;
     let memory = MemoryGuard::new(wanted.memory);
     memory.check(grid).map_err(CliError::Memory)?;
     let mut poses = match &wanted.poses {

@@ -1,0 +1,30 @@
+//! The threads of long work. Where the system gives none, it is done on the thread that asks for it.
+
+use std::io;
+
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use crate::cli::error::CliError;
+
+/// A pool of so many threads, 0 for one a core; of this thread alone where the system gives no others.
+///
+/// # Errors
+/// Where this thread is in such a pool already.
+pub(crate) fn pool(jobs: usize) -> Result<ThreadPool, CliError> {
+    let pool = ThreadPoolBuilder::new().num_threads(jobs).build();
+    let pool = pool.or_else(|_| {
+        let alone = ThreadPoolBuilder::new().num_threads(1);
+        alone.use_current_thread().build()
+    });
+    pool.map_err(|error| CliError::System(io::Error::other(error)))
+}
+
+/// Does work that uses all cores in a pool of its own: that of the whole program fails for good where it gets no threads.
+///
+/// # Errors
+/// Those of the work.
+pub(crate) fn on_all_cores<R: Send>(
+    work: impl FnOnce() -> Result<R, CliError> + Send,
+) -> Result<R, CliError> {
+    pool(0)?.install(work)
+}
