@@ -1,12 +1,22 @@
 //! Input in blocks of whole lines.
 
 use std::io::{self, Read};
+use std::sync::Arc;
+
+use crate::cli::input::lines::buffers::Buffers;
 
 /// The longest line, in bytes. Longer ones are refused, so that a line cannot use up all memory.
 pub(crate) const MAX_LINE: usize = 1 << 20;
 
-/// The number of bytes to read at a time: about a hundred lines, so that several threads have work of a short input too.
+/// The number of bytes to read at a time, at first: about a hundred lines, so that several threads have work of a short
+/// input too.
 const CHUNK: usize = 1 << 13;
+
+/// The same later. Threads wake each other for every block, so of a long input they are larger.
+const LARGE_CHUNK: usize = 1 << 15;
+
+/// No block is a larger part of what has been read than this: so the threads end at about the same time.
+const PART: u64 = 32;
 
 /// Whole lines that follow each other.
 #[derive(Debug)]
@@ -27,6 +37,11 @@ impl Block {
         let lines = lines.map(|line| (!self.is_long && line.len() <= MAX_LINE).then_some(line));
         (self.first..).zip(lines)
     }
+
+    /// Its memory, for a later block.
+    pub(crate) fn into_buffer(self) -> Vec<u8> {
+        self.text
+    }
 }
 
 /// Reads blocks. Each is what one read has given, up to the last line end in it, so that nothing that has come waits for
@@ -37,20 +52,26 @@ pub(crate) struct BlockReader<R> {
     input: R,
     /// What has been read of the next block.
     rest: Vec<u8>,
+    /// How much has been read in all, in bytes.
+    total: u64,
     /// The number of the next line.
     number: u64,
     /// Whether the next line is longer than [`MAX_LINE`]; its bytes are not kept.
     is_long: bool,
+    /// The memory of blocks that have been answered.
+    buffers: Arc<Buffers>,
 }
 
 impl<R: Read> BlockReader<R> {
     /// Reads nothing yet.
-    pub(crate) fn new(input: R) -> Self {
+    pub(crate) fn new(input: R, buffers: Arc<Buffers>) -> Self {
         Self {
             input,
             rest: Vec::new(),
+            total: 0,
             number: 1,
             is_long: false,
+            buffers,
         }
     }
 
@@ -88,7 +109,9 @@ impl<R: Read> BlockReader<R> {
 
     /// Takes a block of the first bytes.
     fn cut(&mut self, length: usize) -> Block {
-        let rest = self.rest.split_off(length);
+        let mut rest = self.buffers.take();
+        rest.extend_from_slice(&self.rest[length..]);
+        self.rest.truncate(length);
         let mut text = std::mem::replace(&mut self.rest, rest);
         let (first, is_long) = (self.number, std::mem::take(&mut self.is_long));
         if is_long {
@@ -108,14 +131,17 @@ impl<R: Read> BlockReader<R> {
     /// Reads what has come, or waits for more. Returns the number of bytes, 0 at the end.
     fn fill(&mut self) -> io::Result<usize> {
         let old = self.rest.len();
-        self.rest.resize(old + CHUNK, 0);
+        let part = usize::try_from(self.total / PART).unwrap_or(LARGE_CHUNK);
+        self.rest.resize(old + part.clamp(CHUNK, LARGE_CHUNK), 0);
         let read = loop {
             match self.input.read(&mut self.rest[old..]) {
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
                 read => break read,
             }
         };
-        self.rest.truncate(old + *read.as_ref().unwrap_or(&0));
+        let new = *read.as_ref().unwrap_or(&0);
+        self.rest.truncate(old + new);
+        self.total += new as u64;
         read
     }
 }
@@ -144,7 +170,7 @@ mod tests {
             }
         }
         let pieces = pieces.iter().map(|piece| piece.to_vec()).collect();
-        let mut blocks = BlockReader::new(Pieces(pieces));
+        let mut blocks = BlockReader::new(Pieces(pieces), Arc::default());
         let mut lines = Vec::new();
         while let Some(block) = blocks.next_block() {
             let block = block.expect("read");
@@ -185,5 +211,19 @@ mod tests {
             lengths,
             [(1, Some(MAX_LINE)), (2, None), (3, Some(1)), (4, None)]
         );
+    }
+
+    #[test]
+    fn blocks_of_a_long_input_are_longer() {
+        let mut blocks = BlockReader::new(io::repeat(b'\n'), Arc::default());
+        let mut total = 0;
+        for _ in 0..1000 {
+            let block = blocks.next_block().expect("endless").expect("read");
+            let length = block.text.len();
+            let part = usize::try_from(total / PART).expect("small");
+            assert!((CHUNK..=LARGE_CHUNK.min(part.max(CHUNK))).contains(&length));
+            total += length as u64;
+        }
+        assert!(total > 500 * LARGE_CHUNK as u64, "{total} bytes");
     }
 }

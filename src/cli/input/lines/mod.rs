@@ -10,13 +10,16 @@
 
 use std::io::{self, Read, Write};
 use std::num::NonZero;
+use std::sync::Arc;
 use std::thread;
 
 use crate::cli::error::CliError;
 use crate::cli::input::lines::block::{Block, BlockReader};
+use crate::cli::input::lines::buffers::Buffers;
 use crate::formats::json;
 
 pub(crate) mod block;
+mod buffers;
 pub(crate) mod in_order;
 
 pub(crate) use block::MAX_LINE;
@@ -41,18 +44,27 @@ where
         0 => thread::available_parallelism().map_or(1, NonZero::get),
         jobs => jobs,
     };
-    let mut blocks = BlockReader::new(input);
+    // Of the lines, and of their answers, which are longer.
+    let (read, written) = (Arc::<Buffers>::default(), Buffers::default());
+    let mut blocks = BlockReader::new(input, Arc::clone(&read));
     let mut output = AnswerWriter::new(output);
     in_order::in_order(
         jobs,
         move || blocks.next_block(),
         || {
-            let (mut answer, mut room) = (answerer(), 0);
-            move |block: io::Result<Block>| {
-                block.map(|block| answer_block(&block, noun, &mut room, &mut answer))
+            let (read, written) = (&read, &written);
+            let mut answer = answerer();
+            move |block: io::Result<Block>| -> io::Result<_> {
+                let block = block?;
+                let answers = answer_block(&block, noun, written.take(), &mut answer);
+                read.give_back(block.into_buffer());
+                Ok(answers)
             }
         },
-        |answers| output.write(answers),
+        |answers| {
+            written.give_back(output.write(answers)?);
+            Ok::<_, CliError>(())
+        },
     )?;
     output.finish()
 }
@@ -68,15 +80,15 @@ struct BlockAnswers {
     bad: u64,
 }
 
-/// Answers the lines of a block. `room` is the memory that the answers to a block took so far: so much is taken at once.
+/// Answers the lines of a block. `text` is empty memory for the answers.
 fn answer_block(
     block: &Block,
     noun: &str,
-    room: &mut usize,
+    text: Vec<u8>,
     answer: &mut impl FnMut(&[u8], &mut Vec<u8>) -> Result<(), String>,
 ) -> BlockAnswers {
     let mut answers = BlockAnswers {
-        text: Vec::with_capacity(*room),
+        text,
         ..BlockAnswers::default()
     };
     for (number, line) in block.lines() {
@@ -94,7 +106,6 @@ fn answer_block(
         answers.answered += 1;
         answers.text.push(b'\n');
     }
-    *room = (*room).max(answers.text.len()).min(MAX_LINE);
     answers
 }
 
@@ -123,18 +134,19 @@ impl<W: Write> AnswerWriter<W> {
         }
     }
 
-    /// Writes the answers of a block out.
+    /// Writes the answers of a block out, and returns their memory.
     ///
     /// # Errors
     /// [`CliError::Read`] if there is no block because the input failed, and [`CliError::Write`].
-    fn write(&mut self, answers: io::Result<BlockAnswers>) -> Result<(), CliError> {
+    fn write(&mut self, answers: io::Result<BlockAnswers>) -> Result<Vec<u8>, CliError> {
         let answers = answers.map_err(CliError::Read)?;
         self.answered += answers.answered;
         self.bad += answers.bad;
         let written = self.output.write_all(&answers.text);
         written
             .and_then(|()| self.output.flush())
-            .map_err(CliError::Write)
+            .map_err(CliError::Write)?;
+        Ok(answers.text)
     }
 
     /// Ends the output.
