@@ -101,6 +101,10 @@ impl Name {
 /// By way of upper case, since some letters have two lower ones (`Σ` has `σ` and `ς`), and a character at a time, since
 /// lower case of a whole text chooses between these by the letters around. `ß` is `ss`.
 pub fn folded(text: &str) -> String {
+    if text.is_ascii() {
+        // The same, at once: a library of 100,000 shapes is sorted by this.
+        return text.to_ascii_lowercase();
+    }
     let upper = text.chars().flat_map(char::to_uppercase);
     upper.flat_map(char::to_lowercase).collect()
 }

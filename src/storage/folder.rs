@@ -21,9 +21,14 @@ pub(crate) fn stamp(content: &[u8]) -> u64 {
 pub(crate) fn regular(path: &Path) -> Result<Metadata, LibraryError> {
     let found = path.symlink_metadata();
     let found = found.map_err(|error| FileError::new("look at it", path, error))?;
+    check_regular(path, &found)?;
+    Ok(found)
+}
+
+fn check_regular(path: &Path, found: &Metadata) -> Result<(), LibraryError> {
     let kind = found.file_type();
     let what = if kind.is_file() {
-        return Ok(found);
+        return Ok(());
     } else if kind.is_symlink() {
         "a symbolic link"
     } else if kind.is_dir() {
@@ -43,17 +48,49 @@ fn in_the_way(path: &Path, what: &'static str, expected: &'static str) -> Librar
 }
 
 /// A regular file's content, at most one byte more than a shape may have.
+///
+/// Four system calls, because a library may have 100,000 files: open, look, read, close.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, LibraryError> {
-    // Checked before opening: opening a pipe waits for a writer.
-    let found = regular(path)?;
-    // One byte more, so that the end is found without growing: two reads a file count where a library is large.
-    let length = usize::try_from(found.len()).map_or(MAX_BYTES, |length| length.min(MAX_BYTES));
-    let mut content = Vec::with_capacity(length + 1);
-    let file = File::open(path).map_err(|error| FileError::new("open it", path, error))?;
-    file.take(MAX_BYTES as u64 + 1)
+    let file = open(path)?;
+    // Of the open file: another may have taken its name since.
+    let found = file.metadata();
+    let found = found.map_err(|error| FileError::new("look at it", path, error))?;
+    check_regular(path, &found)?;
+    // Asked for no more than is there, so that the end needs no read of its own. Where 0 is said, the length may be
+    // unknown.
+    let length = usize::try_from(found.len()).unwrap_or(MAX_BYTES + 1);
+    let length = if length == 0 { MAX_BYTES } else { length }.min(MAX_BYTES + 1);
+    let mut content = Vec::with_capacity(length);
+    file.take(length as u64)
         .read_to_end(&mut content)
         .map_err(|error| FileError::new("read it", path, error))?;
     Ok(content)
+}
+
+/// Opens a file, but follows no link and waits for no writer of a pipe.
+fn open(path: &Path) -> Result<File, LibraryError> {
+    let refused = |error| FileError::new("open it", path, error).into();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::OpenOptionsExt;
+
+        use rustix::fs::OFlags;
+        // A terminal must not become this program's.
+        let flags = OFlags::NOFOLLOW | OFlags::NONBLOCK | OFlags::NOCTTY;
+        let mut options = File::options();
+        options.read(true).custom_flags(flags.bits().cast_signed());
+        match options.open(path) {
+            Ok(file) => return Ok(file),
+            // The holder of a lease on it must give it up first.
+            Err(error) if error.kind() == ErrorKind::WouldBlock => {}
+            Err(error) => {
+                regular(path)?;
+                return Err(refused(error));
+            }
+        }
+    }
+    regular(path)?;
+    File::open(path).map_err(refused)
 }
 
 /// The names of what is in a folder; empty if the folder does not exist.
@@ -103,4 +140,27 @@ pub(crate) fn make_inner(path: &Path) -> Result<(), LibraryError> {
         return Err(in_the_way(path, "a symbolic link", "a folder"));
     }
     make(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_read_whole_but_no_further_than_a_shape_may_go() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("file");
+        for (length, read_of_it) in [
+            (0, 0),
+            (1, 1),
+            (10_000, 10_000),
+            (MAX_BYTES, MAX_BYTES),
+            (MAX_BYTES + 1, MAX_BYTES + 1),
+            (MAX_BYTES + 5, MAX_BYTES + 1),
+        ] {
+            fs::write(&path, vec![b'x'; length]).expect("written");
+            let content = read(&path).expect("read");
+            assert_eq!(content.len(), read_of_it, "of {length} bytes");
+        }
+    }
 }
