@@ -68,6 +68,7 @@ use crate::tui::live::request::WatchRequest;
 /// Everything the user sees is written here or below: the answer to standard output, messages to standard error. If
 /// standard error cannot be written to, the exit status still tells what happened.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    signals::outlive_file_limit();
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let mut charset = Charset::of(&arguments, std::env::var_os);
     let failure = match perform(arguments, &mut charset) {

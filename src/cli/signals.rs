@@ -4,13 +4,20 @@ use std::io::{self, IsTerminal};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::flag;
 
 use crate::cli::error::CliError;
 
 /// Signals that stop the work, each with the exit status that a shell reports for it: 128 and its number.
 const STOPPING: [(i32, u8); 3] = [(SIGINT, 130), (SIGTERM, 143), (SIGHUP, 129)];
+
+/// Lets a write beyond the limit of a file's size (`ulimit -f`) fail as one on a full disk does. Otherwise its signal
+/// would end the program with the terminal as it is.
+pub(crate) fn outlive_file_limit() {
+    // Without it the signal keeps its meaning, and nothing else is lost.
+    let _ = flag::register(SIGXFSZ, Arc::default());
+}
 
 /// Whether the work is to stop. A second signal ends the program at once, as if none were caught.
 pub(crate) struct Signals {

@@ -84,7 +84,7 @@ pub use library::{Expected, Library, LibraryEntry, LoadedShape, ShapeOrigin};
 pub use trash::TRASH_KEPT;
 
 #[cfg(feature = "sweep")]
-pub use sweep_file::{ArchiveFileError, AtlasFile, PoseFile, is_poses, load_atlas};
+pub use sweep_file::{ArchiveFileError, AtlasFile, PoseFile, is_poses, load_atlas, open_archive};
 
 #[cfg(all(feature = "recognition", feature = "library"))]
 pub use models::{ModelCache, ModelFolder, load_model, model_hash, save_model};

@@ -6,7 +6,7 @@
 //! taxel/models/parts.npz         a model
 //! ```
 
-use std::fs::{self, File};
+use std::fs;
 use std::io::{BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -17,7 +17,7 @@ use crate::formats::{Name, read_model, write_model};
 use crate::recognition::{Model, Training};
 use crate::storage::atomic_file::{Existing, UnfinishedFile};
 use crate::storage::first_error::FirstErrorWriter;
-use crate::storage::sweep_file::ArchiveFileError;
+use crate::storage::sweep_file::{ArchiveFileError, open_archive};
 
 /// The ending of a model's file.
 const ENDING: &str = "npz";
@@ -30,7 +30,7 @@ const MAX_CACHED: u64 = 64 << 20;
 /// # Errors
 /// What is wrong with it, with the file's name.
 pub fn load_model(path: &Path) -> Result<Model, ArchiveFileError> {
-    let file = File::open(path).map_err(|error| ArchiveFileError::new(path, error))?;
+    let file = open_archive(path)?;
     read_model(BufReader::new(file)).map_err(|error| ArchiveFileError::new(path, error))
 }
 

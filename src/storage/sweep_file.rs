@@ -150,9 +150,24 @@ impl AtlasFile {
 /// # Errors
 /// What is wrong with it, with the file's name.
 pub fn load_atlas(path: &Path) -> Result<SweepResult, ArchiveFileError> {
-    let refused = |error| ArchiveFileError::new(path, error);
-    let file = File::open(path).map_err(|error| refused(error.into()))?;
-    archive::read(BufReader::new(file)).map_err(refused)
+    let file = open_archive(path)?;
+    archive::read(BufReader::new(file)).map_err(|error| ArchiveFileError::new(path, error))
+}
+
+/// Opens the file of an atlas or of a model. Anything but a regular file is refused: opening a pipe waits for a writer,
+/// and there may never be one.
+///
+/// # Errors
+/// Those of the system, with the file's name.
+pub fn open_archive(path: &Path) -> Result<File, ArchiveFileError> {
+    let opened = path.metadata().and_then(|metadata| {
+        if metadata.is_file() {
+            File::open(path)
+        } else {
+            Err(io::Error::other("not a regular file"))
+        }
+    });
+    opened.map_err(|error| ArchiveFileError::new(path, error))
 }
 
 /// Whether a file of that name can hold the atlas number of every pose: it ends in `.npy`, in capitals or not.

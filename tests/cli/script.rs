@@ -126,6 +126,16 @@ fn a_script_changes_nothing_outside_its_folder() {
     let own = run("b.taxel", &twice, &[]);
     assert_eq!(own.status, Some(0), "{own:?}");
     assert!(folder.join("own.svg").exists(), "{own:?}");
+    // A device would be set up, a connection made, a pipe waited for.
+    let pipe = place.path().join("pipe");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.expect("started").success());
+    for source in ["tcp://127.0.0.1:9", pipe.to_str().expect("text"), "-"] {
+        let script = format!("Source {source}\nFrames 1\nScreen\n");
+        let shown = run("d.taxel", &script, &["--size", "200x24"]);
+        let refusal = "a script reads frames from files only";
+        assert!(shown.stdout.contains(refusal), "{source}: {shown:?}");
+    }
     // A library is refused before anything is done.
     let library = place.path().join("library");
     let script = format!(

@@ -292,6 +292,18 @@ fn a_study_is_taken_up_where_it_was_left() {
         "{}",
         table.stderr
     );
+    // Opening a pipe would wait for a writer.
+    let made = Command::new("mkfifo").arg(path("pipe.npz")).status();
+    assert!(made.expect("started").success());
+    let pipe = taxel(
+        &format!("{sweep} --resume --atlas {}", path("pipe.npz")),
+        "",
+    );
+    assert!(
+        pipe.status == Some(1) && pipe.stderr.contains("not a regular file"),
+        "{}",
+        pipe.stderr
+    );
     for wrong in ["--resume --force", "--resume --poses p.npy"] {
         assert_eq!(part(wrong).status, Some(2), "{wrong}");
     }
@@ -535,4 +547,22 @@ fn a_sweep_keeps_to_the_memory_that_it_may_use() {
             .contains("expected an amount of memory such as 2G"),
         "{wrong:?}"
     );
+}
+
+/// The signal of `ulimit -f` would end the program without a word.
+#[test]
+fn a_file_beyond_the_limit_is_an_error_like_a_full_disk() {
+    let scratch = folder();
+    let path = scratch.path().join("a.npz").display().to_string();
+    let mut command = Command::new("sh");
+    command.args(["-c", "ulimit -f 8; exec \"$@\"", "sh"]);
+    command.arg(env!("CARGO_BIN_EXE_taxel"));
+    command.args("sweep hexagon --side 3 --quiet --angle 0:50:10 --atlas".split(' '));
+    let run = command.arg(&path).output().expect("started");
+    let said = String::from_utf8_lossy(&run.stderr);
+    assert!(
+        run.status.code() == Some(1) && said.contains("too large"),
+        "{said}"
+    );
+    assert!(!Path::new(&path).exists(), "nothing is left behind");
 }

@@ -8,7 +8,6 @@
 //! merged: 212907 imprints, 402.3M of memory
 //! ```
 
-use std::fs::File;
 use std::io::BufReader;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
@@ -21,7 +20,7 @@ use crate::cli::output::evaluation::{self, EvaluationJson};
 use crate::cli::signals::Signals;
 use crate::formats::{MODEL_FORMAT, archive_kind, json};
 use crate::recognition::{Evaluation, Model, ModelMerge, TrainingError};
-use crate::storage::{ArchiveFileError, load_atlas, load_model, save_model};
+use crate::storage::{ArchiveFileError, load_atlas, load_model, open_archive, save_model};
 use crate::sweep::{Shard, SweepMerge};
 use crate::tui::runtime::memory::{MemoryGuard, MemorySize, peak};
 
@@ -46,7 +45,7 @@ impl Part {
     /// Reads what the file says of itself.
     fn of(path: &PathBuf) -> Result<Self, ArchiveFileError> {
         let refused = |error| ArchiveFileError::new(path, error);
-        let file = File::open(path).map_err(|error| refused(error.into()))?;
+        let file = open_archive(path)?;
         let bytes = file
             .metadata()
             .map_err(|error| refused(error.into()))?

@@ -14,7 +14,9 @@
 //!
 //! Others are passed over. Time is that of the log, from the first message with a frame on.
 
+use std::collections::HashMap;
 use std::io::{self, BufRead, BufReader, Read};
+use std::rc::Rc;
 
 use crate::formats::recording::cdr::CdrReader;
 use crate::formats::recording::error::RecordingError;
@@ -106,10 +108,10 @@ struct GivenChannel {
 struct McapState<'a, 'b> {
     /// Rows and columns for what does not say them.
     options: ReadOptions,
-    /// The schemas whose messages have frames, by number.
-    schemas: Vec<(u16, MessageKind)>,
-    /// The channels of these schemas: number, name, kind of message.
-    topics: Vec<(u16, String, MessageKind)>,
+    /// The schemas so far, by number; None where their messages have no frames.
+    schemas: HashMap<u16, Option<MessageKind>>,
+    /// The channels of those with frames, by number: the name, and the kind of message.
+    topics: HashMap<u16, (Rc<str>, MessageKind)>,
     /// The channels that have been reported.
     given: Vec<GivenChannel>,
     /// The time of the first message with a frame, in nanoseconds.
@@ -135,8 +137,8 @@ pub(super) fn read(
 ) -> Result<(), RecordingError> {
     let mut state = McapState {
         options,
-        schemas: Vec::new(),
-        topics: Vec::new(),
+        schemas: HashMap::new(),
+        topics: HashMap::new(),
         given: Vec::new(),
         start: None,
         values: Vec::new(),
@@ -346,33 +348,31 @@ impl McapState<'_, '_> {
         match kind {
             SCHEMA => {
                 let (name, _) = text(rest).ok_or_else(broken)?;
-                let known = self.schemas.iter().any(|(own, _)| *own == id);
-                let kind = MessageKind::of(name).filter(|_| !known);
-                self.schemas.extend(kind.map(|kind| (id, kind)));
+                let kind = MessageKind::of(name);
+                self.schemas.entry(id).or_insert(kind);
             }
             CHANNEL => {
                 let (schema, rest) = rest.split_first_chunk::<2>().ok_or_else(broken)?;
                 let schema = u16::from_le_bytes(*schema);
                 let (topic, rest) = text(rest).ok_or_else(broken)?;
                 let (encoding, _) = text(rest).ok_or_else(broken)?;
-                let found = self.schemas.iter().find(|(own, _)| *own == schema);
-                let known = self.topics.iter().any(|(own, ..)| *own == id);
-                if let Some(&(_, kind)) = found.filter(|_| encoding == "cdr" && !known) {
+                let found = self.schemas.get(&schema).copied().flatten();
+                let known = self.topics.contains_key(&id);
+                if let Some(kind) = found.filter(|_| encoding == "cdr" && !known) {
                     check_name(topic)?;
                     if self.topics.len() == MOST_TOPICS {
                         return Err(RecordingError::damaged(format!(
                             "more than {MOST_TOPICS} topics"
                         )));
                     }
-                    self.topics.push((id, topic.to_owned(), kind));
+                    self.topics.insert(id, (topic.into(), kind));
                 }
             }
             _ => {
                 let (_, rest) = rest.split_first_chunk::<4>().ok_or_else(broken)?;
                 let (time, rest) = rest.split_first_chunk::<8>().ok_or_else(broken)?;
                 let (_, data) = rest.split_first_chunk::<8>().ok_or_else(broken)?;
-                let found = self.topics.iter().find(|(own, ..)| *own == id);
-                if let Some((_, topic, kind)) = found.cloned() {
+                if let Some((topic, kind)) = self.topics.get(&id).cloned() {
                     let time = u64::from_le_bytes(*time);
                     let message = self.message(&topic, kind, time, data);
                     return message.ok_or_else(|| {

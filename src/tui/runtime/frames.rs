@@ -28,6 +28,9 @@ use crate::tui::runtime::recording::{Recording, locked};
 pub(super) struct FrameWatcher {
     /// None before the first source and after the page was closed.
     watched: Option<Watched>,
+    /// Whether only files are read, as is right for a script of a stranger: a serial line would be set up and its device
+    /// reset, a connection made, a pipe waited for.
+    pub(super) only_files: bool,
 }
 
 /// A source with the thread that reads it. The thread ends by itself when `stop` is set or the source ends.
@@ -209,8 +212,18 @@ impl FrameWatcher {
         let (skipped, mut seen) = (watched.taken, 0);
         let feed = FrameFeed::default();
         let mut events = Vec::new();
+        let source = source(&request.source);
+        if self.only_files && !is_file(&source) {
+            let reason = "a script reads frames from files only; --allow-outside lifts that";
+            feed.change(|pending| {
+                pending.batch.status.state = SourceState::Failed(reason.to_owned());
+            });
+            let batch = feed.take().map(Arc::new);
+            let event = batch.map(|batch| WorkerEvent::Live(number, LiveEvent::Arrived(batch)));
+            return event.into_iter().collect();
+        }
         feed.run(
-            &source(&request.source),
+            &source,
             &request,
             &options,
             &AtomicBool::new(false),
@@ -251,6 +264,17 @@ fn source(name: &OsStr) -> FrameSource {
             FrameSource::new(path.as_os_str())
         }
         _ => FrameSource::new(name),
+    }
+}
+
+/// Whether it is a file that has something in it. Those of `/proc`, which can be waited for as pipes are, are empty.
+/// One that is not there is left to whoever opens it, who says so.
+fn is_file(source: &FrameSource) -> bool {
+    match source {
+        FrameSource::File(path) => path
+            .metadata()
+            .map_or(true, |metadata| metadata.is_file() && metadata.len() > 0),
+        _ => false,
     }
 }
 

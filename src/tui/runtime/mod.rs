@@ -215,6 +215,7 @@ impl World {
     pub fn confined_to(mut self, folder: PathBuf) -> Self {
         self.workers.access = Arc::new(WriteAccess::below(folder));
         self.saves.access = Arc::clone(&self.workers.access);
+        self.workers.frames.only_files = true;
         self
     }
 

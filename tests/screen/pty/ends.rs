@@ -50,6 +50,8 @@ fn every_signal_in_every_state_leaves_the_terminal_as_it_was() {
             (Signal::USR2, 140),
             (Signal::ALARM, 142),
             (Signal::ABORT, 134),
+            (Signal::XCPU, 152),
+            (Signal::VTALARM, 154),
         ] {
             let mut program = in_state(&Start::default(), state);
             program.signal(signal);
