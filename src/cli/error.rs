@@ -58,7 +58,7 @@ pub(crate) enum CliError {
     #[error("{}", legible(&.0.to_string()))]
     Library(#[from] LibraryError),
     /// The argument is neither the name of a shape nor a file.
-    #[error("no shape is called {name:?}, and no file either")]
+    #[error("no stored shape and no file is called {name:?}")]
     Nowhere {
         /// The argument.
         name: String,
@@ -85,7 +85,7 @@ pub(crate) enum CliError {
         expected: &'static str,
     },
     /// The argument is neither the name of a set of shapes nor a file.
-    #[error("{0}, or a file of a model")]
+    #[error("{0}")]
     NoSet(String),
     /// There is no model of that name beside the library.
     #[error("no model is called {name:?}; 'taxel model list' shows all")]

@@ -25,12 +25,12 @@ use crate::tui::widget::write;
 /// Columns of the symbol of a descriptor.
 const SYMBOL: usize = 6;
 /// Columns of a value.
-const VALUE: usize = 11;
+const VALUE: usize = 14;
 /// Columns of the row ruler.
 const RULER: u16 = 3;
 
-/// Columns of the descriptors of both and their differences.
-const TABLE: u16 = 7 + 3 * 12;
+/// Columns of the descriptors of both and their differences. The difference of two points is cut where there are no more.
+const TABLE: u16 = 7 + 2 * 15 + 7;
 
 /// What the grid shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -156,11 +156,17 @@ impl Comparison {
             } else {
                 Role::Text
             };
-            let by = if first == second { "=" } else { by.as_str() };
+            let rises = matches!((values[0], values[1]), (Value::Count(a), Value::Count(b)) if b > a)
+                || matches!((values[0], values[1]), (Value::Number(a), Value::Number(b)) if b > a);
+            let by = match (first == second, rises) {
+                (true, _) => "=".to_owned(),
+                (false, true) => format!("+{by}"),
+                (false, false) => by,
+            };
             let pieces = [
                 (symbol.as_str(), Role::Key),
                 (both.as_str(), role),
-                (by, role),
+                (by.as_str(), role),
             ];
             write::line(buffer, write::row(area, index + 1), theme, pieces);
         }

@@ -204,7 +204,7 @@ fn a_shape_is_described_by_its_name_too() {
 #[test]
 fn a_file_that_cannot_be_read_is_named() {
     let run = taxel("describe no-such-shape", "");
-    let message = "no shape is called \"no-such-shape\", and no file either";
+    let message = "no stored shape and no file is called \"no-such-shape\"";
     refused(&run, 1, message);
     let run = taxel("describe no/such-file", "");
     let message = "no/such-file: cannot read: No such file or directory (os error 2)";

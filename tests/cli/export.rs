@@ -193,7 +193,7 @@ fn a_refusal_says_what_is_expected() {
     refused(
         &taxel("export nowhere a.svg", ""),
         1,
-        "no shape is called \"nowhere\", and no file either",
+        "no stored shape and no file is called \"nowhere\"",
     );
     refused(
         &taxel("export - - --format csv", "P1 2 1 2"),

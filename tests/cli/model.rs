@@ -458,7 +458,7 @@ fn sets_that_make_no_sense_are_refused_in_one_sentence() {
     refused(
         &taxel("model confusion nowhere", ""),
         1,
-        "no set is called \"nowhere\"; there are figures, figures-30, shapes, or a file of a model",
+        "no model or file \"nowhere\"; there are figures, figures-30, shapes",
     );
     misused(
         "model train parts.jsonl",

@@ -71,7 +71,7 @@ fn a_name_of_the_library_goes_before_a_file() {
     for (arguments, message) in [
         (
             "picture|nothing",
-            "no shape is called \"nothing\", and no file either",
+            "no stored shape and no file is called \"nothing\"",
         ),
         (
             "picture|no/such.txt",

@@ -143,12 +143,12 @@ fn the_exit_status_says_whether_the_answer_was_expected() {
     refused(
         &place.run("recognise square.txt --model nobody", ""),
         1,
-        "no set is called \"nobody\"; there are figures, figures-30, shapes, r, twins, or a file of a model",
+        "no model or file \"nobody\"; there are figures, figures-30, shapes, r, twins",
     );
     refused(
         &place.run("recognise nothing.txt --model r", ""),
         1,
-        "no shape is called \"nothing.txt\", and no file either",
+        "no stored shape and no file is called \"nothing.txt\"",
     );
 }
 

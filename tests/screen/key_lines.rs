@@ -60,7 +60,7 @@ fn the_menu_names_the_keys_of_the_page() {
         );
     }
     let (menu, hints) = lines("f<CR>r");
-    assert!(menu.starts_with("t touch"), "{menu}");
+    assert!(menu.starts_with("t quiz"), "{menu}");
     assert!(
         menu.ends_with("? Help") || menu.ends_with("? help"),
         "{menu}"

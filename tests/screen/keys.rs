@@ -438,7 +438,7 @@ fn recognise_goes_through_sets_and_takes_one_by_name() {
         &[
             "Recognise: model nothing",
             "not trained; Enter trains it",
-            "no set is called \"nothing\"; there are figures, figures-30, shapes",
+            "no model or file \"nothing\"; there are figures, figures-30, shapes",
         ],
     );
     shows(

@@ -44,11 +44,17 @@ fn a_tare_is_taken_off_and_given_up() {
 
 #[test]
 fn the_history_is_scrubbed_while_frames_come() {
-    shows(&watched(6, "<Left><Left>"), &["frame 3", "frozen, 2 back"]);
-    shows(&watched(6, "<Home>"), &["frame 0", "frozen, 5 back"]);
+    shows(
+        &watched(6, "<Left><Left>"),
+        &["frame 3", "frozen, 2 frames behind"],
+    );
+    shows(
+        &watched(6, "<Home>"),
+        &["frame 0", "frozen, 5 frames behind"],
+    );
     let mut page = watched(4, "<Space>");
     page.frames(2);
-    shows(&page, &["frame 3", "frozen, 2 back"]);
+    shows(&page, &["frame 3", "frozen, 2 frames behind"]);
     then(&mut page, "<Space>", &["frame 5"]);
     hides(&page, &["frozen"]);
     then(&mut page, "<Left><End>", &["frame 5"]);
@@ -84,12 +90,12 @@ fn the_imprint_goes_to_the_matrix_and_the_source_stays() {
 fn a_frame_is_marked_and_unmarked() {
     shows(&watched(0, "m"), &["! no frame yet"]);
     let mut page = watched(6, "m");
-    shows(&page, &["frame 5: marked", "marked", "marks      5"]);
-    then(&mut page, "<Left>m", &["marks      5, 4"]);
+    shows(&page, &["frame 5: marked", "marked", "marked     frame 5"]);
+    then(&mut page, "<Left>m", &["marked     frame 5, 4"]);
     then(
         &mut page,
         "m",
-        &["frame 4: no mark any more", "marks      5"],
+        &["frame 4: no mark any more", "marked     frame 5"],
     );
     then(&mut page, "<End>", &["frame 5", "marked"]);
 }
@@ -97,7 +103,7 @@ fn a_frame_is_marked_and_unmarked() {
 #[test]
 fn the_shape_is_named_by_sets_of_shapes_in_turn() {
     let mut page = watched(6, "nnn");
-    shows(&page, &["shapes are named by the shapes that come with it"]);
+    shows(&page, &["shapes are named by the shipped shapes"]);
     then(&mut page, "n", &["shapes are not named"]);
     hides(&page, &["nearest"]);
     then(

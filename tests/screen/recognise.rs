@@ -74,12 +74,12 @@ fn a_stored_model_is_completed_answers_and_is_remembered() {
     shows(&begin("r"), &["Recognise: model my parts"]);
     // With another one chosen, that is remembered.
     begin("rO");
-    shows(&begin("r"), &["Recognise: the shapes that come with it"]);
+    shows(&begin("r"), &["Recognise: the shipped shapes"]);
     shows(&begin(":recognise <Tab>"), &["figures-30", "my parts"]);
     // One that does not exist is refused by what there is, and not remembered.
-    let all = "no set is called \"nonsense\"; there are figures, figures-30, shapes, my parts";
+    let all = "no model or file \"nonsense\"; there are figures, figures-30, shapes, my parts";
     shows(&begin(":recognise nonsense<Enter>"), &[all]);
-    shows(&begin("r"), &["Recognise: the shapes that come with it"]);
+    shows(&begin("r"), &["Recognise: the shipped shapes"]);
 }
 
 #[test]

@@ -168,7 +168,7 @@ fn format() -> Arg {
 /// do not.
 fn batch() -> Command {
     Command::new("batch")
-        .about("Answer poses, one JSON object a line, on standard input")
+        .about("Describe poses read from standard input, one JSON object per line")
         .after_help(BATCH_EXAMPLES)
         .args(sensor_of_imprints())
         .arg(jobs())
@@ -225,7 +225,7 @@ fn sweep() -> Command {
 }
 
 /// `taxel merge FILE.npz…`.
-/// `taxel merge part-*.npz --atlas whole.npz`. Shards of a training are merged by the same command: the content of the
+/// `taxel merge part-*.npz --out whole.npz`. Shards of a training are merged by the same command: the content of the
 /// files tells.
 fn merge() -> Command {
     let files = Arg::new("files")
@@ -239,7 +239,11 @@ fn merge() -> Command {
         .after_help(MERGE_EXAMPLES)
         .args([
             files,
-            atlas().alias("out").required(true),
+            atlas()
+                .long("out")
+                .alias("atlas")
+                .help("Write the atlas (.csv, .jsonl, .npz) or the model (.npz)")
+                .required(true),
             replace(),
             memory(),
             json(),

@@ -18,7 +18,7 @@ describes it. Without a command the screen opens, where all of this is live.";
 /// Below the flags of `taxel --help`: units, exit status and an example of most commands.
 pub(crate) const EXAMPLES: &str = "\
 All lengths are in sides of a sensory cell, x to the right, y down.
-Exit status: 0 done, 1 the input was wrong, 2 the command was, 128 + n ended by
+Exit status: 0 done, 1 wrong input, 2 wrong command line, 128 + n ended by
 signal n.
 
 Examples:
@@ -45,10 +45,10 @@ Examples:
 
 /// `taxel picture`: where a picture comes from, and which sensor touches it.
 pub(crate) const PICTURE_EXAMPLES: &str = "\
-A name of the library goes before a file of the same name. A file is a stored
-shape or an imprint. The sensor is that of the stored shape; an imprint alone
-lies on one of 16 x 16, or of its own size where that is larger. What is not
-given leaves the picture where it was: without flags it is the same again.
+If a stored shape and a file have the same name, the shape is taken. A file is a
+stored shape or an imprint. The sensor is that of the stored shape; an imprint
+alone lies on one of 16 x 16, or of its own size where that is larger. What is
+not given leaves the picture where it was: without flags it is the same again.
 
 Examples:
   taxel picture washer --x0 6 --y0 4.5
@@ -61,8 +61,8 @@ An imprint is text, a line a row, '#' for an active taxel and '.' for an
 inactive one; or a table of numbers (CSV), a bitmap (PBM), a grey image of two
 shades (PGM) or an array of numpy (NPY); at most 64 x 64. Masks are read, too: 0
 and one other value, such as 255. The content decides, not the extension. A
-stored shape is a JSON file. A name of the library goes before a file of the
-same name.
+stored shape is a JSON file. If a stored shape and a file have the same name,
+the shape is taken.
 
 Examples:
   taxel describe washer
@@ -116,7 +116,7 @@ pub(crate) const SCRIPT_EXAMPLES: &str = r#"One command a line; places are colum
   Screen [name]       State [json-pointer]
   Expect /re/         ExpectNot /re/      ExpectAt 3,10 "text"
   ExpectStyle 3,10 reverse
-Quit holds where the program has ended. Without --library the script has an
+Quit succeeds if the program has ended. Without --library the script has an
 empty library of its own. It writes files only below its own folder, and
 replaces none that was there before; --allow-outside, for scripts that you
 trust, lets it write anywhere and set a library.
@@ -140,7 +140,7 @@ taxel among your settings, or the file that --config or TAXEL_CONFIG names:
   [keys.matrix]                 # place, key, action; "none" frees a key
   "x" = "toggle"
   "<C-n>" = "new"
-A flag goes before the environment, that before the file. A file with anything
+Flags override the environment, which overrides the file. A file with anything
 unknown in it is refused with line and column, and nothing is started. Scripts
 heed --config only, so that they are the same for everybody.
 
@@ -183,8 +183,8 @@ pub(crate) const FILES: &str = "
 pub(crate) const SWEEP_EXAMPLES: &str = "\
 A range is START:END:STEP with the end included, or one number; decimals are
 exact. What is not given has the paper's resolution: one cell by hundredths and
-every whole degree, 3.6 million poses. The cell of a figure is that from 5 on,
-the cell of a picture the one that it lies in; if the sensor would cut off the
+every whole degree, 3.6 million poses. Figures start at x0 = y0 = 5, pictures at
+the cell that they lie in; if the sensor would cut off the
 shape there in any of the angles, a cell around the middle is taken. The ranges
 that were taken are printed. Figures are solid, the sensor is 16 x 16; that of a
 picture is its own. --force replaces files that are there already.
@@ -199,7 +199,7 @@ Examples:
 /// `taxel merge`.
 pub(crate) const MERGE_EXAMPLES: &str = "\
 All shards together give the same atlas as one sweep of the whole grid, or the
-same model as one training. The files say themselves which of both they are.
+same model as one training. Each file says whether it is an atlas or a model.
 
 Examples:
   taxel merge hexagon-*.npz --atlas hexagon.npz
@@ -413,10 +413,10 @@ pub(crate) const WATCH_EXAMPLES: &str = "\
 On a terminal the frames are shown. With --json, or in a pipeline, each frame is
 answered by one line, as of 'taxel frames --all --json'; without a threshold its
 imprint is null. Streams are numbers in lines, JSON lines, what
-'ros2 topic echo' prints, FlexiTac's and MatSense's bytes; what begins one is
-found by looking. A recording is played at its own rate. A serial line or a
-connection that is lost is tried again each second. Torn, short, long and
-garbled frames are dropped and counted.
+'ros2 topic echo' prints, FlexiTac's and MatSense's bytes; the form is
+recognised from the content. A recording is played at its own rate. A serial
+line or a connection that is lost is tried again each second. Torn, short, long
+and garbled frames are dropped and counted.
 
 --write records every frame, read or not; numpy can open the file at any moment.
 A .json of the same name says what the values are.

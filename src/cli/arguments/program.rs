@@ -121,7 +121,7 @@ pub(crate) fn man() -> Command {
         .value_parser(value_parser!(PathBuf))
         .help("Write the pages of all commands into this folder");
     Command::new("man")
-        .about("Print the manual's page, or write all of its pages")
+        .about("Print the man page, or write all man pages to a folder")
         .after_help(MAN_EXAMPLES)
         .arg(folder)
 }

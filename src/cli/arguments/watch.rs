@@ -69,8 +69,12 @@ pub(crate) fn command() -> Command {
     let once = switch("once", "Read to the end, as fast as it goes, and stop")
         .conflicts_with_all(["loop", "speed"]);
     let again = switch("loop", "Begin a recording again at its end");
-    let speed = option("speed", "FACTOR", "Play a recording so many times as fast")
-        .value_parser(parse_speed);
+    let speed = option(
+        "speed",
+        "FACTOR",
+        "Play a recording at FACTOR times its speed",
+    )
+    .value_parser(parse_speed);
     let write = option(
         "write",
         "FILE.npy",

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! centre at 3, 3 ± 0.13, 0.13 cells
-//! angle 30.2° ± 1.4° (modulo 180°); 95 % in 6°, from 27° to 32°
+//! angle 30.2° ± 1.4° (repeats every 180°); 95 % in 6°, from 27° to 32°
 //! ```
 //! Positions are those of the centre about which the shape turns, in cells of the touch, x to the right, y down. All
 //! poses of the model that leave the imprint count alike; `±` is their standard deviation. Angles are degrees as of
@@ -171,7 +171,7 @@ impl PoseReport {
                 };
                 let period = match angle.period {
                     360 => String::new(),
-                    period => format!(" (modulo {period}°)"),
+                    period => format!(" (repeats every {period}°)"),
                 };
                 let last = (first + count - 1) % angle.period;
                 format!("\nangle {mean}{period}; 95 % in {count}°, from {first}° to {last}°\n")

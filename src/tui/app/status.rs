@@ -137,7 +137,7 @@ fn taxel(app: &App, seen: &Reading, panes: &Panes) -> String {
     let width = usize::from(panes.taxel.width);
     if width >= if step.is_empty() { 60 } else { 80 } {
         let place = format!("column {column:>across$}, row {row:>down$}");
-        let covered = coverage.map_or(String::new(), |coverage| format!("  {coverage:.6}"));
+        let covered = coverage.map_or(String::new(), |coverage| format!("  covered {coverage:.6}"));
         let gap = if step.is_empty() { "" } else { "  " };
         return format!("{place}{covered}  {state:>8}  {all}{gap}{step}");
     }

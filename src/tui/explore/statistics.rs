@@ -1,7 +1,7 @@
 //! The statistics page.
 //!
 //! ```text
-//! distinct up to shifts: 175  and up to turns and mirrors: 105
+//! 175 distinct up to shifts, 105 up to turns and mirrors too
 //! poses partly off the sensor: 316  without imprint: 32
 //! 1 of 23              min   mean    max     sd        which descriptor is chosen, and columns
 //! > na                   1 22.405     29 7.3052        a row for each descriptor
@@ -178,7 +178,7 @@ fn totals(results: &Results) -> [String; 2] {
     let many = |count: usize| grouped(count as u64);
     [
         format!(
-            "distinct up to shifts: {}  and up to turns and mirrors: {}",
+            "{} distinct up to shifts, {} up to turns and mirrors too",
             many(shifts),
             many(symmetry)
         ),

@@ -56,17 +56,17 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "" "a count: how many times the next key does it, 12 Right";
         [Char(' ') => TOGGLE] "toggle" "turn the taxel under the cursor on or off";
         [Char('u') => UNDO] "undo" "undo the last change, then those before";
-        [Char('U') => REDO, Ctrl('r') => REDO] "redo" "redo what was undone";
+        [Char('U') => REDO, Ctrl('r') => REDO] "" "redo what was undone";
         [Char('=') => COMPARE] "" "compare with the state before the last step";
         [Char('H') => HISTORY] "" "History: all steps, to go back to any of them";
         [Tab => REGION, BackTab => PREVIOUS_REGION]
             "region" "describe the next, the previous piece or hole";
-        [Char('c') => COVERAGE] "coverage" "coverage in shades, in percent, the imprint again";
-        [Char('o') => OUTLINE, Char('b') => RECTANGLE]
-            "outline" "the true outline; the rectangle with CG (G), CD (D)";
-        [Char('g') => GRAB] "grab" "hold the shape, to move it with the arrows";
         [Char('e') => EXPLORE] "explore" "Explore: all imprints of the shape, over all poses";
         [Char('r') => RECOGNISE] "recognise" "Recognise: name the shape from its touch";
+        [Char('c') => COVERAGE] "coverage" "coverage in shades, in percent, the imprint again";
+        [Char('o') => OUTLINE, Char('b') => RECTANGLE]
+            "" "the true outline; the rectangle with CG (G), CD (D)";
+        [Char('g') => GRAB] "grab" "hold the shape, to move it with the arrows";
         [Char('w') => WATCH] "" "Watch: the frames of a sensor, once one is watched";
         [ShiftArrow(Left) => NUDGE_LEFT, ShiftArrow(Right) => NUDGE_RIGHT,
             ShiftArrow(Up) => NUDGE_UP, ShiftArrow(Down) => NUDGE_DOWN]
@@ -124,7 +124,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Home => FIRST, End => LAST] "" "first, last shape";
         [Enter => ACCEPT] "accept" "accept the selected shape";
         [Char('/') => ERASE_ALL, Ctrl('u') => ERASE_ALL]
-            "search anew" "search anew; what is typed leaves names that have it";
+            "new search" "type part of a name to filter the list; / starts again";
         [Backspace => ERASE_BEFORE] "" "delete a character of the filter";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "close it and change nothing";
         [Char('?') => HELP] "help" "these keys";
@@ -215,7 +215,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "filter" "show only imprints that fit, such as na>=40 holes=0";
         [Char('s') => SORT] "sort" "sort by the chosen heading; again: reversed";
         [LEFT => EARLIER_COLUMNS, RIGHT => LATER_COLUMNS]
-            "" "choose a heading to sort by";
+            "heading" "choose a heading to sort by";
         [Char('#') => SORT_BY_FIRST_POSE, Char('n') => SORT_BY_POSES,
             Char('c') => SORT_BY_PIECES, Char('h') => SORT_BY_HOLES,
             Char('v') => SORT_BY_VALUE]
@@ -236,7 +236,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
 
     Histogram {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN, PageUp => PAGE_UP, PageDown => PAGE_DOWN]
-            "" "choose a descriptor";
+            "descriptor" "choose a descriptor";
         [Home => FIRST, End => LAST] "" "first, last descriptor";
     }
 
@@ -261,10 +261,10 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
 
     Scatter {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN, PageUp => PAGE_UP, PageDown => PAGE_DOWN]
-            "upwards" "choose the descriptor of the upward axis";
+            "y axis" "choose the descriptor of the upward axis";
         [Home => FIRST, End => LAST] "" "first, last descriptor for that axis";
         [LEFT => EARLIER_COLUMNS, RIGHT => LATER_COLUMNS]
-            "across" "choose the descriptor of the other axis";
+            "x axis" "choose the descriptor of the other axis";
         [Char('/') => FILTER, Char('f') => FILTER]
             "filter" "show only imprints that fit, such as na>=40 holes=0";
         [Enter => ACCEPT] "to matrix" "put the selected imprint onto the matrix";
@@ -305,11 +305,11 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
 
     /// What has no row goes to the matrix: one draws, moves and turns while the answer follows.
     Recognise {
-        [Char('t') => TOUCH] "touch" "a random shape of the set touches: name it";
+        [Char('t') => TOUCH] "quiz" "a random shape of the set touches: name it";
         [Char('a') => KEEP, Char('x') => FORGET]
-            "keep" "keep this touch as one of several; forget them";
+            "keep, forget" "keep this touch as one of several; forget them";
         [Char('o') => NEXT_SET, Char('O') => PREVIOUS_SET]
-            "set" "next, previous set of shapes";
+            "other set" "next, previous set of shapes";
         [Char('v') => CONFUSION] "confusion" "which shapes are taken for which";
         [Char('V') => SEPARATE] "" "the error against the size of the shapes";
         [Char('P') => POSES] "" "outlines of the likeliest pose and of others";
@@ -358,7 +358,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     /// All four arrows go through the history of frames: the page has no cursor that they could move.
     Live {
         [Char('t') => TARE, Char('T') => NO_TARE]
-            "tare" "take off the median of the last 30 frames; nothing";
+            "tare" "subtract the median of the last 30 frames; no tare";
         [Char('+') => THRESHOLD_UP, Char('=') => THRESHOLD_UP, Char('-') => THRESHOLD_DOWN]
             "threshold" "the threshold up, down";
         [Char('%') => PERCENT] "" "a threshold in percent of the peak, or in the unit";
@@ -377,13 +377,13 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Enter => ACCEPT] "to matrix" "take the imprint to the matrix";
         [Char('?') => HELP] "help" "these keys";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]
-            "close" "leave the source; the history is kept";
+            "close" "stop watching; w on the matrix watches again";
     }
 
     /// Esc leaves the search first, so that it does not close more than is meant; the other keys close help at once.
     Help {
-        [UP => SCROLL_UP, DOWN => SCROLL_DOWN, PageUp => PAGE_UP, PageDown => PAGE_DOWN]
-            "scroll" "scroll";
+        [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "scroll" "scroll by a line";
+        [PageUp => PAGE_UP, PageDown => PAGE_DOWN, Char(' ') => PAGE_DOWN] "" "scroll by a page";
         [Char('/') => SEARCH] "search" "search for a key, or for what one does";
         [Char('n') => NEXT_MATCH, Char('N') => PREVIOUS_MATCH] "match" "next, previous match";
         [Char('q') => QUIT, Char('?') => QUIT, F1 => QUIT, Enter => QUIT] "close" "close";

@@ -128,9 +128,12 @@ impl Keymap {
         }
     }
 
-    /// The first key of an action as people write it; `:name` if it has no key.
+    /// The first key of an action as people write it, in a place or in those around it; `:name` if it has no key.
     pub fn label(&self, context: Context, action: &Action) -> String {
-        let mut keys = self.of(context).flat_map(|binding| binding.keys.iter());
+        let places = std::iter::successors(Some(context), |place| place.outer());
+        let mut keys = places
+            .flat_map(|place| self.of(place))
+            .flat_map(|binding| binding.keys.iter());
         keys.find(|(_, own)| *own == action)
             .map_or_else(|| format!(":{}", action.name), |(key, _)| key.label())
     }

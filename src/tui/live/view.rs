@@ -1,7 +1,7 @@
 //! How the live page looks.
 //!
 //! ```text
-//! mat.csv  frame 65 (label 66)  6.5 s  frozen, 3 before the newest
+//! mat.csv  frame 65 (label 66)  6.5 s  frozen, 3 frames behind
 //! ░░▒▒▓▓██          range      0 ░▒▓█ 100 kPa
 //! ░░▒▒▓▓••          sum        1234 kPa
 //!                   NA, NAE, P, F, CG …
@@ -23,7 +23,7 @@ use crate::tui::live::heat::{HeatMap, cells, scale};
 use crate::tui::live::layout::LivePanes;
 use crate::tui::live::message::SourceState;
 use crate::tui::live::naming::Naming;
-use crate::tui::live::reading::LiveReading;
+use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::state::Live;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
@@ -115,7 +115,11 @@ fn title(live: &Live) -> Vec<(String, Role)> {
         }
         None => say("no frame yet".to_owned(), Role::Quiet),
     }
-    say(live.layer().name().to_owned(), Role::Quiet);
+    let layer = match live.layer() {
+        HeatLayer::Tared if live.tare().is_none() => HeatLayer::Raw,
+        layer => layer,
+    };
+    say(layer.name().to_owned(), Role::Quiet);
     if live.holds_peak() {
         say("peak held".to_owned(), Role::Focus);
     }
@@ -124,7 +128,10 @@ fn title(live: &Live) -> Vec<(String, Role)> {
     }
     match live.frozen() {
         Some(0) => say("frozen".to_owned(), Role::Focus),
-        Some(back) => say(format!("frozen, {} back", grouped(back)), Role::Focus),
+        Some(back) => {
+            let behind = counted(back, "frame");
+            say(format!("frozen, {behind} behind"), Role::Focus);
+        }
         None => {}
     }
     match (&status.state, live.stopped()) {
@@ -159,7 +166,7 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap) -> Vec<PanelLine> {
                 say(descriptor.symbol, text);
             }
         }
-        say("regions", reading.regions.to_string());
+        say("regions", regions(reading));
     }
     if let Some(naming) = live.naming() {
         let shown = live.reading().and_then(|reading| reading.imprint);
@@ -180,10 +187,10 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap) -> Vec<PanelLine> {
         let (columns, rows) = (reading.values.columns(), reading.values.rows());
         say("size", format!("{columns} × {rows}, {cells}"));
     }
-    let rate = live.rate().map(|rate| format!("{}/s", fitting(rate, 6)));
+    let rate = live.rate().map(|rate| format!("{}/s", fitting(rate, 5)));
     say("rate", rate.unwrap_or_else(|| theme.none().to_owned()));
     say("lost", lost(live));
-    say("not drawn", grouped(live.not_drawn()));
+    say("skipped", grouped(live.not_drawn()));
     if !live.marks().is_empty() {
         let numbers = live
             .marks()
@@ -191,13 +198,24 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap) -> Vec<PanelLine> {
             .rev()
             .map(|mark| mark.number.to_string());
         let numbers: Vec<String> = numbers.take(20).collect();
-        say("marks", numbers.join(", "));
+        say("marked", format!("frame {}", numbers.join(", ")));
     }
     if let Some(name) = live.recording() {
         let frames = counted(live.status().recorded.into_iter().sum(), "frame");
         say("recording", format!("{name}, {frames}"));
     }
     lines
+}
+
+/// How many regions there are. Of several the largest is described, so the active taxels of all are counted.
+fn regions(reading: &LiveReading) -> String {
+    match reading.regions {
+        0 | 1 => reading.regions.to_string(),
+        several => {
+            let all = reading.imprint.as_ref().map_or(0, Imprint::count);
+            format!("{several}, above the largest; NA {all} in all")
+        }
+    }
 }
 
 /// The name of the shape, the nearest imprint, and by which model and noise; none where nothing is active. What is said

@@ -261,6 +261,20 @@ fn switch_mouse(app: &mut App) -> Effect {
     Effect::Terminal(TerminalEffect::Mouse(app.mouse))
 }
 
+/// Shows the coverage in shades, then in percent, then the imprint again.
+fn next_display(app: &mut App) {
+    let (next, text) = match app.display {
+        Display::Imprint => (Display::Shades, "coverage in shades"),
+        Display::Shades => (
+            Display::Percent,
+            "coverage in percent; one digit is tens: 5 is 50 to 59 %",
+        ),
+        Display::Percent => (Display::Imprint, "active taxels"),
+    };
+    app.display = next;
+    inform(app, text);
+}
+
 /// Handles what needs nothing from outside: the cursor, what is shown, and the shape.
 /// Coverage is refused without a source: it is the share of a taxel that a shape covers, which a drawing has not.
 fn edit(app: &mut App, message: &Message) {
@@ -286,13 +300,7 @@ fn edit(app: &mut App, message: &Message) {
             let text = "no coverage to show: what is drawn by hand has none";
             refuse(app, format!("{text}; {figure} places a figure"));
         }
-        Message::Display => {
-            app.display = match app.display {
-                Display::Imprint => Display::Shades,
-                Display::Shades => Display::Percent,
-                Display::Percent => Display::Imprint,
-            };
-        }
+        Message::Display => next_display(app),
         Message::Layer(layer) => switch_layer(app, layer),
         Message::SwitchPage if app.panes().is_some_and(|panes| panes.panel.is_some()) => {
             inform(app, "matrix and descriptors are both in sight");

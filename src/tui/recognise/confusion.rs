@@ -182,10 +182,14 @@ impl Page for Confusion {
         let evaluation = &self.trained.evaluation;
         let title = format!("Confusion: {}", self.trained.choice);
         let error = percent(evaluation.error());
-        let limit = format!("  best possible error {}", error.trim_start());
+        let limit = format!("  error {} at best", error.trim_start());
         let pieces = [(title.as_str(), Role::Title), (limit.as_str(), Role::Text)];
         write::line(buffer, area, theme, pieces);
-        let meaning = "rows: the shape that touches; columns: its name; percent of the row";
+        let meanings = [
+            "rows: the shape that touches; columns: its name; percent of the row",
+            "rows: what touches; columns: its name; % of the row",
+        ];
+        let meaning = write::first_fitting(&meanings, area.width.into());
         write::line(buffer, write::row(area, 1), theme, [(meaning, Role::Quiet)]);
         let last = layout.first.1 + layout.columns;
         for (index, column) in (layout.first.1..last.min(self.count())).enumerate() {

@@ -79,9 +79,14 @@ impl ModelChoice {
 /// That there is no set of a name, and which ones there are: the built-in ones and `stored` models.
 pub(crate) fn unknown_set(name: &str, stored: &[Name]) -> String {
     let own = ModelChoice::BUILT_IN.iter().map(ModelChoice::name);
-    let all: Vec<&str> = own.chain(stored.iter().map(Name::as_str)).collect();
+    let is_own = |stored: &&Name| {
+        let mut own = ModelChoice::BUILT_IN.iter();
+        own.any(|own| stored.same(own.name()))
+    };
+    let stored = stored.iter().filter(|stored| !is_own(stored));
+    let all: Vec<&str> = own.chain(stored.map(Name::as_str)).collect();
     let (name, all) = (shortened(name), all.join(", "));
-    format!("no set is called {name:?}; there are {all}")
+    format!("no model or file {name:?}; there are {all}")
 }
 
 impl fmt::Display for ModelChoice {
@@ -90,7 +95,7 @@ impl fmt::Display for ModelChoice {
         match self {
             Self::Figures => f.write_str("the seven figures"),
             Self::EqualFigures => f.write_str("the seven figures of 30 cells"),
-            Self::Shipped => f.write_str("the shapes that come with it"),
+            Self::Shipped => f.write_str("the shipped shapes"),
             Self::Stored(name) => write!(f, "model {name}"),
             Self::File(path) => write!(f, "model {}", path.display()),
         }

@@ -179,7 +179,7 @@ impl Panel<'_> {
         self.text(&limit, Role::Quiet);
         if let Some(unknown) = trained.unknown_between {
             let text = format!(
-                "{} of the poses between are unknown",
+                "{} of poses between its points are unknown",
                 percent(unknown).trim_start()
             );
             self.text(&text, Role::Quiet);
@@ -346,7 +346,7 @@ fn place(trained: &TrainedModel, shape: usize, pose: &PoseEstimate, own: bool) -
         }
         let turn = match period {
             360 => String::new(),
-            period => format!(" modulo {period}°"),
+            period => format!(" (repeats every {period}°)"),
         };
         let last = (first + count - 1) % period;
         (

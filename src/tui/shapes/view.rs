@@ -126,14 +126,14 @@ fn draw(
 
 /// Draws how many shapes the filter leaves, and that typing makes one as long as there is none.
 fn draw_count(theme: &Theme, dialog: &ListDialog, buffer: &mut Buffer, area: Rect) {
-    let count = format!("   {} of {}", dialog.rows().len(), dialog.total());
+    let count = format!("  {} of {}", dialog.rows().len(), dialog.total());
     let hinted = format!("{count}; type to search");
     let hinted = if dialog.filter().is_empty() && dialog.total() > 0 {
         &hinted
     } else {
         &count
     };
-    let text = write::first_fitting(&[hinted, &count], area.width.into());
+    let text = write::first_fitting(&[hinted, &count], usize::from(area.width).saturating_sub(1));
     write::line(buffer, area, theme, [(text, Role::Quiet)]);
 }
 

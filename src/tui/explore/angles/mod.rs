@@ -88,7 +88,7 @@ fn title(results: &Results) -> String {
     if let Some(curve) = results.angle_curve() {
         for (every, what) in [(curve.every_angle, "angle"), (curve.every_row, "y0")] {
             if every > 1 {
-                text += &format!(", 1 {what} in {every}");
+                text += &format!(", from 1 {what} in {every}");
             }
         }
     }
@@ -116,7 +116,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
     }
     let field = field(page, &spread)?;
     let key = results.feature().key.as_str();
-    field.draw_axes(theme, buffer, [key, "angle / °"]);
+    field.draw_axes(theme, buffer, [key, "angle/°"]);
     let quiet = theme.style(Role::Text);
     for (of, dashed) in CURVES {
         let mut canvas = field.canvas();

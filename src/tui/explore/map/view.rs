@@ -47,11 +47,11 @@ fn meaning(theme: &Theme, pane: &MapPane) -> String {
         (true, false) => "shade",
     };
     let part = if pane.stride > 1 {
-        format!(", 1 in {0} x {0}", pane.stride)
+        format!("; 1 pose in {0} x {0}", pane.stride)
     } else {
         String::new()
     };
-    format!("  {sign}: an imprint{part}")
+    format!("  each {sign} an imprint{part}")
 }
 
 /// Draws the page. Returns where the cursor is.

@@ -4,7 +4,7 @@
 //! Explore: hexagon                          what is swept
 //! x0      5:5.99:0.01    -16 to 16 cells    label, range, what it may contain
 //! y0      5:5.99:0.01    -16 to 16 cells
-//! Anchor  < corner >     top left, unturned
+//! Anchor  < corner >     top left, before turning
 //! 3,600,000 poses, about 20 seconds         how many poses, and how long a sweep takes
 //! ! 1,200 poses are cut off                 in how many of them the shape reaches beyond the sensor
 //! without 1 taxel set by hand               what the sweep does not know
@@ -138,7 +138,7 @@ fn input(row: Rect) -> usize {
 fn draw_anchor(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, row: Rect) -> Position {
     let label = format!("{:LABEL$}", "Anchor");
     let (name, meaning) = match form.anchor() {
-        Anchor::Corner => ("corner", "top left, unturned"),
+        Anchor::Corner => ("corner", "top left, before turning"),
         Anchor::Centre => ("centre", "point it turns about"),
     };
     let role = if form.focus().is_none() {
