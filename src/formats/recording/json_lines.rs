@@ -18,8 +18,8 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
 use crate::formats::recording::lines::TextLines;
 use crate::formats::recording::side::shape;
+use crate::formats::recording::text_row::too_large;
 use crate::frame::{Frame, LARGEST_VALUE};
-use crate::quote::shortened;
 
 /// Reads a recording.
 pub(super) fn read(
@@ -275,8 +275,7 @@ impl<'de> Visitor<'de> for CellSeed<'_> {
 
     fn visit_f64<E: Error>(self, value: f64) -> Result<bool, E> {
         if value.abs() > LARGEST_VALUE {
-            let found = shortened(&value.to_string());
-            return Err(E::custom(format!("{found} is too large for a value")));
+            return Err(E::custom(too_large(value)));
         }
         self.0.push(value);
         Ok(false)

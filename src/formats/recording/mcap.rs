@@ -22,6 +22,7 @@ use crate::formats::recording::cdr::CdrReader;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
 use crate::formats::recording::side::shape;
+use crate::formats::recording::text_row::too_large;
 use crate::frame::{Frame, LARGEST_VALUE};
 use crate::quote::legible;
 
@@ -484,10 +485,10 @@ impl McapState<'_, '_> {
             // Counted only: rows and columns have to be named.
             None => self.frame.reset(1, 1),
         }
-        if self.values.iter().any(|value| value.abs() > LARGEST_VALUE) {
-            return Err(RecordingError::damaged(format!(
-                "{name}: a value is infinite"
-            )));
+        let mut values = self.values.iter();
+        if let Some(value) = values.find(|value| value.abs() > LARGEST_VALUE) {
+            let message = format!("{name}: a value is {}", too_large(*value));
+            return Err(RecordingError::damaged(message));
         }
         self.given[channel].frames += 1;
         Ok((self.sink)(RecordingEvent::Frame(&self.frame)).is_break())

@@ -20,6 +20,7 @@ use crate::formats::npy::Header;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
 use crate::formats::recording::side::shape;
+use crate::formats::recording::text_row::too_large;
 use crate::frame::{Frame, LARGEST_VALUE};
 use crate::quote::shortened;
 
@@ -445,7 +446,7 @@ fn short(frame: u64, frames: u64) -> RecordingError {
 /// Gives a frame whose values are finite or none; true if no more is wanted.
 ///
 /// # Errors
-/// If a value is infinite, with its row and column.
+/// If a value is infinite or too large, with its row and column.
 fn give(frame: &Frame, sink: &mut Sink<'_>) -> Result<bool, RecordingError> {
     let wrong = frame
         .values()
@@ -454,8 +455,9 @@ fn give(frame: &Frame, sink: &mut Sink<'_>) -> Result<bool, RecordingError> {
     if let Some(index) = wrong {
         let columns = usize::from(frame.columns());
         let (number, row, column) = (frame.number, index / columns, index % columns);
+        let found = too_large(frame.values()[index]);
         return Err(RecordingError::damaged(format!(
-            "frame {number}, row {row}, column {column}: infinite, expected a number, or NaN where there is no cell"
+            "frame {number}, row {row}, column {column}: {found}, or NaN where there is no cell"
         )));
     }
     Ok(sink(RecordingEvent::Frame(frame)).is_break())

@@ -103,9 +103,6 @@ impl RosMessage {
             };
         }
         self.any = true;
-        if line.windows(3).any(|word| word == b"...") {
-            return RosLine::Cut;
-        }
         if let Some(size) = line.strip_prefix(b"size:") {
             self.sizes.extend(whole(size));
             return RosLine::More;
@@ -117,6 +114,8 @@ impl RosMessage {
         if let Some(value) = line.strip_prefix(b"- ").filter(|_| self.open) {
             return if self.push(value) {
                 RosLine::More
+            } else if is_cut(value) && !self.values.is_empty() {
+                RosLine::Cut
             } else {
                 RosLine::Wrong(1)
             };
@@ -137,12 +136,25 @@ impl RosMessage {
         let list = &line[..end.unwrap_or(line.len())];
         let is_mark = |byte: &u8| *byte == b',' || byte.is_ascii_whitespace();
         let fields = list.split(is_mark).filter(|field| !field.is_empty());
-        for (index, field) in fields.enumerate() {
-            if !self.push(field) {
+        self.fields(fields.enumerate(), RosLine::More)
+    }
+
+    /// Adds the values of a list. Dots in place of values mean that it was cut only where all others are numbers: noise has
+    /// dots, too.
+    fn fields<'a>(
+        &mut self,
+        fields: impl Iterator<Item = (usize, &'a [u8])>,
+        whole: RosLine,
+    ) -> RosLine {
+        let mut state = whole;
+        for (index, field) in fields {
+            if is_cut(field) && !self.values.is_empty() {
+                state = RosLine::Cut;
+            } else if !self.push(field) {
                 return RosLine::Wrong(index + 1);
             }
         }
-        RosLine::More
+        state
     }
 
     /// A line of `--csv`: label, size and stride of each dimension, the offset, the values. It is a whole message.
@@ -158,12 +170,7 @@ impl RosMessage {
         }
         // The offset.
         fields.next();
-        for (index, field) in fields {
-            if !self.push(field) {
-                return RosLine::Wrong(index + 1);
-            }
-        }
-        RosLine::Whole
+        self.fields(fields, RosLine::Whole)
     }
 
     /// Rows and columns of the layout, where it has these two.
@@ -180,6 +187,13 @@ impl RosMessage {
 /// A whole number from 0 up.
 fn whole(field: &[u8]) -> Option<u32> {
     str::from_utf8(field.trim_ascii()).ok()?.parse().ok()
+}
+
+/// Whether dots stand in place of the values that an echo leaves out, in quotes or without.
+fn is_cut(field: &[u8]) -> bool {
+    let is_quote = |byte: &u8| matches!(byte, b'\'' | b'"');
+    let mut bytes = field.trim_ascii().iter().filter(|byte| !is_quote(byte));
+    bytes.by_ref().take(3).eq(b"...") && bytes.next().is_none()
 }
 
 /// Whether a field is a dimension's label, which may be empty: whatever is no number.

@@ -68,8 +68,19 @@ pub(crate) fn count(line: u64, found: usize, expected: usize) -> RecordingError 
     RecordingError::in_line(line, format!("found {found} values, expected {expected}"))
 }
 
+/// That a value is beyond all that are taken.
+pub(crate) fn too_large(value: f64) -> String {
+    if value.is_infinite() {
+        return "infinite, expected a number".to_owned();
+    }
+    format!("{value:e} is too large, expected at most {LARGEST_VALUE:e}")
+}
+
 /// A field that is no value.
 pub(crate) fn wrong(line: u64, column: usize, field: &[u8]) -> RecordingError {
+    if let Some(value) = number::read(field).filter(|value| value.abs() > LARGEST_VALUE) {
+        return RecordingError::in_field(line, column, too_large(value));
+    }
     let found = shortened(&text(field));
     RecordingError::in_field(line, column, format!("found {found:?}, expected a number"))
 }

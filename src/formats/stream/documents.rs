@@ -70,6 +70,8 @@ pub(super) struct RosDecoder {
     begun: bool,
     /// Whether something in it is wrong.
     broken: bool,
+    /// Whether values are left out.
+    cut: bool,
     /// The frame made of it.
     frame: Frame,
 }
@@ -81,6 +83,7 @@ impl RosDecoder {
             message: RosMessage::default(),
             begun: from_start,
             broken: false,
+            cut: false,
             frame: Frame::new(1, 1),
         }
     }
@@ -99,8 +102,11 @@ impl RosDecoder {
         match self.message.line(line) {
             RosLine::More => {}
             RosLine::Cut => {
-                counts.cut = true;
-                self.broken = true;
+                self.cut = true;
+                // A line that is a message has no other end.
+                if ros_text::is_layout(trimmed) {
+                    self.end(line, counts, sink);
+                }
             }
             RosLine::Wrong(_) => self.broken = true,
             RosLine::Whole => self.end(line, counts, sink),
@@ -113,6 +119,10 @@ impl RosDecoder {
         let shape = self.message.shape().or(self.shape);
         let values = self.message.values.len();
         let begun = std::mem::replace(&mut self.begun, true);
+        if std::mem::take(&mut self.cut) {
+            counts.cut |= begun && !self.broken;
+            self.broken = true;
+        }
         let fits =
             |(rows, columns): &(u16, u16)| usize::from(*rows) * usize::from(*columns) == values;
         match shape.filter(fits) {
@@ -140,7 +150,7 @@ impl RosDecoder {
     /// The end of the input: an array that is closed is whole.
     pub(super) fn finish(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         if self.message.begun() {
-            self.broken |= self.message.is_open();
+            self.broken |= self.message.is_open() && !self.cut;
             self.end(b"", counts, sink);
         }
     }
