@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
+use crate::acquire::growing_file::{GrowingFile, ReadAnew};
 use crate::acquire::serial;
 use crate::acquire::source::FrameSource;
 
@@ -17,9 +18,6 @@ const MOMENT: Timespec = Timespec {
     tv_nsec: 100_000_000,
 };
 
-/// How long a file that ends is left alone until it may have grown.
-const GROWTH: Duration = Duration::from_millis(50);
-
 /// How long a connection may take.
 const CONNECTING: Duration = Duration::from_secs(5);
 
@@ -28,6 +26,8 @@ const CONNECTING: Duration = Duration::from_secs(5);
 pub(super) enum ReadOutcome {
     /// So many bytes, perhaps none yet.
     Bytes(usize),
+    /// Nothing yet: what comes now is from the start of a file again.
+    Anew(ReadAnew),
     /// The end.
     End,
 }
@@ -39,8 +39,10 @@ pub(super) enum ByteInput {
     Tcp(TcpStream),
     /// A serial line or a pipe.
     Device(File),
-    /// A file, and whether it is waited for when it ends.
-    File(File, bool),
+    /// A file, to its end.
+    File(File),
+    /// A file that is waited for when it ends.
+    Growing(GrowingFile),
 }
 
 impl ByteInput {
@@ -54,15 +56,18 @@ impl ByteInput {
             FrameSource::Tcp(address) => Self::Tcp(connect(address)?),
             FrameSource::Serial(path) => Self::Device(serial::open_line(path, baud)?),
             FrameSource::Fifo(path) => Self::Device(File::open(path)?),
-            FrameSource::File(path) => Self::File(File::open(path)?, !once),
+            FrameSource::File(path) if once => Self::File(File::open(path)?),
+            FrameSource::File(path) => Self::Growing(GrowingFile::open(path)?),
         })
     }
 
-    fn fd(&self) -> BorrowedFd<'_> {
+    /// What is waited for; none where bytes are read at once.
+    fn fd(&self) -> Option<BorrowedFd<'_>> {
         match self {
-            Self::Standard(input) => input.as_fd(),
-            Self::Tcp(stream) => stream.as_fd(),
-            Self::Device(file) | Self::File(file, _) => file.as_fd(),
+            Self::Standard(input) => Some(input.as_fd()),
+            Self::Tcp(stream) => Some(stream.as_fd()),
+            Self::Device(file) => Some(file.as_fd()),
+            Self::File(_) | Self::Growing(_) => None,
         }
     }
 
@@ -71,8 +76,8 @@ impl ByteInput {
     /// # Errors
     /// What the system reports.
     pub(super) fn read(&mut self, bytes: &mut [u8]) -> io::Result<ReadOutcome> {
-        if !matches!(self, Self::File(..)) {
-            let mut fds = [PollFd::from_borrowed_fd(self.fd(), PollFlags::IN)];
+        if let Some(fd) = self.fd() {
+            let mut fds = [PollFd::from_borrowed_fd(fd, PollFlags::IN)];
             match poll(&mut fds, Some(&MOMENT)) {
                 Ok(0) | Err(rustix::io::Errno::INTR) => return Ok(ReadOutcome::Bytes(0)),
                 Ok(_) => {}
@@ -83,16 +88,18 @@ impl ByteInput {
             // Not through the buffer of the standard library, which would be polled past.
             Self::Standard(input) => rustix::io::read(&*input, bytes).map_err(io::Error::from),
             Self::Tcp(stream) => stream.read(bytes),
-            Self::Device(file) | Self::File(file, _) => file.read(bytes),
-        };
-        match (read, &self) {
-            (Ok(0), Self::File(_, true)) => {
-                std::thread::sleep(GROWTH);
-                Ok(ReadOutcome::Bytes(0))
+            Self::Device(file) | Self::File(file) => file.read(bytes),
+            Self::Growing(file) => {
+                if let Some(anew) = file.anew()? {
+                    return Ok(ReadOutcome::Anew(anew));
+                }
+                return file.read(bytes).map(ReadOutcome::Bytes);
             }
-            (Ok(0), _) => Ok(ReadOutcome::End),
-            (Ok(count), _) => Ok(ReadOutcome::Bytes(count)),
-            (Err(error), _) => match error.kind() {
+        };
+        match read {
+            Ok(0) => Ok(ReadOutcome::End),
+            Ok(count) => Ok(ReadOutcome::Bytes(count)),
+            Err(error) => match error.kind() {
                 ErrorKind::Interrupted | ErrorKind::WouldBlock => Ok(ReadOutcome::Bytes(0)),
                 _ => Err(error),
             },

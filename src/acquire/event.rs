@@ -3,6 +3,7 @@
 use std::io;
 use std::time::Duration;
 
+use crate::acquire::growing_file::ReadAnew;
 use crate::formats::recording::{ChannelInfo, RecordingError, RecordingNote};
 use crate::formats::stream::{StreamCounts, StreamFormat};
 use crate::frame::Frame;
@@ -78,6 +79,8 @@ pub enum AcquireEvent<'a> {
     },
     /// A recording begins again.
     Again,
+    /// A growing file is read from its start again.
+    Anew(ReadAnew),
     /// The end of a stream, with all that has come.
     Ended(&'a StreamCounts),
 }

@@ -15,6 +15,8 @@ mod serial;
 
 mod byte_input;
 
+mod growing_file;
+
 mod event;
 
 mod stream;
@@ -26,6 +28,7 @@ mod run;
 mod recorder;
 
 pub use event::{AcquireError, AcquireEvent, AcquireOptions};
+pub use growing_file::ReadAnew;
 pub use recorder::{FrameRecorder, RecorderError, description_beside};
 pub use run::acquire;
 pub use source::FrameSource;

@@ -62,22 +62,27 @@ pub(super) fn run(
     let mut decoder = StreamDecoder::new(stream);
     let mut clock = StreamClock::new();
     let open = || ByteInput::open(source, options.baud, options.once);
-    let mut input = open().map_err(|error| AcquireError::Io {
-        doing: "open it",
-        error,
-    })?;
+    let mut input = open().map_err(|error| refused("open it", error))?;
     // Arrival tells nothing of a file.
     let timed = !options.once && !matches!(source, FrameSource::File(_));
     let mut bytes = vec![0; CHUNK];
     while !stop.load(Ordering::Relaxed) {
         let lost = match input.read(&mut bytes) {
             Ok(ReadOutcome::Bytes(count)) => {
-                let read = &bytes[..count];
-                if decode(&mut decoder, read, timed, &mut clock, consumer).is_break()
+                if decode(&mut decoder, &bytes[..count], timed, &mut clock, consumer).is_break()
                     || tick(&decoder, &mut clock, consumer).is_break()
                 {
                     return Ok(());
                 }
+                continue;
+            }
+            Ok(ReadOutcome::Anew(how)) => {
+                if finish(&mut decoder, timed, &mut clock, consumer).is_break()
+                    || consumer(AcquireEvent::Anew(how)).is_break()
+                {
+                    return Ok(());
+                }
+                decoder.begin_anew();
                 continue;
             }
             Ok(ReadOutcome::End) if source.comes_back() && !options.once => {
@@ -85,10 +90,7 @@ pub(super) fn run(
             }
             Ok(ReadOutcome::End) => break,
             Err(error) if source.comes_back() && !options.once => error,
-            Err(error) => {
-                let doing = "read it";
-                return Err(AcquireError::Io { doing, error });
-            }
+            Err(error) => return Err(refused("read it", error)),
         };
         match again(&open, &lost, stop, &decoder, consumer) {
             Some(found) => input = found,
@@ -97,14 +99,29 @@ pub(super) fn run(
         decoder.restart();
         clock.last_frame = Instant::now();
     }
+    let _ = finish(&mut decoder, timed, &mut clock, consumer);
+    let _ = consumer(AcquireEvent::Ended(decoder.counts()));
+    Ok(())
+}
+
+/// The end of what was read: a whole frame is given, a torn one counted.
+fn finish(
+    decoder: &mut StreamDecoder,
+    timed: bool,
+    clock: &mut StreamClock,
+    consumer: &mut Consumer<'_>,
+) -> ControlFlow<()> {
     let mut flow = ControlFlow::Continue(());
     decoder.finish(&mut |event| {
         if flow.is_continue() {
-            flow = report(event, timed, &mut clock, consumer);
+            flow = report(event, timed, clock, consumer);
         }
     });
-    let _ = consumer(AcquireEvent::Ended(decoder.counts()));
-    Ok(())
+    flow
+}
+
+fn refused(doing: &'static str, error: io::Error) -> AcquireError {
+    AcquireError::Io { doing, error }
 }
 
 /// Opens a source again, each second, until it is there; none if no more is wanted.

@@ -92,12 +92,21 @@ impl StreamDecoder {
     /// Begins anew in the middle of the stream, as after a line was unplugged; frames are counted on.
     pub fn restart(&mut self) {
         let format = self.format();
+        self.reset(format, false);
+    }
+
+    /// Begins anew with the first byte of another stream, whose form may be another one; frames are counted on.
+    pub fn begin_anew(&mut self) {
+        self.reset(self.options.format, true);
+    }
+
+    fn reset(&mut self, format: Option<StreamFormat>, from_start: bool) {
         self.bytes.clear();
-        (self.skipping, self.torn) = (false, true);
+        (self.skipping, self.torn) = (false, !from_start);
         self.state = State::Looking;
-        self.options.from_start = false;
+        self.options.from_start = from_start;
         if let Some(format) = format {
-            self.begin(format, false);
+            self.begin(format, from_start);
         }
     }
 

@@ -1,0 +1,134 @@
+//! A file that is read as it grows, also when it is cut and written anew, or when another file takes its name.
+
+use std::fmt;
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
+use std::os::unix::fs::{FileExt, MetadataExt};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
+
+/// How long a file that ends is left alone until it may have grown.
+const GROWTH: Duration = Duration::from_millis(50);
+
+/// So many of the last bytes are compared with what is in the file, to see whether it was written anew meanwhile.
+const REMEMBERED: usize = 1 << 12;
+
+/// Why a file is read from its start again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ReadAnew {
+    /// It is shorter than it was, or holds something else.
+    Cut,
+    /// Another file has its name.
+    Replaced,
+}
+
+impl fmt::Display for ReadAnew {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Cut => "was cut or written anew: it is read from its start",
+            Self::Replaced => "was replaced: the new file is read from its start",
+        })
+    }
+}
+
+/// A file with a name, read up to its end so far.
+#[derive(Debug)]
+pub(super) struct GrowingFile {
+    path: PathBuf,
+    file: File,
+    /// How many bytes were read.
+    place: u64,
+    /// The last of them.
+    last: Vec<u8>,
+    /// Whether all that was there has been read.
+    at_end: bool,
+    /// When it had been changed the last time it was looked at.
+    changed: Option<SystemTime>,
+}
+
+impl GrowingFile {
+    /// Opens it.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub(super) fn open(path: &Path) -> io::Result<Self> {
+        Ok(Self {
+            path: path.to_owned(),
+            file: File::open(path)?,
+            place: 0,
+            last: Vec::new(),
+            at_end: false,
+            changed: None,
+        })
+    }
+
+    /// Reads what has come; waits a moment where there is nothing.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub(super) fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let count = match self.file.read(bytes) {
+            Err(error) if error.kind() == ErrorKind::Interrupted => 0,
+            read => read?,
+        };
+        self.at_end = count == 0;
+        if self.at_end {
+            std::thread::sleep(GROWTH);
+        }
+        self.place += count as u64;
+        let read = &bytes[..count];
+        self.last.extend(&read[count.saturating_sub(REMEMBERED)..]);
+        let old = self.last.len().saturating_sub(REMEMBERED);
+        self.last.drain(..old);
+        Ok(count)
+    }
+
+    /// Begins at the start again where that has to be; to be called before each reading.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub(super) fn anew(&mut self) -> io::Result<Option<ReadAnew>> {
+        if !self.at_end {
+            return Ok(None);
+        }
+        if self.was_cut()? {
+            self.file.seek(SeekFrom::Start(0))?;
+            (self.place, self.at_end, self.changed) = (0, false, None);
+            self.last.clear();
+            return Ok(Some(ReadAnew::Cut));
+        }
+        // As long as there is none of that name, what is open is all there is.
+        let Ok(named) = fs::metadata(&self.path) else {
+            return Ok(None);
+        };
+        let own = self.file.metadata()?;
+        // The rest of the old one comes first: it is looked at after the new one was there.
+        let is_own = (named.dev(), named.ino()) == (own.dev(), own.ino());
+        if is_own || !named.is_file() || own.len() > self.place {
+            return Ok(None);
+        }
+        *self = Self::open(&self.path)?;
+        Ok(Some(ReadAnew::Replaced))
+    }
+
+    /// Whether what was read is no longer there.
+    fn was_cut(&mut self) -> io::Result<bool> {
+        let found = self.file.metadata()?;
+        if found.len() < self.place {
+            return Ok(true);
+        }
+        let changed = found.modified().ok();
+        if changed.is_some() && changed == self.changed {
+            return Ok(false);
+        }
+        self.changed = changed;
+        let mut bytes = vec![0; self.last.len()];
+        let start = self.place - self.last.len() as u64;
+        match self.file.read_exact_at(&mut bytes, start) {
+            // Cut between the two looks.
+            Err(error) if error.kind() == ErrorKind::UnexpectedEof => Ok(true),
+            read => read.map(|()| bytes != self.last),
+        }
+    }
+}
