@@ -7,6 +7,9 @@
 //! Beside `touch.npy` lies `touch.json`, which says where the frames are from and how they were looked at. The two get
 //! their names together, so there is never one of these beside an older one of the other. `touch.json` says whether the
 //! recording was ended; that of a killed program does not.
+//!
+//! Files that are replaced stay until the first frame comes. A disk that is full ends a recording after its last whole record,
+//! and the description says why.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -21,6 +24,12 @@ use crate::storage::{Existing, FileError, FinishedFile, UnfinishedFile, persist_
 
 /// Bytes of the header's text: with the ten before it, 256. The longest has about 150.
 const HEADER_TEXT: u16 = 246;
+
+/// Bytes before the first record.
+const HEADER: u64 = 256;
+
+/// Bytes of time and number before the values of a record.
+const RECORD_HEAD: u64 = 16;
 
 /// Records are written out after this time at the latest.
 const WRITTEN_OUT: Duration = Duration::from_millis(400);
@@ -49,6 +58,12 @@ pub enum RecorderError {
         /// The file.
         path: PathBuf,
     },
+    /// The file, or the description beside it, is the source.
+    #[error("{} is what is watched: record in another file", path.display())]
+    IsSource {
+        /// The file.
+        path: PathBuf,
+    },
     /// A frame of another size than those before it.
     #[error("a frame of {found_rows} × {found_columns} cells, expected {rows} × {columns} as before", found_rows = found.0, found_columns = found.1, rows = expected.0, columns = expected.1)]
     Size {
@@ -68,10 +83,16 @@ pub struct FrameRecorder {
     path: PathBuf,
     metadata: RecordingMetadata,
     file: File,
+    /// Array and description that are to replace others, until the first frame comes.
+    unnamed: Option<(FinishedFile, FinishedFile)>,
     shape: Option<(u16, u16)>,
     buffer: Vec<u8>,
     /// Records in the file and in the buffer.
     records: u64,
+    /// Records in the file.
+    in_file: u64,
+    /// What went wrong first.
+    reason: Option<String>,
     written: Instant,
     /// The times of the first frame and of the last one.
     times: Option<(f64, f64)>,
@@ -128,7 +149,7 @@ impl Drop for Syncer {
 }
 
 impl FrameRecorder {
-    /// Creates the file, and `.json` beside it: both, or none.
+    /// Creates the file, and `.json` beside it: both, or none. What is to be replaced stays until the first frame comes.
     ///
     /// # Errors
     /// If one of the two is there and is to be kept, or they cannot be created.
@@ -146,10 +167,19 @@ impl FrameRecorder {
         };
         let (file, array) = array().map_err(refused)?;
         let description = prepared(path, existing, &metadata)?;
-        persist_pair(array, description).map_err(refused)?;
+        let unnamed = match existing {
+            Existing::Replaced => Some((array, description)),
+            Existing::Kept => {
+                persist_pair(array, description).map_err(refused)?;
+                None
+            }
+        };
         Ok(Self {
             path: path.to_owned(),
             metadata,
+            unnamed,
+            in_file: 0,
+            reason: None,
             syncer: Syncer::new(&file),
             times: None,
             file,
@@ -167,7 +197,8 @@ impl FrameRecorder {
     pub fn describe(&mut self, metadata: &RecordingMetadata) -> Result<(), RecorderError> {
         self.metadata.clone_from(metadata);
         self.metadata.ended = Some(false);
-        self.write_description()
+        let written = self.write_description();
+        self.noted(written)
     }
 
     /// Replaces the marks in the description.
@@ -176,12 +207,46 @@ impl FrameRecorder {
     /// What the system reports.
     pub fn mark(&mut self, marks: Vec<FrameMark>) -> Result<(), RecorderError> {
         self.metadata.marks = marks;
-        self.write_description()
+        let written = self.write_description();
+        self.noted(written)
     }
 
-    fn write_description(&self) -> Result<(), RecorderError> {
+    /// Keeps the reason of the first failure for the description.
+    fn noted<T>(&mut self, result: Result<T, RecorderError>) -> Result<T, RecorderError> {
+        if let Err(error) = &result {
+            self.reason.get_or_insert_with(|| match error {
+                RecorderError::Io { error, .. } => error.to_string(),
+                error => error.to_string(),
+            });
+        }
+        result
+    }
+
+    fn write_description(&mut self) -> Result<(), RecorderError> {
         let file = prepared(&self.path, Existing::Replaced, &self.metadata)?;
+        if let Some((_, description)) = &mut self.unnamed {
+            *description = file;
+            return Ok(());
+        }
         file.persist().map_err(refused)
+    }
+
+    /// Writes the description over the old one, where a full disk has no room for both.
+    fn overwrite_description(&self) -> io::Result<()> {
+        let text = self.metadata.text()?;
+        let path = self.path.with_extension("json");
+        let mut file = File::options().write(true).open(path)?;
+        let old = file.seek(SeekFrom::End(0))?;
+        let missing = (text.len() as u64).saturating_sub(old);
+        // Blanks change nothing. Only where there is room for them the text is replaced.
+        if let Err(error) = io::copy(&mut io::repeat(b' ').take(missing), &mut file) {
+            file.set_len(old)?;
+            return Err(error);
+        }
+        file.seek(SeekFrom::Start(0))?;
+        file.write_all(&text)?;
+        file.set_len(text.len() as u64)?;
+        file.sync_all()
     }
 
     /// Number of frames that were recorded.
@@ -194,10 +259,18 @@ impl FrameRecorder {
     /// # Errors
     /// If it is of another size than the first one, or cannot be written.
     pub fn add(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), RecorderError> {
+        let added = self.take(frame, time);
+        self.noted(added)
+    }
+
+    fn take(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), RecorderError> {
         let found = (frame.rows(), frame.columns());
         if self.shape.is_none() {
             self.shape = Some(found);
             self.count()?;
+        }
+        if let Some((array, description)) = self.unnamed.take() {
+            persist_pair(array, description).map_err(refused)?;
         }
         if let Some(expected) = self.shape.filter(|shape| *shape != found) {
             return Err(RecorderError::Size { found, expected });
@@ -213,10 +286,10 @@ impl FrameRecorder {
         self.buffer
             .extend(values.flat_map(|value| value.to_le_bytes()));
         self.records += 1;
-        if self.buffer.len() >= BUFFER {
+        if self.buffer.len() >= BUFFER || self.written.elapsed() >= WRITTEN_OUT {
             return self.write_out();
         }
-        self.tick()
+        Ok(())
     }
 
     /// Writes out what waits for too long; to be called now and then.
@@ -227,21 +300,49 @@ impl FrameRecorder {
         if self.buffer.is_empty() || self.written.elapsed() < WRITTEN_OUT {
             return Ok(());
         }
-        self.write_out()
+        let written = self.write_out();
+        self.noted(written)
     }
 
-    /// Writes out all records, then their count.
+    /// Writes out all records, then their count. What the disk has no room for stays in the buffer.
     fn write_out(&mut self) -> Result<(), RecorderError> {
+        let size = self.record_bytes();
+        let start = HEADER + self.in_file * size;
         let written = self
             .file
-            .seek(SeekFrom::End(0))
+            .seek(SeekFrom::Start(start))
             .and_then(|_| self.file.write_all(&self.buffer));
-        written.map_err(|error| self.refused(error))?;
+        if let Err(error) = written {
+            // The first error is the one that is reported.
+            let _ = self.keep_whole(start, size);
+            return Err(self.refused(error));
+        }
         self.buffer.clear();
+        self.in_file = self.records;
         self.written = Instant::now();
         self.count()?;
         self.syncer.tick();
         Ok(())
+    }
+
+    /// Cuts off a torn record behind `start`, and counts the whole ones.
+    fn keep_whole(&mut self, start: u64, size: u64) -> Result<(), RecorderError> {
+        let end = self.file.metadata().map(|file| file.len());
+        let end = end.map_err(|error| self.refused(error))?;
+        let whole = end.saturating_sub(start) / size;
+        let whole = whole.min(self.records - self.in_file);
+        let cut = self.file.set_len(start + whole * size);
+        cut.map_err(|error| self.refused(error))?;
+        let bytes = usize::try_from(whole * size).map_or(usize::MAX, |bytes| bytes);
+        self.buffer.drain(..bytes.min(self.buffer.len()));
+        self.in_file += whole;
+        self.count()
+    }
+
+    /// Bytes of a record.
+    fn record_bytes(&self) -> u64 {
+        let (rows, columns) = self.shape.unwrap_or((1, 1));
+        RECORD_HEAD + 8 * u64::from(rows) * u64::from(columns)
     }
 
     fn refused(&self, error: io::Error) -> RecorderError {
@@ -249,9 +350,9 @@ impl FrameRecorder {
         RecorderError::Io { path, error }
     }
 
-    /// Writes the header with the number of records, in one piece.
+    /// Writes the header with the number of records in the file, in one piece.
     fn count(&mut self) -> Result<(), RecorderError> {
-        let header = header(self.shape, self.records);
+        let header = header(self.shape, self.in_file);
         let written = self
             .file
             .seek(SeekFrom::Start(0))
@@ -267,20 +368,29 @@ impl FrameRecorder {
         Some((last - first) / steps).filter(|&step| step > 0.0)
     }
 
-    /// Writes out everything, and syncs the file.
+    /// Writes out everything, and syncs the file. Without a frame what was to be replaced is there as before.
     ///
     /// # Errors
-    /// What the system reports.
+    /// What the system reports. What is in the file then is whole all the same, and the description says why it ends there.
     pub fn finish(mut self) -> Result<u64, RecorderError> {
-        self.write_out()?;
-        self.file.sync_all().map_err(|error| self.refused(error))?;
+        if self.unnamed.is_some() {
+            return Ok(0);
+        }
+        let written = self.write_out();
+        let written = self.noted(written);
+        let synced = self.file.sync_all().map_err(|error| self.refused(error));
+        let synced = self.noted(synced);
         if let Some(step) = self.step()
             && self.metadata.seconds_per_frame.is_none()
         {
             self.metadata.seconds_per_frame = Some(step);
         }
         self.metadata.ended = Some(true);
-        self.write_description()?;
+        self.metadata.ended_by = self.reason.take();
+        let described = self
+            .write_description()
+            .or_else(|error| self.overwrite_description().map_err(|_| error));
+        written.and(synced).and(described)?;
         Ok(self.records)
     }
 }

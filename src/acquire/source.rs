@@ -1,9 +1,13 @@
 //! What a source is called, and what it is.
 
 use std::ffi::OsStr;
-use std::fs;
-use std::os::unix::fs::FileTypeExt;
-use std::path::PathBuf;
+use std::fs::{self, File};
+use std::io;
+use std::os::fd::AsFd;
+use std::os::unix::fs::{FileTypeExt, MetadataExt};
+use std::path::{Path, PathBuf};
+
+use crate::acquire::recorder::RecorderError;
 
 /// Where frames come from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,6 +51,33 @@ impl FrameSource {
                 path.to_string_lossy().into_owned()
             }
         }
+    }
+
+    /// Refuses to record in the file that is watched, whatever its path, or to describe a recording in it.
+    ///
+    /// # Errors
+    /// [`RecorderError::IsSource`].
+    pub fn refuse_as_target(&self, target: &Path) -> Result<(), RecorderError> {
+        let place = |file: fs::Metadata| (file.dev(), file.ino());
+        let source = match self {
+            Self::Standard => io::stdin()
+                .as_fd()
+                .try_clone_to_owned()
+                .and_then(|input| File::from(input).metadata()),
+            Self::File(path) => fs::metadata(path),
+            Self::Tcp(_) | Self::Serial(_) | Self::Fifo(_) => return Ok(()),
+        };
+        // What is not there is nothing that can be lost.
+        let Ok(source) = source.map(place) else {
+            return Ok(());
+        };
+        let both = [target.to_owned(), target.with_extension("json")];
+        for path in both {
+            if fs::metadata(&path).is_ok_and(|found| place(found) == source) {
+                return Err(RecorderError::IsSource { path });
+            }
+        }
+        Ok(())
     }
 
     /// Whether it comes back after it was lost, so that it is tried again.

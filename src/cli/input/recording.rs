@@ -1,7 +1,7 @@
 //! Opens recordings: a file, or standard input kept in a temporary file, since a recording is read several times.
 
 use std::fs::File;
-use std::io::{self, Seek, SeekFrom};
+use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use crate::acquire::description_beside;
@@ -10,8 +10,12 @@ use crate::cli::input::content;
 use crate::cli::input::content::{Content, InputError};
 use crate::formats::recording::{
     ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata, read,
+    recognised,
 };
 use crate::imprint::Imprint;
+
+/// So many bytes tell the form of a recording.
+const LOOKED_AT: u64 = 1 << 16;
 
 /// A recording that can be read again and again.
 #[derive(Debug)]
@@ -54,8 +58,8 @@ impl RecordingFile {
         };
         let (description, complaint) = match description_beside(path) {
             Some(Ok(description)) => {
-                let killed = description.ended == Some(false);
-                (Some(description), killed.then(|| unended(path)))
+                let complaint = unended(path, &description);
+                (Some(description), complaint)
             }
             Some(Err(complaint)) => (None, Some(complaint)),
             None => (None, None),
@@ -104,6 +108,15 @@ impl RecordingFile {
         })
     }
 
+    /// Its form, as far as its beginning tells; also that of a damaged one.
+    pub(crate) fn format(&mut self) -> Option<RecordingFormat> {
+        let mut start = Vec::new();
+        self.file.seek(SeekFrom::Start(0)).ok()?;
+        let file = &mut self.file;
+        file.take(LOOKED_AT).read_to_end(&mut start).ok()?;
+        recognised(&start)
+    }
+
     /// The message about a damage.
     pub(crate) fn damaged(&self, error: RecordingError) -> CliError {
         CliError::Recording {
@@ -137,17 +150,21 @@ pub(crate) fn dead_cells(path: &Path) -> Result<Imprint, CliError> {
     }
 }
 
-/// That a recording has not been ended.
-fn unended(path: &Path) -> String {
+/// That a recording has not been ended, or that something else than its user ended it.
+fn unended(path: &Path, description: &RecordingMetadata) -> Option<String> {
     let beside = path.with_extension("json");
-    format!(
-        "{}: not ended: it is being recorded, or its program was killed; the last half second may be missing",
-        beside.display()
-    )
+    let beside = beside.display();
+    if description.ended == Some(false) {
+        return Some(format!(
+            "{beside}: not ended: it is being recorded, or its program was killed; the last half second may be missing"
+        ));
+    }
+    let reason = description.ended_by.as_ref()?;
+    Some(format!("{beside}: the recording ended early: {reason}"))
 }
 
 /// A copy of all that comes, which has no name.
-fn spooled(input: &mut dyn io::Read) -> io::Result<File> {
+fn spooled(input: &mut dyn Read) -> io::Result<File> {
     let mut file = tempfile::tempfile()?;
     io::copy(input, &mut file)?;
     file.seek(SeekFrom::Start(0))?;

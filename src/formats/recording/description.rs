@@ -6,7 +6,8 @@
 //!  "rule":{"at_least":10,"from":"flag"},"tare_frames":30,"tare":[[0.5,null],…],"marks":[{"number":65,"time":6.5}],
 //!  "ended":true}
 //! ```
-//! `ended` is false while frames are recorded, and stays so when the program is killed.
+//! `ended` is false while frames are recorded, and stays so when the program is killed. `ended_by` says what went wrong where a
+//! recording was ended by that, as by a full disk.
 //!
 //! Everything but `format` may be missing. The values in the array are as the sensor sent them, in f64: what is said here
 //! is done again when they are read, unless flags say otherwise.
@@ -57,6 +58,8 @@ pub struct RecordingMetadata {
     /// Whether the recording was ended: false while frames are recorded, and after the program was killed. None where
     /// nothing is said of it.
     pub ended: Option<bool>,
+    /// What ended it early.
+    pub ended_by: Option<String>,
 }
 
 /// The object as it stands.
@@ -76,6 +79,8 @@ struct Described {
     tare_step: Option<f64>,
     marks: Vec<FrameMark>,
     ended: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ended_by: Option<String>,
 }
 
 /// A rule, read and written in different ways: it is from a file as soon as it is read.
@@ -161,6 +166,7 @@ impl RecordingMetadata {
             tare,
             marks: described.marks,
             ended: described.ended,
+            ended_by: described.ended_by.as_deref().map(legible),
         })
     }
 
@@ -183,6 +189,7 @@ impl RecordingMetadata {
             tare_step: tare.map(Tare::step),
             marks: self.marks.clone(),
             ended: self.ended,
+            ended_by: self.ended_by.clone(),
         })
     }
 }
@@ -253,6 +260,7 @@ mod tests {
                     time: None,
                 }],
                 ended: Some(true),
+                ended_by: Some("no room".to_owned()),
             };
             let text = metadata.text().expect("JSON");
             let read = RecordingMetadata::read(&text).expect("a description");
@@ -266,7 +274,10 @@ mod tests {
                 (read.rule, read.marks, read.unit, read.seconds_per_frame),
                 (metadata.rule, metadata.marks, metadata.unit, Some(0.01))
             );
-            assert_eq!(read.ended, Some(true));
+            assert_eq!(
+                (read.ended, read.ended_by.as_deref()),
+                (Some(true), Some("no room"))
+            );
         }
     }
 

@@ -239,6 +239,7 @@ fn record(page: &mut Live) -> Effect {
         seconds_per_frame: channel.and_then(|channel| channel.seconds_per_frame),
         marks: page.marks().to_vec(),
         ended: None,
+        ended_by: None,
     };
     Effect::Work(Work::Record(Box::new(metadata)))
 }

@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
 use crate::acquire::{AcquireError, AcquireEvent, AcquireOptions, FrameSource, acquire};
-use crate::formats::recording::{FrameMark, RecordingMetadata};
+use crate::formats::recording::{ChannelInfo, FrameMark, RecordingMetadata};
 use crate::frame::Frame;
 use crate::storage::location;
 use crate::tui::explore::message::WorkerEvent;
@@ -303,6 +303,9 @@ impl FrameFeed {
             rule: request.rule,
             ..RecordingMetadata::default()
         };
+        source(&request.source)
+            .refuse_as_target(recording.path())
+            .map_err(|error| error.to_string())?;
         recording.begin(*existing, &metadata)?;
         locked(&self.pending).batch.status.recorded = Some(0);
         Ok(())
@@ -362,15 +365,9 @@ impl FrameFeed {
     fn take_in(&self, event: AcquireEvent<'_>, request: &WatchRequest) -> bool {
         let state = |state: SourceState| self.change(|pending| pending.batch.status.state = state);
         match event {
-            AcquireEvent::Channel(info) => self.change(|pending| {
-                let wanted = request.channel.is_none() || request.channel == info.name;
-                if pending.channel.is_none() && wanted {
-                    pending.channel = Some(pending.channels.len());
-                    pending.batch.status.channel = Some(Arc::new(info.clone()));
-                }
-                pending.channels.push(info.name.clone());
-                pending.batch.status.channels = pending.channels.len();
-            }),
+            AcquireEvent::Channel(info) => {
+                self.change(|pending| pending.add_channel(info, request.channel.as_deref()))
+            }
             AcquireEvent::Frame { frame, time } => {
                 let channel = locked(&self.pending).channel;
                 if channel.is_some_and(|channel| channel != frame.channel) {
@@ -407,10 +404,12 @@ impl FrameFeed {
                 let what = counts.silence(bytes_per_second);
                 state(SourceState::Silent(format!("no frame for 2 s: {what}")))
             }
-            AcquireEvent::Lost(error) => state(SourceState::Lost(format!(
-                "lost: {error}; trying again each second"
-            ))),
+            AcquireEvent::Lost(error) => {
+                let text = format!("lost: {error}; trying again each second");
+                state(SourceState::Lost(text))
+            }
             AcquireEvent::Back { .. } => state(SourceState::Waiting),
+            AcquireEvent::Anew(how) => state(SourceState::Silent(how.to_string())),
             AcquireEvent::Ended(counts) => self.change(|pending| {
                 pending.batch.status.lost = counts.dropped;
                 pending.batch.status.sample.clone_from(&counts.sample);
@@ -421,6 +420,17 @@ impl FrameFeed {
 }
 
 impl Pending {
+    /// Adds a channel. The first one that is asked for, or the first one of all, is watched.
+    fn add_channel(&mut self, info: &ChannelInfo, asked: Option<&str>) {
+        let name = info.name.as_deref().unwrap_or("unnamed");
+        if self.channel.is_none() && asked.is_none_or(|asked| asked == name) {
+            self.channel = Some(self.channels.len());
+            self.batch.status.channel = Some(Arc::new(info.clone()));
+        }
+        self.channels.push(info.name.clone());
+        self.batch.status.channels = self.channels.len();
+    }
+
     /// Adds a frame; the oldest go where nobody takes them and there is no memory for more.
     /// Half of them go at once, so that a full buffer does not move all frames for each new one. At least one stays.
     fn push(&mut self, frame: Arc<Frame>, most: usize) {

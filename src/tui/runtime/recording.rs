@@ -116,15 +116,9 @@ impl Recording {
         };
         let added = recorder.add(frame, time);
         let frames = recorder.frames();
-        let Err(error) = added else {
-            return Ok(Some(frames));
-        };
-        if let RecorderState::Open(recorder) = std::mem::replace(&mut *state, RecorderState::Closed)
-        {
-            // The first error is the one that is reported.
-            let _ = recorder.finish();
-        }
-        Err(error.to_string())
+        added
+            .map(|()| Some(frames))
+            .map_err(|error| close(&mut state, &error))
     }
 
     /// Writes out what has waited for long enough, and marks. Returns how many frames are recorded.
@@ -140,10 +134,7 @@ impl Recording {
             .write_marks(recorder)
             .and_then(|()| recorder.tick())
             .map(|()| recorder.frames());
-        written.map(Some).map_err(|error| {
-            *state = RecorderState::Closed;
-            error.to_string()
-        })
+        written.map(Some).map_err(|error| close(&mut state, &error))
     }
 
     /// Writes the marks that wait.
@@ -165,4 +156,13 @@ impl Recording {
             Err(error) => LiveEvent::NotFinished(error.to_string()),
         })
     }
+}
+
+/// Ends a recording that has failed; what is in the file so far stays. Returns why.
+fn close(state: &mut RecorderState, error: &RecorderError) -> String {
+    if let RecorderState::Open(recorder) = std::mem::replace(state, RecorderState::Closed) {
+        // The first error is the one that is reported.
+        let _ = recorder.finish();
+    }
+    error.to_string()
 }
