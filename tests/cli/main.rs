@@ -17,6 +17,8 @@ mod frames;
 
 mod watch;
 
+mod watch_files;
+
 mod sensors;
 
 mod batch;

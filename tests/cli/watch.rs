@@ -10,14 +10,14 @@ use serde_json::Value;
 
 use super::{misused, program, taxel};
 
-fn sample(name: &str) -> String {
+pub(super) fn sample(name: &str) -> String {
     format!(
         "{}/tests/files/frames/samples/{name}",
         env!("CARGO_MANIFEST_DIR")
     )
 }
 
-fn lines(text: &str) -> Vec<Value> {
+pub(super) fn lines(text: &str) -> Vec<Value> {
     let lines = text.lines();
     lines
         .map(|line| serde_json::from_str(line).expect(line))
@@ -25,7 +25,7 @@ fn lines(text: &str) -> Vec<Value> {
 }
 
 /// So many frames of 2 x 2 in lines, the first value counting.
-fn stream(frames: std::ops::Range<u32>) -> String {
+pub(super) fn stream(frames: std::ops::Range<u32>) -> String {
     frames
         .map(|number| format!("{number} 2\n3 4\n\n"))
         .collect()
@@ -142,7 +142,7 @@ fn a_recording_of_a_stream_is_read_by_taxel_and_numpy() {
     );
 }
 
-fn started(arguments: &[&str]) -> Child {
+pub(super) fn started(arguments: &[&str]) -> Child {
     program(arguments, "C.UTF-8")
         .spawn()
         .expect("the program starts")

@@ -27,6 +27,7 @@ use crate::cli::arguments::request::{Form, Kept, Saving};
 use crate::cli::commands::export::{Begun, Export, Exported};
 use crate::cli::commands::naming::FrameNamer;
 use crate::cli::commands::noise_report;
+use crate::cli::commands::watch::no_channel;
 use crate::cli::error::CliError;
 use crate::cli::input::processing;
 use crate::cli::input::recording::RecordingFile;
@@ -54,7 +55,7 @@ const MOST_WARNINGS: usize = 20;
 /// What one reading of a recording finds.
 #[derive(Debug, Default)]
 pub(crate) struct Scan {
-    /// None if damage came before the form was certain.
+    /// None if damage comes before the form is certain.
     format: Option<RecordingFormat>,
     /// In the order in which the recording names them; a frame's channel is an index here.
     channels: Vec<ListedChannel>,
@@ -95,7 +96,10 @@ impl Scan {
         });
         match result {
             Ok(format) => scan.format = Some(format),
-            Err(error) => scan.error = Some(error),
+            Err(error) => {
+                scan.format = recording.format();
+                scan.error = Some(error);
+            }
         }
         scan
     }
@@ -130,12 +134,7 @@ impl Scan {
             ))),
             (Some(asked), names) => {
                 let found = names.iter().position(|name| *name == asked);
-                found.ok_or_else(|| {
-                    recording.refused(&format!(
-                        "no channel {asked:?}, expected one of: {}",
-                        names.join(", ")
-                    ))
-                })
+                found.ok_or_else(|| recording.refused(&no_channel(asked, names)))
             }
         }
     }

@@ -10,6 +10,7 @@ use crate::cli::output::charset::Charset;
 use crate::formats::json;
 use crate::imprint::Imprint;
 use crate::recognition::{Evidence, Model, Noise};
+use crate::tui::recognise::sets::ModelChoice;
 
 /// Which model names imprints, and how often a taxel of the sensor flips.
 #[derive(Clone, Debug, Default)]
@@ -28,6 +29,20 @@ impl NamingArguments {
     pub(crate) fn load(&self, shelf: &Shelf) -> Result<Option<Model>, CliError> {
         let model = self.model.as_ref();
         model.map(|model| model::find(model, shelf)).transpose()
+    }
+
+    /// Reads a model that is in a file; None where it is trained first, or none is asked for.
+    ///
+    /// # Errors
+    /// As for [`Self::load`].
+    pub(crate) fn load_file(&self, shelf: &Shelf) -> Result<Option<Model>, CliError> {
+        let Some(model) = &self.model else {
+            return Ok(None);
+        };
+        match model::choice(model, shelf)? {
+            ModelChoice::Stored(_) | ModelChoice::File(_) => self.load(shelf),
+            _ => Ok(None),
+        }
     }
 
     /// The noise, with the dead cells of a mask left out.

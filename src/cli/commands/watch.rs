@@ -23,12 +23,14 @@ use crate::cli::commands::model;
 use crate::cli::commands::naming::FrameNamer;
 use crate::cli::error::CliError;
 use crate::cli::input::processing;
+use crate::cli::input::recording::RecordingFile;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::line_writer::LineWriter;
 use crate::cli::signals::Signals;
 use crate::formats::json;
 use crate::formats::recording::{
-    ChannelInfo, FrameAnswer, RecordingError, RecordingMetadata, SetRule,
+    ChannelInfo, FrameAnswer, ReadOptions, RecordingError, RecordingEvent, RecordingMetadata,
+    SetRule,
 };
 use crate::formats::stream::StreamCounts;
 use crate::formats::value::grouped;
@@ -96,8 +98,13 @@ pub(crate) fn watch(
         rule,
         ..RecordingMetadata::default()
     };
-    let recorder = asked.write.as_ref();
-    let recorder = recorder.map(|path| FrameRecorder::create(path, asked.existing, &metadata));
+    check_channel(&source, asked)?;
+    // What can be refused is refused before a recording begins.
+    let lines = line_writer(asked, shelf)?;
+    let recorder = asked.write.as_ref().map(|path| {
+        source.refuse_as_target(path)?;
+        FrameRecorder::create(path, asked.existing, &metadata)
+    });
     let tare = asked.processing.tare.map_or(0, |frames| frames);
     let mut watcher = Watcher {
         asked,
@@ -111,7 +118,7 @@ pub(crate) fn watch(
         channel: None,
         held: None,
         begun: false,
-        lines: line_writer(asked, shelf)?,
+        lines,
         frame: Frame::new(1, 1),
         live: !asked.options.once && !matches!(source, FrameSource::File(_)),
         dropped: 0,
@@ -131,14 +138,60 @@ pub(crate) fn watch(
     })
 }
 
+/// Refuses a channel that a recording does not have. It is read for that until the channel comes: played at its own rate, it
+/// would be silent to its end.
+fn check_channel(source: &FrameSource, asked: &WatchArguments) -> Result<(), CliError> {
+    let (FrameSource::File(path), None, Some(wanted)) =
+        (source, asked.options.format, &asked.processing.channel)
+    else {
+        return Ok(());
+    };
+    let options = ReadOptions {
+        shape: asked.options.shape,
+    };
+    let mut names = Vec::new();
+    let mut found = false;
+    let read = RecordingFile::open(path, options)?.read(&mut |event| {
+        if let RecordingEvent::Channel(info) = event {
+            let name = info.name.as_deref().unwrap_or("unnamed");
+            found = name == wanted;
+            names.push(name.to_owned());
+        }
+        if found {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    });
+    // A stream, or a damage, which is reported when it is watched.
+    if found || read.is_err() {
+        return Ok(());
+    }
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    Err(CliError::Frames {
+        name: source.name(),
+        message: no_channel(wanted, &names),
+    })
+}
+
+/// That a recording has no channel of that name, but others.
+pub(crate) fn no_channel(asked: &str, names: &[&str]) -> String {
+    format!(
+        "no channel {asked:?}, expected one of: {}",
+        names.join(", ")
+    )
+}
+
 /// Writes the answers; with a model it names each imprint before, so that neither its training nor its search holds up a
-/// recording.
+/// recording. A model that is in a file is read at once.
 fn line_writer(asked: &WatchArguments, shelf: &Shelf) -> Result<LineWriter, CliError> {
     let naming = asked.naming.clone();
     let noise = naming.noise_with(processing::mask(&asked.processing)?.as_ref());
     let shelf = shelf.clone();
+    let read = naming.load_file(&shelf)?;
     LineWriter::start(move |lines| {
-        let Some(model) = naming.load(&shelf)? else {
+        let model = read.map_or_else(|| naming.load(&shelf), |model| Ok(Some(model)));
+        let Some(model) = model? else {
             return lines.write(&mut |_, _| ());
         };
         let namer = FrameNamer::new(&model, noise.as_ref());
@@ -149,8 +202,13 @@ fn line_writer(asked: &WatchArguments, shelf: &Shelf) -> Result<LineWriter, CliE
 /// The same as a page of the screen.
 ///
 /// # Errors
-/// If the mask or the gain cannot be read, or there is no such model.
+/// If the mask or the gain cannot be read, there is no such model or channel, or the source is to be recorded in itself.
 pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequest, CliError> {
+    let source = FrameSource::new(&asked.source);
+    check_channel(&source, asked)?;
+    let write = asked.write.as_ref();
+    let fits = write.map(|path| source.refuse_as_target(path));
+    fits.transpose().map_err(CliError::Recorder)?;
     let mut request = WatchRequest::new(&asked.source);
     request.options = asked.options.clone();
     request.processing = processing::processing(&asked.processing)?;
@@ -201,6 +259,10 @@ impl Watcher<'_> {
                 self.say(&format!("warning: {note}"));
                 Ok(())
             }
+            AcquireEvent::Anew(how) => {
+                self.say(&how.to_string());
+                Ok(())
+            }
             AcquireEvent::Ended(counts) => self.ended(counts),
             _ => Ok(()),
         };
@@ -245,7 +307,7 @@ impl Watcher<'_> {
                 let message = format!("several channels, choose one with --channel: {names}");
                 return Err(self.refused(&message));
             }
-            Some(asked) if info.name.as_deref() != Some(asked) => return Ok(()),
+            Some(asked) if names.last() != Some(&asked) => return Ok(()),
             _ => self.channel = Some(names.len() - 1),
         }
         if self.rule.is_none() {
@@ -274,7 +336,15 @@ impl Watcher<'_> {
         if self.channel.unwrap_or(frame.channel) != frame.channel {
             return Ok(());
         }
+        let asked = self.asked.processing.channel.as_deref();
+        if let (Some(_), None, false) = (asked, self.channel, self.channels.is_empty()) {
+            return Ok(());
+        }
         let is_first = !std::mem::replace(&mut self.begun, true);
+        if let (true, Some(asked), true) = (is_first, asked, self.channels.is_empty()) {
+            let text = format!("no channel {asked:?}: a stream has none, and all frames are taken");
+            self.say(&text);
+        }
         if is_first && !self.channels.is_empty() && self.asked.processing.channel.is_none() {
             self.held = Some((frame.clone(), time));
             return Ok(());

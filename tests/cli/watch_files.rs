@@ -1,0 +1,259 @@
+//! `taxel watch` and the files around it: sources that are also targets, files that are cut or replaced while they grow,
+//! recordings that lack a channel, disks that are full.
+
+use std::fs;
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Command, Stdio};
+
+use serde_json::Value;
+
+use super::watch::{lines, sample, started, stream};
+use super::{finish, program, taxel};
+
+/// Why a command that must fail has failed.
+fn refused(line: &str, input: impl AsRef<[u8]>) -> String {
+    let run = taxel(line, input);
+    assert_eq!(run.status, Some(1), "{line}: {}", run.stderr);
+    run.stderr
+}
+
+#[test]
+fn a_source_is_never_its_own_target() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let (own, other, json) = (path("s.npy"), path("other.npy"), path("p.json"));
+    fs::copy(sample("records.npy"), &own).expect("copied");
+    fs::hard_link(&own, &other).expect("linked");
+    fs::copy(sample("popu.json"), &json).expect("copied");
+    let before = fs::read(&own).expect("read");
+    for line in [
+        format!("watch {own} --once --write {own} --force"),
+        format!("watch {own} --once --write {other} --force"),
+        format!("watch {own} --once --write {own}"),
+        format!("watch {json} --once --write {} --force", path("p.npy")),
+    ] {
+        let said = refused(&line, "");
+        assert!(said.contains("record in another file"), "{line}: {said}");
+    }
+    let input = fs::File::open(&own).expect("opened");
+    let mut child = program(&["watch", "-", "--write", &own, "--force"], "C.UTF-8");
+    let child = child.stdin(input).spawn().expect("it starts");
+    let run = child.wait_with_output().expect("it ends");
+    assert_eq!(run.status.code(), Some(1), "{run:?}");
+    assert_eq!(fs::read(&own).expect("read"), before);
+    assert_eq!(
+        fs::read(&json).expect("read"),
+        fs::read(sample("popu.json")).expect("read")
+    );
+    assert!(!folder.path().join("s.json").exists());
+}
+
+/// A recording is replaced by frames, and by nothing less.
+#[test]
+fn an_old_recording_stays_until_the_first_frame_comes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("touch.npy");
+    let write = format!("--once --write {} --force", file.display());
+    let run = taxel(&format!("watch - {write}"), stream(0..9));
+    assert_eq!(run.status, Some(0), "{}", run.stderr);
+    let both = || {
+        let read = |path| fs::read(path).expect("it is there");
+        (read(file.clone()), read(file.with_extension("json")))
+    };
+    let before = both();
+    for (line, input) in [
+        ("watch /nothing/there", ""),
+        ("watch - --model nosuch", "1 2\n3 4\n\n"),
+        ("watch - --format lines --rows 2 --columns 2", "x y\n"),
+        ("watch -", ""),
+    ] {
+        refused(&format!("{line} {write}"), input);
+        assert_eq!(both(), before, "{line}");
+    }
+    let run = taxel(&format!("watch - {write}"), stream(0..3));
+    assert_eq!(run.status, Some(0), "{}", run.stderr);
+    assert_ne!(both(), before);
+    let names = fs::read_dir(folder.path()).expect("read").count();
+    assert_eq!(names, 2, "nothing is left behind");
+}
+
+/// Each of these begins a file from its start, with whatever was torn before.
+#[test]
+fn a_growing_file_is_read_on_after_it_was_cut_or_replaced() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("g.txt");
+    let path = file.to_str().expect("UTF-8");
+    fs::write(&file, stream(10..15)).expect("written");
+    let mut child = started(&["watch", path, "--format", "lines"]);
+    let mut output = BufReader::new(child.stdout.take().expect("piped"));
+    let mut numbers = |expected: std::ops::Range<u32>| {
+        for number in expected {
+            let mut answer = String::new();
+            output.read_line(&mut answer).expect("it answers");
+            assert_eq!(lines(&answer)[0]["sum"], 9 + number);
+        }
+    };
+    numbers(10..15);
+    let mut grown = fs::File::options().append(true).open(&file);
+    let grown = grown.as_mut().expect("opened");
+    grown.write_all(b"20 2\n3 4\n\n99").expect("written");
+    numbers(20..21);
+    // Shorter.
+    fs::write(&file, stream(31..33)).expect("written");
+    numbers(31..33);
+    // As long as before.
+    fs::write(&file, stream(41..43)).expect("written");
+    numbers(41..43);
+    // Another one of that name, at once, and after there was none.
+    fs::rename(&file, folder.path().join("g.1")).expect("renamed");
+    fs::write(&file, stream(51..59)).expect("written");
+    numbers(51..59);
+    fs::remove_file(&file).expect("removed");
+    fs::write(&file, stream(61..69)).expect("written");
+    numbers(61..69);
+    child.kill().expect("it is killed");
+    let said = finish(child, b"").stderr;
+    let count = |what: &str| said.matches(what).count();
+    assert_eq!(count("was cut or written anew"), 2, "{said}");
+    assert_eq!(count("was replaced"), 2, "{said}");
+}
+
+#[test]
+fn a_channel_that_is_not_there_is_refused_and_one_of_a_stream_is_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("touch.npy");
+    for name in ["u2.npy", "xsensor.csv", "topics.mcap"] {
+        let path = sample(name);
+        let listed = refused(
+            &format!("frames {path} --channel nope --all --at-least 1"),
+            "",
+        );
+        let line = format!("watch {path} --channel nope --write {}", file.display());
+        let watched = refused(&line, "");
+        assert!(watched.contains("no channel \"nope\", expected one of"));
+        assert_eq!(listed, watched, "{name}");
+        assert!(!file.exists());
+    }
+    let line = format!("watch --once {} --channel unnamed", sample("u2.npy"));
+    assert!(!taxel(&line, "").stdout.is_empty());
+    let run = taxel("watch - --channel nope", stream(0..3));
+    assert_eq!((run.status, lines(&run.stdout).len()), (Some(0), 3));
+    let said = "standard input: no channel \"nope\": a stream has none, and all frames are taken\n";
+    assert_eq!(run.stderr, said);
+}
+
+/// A limit of the system in place of a full disk: the last record that is begun is torn by it.
+#[test]
+fn a_recording_that_has_no_more_room_ends_with_its_last_whole_record() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("touch.npy");
+    let own = program(&["watch", "-", "--format", "lines", "--write"], "C.UTF-8");
+    let child = Command::new("sh")
+        .args(["-c", "trap '' XFSZ; ulimit -f 9; exec \"$0\" \"$@\""])
+        .arg(own.get_program())
+        .args(own.get_args())
+        .arg(&file)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("there is a shell");
+    // More than wait in memory.
+    let run = finish(child, stream(0..6000).as_bytes());
+    assert_eq!(run.status, Some(1), "{}", run.stderr);
+    assert!(run.stderr.contains("cannot record: File too large"));
+    let bytes = fs::read(&file).expect("it is there");
+    let records = (bytes.len() - 256) / 48;
+    assert_eq!(bytes.len(), 256 + 48 * records);
+    let header = String::from_utf8_lossy(&bytes[..256]).into_owned();
+    assert!(
+        header.contains(&format!("'shape': ({records},)")),
+        "{header}"
+    );
+    let beside = fs::read(file.with_extension("json")).expect("it is there");
+    let beside: Value = serde_json::from_slice(&beside).expect("JSON");
+    assert_eq!(beside["ended"], true);
+    let reason = beside["ended_by"].as_str().expect("a reason");
+    assert!(reason.contains("File too large"), "{reason}");
+    let line = format!("frames {} --all --at-least 1 --json", file.display());
+    let again = taxel(&line, "");
+    for (number, frame) in lines(&again.stdout).iter().enumerate() {
+        assert_eq!(frame["sum"], 9 + number, "{frame}");
+    }
+    assert_eq!(lines(&again.stdout).len(), records);
+    assert!(
+        again
+            .stderr
+            .contains("the recording ended early: File too large")
+            && !again.stderr.contains("killed"),
+        "{}",
+        again.stderr
+    );
+}
+
+#[test]
+fn dots_mean_that_values_were_left_out_only_where_they_stand_for_values() {
+    let line = "watch - --once --format ros2 --rows 1 --columns 2";
+    let noise =
+        "a...b\n[0, 1]\n---\nname: '...'\n[2, 3]\n---\n[0 x ...]\n---\n[...]\n---\n[4, 5]\n---\n";
+    let run = taxel(line, noise);
+    assert_eq!(
+        (run.status, lines(&run.stdout).len()),
+        (Some(0), 3),
+        "{}",
+        run.stderr
+    );
+    assert!(run.stderr.contains("2 torn, short"), "{}", run.stderr);
+    for cut in [
+        "data:\n- 0\n- 1\n- '...'\n---\n",
+        "array('H', [0, 1, '...'])\n---\n",
+        "[0, 1, ...]\n---\n",
+        ",1,2,,2,2,0,0,1,'...'\n",
+    ] {
+        let said = refused(line, cut);
+        assert!(
+            said.contains("run ros2 topic echo with --full-length"),
+            "{cut}: {said}"
+        );
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_recording_is_called_by_its_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let header = format!(
+        "{:<117}\n",
+        "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 1, 1), }"
+    );
+    let array = |value: f64| {
+        let mut bytes = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+        bytes.extend(header.bytes());
+        bytes.extend(value.to_le_bytes());
+        bytes
+    };
+    let large = "is too large, expected at most 1e300";
+    for (name, content, expected) in [
+        ("large.npy", array(1e308), large),
+        ("large.jsonl", b"{\"frame\":[[1e308]]}\n".to_vec(), large),
+        (
+            "large.csv",
+            b"time,r0c0,r0c1\n0.0,1,1e308\n".to_vec(),
+            large,
+        ),
+        (
+            "infinite.npy",
+            array(f64::INFINITY),
+            "infinite, expected a number",
+        ),
+    ] {
+        fs::write(path(name), content).expect("written");
+        let said = refused(&format!("frames {} --at-least 1 --all", path(name)), "");
+        assert!(said.contains(expected), "{name}: {said}");
+    }
+    let whole = fs::read(sample("topics.mcap")).expect("read");
+    fs::write(path("torn.mcap"), &whole[..whole.len() / 2]).expect("written");
+    let run = taxel(&format!("frames {} --json", path("torn.mcap")), "");
+    let listed: Value = serde_json::from_str(&run.stdout).expect(&run.stdout);
+    assert_eq!((run.status, &listed["format"]), (Some(1), &"mcap".into()));
+}
