@@ -9,7 +9,7 @@
 //! ```
 
 use std::io::BufReader;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -43,7 +43,7 @@ struct Part {
 
 impl Part {
     /// Reads what the file says of itself.
-    fn of(path: &PathBuf) -> Result<Self, ArchiveFileError> {
+    fn of(path: &Path) -> Result<Self, ArchiveFileError> {
         let refused = |error| ArchiveFileError::new(path, error);
         let file = open_archive(path)?;
         let bytes = file
@@ -52,7 +52,7 @@ impl Part {
             .len();
         let kind = archive_kind(BufReader::new(file)).map_err(refused)?;
         Ok(Self {
-            path: path.clone(),
+            path: path.to_owned(),
             format: kind.format,
             shard: kind.shard,
             bytes,
@@ -73,7 +73,7 @@ pub(crate) fn merge(
     if let Some(file) = &wanted.atlas {
         file.check(wanted.there.existing())?;
     }
-    let parts = files.iter().map(Part::of);
+    let parts = files.iter().map(|path| Part::of(path));
     let mut parts = parts.collect::<Result<Vec<_>, _>>()?;
     let is_model = parts
         .first()
