@@ -37,6 +37,7 @@ pub(crate) fn perform() -> bool {
         "recover" => recover(&folder),
         "churn" => churn(&folder),
         "naive" => naive(&folder),
+        "full-recording" => super::disk::records_on_full_disk(&folder),
         "full" => super::disk::on_full_disk(&folder),
         "read-only" => super::disk::on_read_only_disk(&folder),
         _ => panic!("an unknown act: {act}"),

@@ -7,6 +7,7 @@ use std::process::Command;
 use super::act;
 use super::state::State;
 use super::state::finish;
+use super::state::program;
 use super::state::shape;
 use super::state::taxel;
 use taxel::storage::{Expected, Journal, Library, Orphan, ShapeOrigin};
@@ -46,6 +47,11 @@ fn on_own_disk(act: &str) -> Result<(), String> {
 pub(crate) fn full() -> String {
     let done = "message, status 1, old file whole, nothing left behind".to_owned();
     on_own_disk("full").map_or_else(|skipped| skipped, |()| done)
+}
+
+pub(crate) fn full_of_frames() -> String {
+    let done = "all whole records counted, the reason beside them".to_owned();
+    on_own_disk("full-recording").map_or_else(|skipped| skipped, |()| done)
 }
 
 pub(crate) fn read_only() -> String {
@@ -104,6 +110,33 @@ pub(crate) fn on_full_disk(folder: &Path) {
     if deleted.is_ok() {
         library.restore("one").expect("back again");
     }
+}
+
+/// Inside: more frames than there is room for.
+pub(crate) fn records_on_full_disk(folder: &Path) {
+    let elsewhere = tempfile::tempdir().expect("there is a folder for temporary files");
+    let source = elsewhere.path().join("frames.txt");
+    fs::write(&source, "1 2\n3 4\n\n".repeat(6000)).expect("written");
+    let touch = folder.join("touch.npy");
+    let paths = [&source, &touch].map(|path| path.to_string_lossy().into_owned());
+    let arguments = ["watch", &paths[0], "--once", "--write", &paths[1]];
+    let run = program(&arguments, folder).output().expect("it runs");
+    let said = String::from_utf8_lossy(&run.stderr);
+    assert_eq!(run.status.code(), Some(1), "{said}");
+    assert!(said.contains("No space left on device"), "{said}");
+    let bytes = fs::read(&touch).expect("it is there");
+    let records = (bytes.len() - 256) / 48;
+    assert!(records > 100 && bytes.len() == 256 + 48 * records);
+    let header = String::from_utf8_lossy(&bytes[..256]);
+    assert!(
+        header.contains(&format!("'shape': ({records},)")),
+        "{header}"
+    );
+    let beside = fs::read(touch.with_extension("json")).expect("it is there");
+    let beside: serde_json::Value = serde_json::from_slice(&beside).expect("whole");
+    assert_eq!(beside["ended"], true, "{beside}");
+    let reason = beside["ended_by"].as_str().expect("a reason");
+    assert!(reason.contains("No space left on device"), "{reason}");
 }
 
 /// Inside: what is on the disk can be read, and nothing else.

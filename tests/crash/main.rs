@@ -30,7 +30,7 @@ use std::time::Instant;
 /// What a campaign has seen, in one line.
 type Campaign = fn() -> String;
 
-const CAMPAIGNS: [(&str, Campaign); 10] = [
+const CAMPAIGNS: [(&str, Campaign); 11] = [
     ("killed_at_every_call", calls::killed),
     ("every_error_is_told", calls::refused),
     (
@@ -43,6 +43,7 @@ const CAMPAIGNS: [(&str, Campaign); 10] = [
     ("crafted_folders_do_no_harm", lacking::crafted),
     ("no_threads_are_done_without", threads::refused),
     ("a_full_disk_loses_nothing", disk::full),
+    ("a_full_disk_ends_recordings_whole", disk::full_of_frames),
     ("a_read_only_disk_can_be_read", disk::read_only),
 ];
 
