@@ -10,7 +10,7 @@ use std::time::{Duration, SystemTime};
 /// How long a file that ends is left alone until it may have grown.
 const GROWTH: Duration = Duration::from_millis(50);
 
-/// So many of the last bytes are compared with what is in the file, to see whether it was written anew meanwhile.
+/// The number of bytes before the end of what was read that are compared with the file, to see whether it was written anew.
 const REMEMBERED: usize = 1 << 12;
 
 /// Why a file is read from its start again.
