@@ -147,8 +147,15 @@ impl Comparison {
                     .map_or(Value::None, |description| (descriptor.measure)(description))
             });
             let [first, second] = values.map(|value| text(theme, descriptor, value));
-            let by = difference(values[0], values[1])
-                .map_or(theme.none().to_owned(), |by| text(theme, descriptor, by));
+            let by = difference(values[0], values[1]);
+            let sign = if matches!(by, Some(Value::Number(by)) if by > 0.0) {
+                "+"
+            } else {
+                ""
+            };
+            let by = by.map_or(theme.none().to_owned(), |by| {
+                format!("{sign}{}", text(theme, descriptor, by))
+            });
             let symbol = format!("{:SYMBOL$} ", descriptor.symbol);
             let both = format!("{first:VALUE$} {second:VALUE$} ");
             let role = if first == second {
@@ -156,17 +163,11 @@ impl Comparison {
             } else {
                 Role::Text
             };
-            let rises = matches!((values[0], values[1]), (Value::Count(a), Value::Count(b)) if b > a)
-                || matches!((values[0], values[1]), (Value::Number(a), Value::Number(b)) if b > a);
-            let by = match (first == second, rises) {
-                (true, _) => "=".to_owned(),
-                (false, true) => format!("+{by}"),
-                (false, false) => by,
-            };
+            let by = if first == second { "=" } else { by.as_str() };
             let pieces = [
                 (symbol.as_str(), Role::Key),
                 (both.as_str(), role),
-                (by.as_str(), role),
+                (by, role),
             ];
             write::line(buffer, write::row(area, index + 1), theme, pieces);
         }

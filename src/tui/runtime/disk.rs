@@ -30,10 +30,10 @@ use crate::tui::runtime::progress::WorkerEventSink;
 use crate::tui::runtime::recording::Recording;
 use crate::tui::runtime::write_access::WriteAccess;
 
-/// How long a key waits for a change. Nearly all are made within it, so that the next key finds them done.
+/// How long a key waits for an answer. Nearly all come within it, so that the next key finds the work done.
 const QUICK: Duration = Duration::from_millis(100);
 
-/// After this time it is said what a change waits for.
+/// After this time it is said what a request waits for.
 const SLOW: Duration = Duration::from_millis(300);
 
 /// The time after which that is looked at again.
@@ -133,8 +133,8 @@ impl DiskRequest {
         )
     }
 
-    /// Makes it.
-    fn make(self, library: &Library, access: &WriteAccess) -> DiskAnswer {
+    /// Carries it out.
+    fn perform(self, library: &Library, access: &WriteAccess) -> DiskAnswer {
         match self {
             Self::Store(shape, expected) => {
                 let stored = library.save(&shape, expected);
@@ -221,7 +221,7 @@ pub(super) fn newest_orphan(library: &Library) -> Option<(Box<Orphan>, usize)> {
 /// The requests under way.
 #[derive(Debug)]
 pub(super) struct DiskQueue {
-    /// The library that is changed.
+    /// The library that is read or changed.
     library: Library,
     /// Where files may be written.
     pub(super) access: Arc<WriteAccess>,
@@ -256,14 +256,14 @@ impl std::fmt::Debug for Post {
 /// The ends of the channels to the thread.
 #[derive(Debug)]
 struct DiskThread {
-    /// Changes to make.
-    changes: Sender<DiskRequest>,
+    /// Requests to carry out.
+    requests: Sender<DiskRequest>,
     /// What became of them, in their order.
     answers: Receiver<DiskAnswer>,
 }
 
 impl DiskQueue {
-    /// Changes of a library, made at once.
+    /// Requests to a library, carried out at once.
     pub(super) fn new(library: Library) -> Self {
         Self {
             library,
@@ -274,49 +274,49 @@ impl DiskQueue {
         }
     }
 
-    /// Has changes made on a thread.
+    /// Has requests carried out on a thread.
     pub(super) fn post_to(&mut self, post: WorkerEventSink) {
         self.post = Some(Post(post));
     }
 
-    /// Makes a change, or has it made. Returns what became of it if that is known within a moment.
-    pub(super) fn make(&mut self, change: DiskRequest) -> Option<DiskAnswer> {
-        if let Some(made) = self.begin(change) {
-            return Some(made);
+    /// Carries out a request, or has it carried out. Returns the answer if it comes within a moment.
+    pub(super) fn ask(&mut self, request: DiskRequest) -> Option<DiskAnswer> {
+        if let Some(answer) = self.begin(request) {
+            return Some(answer);
         }
         // Behind another one it takes long.
         let is_first = self.pending.len() == 1;
         is_first.then(|| self.wait(QUICK)).flatten()
     }
 
-    /// Makes a change that nobody waits for.
-    pub(super) fn make_beside(&mut self, change: DiskRequest) {
-        // Such a change has no answer.
-        let _ = self.begin(change);
+    /// The same for a request whose answer nobody waits for.
+    pub(super) fn ask_aside(&mut self, request: DiskRequest) {
+        // Such a request has no answer.
+        let _ = self.begin(request);
     }
 
-    /// Gives a change to the thread. Without one, makes it, and returns what became of it.
-    fn begin(&mut self, change: DiskRequest) -> Option<DiskAnswer> {
+    /// Gives a request to the thread. Without one, carries it out and returns the answer.
+    fn begin(&mut self, request: DiskRequest) -> Option<DiskAnswer> {
         self.start();
         let Some(thread) = &self.thread else {
-            return Some(change.make(&self.library, &self.access));
+            return Some(request.perform(&self.library, &self.access));
         };
         self.pending.push_back(PendingRequest {
-            words: change.words(),
+            words: request.words(),
             since: Instant::now(),
-            locks: change.locks(),
+            locks: request.locks(),
         });
         // It ends only after this end of the channel.
-        let _ = thread.changes.send(change);
+        let _ = thread.requests.send(request);
         None
     }
 
-    /// Starts the thread where it is wanted and there is none. Without one, changes are made at once.
+    /// Starts the thread where it is wanted and there is none. Without one, requests are carried out at once.
     fn start(&mut self) {
         let Some(Post(post)) = self.post.as_ref().filter(|_| self.thread.is_none()) else {
             return;
         };
-        let (changes, asked) = channel::<DiskRequest>();
+        let (requests, asked) = channel::<DiskRequest>();
         let (answer, answers) = channel();
         let (library, access, post) = (
             self.library.clone(),
@@ -324,9 +324,9 @@ impl DiskQueue {
             Arc::clone(post),
         );
         let body = move || {
-            for change in asked {
-                let was_save = matches!(change, DiskRequest::Store(..));
-                let made = catch_unwind(AssertUnwindSafe(|| change.make(&library, &access)));
+            for request in asked {
+                let was_save = matches!(request, DiskRequest::Store(..));
+                let made = catch_unwind(AssertUnwindSafe(|| request.perform(&library, &access)));
                 let made = made.unwrap_or(DiskAnswer::Panicked { was_save });
                 if answer.send(made).is_err() {
                     return;
@@ -335,7 +335,7 @@ impl DiskQueue {
             }
         };
         if Builder::new().spawn(body).is_ok() {
-            self.thread = Some(DiskThread { changes, answers });
+            self.thread = Some(DiskThread { requests, answers });
         }
     }
 
@@ -346,7 +346,7 @@ impl DiskQueue {
         Some(answer)
     }
 
-    /// Whether all changes are made.
+    /// Whether every request has its answer.
     pub(super) fn is_idle(&self) -> bool {
         self.pending.is_empty()
     }

@@ -103,7 +103,7 @@ pub struct World {
     /// The stored shapes that were used.
     log: ShapeLog,
     /// Changes of the library and of files in progress.
-    saves: DiskQueue,
+    writer: DiskQueue,
     /// What is being read.
     reader: Reader,
     /// What is worth remembering, but not worth waiting for.
@@ -124,7 +124,7 @@ impl World {
         let mut world = Self {
             reminders: Some(Reminders::of(&library)),
             log: ShapeLog::default(),
-            saves: DiskQueue::new(library.clone()),
+            writer: DiskQueue::new(library.clone()),
             reader: Reader::new(DiskQueue::new(library.clone())),
             memories: DiskQueue::new(library.clone()),
             later: VecDeque::new(),
@@ -142,7 +142,7 @@ impl World {
     pub fn quiet(library: Library) -> Self {
         let workers = Workers::with(ModelStore::beside(&library));
         Self {
-            saves: DiskQueue::new(library.clone()),
+            writer: DiskQueue::new(library.clone()),
             reader: Reader::new(DiskQueue::new(library.clone())),
             memories: DiskQueue::new(library.clone()),
             later: VecDeque::new(),
@@ -195,7 +195,7 @@ impl World {
     #[must_use]
     pub fn with_workers(mut self, post: WorkerEventSink) -> Self {
         self.journal.report_to(Arc::clone(&post));
-        self.saves.post_to(Arc::clone(&post));
+        self.writer.post_to(Arc::clone(&post));
         self.reader.queue.post_to(Arc::clone(&post));
         self.memories.post_to(Arc::clone(&post));
         self.workers.post_to(post);
@@ -214,7 +214,7 @@ impl World {
     #[must_use]
     pub fn confined_to(mut self, folder: PathBuf) -> Self {
         self.workers.access = Arc::new(WriteAccess::below(folder));
-        self.saves.access = Arc::clone(&self.workers.access);
+        self.writer.access = Arc::clone(&self.workers.access);
         self.workers.frames.only_files = true;
         self
     }
@@ -300,7 +300,7 @@ impl World {
     fn collect_changes(&mut self) {
         // Memories have no answer.
         while self.memories.wait(Duration::ZERO).is_some() {}
-        while let Some(answer) = self.saves.wait(Duration::ZERO) {
+        while let Some(answer) = self.writer.wait(Duration::ZERO) {
             let message = self.answer(answer);
             self.later.extend(message);
         }
@@ -370,15 +370,15 @@ impl World {
         events.map(Message::Worker).collect()
     }
 
-    /// When it is to be looked at what the disk is waited for; None if for nothing.
+    /// When to look again at what is waited for; None if nothing is.
     pub(in crate::tui) fn changes_due(&self) -> Option<Instant> {
-        let changes = self.saves.look_at().into_iter();
+        let changes = self.writer.look_at().into_iter();
         changes.chain(self.reader.look_at()).min()
     }
 
     /// What is waited for, if it takes long: a change, else something to read.
     pub(in crate::tui) fn waiting(&self) -> Option<String> {
-        self.saves.status().or_else(|| self.reader.status())
+        self.writer.status().or_else(|| self.reader.status())
     }
 
     /// Finishes changes and recordings and writes unsaved work at once, because the program is about to end; but waits for
@@ -390,7 +390,7 @@ impl World {
         let saved_by = Instant::now() + PATIENCE / 2;
         if let Some((number, recording)) = self.workers.frames.stop() {
             let request = DiskRequest::EndRecording(number, recording);
-            self.saves.make_beside(request);
+            self.writer.ask_aside(request);
         }
         let mut lines = self.finish_changes(app, saved_by);
         while !self.memories.is_idle() {
@@ -404,7 +404,7 @@ impl World {
         // What the journal has left of the time.
         lines.extend(self.finish_changes(app, end));
         self.journal.note(app);
-        lines.extend(self.saves.left());
+        lines.extend(self.writer.left());
         if app.unsaved_work().is_some() {
             if !kept {
                 lines.push(
@@ -421,9 +421,9 @@ impl World {
     /// Waits for changes and recordings until `end`. Returns lines about recordings that could not be finished.
     fn finish_changes(&mut self, app: &mut App, end: Instant) -> Vec<String> {
         let mut lines = Vec::new();
-        while !self.saves.is_idle() {
+        while !self.writer.is_idle() {
             let time = end.saturating_duration_since(Instant::now());
-            let Some(answer) = self.saves.wait(time) else {
+            let Some(answer) = self.writer.wait(time) else {
                 break;
             };
             if let DiskAnswer::Live(_, LiveEvent::NotFinished(reason)) = &answer {
@@ -439,7 +439,7 @@ impl World {
 
     /// Makes a change, or has it made. Returns the answer if there is one within a moment.
     fn change(&mut self, change: DiskRequest) -> Option<Message> {
-        let answer = self.saves.make(change)?;
+        let answer = self.writer.ask(change)?;
         self.answer(answer)
     }
 

@@ -23,7 +23,7 @@ pub(super) struct Reader {
 }
 
 impl Reader {
-    /// One that makes its requests of a queue of its own, so that a save that hangs holds up no reading.
+    /// A reader with a queue of its own, so that a save that hangs holds up no reading.
     pub(super) fn new(queue: DiskQueue) -> Self {
         Self {
             queue,
@@ -32,17 +32,17 @@ impl Reader {
         }
     }
 
-    /// Makes a request while so many pages are open. Returns the answer if there is one within a moment.
+    /// Asks while that many pages are open. Returns the answer if there is one within a moment.
     pub(super) fn ask(&mut self, request: DiskRequest, pages: usize) -> Option<DiskAnswer> {
         let before = self.queue.len();
-        let answer = self.queue.make(request);
+        let answer = self.queue.ask(request);
         if self.queue.len() > before {
             self.asked.push_back(pages);
         }
         answer
     }
 
-    /// Takes the next answer whose page is on top now that so many are open.
+    /// Takes the next answer whose page is on top when that many are open.
     pub(super) fn take(&mut self, pages: usize) -> Option<DiskAnswer> {
         while let Some(answer) = self.queue.wait(Duration::ZERO) {
             let asked = self.asked.pop_front();
@@ -53,7 +53,7 @@ impl Reader {
         self.answers.remove(next).map(|(_, answer)| answer)
     }
 
-    /// Waits no longer, if the page that asked first is on top now that so many are open. Returns what was waited for.
+    /// Waits no longer, if the page that asked first is on top when that many are open. Returns what was waited for.
     pub(super) fn give_up(&mut self, pages: usize) -> Option<String> {
         self.asked.front().filter(|asked| **asked >= pages)?;
         self.asked.clear();
