@@ -14,7 +14,7 @@ use crate::formats::recording::{
 };
 use crate::imprint::Imprint;
 
-/// So many bytes tell the form of a recording.
+/// Bytes at the start that are enough to tell the form of a recording.
 const LOOKED_AT: u64 = 1 << 16;
 
 /// A recording that can be read again and again.

@@ -46,7 +46,7 @@ enum RecorderState {
 }
 
 impl Recording {
-    /// One that nothing has been written of.
+    /// A recording whose file has not been created yet.
     pub(super) fn new(path: PathBuf) -> Arc<Self> {
         Arc::new(Self {
             path,
