@@ -8,7 +8,7 @@
 //! their names together, so there is never one of these beside an older one of the other. `touch.json` says whether the
 //! recording was ended; that of a killed program does not.
 //!
-//! Files that are replaced stay until the first frame comes. A disk that is full ends a recording after its last whole record,
+//! Nothing appears, and nothing is replaced, until the first frame comes. A disk that is full ends a recording after its last whole record,
 //! and the description says why.
 
 use std::fs::File;
@@ -81,10 +81,11 @@ const LARGEST_DESCRIPTION: u64 = 1 << 22;
 #[derive(Debug)]
 pub struct FrameRecorder {
     path: PathBuf,
+    /// What happens to files that are there when they get their names.
+    existing: Existing,
     metadata: RecordingMetadata,
     file: File,
-    /// Array and description that are to replace others, until the first frame comes.
-    unnamed: Option<(FinishedFile, FinishedFile)>,
+    names: Names,
     shape: Option<(u16, u16)>,
     buffer: Vec<u8>,
     /// Records in the file and in the buffer.
@@ -97,6 +98,17 @@ pub struct FrameRecorder {
     /// The times of the first frame and of the last one.
     times: Option<(f64, f64)>,
     syncer: Syncer,
+}
+
+/// Whether array and description have their names.
+#[derive(Debug)]
+enum Names {
+    /// They get them with the first frame.
+    Waiting(FinishedFile, FinishedFile),
+    /// They have them.
+    Given,
+    /// They did not get them. What lies there is not of this recording, and stays as it is.
+    Refused,
 }
 
 /// Syncs a file on a thread of its own.
@@ -149,7 +161,8 @@ impl Drop for Syncer {
 }
 
 impl FrameRecorder {
-    /// Creates the file, and `.json` beside it: both, or none. What is to be replaced stays until the first frame comes.
+    /// Creates the file, and `.json` beside it: both, or none. They appear with the first frame, and what is to be replaced
+    /// stays until then.
     ///
     /// # Errors
     /// If one of the two is there and is to be kept, or they cannot be created.
@@ -167,17 +180,11 @@ impl FrameRecorder {
         };
         let (file, array) = array().map_err(refused)?;
         let description = prepared(path, existing, &metadata)?;
-        let unnamed = match existing {
-            Existing::Replaced => Some((array, description)),
-            Existing::Kept => {
-                persist_pair(array, description).map_err(refused)?;
-                None
-            }
-        };
         Ok(Self {
             path: path.to_owned(),
+            existing,
             metadata,
-            unnamed,
+            names: Names::Waiting(array, description),
             in_file: 0,
             reason: None,
             syncer: Syncer::new(&file),
@@ -223,12 +230,17 @@ impl FrameRecorder {
     }
 
     fn write_description(&mut self) -> Result<(), RecorderError> {
-        let file = prepared(&self.path, Existing::Replaced, &self.metadata)?;
-        if let Some((_, description)) = &mut self.unnamed {
-            *description = file;
-            return Ok(());
+        let existing = match self.names {
+            Names::Waiting(..) => self.existing,
+            _ => Existing::Replaced,
+        };
+        let file = prepared(&self.path, existing, &self.metadata)?;
+        match &mut self.names {
+            Names::Waiting(_, description) => *description = file,
+            Names::Given => file.persist().map_err(refused)?,
+            Names::Refused => {}
         }
-        file.persist().map_err(refused)
+        Ok(())
     }
 
     /// Writes the description over the old one, where a full disk has no room for both.
@@ -269,9 +281,13 @@ impl FrameRecorder {
             self.shape = Some(found);
             self.count()?;
         }
-        if let Some((array, description)) = self.unnamed.take() {
-            persist_pair(array, description).map_err(refused)?;
-        }
+        self.names = match std::mem::replace(&mut self.names, Names::Refused) {
+            Names::Waiting(array, description) => {
+                persist_pair(array, description).map_err(refused)?;
+                Names::Given
+            }
+            names => names,
+        };
         if let Some(expected) = self.shape.filter(|shape| *shape != found) {
             return Err(RecorderError::Size { found, expected });
         }
@@ -368,12 +384,13 @@ impl FrameRecorder {
         Some((last - first) / steps).filter(|&step| step > 0.0)
     }
 
-    /// Writes out everything, and syncs the file. Without a frame what was to be replaced is there as before.
+    /// Writes out everything, and syncs the file. Without a frame nothing appears, and what was to be replaced is there as
+    /// before.
     ///
     /// # Errors
     /// What the system reports. What is in the file then is whole all the same, and the description says why it ends there.
     pub fn finish(mut self) -> Result<u64, RecorderError> {
-        if self.unnamed.is_some() {
+        if !matches!(self.names, Names::Given) {
             return Ok(0);
         }
         let written = self.write_out();

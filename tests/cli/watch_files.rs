@@ -6,6 +6,10 @@ use std::io::{BufRead, BufReader, Write};
 use std::process::{Command, Stdio};
 
 use serde_json::Value;
+use taxel::acquire::FrameRecorder;
+use taxel::formats::recording::RecordingMetadata;
+use taxel::frame::Frame;
+use taxel::storage::Existing;
 
 use super::watch::{lines, sample, started, stream};
 use super::{finish, program, taxel};
@@ -46,6 +50,45 @@ fn a_source_is_never_its_own_target() {
         fs::read(sample("popu.json")).expect("read")
     );
     assert!(!folder.path().join("s.json").exists());
+}
+
+/// Neither an error nor a source that is silent leaves a recording of no frames.
+#[test]
+fn a_recording_appears_with_its_first_frame() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("new.npy");
+    let names = || fs::read_dir(folder.path()).expect("read").count();
+    let write = format!("--once --write {}", file.display());
+    for (line, input) in [
+        ("watch /nothing/there", ""),
+        ("watch - --format lines --rows 2 --columns 2", "x y\n"),
+        ("watch -", ""),
+    ] {
+        let said = refused(&format!("{line} {write}"), input);
+        let expected = format!("no frame came, so {} was not written", file.display());
+        assert!(said.contains(&expected), "{line}: {said}");
+        assert_eq!(names(), 0, "{line}");
+    }
+    let run = taxel(&format!("watch - {write}"), stream(0..3));
+    assert_eq!((run.status, names()), (Some(0), 2), "{}", run.stderr);
+}
+
+#[test]
+fn of_two_recordings_in_one_file_the_later_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("both.npy");
+    let begun = || FrameRecorder::create(&file, Existing::Kept, &RecordingMetadata::default());
+    let (mut first, mut late) = (begun().expect("free"), begun().expect("still free"));
+    let frame = Frame::new(2, 2);
+    first.add(&frame, None).expect("recorded");
+    assert_eq!(first.finish().expect("written"), 1);
+    let both = || [file.clone(), file.with_extension("json")].map(|path| fs::read(path).ok());
+    let before = both();
+    let error = late.add(&frame, None).expect_err("the file is there");
+    assert!(error.to_string().contains("is there already"), "{error}");
+    assert!(late.describe(&RecordingMetadata::default()).is_ok());
+    assert_eq!(late.finish().expect("nothing to write"), 0);
+    assert_eq!(both(), before);
 }
 
 /// A recording is replaced by frames, and by nothing less.

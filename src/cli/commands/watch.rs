@@ -506,6 +506,10 @@ impl Watcher<'_> {
             failure = Some(self.refused(&FrameError::Tare { frames, wanted }.to_string()));
         }
         let recorded = self.recorder.take().map(FrameRecorder::finish);
+        if let (Some(Ok(0)), Some(path)) = (&recorded, &self.asked.write) {
+            let path = path.display();
+            self.say(&format!("no frame came, so {path} was not written"));
+        }
         let given_up = self.lines.given_up;
         if given_up > 0 {
             let text = format!(

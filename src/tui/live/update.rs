@@ -259,6 +259,12 @@ fn page(app: &mut App) -> Option<&mut Live> {
 /// is finished after the source is left.
 pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
     match event {
+        LiveEvent::Recorded(name, 0) => {
+            return inform(
+                app,
+                format!("{name}: no frame came, so nothing was written"),
+            );
+        }
         LiveEvent::Recorded(name, frames) => {
             let frames = counted(*frames, "frame");
             return inform(app, format!("{name}: {frames} recorded"));

@@ -125,6 +125,20 @@ fn a_key_records_and_a_key_ends_it() {
     watched.ends();
 }
 
+#[test]
+fn a_recording_without_a_frame_leaves_no_file() {
+    let Some(mut watched) = Watched::start() else {
+        return;
+    };
+    watched.shows_the_first_frame();
+    let file = watched.records();
+    watched.program.types(b"r");
+    let said = "touch-1.npy: no frame came, so nothing was written";
+    watched.program.shows(said);
+    assert!(!file.exists() && !file.with_extension("json").exists());
+    watched.ends();
+}
+
 /// What the description beside an array says of its end.
 fn is_ended(path: &Path) -> bool {
     let beside = fs::read_to_string(path.with_extension("json")).expect("it is there");
