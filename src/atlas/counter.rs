@@ -1,4 +1,4 @@
-//! Counts keys: keeps each distinct key once, in order of first occurrence, with its count and its first pose.
+//! Counts keys: keeps each distinct key once, in the order in which they came, with its count and its first pose.
 //!
 //! An open hash table of indices beside the keys themselves. A slot holds the upper half of a hash and an index, so
 //! nearly all comparisons end there; a key is found only if all of its words are equal.
@@ -58,7 +58,7 @@ impl ImprintCounter {
         &self.tallies
     }
 
-    /// Adds `count` to the count of a key, and returns its index, from 0. If the key is new, `first` is its first pose.
+    /// Adds `count` to the count of a key, and returns its index, from 0. `first` is a pose that left it.
     #[inline]
     pub(crate) fn add(&mut self, key: &[u64], hash: u64, count: u64, first: u64) -> usize {
         let mask = self.slots.len() - 1;
@@ -70,8 +70,11 @@ impl ImprintCounter {
             }
             if (held ^ hash) & !INDEX == 0 {
                 let known = index((held & INDEX) - 1);
-                if self.key(known) == key {
-                    self.tallies[known].count += count;
+                // Word by word: a call costs more than these few.
+                if self.key(known).iter().eq(key) {
+                    let tally = &mut self.tallies[known];
+                    tally.count += count;
+                    tally.first = tally.first.min(first);
                     return known;
                 }
             }
@@ -82,6 +85,19 @@ impl ImprintCounter {
     /// Adds to the count of a known key.
     pub(crate) fn count(&mut self, index: usize, count: u64) {
         self.tallies[index].count += count;
+    }
+
+    /// Puts the keys in the order of their first poses. The result is the former index of each.
+    pub(crate) fn put_in_order(&mut self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.len()).collect();
+        order.sort_unstable_by_key(|&index| self.tallies[index].first);
+        let mut ordered = Self::new(self.length);
+        for &index in &order {
+            let Tally { count, first } = self.tallies[index];
+            ordered.add(self.key(index), self.hash(index), count, first);
+        }
+        *self = ordered;
+        order
     }
 
     /// The index of a key; None if it was never added.

@@ -82,6 +82,12 @@ impl Atlas {
         );
     }
 
+    /// Numbers the imprints, all of them described, in the order of their first poses.
+    pub(crate) fn put_in_order(&mut self) {
+        let order = self.counter.put_in_order();
+        self.summaries = order.iter().map(|&old| self.summaries[old]).collect();
+    }
+
     /// The summaries of the imprints, in their order.
     pub(crate) fn summaries(&self) -> &[ImprintSummary] {
         &self.summaries

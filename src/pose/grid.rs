@@ -285,6 +285,12 @@ impl PoseGrid {
         Boundary::of(&self.placed(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0)))
     }
 
+    /// Where the point that the shape turns about lies in an orientation, with the anchor at the origin.
+    pub(crate) fn centre_from_anchor(&self, orientation: u64) -> [f64; 2] {
+        let pose = self.first_pose(orientation);
+        self.centre(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0))
+    }
+
     /// The position of the anchor in the plane at value `x` of x0 and value `y` of y0.
     pub(crate) fn offset<T: Real>(&self, orientation: u64, x: u64, y: u64) -> Point<T> {
         let anchor = Point::new(

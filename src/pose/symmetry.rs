@@ -1,12 +1,18 @@
-//! The angles at which a shape looks the same.
+//! The angles at which a shape looks the same, or like its mirror image.
 //!
 //! (x0, y0) places the corner of the figure *before* it is turned, so the centre stays where it is, and two angles give
 //! the same shape when they differ by a symmetry of the figure: 180° for rectangles and ellipses, 90° for squares,
 //! 360°/n for regular polygons where that is a whole number of degrees (not the heptagon's), and any angle for circles.
 //! A picture that a half turn maps onto itself has 180°. Angles are compared as exact decimals.
+//!
+//! Upright figures have right and left alike, so at minus an angle they are the mirror image of themselves at that angle,
+//! about the vertical line through their centre. So do some pictures; others have top and bottom alike, and are their
+//! mirror image at 180° minus the angle.
 
 use crate::figure::FigureKind;
+use crate::imprint::{Bounds, Imprint};
 use crate::parameter::Parameter;
+use crate::pose::range::DecimalRange;
 use crate::source::Source;
 
 /// The rotation, in degrees, after which a shape looks the same; None if it looks the same at every angle.
@@ -14,17 +20,17 @@ pub(crate) fn period(source: &Source) -> Option<u32> {
     let figure = match source {
         Source::Figure(figure) => figure,
         Source::Picture(picture) => {
-            let imprint = picture.imprint();
-            let half_turned = imprint.bounds().is_some_and(|bounds| {
-                let turned = |column: u8, row: u8| {
-                    imprint.get(
-                        bounds.left + bounds.right - 1 - column,
-                        bounds.top + bounds.bottom - 1 - row,
-                    )
-                };
-                imprint.active().all(|(column, row)| turned(column, row))
+            let half_turned = |bounds: &Bounds, column, row| {
+                (
+                    bounds.left + bounds.right - 1 - column,
+                    bounds.top + bounds.bottom - 1 - row,
+                )
+            };
+            return Some(if maps_onto_itself(picture.imprint(), half_turned) {
+                180
+            } else {
+                360
             });
-            return Some(if half_turned { 180 } else { 360 });
         }
     };
     let equal = |one: Parameter, other: Parameter| figure.get(one) == figure.get(other);
@@ -37,5 +43,109 @@ pub(crate) fn period(source: &Source) -> Option<u32> {
         FigureKind::Hexagon => Some(60),
         FigureKind::Heptagon => Some(360),
         FigureKind::Octagon => Some(45),
+    }
+}
+
+/// The sum of two angles, in degrees, at which a shape shows its mirror image, right and left exchanged; None if it has
+/// none.
+fn mirror(source: &Source) -> Option<u32> {
+    let Source::Picture(picture) = source else {
+        return Some(0);
+    };
+    let right_left = |bounds: &Bounds, column, row| (bounds.left + bounds.right - 1 - column, row);
+    let upside_down = |bounds: &Bounds, column, row| (column, bounds.top + bounds.bottom - 1 - row);
+    if maps_onto_itself(picture.imprint(), right_left) {
+        Some(0)
+    } else {
+        maps_onto_itself(picture.imprint(), upside_down).then_some(180)
+    }
+}
+
+/// Whether a map of taxels within the bounds maps active ones onto active ones.
+fn maps_onto_itself(imprint: &Imprint, map: impl Fn(&Bounds, u8, u8) -> (u8, u8)) -> bool {
+    imprint.bounds().is_some_and(|bounds| {
+        imprint.active().all(|(column, row)| {
+            let (column, row) = map(&bounds, column, row);
+            imprint.get(column, row)
+        })
+    })
+}
+
+/// The angles of a range in classes: those of a class show the same shape.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AngleClasses {
+    angles: DecimalRange,
+    period: Option<u32>,
+    mirror: Option<u32>,
+}
+
+impl AngleClasses {
+    /// The classes of a shape.
+    pub(crate) fn of(source: &Source, angles: DecimalRange) -> Self {
+        Self {
+            angles,
+            period: period(source),
+            mirror: mirror(source),
+        }
+    }
+
+    /// The class of an angle, which is given by its index.
+    pub(crate) fn class(&self, index: u64) -> i128 {
+        self.period
+            .map_or(0, |period| self.angles.residue(index, period))
+    }
+
+    /// The class that shows the mirror image of a class, right and left exchanged; None if there is none, or if it is the
+    /// class itself.
+    pub(crate) fn mirrored(&self, class: i128) -> Option<i128> {
+        let (mirror, period, one) = (self.mirror?, self.period?, self.angles.one());
+        let image = (i128::from(mirror) * one - class).rem_euclid(i128::from(period) * one);
+        (image != class).then_some(image)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::Figure;
+    use crate::picture::Picture;
+    use crate::sensor::Sensor;
+
+    fn classes(source: &Source, angles: &str) -> AngleClasses {
+        AngleClasses::of(source, angles.parse().expect("a range"))
+    }
+
+    /// The index of the angle that shows the mirror image of angle `index`.
+    fn image(source: &Source, angles: &str, index: u64) -> Option<u64> {
+        let classes = classes(source, angles);
+        let image = classes.mirrored(classes.class(index))?;
+        (0..classes.angles.count()).find(|&other| classes.class(other) == image)
+    }
+
+    #[test]
+    fn figures_mirror_each_other_at_opposite_angles() {
+        let figure = |kind| Source::Figure(Figure::default_of(kind, &Sensor::default()));
+        let heptagon = figure(FigureKind::Heptagon);
+        assert_eq!(image(&heptagon, "0:359:1", 1), Some(359));
+        assert_eq!(image(&heptagon, "0:359:1", 180), None);
+        assert_eq!(image(&heptagon, "-0.5:0.5:0.25", 0), Some(4));
+        assert_eq!(image(&heptagon, "1:10:1", 4), None);
+        let hexagon = figure(FigureKind::Hexagon);
+        assert_eq!(image(&hexagon, "0:359:1", 1), Some(59));
+        assert_eq!(image(&hexagon, "0:359:1", 30), None);
+        // The default ellipse is a circle, whose angles are all one class.
+        assert_eq!(image(&figure(FigureKind::Ellipse), "0:359:1", 7), None);
+    }
+
+    #[test]
+    fn pictures_mirror_each_other_if_their_sides_are_alike() {
+        let picture = |rows: &str| {
+            let rows = rows.parse().expect("rows");
+            Source::Picture(Picture::at_home(rows))
+        };
+        assert_eq!(image(&picture(".#.\n###"), "0:359:1", 90), Some(270));
+        assert_eq!(image(&picture(".#\n##\n.#"), "0:359:1", 60), Some(120));
+        assert_eq!(image(&picture("##\n.#\n.#"), "0:359:1", 60), None);
+        assert_eq!(image(&picture("..\n.."), "0:359:1", 60), None);
     }
 }

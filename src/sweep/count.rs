@@ -78,19 +78,20 @@ impl Sweep<'_> {
             partly_off,
         } = &mut counted;
         let width = self.grid.row_length();
-        self.each_portion(layout, false, |portion| {
-            for (task, found) in portion {
-                let orientations = task.turns.len() as u64;
+        let complete = self.each_portion(layout, false, |portion| {
+            for found in portion {
+                let orientations = found.turns.len() as u64;
                 let own = &found.counter;
                 for (index, tally) in own.tallies().iter().enumerate() {
                     let count = tally.count * orientations;
                     counter.add(own.key(index), own.hash(index), count, tally.first);
                 }
-                *poses += (task.rows.end - task.rows.start) * width * orientations;
+                *poses += (found.rows.end - found.rows.start) * width * orientations;
                 *partly_off += found.partly_off * orientations;
             }
-        })
-        .then_some(counted)
+        });
+        counter.put_in_order();
+        complete.then_some(counted)
     }
 
     /// Finds the poses that leave an imprint of which `wanted` says yes. None if it was stopped.
@@ -102,18 +103,18 @@ impl Sweep<'_> {
         let layout = Layout::new(sensor.columns(), sensor.rows());
         let mut runs = Vec::new();
         self.each_portion(&layout, true, |portion| {
-            for (task, found) in portion {
+            for found in portion {
                 let wanted: Vec<bool> = (0..found.counter.len())
                     .map(|index| wanted(&layout.imprint(found.counter.key(index))))
                     .collect();
-                for (row, y) in task.rows.clone().enumerate() {
-                    let mut first = (task.turns[0] * height + y) * width;
+                for (row, y) in found.rows.clone().enumerate() {
+                    let mut first = (found.turns[0] * height + y) * width;
                     for &(index, length) in found.runs.row(row) {
                         if wanted[index as usize] {
                             runs.push(PoseRun {
                                 first,
                                 poses: u64::from(length),
-                                orientations: task.turns.len() as u64,
+                                orientations: found.turns.len() as u64,
                             });
                         }
                         first += u64::from(length);

@@ -67,29 +67,34 @@ impl Marker<'_, '_, '_> {
     fn end(&mut self, at: f64, right: bool) -> usize {
         let columns = usize::from(self.events.layout.columns());
         let start = at + self.steps.first;
+        let near = NEAR * self.steps.per_cell;
+        let last = f64::from(self.steps.count - 1) + near;
         let mut column = from_first(Real::floor(start - NEAR) + 1);
         let mut first = None;
         while column < columns {
-            let step = self.passing(column, start, right);
+            #[expect(clippy::cast_precision_loss, reason = "a column")]
+            let place = (column as f64 - start) * self.steps.per_cell;
+            if place > last {
+                return first.unwrap_or(column);
+            }
+            let step = self.passing(column, place, right);
             if step > 0 {
                 first = first.or(Some(column));
-                if step >= self.steps.count {
-                    break;
+                if step < self.steps.count {
+                    self.events.turn_over(self.row, column, step.unsigned_abs());
                 }
-                self.events.turn_over(self.row, column, step.unsigned_abs());
             }
             column += 1;
         }
         first.unwrap_or(columns)
     }
 
-    /// The first step at which a taxel is past an end.
-    #[expect(clippy::cast_precision_loss, reason = "a column")]
-    fn passing(&mut self, column: usize, start: f64, right: bool) -> i32 {
-        let place = (column as f64 - start) * self.steps.per_cell;
+    /// The first step at which a taxel is past an end, which it passes at a place that is counted in steps.
+    fn passing(&mut self, column: usize, place: f64, right: bool) -> i32 {
         let nearest = floor(place + 0.5);
-        if (place - f64::from(nearest)).abs() > NEAR * self.steps.per_cell {
-            return floor(place) + 1;
+        let after = place - f64::from(nearest);
+        if after.abs() > NEAR * self.steps.per_cell {
+            return nearest + i32::from(after > 0.0);
         }
         if nearest < 0 || nearest >= self.steps.count {
             return nearest;

@@ -14,9 +14,10 @@
 //! -> atlas            each imprint counted once per run, and described once per sweep
 //! ```
 //!
-//! **What is skipped.** Of the angles at which the shape looks the same, all but one ([`crate::pose`]). And if a half
-//! turn of the plane maps the poses of an angle onto each other, half of their rows (`point_symmetry`,
-//! `reflected_rows`). Both are decided on exact decimals.
+//! **What is skipped.** Of the angles at which the shape looks the same, all but one ([`crate::pose`]). Where the shape is
+//! its mirror image at another angle, the spans of one are those of the other with right and left exchanged. And if a
+//! half turn of the plane maps the poses of an angle onto each other, half of their rows (`point_symmetry`,
+//! `reflected_rows`). All of this is decided on exact decimals.
 //!
 //! Sums are whole numbers, so the statistics are the same to the last digit for any number of threads and shards.
 

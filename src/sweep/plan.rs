@@ -1,7 +1,8 @@
 //! How a grid is cut up: shards for several machines, and tasks for the threads of one.
 //!
-//! A shard is a piece of the list of rows, in their order. A task is a piece of one orientation (an angle and a pair of
-//! zooms); orientations at which the shape looks the same share it. The result does not depend on how tasks are cut.
+//! A shard is a piece of the list of rows, in their order. Orientations (an angle and a pair of zooms) at which the shape
+//! looks the same form a *group*, of which one is swept. A task is some rows of a group, and of the group at which the
+//! shape is its mirror image. The result does not depend on how tasks are cut.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -9,7 +10,7 @@ use std::ops::Range;
 use std::str::FromStr;
 use std::sync::Arc;
 
-use crate::pose::{Axis, PoseGrid, period};
+use crate::pose::{AngleClasses, Axis, PoseGrid};
 use crate::quote::shortened;
 use crate::sweep::point_symmetry::PointSymmetry;
 
@@ -94,13 +95,20 @@ pub struct ShardError {
     pub text: String,
 }
 
-/// Some rows of an orientation, and of all orientations with the same imprints.
+/// Some rows of a group of orientations, and of the group of their mirror images.
 #[derive(Clone, Debug)]
 pub(crate) struct Task {
-    /// The orientations. The first of them is swept for all.
-    pub(crate) turns: Arc<[u64]>,
+    /// One group, or two of which one shows the mirror images of the other, right and left exchanged.
+    pub(crate) groups: Arc<[Arc<[u64]>]>,
     /// The indices of the values of y0.
     pub(crate) rows: Range<u64>,
+}
+
+impl Task {
+    /// The number of orientations.
+    pub(crate) fn orientations(&self) -> u64 {
+        self.groups.iter().map(|turns| turns.len() as u64).sum()
+    }
 }
 
 /// The usual number of poses in a task: enough to outweigh its start, few enough to share the work among threads.
@@ -110,12 +118,14 @@ const HALVED_TASK_POSES: u64 = 1_000_000;
 /// A block is cut into at least this many tasks, if it has as many rows.
 const TASKS: u64 = 16;
 
-/// The tasks of one block (all angles at one pair of zooms) within the rows of a shard, in the order in which they meet
-/// new imprints. They are made one at a time, because a large grid has millions.
+/// The tasks of one block (all angles at one pair of zooms) within the rows of a shard, in the order of the first of
+/// their orientations. They are made one at a time, because a large grid has millions. If `mirrored`, groups that are
+/// mirror images share tasks; rows then come far from their order.
 pub(crate) fn tasks(
     grid: &PoseGrid,
     shard: &Range<u64>,
     block: u64,
+    mirrored: bool,
 ) -> impl Iterator<Item = Task> + use<> {
     let (angles, height) = (
         grid.ranges()[Axis::Angle].count(),
@@ -123,25 +133,29 @@ pub(crate) fn tasks(
     );
     let first_row = block * angles * height;
     let clipped = |row: u64| row.clamp(first_row, first_row + angles * height) - first_row;
-    let pieces = pieces(grid, clipped(shard.start)..clipped(shard.end));
+    let rows = clipped(shard.start)..clipped(shard.end);
+    let pieces = pieces(grid, rows, mirrored);
     let length = task_rows(grid, pieces.len() as u64);
-    pieces.into_iter().flat_map(move |(members, rows)| {
-        let turns = members.into_iter().map(|angle| block * angles + angle);
-        let turns: Arc<[u64]> = turns.collect();
+    pieces.into_iter().flat_map(move |(groups, rows)| {
+        let turns = |group: Vec<u64>| {
+            let turns = group.into_iter().map(|angle| block * angles + angle);
+            turns.collect()
+        };
+        let groups: Arc<[Arc<[u64]>]> = groups.into_iter().map(turns).collect();
         let starts = (0..(rows.end - rows.start).div_ceil(length)).map(move |task| task * length);
         starts.map(move |start| Task {
-            turns: Arc::clone(&turns),
+            groups: Arc::clone(&groups),
             rows: rows.start + start..rows.end.min(rows.start + start + length),
         })
     })
 }
 
-/// Angles whose imprints are the same, and the values of y0 to sweep for the first of them.
-type Piece = (Vec<u64>, Range<u64>);
+/// One or two groups of angles, and the values of y0 to sweep for them.
+type Piece = (Vec<Vec<u64>>, Range<u64>);
 
-/// The angles of a block, gathered by a period of the shape; `rows` are those of the block that a shard holds. Angles
-/// that it holds only a part of are pieces of their own.
-fn pieces(grid: &PoseGrid, rows: Range<u64>) -> Vec<Piece> {
+/// The angles of a block, gathered by the symmetries of the shape; `rows` are those of the block that a shard holds.
+/// Angles that it holds only a part of are pieces of their own.
+fn pieces(grid: &PoseGrid, rows: Range<u64>, mirrored: bool) -> Vec<Piece> {
     let height = grid.rows_per_orientation();
     let full = rows.start.div_ceil(height)..rows.end / height;
     let mut pieces: Vec<Piece> = Vec::new();
@@ -149,24 +163,34 @@ fn pieces(grid: &PoseGrid, rows: Range<u64>) -> Vec<Piece> {
         let start = angle * height;
         let part = rows.start.max(start)..rows.end.min(start + height);
         (
-            vec![angle],
+            vec![vec![angle]],
             part.start.saturating_sub(start)..part.end.saturating_sub(start),
         )
     };
     if rows.start < full.start * height {
         pieces.push(partial(full.start - 1));
     }
-    let mut classes: HashMap<i128, usize> = HashMap::new();
-    let period = period(grid.source());
+    let classes = AngleClasses::of(grid.source(), grid.ranges()[Axis::Angle]);
+    // The piece that the group of a class belongs to, and its place there.
+    let mut places: HashMap<i128, (usize, usize)> = HashMap::new();
     for angle in full.clone() {
-        let class = period.map_or(0, |period| {
-            grid.ranges()[Axis::Angle].residue(angle, period)
-        });
-        let piece = *classes.entry(class).or_insert(pieces.len());
-        if piece == pieces.len() {
-            pieces.push((Vec::new(), 0..height));
-        }
-        pieces[piece].0.push(angle);
+        let class = classes.class(angle);
+        let image = classes.mirrored(class).filter(|_| mirrored);
+        let (piece, group) = match (
+            places.get(&class),
+            image.and_then(|image| places.get(&image)),
+        ) {
+            (Some(&place), _) => place,
+            (None, Some(&(piece, _))) => (piece, 1),
+            (None, None) => {
+                pieces.push((Vec::new(), 0..height));
+                (pieces.len() - 1, 0)
+            }
+        };
+        places.insert(class, (piece, group));
+        let groups = &mut pieces[piece].0;
+        groups.resize(groups.len().max(group + 1), Vec::new());
+        groups[group].push(angle);
     }
     if full.start <= full.end && full.end * height < rows.end {
         pieces.push(partial(full.end));

@@ -104,10 +104,11 @@ impl SweepResult {
             return Vec::new();
         };
         let task = Task {
-            turns: Arc::from([0]),
+            groups: Arc::from([Arc::from([0])]),
             rows: 0..rows,
         };
-        let Some(found) = runs::go(&part, self.atlas.layout(), &task, true, |_| true) else {
+        let found = runs::go(&part, self.atlas.layout(), &task, true, |_| true);
+        let Some(found) = found.as_deref().and_then(<[_]>::first) else {
             return Vec::new();
         };
         let counter = &found.counter;
@@ -302,7 +303,7 @@ mod tests {
         let stopped = pool.expect("threads").install(|| {
             let told = AtomicU64::new(0);
             // Some orientations are complete by then, but far from all.
-            let go_on = |poses| told.fetch_add(poses, Ordering::Relaxed) < 400_000;
+            let go_on = |poses| told.fetch_add(poses, Ordering::Relaxed) < 1_000_000;
             Sweep::new(&grid).progress(&go_on).run()
         });
         assert!(!stopped.complete() && stopped.poses > 0);

@@ -1,8 +1,11 @@
 //! Runs a sweep: shares the tasks of a shard among all threads and puts together what they find.
 //!
-//! Tasks are worked off in portions. The tasks of a portion run side by side, each with a counter of its own; then
-//! these counters are added to the atlas one after the other, in the order of the grid, while the next portion is being
-//! swept. So the number of an imprint is that of its first occurrence, for any number of threads.
+//! Tasks are worked off in portions. The tasks of a portion run side by side, each with counters of its own; then
+//! these counters are added to the atlas one after the other, while the next portion is being swept. At the end the
+//! imprints are put in the order of their first poses, so their numbers are the same for any number of threads.
+//!
+//! Whoever takes rows is given the numbers at once. Then tasks follow the order of the grid, as does the atlas, and
+//! orientations that are mirror images are swept each by itself.
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -103,18 +106,17 @@ impl<'a> Sweep<'a> {
         };
         let (layout, keep_runs) = (done.atlas.layout().clone(), done.rows.is_some());
         self.each_portion(&layout, keep_runs, |portion| done.add(portion));
-        SweepResult::new(
-            grid.clone(),
-            shard,
-            (done.poses, done.partly_off),
-            done.atlas,
-            &done.table,
-            done.spread,
-        )
+        let poses = (done.poses, done.partly_off);
+        let (table, spread) = (&done.table, done.spread);
+        let mut result = SweepResult::new(grid.clone(), shard, poses, done.atlas, table, spread);
+        if !keep_runs {
+            result.atlas.put_in_order();
+        }
+        result
     }
 
-    /// Sweeps portion after portion. `take` receives what each found, in the order of the grid, while the next one is
-    /// being swept. A portion that is stopped is lost, and the result is `false`.
+    /// Sweeps portion after portion. `take` receives what each found while the next one is being swept; if runs are kept,
+    /// in the order of the grid. A portion that is stopped is lost, and the result is `false`.
     pub(super) fn each_portion(
         self,
         layout: &Layout,
@@ -129,21 +131,20 @@ impl<'a> Sweep<'a> {
         } = self;
         let rows = shard.rows(grid.rows());
         let stopped = AtomicBool::new(false);
-        let found = |task: &Task| {
-            let turns = task.turns.len() as u64;
-            let go_on = |poses: u64| {
-                if !progress(poses * turns) {
-                    stopped.store(true, Ordering::Relaxed);
-                }
-                !stopped.load(Ordering::Relaxed)
-            };
+        let go_on = |poses: u64| {
+            if !progress(poses) {
+                stopped.store(true, Ordering::Relaxed);
+            }
+            !stopped.load(Ordering::Relaxed)
+        };
+        let found = |task: Task| {
             (!stopped.load(Ordering::Relaxed))
-                .then(|| runs::go(grid, layout, task, keep_runs, go_on))
+                .then(|| runs::go(grid, layout, &task, keep_runs, go_on))
                 .flatten()
         };
         let block_rows = grid.ranges()[Axis::Angle].count() * grid.rows_per_orientation();
         let blocks = rows.start / block_rows..rows.end.div_ceil(block_rows);
-        let mut tasks = blocks.flat_map(|block| tasks(grid, &rows, block));
+        let mut tasks = blocks.flat_map(|block| tasks(grid, &rows, block, !keep_runs));
         let mut before = Portion::new();
         loop {
             let next = portion(&mut tasks, grid.row_length());
@@ -151,24 +152,18 @@ impl<'a> Sweep<'a> {
                 take(&before);
                 return true;
             }
-            let sweep = || -> Option<Portion> {
-                let swept = next.into_par_iter().map(|task| {
-                    let found = found(&task)?;
-                    Some((task, found))
-                });
-                swept.collect()
-            };
+            let sweep = || -> Option<Vec<Vec<Found>>> { next.into_par_iter().map(found).collect() };
             let (swept, ()) = rayon::join(sweep, || take(&before));
             match swept {
-                Some(swept) => before = swept,
+                Some(swept) => before = swept.into_iter().flatten().collect(),
                 None => return false,
             }
         }
     }
 }
 
-/// Tasks, and what each of them found.
-pub(super) type Portion = Vec<(Task, Found)>;
+/// What the groups of some tasks found.
+pub(super) type Portion = Vec<Found>;
 
 /// The next tasks that run side by side: enough to keep all threads busy till the end of them, few enough for the
 /// memory, which holds what each of them found. `width` is the number of poses in a row.
@@ -201,7 +196,7 @@ impl Done<'_, '_> {
         let width = self.grid.row_length();
         let ids: Vec<Vec<u32>> = portion
             .iter()
-            .map(|(task, found)| self.atlas.add(&found.counter, task.turns.len() as u64))
+            .map(|found| self.atlas.add(&found.counter, found.turns.len() as u64))
             .collect();
         self.atlas.describe();
         self.table.extend(self.atlas.summaries());
@@ -209,34 +204,34 @@ impl Done<'_, '_> {
         let sums: Vec<OrientationSums> = portion
             .par_iter()
             .zip(&ids)
-            .map(|((task, found), ids)| {
+            .map(|(found, ids)| {
                 let counts = found.counter.tallies().iter().map(|tally| tally.count);
                 let counted = ids.iter().copied().zip(counts);
-                OrientationSums::of(table, task.turns.len() as u64, counted)
+                OrientationSums::of(table, found.turns.len() as u64, counted)
             })
             .collect();
-        for (((task, found), ids), sums) in portion.iter().zip(&ids).zip(sums) {
-            let times = task.turns.len() as u64;
-            self.spread.add(task.turns[0], sums);
-            self.poses += (task.rows.end - task.rows.start) * width * times;
+        for ((found, ids), sums) in portion.iter().zip(&ids).zip(sums) {
+            let times = found.turns.len() as u64;
+            self.spread.add(found.turns[0], sums);
+            self.poses += (found.rows.end - found.rows.start) * width * times;
             self.partly_off += found.partly_off * times;
             if let Some(rows) = &mut self.rows {
-                show_rows(self.grid, task, found, ids, rows);
+                show_rows(self.grid, found, ids, rows);
             }
         }
     }
 }
 
-/// Spells out the runs of a task, for each of its turns.
-fn show_rows(grid: &PoseGrid, task: &Task, found: &Found, ids: &[u32], show: &mut TakeRow<'_>) {
+/// Spells out the runs of a group, for each of its turns.
+fn show_rows(grid: &PoseGrid, found: &Found, ids: &[u32], show: &mut TakeRow<'_>) {
     let (width, height) = (grid.row_length(), grid.rows_per_orientation());
     let mut row = Vec::with_capacity(index(width));
-    for (nth, y) in task.rows.clone().enumerate() {
+    for (nth, y) in found.rows.clone().enumerate() {
         row.clear();
         for &(imprint, length) in found.runs.row(nth) {
             row.extend(std::iter::repeat_n(ids[wide(imprint)], wide(length)));
         }
-        for &turn in task.turns.iter() {
+        for &turn in found.turns.iter() {
             show(turn * height + y, &row);
         }
     }

@@ -4,6 +4,9 @@
 //! imprint is the same: one *run*. Rows that are images of rows swept before ([`crate::sweep::point_symmetry`]) follow
 //! from those.
 
+use std::ops::Range;
+use std::sync::Arc;
+
 use crate::atlas::{ImprintCounter, Layout};
 use crate::geometry::Extent;
 use crate::geometry::Real;
@@ -20,9 +23,13 @@ use crate::sweep::reflected_rows::{ReflectedRows, Runs};
 use crate::sweep::span::Spans;
 use crate::touch::DOUBTFUL;
 
-/// The result of a task.
+/// What a task found about one of its groups.
 #[derive(Debug)]
 pub(crate) struct Found {
+    /// The orientations of the group.
+    pub(crate) turns: Arc<[u64]>,
+    /// The indices of the values of y0.
+    pub(crate) rows: Range<u64>,
     /// Its imprints, counted once per pose of one of its orientations.
     pub(crate) counter: ImprintCounter,
     /// The number of poses of one orientation that reach beyond the sensor.
@@ -36,56 +43,27 @@ const TOLD: u64 = 4_000;
 /// This many more edges double the time per pose. A picture may have thousands, and must report as often.
 const EDGES: usize = 64;
 
-/// Sweeps the rows of a task. `progress` receives the number of poses of one orientation done since the last call; if
-/// it returns `false`, the sweep stops and the result is None.
+/// Sweeps the rows of a task. `progress` receives the number of poses done since the last call, of all orientations; if
+/// it returns `false`, the sweep stops and the result is None. There is a result for each group of the task.
 pub(crate) fn go(
     grid: &PoseGrid,
     layout: &Layout,
     task: &Task,
     keep_runs: bool,
     progress: impl Fn(u64) -> bool,
-) -> Option<Found> {
-    let turn = task.turns[0];
-    let mut sweeper = Sweeper::new(grid, layout, turn);
-    let half_turn = PointSymmetry::of(grid).filter(|_| sweeper.lies_inside());
-    let mut images = half_turn.map(|half_turn| ReflectedRows::new(layout, half_turn));
-    let mut found = Found {
-        counter: ImprintCounter::new(layout.words()),
-        partly_off: 0,
-        runs: Runs::default(),
-    };
-    let (width, height) = (grid.row_length(), grid.rows_per_orientation());
+) -> Option<Vec<Found>> {
+    let mut sweeper = Sweeper::new(grid, layout, task, keep_runs);
+    let (width, times) = (grid.row_length(), task.orientations());
     let mut untold = 0;
     for y in task.rows.clone() {
-        let first = (turn * height + y) * width;
-        // The row of this task whose image this one is.
-        let known = images.as_mut().and_then(|images| {
-            let (source, round) = images.source(y);
-            let row = usize::try_from(source.checked_sub(task.rows.start)?).ok()?;
-            (source < y).then_some((images, (row, round)))
-        });
-        found.runs.begin();
-        if let Some((images, source)) = known {
-            images.add(&mut found.counter, &mut found.runs, source, first);
-        } else {
-            sweeper.row(y);
-            found.partly_off += sweeper.beyond(y);
-            sweeper.events.play(|key, hash, from, to| {
-                let index = found.counter.add(key, hash, to - from, first + from);
-                if keep_runs || half_turn.is_some() {
-                    found.runs.push(index, to - from);
-                }
-            });
-        }
+        sweeper.row(y);
         untold += width;
-        if untold >= sweeper.told && !progress(std::mem::take(&mut untold)) {
+        if untold >= sweeper.told && !progress(std::mem::take(&mut untold) * times) {
             return None;
         }
     }
-    if !keep_runs {
-        found.runs = Runs::default();
-    }
-    progress(untold).then_some(found)
+    let found = sweeper.finish(keep_runs);
+    progress(untold * times).then_some(found)
 }
 
 /// A shape prepared for sweeping, by kind.
@@ -116,54 +94,43 @@ impl Shape {
     }
 }
 
-/// One orientation of a grid on its way through the values of y0.
+/// The orientations of a task on their way through the values of y0.
 struct Sweeper<'a> {
     /// The grid.
     grid: &'a PoseGrid,
-    /// The number of the orientation.
-    turn: u64,
-    /// The shape in this orientation, at the origin.
+    /// The shape in the first orientation of the first group, at the origin.
     shape: Shape,
     /// The number of poses between two reports of progress.
     told: u64,
-    /// The extent of the shape at the origin; None if it has no boundary.
-    extent: Option<Extent>,
+    /// The top and the bottom of the shape at the origin; None if it has no boundary.
+    height: Option<[f64; 2]>,
     /// The values of x0.
     steps: Steps,
-    /// The number of values of x0 for which the shape reaches beyond the left or right side.
-    beyond: u64,
-    /// The values of y0, by number, that put it beyond neither the upper nor the lower side.
-    rows_inside: std::ops::Range<u64>,
     /// Those of the band at hand, in memory that is used again.
     spans: Spans,
-    /// What happens along the row at hand.
-    events: Events<'a>,
-    /// Decides where `f64` cannot.
-    exact: Exact<'a>,
+    /// The same of the mirror image.
+    mirrored: Spans,
+    /// The x of a place and of its mirror image sum up to this; cell sides, the anchor at the origin.
+    axis: f64,
+    /// The groups.
+    groups: Vec<Group<'a>>,
 }
 
 impl<'a> Sweeper<'a> {
-    fn new(grid: &'a PoseGrid, layout: &'a Layout, turn: u64) -> Self {
+    fn new(grid: &'a PoseGrid, layout: &'a Layout, task: &Task, keep_runs: bool) -> Self {
+        let turn = task.groups[0][0];
         let boundary = grid.boundary::<f64>(turn);
         let count = grid.row_length();
         let place = |x: u64| grid.offset::<f64>(turn, x, 0).x;
         let (first, last) = (place(0), place(count - 1));
         let count = i32::try_from(count).unwrap_or(i32::MAX);
-        let extent = boundary.extent();
-        let outside = |extent: &Extent| {
-            let inside = grid.columns_inside(turn, extent);
-            grid.row_length() - (inside.end - inside.start)
-        };
+        let groups = task.groups.iter();
+        let groups = groups.map(|turns| Group::new(grid, layout, turns, &task.rows, keep_runs));
         Self {
             grid,
-            turn,
             shape: Shape::new(&boundary),
             told: TOLD / (1 + boundary.edges.len() / EDGES) as u64,
-            beyond: extent.as_ref().map_or(0, outside),
-            rows_inside: extent
-                .as_ref()
-                .map_or(0..0, |extent| grid.rows_inside(turn, extent)),
-            extent,
+            height: boundary.extent().map(|extent| [extent.top, extent.bottom]),
             steps: Steps {
                 first,
                 // Any value will do for a range of one value.
@@ -175,59 +142,205 @@ impl<'a> Sweeper<'a> {
                 count,
             },
             spans: Spans::default(),
-            events: Events::new(layout, grid.row_length()),
-            exact: Exact::new(grid, turn),
+            mirrored: Spans::default(),
+            axis: 2.0 * grid.centre_from_anchor(turn)[0],
+            groups: groups.collect(),
         }
     }
 
-    /// Whether the shape lies inside the sensor in every pose of the orientation, without touching its rim.
-    fn lies_inside(&self) -> bool {
-        let Some(extent) = &self.extent else {
-            return false;
-        };
-        let (ranges, sensor) = (self.grid.ranges(), self.grid.sensor());
-        let place = |x, y| self.grid.offset::<f64>(self.turn, x, y);
-        let (first, last) = (
-            place(0, 0),
-            place(ranges[Axis::X0].count() - 1, ranges[Axis::Y0].count() - 1),
-        );
-        let beyond = |end: f64, side: u8| end > f64::from(side) - DOUBTFUL;
-        let off = extent.left + first.x < DOUBTFUL
-            || extent.top + first.y < DOUBTFUL
-            || beyond(extent.right + last.x, sensor.columns())
-            || beyond(extent.bottom + last.y, sensor.rows());
-        !off
-    }
-
-    /// The number of poses of a row that reach beyond the sensor.
-    fn beyond(&self, y: u64) -> u64 {
-        match &self.extent {
-            Some(_) if !self.rows_inside.contains(&y) => self.grid.row_length(),
-            Some(_) => self.beyond,
-            None => 0,
+    /// Counts the imprints of a row.
+    fn row(&mut self, y: u64) {
+        let mut due = false;
+        for group in &mut self.groups {
+            due |= group.begin(y);
+        }
+        if due {
+            self.sweep(y);
+        }
+        for group in &mut self.groups {
+            group.end(y);
         }
     }
 
     /// Finds the events of a row.
-    fn row(&mut self, y: u64) {
-        self.events.clear();
-        let Some(extent) = &self.extent else { return };
-        let offset = self.grid.offset::<f64>(self.turn, 0, y).y;
+    fn sweep(&mut self, y: u64) {
+        let Some([top, bottom]) = self.height else {
+            return;
+        };
+        let turn = self.groups[0].turn();
+        let offset = self.grid.offset::<f64>(turn, 0, y).y;
         let threshold = self.grid.sensor().threshold();
         let rows = i32::from(self.grid.sensor().rows());
-        let first = Real::floor(extent.top + offset).max(0);
-        let last = Real::floor(extent.bottom + offset).min(rows - 1);
+        let first = Real::floor(top + offset).max(0);
+        let last = Real::floor(bottom + offset).min(rows - 1);
         for row in first..=last {
             let (top, row) = (f64::from(row) - offset, from_first(row));
             self.shape.band(top, row, threshold, &mut self.spans);
-            Marker {
-                steps: self.steps,
-                row,
-                y,
-                events: &mut self.events,
-                exact: &mut self.exact,
+            if self.groups.len() > 1 {
+                // A cell is named by its left side, which is the right side of its image.
+                self.spans.mirror(self.axis - 1.0, &mut self.mirrored);
             }
-            .spans(&self.spans);
+            let spans = [&self.spans, &self.mirrored];
+            for (group, spans) in self.groups.iter_mut().zip(spans) {
+                group.mark(self.steps, row, y, spans);
+            }
         }
     }
+
+    /// What was found.
+    fn finish(self, keep_runs: bool) -> Vec<Found> {
+        let groups = self.groups.into_iter();
+        let found = groups.map(|group| Found {
+            runs: if keep_runs {
+                group.found.runs
+            } else {
+                Runs::default()
+            },
+            ..group.found
+        });
+        found.collect()
+    }
+}
+
+/// A group of orientations, of which the first is swept.
+struct Group<'a> {
+    /// The grid.
+    grid: &'a PoseGrid,
+    /// The number of values of x0 for which the shape reaches beyond the left or right side.
+    beyond: u64,
+    /// The values of y0, by number, that put it beyond neither the upper nor the lower side.
+    rows_inside: Range<u64>,
+    /// What happens along the row at hand.
+    events: Events<'a>,
+    /// Whether the row at hand is to be swept: it is not the image of one that was.
+    due: bool,
+    /// Decides where `f64` cannot.
+    exact: Exact<'a>,
+    /// Rows that are images of others, if there are any.
+    images: Option<ReflectedRows<'a>>,
+    /// Whether runs are kept, for the caller or for images.
+    keep_runs: bool,
+    found: Found,
+}
+
+impl<'a> Group<'a> {
+    fn new(
+        grid: &'a PoseGrid,
+        layout: &'a Layout,
+        turns: &Arc<[u64]>,
+        rows: &Range<u64>,
+        keep_runs: bool,
+    ) -> Self {
+        let turn = turns[0];
+        let extent = grid.boundary::<f64>(turn).extent();
+        let half_turn = PointSymmetry::of(grid).filter(|_| {
+            extent
+                .as_ref()
+                .is_some_and(|extent| lies_inside(grid, turn, extent))
+        });
+        let outside = |extent: &Extent| {
+            let inside = grid.columns_inside(turn, extent);
+            grid.row_length() - (inside.end - inside.start)
+        };
+        let height = grid.rows_per_orientation();
+        Self {
+            grid,
+            beyond: extent.as_ref().map_or(0, outside),
+            rows_inside: extent
+                .as_ref()
+                .map_or(0..height, |extent| grid.rows_inside(turn, extent)),
+            events: Events::new(layout, grid.row_length()),
+            due: false,
+            exact: Exact::new(grid, turn),
+            images: half_turn.map(|half_turn| ReflectedRows::new(layout, half_turn)),
+            keep_runs: keep_runs || half_turn.is_some(),
+            found: Found {
+                turns: Arc::clone(turns),
+                rows: rows.clone(),
+                counter: ImprintCounter::new(layout.words()),
+                partly_off: 0,
+                runs: Runs::default(),
+            },
+        }
+    }
+
+    /// The orientation that is swept.
+    fn turn(&self) -> u64 {
+        self.found.turns[0]
+    }
+
+    /// The number of the first pose of a row.
+    fn first(&self, y: u64) -> u64 {
+        (self.turn() * self.grid.rows_per_orientation() + y) * self.grid.row_length()
+    }
+
+    /// Begins a row. Whether it is to be swept: the image of a row that was is counted at once.
+    fn begin(&mut self, y: u64) -> bool {
+        let first = self.first(y);
+        self.events.clear();
+        self.found.runs.begin();
+        let known = self.images.as_mut().and_then(|images| {
+            let (source, round) = images.source(y);
+            let row = usize::try_from(source.checked_sub(self.found.rows.start)?).ok()?;
+            (source < y).then_some((images, (row, round)))
+        });
+        self.due = known.is_none();
+        if let Some((images, source)) = known {
+            let Found { counter, runs, .. } = &mut self.found;
+            images.add(counter, runs, source, first);
+        }
+        self.due
+    }
+
+    /// Marks what happens in a row of the sensor.
+    fn mark(&mut self, steps: Steps, row: usize, y: u64, spans: &Spans) {
+        if !self.due {
+            return;
+        }
+        Marker {
+            steps,
+            row,
+            y,
+            events: &mut self.events,
+            exact: &mut self.exact,
+        }
+        .spans(spans);
+    }
+
+    /// Counts the imprints of a row that was swept.
+    fn end(&mut self, y: u64) {
+        if !self.due {
+            return;
+        }
+        let first = self.first(y);
+        self.found.partly_off += if self.rows_inside.contains(&y) {
+            self.beyond
+        } else {
+            self.grid.row_length()
+        };
+        let Found { counter, runs, .. } = &mut self.found;
+        self.events.play(|key, hash, from, to| {
+            let index = counter.add(key, hash, to - from, first + from);
+            if self.keep_runs {
+                runs.push(index, to - from);
+            }
+        });
+    }
+}
+
+/// Whether a shape lies inside the sensor in every pose of an orientation, without touching its rim. `extent` is its own
+/// at the origin.
+fn lies_inside(grid: &PoseGrid, turn: u64, extent: &Extent) -> bool {
+    let (ranges, sensor) = (grid.ranges(), grid.sensor());
+    let place = |x, y| grid.offset::<f64>(turn, x, y);
+    let (first, last) = (
+        place(0, 0),
+        place(ranges[Axis::X0].count() - 1, ranges[Axis::Y0].count() - 1),
+    );
+    let beyond = |end: f64, side: u8| end > f64::from(side) - DOUBTFUL;
+    let off = extent.left + first.x < DOUBTFUL
+        || extent.top + first.y < DOUBTFUL
+        || beyond(extent.right + last.x, sensor.columns())
+        || beyond(extent.bottom + last.y, sensor.rows());
+    !off
 }

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use crate::pose::{Axis, PoseGrid, PoseIndex, period};
+use crate::pose::{AngleClasses, Axis, PoseGrid, PoseIndex};
 
 /// The number of poses that are enough to measure.
 const POSES: u64 = 20_000;
@@ -38,14 +38,12 @@ impl TimingSample {
 
 /// The number of angles that are swept: of those at which the shape looks the same, only one is.
 fn distinct_angles(grid: &PoseGrid) -> u64 {
-    let angle = grid.ranges()[Axis::Angle];
-    let Some(period) = period(grid.source()) else {
-        return 1;
-    };
-    let classes: HashSet<i128> = (0..angle.count())
-        .map(|index| angle.residue(index, period))
+    let angles = grid.ranges()[Axis::Angle];
+    let classes = AngleClasses::of(grid.source(), angles);
+    let distinct: HashSet<i128> = (0..angles.count())
+        .map(|index| classes.class(index))
         .collect();
-    classes.len() as u64
+    distinct.len() as u64
 }
 
 #[cfg(test)]

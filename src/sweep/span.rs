@@ -100,6 +100,18 @@ impl Spans {
         self.level = (level != Level::Below).then_some((at, level));
     }
 
+    /// Writes the spans as they are when right and left are exchanged: a place and its image sum up to `axis`.
+    pub(crate) fn mirror(&self, axis: f64, image: &mut Self) {
+        let mirrored = |span: &Span| Span {
+            from: axis - span.to,
+            to: axis - span.from,
+            ..*span
+        };
+        image.list.clear();
+        image.list.extend(self.list.iter().rev().map(mirrored));
+        (image.sharp, image.level) = (self.sharp, None);
+    }
+
     /// The level before the span that begins at `from`.
     fn side_before(&self, from: f64) -> Level {
         match self.list.last() {

@@ -6,7 +6,7 @@ use taxel::picture::Picture;
 use taxel::pose::{Anchor, Axis, PoseGrid, Ranges};
 use taxel::sensor::Sensor;
 use taxel::source::Source;
-use taxel::sweep::Sweep;
+use taxel::sweep::{Sweep, SweepResult};
 use taxel::touch::{Plane, reaches_beyond};
 
 /// What is swept, where, and how.
@@ -265,7 +265,8 @@ impl Case {
     }
 }
 
-/// Sweeps the grid and touches pose by pose; how many poses differ, and what is wrong otherwise.
+/// Sweeps the grid and touches pose by pose; how many poses differ, and what is wrong otherwise. A sweep that does not
+/// give rows takes other ways, and must come to the same.
 pub(crate) fn differences(grid: &PoseGrid) -> Result<u64, String> {
     let poses = usize::try_from(grid.poses()).expect("a small grid");
     let width = usize::try_from(grid.row_length()).expect("a small grid");
@@ -277,6 +278,19 @@ pub(crate) fn differences(grid: &PoseGrid) -> Result<u64, String> {
     };
     let result = Sweep::new(grid).rows(&mut take).run();
     let imprints: Vec<_> = result.atlas.entries().collect();
+    let free = Sweep::new(grid).run();
+    let told = |result: &SweepResult| {
+        let SweepResult {
+            poses,
+            partly_off,
+            statistics,
+            ..
+        } = result;
+        format!("{poses} {partly_off} {statistics:?}")
+    };
+    if told(&free) != told(&result) || !free.atlas.entries().eq(imprints.iter().copied()) {
+        return Err("without rows the result is another one".to_owned());
+    }
     let mut plane = Plane::new(*grid.sensor());
     let (mut differing, mut partly_off, mut empty) = (0, 0, 0);
     let mut known = 0;
