@@ -22,17 +22,15 @@ pub(crate) struct Layout {
     columns: u8,
     /// Rows of the sensor.
     rows: u8,
-    /// Bits that a row takes, and rows that a word holds.
-    width: usize,
-    /// How many rows a word holds.
-    per_word: usize,
+    /// Bits that a row takes, as a power of two: 3 to 6.
+    width: u32,
     /// One number per taxel, in reading order.
     numbers: Vec<u64>,
 }
 
 impl Layout {
     pub(crate) fn new(columns: u8, rows: u8) -> Self {
-        let width = usize::from(columns).next_power_of_two().clamp(8, 64);
+        let width = columns.next_power_of_two().clamp(8, 64).trailing_zeros();
         let mut seed = *SEED.get_or_init(|| RandomState::new().hash_one(0));
         let numbers = (0..usize::from(columns) * usize::from(rows))
             .map(|_| split_mix(&mut seed))
@@ -41,7 +39,6 @@ impl Layout {
             columns,
             rows,
             width,
-            per_word: 64 / width,
             numbers,
         }
     }
@@ -56,12 +53,13 @@ impl Layout {
 
     /// Number of words in a key.
     pub(crate) fn words(&self) -> usize {
-        usize::from(self.rows).div_ceil(self.per_word)
+        (usize::from(self.rows) << self.width).div_ceil(64)
     }
 
     /// The word that holds a row, and by how much it is shifted there.
     pub(crate) fn place(&self, row: usize) -> (usize, usize) {
-        (row / self.per_word, row % self.per_word * self.width)
+        let bits = row << self.width;
+        (bits / 64, bits % 64)
     }
 
     /// The numbers of a row's taxels.

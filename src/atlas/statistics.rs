@@ -17,8 +17,8 @@
 use rayon::prelude::*;
 
 use crate::atlas::feature::{Feature, features};
-use crate::atlas::sums::{Wide, fixed, mean, signed_mean};
-use crate::atlas::values::{Table, places};
+use crate::atlas::sums::{Wide, mean, signed_mean};
+use crate::atlas::values::{NONE, Table, places};
 use crate::atlas::variance::{Sum, VarianceParts};
 
 /// The statistics of a feature over all poses that have it. Values are None if no pose has it.
@@ -84,8 +84,6 @@ const fn column(
 struct Total {
     sum: Sum,
     squares: Wide,
-    min: f64,
-    max: f64,
 }
 
 const NOTHING: Total = Total {
@@ -95,30 +93,31 @@ const NOTHING: Total = Total {
         y: 0,
     },
     squares: Wide::ZERO,
-    min: f64::INFINITY,
-    max: f64::NEG_INFINITY,
 };
 
 impl Total {
-    fn add(&mut self, values: &[f64], circular: bool, poses: u64) {
+    fn add(&mut self, values: &[i64], circular: bool, poses: u64) {
         self.sum.add(values, circular, poses);
-        if !circular && !values[0].is_nan() {
-            let value = u128::from(fixed(values[0]));
+        if !circular && values[0] != NONE {
+            let value = u128::from(values[0].unsigned_abs());
             self.squares += Wide::product(value * value, poses);
-            self.min = self.min.min(values[0]);
-            self.max = self.max.max(values[0]);
         }
     }
 
     fn merged(mut self, other: &Self) -> Self {
         self.sum.merge(&other.sum);
         self.squares += other.squares;
-        self.min = self.min.min(other.min);
-        self.max = self.max.max(other.max);
         self
     }
 
-    fn statistic(&self, feature: &'static Feature, between: Wide, ideal: Option<f64>) -> Statistic {
+    /// The statistics of a feature whose smallest and largest values are `ends`.
+    fn statistic(
+        &self,
+        feature: &'static Feature,
+        ends: Option<(f64, f64)>,
+        between: Wide,
+        ideal: Option<f64>,
+    ) -> Statistic {
         let mut statistic = Statistic {
             feature,
             poses: self.sum.poses,
@@ -143,8 +142,7 @@ impl Total {
         let of_mean = Wide::square_over(sum, poses);
         let mean = mean(sum, poses);
         let sd = (self.squares - of_mean).root_mean(poses);
-        statistic.min = Some(self.min);
-        statistic.max = Some(self.max);
+        (statistic.min, statistic.max) = ends.unzip();
         statistic.mean = Some(mean);
         statistic.sd = Some(sd);
         statistic.cv = (mean != 0.0).then(|| sd / mean.abs());
@@ -201,6 +199,9 @@ pub(crate) fn statistics(
         });
     let parts = totals.iter().zip(features()).zip(spread.closed());
     parts
-        .map(|((total, feature), between)| total.statistic(feature, between, ideal(&feature.key)))
+        .enumerate()
+        .map(|(index, ((total, feature), between))| {
+            total.statistic(feature, table.ends(index), between, ideal(&feature.key))
+        })
         .collect()
 }

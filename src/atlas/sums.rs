@@ -11,15 +11,11 @@ use crate::index::lower_word;
 /// One, as a fixed-point number.
 const ONE: f64 = 1_099_511_627_776.0;
 
-/// The nearest multiple of 2⁻⁴⁰ of a number in [0, 2²³], as a whole number.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "saturates"
-)]
-pub(crate) fn fixed(value: f64) -> u64 {
+/// The nearest multiple of 2⁻⁴⁰ of a number in [0, 2²³), as a whole number; 0 of one that is less.
+#[expect(clippy::cast_possible_truncation, reason = "below 2^63")]
+pub(crate) fn fixed(value: f64) -> i64 {
     // Not `round`, which is a call where the processor is not known to have the instruction.
-    (value * ONE + 0.5) as u64
+    (value * ONE + 0.5).max(0.0) as i64
 }
 
 /// The same of a number in [−1, 1].

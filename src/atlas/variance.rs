@@ -6,8 +6,8 @@
 use std::collections::BTreeMap;
 
 use crate::atlas::feature::features;
-use crate::atlas::sums::{Wide, fixed, signed};
-use crate::atlas::values::{Table, places};
+use crate::atlas::sums::Wide;
+use crate::atlas::values::{NONE, Table, places};
 use crate::index::{lower_word, wide};
 use crate::pose::MAX_VALUES;
 
@@ -20,19 +20,17 @@ pub(crate) struct Sum {
 }
 
 impl Sum {
-    pub(crate) fn add(&mut self, values: &[f64], circular: bool, poses: u64) {
-        if values[0].is_nan() {
+    /// Adds what stands in a row of a [`Table`] from a feature on.
+    pub(crate) fn add(&mut self, values: &[i64], circular: bool, poses: u64) {
+        if values[0] == NONE {
             return;
         }
         self.poses += poses;
+        // One multiplication of the processor: both numbers fit into 64 bits with their signs.
+        let times = i128::from(poses.cast_signed());
+        self.x += i128::from(values[0]) * times;
         if circular {
-            let poses = i128::from(poses);
-            self.x += i128::from(signed(values[1])) * poses;
-            self.y += i128::from(signed(values[2])) * poses;
-        } else {
-            // Below 2^98; one multiplication of the processor, which a signed product of this size is not.
-            let sum = u128::from(fixed(values[0])) * u128::from(poses);
-            self.x += sum.cast_signed();
+            self.y += i128::from(values[1]) * times;
         }
     }
 

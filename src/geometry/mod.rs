@@ -25,4 +25,6 @@ pub(crate) use outline::Moving;
 pub use outline::{Ellipse, Extent, Pen, Point, Polygon, Side, Solid, Turn};
 pub(crate) use overlap::Overlap;
 pub use overlap::cell_area;
+#[cfg(feature = "sweep")]
+pub(crate) use real::nearest;
 pub use real::{Double, Real};

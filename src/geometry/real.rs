@@ -88,6 +88,20 @@ pub trait Real:
     }
 }
 
+/// 1.5 · 2⁵². Added to it, a number is rounded to a whole one, which stands in the lowest bits. A cast takes three times as
+/// long: it has to saturate.
+const WHOLE: f64 = 6_755_399_441_055_744.0;
+
+/// The whole number nearest to a number from −2³¹ to below 2³¹; of two, the even one.
+#[cfg(feature = "sweep")]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "the lowest bits are wanted"
+)]
+pub(crate) fn nearest(number: f64) -> i32 {
+    (number + WHOLE).to_bits() as i32
+}
+
 impl Real for f64 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
@@ -114,9 +128,6 @@ impl Real for f64 {
         towards_zero.saturating_sub(i32::from(Self::from(towards_zero) > self))
     }
     fn cell(self) -> (usize, Self) {
-        // Added to 1.5 · 2⁵², a number is rounded to a whole one, which stands in the lowest bits. A cast takes three times
-        // as long: it has to saturate.
-        const WHOLE: f64 = 6_755_399_441_055_744.0;
         let moved = (self - 0.5) + WHOLE;
         ((moved.to_bits() & 0xf_ffff) as usize, moved - WHOLE)
     }

@@ -3,7 +3,7 @@
 //! A taxel in column `i` inside of a span from `a` to `b` is active while `i − b ≤ x0 ≤ i − a`. Where a value of x0
 //! lies within [`NEAR`] of the end of a span, or in a span that is in doubt, [`Exact`] decides for that taxel and pose.
 
-use crate::geometry::Real;
+use crate::geometry::{Real, nearest};
 use crate::index::from_first;
 use crate::sweep::events::Events;
 use crate::sweep::exact::Exact;
@@ -89,9 +89,10 @@ impl Marker<'_, '_, '_> {
         first.unwrap_or(columns)
     }
 
-    /// The first step at which a taxel is past an end, which it passes at a place that is counted in steps.
+    /// The first step at which a taxel is past an end, which it passes at a place that is counted in steps, at most
+    /// [`NEAR`] before the first of them or after the last.
     fn passing(&mut self, column: usize, place: f64, right: bool) -> i32 {
-        let nearest = floor(place + 0.5);
+        let nearest = nearest(place);
         let after = place - f64::from(nearest);
         if after.abs() > NEAR * self.steps.per_cell {
             return nearest + i32::from(after > 0.0);

@@ -10,7 +10,7 @@
 //! **Error.** `w` at a corner is a sum of shares of rises, each in [0, 1] of them, and `W` is summed up by
 //! trapezoids: nothing is extrapolated, so steep pieces do no harm. Below 1e-11.
 
-use crate::geometry::Point;
+use crate::geometry::{Point, Real};
 use crate::sweep::span::{DOUBT, Level, STEEP, Spans};
 
 /// An edge, from its upper end.
@@ -36,9 +36,7 @@ impl Edge {
     /// Where the edge is at a height between its ends.
     fn x_at(&self, y: f64) -> f64 {
         // Kept between the ends: the slope of an edge that is horizontal up to a rounding means nothing.
-        (self.x + (y - self.top) * self.slope)
-            .max(self.low)
-            .min(self.high)
+        within(self.x + (y - self.top) * self.slope, self.low, self.high)
     }
 }
 
@@ -87,7 +85,7 @@ impl Stretch {
 
     /// `w` and `W` at a place inside.
     fn at(&self, x: f64) -> (f64, f64) {
-        let way = (x - self.left).max(0.0).min(self.right - self.left);
+        let way = within(x - self.left, 0.0, self.right - self.left);
         let height = self.from + self.slope * way;
         (height, self.area + (self.from + height) * 0.5 * way)
     }
@@ -161,7 +159,7 @@ impl Polygonal {
             if edge.top >= top + 1.0 {
                 break;
             }
-            let (from, to) = (edge.top.max(top), edge.bottom.min(top + 1.0));
+            let (from, to) = (Real::max(edge.top, top), Real::min(edge.bottom, top + 1.0));
             if from >= to {
                 continue;
             }
@@ -247,7 +245,7 @@ impl Polygonal {
         let end = self.stretches.len() - 1;
         while near < end {
             let (stop_behind, stop_ahead) = (behind.right, ahead.right - 1.0);
-            let next = stop_behind.min(stop_ahead);
+            let next = Real::min(stop_behind, stop_ahead);
             let excess = right - left - threshold;
             let safe = u + excess.abs() - 2.0 * DOUBT;
             if safe > next {
@@ -288,6 +286,13 @@ impl Polygonal {
         }
         spans.turn(u, Level::Below);
     }
+}
+
+/// The place between `low` and `high` that is nearest to `value`, `low` for NaN: two instructions, where `f64::max` and
+/// `f64::min` take ten, because they never choose a NaN.
+fn within(value: f64, low: f64, high: f64) -> f64 {
+    let above = if value > low { value } else { low };
+    if above < high { above } else { high }
 }
 
 /// Insertion sort: the lists are short and nearly in order.
