@@ -13,8 +13,8 @@ const POSES: u64 = 20_000;
 pub struct TimingSample {
     /// The part: neighbouring poses at one angle and one pair of zooms, from the middle of their ranges.
     pub grid: PoseGrid,
-    /// How many times as long the whole grid takes, or somewhat less: imprints that are known already need not be
-    /// described again, and in the whole these are more.
+    /// How many times as long the whole grid takes at most. It takes less where more of its imprints are known already
+    /// than in the part, and where angles that show mirror images of each other are swept together.
     pub times: f64,
 }
 
