@@ -63,8 +63,14 @@ struct Row {
 
 impl Serialize for Row {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut row = [b'.'; 64];
-        let row = &mut row[..usize::from(self.columns)];
+        /// Most rows of an imprint are empty.
+        const EMPTY: &str = "................................................................";
+        let columns = usize::from(self.columns);
+        if self.word == 0 {
+            return serializer.serialize_str(&EMPTY[..columns]);
+        }
+        let mut row = [b'.'; EMPTY.len()];
+        let row = &mut row[..columns];
         for (column, byte) in row.iter_mut().enumerate() {
             *byte = if self.word >> column & 1 == 1 {
                 b'#'
