@@ -105,12 +105,13 @@ impl Imprint {
 
     /// The smallest rectangle of whole taxels around the active ones; None for an empty imprint.
     pub fn bounds(&self) -> Option<Bounds> {
-        let (mut across, mut down) = (0, 0_u64);
-        for (row, &word) in self.words().iter().enumerate() {
-            across |= word;
-            down |= u64::from(word != 0) << row;
-        }
-        Bounds::around(across, down)
+        let active = |&word: &u64| word != 0;
+        let top = self.words().iter().position(active)?;
+        let last = self.words().iter().rposition(active)?;
+        let across = self.words()[top..=last]
+            .iter()
+            .fold(0, |across, word| across | word);
+        Bounds::around(across, top, last + 1 - top)
     }
 
     /// Whether a taxel in the first or last row or column is active, so that what it is an imprint of may be cut off.
@@ -168,15 +169,15 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Around the columns and the rows whose bits are set; none where no bit is.
-    pub(crate) fn around(across: u64, down: u64) -> Option<Self> {
-        let first = |bits: u64| u8::try_from(bits.trailing_zeros()).unwrap_or(MAX_SIDE);
-        let end = |bits: u64| MAX_SIDE - u8::try_from(bits.leading_zeros()).unwrap_or(MAX_SIDE);
-        (across != 0 && down != 0).then(|| Self {
-            left: first(across),
-            top: first(down),
-            right: end(across),
-            bottom: end(down),
+    /// Around the columns whose bits are set, and a number of rows from `top` on; None where no bit is set.
+    pub(crate) fn around(across: u64, top: usize, rows: usize) -> Option<Self> {
+        let side = |count: u32| u8::try_from(count).unwrap_or(MAX_SIDE);
+        let row = |row: usize| u8::try_from(row).unwrap_or(MAX_SIDE);
+        (across != 0).then(|| Self {
+            left: side(across.trailing_zeros()),
+            top: row(top),
+            right: MAX_SIDE - side(across.leading_zeros()),
+            bottom: row(top + rows),
         })
     }
 

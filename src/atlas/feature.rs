@@ -110,7 +110,7 @@ impl ImprintSummary {
             }
             summary.pieces = summary.pieces.saturating_add(1);
             let best = summary.description.as_ref().map(|best| best.nae);
-            if is_main(region.filled().count(), best) {
+            if is_main(region.area(), best) {
                 summary.description = Some(Description::of(region));
             }
         });

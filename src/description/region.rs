@@ -5,7 +5,8 @@
 //! Exteriors come first, then holes, each in reading order of their first taxel. Each region is described as a shape
 //! of its own: `filled` is the region with everything that its own exterior outline encloses.
 //!
-//! Floods work on whole rows: a run of taxels that is entered anywhere is filled at once by the carry of an addition.
+//! Piece after piece is flooded and filled by itself. Floods work on whole rows: a run of taxels that is entered anywhere
+//! is filled at once by the carry of an addition.
 
 use std::borrow::Cow;
 
@@ -35,7 +36,8 @@ impl RegionKind {
 pub struct Region<'a> {
     kind: RegionKind,
     taxels: Cow<'a, Imprint>,
-    filled: Cow<'a, Imprint>,
+    /// None if it encloses nothing: then `taxels` are all.
+    filled: Option<Cow<'a, Imprint>>,
     bounds: Bounds,
 }
 
@@ -43,13 +45,13 @@ impl<'a> Region<'a> {
     fn borrowed(
         kind: RegionKind,
         taxels: &'a Imprint,
-        filled: &'a Imprint,
+        filled: Option<&'a Imprint>,
         bounds: Bounds,
     ) -> Self {
         Self {
             kind,
             taxels: Cow::Borrowed(taxels),
-            filled: Cow::Borrowed(filled),
+            filled: filled.map(Cow::Borrowed),
             bounds,
         }
     }
@@ -59,7 +61,7 @@ impl<'a> Region<'a> {
         Region {
             kind: self.kind,
             taxels: Cow::Owned(self.taxels.into_owned()),
-            filled: Cow::Owned(self.filled.into_owned()),
+            filled: self.filled.map(|filled| Cow::Owned(filled.into_owned())),
             bounds: self.bounds,
         }
     }
@@ -76,7 +78,13 @@ impl<'a> Region<'a> {
 
     /// Its taxels and everything that its exterior outline encloses.
     pub fn filled(&self) -> &Imprint {
-        &self.filled
+        self.filled.as_deref().unwrap_or(&self.taxels)
+    }
+
+    /// The number of taxels of [`Self::filled`].
+    pub(crate) fn area(&self) -> u32 {
+        let words = rows(self.filled(), self.bounds).iter();
+        words.map(|word| word.count_ones()).sum()
     }
 
     /// The smallest rectangle of whole taxels around it.
@@ -116,41 +124,21 @@ pub fn each_region(imprint: &Imprint, mut visit: impl FnMut(&Region)) {
     let Some(bounds) = imprint.bounds() else {
         return;
     };
+    // The taxels around a hole are 8-connected, so there is one piece that encloses it.
     let mut holes = Imprint::empty(imprint.columns(), imprint.rows());
-    let Some(holes_bounds) = enclosed(imprint, bounds, &mut holes) else {
-        if is_stack(imprint, bounds, true) {
-            visit(&Region::borrowed(
-                RegionKind::Exterior,
-                imprint,
-                imprint,
-                bounds,
-            ));
-        } else {
-            pieces(imprint, bounds, RegionKind::Exterior, false, &mut visit);
+    components(imprint, bounds, RegionKind::Exterior, |piece| {
+        if let Some(filled) = &piece.filled {
+            let bounds = piece.bounds;
+            let holes = rows_mut(&mut holes, bounds).iter_mut();
+            let inside = rows(filled, bounds).iter().zip(rows(imprint, bounds));
+            for (hole, (filled, active)) in holes.zip(inside) {
+                *hole |= filled & !active;
+            }
         }
-        return;
-    };
-    let mut filled = *imprint;
-    unite(&mut filled, &holes, holes_bounds);
-    if is_stack(&filled, bounds, true) && is_runs(&holes, holes_bounds) {
-        visit(&Region::borrowed(
-            RegionKind::Exterior,
-            imprint,
-            &filled,
-            bounds,
-        ));
-    } else {
-        pieces(imprint, bounds, RegionKind::Exterior, true, &mut visit);
-    }
-    if is_stack(&holes, holes_bounds, false) {
-        visit(&Region::borrowed(
-            RegionKind::Hole,
-            &holes,
-            &holes,
-            holes_bounds,
-        ));
-    } else {
-        pieces(&holes, holes_bounds, RegionKind::Hole, true, &mut visit);
+        visit(piece);
+    });
+    if let Some(bounds) = holes.bounds() {
+        components(&holes, bounds, RegionKind::Hole, visit);
     }
 }
 
@@ -162,7 +150,7 @@ pub fn main_region(regions: &[Region]) -> Option<usize> {
         .enumerate()
         .filter(|(_, region)| region.kind == RegionKind::Exterior);
     let largest = |best: Option<(usize, u32)>, (index, region): (usize, &Region)| {
-        let area = region.filled.count();
+        let area = region.area();
         if is_main(area, best.map(|(_, area)| area)) {
             Some((index, area))
         } else {
@@ -178,27 +166,86 @@ pub(crate) fn is_main(area: u32, best: Option<u32>) -> bool {
     best.is_none_or(|best| area > best)
 }
 
-/// Whether every row within the bounds is one run that meets the next row's: then it is one piece without holes.
-///
-/// Nearly every imprint of one figure is such a stack of runs once it is filled. If its holes have one run at most in
-/// each row, the imprint itself is one piece too: what is left of the runs beside a hole meets what is left of them in
-/// the next row, since otherwise the hole would be open there.
-fn is_stack(matrix: &Imprint, bounds: Bounds, diagonal: bool) -> bool {
-    let mut above = u64::MAX;
-    rows(matrix, bounds).iter().all(|&word| {
-        let near = if diagonal {
-            above | above << 1 | above >> 1
-        } else {
-            above
-        };
+/// The rows within the bounds.
+fn rows(matrix: &Imprint, bounds: Bounds) -> &[u64] {
+    &matrix.words()[usize::from(bounds.top)..usize::from(bounds.bottom)]
+}
+
+/// The rows within the bounds, to be changed.
+fn rows_mut(matrix: &mut Imprint, bounds: Bounds) -> &mut [u64] {
+    &mut matrix.words_mut()[usize::from(bounds.top)..usize::from(bounds.bottom)]
+}
+
+/// Shows the connected components of a matrix in reading order: exteriors 8-connected, holes 4-connected.
+fn components(matrix: &Imprint, bounds: Bounds, kind: RegionKind, mut visit: impl FnMut(&Region)) {
+    let diagonal = kind == RegionKind::Exterior;
+    if hangs_together(rows(matrix, bounds), diagonal) {
+        let runs = rows(matrix, bounds).iter().all(|&word| is_run(word));
+        show(kind, matrix, bounds, runs, visit);
+        return;
+    }
+    let mut rest = *matrix;
+    let bottom = usize::from(bounds.bottom);
+    for top in usize::from(bounds.top)..bottom {
+        while rest.words()[top] != 0 {
+            let mut piece = Imprint::empty(matrix.columns(), matrix.rows());
+            let open = &mut rest.words_mut()[top..bottom];
+            let seeds = &mut piece.words_mut()[top..bottom];
+            seeds[0] = spread(open[0] & open[0].wrapping_neg(), open[0]);
+            let end = flood(seeds, open, 1, diagonal);
+            // One pass for all that is asked of the piece: how many rows it has is hard to foresee for a processor.
+            let (mut across, mut runs) = (0, true);
+            for (open, &taxels) in open.iter_mut().zip(&*seeds).take(end) {
+                *open &= !taxels;
+                across |= taxels;
+                runs &= is_run(taxels);
+            }
+            if let Some(bounds) = Bounds::around(across, top, end) {
+                show(kind, &piece, bounds, runs, &mut visit);
+            }
+        }
+    }
+}
+
+/// Shows a component, filled. If all of its rows are runs there is nothing to fill.
+fn show(
+    kind: RegionKind,
+    piece: &Imprint,
+    bounds: Bounds,
+    runs: bool,
+    mut visit: impl FnMut(&Region),
+) {
+    if runs {
+        visit(&Region::borrowed(kind, piece, None, bounds));
+        return;
+    }
+    let mut filled = Imprint::empty(piece.columns(), piece.rows());
+    let encloses = fill(piece, bounds, &mut filled);
+    let filled = encloses.then_some(&filled);
+    visit(&Region::borrowed(kind, piece, filled, bounds));
+}
+
+/// Whether the first row is one run, and every run of another row meets the row above: then all is one component. Nearly
+/// every imprint of one figure is, and so are most holes.
+fn hangs_together(rows: &[u64], diagonal: bool) -> bool {
+    let Some(first) = rows.first() else {
+        return false;
+    };
+    let mut above = first & first.wrapping_neg();
+    rows.iter().all(|&word| {
+        let entered = near(above, diagonal) & word;
         above = word;
-        near & word != 0 && is_run(word)
+        meets_all(entered, word)
     })
 }
 
-/// Whether no row has more than one run.
-fn is_runs(matrix: &Imprint, bounds: Bounds) -> bool {
-    rows(matrix, bounds).iter().all(|&word| is_run(word))
+/// The columns of the next row that a row's taxels reach.
+fn near(word: u64, diagonal: bool) -> u64 {
+    if diagonal {
+        word | word << 1 | word >> 1
+    } else {
+        word
+    }
 }
 
 /// Whether the set bits are next to each other: adding the lowest then carries out of all of them.
@@ -206,140 +253,127 @@ fn is_run(word: u64) -> bool {
     word & word.wrapping_add(word & word.wrapping_neg()) == 0
 }
 
-/// The rows within the bounds.
-fn rows(matrix: &Imprint, bounds: Bounds) -> &[u64] {
-    &matrix.words()[usize::from(bounds.top)..usize::from(bounds.bottom)]
+/// Whether each run of `open` holds a bit of `seeds`, which lies inside of `open`.
+fn meets_all(seeds: u64, open: u64) -> bool {
+    // Adding a seed to its run carries up to the run's end and turns every bit over on the way, the last one unless
+    // another seed is there.
+    let last = open & !(open >> 1);
+    let reached = open ^ open.wrapping_add(seeds) | seeds;
+    reached & last == last
 }
 
-/// Shows the connected components of a matrix in reading order: exteriors 8-connected, holes 4-connected. `enclose`
-/// tells whether one of them may enclose anything: where a matrix has no hole none does, since what lies between a piece
-/// and another one inside of it would be one.
-fn pieces(
-    matrix: &Imprint,
-    bounds: Bounds,
-    kind: RegionKind,
-    enclose: bool,
-    visit: &mut impl FnMut(&Region),
-) {
-    let (mut rest, mut piece) = (*matrix, Imprint::empty(matrix.columns(), matrix.rows()));
-    let diagonal = kind == RegionKind::Exterior;
-    let (mut top, bottom) = (usize::from(bounds.top), usize::from(bounds.bottom));
-    while top < bottom {
-        let open = &mut rest.words_mut()[top..bottom];
-        let seeds = &mut piece.words_mut()[top..bottom];
-        if open[0] == 0 {
-            top += 1;
-            continue;
-        }
-        seeds[0] = open[0] & open[0].wrapping_neg();
-        let end = flood(seeds, open, 1, diagonal);
-        for (open, seeds) in open.iter_mut().zip(&*seeds).take(end) {
-            *open &= !seeds;
-        }
-        if let Some(bounds) = piece.bounds() {
-            let mut holes = Imprint::empty(matrix.columns(), matrix.rows());
-            let enclosed = enclose.then(|| enclosed(&piece, bounds, &mut holes));
-            if let Some(holes_bounds) = enclosed.flatten() {
-                let mut filled = piece;
-                unite(&mut filled, &holes, holes_bounds);
-                visit(&Region::borrowed(kind, &piece, &filled, bounds));
-            } else {
-                visit(&Region::borrowed(kind, &piece, &piece, bounds));
-            }
-        }
-        piece.words_mut()[top..top + end].fill(0);
+/// All runs of `open` that hold a bit of `seeds`, which lies inside of `open`.
+fn spread(mut seeds: u64, open: u64) -> u64 {
+    let mut all = 0;
+    // A run for each turn: from the last gap below its lowest seed to where the carry of this seed ends.
+    while seeds != 0 {
+        let seed = seeds & seeds.wrapping_neg();
+        let gaps = !open & (seed - 1);
+        let below = (seed - 1) & u64::MAX.unbounded_shl(u64::BITS - gaps.leading_zeros());
+        let above = (open ^ open.wrapping_add(seed)) & open;
+        all |= below | above;
+        seeds &= !all;
     }
+    all
 }
 
-/// Grows the seeds through the open taxels as far as they reach, given row by row. From row `end` on there are none at
-/// first; the result is the row from which on there are none at last.
+/// Grows the seeds through the open taxels as far as they reach, given row by row; the seeds are whole runs. From row
+/// `end` on there are none at first; the result is the row from which on there are none at last.
 fn flood(seeds: &mut [u64], open: &[u64], mut end: usize, diagonal: bool) -> usize {
-    let rows = seeds.len().min(open.len());
-    let (seeds, open) = (&mut seeds[..rows], &open[..rows]);
-    let grown = |old: u64, neighbour: u64, open: u64| {
-        let near = if diagonal {
-            neighbour | neighbour << 1 | neighbour >> 1
-        } else {
-            neighbour
-        };
-        let entered = (old | near) & open;
-        if entered == old || entered == open {
-            entered
-        } else {
-            spread(entered, open)
-        }
-    };
-    let Some((first, &first_open)) = seeds.first_mut().zip(open.first()) else {
-        return 0;
-    };
-    *first = spread(*first, first_open);
+    // Down through the rows, then up, and so on, until nothing is left behind.
     loop {
-        let mut above = seeds[0];
-        for (row, (seeds, &open)) in seeds.iter_mut().zip(open).enumerate().skip(1) {
-            *seeds = grown(*seeds, above, open);
-            above = *seeds;
+        let mut wave = Wave::new(diagonal);
+        for (row, (seeds, &open)) in seeds.iter_mut().zip(open).enumerate() {
+            wave.enter(seeds, open);
             if row >= end {
-                if above == 0 {
+                if *seeds == 0 {
                     break;
                 }
                 end = row + 1;
             }
         }
-        let (mut below, mut changed) = (0, false);
-        for (seeds, &open) in seeds[..end].iter_mut().zip(&open[..end]).rev() {
-            let old = *seeds;
-            *seeds = grown(old, below, open);
-            below = *seeds;
-            changed |= below != old;
+        if wave.left == 0 {
+            return end;
         }
-        if !changed {
+        let mut wave = Wave::new(diagonal);
+        for (seeds, &open) in seeds[..end].iter_mut().zip(&open[..end]).rev() {
+            wave.enter(seeds, open);
+        }
+        if wave.left == 0 {
             return end;
         }
     }
 }
 
-/// All runs of `open` that hold a bit of `seeds`, which lies inside of `open`.
-fn spread(seeds: u64, open: u64) -> u64 {
-    // Adding a seed to its run carries up to the run's end and turns every bit over on the way.
-    let up = |seeds: u64, open: u64| (open ^ open.wrapping_add(seeds)) & open | seeds;
-    up(seeds, open) | up(seeds.reverse_bits(), open.reverse_bits()).reverse_bits()
+/// A flood on its way through the rows in one direction.
+struct Wave {
+    diagonal: bool,
+    /// The seeds of the row before.
+    seeds: u64,
+    /// The open taxels of the row before that are not seeds.
+    dry: u64,
+    /// Set where seeds would go back to dry taxels: only a wave in the other direction gets there.
+    left: u64,
 }
 
-/// Puts the taxels that a matrix's active ones enclose, background that does not reach the rim, into `inner`, which is
-/// empty and of the same size. Gives their bounds.
-fn enclosed(matrix: &Imprint, bounds: Bounds, inner: &mut Imprint) -> Option<Bounds> {
-    // What lies left of a row's first active taxel or right of its last one is outside. Of the rest, what is next to
-    // the outside is outside as well, and so on.
-    let (mut far_above, mut inner_above, mut open) = (u64::MAX, 0, 0);
-    let (mut across, mut down) = (0, 0);
-    for (row, &word) in (usize::from(bounds.top)..).zip(rows(matrix, bounds)) {
-        let far = !span(word);
-        let inside = !(far | word);
-        if inside != 0 {
-            inner.set_word(row, inside);
-            down |= 1 << row;
+impl Wave {
+    fn new(diagonal: bool) -> Self {
+        Self {
+            diagonal,
+            seeds: 0,
+            dry: 0,
+            left: 0,
         }
-        across |= inside;
-        open |= inside & far_above | inner_above & far;
-        (far_above, inner_above) = (far, inside);
     }
-    // Below the last row everything is outside.
-    if open | inner_above != 0 {
-        let mut outside = Imprint::empty(matrix.columns(), matrix.rows());
-        for row in usize::from(bounds.top)..usize::from(bounds.bottom) {
-            let far = |row: usize| !span(*matrix.words().get(row).unwrap_or(&0));
-            let reached = inner.words()[row] & (far(row.wrapping_sub(1)) | far(row + 1));
-            outside.set_word(row, spread(reached, inner.words()[row]));
+
+    /// Goes on to the next row.
+    fn enter(&mut self, seeds: &mut u64, open: u64) {
+        let entered = (*seeds | near(self.seeds, self.diagonal)) & open;
+        if entered != *seeds {
+            *seeds = if meets_all(entered, open) {
+                open
+            } else {
+                spread(entered, open)
+            };
         }
-        let rows = usize::from(bounds.top)..usize::from(bounds.bottom);
-        let seeds = &mut outside.words_mut()[rows.clone()];
-        flood(seeds, &inner.words()[rows.clone()], rows.len(), false);
-        for row in usize::from(bounds.top)..usize::from(bounds.bottom) {
-            inner.set_word(row, inner.words()[row] & !outside.words()[row]);
-        }
-        return inner.bounds();
+        self.left |= near(*seeds, self.diagonal) & self.dry;
+        (self.seeds, self.dry) = (*seeds, open & !*seeds);
     }
-    Bounds::around(across, down)
+}
+
+/// Puts a component and what it encloses, background that does not reach the rim, into `filled`, which is empty and of
+/// the same size. Tells whether it encloses anything.
+fn fill(piece: &Imprint, bounds: Bounds, filled: &mut Imprint) -> bool {
+    let words = rows(piece, bounds);
+    let filled = rows_mut(filled, bounds);
+    // What lies left of a row's first taxel or right of its last one is outside. Of the rest, what is next to the
+    // outside is outside as well, and so on; above the first row and below the last one everything is.
+    let (mut met, mut span_above, mut inner_above) = (0, 0, 0);
+    for (filled, &word) in filled.iter_mut().zip(words) {
+        *filled = span(word);
+        let inner = *filled & !word;
+        met |= inner & !span_above | inner_above & !*filled;
+        (span_above, inner_above) = (*filled, inner);
+    }
+    if met | inner_above == 0 {
+        return true;
+    }
+    let mut inner = Imprint::empty(piece.columns(), piece.rows());
+    let mut outside = Imprint::empty(piece.columns(), piece.rows());
+    let (inner, outside) = (rows_mut(&mut inner, bounds), rows_mut(&mut outside, bounds));
+    for (row, &word) in words.iter().enumerate() {
+        let far = |row: usize| !filled.get(row).unwrap_or(&0);
+        inner[row] = filled[row] & !word;
+        let met = inner[row] & (far(row.wrapping_sub(1)) | far(row + 1));
+        outside[row] = spread(met, inner[row]);
+    }
+    flood(outside, inner, words.len(), false);
+    let mut enclosed = 0;
+    for ((filled, outside), inner) in filled.iter_mut().zip(outside).zip(inner) {
+        *filled &= !*outside;
+        enclosed |= *filled & *inner;
+    }
+    enclosed != 0
 }
 
 /// From the first set bit to the last, all set.
@@ -348,11 +382,4 @@ fn span(word: u64) -> u64 {
         return 0;
     }
     u64::MAX << word.trailing_zeros() & u64::MAX >> word.leading_zeros()
-}
-
-/// Adds what lies within the bounds.
-fn unite(matrix: &mut Imprint, other: &Imprint, bounds: Bounds) {
-    for (row, &word) in (usize::from(bounds.top)..).zip(rows(other, bounds)) {
-        matrix.set_word(row, matrix.words()[row] | word);
-    }
 }

@@ -132,6 +132,8 @@ fn walk(filled: &Mask) -> (u32, u32) {
 /// What the plain implementation says of a region.
 struct Plain {
     kind: RegionKind,
+    taxels: Mask,
+    filled: Mask,
     nae: u32,
     values: Vec<(&'static str, Value)>,
 }
@@ -213,6 +215,8 @@ fn plain_region(kind: RegionKind, mask: &Mask) -> Plain {
     Plain {
         kind,
         nae: count(all.len()),
+        taxels: mask.clone(),
+        filled,
         values,
     }
 }
@@ -227,12 +231,16 @@ fn alike(found: Value, expected: Value) -> bool {
     }
 }
 
+fn mask(imprint: &Imprint) -> Mask {
+    let row = |j: u8| (0..imprint.columns()).map(|i| imprint.get(i, j)).collect();
+    (0..imprint.rows()).map(row).collect()
+}
+
 /// Compares everything that is said of an imprint; gives the number of regions.
 fn compare(imprint: &Imprint) -> usize {
-    let row = |j: u8| (0..imprint.columns()).map(|i| imprint.get(i, j)).collect();
-    let mask: Mask = (0..imprint.rows()).map(row).collect();
-    let holes = enclosed(&mask);
-    let pieces = components(&mask, 1);
+    let active_mask = mask(imprint);
+    let holes = enclosed(&active_mask);
+    let pieces = components(&active_mask, 1);
     let exteriors = pieces
         .iter()
         .map(|piece| plain_region(RegionKind::Exterior, piece));
@@ -249,6 +257,8 @@ fn compare(imprint: &Imprint) -> usize {
     let (mut active, mut inactive) = (0, 0);
     for (region, plain) in found.iter().zip(&expected) {
         assert_eq!(region.kind(), plain.kind, "{imprint}");
+        assert_eq!(mask(region.taxels()), plain.taxels, "{region:?}\n{imprint}");
+        assert_eq!(mask(region.filled()), plain.filled, "{region:?}\n{imprint}");
         let description = Description::of(region);
         for descriptor in DESCRIPTORS {
             let expected = plain.values.iter().find(|(key, _)| *key == descriptor.key);
@@ -265,7 +275,7 @@ fn compare(imprint: &Imprint) -> usize {
         }
     }
     // Every taxel is in just one exterior, in just one hole, or outside.
-    let outside = taxels(&enclosed_or(&mask, &holes)).len();
+    let outside = taxels(&enclosed_or(&active_mask, &holes)).len();
     assert_eq!(active, imprint.count(), "{imprint}");
     assert_eq!(
         active + inactive + count(outside),
@@ -348,6 +358,32 @@ fn random_blobs() {
             );
         }
         compare(&imprint);
+    }
+}
+
+#[test]
+fn matrices_of_all_sizes() {
+    let mut random = Random::new(13);
+    for columns in 1..=64 {
+        for rows in 1..=64 {
+            let mut imprint = Imprint::empty(columns, rows);
+            let density = u64::from(random.side(1, 49)) * 20;
+            for row in 0..rows {
+                for column in 0..columns {
+                    imprint.set(column, row, random.chance(density));
+                }
+            }
+            // A broken frame around the noise, for regions within regions.
+            for column in 0..columns {
+                imprint.set(column, 0, random.chance(900));
+                imprint.set(column, rows - 1, random.chance(900));
+            }
+            for row in 0..rows {
+                imprint.set(0, row, random.chance(900));
+                imprint.set(columns - 1, row, random.chance(900));
+            }
+            compare(&imprint);
+        }
     }
 }
 
