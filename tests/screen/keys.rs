@@ -437,7 +437,7 @@ fn recognise_goes_through_sets_and_takes_one_by_name() {
         ":recognise nothing<Enter>",
         &[
             "Recognise: model nothing",
-            "not trained; Enter trains it",
+            "not read; Enter reads it",
             "no model or file \"nothing\"; there are figures, figures-30, shapes",
         ],
     );

@@ -74,6 +74,8 @@ pub struct Prepared {
 pub enum RecognitionEvent {
     /// A training of that number began; how many poses it has.
     Begun(u64, u64),
+    /// The work of that number is no longer waited for; what it does, in a few words.
+    GivenUp(u64, String),
     /// A model is ready, or there is none.
     Prepared(Box<Prepared>),
     /// A search is over.

@@ -89,6 +89,13 @@ pub(crate) fn unknown_set(name: &str, stored: &[Name]) -> String {
     format!("no model or file {name:?}; there are {all}")
 }
 
+impl ModelChoice {
+    /// Whether its model is read from a file of the user's rather than trained.
+    pub fn is_read(&self) -> bool {
+        matches!(self, Self::Stored(_) | Self::File(_))
+    }
+}
+
 impl fmt::Display for ModelChoice {
     /// What it is, in a few words.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

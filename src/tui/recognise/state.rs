@@ -188,6 +188,13 @@ impl Recognition {
         }
     }
 
+    /// Notes that the model of a piece of work is not waited for any more.
+    pub fn leave_model(&mut self, number: u64) {
+        if self.preparation(number).is_some() {
+            self.state = ModelState::Missing;
+        }
+    }
+
     /// Takes a model. Returns why there is none.
     pub fn take_model(&mut self, prepared: Prepared) -> Option<String> {
         self.preparation(prepared.number)?;

@@ -297,6 +297,10 @@ pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) {
     let Some(page) = state(app) else { return };
     match event {
         RecognitionEvent::Begun(number, poses) => page.take_poses(number, poses),
+        RecognitionEvent::GivenUp(number, what) => {
+            page.leave_model(number);
+            inform(app, format!("{what}: no longer waited for"));
+        }
         RecognitionEvent::Prepared(prepared) => {
             if let Some(reason) = page.take_model(*prepared) {
                 refuse(app, reason);

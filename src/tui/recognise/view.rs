@@ -69,8 +69,16 @@ impl Page for Recognition {
         panel.text(&title, Role::Title);
         match self.state() {
             ModelState::Missing => {
-                let train = panel.key(&action::ACCEPT);
-                panel.text(&format!("not trained; {train} trains it"), Role::Text);
+                let again = panel.key(&action::ACCEPT);
+                let text = if self.choice().is_read() {
+                    format!("not read; {again} reads it")
+                } else {
+                    format!("not trained; {again} trains it")
+                };
+                panel.text(&text, Role::Text);
+            }
+            ModelState::Preparing(_) if self.choice().is_read() => {
+                panel.text("being read", Role::Text);
             }
             ModelState::Preparing(preparation) => panel.preparation(preparation),
             ModelState::Ready(trained) => {

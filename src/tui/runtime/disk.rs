@@ -3,8 +3,7 @@
 //!
 //! ```text
 //! request -> thread -> answer within QUICK: handled at once, before the next key
-//!                      later: a message wakes the loop, keys have gone on meanwhile; after SLOW it is said what is
-//!                      waited for
+//!                      later: a message wakes the loop, keys have gone on meanwhile; it is said what is waited for
 //! ```
 //! Without a receiver of events, as in a script, a request is carried out at once.
 
@@ -28,16 +27,11 @@ use crate::tui::runtime::files;
 use crate::tui::runtime::models::ModelStore;
 use crate::tui::runtime::progress::WorkerEventSink;
 use crate::tui::runtime::recording::Recording;
+use crate::tui::runtime::slow_work::SlowWork;
 use crate::tui::runtime::write_access::WriteAccess;
 
 /// How long a key waits for an answer. Nearly all come within it, so that the next key finds the work done.
 const QUICK: Duration = Duration::from_millis(100);
-
-/// After this time it is said what a request waits for.
-const SLOW: Duration = Duration::from_millis(300);
-
-/// The time after which that is looked at again.
-const AGAIN: Duration = Duration::from_millis(500);
 
 /// What the disk is wanted for.
 #[derive(Debug)]
@@ -236,10 +230,8 @@ pub(super) struct DiskQueue {
 /// A request without an answer.
 #[derive(Debug)]
 struct PendingRequest {
-    /// What it does, in a few words.
-    words: String,
-    /// When it was asked for.
-    since: Instant,
+    /// What it does, and since when.
+    work: SlowWork,
     /// Whether it needs the lock of the library.
     locks: bool,
 }
@@ -302,8 +294,7 @@ impl DiskQueue {
             return Some(request.perform(&self.library, &self.access));
         };
         self.pending.push_back(PendingRequest {
-            words: request.words(),
-            since: Instant::now(),
+            work: SlowWork::new(request.words()),
             locks: request.locks(),
         });
         // It ends only after this end of the channel.
@@ -360,15 +351,12 @@ impl DiskQueue {
     pub(super) fn abandon(&mut self) -> Option<String> {
         self.thread = None;
         let first = self.pending.drain(..).next()?;
-        Some(first.words)
+        Some(first.work.words)
     }
 
     /// When to look again at what is waited for; None if nothing is.
     pub(super) fn look_at(&self) -> Option<Instant> {
-        let since = self.pending.front()?.since;
-        let now = Instant::now();
-        let slow = since + SLOW;
-        Some(if slow > now { slow } else { now + AGAIN })
+        Some(self.pending.front()?.work.look_at())
     }
 
     /// What the first request waits for, if it takes long.
@@ -379,7 +367,7 @@ impl DiskQueue {
         } else {
             "the disk"
         };
-        (first.since.elapsed() >= SLOW).then(|| format!("{}: waiting for {what}", first.words))
+        first.work.status(what)
     }
 
     /// Whether the first request waits for another program rather than for the disk.
@@ -395,7 +383,7 @@ impl DiskQueue {
         } else {
             "the disk does not answer"
         };
-        let lines = self.pending.iter().map(|request| &request.words);
+        let lines = self.pending.iter().map(|request| &request.work.words);
         lines
             .map(|words| format!("{words}: not done yet, because {why}\n"))
             .collect()

@@ -12,6 +12,7 @@
 //! recording        the file that frames are recorded in
 //! naming           the shapes that left the imprints of frames
 //! disk             work with the disk, which may answer late
+//! slow_work        work that is waited for, and when that is said
 //! reading          what is read from it, for the page that asked
 //! journal_writer   unsaved work, written beside the program
 //! write_access     where files may be written
@@ -45,6 +46,8 @@ pub mod mailbox;
 mod write_access;
 
 mod disk;
+
+mod slow_work;
 
 mod reading;
 
@@ -373,12 +376,16 @@ impl World {
     /// When to look again at what is waited for; None if nothing is.
     pub(in crate::tui) fn changes_due(&self) -> Option<Instant> {
         let changes = self.writer.look_at().into_iter();
-        changes.chain(self.reader.look_at()).min()
+        let read = self.reader.look_at().into_iter();
+        let read = read.chain(self.workers.model_look_at());
+        changes.chain(read).min()
     }
 
     /// What is waited for, if it takes long: a change, else something to read.
     pub(in crate::tui) fn waiting(&self) -> Option<String> {
-        self.writer.status().or_else(|| self.reader.status())
+        let read = || self.reader.status();
+        let model = || self.workers.model_status();
+        self.writer.status().or_else(read).or_else(model)
     }
 
     /// Finishes changes and recordings and writes unsaved work at once, because the program is about to end; but waits for

@@ -4,12 +4,15 @@
 //! Prepare(number, set)  -> Begun, Progress …, then Prepared: the model, or why there is none
 //! Look(model, imprint)  -> Looked: the nearest imprint and the pose
 //! ```
+//! What reads from a disk that hangs cannot be stopped. It is left to itself, and `GivenUp` says so.
+//!
 //! A built-in set is trained once; the cache keeps its model, if the world has one. A stored model is read from the folder
 //! beside the library. Training goes on while a sweep begins, and stops only on request.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
+use std::time::Instant;
 
 use crate::formats::Name;
 use crate::imprint::Imprint;
@@ -22,6 +25,8 @@ use crate::tui::recognise::sets::{ModelChoice, TrainedModel, unknown_set};
 use crate::tui::runtime::progress::{
     ProgressReporter, WorkerEventSink, guarded, on_a_thread, proceed,
 };
+use crate::tui::runtime::recording::locked;
+use crate::tui::runtime::slow_work::SlowWork;
 
 /// Where models are.
 #[derive(Clone, Debug, Default)]
@@ -110,11 +115,31 @@ impl ModelStore {
     }
 }
 
+/// What a thread reads from the disk at the moment. The screen's thread looks at it.
+#[derive(Clone, Debug, Default)]
+struct ModelReading(Arc<Mutex<Option<SlowWork>>>);
+
+impl ModelReading {
+    /// Notes that something is read from now on.
+    fn begin(&self, words: &str) {
+        *locked(&self.0) = Some(SlowWork::new(words.to_owned()));
+    }
+
+    /// Notes that nothing is read any more. Returns what was.
+    fn end(&self) -> Option<SlowWork> {
+        locked(&self.0).take()
+    }
+}
+
 /// The thread that prepares a model.
 #[derive(Debug, Default)]
 pub(super) struct ModelWorker {
     /// Where models are.
     pub(super) store: ModelStore,
+    /// The number of the work.
+    number: u64,
+    /// What it reads.
+    reading: ModelReading,
     /// Set to stop the training in progress.
     stop: Arc<AtomicBool>,
     /// The training in progress.
@@ -131,27 +156,37 @@ impl ModelWorker {
     ) -> Option<WorkerEvent> {
         self.stop();
         self.stop = Arc::default();
+        self.reading = ModelReading::default();
+        self.number = number;
         let (store, stop) = (self.store.clone(), Arc::clone(&self.stop));
+        let reading = self.reading.clone();
         let Some(post) = post else {
-            let event = prepare(&store, number, choice, &|_| (), &|_| true);
+            let event = prepare(&store, number, choice, &reading, (&|_| (), &|_| true));
             return Some(WorkerEvent::Recognition(event));
         };
+        reading.begin(&format!("Reading {choice}"));
         let thread = on_a_thread(number, &post, move |post| {
             let clock = ProgressReporter::new(number, post);
             let begun = |poses| {
+                reading.end();
                 post(WorkerEvent::Recognition(RecognitionEvent::Begun(
                     number, poses,
                 )));
             };
             let progress = |poses| proceed(poses, &stop, Some(&clock));
             let event = guarded(number, || {
-                WorkerEvent::Recognition(prepare(&store, number, choice, &begun, &progress))
+                let calls: Calls<'_> = (&begun, &progress);
+                WorkerEvent::Recognition(prepare(&store, number, choice, &reading, calls))
             });
+            reading.end();
             post(event);
         });
         match thread {
             Ok(thread) => self.thread = Some(thread),
-            Err(refused) => return Some(refused),
+            Err(refused) => {
+                self.reading.end();
+                return Some(refused);
+            }
         }
         None
     }
@@ -161,6 +196,26 @@ impl ModelWorker {
         self.stop.store(true, Ordering::Relaxed);
     }
 
+    /// The same on request. What is being read is waited for no longer, and the event that says so is returned.
+    pub(super) fn give_up(&mut self) -> Option<WorkerEvent> {
+        self.stop();
+        let read = std::mem::take(&mut self.reading).end()?;
+        self.thread = None;
+        let event = RecognitionEvent::GivenUp(self.number, read.words);
+        Some(WorkerEvent::Recognition(event))
+    }
+
+    /// What is read, if that takes long.
+    pub(super) fn status(&self) -> Option<String> {
+        let status = locked(&self.reading.0).as_ref()?.status("the disk")?;
+        Some(status + "; Esc gives up")
+    }
+
+    /// When to look at that again; None if nothing is read.
+    pub(super) fn look_at(&self) -> Option<Instant> {
+        locked(&self.reading.0).as_ref().map(SlowWork::look_at)
+    }
+
     /// Stops for good. Returns the thread, which ends by itself.
     pub(super) fn end(&mut self) -> Option<JoinHandle<()>> {
         self.stop();
@@ -168,19 +223,25 @@ impl ModelWorker {
     }
 }
 
+/// What is called with the number of poses before a training, and with those that are done during it, as by a sweep.
+type Calls<'a> = (&'a dyn Fn(u64), &'a (dyn Fn(u64) -> bool + Sync));
+
 /// Reads a model from the cache or trains it, and evaluates it. The event also has the names of stored models, which
 /// may have changed.
 fn prepare(
     store: &ModelStore,
     number: u64,
     choice: ModelChoice,
-    begun: &dyn Fn(u64),
-    progress: &(dyn Fn(u64) -> bool + Sync),
+    reading: &ModelReading,
+    (begun, progress): Calls<'_>,
 ) -> RecognitionEvent {
     let model = store.model(&choice, begun, progress);
+    reading.begin("Listing the models");
+    let stored = store.names();
+    reading.end();
     RecognitionEvent::Prepared(Box::new(Prepared {
         number,
-        stored: store.names(),
+        stored,
         trained: model.map(|model| Arc::new(TrainedModel::new(choice, model))),
     }))
 }

@@ -95,6 +95,16 @@ impl Workers {
         self.models.store.clone()
     }
 
+    /// The model that is read from the disk, if that takes long.
+    pub(super) fn model_status(&self) -> Option<String> {
+        self.models.status()
+    }
+
+    /// When to look at that again; None if none is read.
+    pub(super) fn model_look_at(&self) -> Option<Instant> {
+        self.models.look_at()
+    }
+
     /// Begins a piece of work. Without threads, does it and returns its last event.
     pub(in crate::tui) fn perform(&mut self, work: Work) -> Option<WorkerEvent> {
         match work {
@@ -111,10 +121,7 @@ impl Workers {
                 }
             }
             Work::Prepare(number, choice) => self.models.prepare(number, choice, self.post.clone()),
-            Work::StopPreparing => {
-                self.models.stop();
-                None
-            }
+            Work::StopPreparing => self.models.give_up(),
             Work::Separate(number, request, known) => {
                 self.sizes.look(number, request, known, self.post.clone())
             }

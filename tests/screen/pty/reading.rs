@@ -220,13 +220,44 @@ fn the_end_does_not_wait_for_a_model() {
         return;
     };
     program.types(b":recognise own\r");
-    program.shows("being prepared");
+    program.shows("being read");
     program.types(b"\x1b");
-    program.shows("stopping");
+    program.shows("Reading model own: no longer waited for");
     program.types(b"\x1b");
     program.shows("? Help");
     program.types(b"q");
     ends_before(&mut program, hanging, 0);
+}
+
+#[test]
+fn a_model_is_waited_for_like_all_that_is_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let models = folder.path().join("models");
+    fs::create_dir(&models).expect("made");
+    let model = models.join("own.npz");
+    fs::write(&model, "").expect("written");
+    let mut program = started(&folder.path().join("library"));
+    let Some(hanging) = Tracer::hang(&mut program, OPENING, &[&model]) else {
+        return;
+    };
+    let waiting = "Reading model own: waiting for the disk; Esc gives up";
+    program.types(b":recognise own\r");
+    program.shows(waiting);
+    // Keys go on.
+    program.types(b" ");
+    program.shows("NA 1 in all");
+    program.types(b"\x1b");
+    program.shows("no longer waited for");
+    program.shows("not read; Enter reads it");
+    program.types(b"\r");
+    program.shows(waiting);
+    hanging.end();
+    program.shows("own.npz");
+    program.shows("not read; Enter reads it");
+    program.types(b"\x1b");
+    program.shows("? Help");
+    program.types(b"qy");
+    program.ends_well(0);
 }
 
 #[test]

@@ -1,0 +1,41 @@
+//! Work that is waited for, and when that is said.
+
+use std::time::{Duration, Instant};
+
+/// After this time it is said what is waited for.
+const SLOW: Duration = Duration::from_millis(300);
+
+/// The time after which that is looked at again.
+const AGAIN: Duration = Duration::from_millis(500);
+
+/// Work that has begun.
+#[derive(Clone, Debug)]
+pub(super) struct SlowWork {
+    /// What it does, in a few words.
+    pub(super) words: String,
+    /// When it was asked for.
+    since: Instant,
+}
+
+impl SlowWork {
+    /// Work that begins now.
+    pub(super) fn new(words: String) -> Self {
+        Self {
+            words,
+            since: Instant::now(),
+        }
+    }
+
+    /// When to look at it again.
+    pub(super) fn look_at(&self) -> Instant {
+        let now = Instant::now();
+        let slow = self.since + SLOW;
+        if slow > now { slow } else { now + AGAIN }
+    }
+
+    /// What it does and what it waits for, if it takes long.
+    pub(super) fn status(&self, what: &str) -> Option<String> {
+        let text = || format!("{}: waiting for {what}", self.words);
+        (self.since.elapsed() >= SLOW).then(text)
+    }
+}
