@@ -6,6 +6,7 @@
 //! files            opens and writes files of imprints
 //! workers          sweeps and exports, each on a thread of its own
 //! progress         how workers report
+//! threads          the threads that share long work
 //! models           models for recognition: trained, read, searched
 //! sizes            the limit of a set in several sizes
 //! frames           a source of frames: watched, recorded
@@ -48,6 +49,8 @@ mod write_access;
 mod disk;
 
 mod slow_work;
+
+mod threads;
 
 mod reading;
 

@@ -21,6 +21,7 @@ use crate::tui::live::naming::NamedImprint;
 use crate::tui::recognise::sets::ModelChoice;
 use crate::tui::runtime::models::ModelStore;
 use crate::tui::runtime::progress::{WorkerEventSink, guarded};
+use crate::tui::runtime::threads;
 
 /// A model that is asked on the thread that waits for its answer.
 #[derive(Debug)]
@@ -75,7 +76,7 @@ impl ShapeNamer {
         let (imprints, waiting) = channel::<Imprint>();
         self.imprints = Some(imprints);
         let refused = Arc::clone(&post);
-        let thread = std::thread::Builder::new().spawn(move || {
+        let work = move || {
             let ended = guarded(number, || {
                 let progress = |_: u64| !stop.load(Ordering::Relaxed);
                 let model = match store.model(&choice, &|_| (), &progress) {
@@ -89,7 +90,8 @@ impl ShapeNamer {
                 WorkerEvent::Live(number, LiveEvent::Waiting)
             });
             post(ended);
-        });
+        };
+        let thread = std::thread::Builder::new().spawn(move || threads::run(work));
         match thread {
             Ok(thread) => self.thread = Some(thread),
             Err(error) => {

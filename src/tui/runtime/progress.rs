@@ -7,6 +7,7 @@ use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
 use crate::tui::explore::message::{SweepProgress, WorkerEvent};
+use crate::tui::runtime::threads;
 
 /// Takes events of workers, from any thread.
 pub type WorkerEventSink = Arc<dyn Fn(WorkerEvent) + Send + Sync>;
@@ -68,7 +69,7 @@ pub(super) fn on_a_thread(
     work: impl FnOnce(&WorkerEventSink) + Send + 'static,
 ) -> Result<JoinHandle<()>, WorkerEvent> {
     let own = Arc::clone(post);
-    let thread = Builder::new().spawn(move || work(&own));
+    let thread = Builder::new().spawn(move || threads::run(|| work(&own)));
     thread.map_err(|error| {
         let message = format!("the system gives no thread for it: {error}");
         WorkerEvent::Failed(number, message)

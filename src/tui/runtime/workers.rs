@@ -30,6 +30,7 @@ use crate::tui::runtime::progress::{
     ProgressReporter, WorkerEventSink, guarded, on_a_thread, proceed,
 };
 use crate::tui::runtime::sizes::SizeWorker;
+use crate::tui::runtime::threads;
 use crate::tui::runtime::write_access::WriteAccess;
 
 /// How long the end of the program waits for files that are being written.
@@ -107,6 +108,7 @@ impl Workers {
 
     /// Begins a piece of work. Without threads, does it and returns its last event.
     pub(in crate::tui) fn perform(&mut self, work: Work) -> Option<WorkerEvent> {
+        threads::prepare();
         match work {
             Work::Stop => {
                 self.stop.store(true, Ordering::Relaxed);

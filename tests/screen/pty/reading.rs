@@ -260,6 +260,29 @@ fn a_model_is_waited_for_like_all_that_is_read() {
     program.ends_well(0);
 }
 
+/// The first thread is one of those that share work, of which the second is refused.
+#[test]
+fn one_thread_works_where_the_system_gives_too_few() {
+    let folder = library();
+    let mut program = started(folder.path());
+    let Some(_tracer) = Tracer::refuse_threads(&mut program, "2") else {
+        return;
+    };
+    program.types(b":recognise figures\r");
+    program.shows("best possible error");
+    program.types(b"\x1b");
+    program.shows("? Help");
+    program.types(b"f\re\r");
+    program.shows("imprint 0 at");
+    // Sorted and filtered on the screen's own thread.
+    program.types(b"s/na > 1\r");
+    program.shows("na > 1");
+    program.types(b"\x1b");
+    program.shows("? Help");
+    program.types(b"qy");
+    program.ends_well(0);
+}
+
 #[test]
 fn shapes_are_read_where_the_system_gives_no_threads() {
     let folder = library();
