@@ -15,6 +15,7 @@ use std::sync::Arc;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
+use crate::cli::output::record_writer::RecordWriter;
 use crate::cli::settings::resolved::Effective;
 use crate::storage::{Library, ModelCache, Orphan};
 use crate::tui::app::message::Message;
@@ -59,7 +60,7 @@ pub(crate) fn screen(
     let mut watch = |input: &terminal::input::Input| {
         if let Some(record) = &mut *record.borrow_mut() {
             let lines = record.recorder.lines(input);
-            record.write(&lines);
+            record.writer.write(lines);
         }
     };
     let app = App::new(&options)
@@ -71,7 +72,7 @@ pub(crate) fn screen(
         world = world.forgetful().with_shape_log(Box::new(move |shape| {
             if let Some(record) = &mut *record.borrow_mut() {
                 let line = record.recorder.shape(shape);
-                record.write(&line);
+                record.writer.write(line);
             }
         }));
     }
@@ -110,12 +111,10 @@ fn terminal_settings(
 struct ScreenRecord {
     /// Its file, for messages.
     path: PathBuf,
-    /// The file, or the error that ended the record.
-    file: io::Result<File>,
+    /// Writes the file.
+    writer: RecordWriter,
     /// Turns what happens into lines of a script.
     recorder: Recorder,
-    /// Whether anything has been written.
-    begun: bool,
 }
 
 impl ScreenRecord {
@@ -138,22 +137,10 @@ impl ScreenRecord {
             },
         })?;
         Ok(Self {
+            writer: RecordWriter::start(path.clone(), file),
             path,
-            file: Ok(file),
             recorder: Recorder::new(&start),
-            begun: false,
         })
-    }
-
-    /// Appends lines. After the first error nothing more is written.
-    fn write(&mut self, lines: &str) {
-        self.begun |= !lines.is_empty();
-        // A full disk must not end the program. The record ends instead, without a gap.
-        if let Ok(file) = &mut self.file
-            && let Err(error) = file.write_all(lines.as_bytes())
-        {
-            self.file = Err(error);
-        }
     }
 
     /// Writes how the program ended. An empty record is removed.
@@ -163,13 +150,9 @@ impl ScreenRecord {
     fn end(mut self, outcome: Option<terminal::Outcome>) -> io::Result<()> {
         if let Some(outcome) = outcome {
             let lines = self.recorder.end(outcome);
-            self.write(&lines);
+            self.writer.write(lines);
         }
-        if !self.begun {
-            // At worst an empty file stays.
-            let _ = fs::remove_file(&self.path);
-        }
-        self.file.map(drop)
+        self.writer.finish()
     }
 }
 

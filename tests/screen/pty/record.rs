@@ -8,6 +8,7 @@ use taxel::formats::StoredShape;
 use taxel::storage::{Expected, Journal, Library};
 
 use super::program::{Program, Start, TAXEL};
+use super::tracer::Tracer;
 
 /// A shape with this first row, on 12 x 10 taxels.
 fn shape(name: &str, row: &str) -> StoredShape {
@@ -132,6 +133,42 @@ fn a_record_shows_the_same_screens() {
             .count(),
         1
     );
+}
+
+/// A disk that hangs holds up neither a key nor the end, and the end says so.
+#[test]
+fn keys_go_on_while_a_hanging_disk_takes_the_record() {
+    for answers in [true, false] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let record = folder.path().join("record.taxel");
+        let name = record.to_str().expect("a name");
+        let mut program = Program::started(&Start {
+            command: &[TAXEL, "--record", name],
+            ..Start::default()
+        });
+        let Some(hanging) = Tracer::hang(&mut program, "?write", &[&record]) else {
+            return;
+        };
+        program.types(b" ");
+        program.shows("NA 1 in all");
+        program.types(b"\x1b[C ");
+        program.shows("NA 2 in all");
+        program.types(b"q");
+        program.shows("not saved");
+        if answers {
+            hanging.end();
+            program.types(b"y");
+            program.ends_well(0);
+            let whole = fs::read_to_string(&record).expect("a record");
+            assert!(whole.ends_with("Keys q\nKeys y\n"), "{whole}");
+        } else {
+            program.types(b"y");
+            program.shows("the record ends early: the disk does not answer");
+            program.until("its end", |program| program.state() == 'Z');
+            hanging.end();
+            program.ends_well(0);
+        }
+    }
 }
 
 /// A file that is there is not replaced; a record of nothing leaves none.
