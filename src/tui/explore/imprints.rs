@@ -63,6 +63,8 @@ fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
 
 /// Selects a row, or another heading.
 fn update(results: &mut Results, message: &Message, page: Rect) {
+    let visible = ImprintList::of(page, results).rows.height.into();
+    results.keep_first_row(visible);
     match *message {
         Message::Scroll(lines) => {
             let by = isize::from(lines);
@@ -78,11 +80,7 @@ fn update(results: &mut Results, message: &Message, page: Rect) {
         }
         _ => {}
     }
-}
-
-/// The first visible row: rows are shown page by page, so that a row that is clicked on stays where it is.
-fn first(visible: usize, selected: usize) -> usize {
-    selected - selected % visible.max(1)
+    results.keep_first_row(visible);
 }
 
 /// The list of imprints.
@@ -148,7 +146,8 @@ impl ImprintList {
                 height: page.height.min(1),
                 ..table
             },
-            first: first(usize::from(rows.height), results.selected()),
+            // Page by page, so that a row that is clicked on stays where it is.
+            first: results.first_row(rows.height.into()),
             rows,
             detail: Rect {
                 height: u16::from(page.height > 1),

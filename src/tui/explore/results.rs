@@ -50,6 +50,8 @@ pub struct Results {
     rows: Vec<u32>,
     /// The index of the selected row.
     selected: usize,
+    /// The index of the row that came first when the list was last used.
+    top: usize,
     /// The first column of statistics that is shown.
     column: usize,
     /// Where the cursor of the map is.
@@ -75,6 +77,7 @@ impl Results {
             kept: Vec::new(),
             rows: Vec::new(),
             selected: 0,
+            top: 0,
             column: 0,
             place: PoseIndex::new([0; 5]),
             marks: BTreeMap::new(),
@@ -301,6 +304,25 @@ impl Results {
         self.selected = row.min(self.rows.len().saturating_sub(1));
     }
 
+    /// The first of so many visible rows: that of last time as long as the selected row is in sight, else rows page by page.
+    /// The last page is full.
+    pub fn first_row(&self, visible: usize) -> usize {
+        let visible = visible.max(1);
+        let last = self.rows.len().saturating_sub(visible);
+        let top = self.top.min(last);
+        let first = if (top..top + visible).contains(&self.selected) {
+            top
+        } else {
+            self.selected - self.selected % visible
+        };
+        first.min(last)
+    }
+
+    /// Keeps the row that comes first.
+    pub fn keep_first_row(&mut self, visible: usize) {
+        self.top = self.first_row(visible);
+    }
+
     /// Selects an imprint; false where the list has none of that number.
     pub fn find(&mut self, id: u32) -> bool {
         let row = self.rows.iter().position(|&row| row == id);
@@ -474,6 +496,27 @@ mod tests {
         let entry = results.sweep().atlas.entry(kept).expect("it is there");
         assert_eq!(results.marks().get(&'a'), Some(&entry.first_pose));
         assert_eq!(results.marks().len(), 1);
+    }
+
+    #[test]
+    fn the_last_page_of_the_list_is_full_and_rows_stay_while_one_of_them_is_selected() {
+        let mut results = results();
+        let (all, visible) = (results.row_count(), 10);
+        assert!(all > 25 && all % visible != 0, "{all}");
+        let mut first = |row| {
+            results.keep_first_row(visible);
+            results.select(row);
+            results.keep_first_row(visible);
+            results.first_row(visible)
+        };
+        assert_eq!([first(9), first(10), first(19)], [0, 10, 10]);
+        let last = all - visible;
+        assert_eq!([first(usize::MAX), first(last)], [last, last]);
+        assert_eq!(first(last - 1), (last - 1) / visible * visible);
+        first(usize::MAX);
+        results.keep("id<15", &"id<15".parse().expect("an expression"));
+        assert_eq!(results.first_row(visible), 5, "no line stays empty");
+        assert_eq!(results.first_row(20), 0);
     }
 
     #[test]
