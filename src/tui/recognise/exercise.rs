@@ -158,7 +158,7 @@ fn moved_onto(imprint: &Imprint, sensor: &Sensor) -> Option<Imprint> {
     Some(moved)
 }
 
-/// Lines above the list.
+/// Lines above the list; the last of them says how many rows are out of sight.
 const HEAD: u16 = 3;
 
 /// The rows of the list, and the number of the first one.
@@ -203,6 +203,14 @@ impl Page for Exercise {
             [(how.as_str(), Role::Quiet)],
         );
         let (list, first) = rows(self, area);
+        let below = self
+            .count()
+            .saturating_sub(first + usize::from(list.height));
+        if first + below > 0 {
+            let hidden = format!("  {first} above, {below} below");
+            let row = write::row(area, usize::from(HEAD) - 1);
+            write::line(buffer, row, theme, [(hidden.as_str(), Role::Quiet)]);
+        }
         let mut cursor = None;
         for (line, shape) in (first..self.count()).take(list.height.into()).enumerate() {
             let row = write::row(list, line);

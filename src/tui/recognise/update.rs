@@ -253,7 +253,10 @@ fn guess(app: &mut App, exercise: Exercise, named: bool) {
     let text = match (named, right) {
         (true, true) => format!("right: {name}; {touch} touches another shape"),
         (true, false) => format!("no: {name}, not {}", exercise.name(selected)),
-        (false, _) => format!("it was: {name}"),
+        (false, _) => format!(
+            "it was: {name}; {} takes its touch back",
+            app.key_of(&action::UNDO)
+        ),
     };
     if let Some(page) = state(app) {
         page.keep_all(exercise.into_touches());
