@@ -103,7 +103,7 @@ fn the_ranges_that_are_taken_are_printed() {
     );
     // No cell is large enough for the triangle in every angle.
     let noted = "range: x0 -0.5:0.49:0.01, y0 -7.73:-6.74:0.01\n\
-         the figure reaches beyond the sensor in 20000 of 20000 poses\n";
+         the figure reaches beyond the sensor in 20,000 of 20,000 poses\n";
     ran(
         "sweep triangle --side 16 --rows 4 --angle 0:60:60 --json",
         ["-0.5:0.49:0.01", "-7.73:-6.74:0.01"],

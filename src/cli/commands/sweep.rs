@@ -22,6 +22,7 @@ use crate::cli::output::progress::Progress;
 use crate::cli::output::sweep_summary::SweepSummary;
 use crate::cli::signals::Signals;
 use crate::cli::threads;
+use crate::formats::value::{counted, grouped};
 use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, Ranges, common_ranges, default_ranges};
 use crate::sensor::Sensor;
 use crate::source::Source;
@@ -84,8 +85,9 @@ pub(crate) fn grid(
     if cut > 0 {
         let noun = grid.source().noun();
         notes.push(format!(
-            "the {noun} reaches beyond the sensor in {cut} of {} poses",
-            grid.poses()
+            "the {noun} reaches beyond the sensor in {} of {}",
+            grouped(cut),
+            counted(grid.poses(), "pose")
         ));
     }
     Ok((grid, notes))

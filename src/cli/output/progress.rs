@@ -4,7 +4,7 @@
 //! is the only place of the command line that writes escape codes, and only to a terminal. A line in a log looks like
 //! this:
 //! ```text
-//! 250 of 1000 poses, 25 %, 30 s left
+//! 250 of 1,000 poses, 25 %, 30 s left
 //! ```
 
 use std::io::{IsTerminal, Write};
@@ -15,6 +15,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use crate::cli::output::charset::Charset;
+use crate::formats::value::grouped;
 
 /// The time between two lines, without a terminal.
 const PAUSE: Duration = Duration::from_secs(10);
@@ -110,9 +111,10 @@ impl Progress {
     fn line(&self, done: u64, elapsed: Duration) -> String {
         let share = done as f64 / self.all as f64;
         let left = elapsed.as_secs_f64() * (1.0 / share - 1.0);
-        let all = self.all;
         format!(
-            "{done} of {all} {}, {:.0} %, {left:.0} s left\n",
+            "{} of {} {}, {:.0} %, {left:.0} s left\n",
+            grouped(done),
+            grouped(self.all),
             self.noun,
             share * 100.0
         )
@@ -134,6 +136,6 @@ mod tests {
     fn a_line_tells_what_is_left() {
         let progress = Progress::new(1000, true, Charset::Ascii);
         let line = progress.line(250, Duration::from_secs(10));
-        assert_eq!(line, "250 of 1000 poses, 25 %, 30 s left\n");
+        assert_eq!(line, "250 of 1,000 poses, 25 %, 30 s left\n");
     }
 }

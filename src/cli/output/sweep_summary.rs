@@ -3,7 +3,7 @@
 //! The text gives the counts, then a line per feature and a column per statistic. `–` marks a value that does not
 //! exist:
 //! ```text
-//! 10000 poses: x0 5:5.99:0.01, y0 5:5.99:0.01
+//! 10,000 poses: x0 5:5.99:0.01, y0 5:5.99:0.01
 //! 393 distinct imprints, 376 up to shifts, 58 up to quarter turns and mirror images too
 //! 0 poses reach beyond the sensor, 0 leave no imprint; 0.03 s
 //!
@@ -20,6 +20,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use crate::atlas::{STATISTIC_COLUMNS, Statistic, StatisticColumn};
 use crate::cli::output::charset::Charset;
 use crate::formats::json;
+use crate::formats::value::{counted, grouped};
 use crate::pose::{Axis, PoseGrid};
 use crate::sweep::SweepResult;
 
@@ -73,17 +74,21 @@ impl<'a> SweepSummary<'a> {
         let several = grid.axes().filter(|&axis| grid.counts()[axis] > 1);
         let ranges = several.map(|axis| format!("{} {}", axis.name(), grid.ranges()[axis]));
         line(&format!(
-            "{poses} poses{part}: {}",
+            "{}{part}: {}",
+            counted(*poses, "pose"),
             ranges.collect::<Vec<_>>().join(", ")
         ));
-        let (shifts, symmetry) = self.classes;
+        let number = |count: usize| grouped(count as u64);
         line(&format!(
-            "{} distinct imprints, {shifts} up to shifts, {symmetry} up to quarter turns and mirror images too",
-            atlas.len()
+            "{} distinct imprints, {} up to shifts, {} up to quarter turns and mirror images too",
+            number(atlas.len()),
+            number(self.classes.0),
+            number(self.classes.1)
         ));
         line(&format!(
-            "{partly_off} poses reach beyond the sensor, {} leave no imprint; {:.2} s",
-            atlas.empty_poses(),
+            "{} poses reach beyond the sensor, {} leave no imprint; {:.2} s",
+            grouped(*partly_off),
+            grouped(atlas.empty_poses()),
             self.took.as_secs_f64()
         ));
         line("");
