@@ -7,6 +7,7 @@ use super::library::Shelf;
 use super::refused;
 use super::run_in;
 use super::taxel;
+use super::watch::sample;
 
 /// A shape whose source reaches beyond its sensor, on cells of 2.5 mm.
 pub(super) const SHAPE: &str = r###"
@@ -118,6 +119,29 @@ fn a_bad_imprint_is_told_by_line_and_column() {
         &b"\n".repeat(1 << 21),
         "larger than 1 MiB, which neither an imprint nor a shape is",
     );
+}
+
+#[test]
+fn a_recording_is_sent_to_the_command_that_reads_it() {
+    for name in [
+        "records.npy",
+        "u2.npy",
+        "xsensor.csv",
+        "tekscan.asf",
+        "popu.json",
+        "topics.mcap",
+        "frames.jsonl",
+        "plain.csv",
+    ] {
+        let run = taxel(&format!("describe {}", sample(name)), "");
+        assert_eq!(run.status, Some(1), "{name}: {}", run.stdout);
+        let hint = "; if this is a recording, use taxel frames\n";
+        assert!(run.stderr.ends_with(hint), "{name}: {}", run.stderr);
+    }
+    for broken in ["#.\n##x\n", "{\"format\":\"taxel-shape/1\"}", ""] {
+        let run = taxel("describe -", broken);
+        assert!(!run.stderr.contains("recording"), "{}", run.stderr);
+    }
 }
 
 #[test]

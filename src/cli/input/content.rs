@@ -6,10 +6,14 @@
 use std::io::{self, Read};
 use std::path::PathBuf;
 
+use crate::formats::recording::{RecordingFormat, recognised};
 use crate::formats::shape::MAX_BYTES;
 use crate::formats::{ImprintFormatError, ShapeError, StoredShape, imprint_file};
 use crate::imprint::Imprint;
 use crate::quote::legible;
+
+/// So many bytes tell whether a file is a recording.
+const LOOKED_AT: usize = 1 << 16;
 
 /// Where to read from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -55,6 +59,9 @@ pub(crate) enum InputError {
     /// It starts like JSON, but is not a stored shape.
     #[error("{}", legible(&.0.to_string()))]
     Shape(#[from] ShapeError),
+    /// It looks like a recording.
+    #[error("{0}; if this is a recording, use taxel frames")]
+    Recording(Box<InputError>),
 }
 
 /// Reads an open source. If the first character is `{` it is a stored shape, otherwise an imprint.
@@ -63,8 +70,21 @@ pub(crate) enum InputError {
 /// [`InputError`], without the name of the source.
 pub(crate) fn read_from(source: impl Read) -> Result<Content, InputError> {
     let bytes = bytes(source)?;
+    read(&bytes).map_err(|error| {
+        if may_be_recording(&bytes) {
+            InputError::Recording(Box::new(error))
+        } else {
+            error
+        }
+    })
+}
+
+fn read(bytes: &[u8]) -> Result<Content, InputError> {
+    if bytes.len() > MAX_BYTES {
+        return Err(InputError::Large);
+    }
     // Some editors begin every text with a byte order mark.
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     if bytes.trim_ascii_start().starts_with(b"{") {
         Ok(Content::Shape(StoredShape::read(bytes)?))
     } else {
@@ -72,13 +92,20 @@ pub(crate) fn read_from(source: impl Read) -> Result<Content, InputError> {
     }
 }
 
-/// All bytes of a source, up to the limit.
+/// Whether bytes that are no imprint look like a recording. Of JSON this is said only where there is a frame: most is a
+/// stored shape with a mistake.
+fn may_be_recording(bytes: &[u8]) -> bool {
+    let frame = b"\"frame\"";
+    match recognised(&bytes[..bytes.len().min(LOOKED_AT)]) {
+        Some(RecordingFormat::JsonLines) => bytes.windows(frame.len()).any(|word| word == frame),
+        found => found.is_some(),
+    }
+}
+
+/// All bytes of a source, up to one more than the limit.
 fn bytes(source: impl Read) -> Result<Vec<u8>, InputError> {
     let mut bytes = Vec::new();
     let limit = MAX_BYTES as u64;
     source.take(limit + 1).read_to_end(&mut bytes)?;
-    if bytes.len() > MAX_BYTES {
-        return Err(InputError::Large);
-    }
     Ok(bytes)
 }
