@@ -18,7 +18,7 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Columns of the symbols and of the values.
+/// Columns of the symbols.
 const SYMBOL: usize = 7;
 /// Columns of the values.
 const VALUE: usize = 17;
@@ -39,6 +39,8 @@ pub fn draw(matrix: &MatrixView<'_>, theme: &Theme, buffer: &mut Buffer, area: R
     write::line(buffer, area, theme, heading);
     let lines = usize::from(area.height.saturating_sub(1)).max(1);
     let columns = DESCRIPTORS.len().div_ceil(lines);
+    // As many in each column: one alone in the last would look forgotten.
+    let lines = DESCRIPTORS.len().div_ceil(columns);
     let width = area.width / narrow(columns).max(1);
     for (index, descriptor) in DESCRIPTORS.iter().enumerate() {
         let column = narrow(index / lines).saturating_mul(width);
