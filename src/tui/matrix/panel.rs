@@ -23,6 +23,9 @@ const SYMBOL: usize = 7;
 /// Columns of the values.
 const VALUE: usize = 17;
 
+/// The same in ASCII, where the longest is `120.96, 59.04 deg`.
+const VALUE_IN_ASCII: usize = 19;
+
 /// Draws the panel. Where it has fewer lines than there are descriptors, they stand in several columns.
 pub fn draw(matrix: &MatrixView<'_>, theme: &Theme, buffer: &mut Buffer, area: Rect) {
     let (seen, chosen) = (matrix.reading, matrix.chosen);
@@ -75,12 +78,13 @@ fn draw_descriptor(
     let scaled =
         value::in_millimetres(measured, descriptor.dimension, pitch_mm).filter(|_| pitch_mm != 1.0);
     let symbol = format!("{:SYMBOL$}", descriptor.symbol);
-    let value = format!("{text:VALUE$}");
+    let width = if theme.ascii { VALUE_IN_ASCII } else { VALUE };
+    let value = format!("{text:width$}");
     let name = description.map_or(descriptor.name, |described| {
         descriptor.name_of(described.kind)
     });
     // A word that is cut tells nothing, and names of some descriptors only look as if the others had none.
-    let room = usize::from(row.width).saturating_sub(SYMBOL + VALUE);
+    let room = usize::from(row.width).saturating_sub(SYMBOL + width);
     let named = DESCRIPTORS.iter().all(|own| write::width(own.name) <= room);
     let remark = match scaled.as_deref() {
         Some(scaled) if write::width(scaled) <= room => scaled,
@@ -88,7 +92,7 @@ fn draw_descriptor(
         _ => "",
     };
     // Where the value needs more room, the remark gives way.
-    let gap = if text.chars().count() < VALUE {
+    let gap = if text.chars().count() < width {
         ""
     } else {
         "  "
