@@ -264,7 +264,12 @@ fn quitting_asks_where_work_would_be_lost() {
     assert!(session("q").app().ended());
     assert!(session("<C-c>").app().ended());
     let asked = session("f<Enter>q");
-    assert!(!asked.app().ended() && asked.screen().contains("not saved. Quit anyway? (y/n)"));
+    assert!(
+        !asked.app().ended()
+            && asked
+                .screen()
+                .contains("not saved. Quit anyway? (y/n, s: save first)")
+    );
     assert!(session("f<Enter>qy").app().ended());
     assert!(
         !session("f<Enter>q<Enter>").app().ended(),

@@ -200,7 +200,7 @@ fn help_is_everywhere() {
         ),
         (
             "<Space>q?",
-            "(y/n)",
+            "(y/n, s: save first)",
             "At a question",
             "no answer now",
             "On the matrix",

@@ -103,7 +103,10 @@ fn joined(screen: &str) -> String {
 #[test]
 fn questions_and_notices_are_read_to_their_end_on_narrow_screens() {
     for (keys, text) in [
-        ("<Space>q", "The imprint is not saved. Quit anyway? (y/n)"),
+        (
+            "<Space>q",
+            "The imprint is not saved. Quit anyway? (y/n, s: save first)",
+        ),
         (
             "g",
             "! nothing to move: this was drawn by hand; f places a figure, p a stored shape",

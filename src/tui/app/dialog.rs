@@ -118,7 +118,7 @@ pub struct Question {
     pub yes: Message,
     /// What no does, None for nothing.
     pub no: Option<Message>,
-    /// What else may be answered; empty if nothing.
+    /// What else may be answered than yes and no, as `, s: save first`; empty if nothing.
     pub more: String,
 }
 
@@ -150,10 +150,11 @@ impl Page for Question {
 
     fn remark(&self, keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
         let key = |answer| keymap.label(Context::Question, answer);
+        let (yes, no) = (key(&action::ACCEPT), key(&action::DECLINE));
         let answers = match self.no {
             Some(_) => String::new(),
-            None => format!(" ({}/{})", key(&action::ACCEPT), key(&action::DECLINE)),
+            None => format!(" ({yes}/{no}{})", self.more),
         };
-        Some((format!("{}{answers}{}", self.text, self.more), Role::Error))
+        Some((format!("{}{answers}", self.text), Role::Error))
     }
 }

@@ -242,7 +242,7 @@ fn quit(app: &mut App) {
     let key = app.keymap().label(Context::Question, &action::SAVE);
     let mut question = Question::new(text, Message::QuitNow);
     if app.unsaved() && !key.is_empty() {
-        question.more = format!("; {key} saves it");
+        question.more = format!(", {key}: save first");
     }
     app.dialogs.push(Dialog::Question(question));
 }
