@@ -61,21 +61,32 @@ impl ImprintCounter {
     /// Adds `count` to the count of a key, and returns its index, from 0. `first` is a pose that left it.
     #[inline]
     pub(crate) fn add(&mut self, key: &[u64], hash: u64, count: u64, first: u64) -> usize {
+        match self.probe(key, hash) {
+            Ok(known) => {
+                let tally = &mut self.tallies[known];
+                tally.count += count;
+                tally.first = tally.first.min(first);
+                known
+            }
+            Err(slot) => self.insert(slot, key, hash, Tally { count, first }),
+        }
+    }
+
+    /// The index of a key, or else the empty slot where it belongs.
+    #[inline]
+    fn probe(&self, key: &[u64], hash: u64) -> Result<usize, usize> {
         let mask = self.slots.len() - 1;
         let mut slot = index(hash & mask as u64);
         loop {
             let held = self.slots[slot];
             if held == 0 {
-                return self.insert(slot, key, hash, Tally { count, first });
+                return Err(slot);
             }
             if (held ^ hash) & !INDEX == 0 {
                 let known = index((held & INDEX) - 1);
                 // Word by word: a call costs more than these few.
                 if self.key(known).iter().eq(key) {
-                    let tally = &mut self.tallies[known];
-                    tally.count += count;
-                    tally.first = tally.first.min(first);
-                    return known;
+                    return Ok(known);
                 }
             }
             slot = (slot + 1) & mask;
@@ -91,27 +102,24 @@ impl ImprintCounter {
     pub(crate) fn put_in_order(&mut self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.len()).collect();
         order.sort_unstable_by_key(|&index| self.tallies[index].first);
-        let mut ordered = Self::new(self.length);
+        let mut ordered = Self {
+            length: self.length,
+            keys: Vec::with_capacity(self.keys.len()),
+            hashes: order.iter().map(|&index| self.hashes[index]).collect(),
+            tallies: order.iter().map(|&index| self.tallies[index]).collect(),
+            slots: Vec::new(),
+        };
         for &index in &order {
-            let Tally { count, first } = self.tallies[index];
-            ordered.add(self.key(index), self.hash(index), count, first);
+            ordered.keys.extend_from_slice(self.key(index));
         }
+        ordered.slots = ordered.spread_over(self.slots.len());
         *self = ordered;
         order
     }
 
     /// The index of a key; None if it was never added.
     pub(crate) fn find(&self, key: &[u64], hash: u64) -> Option<usize> {
-        let mask = self.slots.len() - 1;
-        let mut slot = index(hash & mask as u64);
-        while self.slots[slot] != 0 {
-            let known = index((self.slots[slot] & INDEX) - 1);
-            if self.key(known) == key {
-                return Some(known);
-            }
-            slot = (slot + 1) & mask;
-        }
-        None
+        self.probe(key, hash).ok()
     }
 
     #[cold]
@@ -128,8 +136,13 @@ impl ImprintCounter {
     }
 
     fn grow(&mut self) {
-        let mask = self.slots.len() * 2 - 1;
-        let mut slots = vec![0; mask + 1];
+        self.slots = self.spread_over(self.slots.len() * 2);
+    }
+
+    /// The slots of all keys; `count` of them, a power of two.
+    fn spread_over(&self, count: usize) -> Vec<u64> {
+        let mask = count - 1;
+        let mut slots = vec![0; count];
         for (known, &hash) in self.hashes.iter().enumerate() {
             let mut slot = index(hash & mask as u64);
             while slots[slot] != 0 {
@@ -137,6 +150,6 @@ impl ImprintCounter {
             }
             slots[slot] = hash & !INDEX | (known as u64 + 1);
         }
-        self.slots = slots;
+        slots
     }
 }

@@ -20,6 +20,7 @@ use crate::atlas::feature::{Feature, features};
 use crate::atlas::sums::{Wide, mean, signed_mean};
 use crate::atlas::values::{NONE, Table, places};
 use crate::atlas::variance::{Sum, VarianceParts};
+use crate::index::lower_word;
 
 /// The statistics of a feature over all poses that have it. Values are None if no pose has it.
 #[derive(Clone, Copy, Debug)]
@@ -83,7 +84,9 @@ const fn column(
 #[derive(Clone, Copy, Debug)]
 struct Total {
     sum: Sum,
-    squares: Wide,
+    /// The squares of the values, as the sums of their lower and of their upper words: all poses together are below 2⁴⁰,
+    /// so neither overflows.
+    squares: [u128; 2],
 }
 
 const NOTHING: Total = Total {
@@ -92,7 +95,7 @@ const NOTHING: Total = Total {
         x: 0,
         y: 0,
     },
-    squares: Wide::ZERO,
+    squares: [0; 2],
 };
 
 impl Total {
@@ -100,13 +103,18 @@ impl Total {
         self.sum.add(values, circular, poses);
         if !circular && values[0] != NONE {
             let value = u128::from(values[0].unsigned_abs());
-            self.squares += Wide::product(value * value, poses);
+            let square = value * value;
+            for (sum, word) in self.squares.iter_mut().zip([square, square >> 64]) {
+                *sum += u128::from(lower_word(word)) * u128::from(poses);
+            }
         }
     }
 
     fn merged(mut self, other: &Self) -> Self {
         self.sum.merge(&other.sum);
-        self.squares += other.squares;
+        for (sum, other) in self.squares.iter_mut().zip(other.squares) {
+            *sum += other;
+        }
         self
     }
 
@@ -139,14 +147,15 @@ impl Total {
             return statistic;
         }
         let sum = self.sum.total();
+        let squares = Wide::joined(self.squares);
         let of_mean = Wide::square_over(sum, poses);
         let mean = mean(sum, poses);
-        let sd = (self.squares - of_mean).root_mean(poses);
+        let sd = (squares - of_mean).root_mean(poses);
         (statistic.min, statistic.max) = ends.unzip();
         statistic.mean = Some(mean);
         statistic.sd = Some(sd);
         statistic.cv = (mean != 0.0).then(|| sd / mean.abs());
-        statistic.sd_position = Some((self.squares - between).root_mean(poses));
+        statistic.sd_position = Some((squares - between).root_mean(poses));
         statistic.sd_angle = Some((between - of_mean).root_mean(poses));
         statistic
     }

@@ -45,10 +45,19 @@ pub(crate) struct Wide {
 }
 
 impl Wide {
-    pub(crate) const ZERO: Self = Self { high: 0, low: 0 };
-
     pub(crate) fn of(low: u128) -> Self {
         Self { high: 0, low }
+    }
+
+    /// The number `lower + upper · 2⁶⁴`.
+    pub(crate) fn joined([lower, upper]: [u128; 2]) -> Self {
+        let (low, carry) = (upper << 64).overflowing_add(lower);
+        // Below 2⁶⁴, as the number is below 2¹⁹².
+        let high = (upper >> 64) + u128::from(carry);
+        Self {
+            high: lower_word(high),
+            low,
+        }
     }
 
     /// The product of a number below 2¹²⁸ and one below 2⁶⁴.
@@ -57,18 +66,10 @@ impl Wide {
             return Self::of(value * u128::from(times));
         }
         let times = u128::from(times);
-        let (lower, upper) = (
+        Self::joined([
             (value & u128::from(u64::MAX)) * times,
             (value >> 64) * times,
-        );
-        // upper · 2⁶⁴ + lower
-        let (low, carry) = (upper << 64).overflowing_add(lower);
-        // Below 2⁶⁴, as the product is below 2¹⁹².
-        let high = (upper >> 64) + u128::from(carry);
-        Self {
-            high: lower_word(high),
-            low,
-        }
+        ])
     }
 
     /// This number times another one, modulo 2¹⁹².

@@ -49,8 +49,17 @@ pub(crate) fn period(source: &Source) -> Option<u32> {
 /// The sum of two angles, in degrees, at which a shape shows its mirror image, right and left exchanged; None if it has
 /// none.
 fn mirror(source: &Source) -> Option<u32> {
-    let Source::Picture(picture) = source else {
-        return Some(0);
+    let picture = match source {
+        Source::Picture(picture) => picture,
+        Source::Figure(figure) => match figure.kind() {
+            FigureKind::Ellipse
+            | FigureKind::Rectangle
+            | FigureKind::Triangle
+            | FigureKind::Pentagon
+            | FigureKind::Hexagon
+            | FigureKind::Heptagon
+            | FigureKind::Octagon => return Some(0),
+        },
     };
     let right_left = |bounds: &Bounds, column, row| (bounds.left + bounds.right - 1 - column, row);
     let upside_down = |bounds: &Bounds, column, row| (column, bounds.top + bounds.bottom - 1 - row);

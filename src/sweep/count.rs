@@ -80,7 +80,7 @@ impl Sweep<'_> {
         let width = self.grid.row_length();
         let complete = self.each_portion(layout, false, |portion| {
             for found in portion {
-                let orientations = found.turns.len() as u64;
+                let orientations = found.orientations.len() as u64;
                 let own = &found.counter;
                 for (index, tally) in own.tallies().iter().enumerate() {
                     let count = tally.count * orientations;
@@ -108,13 +108,13 @@ impl Sweep<'_> {
                     .map(|index| wanted(&layout.imprint(found.counter.key(index))))
                     .collect();
                 for (row, y) in found.rows.clone().enumerate() {
-                    let mut first = (found.turns[0] * height + y) * width;
+                    let mut first = (found.orientations[0] * height + y) * width;
                     for &(index, length) in found.runs.row(row) {
                         if wanted[index as usize] {
                             runs.push(PoseRun {
                                 first,
                                 poses: u64::from(length),
-                                orientations: found.turns.len() as u64,
+                                orientations: found.orientations.len() as u64,
                             });
                         }
                         first += u64::from(length);

@@ -1,7 +1,7 @@
 //! What `f64` cannot decide: whether the shape covers exactly the threshold of a cell, with 32 digits.
 //!
 //! The same rule as that of a touch ([`crate::touch`]): a coverage that falls short by less than 1e-20 does not fall
-//! short. The boundary is drawn once per turn in [`Double`] at the origin and shifted by the decimals that the ranges
+//! short. The boundary is drawn once per orientation in [`Double`] at the origin and shifted by the decimals that the ranges
 //! give, which is in real arithmetic the shape of the pose itself.
 
 use crate::geometry::Overlap;
@@ -14,13 +14,13 @@ use crate::touch::least;
 /// How many values of x0 and of y0 are kept as places.
 const REMEMBERED: usize = 128;
 
-/// The shape of one turn, ready for exact decisions.
+/// The shape of one orientation, ready for exact decisions.
 #[derive(Debug)]
 pub(crate) struct Exact<'a> {
     /// The grid.
     grid: &'a PoseGrid,
     /// The number of the orientation.
-    turn: u64,
+    orientation: u64,
     /// Drawn when it is asked for first: in most orientations nothing is in doubt.
     boundary: Option<Boundary<Double>>,
     /// Where the anchor lies for the values of x0 and of y0 asked for last.
@@ -32,10 +32,10 @@ pub(crate) struct Exact<'a> {
 }
 
 impl<'a> Exact<'a> {
-    pub(crate) fn new(grid: &'a PoseGrid, turn: u64) -> Self {
+    pub(crate) fn new(grid: &'a PoseGrid, orientation: u64) -> Self {
         Self {
             grid,
-            turn,
+            orientation,
             boundary: None,
             places: vec![(None, Double::ZERO); 2 * REMEMBERED].into(),
             cell: Overlap::new(1, 1),
@@ -54,7 +54,7 @@ impl<'a> Exact<'a> {
         );
         let boundary = self
             .boundary
-            .get_or_insert_with(|| self.grid.boundary(self.turn));
+            .get_or_insert_with(|| self.grid.boundary(self.orientation));
         self.cell.clear();
         boundary.draw(by, &mut self.cell);
         self.cell.first() >= self.least
@@ -65,7 +65,7 @@ impl<'a> Exact<'a> {
         let slot = index(number) % REMEMBERED;
         let (known, place) = &mut self.places[2 * slot + usize::from(down)];
         if *known != Some(number) {
-            let offset = self.grid.offset::<Double>(self.turn, number, number);
+            let offset = self.grid.offset::<Double>(self.orientation, number, number);
             (*known, *place) = (Some(number), if down { offset.y } else { offset.x });
         }
         *place

@@ -107,7 +107,7 @@ pub(crate) struct Task {
 impl Task {
     /// The number of orientations.
     pub(crate) fn orientations(&self) -> u64 {
-        self.groups.iter().map(|turns| turns.len() as u64).sum()
+        self.groups.iter().map(|group| group.len() as u64).sum()
     }
 }
 
@@ -137,11 +137,11 @@ pub(crate) fn tasks(
     let pieces = pieces(grid, rows, mirrored);
     let length = task_rows(grid, pieces.len() as u64);
     pieces.into_iter().flat_map(move |(groups, rows)| {
-        let turns = |group: Vec<u64>| {
-            let turns = group.into_iter().map(|angle| block * angles + angle);
-            turns.collect()
+        let orientations = |group: Vec<u64>| {
+            let all = group.into_iter().map(|angle| block * angles + angle);
+            all.collect()
         };
-        let groups: Arc<[Arc<[u64]>]> = groups.into_iter().map(turns).collect();
+        let groups: Arc<[Arc<[u64]>]> = groups.into_iter().map(orientations).collect();
         let starts = (0..(rows.end - rows.start).div_ceil(length)).map(move |task| task * length);
         starts.map(move |start| Task {
             groups: Arc::clone(&groups),

@@ -4,8 +4,8 @@
 //! these counters are added to the atlas one after the other, while the next portion is being swept. At the end the
 //! imprints are put in the order of their first poses, so their numbers are the same for any number of threads.
 //!
-//! Whoever takes rows is given the numbers at once. Then tasks follow the order of the grid, as does the atlas, and
-//! orientations that are mirror images are swept each by itself.
+//! With [`Sweep::rows`], imprints are numbered as they are found. So tasks come in the order of their first orientations,
+//! mirror images are swept separately, and the rows of a group come together.
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -196,7 +196,10 @@ impl Done<'_, '_> {
         let width = self.grid.row_length();
         let ids: Vec<Vec<u32>> = portion
             .iter()
-            .map(|found| self.atlas.add(&found.counter, found.turns.len() as u64))
+            .map(|found| {
+                self.atlas
+                    .add(&found.counter, found.orientations.len() as u64)
+            })
             .collect();
         self.atlas.describe();
         self.table.extend(self.atlas.summaries());
@@ -207,12 +210,12 @@ impl Done<'_, '_> {
             .map(|(found, ids)| {
                 let counts = found.counter.tallies().iter().map(|tally| tally.count);
                 let counted = ids.iter().copied().zip(counts);
-                OrientationSums::of(table, found.turns.len() as u64, counted)
+                OrientationSums::of(table, found.orientations.len() as u64, counted)
             })
             .collect();
         for ((found, ids), sums) in portion.iter().zip(&ids).zip(sums) {
-            let times = found.turns.len() as u64;
-            self.spread.add(found.turns[0], sums);
+            let times = found.orientations.len() as u64;
+            self.spread.add(found.orientations[0], sums);
             self.poses += (found.rows.end - found.rows.start) * width * times;
             self.partly_off += found.partly_off * times;
             if let Some(rows) = &mut self.rows {
@@ -222,7 +225,7 @@ impl Done<'_, '_> {
     }
 }
 
-/// Spells out the runs of a group, for each of its turns.
+/// Spells out the runs of a group, for each of its orientations.
 fn show_rows(grid: &PoseGrid, found: &Found, ids: &[u32], show: &mut TakeRow<'_>) {
     let (width, height) = (grid.row_length(), grid.rows_per_orientation());
     let mut row = Vec::with_capacity(index(width));
@@ -231,8 +234,8 @@ fn show_rows(grid: &PoseGrid, found: &Found, ids: &[u32], show: &mut TakeRow<'_>
         for &(imprint, length) in found.runs.row(nth) {
             row.extend(std::iter::repeat_n(ids[wide(imprint)], wide(length)));
         }
-        for &turn in found.turns.iter() {
-            show(turn * height + y, &row);
+        for &orientation in found.orientations.iter() {
+            show(orientation * height + y, &row);
         }
     }
 }

@@ -27,7 +27,7 @@ use crate::touch::DOUBTFUL;
 #[derive(Debug)]
 pub(crate) struct Found {
     /// The orientations of the group.
-    pub(crate) turns: Arc<[u64]>,
+    pub(crate) orientations: Arc<[u64]>,
     /// The indices of the values of y0.
     pub(crate) rows: Range<u64>,
     /// Its imprints, counted once per pose of one of its orientations.
@@ -38,8 +38,8 @@ pub(crate) struct Found {
     pub(crate) runs: Runs,
 }
 
-/// The number of poses between two reports of progress, for a shape with few edges.
-const TOLD: u64 = 4_000;
+/// The number of poses of an orientation between two reports of progress, for a shape with few edges.
+const REPORTED: u64 = 4_000;
 /// This many more edges double the time per pose. A picture may have thousands, and must report as often.
 const EDGES: usize = 64;
 
@@ -54,16 +54,16 @@ pub(crate) fn go(
 ) -> Option<Vec<Found>> {
     let mut sweeper = Sweeper::new(grid, layout, task, keep_runs);
     let (width, times) = (grid.row_length(), task.orientations());
-    let mut untold = 0;
+    let mut unreported = 0;
     for y in task.rows.clone() {
         sweeper.row(y);
-        untold += width;
-        if untold >= sweeper.told && !progress(std::mem::take(&mut untold) * times) {
+        unreported += width;
+        if unreported >= sweeper.reported && !progress(std::mem::take(&mut unreported) * times) {
             return None;
         }
     }
     let found = sweeper.finish(keep_runs);
-    progress(untold * times).then_some(found)
+    progress(unreported * times).then_some(found)
 }
 
 /// A shape prepared for sweeping, by kind.
@@ -100,8 +100,8 @@ struct Sweeper<'a> {
     grid: &'a PoseGrid,
     /// The shape in the first orientation of the first group, at the origin.
     shape: Shape,
-    /// The number of poses between two reports of progress.
-    told: u64,
+    /// The number of poses of an orientation between two reports of progress.
+    reported: u64,
     /// The top and the bottom of the shape at the origin; None if it has no boundary.
     height: Option<[f64; 2]>,
     /// The values of x0.
@@ -118,18 +118,19 @@ struct Sweeper<'a> {
 
 impl<'a> Sweeper<'a> {
     fn new(grid: &'a PoseGrid, layout: &'a Layout, task: &Task, keep_runs: bool) -> Self {
-        let turn = task.groups[0][0];
-        let boundary = grid.boundary::<f64>(turn);
+        let orientation = task.groups[0][0];
+        let boundary = grid.boundary::<f64>(orientation);
         let count = grid.row_length();
-        let place = |x: u64| grid.offset::<f64>(turn, x, 0).x;
+        let place = |x: u64| grid.offset::<f64>(orientation, x, 0).x;
         let (first, last) = (place(0), place(count - 1));
         let count = i32::try_from(count).unwrap_or(i32::MAX);
         let groups = task.groups.iter();
-        let groups = groups.map(|turns| Group::new(grid, layout, turns, &task.rows, keep_runs));
+        let groups = groups
+            .map(|orientations| Group::new(grid, layout, orientations, &task.rows, keep_runs));
         Self {
             grid,
             shape: Shape::new(&boundary),
-            told: TOLD / (1 + boundary.edges.len() / EDGES) as u64,
+            reported: REPORTED / (1 + boundary.edges.len() / EDGES) as u64,
             height: boundary.extent().map(|extent| [extent.top, extent.bottom]),
             steps: Steps {
                 first,
@@ -143,7 +144,7 @@ impl<'a> Sweeper<'a> {
             },
             spans: Spans::default(),
             mirrored: Spans::default(),
-            axis: 2.0 * grid.centre_from_anchor(turn)[0],
+            axis: 2.0 * grid.centre_from_anchor(orientation)[0],
             groups: groups.collect(),
         }
     }
@@ -167,8 +168,8 @@ impl<'a> Sweeper<'a> {
         let Some([top, bottom]) = self.height else {
             return;
         };
-        let turn = self.groups[0].turn();
-        let offset = self.grid.offset::<f64>(turn, 0, y).y;
+        let orientation = self.groups[0].orientation();
+        let offset = self.grid.offset::<f64>(orientation, 0, y).y;
         let threshold = self.grid.sensor().threshold();
         let rows = i32::from(self.grid.sensor().rows());
         let first = Real::floor(top + offset).max(0);
@@ -227,19 +228,19 @@ impl<'a> Group<'a> {
     fn new(
         grid: &'a PoseGrid,
         layout: &'a Layout,
-        turns: &Arc<[u64]>,
+        orientations: &Arc<[u64]>,
         rows: &Range<u64>,
         keep_runs: bool,
     ) -> Self {
-        let turn = turns[0];
-        let extent = grid.boundary::<f64>(turn).extent();
+        let orientation = orientations[0];
+        let extent = grid.boundary::<f64>(orientation).extent();
         let half_turn = PointSymmetry::of(grid).filter(|_| {
             extent
                 .as_ref()
-                .is_some_and(|extent| lies_inside(grid, turn, extent))
+                .is_some_and(|extent| lies_inside(grid, orientation, extent))
         });
         let outside = |extent: &Extent| {
-            let inside = grid.columns_inside(turn, extent);
+            let inside = grid.columns_inside(orientation, extent);
             grid.row_length() - (inside.end - inside.start)
         };
         let height = grid.rows_per_orientation();
@@ -248,14 +249,14 @@ impl<'a> Group<'a> {
             beyond: extent.as_ref().map_or(0, outside),
             rows_inside: extent
                 .as_ref()
-                .map_or(0..height, |extent| grid.rows_inside(turn, extent)),
+                .map_or(0..height, |extent| grid.rows_inside(orientation, extent)),
             events: Events::new(layout, grid.row_length()),
             due: false,
-            exact: Exact::new(grid, turn),
+            exact: Exact::new(grid, orientation),
             images: half_turn.map(|half_turn| ReflectedRows::new(layout, half_turn)),
             keep_runs: keep_runs || half_turn.is_some(),
             found: Found {
-                turns: Arc::clone(turns),
+                orientations: Arc::clone(orientations),
                 rows: rows.clone(),
                 counter: ImprintCounter::new(layout.words()),
                 partly_off: 0,
@@ -265,13 +266,13 @@ impl<'a> Group<'a> {
     }
 
     /// The orientation that is swept.
-    fn turn(&self) -> u64 {
-        self.found.turns[0]
+    fn orientation(&self) -> u64 {
+        self.found.orientations[0]
     }
 
     /// The number of the first pose of a row.
     fn first(&self, y: u64) -> u64 {
-        (self.turn() * self.grid.rows_per_orientation() + y) * self.grid.row_length()
+        (self.orientation() * self.grid.rows_per_orientation() + y) * self.grid.row_length()
     }
 
     /// Begins a row. Whether it is to be swept: the image of a row that was is counted at once.
@@ -330,9 +331,9 @@ impl<'a> Group<'a> {
 
 /// Whether a shape lies inside the sensor in every pose of an orientation, without touching its rim. `extent` is its own
 /// at the origin.
-fn lies_inside(grid: &PoseGrid, turn: u64, extent: &Extent) -> bool {
+fn lies_inside(grid: &PoseGrid, orientation: u64, extent: &Extent) -> bool {
     let (ranges, sensor) = (grid.ranges(), grid.sensor());
-    let place = |x, y| grid.offset::<f64>(turn, x, y);
+    let place = |x, y| grid.offset::<f64>(orientation, x, y);
     let (first, last) = (
         place(0, 0),
         place(ranges[Axis::X0].count() - 1, ranges[Axis::Y0].count() - 1),

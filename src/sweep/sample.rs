@@ -7,14 +7,14 @@ use crate::pose::{AngleClasses, Axis, PoseGrid, PoseIndex};
 /// The number of poses that are enough to measure.
 const POSES: u64 = 20_000;
 
-/// A part of a grid, and the work of the whole grid as a multiple of the part's.
+/// A part of a grid, and how much larger the whole is.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct TimingSample {
     /// The part: neighbouring poses at one angle and one pair of zooms, from the middle of their ranges.
     pub grid: PoseGrid,
-    /// How many times as long the whole grid takes at most. It takes less where more of its imprints are known already
-    /// than in the part, and where angles that show mirror images of each other are swept together.
+    /// How many times as many imprints as the part the whole grid may have. Its time is less than that multiple of the
+    /// part's: mirror images are swept together, and known imprints are not described again.
     pub times: f64,
 }
 
@@ -36,7 +36,7 @@ impl TimingSample {
     }
 }
 
-/// The number of angles that are swept: of those at which the shape looks the same, only one is.
+/// The number of angles at which the shape looks different.
 fn distinct_angles(grid: &PoseGrid) -> u64 {
     let angles = grid.ranges()[Axis::Angle];
     let classes = AngleClasses::of(grid.source(), angles);
