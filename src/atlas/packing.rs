@@ -134,7 +134,7 @@ impl Layout {
     }
 }
 
-/// The generator of G. L. Steele, D. Lea and C. H. Flood (2014): fixed numbers without a table of them.
+/// The generator of G. L. Steele, D. Lea and C. H. Flood (2014): a sequence of numbers from one seed.
 fn split_mix(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let mut mixed = *state;

@@ -11,7 +11,7 @@ use crate::geometry::circle::angle;
 /// Bounds of sections are taken this much wider than computed.
 const SLACK: f64 = 1e-12;
 
-/// An ellipse prepared for bands; see `geometry::curve` for the formulas.
+/// An ellipse prepared for bands; see `geometry::ellipse_cuts` for the formulas.
 #[derive(Clone, Debug)]
 pub(crate) struct EllipseBand {
     /// x of the centre.

@@ -6,6 +6,7 @@
 //! page       what the screen knows of a page            dialog: the table of pages
 //! line_prompt  pages that are one line of text
 //! state      App                                        update: the only writer of it
+//! change     what changes the document                mouse: what clicks and drags do
 //! steps      what a step of the history did, in words
 //! layout     the panes of the screen                    view: draws them
 //! menu, title, status      the lines above and below

@@ -1,9 +1,9 @@
 //! The default keys: for each place its keys with their actions, a hint for the foot of the screen and a line of help.
 //!
-//! Help, hints, the menu and the table of the README are made from it; a key that is not in it does nothing. A settings
-//! file can give the actions of a place other keys: [`crate::tui::keys::keymap`]. Hint and help stand here and not
-//! with the action because the same action means different things in different places: Enter takes a figure, starts a
-//! sweep, writes a file.
+//! Help, hints, the menu and `docs/keys.md` are made from it; a key that is not in it does nothing. A settings file can
+//! give the actions of a place other keys: [`crate::tui::keys::keymap`]. Hint and help stand here and not with the action
+//! because the same action means different things in different places: Enter takes a figure, starts a sweep, writes a
+//! file.
 //!
 //! The arrows move the cursor, not `hjkl`: `l` is Load, as in the paper's menu.
 
@@ -355,7 +355,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "close" "stop the work; back to the matrix";
     }
 
-    /// All four arrows go through the history of frames: the page has no cursor that they could move.
+    /// All four arrows move in the history of frames: the page has no cursor that they could move.
     Live {
         [Char('t') => TARE, Char('T') => NO_TARE]
             "tare" "subtract the median of the last 30 frames; no tare";

@@ -1,10 +1,8 @@
 //! Messages from other threads, which wake the event loop.
 //!
 //! A queue, and a socket pair that the loop waits for together with the terminal and the signals. The queue is not
-//! bounded: workers send at most ten events a second and must never wait for a slow terminal. A source of frames, which
-//! sends a hundred or more a second, must not use the queue: its place is a slot of its own beside `messages`, one
-//! `Mutex<Option<Frame>>` that a newer frame overwrites, behind the same socket. `Mailbox::collect` then returns the
-//! queue and after it the latest frame. So the latest frame wins, and nothing else is ever dropped.
+//! bounded: workers send at most ten events a second and must never wait for a slow terminal. Frames do not go through it:
+//! they wait in `runtime::frames`, and a message here says that some have come.
 
 use std::io::{self, Read, Write};
 use std::os::fd::{AsFd, BorrowedFd};

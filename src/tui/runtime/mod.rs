@@ -18,6 +18,7 @@
 //! journal_writer   unsaved work, written beside the program
 //! write_access     where files may be written
 //! memory           a bound on the memory of sweeps and trainings
+//! reminders        what is remembered for the next run
 //! shape_log        which stored shapes were used, for a record
 //! mailbox          messages from the workers, which wake the event loop
 //! ```

@@ -6,6 +6,7 @@
 //! curve        a curve with axes                  found       a text that was searched for, marked
 //! columns      widths and word wrap                  thumbnail   a small imprint
 //! dots         lines and points in Braille           plot        two axes around a field of dots
+//! heat         shades and colours of values
 //! ```
 
 pub mod text_field;
