@@ -3,8 +3,8 @@
     pip install numpy scikit-learn
     python3 examples/classifiers.py [SET.jsonl]       # taxel on the PATH, or: TAXEL=target/release/taxel
 
-Every row names the shape of all touches of the model: each key once, weighed by the number of poses that leave it. What
-scikit-learn learns from is said in the row: its Gaussians with common and own covariance take no weights, so they get a
+Every row names the shape of all touches of the model: each key once, weighed by the number of poses that leave it. The
+row says what scikit-learn learns from: its Gaussians with common and own covariance take no weights, so they get a
 sample.
 """
 

@@ -263,7 +263,7 @@ mod tests {
     fn a_parameter_of_something_else_is_an_error() {
         let error = Sensor::default()
             .with(Parameter::X0, 1.0)
-            .expect_err("x0 is no sensor parameter");
+            .expect_err("x0 is not a sensor parameter");
         assert_eq!(
             error.to_string(),
             "x0: a parameter that the sensor does not have, \

@@ -37,7 +37,7 @@ const WRITTEN_OUT: Duration = Duration::from_millis(400);
 /// The file is synced after this time.
 const SYNCED: Duration = Duration::from_millis(900);
 
-/// Or when they are so many bytes.
+/// Bytes that wait at most; with this many, records are written out at once.
 const BUFFER: usize = 1 << 18;
 
 /// Why frames cannot be recorded.
@@ -59,7 +59,7 @@ pub enum RecorderError {
         path: PathBuf,
     },
     /// The file, or the description beside it, is the source.
-    #[error("{} is what is watched: record in another file", path.display())]
+    #[error("{} is the source that is watched: record in another file", path.display())]
     IsSource {
         /// The file.
         path: PathBuf,
@@ -250,7 +250,7 @@ impl FrameRecorder {
         let mut file = File::options().write(true).open(path)?;
         let old = file.seek(SeekFrom::End(0))?;
         let missing = (text.len() as u64).saturating_sub(old);
-        // Blanks change nothing. Only where there is room for them the text is replaced.
+        // Blanks change nothing. The text is replaced only if there is room for them.
         if let Err(error) = io::copy(&mut io::repeat(b' ').take(missing), &mut file) {
             file.set_len(old)?;
             return Err(error);

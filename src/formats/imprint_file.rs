@@ -77,7 +77,7 @@ impl ImprintFormat {
     }
 }
 
-/// Why bytes are no imprint.
+/// Why bytes are not an imprint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ImprintFormatError {
@@ -101,7 +101,7 @@ pub enum ImprintFormatError {
 impl fmt::Display for ImprintFormatError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Large => f.write_str("larger than 1 MiB, which no imprint is"),
+            Self::Large => f.write_str("larger than 1 MiB, the limit for an imprint"),
             Self::Foreign { kind } => write!(
                 f,
                 "{kind}, expected rows of '#' and '.', a table (CSV), PBM, PGM of two shades or NPY"

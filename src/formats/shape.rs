@@ -33,12 +33,12 @@ pub struct StoredShape {
     pub source: Option<Source>,
 }
 
-/// Why a text is no stored shape.
+/// Why a text is not a stored shape.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShapeError {
     /// Too large to be one.
-    #[error("larger than 1 MiB, which no shape is")]
+    #[error("larger than 1 MiB, the limit for a shape")]
     Large,
     /// Not JSON, not an object with the keys of a shape, or another format, a newer one perhaps.
     #[error("line {line}, column {column}: {message}")]
@@ -50,7 +50,7 @@ pub enum ShapeError {
         /// What is wrong.
         message: String,
     },
-    /// A key without which it is no shape.
+    /// A key without which it is not a shape.
     #[error("{0}: missing")]
     Missing(&'static str),
     /// A value that has no meaning.

@@ -28,7 +28,7 @@ const MAX_UNITS: i64 = 999_999_999_999_999;
 /// let range: DecimalRange = "5:5.99:0.01".parse()?;
 /// assert_eq!((range.count(), range.value(0), range.value(37), range.last()), (100, 5.0, 5.37, 5.99));
 /// assert_eq!(range.to_string(), "5:5.99:0.01");
-/// assert_eq!("1:2:0".parse::<DecimalRange>().unwrap_err().to_string(), "step 0 leads nowhere, expected one above 0");
+/// assert_eq!("1:2:0".parse::<DecimalRange>().unwrap_err().to_string(), "step 0: expected one above 0");
 /// # Ok::<(), taxel::pose::RangeError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -258,7 +258,7 @@ impl fmt::Display for DecimalRange {
 #[non_exhaustive]
 pub enum RangeError {
     /// Neither one number nor three.
-    #[error("\"{text}\" is no range, expected a number or start:end:step")]
+    #[error("\"{text}\" is not a range, expected a number or start:end:step")]
     Form {
         /// The text, shortened.
         text: String,
@@ -272,7 +272,7 @@ pub enum RangeError {
         text: String,
     },
     /// A step of 0, or backwards.
-    #[error("step {step} leads nowhere, expected one above 0")]
+    #[error("step {step}: expected one above 0")]
     Step {
         /// As given, shortened.
         step: String,

@@ -3,8 +3,8 @@
 //!
 //! Whenever the program dies or the power fails, the old file or the new one is there whole. The stages are types:
 //! content goes into an [`UnfinishedFile`]; a [`FinishedFile`] is on disk and lacks only its name. Either one removes
-//! its temporary file when it is dropped, so an error or an early return leaves nothing behind. Of a program that is
-//! killed the next writer removes what is left: see [`crate::storage::temporary`] for files from
+//! its temporary file when it is dropped, so an error or an early return leaves nothing behind. If a program is
+//! killed, the next writer removes what it left: see [`crate::storage::temporary`] for files from
 //! [`UnfinishedFile::new`]; the name given to [`UnfinishedFile::with_temporary`] is taken over by the next caller.
 
 use std::fs::{self, File};
@@ -70,7 +70,7 @@ impl UnfinishedFile {
         // Reported before the work, not after it.
         match (existing, &old) {
             (_, Some(found)) if !found.file_type().is_file() => {
-                let error = "not a regular file, and only such a one is replaced";
+                let error = "not a regular file, and only regular files are replaced";
                 return Err(refuse("replace it")(io::Error::other(error)));
             }
             (Existing::Kept, Some(_)) => {

@@ -56,7 +56,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, LibraryError> {
     let found = file.metadata();
     let found = found.map_err(|error| FileError::new("look at it", path, error))?;
     check_regular(path, &found)?;
-    // Asked for no more than is there, so that the end needs no read of its own. Where 0 is said, the length may be
+    // Asked for no more than is there, so that the end needs no read of its own. A length of 0 may mean that it is
     // unknown.
     let length = usize::try_from(found.len()).unwrap_or(MAX_BYTES + 1);
     let length = if length == 0 { MAX_BYTES } else { length }.min(MAX_BYTES + 1);
@@ -120,7 +120,7 @@ pub(crate) fn make(path: &Path) -> Result<(), LibraryError> {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {
             // Another program was faster, or something else has the name.
             if !path.is_dir() {
-                return Err(in_the_way(path, "no folder", "a folder"));
+                return Err(in_the_way(path, "not a folder", "a folder"));
             }
         }
         made => made.map_err(|error| FileError::new("make the folder", path, error))?,

@@ -84,7 +84,7 @@ fn a_line_too_long_is_refused_and_read_over() {
     ];
     let run = taxel("batch", input.join("\n"));
     let long = |line: usize| {
-        format!("{{\"error\":\"line {line}: longer than 1 MiB, which no pose is\"}}\n")
+        format!("{{\"error\":\"line {line}: longer than 1 MiB, the limit for a pose\"}}\n")
     };
     let expected = [
         POINT_ANSWER.to_owned(),

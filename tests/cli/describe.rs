@@ -117,7 +117,7 @@ fn a_bad_imprint_is_told_by_line_and_column() {
     bad(b"\r\n\n", "found 0 lines, expected 1 to 64");
     bad(
         &b"\n".repeat(1 << 21),
-        "larger than 1 MiB, which neither an imprint nor a shape is",
+        "larger than 1 MiB, the limit for an imprint or a shape",
     );
 }
 

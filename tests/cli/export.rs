@@ -158,7 +158,7 @@ fn nothing_is_overwritten_unless_asked_for() {
     refused(
         &folder.run("export washer folder.svg --force"),
         1,
-        "folder.svg: cannot write: not a regular file, and only such a one is replaced",
+        "folder.svg: cannot write: not a regular file, and only regular files are replaced",
     );
     refused(
         &folder.run("export washer no/such.svg"),
@@ -272,7 +272,7 @@ fn what_others_may_not_read_they_may_not_read_afterwards() {
     assert_eq!(mode & 0o777, 0o600);
 }
 
-/// What editors put before a text is no taxel.
+/// What editors put before a text is not a taxel.
 #[test]
 fn a_byte_order_mark_is_passed_over() {
     let folder = Folder::new();

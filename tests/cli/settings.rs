@@ -215,7 +215,7 @@ fn a_file_that_is_named_must_be_there_and_be_text() {
     fs::write(&file, b"theme = '\xff'").expect("written");
     told("no UTF-8 text");
     fs::write(&file, vec![b'#'; (1 << 20) + 1]).expect("written");
-    told("larger than 64 KiB, which no file of settings is");
+    told("larger than 64 KiB, the limit for a file of settings");
     let run = run(taxel("config").env("TAXEL_CONFIG", "/dev/zero"));
     assert_eq!(run.status, Some(2), "it comes to an end");
 }

@@ -407,17 +407,14 @@ fn what_is_no_sweep_is_refused() {
         "zoom_x, zoom_y: a figure has none, only pictures have",
     );
     for (line, expected) in [
-        (
-            "sweep hexagon --x0 1:2:0",
-            "step 0 leads nowhere, expected one above 0",
-        ),
+        ("sweep hexagon --x0 1:2:0", "step 0: expected one above 0"),
         (
             "sweep hexagon --y0 2:1:0.1",
             "2:1:0.1 ends before it starts, expected an end from 2 on",
         ),
         (
             "sweep hexagon --shard 4/3",
-            "\"4/3\" is no shard, expected K/N with K from 1 to N",
+            "\"4/3\" is not a shard, expected K/N with K from 1 to N",
         ),
         (
             "sweep hexagon --atlas x.txt",

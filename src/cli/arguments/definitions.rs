@@ -148,11 +148,11 @@ fn export() -> Command {
         .arg(replace())
 }
 
-/// `--format`, for names whose ending does not tell the form.
+/// `--format`, for names whose ending does not show the form.
 fn format() -> Arg {
     let names = export::names();
     let help = format!(
-        "Its form, where its ending does not tell: {}",
+        "Its form, if its ending does not show it: {}",
         names.join(", ")
     );
     Arg::new("format")
@@ -187,7 +187,7 @@ fn sweep() -> Command {
             FigureKind::from_name,
         ))
         .hide_possible_values(true)
-        .help("Kind of figure, as of 'taxel figure'");
+        .help("Kind of figure, as in 'taxel figure'");
     let picture = option("picture", "NAME|FILE", "Sweep a stored shape instead")
         .value_parser(value_parser!(OsString));
     let sizes = parameters::figure_parameters()
@@ -225,8 +225,8 @@ fn sweep() -> Command {
 }
 
 /// `taxel merge FILE.npz…`.
-/// `taxel merge part-*.npz --out whole.npz`. Shards of a training are merged by the same command: the content of the
-/// files tells.
+/// Shards of a training are merged by the same command, `taxel merge part-*.npz --out whole.npz`: the content of the
+/// files decides.
 fn merge() -> Command {
     let files = Arg::new("files")
         .value_name("FILE.npz")
@@ -252,7 +252,7 @@ fn merge() -> Command {
 }
 
 /// `--atlas`, the file that a sweep or a merge writes.
-/// Its ending tells the form, and there is no flag for it: only `.npz` can be read again.
+/// Its ending decides the form, and there is no flag for it: only `.npz` can be read again.
 fn atlas() -> Arg {
     option("atlas", "FILE", "Write the atlas, as .csv, .jsonl or .npz").value_parser(parse_atlas)
 }
@@ -293,7 +293,7 @@ fn library() -> Command {
         .args(of_sensor(&[Parameter::Pitch]))
         .arg(json());
     let save = command("save", "Store a shape under a name", SAVE_EXAMPLES)
-        .arg(name("Its name from now on"))
+        .arg(name("Name to store it under"))
         .arg(what(
             "Shape of the library, or file; '-' for standard input",
         ))
@@ -335,7 +335,7 @@ fn keeping() -> [Arg; 4] {
             "Write the imprint, or a drawing of it; '-' for standard output, in place of the table",
             52,
         ));
-    let force = force().help("Replace a shape or a file that is there already");
+    let force = force().help("Replace an existing shape or file");
     [
         save,
         export,

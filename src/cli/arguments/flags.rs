@@ -108,7 +108,7 @@ pub(super) fn shard_of(matches: &ArgMatches) -> Shard {
 pub(super) fn resume() -> Arg {
     switch(
         "resume",
-        "Skip it if the file is there, whole and of this\nstudy; another file is refused",
+        "Skip it if the file is whole and of this study;\nrefuse any other file",
     )
     .conflicts_with("force")
 }
@@ -125,7 +125,7 @@ fn parse_shard(text: &str) -> Result<Shard, ShardError> {
 
 /// `--force`, for commands that write a file.
 pub(super) fn replace() -> Arg {
-    force().help("Replace a file that is there already")
+    force().help("Replace an existing file")
 }
 
 /// `--quiet`.
@@ -221,7 +221,7 @@ pub(super) fn parse_probability(text: &str) -> Result<f64, &'static str> {
         .ok_or("expected a number from 0 to 1")
 }
 
-/// A file of numbers or of a drawing, which its ending tells, in capitals or not.
+/// A file of numbers or of a drawing, by its ending, in capitals or not.
 pub(super) fn parse_report(text: &str) -> Result<PathBuf, &'static str> {
     let path = PathBuf::from(text);
     let ending = path.extension().unwrap_or_default();

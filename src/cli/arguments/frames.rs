@@ -1,6 +1,6 @@
 //! The arguments of `taxel frames`, and those about processing that `taxel watch` has too.
 //!
-//! The flags come in three groups, and frames go through them in this order:
+//! The flags come in three groups, which are applied to frames in this order:
 //! ```text
 //! --frame N | --label L | --peak | --all             which frames; none of them: a listing
 //! --crop --flip --turn --mask --tare --gain          from the recording's values to those that count
@@ -91,7 +91,7 @@ pub(crate) fn command() -> Command {
         .help("Recording; '-' for standard input");
     let frame =
         option("frame", "N", "This frame of its channel, from 0").value_parser(value_parser!(u64));
-    let label = option("label", "L", "What the recording itself calls L")
+    let label = option("label", "L", "The frame that the recording itself labels L")
         .allow_hyphen_values(true)
         .value_parser(value_parser!(i64));
     let peak = switch("peak", "The frame with the greatest sum of values");
@@ -135,11 +135,15 @@ pub(crate) fn processing() -> [Arg; 9] {
         side(
             "frame_rows",
             "rows",
-            "Rows, where the recording does not say them",
+            "Rows, if the recording does not state them",
         )
         .requires("frame_columns"),
         side("frame_columns", "columns", "Columns, likewise").requires("frame_rows"),
-        text("channel", "NAME", "This channel of several"),
+        text(
+            "channel",
+            "NAME",
+            "The channel to read, if there are several",
+        ),
         text(
             "crop",
             "C,R,COLSxROWS",
@@ -165,7 +169,7 @@ pub(crate) fn processing() -> [Arg; 9] {
         text(
             "tare",
             "N",
-            "Take off the median of each cell over N frames",
+            "Subtract the median of each cell over N frames",
         )
         .value_parser(value_parser!(u64)),
         text("gain", "FILE", "Table of what each cell is multiplied by")
@@ -191,7 +195,7 @@ pub(crate) fn naming() -> [Arg; 2] {
 }
 
 /// The flags that say which values are active.
-/// `--high` is no rule by itself: it goes with `--low`. `--noise` needs a tare, whose frames show the noise of each
+/// `--high` is not a rule by itself: it goes with `--low`. `--noise` needs a tare, whose frames show the noise of each
 /// cell.
 pub(crate) fn rules() -> [Arg; 6] {
     let value = |flag: &'static str, value: &'static str, help: &'static str| {
@@ -212,24 +216,32 @@ pub(crate) fn rules() -> [Arg; 6] {
         .alias("min-taxels")
         .value_name("K")
         .value_parser(value_parser!(u32).range(1..=4096))
-        .help("Drop pieces of fewer taxels");
+        .help("Drop pieces of fewer than K taxels");
     [
-        value("at-least", "T", "Active from T on, in the recording's unit")
-            .conflicts_with_all(others("at-least")),
+        value(
+            "at-least",
+            "T",
+            "Active at T or more, in the recording's unit",
+        )
+        .conflicts_with_all(others("at-least")),
         value(
             "percent",
             "P",
-            "Active from P percent of the largest value on",
+            "Active at P percent of the largest value or more",
         )
         .conflicts_with_all(others("percent")),
-        value("low", "A", "Active from A on, if joined to a taxel of HIGH")
-            .requires("high")
-            .conflicts_with_all(others("low")),
-        value("high", "B", "Active from B on").requires("low"),
+        value(
+            "low",
+            "A",
+            "Active at A or more, if joined to a taxel of HIGH",
+        )
+        .requires("high")
+        .conflicts_with_all(others("low")),
+        value("high", "B", "Active at B or more").requires("low"),
         value(
             "deviations",
             "K",
-            "Active from K deviations of a cell's noise on; needs\na tare",
+            "Active at K deviations of a cell's noise or more;\nneeds a tare",
         )
         .requires("tare")
         .conflicts_with_all(others("deviations")),

@@ -47,8 +47,8 @@ Examples:
 pub(crate) const PICTURE_EXAMPLES: &str = "\
 If a stored shape and a file have the same name, the shape is taken. A file is a
 stored shape or an imprint. The sensor is that of the stored shape; an imprint
-alone lies on one of 16 x 16, or of its own size where that is larger. What is
-not given leaves the picture where it was: without flags it is the same again.
+alone lies on one of 16 x 16, or of its own size where that is larger. A flag
+that is not given changes nothing: without flags the picture stays as it is.
 
 Examples:
   taxel picture washer --x0 6 --y0 4.5
@@ -72,13 +72,13 @@ Examples:
 
 /// `taxel export`: the forms that can be written.
 pub(crate) const EXPORT_EXAMPLES: &str = "\
-The ending of TO tells the form:
+The ending of TO decides the form:
   .txt  rows of '#' and '.'         .svg  a drawing: matrix, outline where it is
   .pbm  a bitmap, P4                      known, rectangle, CG, CD, axes, legend
   .csv  a table of 0 and 1          .png  the same in pixels, 288 an inch
   .npy  an array of numpy, bool
-Drawings are grey; with a pitch they are in mm. A file that is there already is
-replaced by --force only. Figures are exported by 'taxel figure ... --export'.
+Drawings are grey; with a pitch they are in mm. An existing file is replaced
+only with --force. Figures are exported by 'taxel figure ... --export'.
 
 Examples:
   taxel export washer washer.svg --pitch 2.5
@@ -131,7 +131,7 @@ Examples:
   echo 'State /regions/0/f' | taxel script -k 'fh<Enter>' -"#;
 
 /// `taxel config`: where the settings file is, and an example of one.
-pub(crate) const CONFIG_EXAMPLES: &str = r#"What is printed is a file of settings itself. Yours is config.toml in the folder
+pub(crate) const CONFIG_EXAMPLES: &str = r#"The output is itself a file of settings. Yours is config.toml in the folder
 taxel among your settings, or the file that --config or TAXEL_CONFIG names:
   theme = "light"               # as --theme, --color; charset = "ascii"
   library = "~/shapes"
@@ -170,7 +170,7 @@ pub(crate) const ENVIRONMENT: &str = "
   TERM, COLORTERM  what the terminal can show
   LC_ALL, LC_CTYPE, LANG
                    ASCII only, unless the locale is UTF-8
-  COLUMNS, LINES   the size of a terminal that does not tell it";
+  COLUMNS, LINES   the size of a terminal that does not report it";
 
 /// The files, for the manual page; `--help` leaves them out.
 pub(crate) const FILES: &str = "
@@ -182,12 +182,12 @@ pub(crate) const FILES: &str = "
 /// `taxel sweep`: ranges and their defaults.
 pub(crate) const SWEEP_EXAMPLES: &str = "\
 A range is START:END:STEP with the end included, or one number; decimals are
-exact. What is not given has the paper's resolution: one cell by hundredths and
-every whole degree, 3.6 million poses. Figures start at x0 = y0 = 5, pictures at
-the cell that they lie in; if the sensor would cut off the
-shape there in any of the angles, a cell around the middle is taken. The ranges
-that were taken are printed. Figures are solid, the sensor is 16 x 16; that of a
-picture is its own. --force replaces files that are there already.
+exact. A range that is not given has the paper's resolution: one cell by
+hundredths and every whole degree, 3.6 million poses. Figures start at x0 = y0 =
+5, pictures at the cell that they lie in; if the sensor would cut off the shape
+there in any of the angles, a cell around the middle is taken. The ranges that
+were taken are printed. Figures are solid, the sensor is 16 x 16; that of a
+picture is its own. --force replaces existing files.
 
 Examples:
   taxel sweep rectangle --length 6 --width 3
@@ -224,9 +224,9 @@ A line of JSON is a shape with a name, as for 'taxel batch' without a pose:
   {\"name\":\"disc\",\"figure\":\"ellipse\",\"radius_x\":3,\"radius_y\":3}
   {\"name\":\"ring\",\"picture\":\"washer\"}
 Without ranges, every shape is touched at 100 x 100 positions inside one cell
-and at every whole degree, on the smallest sensor that holds all of them: at
-least 16 x 16, and printed. Poses that the sensor cuts off are refused, since a
-cut imprint depends on the rim. 'taxel merge' puts shards together.
+and at every whole degree, on the smallest sensor that holds all of them, at
+least 16 x 16, which is printed. Poses that the sensor cuts off are refused,
+since a cut imprint depends on the rim. 'taxel merge' puts shards together.
 
 Examples:
   taxel model train parts.jsonl --name parts
@@ -281,7 +281,7 @@ Trains the set at each scale (all lengths of all shapes times it) or, where the
 lengths are in mm, at each pitch, and says how many touches even the best
 classifier names wrong. --want scans from the smallest size upwards, then in
 tenths of the step before the first size that reaches the error. The error is
-not monotonous: how many larger sizes miss it again is said, too.
+not monotonic, so --want also reports how many larger sizes miss it again.
 
 Examples:
   taxel model separate parts --scale 0.5:2:0.1 --positions 20
@@ -304,7 +304,7 @@ pub(crate) const RECOGNISE_EXAMPLES: &str = "\
 Reads an imprint in any form that 'taxel describe' reads, or lines of JSON, each
 {\"imprint\":[\"..##\",...]} or, for several touches of one shape,
 {\"touches\":[[...],[...]]}. Lines are answered in lines; other keys are ignored,
-but for frame, label, time and channel, which are copied. An imprint at the rim
+except frame, label, time and channel, which are copied. An imprint at the rim
 may be cut off and is never 'certain'. With --noise an imprint that no shape
 leaves is answered too: every key in every place on the matrix is compared.
 Exit status 3: --expect was given, and the answer is another one, tied, rejected
@@ -333,8 +333,8 @@ Examples:
 
 /// `taxel library list`.
 pub(crate) const LIST_EXAMPLES: &str = "\
-Size in columns x rows, active taxels, pieces and holes. What cannot be read is
-listed as broken, with the reason.
+Size in columns x rows, active taxels, pieces and holes. A file that cannot be
+read is listed as broken, with the reason.
 
 Examples:
   taxel library list
@@ -349,8 +349,8 @@ Examples:
 
 /// `taxel library save`.
 pub(crate) const SAVE_EXAMPLES: &str = "\
-A file is a stored shape or an imprint. A name of the library goes
-before a file of the same name: so a shape is copied.
+A file is a stored shape or an imprint. If a stored shape and a file have the
+same name, the shape is taken; this is how to copy one.
 
 Examples:
   taxel library save ring imprint.txt
@@ -367,7 +367,7 @@ Examples:
 
 /// `taxel library restore`.
 pub(crate) const RESTORE_EXAMPLES: &str = "\
-Of several deleted ones of that name the last comes back.
+If several shapes of that name were deleted, the last one is restored.
 
 Examples:
   taxel library restore ring";
@@ -380,8 +380,8 @@ Examples:
 
 /// `taxel library check`.
 pub(crate) const CHECK_EXAMPLES: &str = "\
-Reads every shape, and tells what else lies in the folder. The exit status is 1
-where a shape is broken.
+Reads every shape, and lists what else is in the folder. The exit status is 1 if
+a shape is broken.
 
 Examples:
   taxel library check
@@ -391,12 +391,12 @@ Examples:
 pub(crate) const FRAMES_EXAMPLES: &str = "\
 A recording is a file of Tekscan, XSENSOR, emed or zebris, PoPu, MCAP, NPY, NPZ,
 JSON lines, what 'ros2 topic echo' prints, or a table of numbers; its content
-tells which. Without a choice of frames its channels are listed. Frames are
+decides which. Without a choice of frames its channels are listed. Frames are
 cropped, flipped, turned and masked, then tared, then multiplied by the gain;
 then the threshold makes the imprint. Values are in the recording's own unit.
 
-Whole frames before a damage are answered, then the damage is reported with its
-place, and the exit status is 1.
+If a recording is damaged, the whole frames before the damage are answered, the
+damage is reported with its place, and the exit status is 1.
 
 Examples:
   taxel frames recording.csv

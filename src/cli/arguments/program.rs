@@ -86,7 +86,7 @@ pub(crate) fn script() -> Command {
         "Draw each screen into this folder too, as NAME.svg",
     )
     .value_parser(value_parser!(PathBuf));
-    let force = switch("force", "Replace drawings that are there already").requires("svg");
+    let force = switch("force", "Replace existing drawings").requires("svg");
     let allow_outside = switch(
         "allow-outside",
         "Let it write outside its folder, and set a library",
@@ -175,7 +175,8 @@ pub(crate) fn config() -> Command {
 
 /// `--config`, which every command takes.
 pub(crate) fn config_file() -> Arg {
-    option("config", "FILE", "Settings in place of your own").value_parser(value_parser!(PathBuf))
+    option("config", "FILE", "A settings file in place of your own")
+        .value_parser(value_parser!(PathBuf))
 }
 
 /// `--size`, for the screen and for scripts.
@@ -191,5 +192,5 @@ fn parse_size(text: &str) -> Result<(u16, u16), String> {
 /// `--ascii`. [`Charset`](crate::cli::output::charset::Charset) has looked for it before clap does, because messages
 /// about wrong arguments need it; this declares it for the help and for the screen.
 pub(crate) fn ascii() -> Arg {
-    switch("ascii", "Keep to ASCII, as where the locale is not UTF-8")
+    switch("ascii", "Use ASCII only, as where the locale is not UTF-8")
 }

@@ -68,7 +68,7 @@ pub(crate) fn command() -> Command {
         .value_parser(value_parser!(u32).range(50..=20_000_000));
     let once = switch("once", "Read to the end, as fast as it goes, and stop")
         .conflicts_with_all(["loop", "speed"]);
-    let again = switch("loop", "Begin a recording again at its end");
+    let again = switch("loop", "Start a recording again when it ends");
     let speed = option(
         "speed",
         "FACTOR",

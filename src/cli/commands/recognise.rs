@@ -115,7 +115,7 @@ impl<'a> Recogniser<'a> {
             let pose = match pose {
                 Some(pose) => pose.text(imprint, charset),
                 None if self.asked.pose && answer.shape.is_some() => {
-                    "no pose: the shape leaves just this imprint in none of the model's poses\n"
+                    "no pose: the shape leaves exactly this imprint in no pose of the model\n"
                         .to_owned()
                 }
                 None => String::new(),
@@ -237,7 +237,7 @@ fn input(what: &OsStr, shelf: &Shelf) -> Result<Asked, CliError> {
         Located::File(path, file) => (path.to_string_lossy().into_owned(), Box::new(file)),
         Located::Standard => ("standard input".to_owned(), Box::new(io::stdin())),
     };
-    // The first line tells: of lines of JSON it is a whole object, and not one of a stored shape.
+    // The first line decides: in lines of JSON it is a whole object, and not that of a stored shape.
     let mut input = BufReader::new(input);
     let mut start = Vec::new();
     let refused = |error: content::InputError| CliError::Input {
@@ -299,7 +299,7 @@ struct Keys<'a> {
     channel: Option<Box<RawValue>>,
 }
 
-/// The values of a frame, in place of an imprint; then `frame` is no number.
+/// The values of a frame, in place of an imprint; then `frame` is not a number.
 fn framed(line: &[u8], frame: Option<&RawValue>) -> Result<Option<Imprint>, String> {
     let Some(frame) = frame.filter(|frame| frame.get().starts_with('[')) else {
         return Ok(None);

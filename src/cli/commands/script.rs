@@ -195,7 +195,9 @@ fn text(source: &InputSource) -> io::Result<String> {
             .read_to_end(&mut bytes)?,
     };
     if bytes.len() as u64 > MOST_BYTES {
-        return Err(io::Error::other("larger than 16 MiB, which no script is"));
+        return Err(io::Error::other(
+            "larger than 16 MiB, the limit for a script",
+        ));
     }
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }

@@ -51,7 +51,7 @@ pub(crate) enum InputError {
     #[error("cannot read: {0}")]
     Read(#[from] io::Error),
     /// It is larger than any imprint or shape.
-    #[error("larger than 1 MiB, which neither an imprint nor a shape is")]
+    #[error("larger than 1 MiB, the limit for an imprint or a shape")]
     Large,
     /// It is not an imprint in any known form.
     #[error(transparent)]

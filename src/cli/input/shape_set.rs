@@ -97,7 +97,7 @@ fn file_of_lines(what: &OsStr, shelf: &Shelf) -> Option<PathBuf> {
 /// Reads a set of shapes, a line of JSON each. Blank lines are skipped.
 ///
 /// # Errors
-/// If the text is larger than [`MAX_SET`], or a line is no shape. A wrong line ends it: a set with a shape missing
+/// If the text is larger than [`MAX_SET`], or a line is not a shape. A wrong line ends it: a set with a shape missing
 /// would give another limit.
 fn lines(
     input: &mut dyn Read,
@@ -112,7 +112,7 @@ fn lines(
     let refused = |place: String, error: String| CliError::Set { place, error };
     read.map_err(|error| refused(name.to_owned(), format!("cannot read: {error}")))?;
     if text.len() as u64 > MAX_SET {
-        let error = "larger than 64 MiB, which no set of shapes is";
+        let error = "larger than 64 MiB, the limit for a set of shapes";
         return Err(refused(name.to_owned(), error.to_owned()));
     }
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);

@@ -89,7 +89,7 @@ pub(crate) fn text(
 }
 
 /// What a search has found, and how it looked.
-/// The sentence names the steps, because the error is not monotonous in the size: a size between two that were tried
+/// The sentence names the steps, because the error is not monotonic in the size: a size between two that were tried
 /// may reach the wanted error as well.
 fn found(axis: SizeAxis, sizes: &DecimalRange, curve: &SeparationCurve, wanted: f64) -> String {
     let wanted = short(wanted);
@@ -124,12 +124,12 @@ fn found(axis: SizeAxis, sizes: &DecimalRange, curve: &SeparationCurve, wanted: 
     match smallest.missed_again {
         0 => text += "  all larger sizes that were tried reach it, too\n",
         1 => {
-            text += "  the error is not monotonous: 1 larger size that was tried misses it again\n";
+            text += "  the error is not monotonic: 1 larger size that was tried misses it again\n";
         }
         more => {
             let _ = writeln!(
                 text,
-                "  the error is not monotonous: {more} larger sizes that were tried miss it again"
+                "  the error is not monotonic: {more} larger sizes that were tried miss it again"
             );
         }
     }

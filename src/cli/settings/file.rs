@@ -90,7 +90,7 @@ pub struct ConfigError {
 #[non_exhaustive]
 pub enum Wrong {
     /// It is longer than [`MAX_BYTES`].
-    #[error("larger than 64 KiB, which no file of settings is")]
+    #[error("larger than 64 KiB, the limit for a file of settings")]
     Large,
     /// It is not valid TOML.
     #[error("{0}")]

@@ -61,7 +61,7 @@ impl<R: BufRead> TextLines<R> {
             let end = bytes.iter().position(|&byte| byte == b'\n');
             let part = &bytes[..end.unwrap_or(bytes.len())];
             if part.len() > LONGEST - self.line.len() {
-                let message = "longer than 8 MiB, which no line of a recording is";
+                let message = "longer than 8 MiB, the limit for a line of a recording";
                 return Err(RecordingError::in_line(self.number + 1, message));
             }
             self.line.extend_from_slice(part);

@@ -48,7 +48,7 @@ pub(crate) enum RosLine {
     Whole,
     /// It was cut off by `ros2 topic echo`.
     Cut,
-    /// This field, counted from 1, is no number.
+    /// This field, counted from 1, is not a number.
     Wrong(usize),
 }
 
@@ -73,7 +73,7 @@ impl RosMessage {
         self.open && !self.values.is_empty()
     }
 
-    /// Adds a value; false if the field is no number. YAML writes `.nan`, arrays `nan`.
+    /// Adds a value; false if the field is not a number. YAML writes `.nan`, arrays `nan`.
     fn push(&mut self, field: &[u8]) -> bool {
         let field = field.trim_ascii();
         let value = match text_row::value(field) {
@@ -196,7 +196,7 @@ fn is_cut(field: &[u8]) -> bool {
     bytes.by_ref().take(3).eq(b"...") && bytes.next().is_none()
 }
 
-/// Whether a field is a dimension's label, which may be empty: whatever is no number.
+/// Whether a field is a dimension's label, which may be empty: whatever is not a number.
 fn is_label(field: &[u8]) -> bool {
     matches!(text_row::value(field.trim_ascii()), Field::Wrong)
 }
@@ -259,7 +259,7 @@ pub(super) fn read(
                 return Err(RecordingError::in_line(number, text));
             }
             RosLine::Wrong(column) => {
-                let text = "found something else than a number";
+                let text = "found something other than a number";
                 return Err(RecordingError::in_field(number, column, text));
             }
         }

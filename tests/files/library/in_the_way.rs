@@ -105,11 +105,14 @@ fn a_library_that_is_no_folder_is_told() {
     scratch.put("file", "");
     symlink("nowhere", scratch.path("dangling")).expect("a link");
     for (inner, message) in [
-        ("file", "FOLDER/file: is no folder, expected a folder"),
-        ("file/inner", "FOLDER/file: is no folder, expected a folder"),
+        ("file", "FOLDER/file: is not a folder, expected a folder"),
+        (
+            "file/inner",
+            "FOLDER/file: is not a folder, expected a folder",
+        ),
         (
             "dangling",
-            "FOLDER/dangling: is no folder, expected a folder",
+            "FOLDER/dangling: is not a folder, expected a folder",
         ),
     ] {
         let library = Library::open(scratch.path(inner));
@@ -185,7 +188,7 @@ fn broken_files_are_listed_told_and_harm_nothing() {
         (
             "huge",
             &" ".repeat((1 << 20) + 1),
-            "larger than 1 MiB, which no shape is",
+            "larger than 1 MiB, the limit for a shape",
         ),
     ] {
         scratch.put(&format!("{name}.json"), content);

@@ -25,18 +25,12 @@ fn ranges_are_exact_or_refused() {
         );
     }
     let refused = |text: &str| range(text).expect_err("no range").to_string();
-    assert_eq!(
-        refused("1:2:0.00"),
-        "step 0.00 leads nowhere, expected one above 0"
-    );
+    assert_eq!(refused("1:2:0.00"), "step 0.00: expected one above 0");
     assert_eq!(
         refused("2:1:0.1"),
         "2:1:0.1 ends before it starts, expected an end from 2 on"
     );
-    assert_eq!(
-        refused("1:2:-0.1"),
-        "step -0.1 leads nowhere, expected one above 0"
-    );
+    assert_eq!(refused("1:2:-0.1"), "step -0.1: expected one above 0");
     assert_eq!(refused("2:1:-1"), refused("1:2:-1"));
     assert_eq!(
         refused("9999999999999999"),
@@ -44,7 +38,7 @@ fn ranges_are_exact_or_refused() {
     );
     assert_eq!(
         refused("1:2"),
-        "\"1:2\" is no range, expected a number or start:end:step"
+        "\"1:2\" is not a range, expected a number or start:end:step"
     );
     assert!(refused("1:2:x").starts_with("\"x\" is not a decimal number"));
     assert!(refused("1e5").starts_with("\"1e5\" is not"));

@@ -161,8 +161,8 @@ fn output() -> [Arg; 5] {
     let export = option("export", "FILE", "Write the matrix as .csv, .svg or .png")
         .value_parser(parse_report)
         .conflicts_with_all(["greedy", "pairs", "test"]);
-    let csv =
-        switch("csv", "Print a table of commas").conflicts_with_all(["json", "greedy", "pairs"]);
+    let csv = switch("csv", "Print comma-separated values")
+        .conflicts_with_all(["json", "greedy", "pairs"]);
     [export, replace(), json(), quiet(), csv]
 }
 
@@ -174,10 +174,14 @@ fn noisy() -> [Arg; 5] {
         "Touches whose taxels flip this often",
     )
     .value_parser(parse_noise_range);
-    let dead = option("dead", "N,...", "With so many dead taxels; default 0")
-        .value_delimiter(',')
-        .value_parser(value_parser!(u32).range(..4096))
-        .requires("noise");
+    let dead = option(
+        "dead",
+        "N,...",
+        "Also with N dead taxels, spread at random;\ndefault 0",
+    )
+    .value_delimiter(',')
+    .value_parser(value_parser!(u32).range(..4096))
+    .requires("noise");
     let touches = option("touches", "N", "Noisy touches of each shape; default 1000")
         .value_parser(value_parser!(u64).range(1..=1_000_000_000))
         .default_value("1000")

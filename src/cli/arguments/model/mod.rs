@@ -8,8 +8,8 @@
 //! | `confusion` | `taxel model confusion` |
 //! | `touches` | `taxel model touches` |
 //!
-//! `show`, `list` and `delete` are small enough to stand here. A model is named as in `taxel recognise --model`: a name
-//! beside the library goes before a file, and `figures` stands for the seven figures ([`DEFAULT_MODEL`]).
+//! `show`, `list` and `delete` are small enough to stand here. A model is named as in `taxel recognise --model`: a model
+//! beside the library takes precedence over a file, and `figures` stands for the seven figures ([`DEFAULT_MODEL`]).
 
 use std::ffi::OsString;
 
@@ -117,7 +117,7 @@ fn which_model() -> Arg {
 
 /// `--seed`: the same seed draws the same touches, whatever the number of threads.
 fn seed() -> Arg {
-    option("seed", "N", "Seed of what is drawn at random; default 0")
+    option("seed", "N", "Seed of the random numbers; default 0")
         .value_parser(value_parser!(u64))
         .default_value("0")
         .hide_default_value(true)

@@ -62,7 +62,7 @@ pub(super) fn command() -> Command {
         "Write the numbers (.csv) or the curves\n(.svg, .png)",
     )
     .value_parser(parse_report);
-    let csv = switch("csv", "Print a table of commas").conflicts_with("json");
+    let csv = switch("csv", "Print comma-separated values").conflicts_with("json");
     let axes = ["range_scale", "range_pitch", "range_threshold"];
     Command::new("separate")
         .about("Find the sensor that tells the shapes apart")

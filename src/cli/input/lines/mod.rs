@@ -96,7 +96,7 @@ fn answer_block(
         let result = match line {
             Some(content) if content.trim_ascii().is_empty() => continue,
             Some(content) => answer(content, &mut answers.text),
-            None => Err(format!("longer than 1 MiB, which no {noun} is")),
+            None => Err(format!("longer than 1 MiB, the limit for a {noun}")),
         };
         if let Err(message) = result {
             answers.bad += 1;
