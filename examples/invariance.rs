@@ -1,7 +1,7 @@
 //! Which descriptors hardly depend on where and how a figure lies? The question that the paper's descriptors are for.
 //!
-//! Each of the seven figures goes through the paper's grid, 3.6 million poses, and each descriptor's coefficient of
-//! variation is told in percent, its standard deviation over its mean: what is near 0 is a quasi-invariant. Below it
+//! Each of the seven figures is swept over the paper's grid, 3.6 million poses, and each descriptor's coefficient of
+//! variation is printed in percent, its standard deviation over its mean: what is near 0 is a quasi-invariant. Below it
 //! stand the two parts of the deviation: from the position at a fixed angle, and from the angle.
 //!
 //! `cargo run --release --example invariance [-- STEP]`; STEP is that of the angles in degrees, 1 if none is given.

@@ -1,4 +1,4 @@
-//! The paper's Fig. 1: an ellipse with radii of 4 and a wall of 2, touched once, and all that is said of it.
+//! The paper's Fig. 1: an ellipse with radii of 4 and a wall of 2, touched once, and all its descriptors.
 //!
 //! `cargo run --example touch`
 

@@ -32,7 +32,7 @@
 //! 1 +---+---+---+            counter-clockwise from +x as seen, in (−180, 180].
 //!   |0,1|1,1|2,1|            Figures turn clockwise as seen, pictures
 //! 2 +---+---+---+            counter-clockwise. With a pitch, lengths and areas
-//! ↓ y                        are told in mm and mm² too.
+//! ↓ y                        are given in mm and mm² too.
 //! ```
 //!
 //! # Map

@@ -171,8 +171,7 @@ impl Picture {
     }
 
     /// Returns the corner (`x0`, `y0`, in cells) at which the picture keeps its centre under other zooms, both above 0.
-    /// The corner is not checked: it may be out of range. Of an empty imprint nothing has a centre, and the corner is
-    /// that of a point.
+    /// The corner is not checked: it may be out of range. An empty imprint has no centre, and counts as a point.
     ///
     /// ```
     /// use taxel::prelude::*;

@@ -70,7 +70,7 @@ impl Plane {
         let columns = areas.columns();
         let first = columns.start;
         let unused = u64::BITS as usize - columns.len();
-        // Of a shape wholly right of the sensor the columns are none.
+        // A shape wholly right of the sensor has no columns.
         if rows.is_empty() || columns.is_empty() {
             return;
         }
@@ -147,7 +147,7 @@ impl Plane {
         let mut all = vec![0.0; width * usize::from(self.sensor.rows())];
         let areas = self.areas.grid();
         let columns = areas.columns();
-        // Of a shape beside the sensor the columns are none.
+        // A shape beside the sensor has no columns.
         if columns.is_empty() {
             return all;
         }

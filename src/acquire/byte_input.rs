@@ -24,7 +24,7 @@ const CONNECTING: Duration = Duration::from_secs(5);
 /// What a read has brought.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum ReadOutcome {
-    /// So many bytes, perhaps none yet.
+    /// How many bytes were read; 0 if none have come yet.
     Bytes(usize),
     /// Nothing yet: what comes now is from the start of a file again.
     Anew(ReadAnew),

@@ -10,7 +10,7 @@ use crate::acquire::stream::Consumer;
 use crate::acquire::{playback, stream};
 use crate::formats::recording::recognised;
 
-/// So many bytes tell whether a file is a recording.
+/// Bytes at the start of a file that decide whether it is a recording.
 const LOOKED_AT: u64 = 1 << 16;
 
 /// Reads a source until it ends, `stop` is set, or the consumer breaks off. A file that is a recording is played back,

@@ -63,7 +63,7 @@ pub(super) fn run(
     let mut clock = StreamClock::new();
     let open = || ByteInput::open(source, options.baud, options.once);
     let mut input = open().map_err(|error| refused("open it", error))?;
-    // Arrival tells nothing of a file.
+    // The time of arrival means nothing for a file.
     let timed = !options.once && !matches!(source, FrameSource::File(_));
     let mut bytes = vec![0; CHUNK];
     while !stop.load(Ordering::Relaxed) {

@@ -1,8 +1,8 @@
 //! Imprints that differ by a shift, a quarter turn or a mirror image only, brought to one form.
 //!
-//! First the active taxels are moved to the top left corner. Of the eight images under quarter turns and mirrors only
-//! those that are not higher than wide are considered: four, or eight if the bounds are a square. The one whose rows
-//! come first in order is the canonical form. Rows are compared as whole numbers, from the top.
+//! First the active taxels are moved to the top left corner. There are eight images under quarter turns and
+//! mirrors; only those that are not higher than wide are considered: four, or eight if the bounds are a square. The one
+//! whose rows come first in order is the canonical form. Rows are compared as whole numbers, from the top.
 
 use crate::atlas::counter::ImprintCounter;
 use crate::atlas::packing::Layout;

@@ -71,7 +71,7 @@ pub(crate) enum CliError {
         /// What is wrong.
         error: String,
     },
-    /// A training that is refused. What may be allowed is said with its flag.
+    /// A training that is refused; with the flag that allows it, if there is one.
     #[error("{reason}{flag}", reason = .0, flag = flag_of(.0))]
     Training(#[from] TrainingError),
     /// A file that cannot be of that form.

@@ -6,7 +6,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::cli::error::CliError;
 
-/// A pool of so many threads, 0 for one a core; of this thread alone where the system gives no others.
+/// A pool of `jobs` threads, 0 for one a core; of this thread alone where the system gives no others.
 ///
 /// # Errors
 /// Where this thread is in such a pool already.

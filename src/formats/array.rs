@@ -36,7 +36,7 @@ pub enum ArrayError {
         /// How many there should be.
         expected: usize,
     },
-    /// A third value, or one that is no number.
+    /// A third value, or one that is not a number.
     Value {
         /// Counted from 1.
         row: u8,
@@ -87,7 +87,7 @@ struct Type {
     size: usize,
     /// Whether its highest byte comes first.
     big_endian: bool,
-    /// Of a float, the bits of its infinity, which numbers stay below; the highest bit is its sign.
+    /// The bits of infinity, if it is a float: those of numbers are below. The highest bit is the sign.
     infinity: Option<u64>,
     /// The bits of 1, and of 255 where there is one.
     active: [u64; 2],

@@ -8,7 +8,7 @@ use crate::imprint::Imprint;
 /// The keys beside `frame` that say which values are active.
 pub(crate) const RULE_KEYS: [&str; 5] = ["at_least", "percent", "low", "high", "least"];
 
-/// The values of a frame, row by row; null is no cell.
+/// The values of a frame, row by row; null stands for no cell.
 pub(crate) type FrameRows = Vec<Vec<Option<f64>>>;
 
 /// Which values are active, as a line says it.
@@ -44,7 +44,7 @@ impl RuleRecord {
     /// The imprint of a frame by this rule.
     ///
     /// # Errors
-    /// If there is no rule or several, or the rows are no frame of at most 64 × 64 cells; the message is one sentence.
+    /// If there is no rule or several, or the rows are not a frame of at most 64 × 64 cells; the message is one sentence.
     pub(crate) fn imprint(&self, rows: &[Vec<Option<f64>>]) -> Result<Imprint, String> {
         let mut processing = Processing::default();
         processing.rule = Some(self.rule()?);

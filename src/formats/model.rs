@@ -159,7 +159,7 @@ fn header(model: &Model) -> Result<Vec<u8>, ArchiveError> {
 pub fn read(input: impl Read + Seek) -> Result<Model, ArchiveError> {
     let mut archive = ArrayReader::new(input)?;
     let header = archive.header()?;
-    // Another format has other fields: what it is goes before what it lacks.
+    // Another format has other fields: report the format before a missing field.
     let found = format_in(&header)?;
     if found != FORMAT {
         return Err(ArchiveError::Format {

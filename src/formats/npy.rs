@@ -98,7 +98,7 @@ pub struct Header {
     pub shape: Vec<u64>,
 }
 
-/// The header of a file, and the numbers behind it; none of what is no array.
+/// The header of a file, and the numbers behind it; none of what is not an array.
 ///
 /// ```
 /// use taxel::formats::npy::{Dtype, header, parse};

@@ -13,7 +13,7 @@ use std::fmt;
 use crate::imprint::Imprint;
 use crate::sensor::MAX_SIDE;
 
-/// Why bytes are no bitmap, or none that is an imprint.
+/// Why bytes are not a bitmap, or not one that is an imprint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PbmError {
@@ -163,7 +163,7 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, PbmError> {
     } else {
         cursor.digits(&mut imprint)?
     };
-    // A line end after the last row is no second bitmap.
+    // A line end after the last row is not a second bitmap.
     match bytes[end..].trim_ascii().len() {
         0 => Ok(imprint),
         found => Err(PbmError::Long { found }),

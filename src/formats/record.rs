@@ -42,7 +42,7 @@ pub enum RecordError {
         /// What was given.
         found: String,
     },
-    /// Rows that are no imprint.
+    /// Rows that are not an imprint.
     #[error("{key}: {error}")]
     Imprint {
         /// Where they stand.
@@ -166,7 +166,7 @@ impl RowsOrName<'_> {
     /// The imprint in the rows; a name is looked up.
     ///
     /// # Errors
-    /// Where the rows are no imprint, or the name leads to none.
+    /// Where the rows are not an imprint, or the name leads to none.
     pub(crate) fn imprint(
         &self,
         key: &'static str,

@@ -1,4 +1,4 @@
-//! Errors against sizes in files: a table of commas, and curves to draw.
+//! Errors against sizes in files: comma-separated values, and curves to draw.
 
 use std::fmt::Write;
 

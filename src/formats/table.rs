@@ -13,11 +13,11 @@ use crate::imprint::Imprint;
 use crate::quote::shortened;
 use crate::sensor::MAX_SIDE;
 
-/// Why bytes are no table of an imprint.
+/// Why bytes are not a table of an imprint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TableError {
-    /// A byte that is no text.
+    /// A byte that is not text.
     Text {
         /// Which line.
         line: usize,
@@ -436,7 +436,7 @@ mod tests {
             read(b"1\n0\n").map(|bar| bar.to_string()),
             Ok("#\n.".to_owned())
         );
-        // The first column counts on, so it is no mask.
+        // The first column counts on, so it is not a mask.
         let bars = read(b"0,1,0\n1,0,1\n2,1,0\n").map(|bars| bars.to_string());
         assert_eq!(bars, Ok("#.\n.#\n#.".to_owned()));
         // 0 and 1 are values wherever they can be.

@@ -6,11 +6,11 @@ use std::fmt;
 
 use crate::imprint::{Imprint, ImprintError};
 
-/// Why bytes are no imprint as text.
+/// Why bytes are not an imprint as text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TextError {
-    /// A byte that is no text.
+    /// A byte that is not text.
     Byte {
         /// Which line.
         line: usize,
@@ -19,7 +19,7 @@ pub enum TextError {
         /// What stands there.
         byte: u8,
     },
-    /// A character that is no taxel.
+    /// A character that is not a taxel.
     Character {
         /// Which line.
         line: usize,

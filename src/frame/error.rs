@@ -29,7 +29,7 @@ pub enum FrameError {
         /// Those of the frame.
         expected: (u16, u16),
     },
-    /// A threshold that is no number, or out of range.
+    /// A threshold that is not a number, or out of range.
     Rule {
         /// Which value.
         what: &'static str,
@@ -43,7 +43,7 @@ pub enum FrameError {
         /// How many are needed.
         wanted: u64,
     },
-    /// A tare of so many frames of such a size that their values take too much memory.
+    /// A tare whose frames, by their number and size, take too much memory.
     TareSize {
         /// How many frames are possible.
         most: u64,

@@ -1,7 +1,7 @@
 //! How often taxels flip, and which are dead or stuck, as a recording itself shows it.
 //!
-//! Of three frames in a row, a taxel that is the same in the first and the last is taken to have been so all the time: if it
-//! differs in the middle one, it has flipped. If every taxel flips with probability e, a share e(1−e) / (1 − 2e(1−e)) of
+//! A taxel that is the same in the first and the last of three frames in a row is taken to have been so all the time: if
+//! it differs in the middle one, it has flipped. If every taxel flips with probability e, a share e(1−e) / (1 − 2e(1−e)) of
 //! these does so; that gives e. What moves changes taxels too, but seldom for one frame only, and what rests, or nothing at
 //! all on the sensor, changes none: so idle frames and repeated ones count most.
 //!
@@ -132,7 +132,7 @@ impl FlipCounter {
         }
     }
 
-    /// What the frames tell.
+    /// What the frames show.
     pub fn finish(&self) -> FlipReport {
         let (columns, rows) = (self.cells.columns(), self.cells.rows());
         let mut stuck_on = Imprint::empty(columns, rows);

@@ -30,7 +30,7 @@ pub struct View {
     pub flip_y: bool,
     /// Quarter turns clockwise as seen; four are none.
     pub quarter_turns: u8,
-    /// Dead cells: those that are active here have no value. Of the size of what is left.
+    /// Dead cells: those that are active here have no value. It has the size of what is left.
     pub mask: Option<Imprint>,
 }
 

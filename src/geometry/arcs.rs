@@ -3,7 +3,7 @@
 //! Each half is gone along from top to bottom, row by row. In a row it goes on in one direction until it comes to the
 //! column of its end, or first to that of its leftmost or rightmost point and then back: so the columns say which
 //! vertical lines a piece ends at, each point is reached once, and nothing depends on how two roundings compare. An
-//! ellipse that merely touches a grid line is no special case.
+//! ellipse that merely touches a grid line is not a special case.
 //!
 //! What a piece adds to its cell is the difference of two running sums ([`Sums`]), so each line is computed once for
 //! the cells on its two sides; and all lines are computed before the way down begins, since a processor then works on

@@ -215,7 +215,7 @@ fn turns_left(vertices: &[(f64, f64)]) -> bool {
         return false;
     };
     // Seen from the first vertex, or a polygon far away would be lost in the roundings of the way there; and in units
-    // of its size, or products would overflow. Of halves the differences cannot.
+    // of its size, or products would overflow. Differences of halves cannot.
     let way = |&(x, y): &(f64, f64)| (x / 2.0 - first.0 / 2.0, y / 2.0 - first.1 / 2.0);
     let ways = || vertices.iter().map(way);
     let size = ways().fold(f64::MIN_POSITIVE, |size, (x, y)| {

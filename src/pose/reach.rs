@@ -33,7 +33,7 @@ impl PoseGrid {
     /// Returns the smallest upright rectangle around the shape in every orientation of the grid, with its anchor at the
     /// origin; cell sides. None if the shape has no boundary: a picture of an empty imprint.
     ///
-    /// Of a picture placed by its corner, the position is zoomed too: it is `zoom_x · x0`, `zoom_y · y0` that the
+    /// The position of a picture placed by its corner is zoomed too: it is `zoom_x · x0`, `zoom_y · y0` that the
     /// rectangle is to be moved by.
     ///
     /// Takes time in proportion to the number of orientations.
@@ -403,7 +403,7 @@ impl Reach {
     fn middle(&self, axis: Axis, side: u8) -> i64 {
         let (low, high) = self.limits(axis, side);
         let free = self.free(axis, side);
-        // Of two that are equally near, the lower one.
+        // If two are equally near, the lower one.
         let middle = hundredths(((low + high) * 50.0 - f64::from(CELL) / 2.0 - 1e-9).ceil());
         if free.is_empty() {
             return middle;
@@ -440,7 +440,7 @@ fn filled(given: &GivenRanges) -> Ranges {
     Ranges::from_fn(|axis| given[axis].unwrap_or(default[axis]))
 }
 
-/// One cell of positions from so many hundredths on; all of it positions that the sensor allows.
+/// One cell of positions from `start` on, in hundredths; all of them positions that the sensor allows.
 fn cell_from(start: i64, sensor: &Sensor) -> DecimalRange {
     let limit = limit(sensor);
     let start = start.clamp(-limit, limit - i64::from(CELL) + 1);

@@ -6,7 +6,7 @@ use hashbrown::{DefaultHashBuilder, HashTable};
 
 use crate::imprint::Imprint;
 
-/// All active taxels of an imprint, of all its pieces, cut to their bounding box. Of an empty imprint it has no side.
+/// All active taxels of an imprint, of all its pieces, cut to their bounding box. That of an empty imprint has sides of 0.
 ///
 /// Keys are ordered by height, width, and the taxels in reading order.
 ///

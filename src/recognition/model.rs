@@ -184,7 +184,7 @@ pub enum ModelError {
     Missing {
         /// Which, from 1.
         number: u32,
-        /// Out of so many.
+        /// The number of shards.
         of: u32,
     },
 }

@@ -26,7 +26,7 @@ pub struct PoseEstimate {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct AngleEstimate {
-    /// After so many degrees the shape looks the same again.
+    /// Degrees after which the shape looks the same again.
     pub period: u32,
     /// Circular mean in degrees, from 0 to below the period. None if the angles point in all directions alike.
     pub mean: Option<f64>,
@@ -147,8 +147,8 @@ struct SeenPose {
     by: [f64; 2],
 }
 
-/// The pose nearest to the mean, then others spread evenly over the 95 % nearest to it, in order of that; at most so many.
-/// Distances are in units of the spread of each number.
+/// The pose nearest to the mean, then others spread evenly over the 95 % nearest to it, in order of distance; at most
+/// `most` of them. Distances are in units of the spread of each number.
 fn chosen(mut seen: Vec<SeenPose>, estimate: &PoseEstimate, most: usize) -> Vec<SeenPose> {
     let distance = |own: &SeenPose| {
         let over = |from: f64, spread: f64| if spread > 0.0 { from / spread } else { 0.0 };

@@ -16,7 +16,7 @@ use crate::source::Source;
 /// The smallest side of a sensor, as for training.
 const LEAST_SIDE: u8 = 16;
 
-/// Between two values of a scan, a search looks at so many steps.
+/// Steps into which a search divides the distance between two values of a scan.
 const FINER: u8 = 10;
 
 /// What the size of shapes is measured against.
@@ -306,7 +306,7 @@ impl Separation {
     /// Returns the smallest size that has at most this error: of a scan the first, then the first of nine values between
     /// it and the one before. None if none of the scan has.
     ///
-    /// The error is not monotonous: it falls with the size on the whole, but rises here and there, and between the values
+    /// The error is not monotonic: it falls with the size on the whole, but rises here and there, and between the values
     /// that were looked at it may fall below what is wanted unseen. So this is the smallest size *of those that were
     /// tried*.
     ///

@@ -41,7 +41,8 @@ impl RecognitionRate {
         (share * (1.0 - share) / count(self.touches.max(1))).sqrt()
     }
 
-    /// Returns the mean probability that the names were given: the accuracy, if the noise is as told.
+    /// Returns the mean probability that the names were given: the accuracy, if the
+    /// noise that the classifier was given is the real one.
     pub fn claimed(&self) -> f64 {
         self.claimed / count(self.touches.max(1))
     }

@@ -79,7 +79,7 @@ pub enum TrainingError {
         rows: u8,
         /// How many poses are cut.
         cut: u64,
-        /// Out of so many.
+        /// How many poses there are.
         poses: u64,
     },
     /// Shapes that no sensor holds in every angle.

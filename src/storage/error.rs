@@ -104,7 +104,7 @@ pub enum LibraryError {
         /// The stamp of what the file holds now.
         stamp: u64,
     },
-    /// The path is taken by something else than a file or folder.
+    /// The path is taken by something other than a file or folder.
     #[error("{}: is {what}, expected {expected}", path.display())]
     InTheWay {
         /// The path.

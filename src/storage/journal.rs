@@ -81,7 +81,7 @@ impl Journal {
             let lock = match Lock::attempt(&lock_of(&path))? {
                 LockAttempt::Free(lock) => Some(lock),
                 LockAttempt::Held => continue,
-                // What is kept can be found in the folder; nobody can tell whether its program still runs, so it is
+                // What is kept can be found in the folder; whether its program still runs cannot be known, so it is
                 // not offered.
                 LockAttempt::Unsupported => None,
             };

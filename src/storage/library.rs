@@ -230,7 +230,7 @@ impl Library {
         Ok(stamp(content.as_bytes()))
     }
 
-    /// Refuses to replace a file that is read-only or holds something else than expected.
+    /// Refuses to replace a file that is read-only or holds something other than expected.
     fn check_replaceable(&self, own: &str, expected: Expected) -> Result<(), LibraryError> {
         let path = self.path(own);
         let now = stamp(&folder::read(&path)?);

@@ -61,7 +61,7 @@ impl RememberedFile {
     /// Puts lines in place of those that it has, as many of the last ones as it keeps; in a new folder if there is none.
     pub fn write(&self, lines: &[String]) {
         if let Some(folder) = self.path.parent() {
-            // Without it nothing can be written, which is no matter.
+            // Without it nothing can be written, which does no harm.
             let _ = fs::create_dir_all(folder);
         }
         let kept = &lines[lines.len().saturating_sub(self.most)..];

@@ -1,4 +1,4 @@
-//! What a sweep leaves as files: its atlas, in the form that the name's ending tells, and the atlas number of every
+//! What a sweep leaves as files: its atlas, in the form that the name's ending decides, and the atlas number of every
 //! pose.
 //!
 //! At every time there is all of a file or what was there before ([`crate::storage::atomic_file`]).

@@ -22,7 +22,7 @@ const RANDOM: usize = 6;
 /// long.
 const FRESH: Duration = Duration::from_secs(60);
 
-/// The same where the file system has no locks, so that nothing tells whether its writer still runs.
+/// The same where the file system has no locks, so that nothing shows whether its writer still runs.
 const FRESH_WITHOUT_LOCKS: Duration = Duration::from_secs(24 * 60 * 60);
 
 /// A file that lacks its name. Dropped, nothing is left of it.

@@ -2,7 +2,7 @@
 //! correct.
 //!
 //! **Method.** As for polygons the coverage at place `u` is `C(u) = W(u + 1) − W(u)`, with `W` the integral of the
-//! height `w` of the section inside the band. It is no polynomial, so its passages through the threshold are
+//! height `w` of the section inside the band. It is not a polynomial, so its passages through the threshold are
 //! isolated first: on an interval the section of a convex set is concave in `x`, which bounds `w` there by its ends and
 //! its greatest value, and so bounds the slope of `C`. An interval on which the slope keeps its sign holds at most one
 //! passage; one on which `C` cannot reach the threshold holds none; any other is halved. Nothing is missed,

@@ -53,7 +53,7 @@ impl HistoryDialog {
         self.selected
     }
 
-    /// Selects another row, so many lines further down.
+    /// Selects the row `lines` further down; further up if negative.
     pub fn scroll(&mut self, lines: i16) {
         let to = self.selected.saturating_add_signed(lines.into());
         self.selected = to.min(self.steps.len());

@@ -499,7 +499,7 @@ fn damaged_models_are_refused() {
             run.stderr
         );
     }
-    // An atlas is no model.
+    // An atlas is not a model.
     place.done("sweep hexagon --x0 5 --y0 5 --angle 0 --quiet --atlas atlas.npz");
     let run = place.run("model show atlas.npz", "");
     assert_eq!(run.status, Some(1));

@@ -24,7 +24,7 @@ pub(super) fn lines(text: &str) -> Vec<Value> {
         .collect()
 }
 
-/// So many frames of 2 x 2 in lines, the first value counting.
+/// Frames of 2 x 2 in lines, whose first values are these numbers.
 pub(super) fn stream(frames: std::ops::Range<u32>) -> String {
     frames
         .map(|number| format!("{number} 2\n3 4\n\n"))

@@ -35,7 +35,7 @@ impl Random {
         u8::try_from(self.whole(i32::from(low), i32::from(high))).expect("between two u8")
     }
 
-    /// True in so many of a thousand.
+    /// True in `permille` of a thousand.
     pub(crate) fn chance(&mut self, permille: u64) -> bool {
         self.word() % 1000 < permille
     }
@@ -111,7 +111,7 @@ pub(crate) fn grid(text: &str) -> Imprint {
     Imprint::from_rows(rows).expect("rows of # and .")
 }
 
-/// A sensor of so many taxels and a threshold.
+/// A sensor with these columns, rows and threshold.
 pub(crate) fn sensor(columns: u8, rows: u8, threshold: f64) -> Sensor {
     Sensor::new(columns, rows)
         .and_then(|sensor| sensor.with(Parameter::Threshold, threshold))

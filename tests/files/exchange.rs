@@ -130,7 +130,7 @@ proptest! {
         style in (0..6_usize, 0..4_usize, 0..2_usize, 0..3_usize, 0..4_usize),
     ) {
         let style = [style.0, style.1, style.2, style.3, style.4];
-        // What is 7 everywhere is no mask.
+        // What is 7 everywhere is not a mask.
         prop_assume!(style[0] != 5 || imprint.count() < u32::from(imprint.columns()) * u32::from(imprint.rows()));
         let text = decorated(&imprint, style);
         prop_assert_eq!(read_imprint(text.as_bytes()), Ok(imprint), "{}", text);

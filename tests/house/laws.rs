@@ -228,7 +228,7 @@ fn order(
                     .find(|&depth| all.iter().any(|other| other.module == target[..depth]));
                 let file = &target[..depth.unwrap_or(1)];
                 let file = &reexported(file, &target, all);
-                // What a file says of itself or of its own folder's front page is no edge.
+                // What a file says of itself or of its own folder's front page is not an edge.
                 if file != module && !(module.starts_with(file) && target.len() == file.len()) {
                     let targets = edges.entry(module.join("/")).or_default();
                     targets.entry(file.join("/")).or_insert(line);

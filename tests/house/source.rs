@@ -60,7 +60,7 @@ pub(crate) fn paths<'a>(tokens: &[Token<'a>]) -> Vec<(Vec<&'a str>, usize)> {
     while at < tokens.len() {
         at = path(tokens, at, &[], &mut found);
     }
-    // One word is no path, unless it is a crate: `use ratatui as r`.
+    // One word is not a path, unless it is a crate: `use ratatui as r`.
     found.retain(|(path, _)| path.len() > 1 || matches!(path[0], "ratatui" | "crossterm" | "clap"));
     found
 }

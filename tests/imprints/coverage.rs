@@ -68,7 +68,7 @@ fn turned_squares_and_regular_polygons_cover_triangles() {
             ((3, 3), 1.5 - SQRT_2), ((1, 1), 1.5 - SQRT_2), ((4, 2), 0.0)]),
         ("rectangle length=2 width=2 x0=2 y0=2 angle=135", &[((3, 3), 2.0 * SQRT_2 - 2.0), ((2, 3), 2.0 * SQRT_2 - 2.0),
             ((4, 3), 1.5 - SQRT_2), ((3, 1), 1.5 - SQRT_2), ((4, 4), 0.0)]),
-        // Apex at (2, 1), sides x = 2 ± (y − 1)/√3; a third of a turn about its centre is no turn.
+        // Apex at (2, 1), sides x = 2 ± (y − 1)/√3; a third of a turn about its centre is not a turn.
         ("triangle side=2 x0=1 y0=1", &[((1, 1), 0.5 / sqrt_3), ((2, 1), 0.5 / sqrt_3), ((1, 2), 1.0 / sqrt_3), ((2, 2), 1.0 / sqrt_3)]),
         ("triangle side=2 x0=1 y0=1 angle=120", &[((1, 1), 0.5 / sqrt_3), ((2, 1), 0.5 / sqrt_3), ((1, 2), 1.0 / sqrt_3)]),
         ("hexagon side=1 x0=1 y0=1", &[((1, 1), hexagon), ((2, 1), hexagon), ((1, 2), lower), ((2, 2), lower)]),
@@ -182,7 +182,7 @@ fn pictures_cover_the_sum_of_their_squares() {
         // From 0.6 to 1.5 with a hole from 0.9 to 1.2, both ways.
         ("###/#.#/### x0=2 y0=2 zoom_x=0.3 zoom_y=0.3", &[((0, 0), 0.15), ((1, 0), 0.18), ((0, 1), 0.18), ((1, 1), 0.21)]),
         ("#.#/### x0=-1 y0=-1", &[((0, 0), 1.0), ((1, 0), 1.0), ((2, 0), 0.0)]),
-        // The empty rim of the stored matrix is no part of the picture.
+        // The empty rim of the stored matrix is not part of the picture.
         ("..../..#./..../.... x0=5 y0=6", &[((5, 6), 1.0), ((7, 7), 0.0)]),
         (".../... x0=5 y0=6 zoom_x=3", &[((5, 6), 0.0)]),
     ];

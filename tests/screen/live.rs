@@ -4,7 +4,7 @@ use taxel::tui::script::Session;
 
 use crate::session::{hides, session, shows, then};
 
-/// The page after so many frames, and then these keys.
+/// The page after this number of frames, and then these keys.
 fn watched(frames: usize, keys: &str) -> Session {
     let mut session = session(":watch tests/scripts/touch.csv<Enter>");
     session.frames(frames);

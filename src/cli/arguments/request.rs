@@ -63,7 +63,7 @@ pub(crate) enum Request {
     Describe(OsString, Form),
     /// Write a stored shape or a file in another form.
     Export(OsString, Export, Pitch),
-    /// Answer lines of JSON by so many threads (0: one per core); the sensor is for lines without one.
+    /// Answer lines of JSON; the sensor for lines without one, and the number of threads (0: one per core).
     Batch(Sensor, usize),
     /// Sweep a grid of poses.
     Sweep(Box<SweepArguments>),

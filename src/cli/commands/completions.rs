@@ -39,7 +39,7 @@ impl Shell {
 
 /// The names are those of the folder that `--library` on the line names, else of the user's library.
 /// For bash: what clap wrote, and names of shapes where a command takes one. A blank in a name is escaped, unless the
-/// word was begun with a quotation mark: that is no part of what bash replaces.
+/// word was begun with a quotation mark: that is not part of what bash replaces.
 const SHAPES_OF_BASH: &str = r#"
 _taxel_shapes() {
     _taxel "$@"

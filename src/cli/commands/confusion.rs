@@ -80,7 +80,7 @@ fn pairs(model: &Model, as_json: bool, charset: Charset) -> String {
 /// The errors of all other classifiers beside the limit. Writes them to a file of commas too, if one is asked for.
 ///
 /// # Errors
-/// [`CliError::Ending`] for a file that is no table.
+/// [`CliError::Ending`] for a file that is not a table.
 fn all_peers(
     model: &Model,
     asked: &ConfusionArguments,

@@ -59,7 +59,7 @@ pub(crate) struct Scan {
     format: Option<RecordingFormat>,
     /// In the order in which the recording names them; a frame's channel is an index here.
     channels: Vec<ListedChannel>,
-    /// The first [`MOST_WARNINGS`] oddities that are no damage, such as a line of the wrong length.
+    /// The first [`MOST_WARNINGS`] oddities that are not damage, such as a line of the wrong length.
     notes: Vec<RecordingNote>,
     /// How many more there were.
     more_notes: u64,
@@ -499,7 +499,7 @@ impl Selection {
 }
 
 /// The side of a cell in mm, and a line if the recording's cells are not square.
-/// `--pitch` goes before the recording, and the recording before the settings.
+/// `--pitch` overrides the recording, and the recording overrides the settings.
 ///
 /// # Errors
 /// [`CliError::Frames`] if `--pitch` is given although the recording says that its cells are not square.

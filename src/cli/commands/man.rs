@@ -1,7 +1,7 @@
 //! `taxel man`: the help of every command as a manual page.
 //!
 //! A page has the same texts as the help, in the sections NAME, SYNOPSIS, DESCRIPTION, OPTIONS, SUBCOMMANDS and
-//! EXAMPLES; the program's own page also has ENVIRONMENT and FILES. Of the text below the flags, indented lines stand
+//! EXAMPLES; the program's own page also has ENVIRONMENT and FILES. In the text below the flags, indented lines stand
 //! as they are and others are filled; `Examples:` begins the section of that name.
 
 use std::fs;

@@ -1,8 +1,8 @@
 //! `taxel merge`: puts the shards of a sweep or of a training together.
 //!
 //! Their headers tell what they are and bring them into order; then they are read one after another. Memory holds what is
-//! merged and one shard, and what that can be at most follows from the sizes of the files: it is said before, and what it
-//! was is said after:
+//! merged and one shard. The most that this can be follows from the sizes of the files and is printed before; what it was is
+//! printed after:
 //! ```text
 //! 8 files of 155.2M: at most 682.8M of memory
 //! merged: 212907 imprints, 402.3M of memory

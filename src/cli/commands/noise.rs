@@ -189,7 +189,7 @@ fn noise_json(table: &[NoiseRow], (columns, rows): (u8, u8), seed: u64) -> Strin
     json::text(&answer) + "\n"
 }
 
-/// The same rows as a table of commas, with a row of names.
+/// The same rows as comma-separated values, with a row of names.
 fn noise_csv(table: &[NoiseRow]) -> String {
     let mut text = String::from("noise,dead,touches,right,accuracy,standard_error,claimed,held\n");
     for row in table {

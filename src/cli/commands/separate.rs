@@ -29,7 +29,7 @@ use crate::sensor::Sensor;
 use crate::storage::UnfinishedFile;
 use crate::tui::recognise::sets::ModelChoice;
 
-/// Between two sizes of a scan, a search looks at so many more.
+/// Sizes between two of a scan that a search looks at.
 const REFINED: u64 = 9;
 
 /// Looks at all sizes and thresholds. Returns what is printed.
@@ -155,7 +155,7 @@ fn set(asked: &SeparateArguments, shelf: &Shelf) -> Result<(Separation, f64), Cl
 }
 
 /// Whether an argument is a model, rather than a shape or a file of shapes.
-/// A kept model goes before a shape of the library of the same name; a file is a model if it ends in `.npz`.
+/// A kept model takes precedence over a shape of the library of the same name; a file is a model if it ends in `.npz`.
 fn is_model(what: &OsStr, shelf: &Shelf) -> bool {
     let path = Path::new(what);
     let name = what.to_str().and_then(|name| Name::new(name).ok());

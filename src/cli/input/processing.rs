@@ -123,8 +123,8 @@ pub(crate) fn tare(
 }
 
 /// The frame with the greatest sum of tared values.
-/// Without tare and gain the listing knows it already; with them the recording is read once more. Of several such
-/// frames the first one counts. None if no frame has a value.
+/// Without tare and gain the listing knows it already; with them the recording is read once more. If several
+/// frames have it, the first one counts. None if no frame has a value.
 pub(crate) fn peak(
     recording: &mut RecordingFile,
     channel: usize,

@@ -92,7 +92,7 @@ impl RecordingFile {
     /// Reads it from its beginning.
     ///
     /// # Errors
-    /// If it cannot be read, is no recording, or is damaged.
+    /// If it cannot be read, is not a recording, or is damaged.
     pub(crate) fn read(
         &mut self,
         sink: &mut dyn FnMut(RecordingEvent<'_>) -> std::ops::ControlFlow<()>,
@@ -150,7 +150,7 @@ pub(crate) fn dead_cells(path: &Path) -> Result<Imprint, CliError> {
     }
 }
 
-/// That a recording has not been ended, or that something else than its user ended it.
+/// That a recording has not been ended, or that something other than its user ended it.
 fn unended(path: &Path, description: &RecordingMetadata) -> Option<String> {
     let beside = path.with_extension("json");
     let beside = beside.display();

@@ -20,7 +20,7 @@ const SHOWN: usize = 8;
 const BAR: usize = 30;
 
 /// The nearest imprint as an object of JSON.
-/// Of several imprints at one distance it is the one that occurs most often.
+/// If several imprints are equally near, it is the one that occurs most often.
 #[derive(Serialize)]
 struct NearestJson<'a> {
     /// The shape that leaves it most often.

@@ -105,7 +105,7 @@ pub(crate) enum NamedBy {
 }
 
 impl NamedBy {
-    /// What is said behind the error.
+    /// The remark behind the error.
     fn remark(self) -> &'static str {
         match self {
             Self::Imprint => "  the limit: no method errs less",
@@ -354,7 +354,7 @@ pub(crate) fn features(peer: Option<&PeerEvaluation>) -> String {
     text
 }
 
-/// The errors of pairs, in percent; the worst is said below.
+/// The errors of pairs, in percent, with the worst one below.
 /// The matrix is symmetric: each entry is the error of the best classifier if there were only these two shapes.
 pub(crate) fn pairs(labels: &[String], errors: &[Vec<f64>], charset: Charset) -> String {
     let name = labels

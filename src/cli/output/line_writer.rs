@@ -8,7 +8,7 @@ use std::thread::{Builder, JoinHandle};
 use crate::cli::error::CliError;
 use crate::imprint::Imprint;
 
-/// So many lines may wait; those of 64 × 64 frames take about 5 MB.
+/// Lines that may wait; those of 64 × 64 frames take about 5 MB.
 const WAITING: usize = 1000;
 
 /// A line, with its end unless something is still to be added, and the imprint that this is about.

@@ -57,7 +57,7 @@ struct AngleJson {
     mean: Option<f64>,
     /// The circular standard deviation; null where the mean is.
     sd: Option<f64>,
-    /// After so many degrees the shape looks the same.
+    /// Degrees after which the shape looks the same.
     period: u32,
     /// The first of the neighbouring degrees.
     from: u32,

@@ -228,7 +228,7 @@ fn dashed(pieces: &[Vec<Position>], [dash, gap]: [f64; 2]) -> Vec<Vec<Position>>
             let (mut from, to) = (pair[0], pair[1]);
             loop {
                 let length = (to.0 - from.0).hypot(to.1 - from.1);
-                // What is no length ends the piece too.
+                // What is not a length ends the piece too.
                 if length <= left || !length.is_finite() {
                     left -= length;
                     open.push(to);

@@ -43,8 +43,8 @@ impl LinePlot {
         }
     }
 
-    /// With a curve through points, in their order; points that are below 0 or not finite are left out. Of more than 32
-    /// curves the others are left out.
+    /// With a curve through points, in their order; points that are below 0 or not finite are left out. Curves
+    /// beyond the first 32 are left out.
     #[must_use]
     pub fn with_curve(mut self, name: &str, points: &[(f64, f64)]) -> Self {
         if self.curves.len() < MOST {

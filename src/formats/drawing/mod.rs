@@ -108,7 +108,7 @@ impl Drawing {
         self
     }
 
-    /// With axes and values in mm for cells of this side; unchanged by one that is no sensor's pitch, and by one below
+    /// With axes and values in mm for cells of this side; unchanged by one that is not a sensor's pitch, and by one below
     /// a picometre (1e-9 mm), whose axis could not be labelled.
     #[must_use]
     pub fn with_pitch(mut self, mm: f64) -> Self {

@@ -24,7 +24,7 @@ pub struct SetRule {
 }
 
 /// Serialises as `{"frame":65,"label":66,"time":6.5,"channel":null,"sum":…,"max":…,"rule":{…},"imprint":[…],"na":…,
-/// "regions":[…]}`; rule, imprint and NA are null without a rule. What a tare was made of is said where there is one.
+/// "regions":[…]}`; rule, imprint and NA are null without a rule. With a tare, the answer says what it was made of.
 #[derive(Clone, Copy, Debug)]
 pub struct FrameAnswer<'a> {
     /// The frame, for its number, label and time.

@@ -60,7 +60,7 @@ impl<'a> CdrReader<'a> {
         })
     }
 
-    /// The number of elements of a list, each of at least so many bytes: no more than fit.
+    /// The number of elements of a list, each of at least `least` bytes: no more than fit.
     pub(super) fn count(&mut self, least: usize) -> Option<usize> {
         let count = usize::try_from(self.word()?).ok()?;
         (count.checked_mul(least)? <= self.bytes.len()).then_some(count)

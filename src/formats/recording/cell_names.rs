@@ -18,7 +18,7 @@ pub(crate) enum NamedCells {
     Counted(usize, usize),
 }
 
-/// What a field that is no cell says of a frame.
+/// What a field that is not a cell says of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum FieldRole {
     /// What the recording calls the frame.

@@ -7,14 +7,14 @@
 //!                                         0 11  8
 //!                                         2  9  1
 //! ```
-//! Fields are parted by semicolons (then a comma is the decimal sign), commas, tabs or spaces; the first line tells.
-//! Quotes around a field do not count. An empty field, `NaN`, `null`, `none` and `NA` are no cell. Lines that begin
+//! Fields are parted by semicolons (then a comma is the decimal sign), commas, tabs or spaces; the first line decides.
+//! Quotes around a field do not count. An empty field, `NaN`, `null`, `none` and `NA` stand for no cell. Lines that begin
 //! with `#` are passed over.
 //!
 //! How the fields are arranged is found from the first lines; the file is then read from its beginning. A header names
 //! the cells, see [`cell_names`](super::cell_names). Without one, rows and columns have to be known beforehand, unless
-//! the table is in blocks of a row a line; numbers before or behind the cells are then told by how they grow from the
-//! first line to the second ([`without_header`]).
+//! the table is in blocks of a row a line; numbers before or behind the cells are then recognised by how they grow from
+//! the first line to the second ([`without_header`]).
 //!
 //! Refused, with line and field: words where numbers are expected, and lines or blocks of another length. Nothing is
 //! padded, since a value that is missing in the middle would shift all that follow.
@@ -195,7 +195,7 @@ fn is_comment(line: &[u8]) -> bool {
 /// Finds out how the table is arranged, from its first lines.
 ///
 /// # Errors
-/// [`RecordingError::Unknown`] of what is no table; [`RecordingError::Shape`] if rows and columns have to be named.
+/// [`RecordingError::Unknown`] of what is not a table; [`RecordingError::Shape`] if rows and columns have to be named.
 fn layout(
     lines: &mut TextLines<impl BufRead>,
     options: ReadOptions,
@@ -217,7 +217,7 @@ fn layout(
         return of_numbers(lines, separator, &first, options);
     }
     let layout = with_header(&names, separator, lines.number(), options);
-    // Words above words are no table.
+    // Words above words are not a table.
     if lines.advance_to_content()? && is_mostly_numeric(separator, lines.line()) {
         layout
     } else {
@@ -439,7 +439,7 @@ impl FrameFields {
     /// Text in a field that is neither cell nor label nor time is not looked at.
     ///
     /// # Errors
-    /// If the line has another number of fields, or something else than a number for a cell.
+    /// If the line has another number of fields, or something other than a number for a cell.
     fn fill(
         &self,
         slots: &[Option<usize>],

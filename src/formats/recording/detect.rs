@@ -18,13 +18,13 @@ use crate::formats::recording::{
 /// What an MCAP file begins with.
 const MCAP: &[u8] = b"\x89MCAP0\r\n";
 
-/// So many bytes tell the form.
+/// Bytes at the start of a file that decide the form.
 const LOOKED_AT: u64 = 1 << 16;
 
 /// Bytes read at a time.
 const CHUNK: usize = 1 << 16;
 
-/// The form of a recording, by its first 64 KiB; None of what is no recording. A text of numbers counts as a table.
+/// The form of a recording, by its first 64 KiB; None of what is not a recording. A text of numbers counts as a table.
 pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
     let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
     let trimmed = text.trim_ascii_start();
@@ -82,7 +82,7 @@ fn is_table(line: &[u8]) -> bool {
 /// Reads a recording from its beginning to its end, and reports what is found to `sink`, which may break off.
 ///
 /// # Errors
-/// If it cannot be read, is no recording, is damaged, or does not say how its values are arranged. Whole frames before
+/// If it cannot be read, is not a recording, is damaged, or does not say how its values are arranged. Whole frames before
 /// a damage have been reported.
 pub fn read(
     mut input: impl Read + Seek,

@@ -146,7 +146,7 @@ impl EmedHeading {
 }
 
 /// The number that follows a word.
-/// `Time/picture:10.0 ms` has 10 behind `Time/picture:`; the number ends at the first character that is no digit or
+/// `Time/picture:10.0 ms` has 10 behind `Time/picture:`; the number ends at the first character that is not a digit or
 /// point.
 fn after(line: &str, word: &str) -> Option<f64> {
     let rest = line.split_once(word)?.1.trim_start();

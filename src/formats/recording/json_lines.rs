@@ -84,12 +84,12 @@ pub(crate) struct FrameLine {
     pub(crate) label: Option<i64>,
 }
 
-/// Why a line is no frame.
+/// Why a line is not a frame.
 #[derive(Debug)]
 pub(crate) enum FrameLineError {
     /// What is wrong, from which byte on, counted from 1.
     Json(usize, String),
-    /// A list of so many cells without rows.
+    /// A list of cells without rows; how many cells.
     Shape(u64),
 }
 

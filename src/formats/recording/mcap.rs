@@ -257,7 +257,7 @@ fn text(bytes: &[u8]) -> Option<(&str, &[u8])> {
     Some((str::from_utf8(text).ok()?, rest))
 }
 
-/// Passes over so many bytes.
+/// Passes over `length` bytes.
 fn pass_over(input: &mut dyn Read, length: u64) -> Result<(), RecordingError> {
     let passed = io::copy(&mut Read::take(input, length), &mut io::sink()).map_err(refused)?;
     if passed < length { Err(torn()) } else { Ok(()) }

@@ -122,7 +122,7 @@ fn arrays(archive: &mut ZipArchive<impl Read + Seek>) -> Result<Vec<ArchiveArray
     Ok(arrays)
 }
 
-/// The times of so many frames, in seconds since the first; empty where there are none.
+/// The times of all `frames`, in seconds since the first; empty where there are none.
 fn times(
     archive: &mut ZipArchive<impl Read + Seek>,
     arrays: &[ArchiveArray],

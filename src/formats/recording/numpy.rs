@@ -1,6 +1,6 @@
 //! Frames as an array of numpy: frames × rows × columns, rows × columns, frames × cells, or records of taxel itself.
 //!
-//! Any type of real number in either byte order, C or Fortran order. NaN is no cell. Source: that of
+//! Any type of real number in either byte order, C or Fortran order. NaN stands for no cell. Source: that of
 //! [`crate::formats::npy`].
 //!
 //! | shape | means |
@@ -216,7 +216,7 @@ impl ArrayLayout {
         })?;
         Ok(Self {
             number: record.number,
-            // Of a recording that was cut off, more may be there than its header counts.
+            // A recording that was cut off may have more frames than its header counts.
             frames: u64::MAX,
             rows: record.rows,
             columns: record.columns,

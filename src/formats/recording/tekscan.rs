@@ -33,7 +33,7 @@ use crate::formats::recording::text_row::{self, Field};
 use crate::frame::Frame;
 use crate::quote::shortened;
 
-/// The largest difference of a sum that is no error.
+/// The largest difference of a sum that is not an error.
 const ROUNDING: f64 = 0.5;
 
 /// What the header says; of each key the first value counts.
@@ -176,7 +176,7 @@ fn frames(
     Ok(())
 }
 
-/// Reads the rows of a frame, which follow its title without an empty line. `B` and `b` are no cell.
+/// Reads the rows of a frame, which follow its title without an empty line. `B` and `b` stand for no cell.
 ///
 /// # Errors
 /// If there are fewer rows, or one has another number of fields than `COLS`.
@@ -216,7 +216,7 @@ fn odd_sum(frame: &Frame, stated: f64) -> Option<RecordingNote> {
 struct FrameTitle {
     /// The number behind `Frame`, from 1.
     label: i64,
-    /// In seconds from the beginning, if it is there; otherwise the step of the header tells.
+    /// In seconds from the beginning, if it is there; otherwise it follows from the step of the header.
     time: Option<f64>,
     /// `Raw Sum`: the sum of the sensor's own numbers.
     sum: Option<f64>,
@@ -225,7 +225,7 @@ struct FrameTitle {
 /// Reads `Frame 2` or `Frame 2, 0.1,, date time,,,Raw Sum=,,307`.
 ///
 /// # Errors
-/// If it is no title; the message names `@@`, which may be what is missing.
+/// If it is not a title; the message names `@@`, which may be what is missing.
 fn title(line: &[u8], number: u64) -> Result<FrameTitle, RecordingError> {
     let line = unpadded(line);
     let mut fields = line.split(|&byte| byte == b',').map(<[u8]>::trim_ascii);

@@ -76,7 +76,7 @@ pub(crate) fn too_large(value: f64) -> String {
     format!("{value:e} is too large, expected at most {LARGEST_VALUE:e}")
 }
 
-/// A field that is no value.
+/// A field that is not a value.
 pub(crate) fn wrong(line: u64, column: usize, field: &[u8]) -> RecordingError {
     if let Some(value) = number::read(field).filter(|value| value.abs() > LARGEST_VALUE) {
         return RecordingError::in_field(line, column, too_large(value));

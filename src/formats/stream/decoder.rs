@@ -16,7 +16,7 @@ use crate::formats::stream::matsense::MatsenseDecoder;
 /// A line of 512 × 512 values is shorter.
 const LONGEST_LINE: usize = 8 << 20;
 
-/// Without a line's end in so many bytes a stream of text is none.
+/// Bytes in which text must have the end of a line, otherwise it is not a known stream.
 const LOOKED_AT: usize = 1 << 16;
 
 /// Decodes a stream, piece by piece.
@@ -220,11 +220,12 @@ impl StreamDecoder {
     }
 }
 
-/// The form of what begins with these bytes; None if more are needed. However the bytes come, the same beginning tells.
+/// The form of what begins with these bytes; None if more are needed. The answer does not depend on the
+/// pieces in which the bytes arrive.
 ///
-/// Bytes that are no text are `FlexiTac` if two markers are a frame apart, otherwise `MatSense`. Of text the first line
-/// that only one form can have tells: an object, what `ros2 topic echo` prints, or numbers. The first line may be the end
-/// of another one, so numbers in it tell nothing. What has no such line is numbers, too.
+/// Bytes that are not text are `FlexiTac` if two markers are a frame apart, otherwise `MatSense`. The form of text
+/// is decided by the first line that only one form can have: an object, what `ros2 topic echo` prints, or numbers. The
+/// first line may be the end of another one, so numbers in it decide nothing. Text without such a line is numbers, too.
 fn form(bytes: &[u8], shape: Option<(u16, u16)>, ended: bool) -> Option<StreamFormat> {
     const MARK: &[u8] = b"\xef\xbb\xbf";
     if bytes.len() < MARK.len() && MARK.starts_with(bytes) && !ended {
@@ -274,7 +275,7 @@ fn is_numbers(line: &[u8]) -> bool {
     words.next().is_some_and(is_number) && words.all(is_number)
 }
 
-/// The form of bytes that are no text.
+/// The form of bytes that are not text.
 fn form_of_bytes(bytes: &[u8], shape: Option<(u16, u16)>, ended: bool) -> Option<StreamFormat> {
     let has_marker = |bytes: &[u8], at: usize| bytes.get(at..at + 2) == Some(&[0xaa, 0x55]);
     let Some((rows, columns)) = shape else {

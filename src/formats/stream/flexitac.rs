@@ -139,7 +139,7 @@ impl FlexitacDecoder {
             self.has_marker(at) && (self.has_marker(next) || ended && next == length)
         });
         let mut nearest = confirmed.min_by_key(|at| at.abs_diff(due));
-        // Of a frame that lacks more than half, the marker behind the next one is nearer.
+        // If a frame lacks more than half, the marker behind the next one is nearer.
         while let Some(at) = nearest
             && at >= first + period
             && self.has_marker(at - period)

@@ -156,7 +156,7 @@ impl LinesDecoder {
         self.broken = false;
     }
 
-    /// The end of the input: a frame may lack its empty line. Of one that is not ended nothing is taken.
+    /// The end of the input: a frame may lack its empty line. A frame that is not complete is dropped.
     pub(super) fn finish(
         &mut self,
         torn: &[u8],

@@ -1,6 +1,6 @@
 //! Bytes with an end: a byte a cell, then `FF`; or `5B`, the cells with escapes, `5D`.
 //!
-//! Which of the two it is, the first two frames of the right length tell. Frames of another length are dropped.
+//! The first two frames of the right length decide which of the two it is. Frames of another length are dropped.
 //! ```text
 //! 00 0C 07 03 FF          cells are 0 to 254; FF ends the frame
 //! 5B 00 0C 07 03 5D       cells are 0 to 255; 5B, 5C and 5D among them are 5C 01, 5C 00 and 5C 02
@@ -18,7 +18,7 @@ const CLOSE: u8 = 0x5d;
 /// Stands before the number of a byte that would otherwise begin, end or escape.
 const ESCAPE: u8 = 0x5c;
 
-/// So many frames of the right length tell the form.
+/// Frames of the right length that decide the form.
 const SURE: usize = 2;
 
 /// How frames are parted.

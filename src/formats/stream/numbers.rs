@@ -11,7 +11,7 @@ fn is_separator(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | b',' | b'\r' | b';')
 }
 
-/// Adds the numbers of a line, parted by spaces, tabs, commas or semicolons; `nan` is no cell. None if there is
+/// Adds the numbers of a line, parted by spaces, tabs, commas or semicolons; `nan` stands for no cell. None if there is
 /// anything else, or more than `most`.
 pub(super) fn read(line: &[u8], values: &mut Vec<f64>, most: usize) -> Option<()> {
     let mut at = 0;

@@ -150,7 +150,7 @@ impl History {
     }
 
     /// Whether something was drawn and left for a document from elsewhere without being saved: only undoing would bring
-    /// it back. Of an empty matrix there is nothing to save.
+    /// it back. An empty matrix has nothing to save.
     pub fn left_unsaved(&self) -> bool {
         let states = || self.past.iter().chain([&self.present]);
         states().zip(states().skip(1)).any(|(state, next)| {

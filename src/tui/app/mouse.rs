@@ -65,7 +65,7 @@ pub(in crate::tui) fn act(app: &mut App, mouse: Mouse) -> Option<Message> {
     None
 }
 
-/// Sets the taxels of a straight line: over a slow connection a quick drag is told at a few places only. The taxels of a
+/// Sets the taxels of a straight line: over a slow connection a quick drag is reported at a few places only. The taxels of a
 /// drag are one change: one undo takes all of them back.
 fn paint(app: &mut App, active: bool, from: (u8, u8), to: (u8, u8)) {
     let imprint = app.reading().imprint;

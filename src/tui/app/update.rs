@@ -177,7 +177,7 @@ fn in_help(app: &mut App, mut help: Help, message: &Message) -> Option<Effect> {
     None
 }
 
-/// What is said where one asks for the next match and searched for nothing.
+/// The notice for the key of the next match if nothing was searched for.
 fn no_search(keymap: &Keymap, context: Context) -> String {
     let key = keymap.label(context, &action::SEARCH);
     format!("nothing to go to: {key} searches")

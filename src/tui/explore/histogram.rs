@@ -87,7 +87,7 @@ fn bars(theme: &Theme, histogram: &Histogram, unit: Dimension, buffer: &mut Buff
     let decimals = histogram.decimals();
     let single = unit == Dimension::Count && histogram.width == 1.0;
     let bins = histogram.poses.len();
-    // Counts are whole: an interval says its last one. Of the others the upper end is that of the next, but for the last.
+    // Counts are whole: an interval shows its last one. Other values show the start of the next interval, the last one its end.
     let label = |bin: usize| {
         let (from, to) = (histogram.from(bin), histogram.from(bin + 1));
         match unit {

@@ -126,7 +126,7 @@ impl Key {
     }
 }
 
-/// Why a text is no sequence of keys: what stands where, in characters from 1.
+/// Why a text is not a sequence of keys: what stands where, in characters from 1.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum KeyError {

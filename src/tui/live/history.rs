@@ -27,7 +27,7 @@ pub struct FrameHistory {
 }
 
 impl FrameHistory {
-    /// A history of frames of so many bytes at most.
+    /// A history of frames that takes at most `most` bytes.
     pub fn new(most: usize) -> Self {
         Self {
             frames: VecDeque::new(),

@@ -51,7 +51,7 @@ pub enum LiveEvent {
     Arrived(Arc<FrameBatch>),
     /// A recording has begun in this file.
     Recording(String),
-    /// It has ended with so many frames.
+    /// It has ended; the file, and the number of frames in it.
     Recorded(String, u64),
     /// It cannot be begun, and why.
     NotRecorded(String),

@@ -13,16 +13,16 @@ use crate::tui::live::reading::{HeatLayer, LiveReading, round_up, tidy};
 use crate::tui::live::request::WatchRequest;
 use crate::tui::recognise::sets::ModelChoice;
 
-/// A tare that is asked for by a key is made of at most so many frames.
+/// Frames that a tare by key is made of, at most.
 const TARED: usize = 30;
 
-/// The rate is that of at most so many frames.
+/// Frames that the rate is computed from, at most.
 const RATED: usize = 32;
 
 /// How a tare was made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TareMark {
-    /// Of how many frames.
+    /// How many frames it was made of.
     pub frames: u64,
     /// The number of the last of these.
     pub number: u64,

@@ -207,7 +207,8 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap) -> Vec<PanelLine> {
     lines
 }
 
-/// How many regions there are. Of several the largest is described, so the active taxels of all are counted.
+/// How many regions there are. If there are several, the largest is described, and the active taxels of all are
+/// counted.
 fn regions(reading: &LiveReading) -> String {
     match reading.regions {
         0 | 1 => reading.regions.to_string(),
@@ -265,7 +266,7 @@ fn named(naming: &Naming, shown: Option<&Imprint>) -> [(&'static str, Option<Str
 }
 
 /// The rule of the imprint, and where it is from.
-/// "of the file" marks one that came with a recording; one set by a key is said without a remark.
+/// "of the file" marks one that came with a recording; one set by a key has no remark.
 fn threshold(live: &Live, keymap: &Keymap) -> String {
     let Some(set) = live.rule() else {
         let key = keymap.label(Context::Live, &action::THRESHOLD_UP);

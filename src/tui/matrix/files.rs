@@ -20,7 +20,8 @@ use crate::tui::runtime::effect::{Effect, FileRequest};
 /// What a name can end in.
 const ENDINGS: &str = ".txt .csv .npy .pbm .json .svg .png";
 
-/// The request to write a file; None where there is nothing to write, or no form has that ending, which is said.
+/// The request to write a file; None where there is nothing to write, or no form has that ending, which a
+/// notice says.
 pub(in crate::tui) fn write(app: &mut App, name: String) -> Option<Effect> {
     if app.reading().imprint.is_empty() {
         refuse(app, "nothing to write: the matrix is empty");

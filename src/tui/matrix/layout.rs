@@ -196,8 +196,8 @@ impl TaxelGrid {
         (0..=second).filter_map(found)
     }
 
-    /// The taxel that a click at a place of the screen means. Of two in a character that is the one with the cursor,
-    /// otherwise the upper one.
+    /// The taxel that a click at a place of the screen means. If two share a character, that is the one with the
+    /// cursor, otherwise the upper one.
     pub fn taxel(&self, x: u16, y: u16) -> Option<(u8, u8)> {
         let mut with_cursor = self.taxels(x, y).filter(|&taxel| taxel == self.cursor);
         with_cursor.next().or_else(|| self.taxels(x, y).next())

@@ -7,9 +7,9 @@
 //!  2 · · ██·[·]██· ·         the cursor between brackets, which hide second characters only
 //! ```
 //! A taxel of the described region, another active taxel, one of a described hole and an inactive one differ in their
-//! characters, not only in colour. Of a matrix that is larger than its pane two rows share a line, by half blocks, and
-//! if that is not enough it scrolls with the cursor; one that is much smaller is drawn larger, a whole number of times. Coverage is shown in five shades or in percent: two digits
-//! where a taxel has room for a space beside them, else the tens alone, so that numbers do not run together.
+//! characters, not only in colour. If a matrix is larger than its pane, two of its rows share a line, by half blocks, and
+//! if that is not enough it scrolls with the cursor; one that is much smaller is drawn larger, a whole number of times.
+//! Coverage is shown in five shades or in percent: two digits where a taxel has room for a space beside them, else the tens alone, so that numbers do not run together.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};

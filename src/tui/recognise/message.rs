@@ -16,7 +16,7 @@ pub enum RecogniseMessage {
     Open,
     /// To open it with a set.
     Choose(ModelChoice),
-    /// The set that comes so many further on.
+    /// Another set, by how many places it comes after the present one.
     NextSet(i8),
     /// A random shape of the set touches the matrix.
     Touch,

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! request -> thread -> answer within QUICK: handled at once, before the next key
-//!                      later: a message wakes the loop, keys have gone on meanwhile; it is said what is waited for
+//!                      later: a message wakes the loop, keys go on meanwhile; the screen says what is waited for
 //! ```
 //! Without a receiver of events, as in a script, a request is carried out at once.
 

@@ -217,7 +217,7 @@ fn used() -> Option<MemorySize> {
     listed("/proc/self/status", "VmRSS:")
 }
 
-/// The most memory that the program has had in use; None where the system does not tell.
+/// The most memory that the program has had in use; None where the system does not say.
 #[cfg(all(feature = "cli", target_os = "linux"))]
 pub(crate) fn peak() -> Option<MemorySize> {
     listed("/proc/self/status", "VmHWM:")

@@ -246,7 +246,7 @@ fn prepare(
     }))
 }
 
-/// So many outlines of poses can be told apart over a matrix.
+/// Outlines of poses that are drawn at most; more cannot be told apart over a matrix.
 const POSES: usize = 13;
 
 /// Searches a model, on a thread of its own or at once.

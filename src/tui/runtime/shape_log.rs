@@ -1,7 +1,7 @@
 //! Which stored shapes the program has used, for a record that does the same again elsewhere.
 //!
-//! A shape is used when its imprint is shown, loaded, compared, or in the way of another one. Of the others a list shows
-//! the name only: these are logged as shapes without an active taxel, so that a list has the same rows again.
+//! A shape is used when its imprint is shown, loaded, compared, or in the way of another one. A list shows only the
+//! names of the others: these are logged as shapes without an active taxel, so that a list has the same rows again.
 
 use std::collections::HashMap;
 use std::fmt;

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-/// After this time it is said what is waited for.
+/// After this time the screen says what is waited for.
 const SLOW: Duration = Duration::from_millis(300);
 
 /// The time after which that is looked at again.

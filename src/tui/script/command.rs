@@ -64,7 +64,7 @@ pub enum ScriptCommand {
     Quit,
     /// Watch a file with frames; none is read yet.
     Source(String),
-    /// The next frames of it, at most so many, each drawn.
+    /// Read and draw the next frames of it, at most this number.
     Frames(usize),
 }
 
@@ -79,7 +79,7 @@ const STYLES: [(&str, char); 4] = [
 /// The signals that can be sent.
 const SIGNALS: [&str; 5] = ["HUP", "INT", "QUIT", "TERM", "TSTP"];
 
-/// Why a line is no command.
+/// Why a line is not a command.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}{message}", line_name(*line))]
 pub struct ScriptError {

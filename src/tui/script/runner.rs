@@ -45,7 +45,7 @@ pub enum ScriptFailure {
         /// The screen.
         screen: String,
     },
-    /// A line is no command.
+    /// A line is not a command.
     #[error(transparent)]
     Script(#[from] ScriptError),
     /// There is no folder for the script's own library, or its shapes cannot be put there.

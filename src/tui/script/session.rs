@@ -85,7 +85,7 @@ impl Session {
         self.draw();
     }
 
-    /// Reads the next frames of the source that is watched, at most so many, and draws each.
+    /// Reads the next frames of the source that is watched, at most `count`, and draws each.
     pub fn frames(&mut self, count: usize) {
         for message in self.world.next_frames(count) {
             self.send(message);

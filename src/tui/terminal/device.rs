@@ -17,7 +17,7 @@ const LAST_WRITE: Timespec = Timespec {
     tv_nsec: 100_000_000,
 };
 
-/// Larger screens are no screens, but mistakes that would cost gigabytes.
+/// Larger sizes are mistakes, which would cost gigabytes.
 const LARGEST: (u16, u16) = (1000, 500);
 
 /// Where bytes come from and go to.

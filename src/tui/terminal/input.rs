@@ -279,7 +279,7 @@ impl InputReader {
 
     /// `ESC [ parameters final`.
     fn sequence(&mut self, parameters: &[u8], last: u8) {
-        // Bytes that are no text are no parameters.
+        // Bytes that are not text are not parameters either.
         let Ok(text) = std::str::from_utf8(parameters) else {
             return;
         };

@@ -11,7 +11,7 @@ use rustix::process::{Signal, kill_current_process_group};
 /// its own process group. The first process of a connection has none; stopped, it would never come back.
 ///
 /// All is read from `/proc`, where a process, group or session that lies outside the program's PID namespace (a
-/// container's) is a plain 0: the system calls answer 0 there too, which is no process number. A controlling terminal
+/// container's) is a plain 0: the system calls answer 0 there too, which is not a process number. A controlling terminal
 /// belongs to one session only, so it tells what the session's number could not.
 pub(in crate::tui) fn has_shell() -> bool {
     let Some(own) = Process::read("self") else {

@@ -56,7 +56,7 @@ fn found() -> MutexGuard<'static, Option<SavedTerminal>> {
     SAVED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Into raw mode, onto the second screen, the mouse as asked for. Inside already, all of it is said again: somebody
+/// Into raw mode, onto the second screen, the mouse as asked for. Inside already, all of it is sent again: somebody
 /// may have changed it while the program was stopped.
 pub(in crate::tui) fn enter(
     device: &Device,

@@ -67,7 +67,7 @@ pub struct Abilities {
     pub styles: bool,
     /// It holds a frame that is marked until all of it is there.
     pub synchronized: bool,
-    /// It erases so many characters in the middle of a row (ECH), as all since the VT220 do.
+    /// It erases a given number of characters in the middle of a row (ECH), as all since the VT220 do.
     pub erases: bool,
 }
 
@@ -99,7 +99,7 @@ impl TerminalSettings {
         flags: &Flags,
     ) -> Self {
         let text = |name| {
-            // A variable that is not set is empty, and so is one that is no text.
+            // A variable that is not set is empty, and so is one that is not text.
             let value = variable(name).and_then(|value| value.into_string().ok());
             value.unwrap_or_default()
         };

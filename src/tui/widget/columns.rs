@@ -26,8 +26,8 @@ pub(in crate::tui) fn head(text: &str, room: usize) -> &str {
     kept
 }
 
-/// Of a text that is typed into so many columns, the part that has its cursor in sight, and where the cursor stands in
-/// that.
+/// The part of a text in a field of `room` columns that has the cursor in sight, and the column of the cursor in that
+/// part.
 pub fn window(text: &str, cursor: usize, room: usize) -> (&str, usize) {
     let (mut shown, mut column) = (text, cursor);
     while column >= room.max(1)

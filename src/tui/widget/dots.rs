@@ -95,7 +95,7 @@ impl DotCanvas {
     }
 }
 
-/// The part of a line within `[0, width] × [0, height]`; None where there is none, or a coordinate is no number.
+/// The part of a line within `[0, width] × [0, height]`; None where there is none, or a coordinate is not a number.
 fn clipped(from: Place, to: Place, (width, height): Place) -> Option<(Place, Place)> {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
     let (mut start, mut end) = (0.0_f64, 1.0_f64);

@@ -1,7 +1,7 @@
 //! How values look: shades of characters, and colours of even steps from dark to light.
 //!
 //! The colours are those of a perceptual palette: each step is as much lighter as the one before, so that nothing looks
-//! like an edge that is none. On a light background they go the other way. Shades say the same without colours.
+//! like an edge where there is none. On a light background they go the other way. Shades say the same without colours.
 
 use ratatui::style::{Color, Style};
 

@@ -22,8 +22,8 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
 
-/// Writes pieces of text, each in its role, into the first line of an area; the first that does not fit is shortened,
-/// which an ellipsis tells, and the others are left out. Answers where the text ends.
+/// Writes pieces of text, each in its role, into the first line of an area; the first that does not fit is cut
+/// short with an ellipsis, and the others are left out. Answers where the text ends.
 pub fn line<'a>(
     buffer: &mut Buffer,
     area: Rect,
@@ -111,7 +111,7 @@ pub fn right_of(area: Rect, x: u16) -> Rect {
     }
 }
 
-/// A prompt: a label, the text of a field, and a remark after it. Returns where the cursor is. Of a text that is too
+/// A prompt: a label, the text of a field, and a remark after it. Returns where the cursor is. If the text is too
 /// long, the part before the cursor is shown.
 pub fn prompt(
     buffer: &mut Buffer,
@@ -138,8 +138,8 @@ pub fn clear(buffer: &mut Buffer, area: Rect) {
     }
 }
 
-/// Writes a text over as many lines as it needs, and answers how many these are. Where the area has fewer, an ellipsis
-/// tells.
+/// Writes a text over as many lines as it needs, and answers how many these are. If the area has fewer, the text ends
+/// in an ellipsis.
 pub fn wrapped(buffer: &mut Buffer, area: Rect, theme: &Theme, text: &str, role: Role) -> usize {
     let text = theme.text(text);
     let room = usize::from(area.width);

@@ -101,7 +101,7 @@ fn the_first_rows_count_and_comments_are_no_frames() {
 fn a_window_says_where_it_begins() {
     let found = recorded(&sample("emed.lst"), None);
     assert_eq!(found.frames[2].first, Some((12, 7)));
-    // The page that summarises is no frame.
+    // The page that summarises is not a frame.
     assert_eq!(found.frames.len(), 3);
 }
 

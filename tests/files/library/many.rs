@@ -1,4 +1,4 @@
-//! Ten thousand shapes. The times are told, not held: a busy machine is no failure.
+//! Ten thousand shapes. The times are printed, not checked: a busy machine is not a failure.
 
 use std::time::Instant;
 

@@ -84,7 +84,7 @@ proptest! {
             FigureKind::Pentagon => 72,
             FigureKind::Hexagon => 60,
             FigureKind::Octagon => 45,
-            // A seventh of a turn is no whole number of degrees.
+            // A seventh of a turn is not a whole number of degrees.
             _ => 360,
         };
         let mut plane = Plane::new(sensor(16, 16, 0.5));
@@ -229,7 +229,7 @@ proptest! {
         prop_assert!(sensor.range(parameter).contains(value));
         let given = share * f64::from(side);
         if sensor.range(parameter).contains(given) {
-            // Shown in full where a form would not take so many decimals.
+            // Shown in full where a form would not take all of its decimals.
             prop_assert_eq!(parameter.format(given).parse::<f64>(), Ok(given));
             if parameter.row().unit != taxel::parameter::Unit::Taxels {
                 prop_assert_eq!(sensor.read(parameter, &parameter.format(given)), Ok(given));

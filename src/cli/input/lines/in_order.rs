@@ -3,7 +3,7 @@
 //! ```text
 //! source, on a thread of its own -> this thread -> workers -> this thread: sorts -> sink
 //! ```
-//! Only so many items are under way at a time, so that memory is bounded whatever the source gives. The thread of the
+//! A fixed number of items is under way at a time, so that memory is bounded whatever the source gives. The thread of the
 //! source is not waited for when the sink fails: it may be reading from a terminal.
 
 use std::collections::BTreeMap;

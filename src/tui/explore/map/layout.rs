@@ -1,7 +1,7 @@
 //! Where the map's cells, its rulers and the pose at its cursor are.
 //!
 //! Where letters for all poses do not fit, the map begins as a picture of its whole range, of which each half of a
-//! character is a pose: one in so many along both axes. Zooming in halves that number, down to every pose, and then to
+//! character is a pose: every n-th one along both axes. Zooming in halves n, down to every pose, and then to
 //! letters. A map that is larger than its page scrolls with its cursor. A letter is two columns wide if the whole map
 //! fits so.
 
@@ -25,7 +25,7 @@ pub struct MapPane {
     pub cell: u16,
     /// Poses shown in a line of the screen, one above the other: two in a picture.
     pub lines: u16,
-    /// One pose in so many is shown, along x0 and along y0.
+    /// Every `stride`-th pose is shown, along x0 and along y0.
     pub stride: u64,
     /// The closest zoom that there is.
     pub closest: u8,
@@ -44,7 +44,7 @@ pub struct MapPane {
 enum MapScale {
     /// A letter for each pose.
     Letters,
-    /// Half a character for one pose in so many.
+    /// Half a character for every n-th pose.
     Picture(u64),
 }
 

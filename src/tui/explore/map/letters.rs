@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// So many letters there are: small and large ones, and digits.
+/// The number of letters: small and large ones, and digits.
 pub const LETTERS: u8 = 62;
 
 /// The letter of each cell, from 0, of a map of rows that are `width` cells wide; none where there is no imprint.

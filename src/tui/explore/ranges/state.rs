@@ -26,7 +26,7 @@ use crate::tui::widget::text_field::TextField;
 /// No field takes more characters.
 const LONGEST: usize = 40;
 
-/// Of more orientations the ranges are not proposed and the poses that are cut off are not counted while one types.
+/// With more orientations, ranges are not proposed, and the poses that are cut off are not counted while one types.
 const MOST_ORIENTATIONS: u64 = 20_000;
 
 /// The text field of one range.

@@ -40,7 +40,7 @@ pub(crate) fn terminal(bytes: &[u8]) {
 
     for input in whole {
         if let Input::Paste(text) = input {
-            // Bytes that are no text become a character of three.
+            // Bytes that are not text become a character of three.
             assert!(text.len() <= 3 * bytes.len() && !text.contains('\r'));
         }
     }
