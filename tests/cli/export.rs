@@ -290,7 +290,7 @@ fn a_byte_order_mark_is_passed_over() {
     refused(
         &folder.run("describe w.npz"),
         1,
-        "w.npz: an archive, perhaps NPZ or a spreadsheet, expected rows of '#' and '.', a table (CSV), PBM, PGM of two shades or NPY",
+        "w.npz: an archive, perhaps NPZ or a spreadsheet, expected rows of '#' and '.', a table (CSV), PBM, PGM of two shades or NPY; if this is a recording, use taxel frames",
     );
 }
 

@@ -12,7 +12,7 @@ use crate::formats::{ImprintFormatError, ShapeError, StoredShape, imprint_file};
 use crate::imprint::Imprint;
 use crate::quote::legible;
 
-/// So many bytes tell whether a file is a recording.
+/// How many of the first bytes show whether a file is a recording.
 const LOOKED_AT: usize = 1 << 16;
 
 /// Where to read from.
@@ -96,6 +96,10 @@ fn read(bytes: &[u8]) -> Result<Content, InputError> {
 /// stored shape with a mistake.
 fn may_be_recording(bytes: &[u8]) -> bool {
     let frame = b"\"frame\"";
+    // PBM and PGM say by themselves what they are.
+    if matches!(bytes, [b'P', b'1'..=b'6', ..]) {
+        return false;
+    }
     match recognised(&bytes[..bytes.len().min(LOOKED_AT)]) {
         Some(RecordingFormat::JsonLines) => bytes.windows(frame.len()).any(|word| word == frame),
         found => found.is_some(),
