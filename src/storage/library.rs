@@ -66,6 +66,15 @@ pub enum Expected {
 /// The name of a file that is being written. Its writer holds the lock, so one name is enough.
 const TEMPORARY: &str = ".taxel-tmp";
 
+/// The file with the commands that were typed.
+pub(super) const COMMANDS: &str = ".commands";
+
+/// The file with the set of shapes that was recognised last.
+pub(super) const RECOGNISED_SET: &str = ".recognise";
+
+/// The file with the values that forms were accepted with.
+pub(super) const FORMS: &str = ".forms";
+
 /// A library in a folder. The folder is made when the first shape is saved.
 #[derive(Clone, Debug)]
 pub struct Library {
@@ -362,7 +371,9 @@ impl Library {
         let mut found = Vec::new();
         for name in folder::names(&self.folder)? {
             let what = match name.to_str() {
-                Some(".lock" | ".trash" | ".journal") => continue,
+                Some(".lock" | ".trash" | ".journal" | COMMANDS | RECOGNISED_SET | FORMS) => {
+                    continue;
+                }
                 Some(name) if name.starts_with(TEMPORARY) => {
                     "half-written by a program that died, or being written"
                 }

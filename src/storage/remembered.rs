@@ -5,6 +5,7 @@
 use std::fs;
 use std::path::PathBuf;
 
+use crate::storage::library::{COMMANDS, FORMS, RECOGNISED_SET};
 use crate::storage::{Existing, Library, UnfinishedFile};
 
 /// No longer file is read: a hundred commands of the longest kind are shorter.
@@ -22,17 +23,17 @@ pub struct RememberedFile {
 impl RememberedFile {
     /// The commands that were typed.
     pub fn commands(library: &Library) -> Self {
-        Self::of(library, ".commands", 100)
+        Self::of(library, COMMANDS, 100)
     }
 
     /// The set of shapes that was recognised last, by its name.
     pub fn recognised_set(library: &Library) -> Self {
-        Self::of(library, ".recognise", 1)
+        Self::of(library, RECOGNISED_SET, 1)
     }
 
     /// The values that forms were accepted with.
     pub fn forms(library: &Library) -> Self {
-        Self::of(library, ".forms", 20)
+        Self::of(library, FORMS, 20)
     }
 
     /// The file of that name in the folder of a library.
