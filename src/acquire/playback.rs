@@ -10,7 +10,7 @@ use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions};
 use crate::acquire::recorder::description_beside;
 use crate::acquire::stream::Consumer;
 use crate::formats::recording::{
-    ChannelInfo, ReadOptions, RecordingEvent, RecordingMetadata, read,
+    ChannelInfo, ReadOptions, RecordingEvent, RecordingMetadata, RecordingNote, read,
 };
 use crate::formats::stream::StreamCounts;
 
@@ -72,7 +72,9 @@ pub(super) fn run(
     let reading = ReadOptions {
         shape: options.shape,
     };
-    let description = description_beside(path).and_then(Result::ok);
+    let ControlFlow::Continue(description) = description_of(path, consumer) else {
+        return Ok(());
+    };
     let mut round = 0;
     loop {
         let mut pace = Pace {
@@ -108,6 +110,22 @@ pub(super) fn run(
         round += 1;
         if flow.is_break() || !options.repeat || consumer(AcquireEvent::Again).is_break() {
             return Ok(());
+        }
+    }
+}
+
+/// The description beside a recording. If something is wrong with it, that is noted, and it is left out; `Break` if no
+/// more is wanted.
+fn description_of(
+    path: &Path,
+    consumer: &mut Consumer<'_>,
+) -> ControlFlow<(), Option<RecordingMetadata>> {
+    match description_beside(path).transpose() {
+        Ok(description) => ControlFlow::Continue(description),
+        Err(complaint) => {
+            let note = RecordingNote::Description { complaint };
+            consumer(AcquireEvent::Note(&note))?;
+            ControlFlow::Continue(None)
         }
     }
 }

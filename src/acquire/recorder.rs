@@ -457,10 +457,11 @@ fn refused(error: FileError) -> RecorderError {
     }
 }
 
-/// The description beside an array, `touch.json` of `touch.npy`. None where there is none, or the file is something else.
+/// The description beside an array, `touch.json` of `touch.npy`. None where there is none, or what is there is something
+/// else.
 ///
 /// # Errors
-/// What is wrong with it.
+/// What is wrong with it, or why it cannot be read, headed by its path.
 pub fn description_beside(path: &Path) -> Option<Result<RecordingMetadata, String>> {
     let is_array = path
         .extension()
@@ -469,14 +470,19 @@ pub fn description_beside(path: &Path) -> Option<Result<RecordingMetadata, Strin
         return None;
     }
     let beside = path.with_extension("json");
-    if !beside.metadata().ok()?.is_file() {
-        return None;
-    }
-    let mut bytes = Vec::new();
-    let file = File::open(&beside).ok()?;
-    file.take(LARGEST_DESCRIPTION)
-        .read_to_end(&mut bytes)
-        .ok()?;
-    let name = || beside.display().to_string();
-    Some(RecordingMetadata::read(&bytes)?.map_err(|error| format!("{}: {error}", name())))
+    let content = || {
+        let mut bytes = Vec::new();
+        // To open a pipe would wait for its writer.
+        if beside.metadata()?.is_file() {
+            let file = File::open(&beside)?;
+            file.take(LARGEST_DESCRIPTION).read_to_end(&mut bytes)?;
+        }
+        Ok::<_, io::Error>(bytes)
+    };
+    let read = match content() {
+        Ok(bytes) => RecordingMetadata::read(&bytes)?,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return None,
+        Err(error) => Err(format!("cannot read: {error}")),
+    };
+    Some(read.map_err(|error| format!("{}: {error}", beside.display())))
 }

@@ -328,19 +328,34 @@ fn the_description_of_a_recording_is_read_with_it() {
     for (text, told) in [
         (
             "{\"format\":\"taxel-touch/1\",\"rule\":{\"percent\":0}}",
-            true,
+            "touch.json: rule: ",
         ),
-        ("{\"format\":1}", false),
+        ("{\"format\":\"taxel-touch/1\",\"ru", "touch.json: the end "),
+        ("{\"format\":1}", ""),
     ] {
         fs::write(file.with_extension("json"), text).expect("written");
-        let run = taxel(&format!("frames {path} --peak --at-least 9"), "");
+        warns_of(path, told);
+    }
+    // Nor can one be read that leads to itself.
+    let beside = file.with_extension("json");
+    fs::remove_file(&beside).expect("removed");
+    warns_of(path, "");
+    std::os::unix::fs::symlink(&beside, &beside).expect("made");
+    warns_of(path, "touch.json: cannot read: ");
+}
+
+/// What lies beside a recording is told by both commands, and its frames are read all the same; empty: nothing is.
+fn warns_of(path: &str, told: &str) {
+    for line in [
+        format!("frames {path} --peak --at-least 9"),
+        format!("watch {path} --once --at-least 9"),
+    ] {
+        let run = taxel(&line, "");
         assert_eq!(run.status, Some(0), "{}", run.stderr);
-        assert_eq!(
-            run.stderr.contains("touch.json: rule: "),
-            told,
-            "{}",
-            run.stderr
-        );
+        assert!(!run.stdout.is_empty(), "{line}");
+        let (lines, expected) = (run.stderr.lines().count(), usize::from(!told.is_empty()));
+        assert_eq!(lines, expected, "{line}: {}", run.stderr);
+        assert!(run.stderr.contains(told), "{line}: {}", run.stderr);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use taxel::tui::script::Session;
 
-use crate::session::{hides, session, shows, then};
+use crate::session::{hides, session, shows, sized, then};
 
 /// The page after this number of frames, and then these keys.
 fn watched(frames: usize, keys: &str) -> Session {
@@ -125,4 +125,28 @@ fn the_shape_is_named_by_sets_of_shapes_in_turn() {
     page.frames(2);
     shows(&page, &["frame 7", "nearest    "]);
     hides(&page, &["…", "training or"]);
+}
+
+#[test]
+fn a_broken_description_beside_a_recording_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.npy");
+    let header = "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 1, 2), }";
+    let mut bytes = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+    bytes.extend(format!("{header:<117}\n").bytes());
+    bytes.extend([9.0_f64, 1.0].iter().flat_map(|value| value.to_le_bytes()));
+    std::fs::write(&path, bytes).expect("written");
+    let broken = "{\"format\":\"taxel-touch/1\",\"unit\":3}";
+    std::fs::write(path.with_extension("json"), broken).expect("written");
+    // The path goes first, and its end may not fit.
+    let mut page = sized(
+        (160, 24),
+        false,
+        &format!(":watch {}<Enter>", path.display()),
+    );
+    page.frames(1);
+    shows(
+        &page,
+        &["frame 0", "a.json: found the number 3, expected a text"],
+    );
 }

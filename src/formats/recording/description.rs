@@ -110,7 +110,8 @@ fn rule_or_null<S: Serializer>(
 }
 
 impl RecordingMetadata {
-    /// Reads the description. None if the bytes are something else, which may well lie beside an array.
+    /// Reads the description. None if the bytes are something else, which may well lie beside an array; a torn one is
+    /// told by the name of its form.
     ///
     /// # Errors
     /// What is wrong with it, in one sentence.
@@ -119,8 +120,13 @@ impl RecordingMetadata {
         struct Format {
             format: String,
         }
-        let own: Format = serde_json::from_slice(bytes).ok()?;
-        (own.format == FORMAT).then(|| {
+        let is_own = match serde_json::from_slice::<Format>(bytes) {
+            Ok(own) => own.format == FORMAT,
+            Err(_) => bytes
+                .windows(FORMAT.len())
+                .any(|text| text == FORMAT.as_bytes()),
+        };
+        is_own.then(|| {
             let described = serde_json::from_slice::<Described>(bytes);
             described
                 .map_err(|error| json::message(&error))
@@ -283,7 +289,7 @@ mod tests {
 
     #[test]
     fn other_files_are_none_and_wrong_ones_are_refused() {
-        for other in ["", "[1]", "{\"format\":\"taxel-shape/1\"}", "{}"] {
+        for other in ["", "[1]", "{\"format\":\"taxel-shape/1\"", "{}"] {
             assert_eq!(RecordingMetadata::read(other.as_bytes()), None, "{other}");
         }
         let wrong = |rest: &str| {

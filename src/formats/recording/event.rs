@@ -149,6 +149,11 @@ pub enum RecordingNote {
         /// How many frames were dropped.
         frames: u64,
     },
+    /// The description beside the recording is broken or cannot be read, and is left out.
+    Description {
+        /// What is wrong with it, headed by its path.
+        complaint: String,
+    },
 }
 
 impl fmt::Display for RecordingNote {
@@ -178,6 +183,7 @@ impl fmt::Display for RecordingNote {
                     "{frames} torn, short, long or garbled frames were dropped"
                 )
             }
+            Self::Description { complaint } => f.write_str(complaint),
         }
     }
 }

@@ -100,6 +100,8 @@ pub struct FeedStatus {
     pub recorded: Option<u64>,
     /// Why the recording has ended early.
     pub record_error: Option<String>,
+    /// What is odd in a recording that is played, the first of it.
+    pub note: Option<String>,
 }
 
 /// Whether frames come.

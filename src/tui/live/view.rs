@@ -84,7 +84,10 @@ impl Page for Live {
             SourceState::Silent(why) | SourceState::Lost(why) | SourceState::Failed(why) => {
                 Some((format!("! {why}"), Role::Error))
             }
-            SourceState::Waiting | SourceState::Live | SourceState::Ended => None,
+            SourceState::Waiting | SourceState::Live | SourceState::Ended => {
+                let note = status.note.as_ref()?;
+                Some((format!("! {note}"), Role::Error))
+            }
         }
     }
 }

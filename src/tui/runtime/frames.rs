@@ -407,6 +407,10 @@ impl FrameFeed {
             AcquireEvent::Lost(error) => {
                 let text = format!("lost: {error}; trying again each second");
                 state(SourceState::Lost(text))
+            AcquireEvent::Note(note) => self.change(|pending| {
+                let first = &mut pending.batch.status.note;
+                first.get_or_insert_with(|| note.to_string());
+            }),
             }
             AcquireEvent::Back { .. } => state(SourceState::Waiting),
             AcquireEvent::Anew(how) => state(SourceState::Silent(how.to_string())),
