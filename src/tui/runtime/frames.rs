@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
-use crate::acquire::{AcquireError, AcquireEvent, AcquireOptions, FrameSource, acquire};
+use crate::acquire::{AcquireEvent, AcquireOptions, FrameSource, acquire};
 use crate::formats::recording::{ChannelInfo, FrameMark, RecordingMetadata};
 use crate::frame::Frame;
 use crate::storage::location;
@@ -332,7 +332,6 @@ impl FrameFeed {
         }
         let state = match ended {
             Ok(()) => SourceState::Ended,
-            Err(AcquireError::Recording(error)) => SourceState::Failed(error.to_string()),
             Err(error) => SourceState::Failed(error.to_string()),
         };
         if self.change(|pending| pending.batch.status.state = state) {
@@ -407,11 +406,11 @@ impl FrameFeed {
             AcquireEvent::Lost(error) => {
                 let text = format!("lost: {error}; trying again each second");
                 state(SourceState::Lost(text))
+            }
             AcquireEvent::Note(note) => self.change(|pending| {
                 let first = &mut pending.batch.status.note;
                 first.get_or_insert_with(|| note.to_string());
             }),
-            }
             AcquireEvent::Back { .. } => state(SourceState::Waiting),
             AcquireEvent::Anew(how) => state(SourceState::Silent(how.to_string())),
             AcquireEvent::Ended(counts) => self.change(|pending| {
