@@ -34,11 +34,11 @@ const RECORD_HEAD: u64 = 16;
 /// Records are written out after this time at the latest.
 const WRITTEN_OUT: Duration = Duration::from_millis(400);
 
-/// The file is synced after this time.
-const SYNCED: Duration = Duration::from_millis(900);
-
 /// Bytes that wait at most; with this many, records are written out at once.
 const BUFFER: usize = 1 << 18;
+
+/// The file is synced after this time.
+const SYNCED: Duration = Duration::from_millis(900);
 
 /// Why frames cannot be recorded.
 #[derive(Debug, thiserror::Error)]
@@ -143,9 +143,10 @@ impl Syncer {
     fn tick(&mut self) {
         if self.last.elapsed() >= SYNCED {
             self.last = Instant::now();
-            let asked = self.ask.as_ref().map(|ask| ask.try_send(()));
-            // It is still at the last one.
-            let _ = asked;
+            if let Some(ask) = &self.ask {
+                // If it is full, the last sync still runs.
+                let _ = ask.try_send(());
+            }
         }
     }
 }
