@@ -115,10 +115,12 @@ impl KeyRef<'_> {
     pub(super) fn rows(self) -> impl Iterator<Item = u64> {
         let mask = u64::MAX.unbounded_shr(64 - u32::from(self.width));
         (0..usize::from(self.height)).map(move |row| {
-            let (word, shift) = (row * usize::from(self.width)).div_mod(64);
+            let place = row * usize::from(self.width);
+            let (word, shift) = (place / 64, place % 64);
             let low = self.bits[word] >> shift;
-            let high = self.bits.get(word + 1).map_or(0, |&word| word);
-            (low | high.unbounded_shl(64 - shift)) & mask
+            let high = self.bits.get(word + 1).copied().unwrap_or_default();
+            let rest = u32::try_from(64 - shift).expect("at most 64");
+            (low | high.unbounded_shl(rest)) & mask
         })
     }
 
@@ -131,17 +133,6 @@ impl KeyRef<'_> {
             imprint.set_word(row, word);
         }
         Some(imprint)
-    }
-}
-
-trait DivMod {
-    fn div_mod(self, by: u32) -> (usize, u32);
-}
-
-impl DivMod for usize {
-    fn div_mod(self, by: u32) -> (usize, u32) {
-        let by = by as usize;
-        (self / by, u32::try_from(self % by).expect("below `by`"))
     }
 }
 
