@@ -229,8 +229,7 @@ impl Watcher<'_> {
     /// Sets the threshold for the answers to come; None to answer without imprints.
     fn set_rule(&mut self, rule: Option<SetRule>) {
         self.rule = rule;
-        self.processing.rule = rule.map(|set| set.rule);
-        self.processing.least = rule.map_or(0, |set| set.least);
+        SetRule::apply(rule, &mut self.processing);
     }
 
     /// Handles one event of the source. After an error nothing more is read.

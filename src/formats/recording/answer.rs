@@ -10,7 +10,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::description::{Description, regions};
 use crate::formats::described::{RegionRecord, Rows};
-use crate::frame::{Frame, Processed, Rule};
+use crate::frame::{Frame, Processed, Processing, Rule};
 
 /// A rule and who has set it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +21,14 @@ pub struct SetRule {
     pub least: u32,
     /// Where it is from: `flag`, `file` or `settings`.
     pub from: &'static str,
+}
+
+impl SetRule {
+    /// Has frames processed by a rule, or without one.
+    pub fn apply(rule: Option<Self>, processing: &mut Processing) {
+        processing.rule = rule.map(|set| set.rule);
+        processing.least = rule.map_or(0, |set| set.least);
+    }
 }
 
 /// Serialises as `{"frame":65,"label":66,"time":6.5,"channel":null,"sum":…,"max":…,"rule":{…},"imprint":[…],"na":…,
@@ -103,7 +111,6 @@ impl Serialize for Shortest {
 mod tests {
     use super::*;
     use crate::formats::json;
-    use crate::frame::Processing;
 
     #[test]
     fn without_a_rule_there_is_no_imprint() {
@@ -121,6 +128,23 @@ mod tests {
             json::text(&answer),
             r#"{"frame":0,"label":null,"time":null,"channel":null,"sum":3.5,"max":2.5,"rule":null,"imprint":null,"na":null,"regions":[]}"#
         );
+    }
+
+    #[test]
+    fn a_rule_is_applied_and_taken_away_with_its_least() {
+        let mut processing = Processing::default();
+        let rule = SetRule {
+            rule: Rule::AtLeast(2.0),
+            least: 3,
+            from: "flag",
+        };
+        SetRule::apply(Some(rule), &mut processing);
+        assert_eq!(
+            (processing.rule, processing.least),
+            (Some(Rule::AtLeast(2.0)), 3)
+        );
+        SetRule::apply(None, &mut processing);
+        assert_eq!((processing.rule, processing.least), (None, 0));
     }
 
     #[test]

@@ -418,8 +418,7 @@ impl Live {
     /// Notes a rule with where it is from, and has frames read by it from now on.
     fn set_rule(&mut self, rule: Option<SetRule>) {
         self.rule = rule;
-        self.processing.rule = rule.map(|set| set.rule);
-        self.processing.least = rule.map_or(0, |set| set.least);
+        SetRule::apply(rule, &mut self.processing);
     }
 
     /// Takes a rule that a key leads to, and reads the frame anew; a value out of range changes nothing.
