@@ -158,7 +158,7 @@ impl VarianceParts {
         words
     }
 
-    /// From words; None if their number is wrong.
+    /// From words; None if their number is wrong, or they are not possible for orientations of `full` poses.
     pub(crate) fn from_words(full: u64, words: &[u64]) -> Option<Self> {
         let count = features().len();
         let (between, open) = words.split_at_checked(3 * count)?;

@@ -181,16 +181,16 @@ impl SweepResult {
                 imprint.set_word(row, word);
             }
             check(imprint.words() == words, "taxels beyond the sensor")?;
+            check(count > 0, "an imprint that no pose leaves")?;
             let (key, hash) = atlas.layout().key(&imprint);
             let known = counter.len();
             counter.add(&key, hash, count, first);
-            check(
-                counter.len() > known && count > 0,
-                "an imprint that is there twice",
-            )?;
+            check(counter.len() > known, "an imprint that is there twice")?;
         }
         let spread = VarianceParts::from_words(width * grid.rows_per_orientation(), &parts.spread)
-            .ok_or(PartsError("sums of another version"))?;
+            .ok_or(PartsError(
+                "sums that contradict each other, or of another version",
+            ))?;
         atlas.add(&counter, 1);
         atlas.describe();
         let mut table = Table::default();
@@ -227,6 +227,7 @@ mod tests {
     use std::sync::atomic::{AtomicU64, Ordering};
 
     use super::*;
+    use crate::atlas::features;
     use crate::figure::{Figure, FigureKind};
     use crate::picture::Picture;
     use crate::pose::{Anchor, Axis, DecimalRange, Ranges};
@@ -252,6 +253,36 @@ mod tests {
         assert_eq!(parts.first_poses[0], 5000);
         assert_eq!(read(5000), Ok(true));
         assert_eq!(read(4999), Err(PartsError("first poses out of order")));
+    }
+
+    #[test]
+    fn each_fault_of_the_numbers_has_its_own_reason() {
+        let ranges = Ranges::default().with(Axis::Angle, DecimalRange::whole(0));
+        let source = Source::Figure(Figure::default_of(FigureKind::Hexagon, &Sensor::default()));
+        let grid =
+            PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges).expect("a grid");
+        let parts = Sweep::new(&grid).run().parts();
+        let height = usize::from(grid.sensor().rows());
+        let fault = |spoil: &dyn Fn(&mut Parts)| {
+            let mut parts = parts.clone();
+            spoil(&mut parts);
+            let read = SweepResult::from_parts(grid.clone(), Shard::WHOLE, &parts);
+            read.err().map(|PartsError(what)| what)
+        };
+        assert_eq!(fault(&|_| ()), None);
+        let emptied = fault(&|parts| {
+            parts.counts[0] += parts.counts[1];
+            parts.counts[1] = 0;
+        });
+        assert_eq!(emptied, Some("an imprint that no pose leaves"));
+        let doubled = fault(&|parts| parts.rows.copy_within(..height, height));
+        assert_eq!(doubled, Some("an imprint that is there twice"));
+        let sums = Some("sums that contradict each other, or of another version");
+        assert_eq!(fault(&|parts| parts.spread.push(0)), sums);
+        // An orientation of more poses than it has.
+        let orientation = 3 + 5 * features().len();
+        let unsound = |parts: &mut Parts| parts.spread.extend(vec![u64::MAX; orientation]);
+        assert_eq!(fault(&unsound), sums);
     }
 
     #[test]
