@@ -1,5 +1,6 @@
 //! The model of a set of shapes: in how many poses each shape leaves each key.
 
+use std::cmp::Ordering;
 use std::collections::HashSet;
 use std::sync::OnceLock;
 
@@ -469,32 +470,32 @@ impl ModelMerge {
     /// Adds the next shard: the first, then the second, and so on.
     ///
     /// # Errors
-    /// If it is not the next one, or of another training than the first.
+    /// If it is not the next one, or of another training than the first. The merge is then as it was before.
     pub fn add(&mut self, model: &Model) -> Result<(), ModelError> {
         let (shard, of) = (model.shard, model.shard.of());
-        let next = match &mut self.head {
-            None => {
-                self.head = Some(model.head());
-                1
-            }
+        // All is checked before anything changes: after a refusal, the right shard can still come.
+        if let Some(head) = &self.head
+            && !model.same_training(head)
+        {
+            return Err(ModelError::Foreign { shard });
+        }
+        let last = self.head.as_ref().map_or(0, |head| head.shard.number());
+        let number = last + 1;
+        match shard.number().cmp(&number) {
+            Ordering::Less => return Err(ModelError::Twice { shard }),
+            Ordering::Greater => return Err(ModelError::Missing { number, of }),
+            Ordering::Equal => {}
+        }
+        match &mut self.head {
+            None => self.head = Some(model.head()),
             Some(head) => {
-                if !model.same_training(head) {
-                    return Err(ModelError::Foreign { shard });
-                }
-                let next = head.shard.number() + 1;
+                let poses = head.poses.checked_add(model.poses);
+                head.poses = poses.ok_or(ModelError::Parts("counts beyond any number of poses"))?;
                 head.shard = shard;
-                head.poses += model.poses;
                 for (sum, cut) in head.cut.iter_mut().zip(&model.cut) {
                     *sum += cut;
                 }
-                next
             }
-        };
-        if shard.number() < next {
-            return Err(ModelError::Twice { shard });
-        }
-        if shard.number() > next {
-            return Err(ModelError::Missing { number: next, of });
         }
         for index in 0..model.keys.len() {
             let slot = self.gathered.slot(&model.keys, index);

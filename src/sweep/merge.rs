@@ -3,6 +3,8 @@
 //! Shards follow on each other in the order of the grid, so first poses stay the first, and the numbers of imprints are
 //! those of one sweep. They are taken one after another: memory holds what is merged and one shard.
 
+use std::cmp::Ordering;
+
 use crate::atlas::{Atlas, Table, VarianceParts};
 use crate::pose::PoseGrid;
 use crate::sweep::plan::Shard;
@@ -61,20 +63,26 @@ impl SweepMerge {
     /// Adds the next shard: the first, then the second, and so on.
     ///
     /// # Errors
-    /// If it is not the next one, incomplete, or of another grid than the first.
+    /// If it is not the next one, incomplete, or of another grid than the first. The merge is then as it was before.
     pub fn add(&mut self, result: SweepResult) -> Result<(), MergeError> {
-        let shard = result.shard;
-        let begun = self.0.get_or_insert_with(|| Begun::of(&result));
-        if result.grid != begun.grid || shard.of() != begun.of {
+        let (shard, of) = (result.shard, result.shard.of());
+        // All is checked before anything changes: after a refusal, the right shard can still come.
+        if let Some(begun) = &self.0
+            && (result.grid != begun.grid || of != begun.of)
+        {
             return Err(MergeError::Foreign { shard });
         }
-        if shard.number() != begun.last + 1 {
-            return Err(MergeError::Count { shard });
+        let number = self.0.as_ref().map_or(1, |begun| begun.last + 1);
+        match shard.number().cmp(&number) {
+            Ordering::Less => return Err(MergeError::Twice { shard }),
+            Ordering::Greater => return Err(MergeError::Missing { number, of }),
+            Ordering::Equal => {}
         }
         if !result.complete() {
             return Err(MergeError::Incomplete { shard });
         }
-        begun.last = shard.number();
+        let begun = self.0.get_or_insert_with(|| Begun::of(&result));
+        begun.last = number;
         begun.atlas.add_all(&result.atlas);
         begun.spread.merge(result.spread);
         begun.poses += result.poses;
@@ -144,9 +152,9 @@ pub enum MergeError {
         /// The shard.
         shard: Shard,
     },
-    /// A shard that is given twice, or follows on a missing one.
-    #[error("shard {shard} comes out of turn: another one is missing or there twice")]
-    Count {
+    /// A shard that is given twice.
+    #[error("shard {shard} is given twice")]
+    Twice {
         /// The shard.
         shard: Shard,
     },
@@ -156,10 +164,10 @@ pub enum MergeError {
         /// The shard.
         shard: Shard,
     },
-    /// The last shards are missing.
+    /// A shard that is not there.
     #[error("shard {number}/{of} is missing")]
     Missing {
-        /// The first of them.
+        /// Which, from 1.
         number: u32,
         /// The number of shards.
         of: u32,

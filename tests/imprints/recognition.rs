@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use taxel::prelude::*;
 use taxel::recognition::{
-    AnswerState, Evaluation, Evidence, GivenDescriptors, ImprintKey, Model, NamedShape, Peer,
-    PeerSettings, Rounding, Training, TrainingError, greedy,
+    AnswerState, Evaluation, Evidence, GivenDescriptors, ImprintKey, Model, ModelError, ModelMerge,
+    NamedShape, Peer, PeerSettings, Rounding, Training, TrainingError, greedy,
 };
 use taxel::sweep::Shard;
 
@@ -261,9 +261,23 @@ fn shards_together_are_the_whole() {
         "shard 1/3 is given twice"
     );
     assert_eq!(
-        error(vec![part(1), whole]),
+        error(vec![part(1), whole.clone()]),
         "shard 1/1 belongs to another training"
     );
+    // A shard that is refused changes nothing, not even as the first one.
+    let mut merge = ModelMerge::default();
+    let shard = |number| Shard::new(number, 3).expect("a shard");
+    let missing = |number| Err(ModelError::Missing { number, of: 3 });
+    assert_eq!(merge.add(&part(2)), missing(1));
+    assert_eq!(merge.add(&part(1)), Ok(()));
+    assert_eq!(merge.add(&part(3)), missing(2));
+    assert_eq!(merge.add(&part(2)), Ok(()));
+    let twice = Err(ModelError::Twice { shard: shard(2) });
+    assert_eq!(merge.add(&part(2)), twice);
+    assert_eq!(merge.add(&part(3)), Ok(()));
+    let merged = merge.finish().expect("all three");
+    assert_eq!((merged.poses(), merged.cut()), (whole.poses(), whole.cut()));
+    assert_eq!(Evaluation::of(&merged), Evaluation::of(&whole));
 }
 
 #[test]

@@ -20,7 +20,7 @@ use taxel::parameter::Parameter;
 use taxel::pose::{Anchor, Axis, PoseGrid, Ranges};
 use taxel::sensor::Sensor;
 use taxel::source::Source;
-use taxel::sweep::{MergeError, Shard, Sweep, SweepResult};
+use taxel::sweep::{MergeError, Shard, Sweep, SweepMerge, SweepResult};
 
 fn sweep(grid: &PoseGrid) -> SweepResult {
     Sweep::new(grid).run()
@@ -220,10 +220,14 @@ fn shards_are_merged_only_if_all_are_there() {
         merge(vec![shard(&grid, 1, 3), shard(&grid, 2, 3)]),
         Err(MergeError::Missing { number: 3, of: 3 })
     );
+    assert_eq!(
+        merge(vec![shard(&grid, 1, 3), shard(&grid, 3, 3)]),
+        Err(MergeError::Missing { number: 2, of: 3 })
+    );
     let twice = Shard::new(1, 2).expect("a shard");
     assert_eq!(
         merge(vec![shard(&grid, 1, 2), shard(&grid, 1, 2)]),
-        Err(MergeError::Count { shard: twice })
+        Err(MergeError::Twice { shard: twice })
     );
     // Where the shape itself lay does not matter.
     let moved = figure(FigureKind::Triangle, 6.0, 0.0, 0.0)
@@ -244,6 +248,22 @@ fn shards_are_merged_only_if_all_are_there() {
         merge(vec![shard(&grid, 1, 2), shard(&other, 2, 2)]),
         Err(MergeError::Foreign { shard: foreign })
     );
+    // A shard that is refused changes nothing, not even as the first one.
+    let mut refused = SweepMerge::default();
+    let missing = |number, of| Err(MergeError::Missing { number, of });
+    assert_eq!(refused.add(shard(&other, 2, 3)), missing(1, 3));
+    assert_eq!(refused.add(shard(&grid, 1, 2)), Ok(()));
+    assert_eq!(
+        refused.add(shard(&other, 2, 2)),
+        Err(MergeError::Foreign { shard: foreign })
+    );
+    assert_eq!(
+        refused.add(shard(&grid, 1, 2)),
+        Err(MergeError::Twice { shard: twice })
+    );
+    assert_eq!(refused.add(shard(&grid, 2, 2)), Ok(()));
+    let merged = refused.finish().map(|result| told(&result));
+    assert_eq!(merged, Ok(told(&sweep(&grid))));
 }
 
 #[test]
