@@ -34,9 +34,6 @@ const EQUAL: [(FigureKind, &[(Parameter, f64)]); 7] = [
 ];
 
 /// Returns the seven figures, each of about 30 cells: only their form tells them apart.
-///
-/// # Panics
-/// Never: the sizes are in range.
 pub fn equal_figures() -> Vec<NamedShape> {
     let sensor = Sensor::default();
     let shape = |(kind, sizes): (FigureKind, &[(Parameter, f64)])| {
@@ -118,6 +115,8 @@ mod tests {
             positions: 10,
             degrees: 5,
         };
+        // All of the sizes are in range, so none is left out.
+        assert_eq!(equal_figures().len(), FigureKind::ALL.len());
         let training = Training::fitting(equal_figures(), steps).expect("they fit");
         let grid = &training.grids()[0];
         assert_eq!(grid.sensor().columns(), 16);
