@@ -9,13 +9,13 @@ const _: () = assert!(
 );
 
 /// A `u32` as an index; nothing is lost.
-#[cfg(any(feature = "sweep", feature = "png"))]
+#[cfg(any(feature = "sweep", feature = "png", feature = "mcap"))]
 pub(crate) const fn wide(number: u32) -> usize {
     number as usize
 }
 
 /// A `u64` as an index; one beyond the address space lies beyond every slice.
-#[cfg(feature = "sweep")]
+#[cfg(any(feature = "sweep", all(feature = "acquire", unix)))]
 pub(crate) fn index(number: u64) -> usize {
     usize::try_from(number).unwrap_or(usize::MAX)
 }

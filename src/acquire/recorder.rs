@@ -20,6 +20,7 @@ use std::time::{Duration, Instant};
 
 use crate::formats::recording::{FrameMark, RecordingMetadata};
 use crate::frame::Frame;
+use crate::index::index;
 use crate::storage::{Existing, FileError, FinishedFile, UnfinishedFile, persist_pair};
 
 /// Bytes of the header's text: with the ten before it, 256. The longest has about 150.
@@ -350,7 +351,7 @@ impl FrameRecorder {
         let whole = whole.min(self.records - self.in_file);
         let cut = self.file.set_len(start + whole * size);
         cut.map_err(|error| self.refused(error))?;
-        let bytes = usize::try_from(whole * size).map_or(usize::MAX, |bytes| bytes);
+        let bytes = index(whole * size);
         self.buffer.drain(..bytes.min(self.buffer.len()));
         self.in_file += whole;
         self.count()

@@ -249,7 +249,7 @@ fn half_a_unit(number: &str) -> f64 {
         .split_once('.')
         .map_or(0, |(_, decimals)| decimals.len());
     // A hair more, as ends are decimals that f64 cannot hold.
-    let decimals = i32::try_from(decimals).map_or(i32::MAX, |decimals| decimals);
+    let decimals = i32::try_from(decimals).unwrap_or(i32::MAX);
     0.5 * 10_f64.powi(-decimals) * (1.0 + 1e-9)
 }
 

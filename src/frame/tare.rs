@@ -163,7 +163,7 @@ impl Tare {
         Ok(Self {
             baseline,
             spread,
-            step: step.map_or(1.0, |step| step),
+            step: step.unwrap_or(1.0),
             frames,
         })
     }

@@ -160,7 +160,7 @@ fn chosen(mut seen: Vec<SeenPose>, estimate: &PoseEstimate, most: usize) -> Vec<
             let from = (angle - own.mean? + period / 2.0).rem_euclid(period) - period / 2.0;
             Some(over(from, own.spread?))
         });
-        let da = turned.map_or(0.0, |from| from);
+        let da = turned.unwrap_or_default();
         dx * dx + dy * dy + da * da
     };
     seen.sort_by_cached_key(|own| (ordered(distance(own)), own.number));

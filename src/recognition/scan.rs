@@ -132,7 +132,7 @@ impl Observed {
         let living = dead.filter(|dead| !dead.is_empty()).map(|dead| {
             let mut living = Imprint::empty(imprint.columns(), imprint.rows());
             for row in 0..usize::from(imprint.rows()) {
-                let dead = dead.words().get(row).map_or(0, |&word| word);
+                let dead = dead.words().get(row).copied().unwrap_or_default();
                 living.set_word(row, !dead);
                 seen.set_word(row, seen.words()[row] & !dead);
             }

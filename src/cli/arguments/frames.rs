@@ -343,7 +343,7 @@ impl ProcessingArguments {
             rule_from,
             least: (matches.get_one("least").copied())
                 .or(settings.least())
-                .map_or(0, |taxels| taxels),
+                .unwrap_or_default(),
         })
     }
 }

@@ -105,7 +105,7 @@ pub(crate) fn watch(
         source.refuse_as_target(path)?;
         FrameRecorder::create(path, asked.existing, &metadata)
     });
-    let tare = asked.processing.tare.map_or(0, |frames| frames);
+    let tare = asked.processing.tare.unwrap_or_default();
     let mut watcher = Watcher {
         asked,
         name: source.name(),
@@ -215,7 +215,7 @@ pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequ
     request.rule = asked.processing.set_rule();
     request.history_bytes = asked.history_bytes;
     request.processing.least = asked.processing.least;
-    request.tare = asked.processing.tare.map_or(0, |frames| frames);
+    request.tare = asked.processing.tare.unwrap_or_default();
     request.own_tare = asked.processing.tare.is_none();
     request.channel.clone_from(&asked.processing.channel);
     let model = asked.naming.model.as_ref();

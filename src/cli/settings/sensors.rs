@@ -221,7 +221,7 @@ impl SensorSettings {
     /// The memory for the frames that can be scrubbed through, in bytes.
     pub(crate) fn history_bytes(&self) -> usize {
         let bytes = self.whole(SensorKey::HistoryBytes);
-        bytes.map_or(HISTORY_BYTES, |bytes| bytes)
+        bytes.unwrap_or(HISTORY_BYTES)
     }
 
     /// Sets how a source is read, as far as the file says it.
@@ -242,11 +242,11 @@ impl SensorSettings {
     pub(crate) fn request(&self) -> WatchRequest {
         let mut request = WatchRequest::new("");
         self.apply(&mut request.options);
-        let least = self.least().map_or(0, |least| least);
+        let least = self.least().unwrap_or_default();
         request.processing.least = least;
         let from = "settings";
         request.rule = self.rule().map(|rule| SetRule { rule, least, from });
-        request.tare = self.tare().map_or(0, |tare| tare);
+        request.tare = self.tare().unwrap_or_default();
         request.own_tare = self.tare().is_none();
         request.history_bytes = self.history_bytes();
         request

@@ -80,7 +80,7 @@ impl ConfusionMap {
     /// 0 where a row is shorter than the others.
     fn count(&self, row: usize, column: usize) -> u128 {
         let cell = self.counts.get(row).and_then(|row| row.get(column));
-        cell.map_or(0, |&count| count)
+        cell.copied().unwrap_or_default()
     }
 
     /// Lays the matrix out, with the names above and on the left.

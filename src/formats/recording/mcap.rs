@@ -24,6 +24,7 @@ use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent,
 use crate::formats::recording::side::shape;
 use crate::formats::recording::text_row::too_large;
 use crate::frame::{Frame, LARGEST_VALUE};
+use crate::index::wide;
 use crate::quote::legible;
 
 /// Bytes of the magic number at the start, which was recognised already.
@@ -221,7 +222,7 @@ impl ChunkHead {
         let size = size.try_into().map_or(0, u64::from_le_bytes);
         let [.., a, b, c, d] = head;
         let length = u32::from_le_bytes([a, b, c, d]);
-        let mut name = vec![0; usize::try_from(length.min(40)).map_or(0, |length| length)];
+        let mut name = vec![0; wide(length.min(40))];
         whole(input, &mut name)?;
         let mut records = [0; 8];
         whole(input, &mut records)?;

@@ -181,5 +181,5 @@ impl LinesDecoder {
 /// A number of columns; one too many for any frame where there are more than fit.
 fn width(count: usize) -> u16 {
     // A frame of more is refused.
-    u16::try_from(count).map_or(MAX_FRAME_SIDE + 1, |width| width)
+    u16::try_from(count).unwrap_or(MAX_FRAME_SIDE + 1)
 }

@@ -216,7 +216,7 @@ impl MatsenseDecoder {
                 .candidates
                 .iter()
                 .position(|(_, waiting)| !waiting.is_empty());
-            self.decide(index.map_or(0, |index| index), counts, sink);
+            self.decide(index.unwrap_or_default(), counts, sink);
         }
         for (parts, _) in &mut self.candidates {
             if parts.inside && !parts.values.is_empty() {

@@ -63,7 +63,7 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
         _ => {}
     }
     if let Message::Count(digit) = message {
-        let before = app.count.map_or(0, |count| count);
+        let before = app.count.unwrap_or_default();
         app.count = Some((before * 10 + digit).min(MOST_TIMES)).filter(|&count| count > 0);
         app.notice = app
             .count
@@ -71,7 +71,7 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
         return None;
     }
     let times = app.count.take().filter(|_| message.repeats());
-    for _ in 1..times.map_or(1, |times| times) {
+    for _ in 1..times.unwrap_or(1) {
         if let Some(effect) = perform(app, message.clone()) {
             return Some(effect);
         }

@@ -79,7 +79,7 @@ impl LinePrompt for CommandDialog {
         };
         write::clear(buffer, area);
         let visible = offers.len().min(usize::from(height));
-        let first = write::first_of(height, offers.len(), picked.map_or(0, |at| at));
+        let first = write::first_of(height, offers.len(), picked.unwrap_or_default());
         let widest = offers.iter().map(|offer| write::width(&offer.line)).max();
         let indent = widest.map_or(0, |widest| widest.min(MOST_INDENT));
         for (index, offer) in offers.iter().enumerate().skip(first).take(visible) {

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use crate::atlas::Feature;
-use crate::index::wide;
+use crate::index::{index, wide};
 use crate::pose::{Axis, PoseIndex};
 use crate::sweep::SweepResult;
 
@@ -61,11 +61,10 @@ impl AngleCurve {
         let every_angle = angles.div_ceil(MOST_ANGLES).max(1);
         let each = (MOST_ROWS / angles.div_ceil(every_angle)).max(1);
         let every_row = rows.div_ceil(each).max(1);
-        let step = |every: u64| usize::try_from(every).map_or(usize::MAX, |every| every);
         let zooms = zooms_of(place);
         let found = |angle: u64| {
             let mut imprints = BTreeMap::new();
-            for row in (0..rows).step_by(step(every_row)) {
+            for row in (0..rows).step_by(index(every_row)) {
                 let at = zooms.with(Axis::Angle, angle);
                 let end = if every_row == 1 { rows } else { row + 1 };
                 for id in sweep.ids(at, 0..columns, row..end).into_iter().flatten() {
@@ -81,7 +80,7 @@ impl AngleCurve {
             zooms,
             every_angle,
             every_row,
-            angles: (0..angles).step_by(step(every_angle)).map(found).collect(),
+            angles: (0..angles).step_by(index(every_angle)).map(found).collect(),
         }
     }
 

@@ -111,7 +111,7 @@ impl MapPane {
             cell,
             lines,
             stride,
-            closest: u8::try_from(closest).map_or(u8::MAX, |closest| closest),
+            closest: u8::try_from(closest).unwrap_or(u8::MAX),
             first: (from_x, from_y),
             count: (seen_x, seen_y),
             side: with_side.then_some(Rect {

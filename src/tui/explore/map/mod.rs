@@ -43,7 +43,7 @@ fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
 /// Moves the cursor by the poses that are shown: along y0 by lines, along x0 to the ends. Zooms the map.
 fn update(results: &mut Results, message: &Message, page: Rect) {
     let pane = MapPane::of(page, results);
-    let stride = i64::try_from(pane.stride).map_or(i64::MAX, |stride| stride);
+    let stride = i64::try_from(pane.stride).unwrap_or(i64::MAX);
     match *message {
         Message::Cursor(arrow) => {
             let (dx, dy) = arrow.step();

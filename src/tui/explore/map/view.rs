@@ -19,6 +19,7 @@ use ratatui::style::Style;
 
 use crate::formats::PoseMap;
 use crate::formats::value::{counted, grouped};
+use crate::index::index;
 use crate::parameter::Parameter;
 use crate::pose::{Axis, PoseGrid};
 use crate::touch::Plane;
@@ -127,7 +128,6 @@ fn sampled(
     (width, height): (u64, u64),
     stride: u64,
 ) -> Vec<Option<u32>> {
-    let step = usize::try_from(stride).map_or(usize::MAX, |step| step);
     let place = results.place();
     if stride == 1 {
         return results.sweep().ids(place, x..x + width, y..y + height);
@@ -136,7 +136,7 @@ fn sampled(
     let rows = (0..height).map(|row| y + row * stride);
     let ids = rows.flat_map(|row| {
         let ids = results.sweep().ids(place, x..end, row..row + 1);
-        ids.into_iter().step_by(step)
+        ids.into_iter().step_by(index(stride))
     });
     ids.collect()
 }

@@ -125,10 +125,7 @@ impl RangesForm {
         let known = |axis| last.and_then(|last| last.get(name_of(&source), axis));
         let fields = Axis::of(&source).map(|axis| RangeField {
             axis,
-            input: TextField::new(
-                known(axis).map_or(ranges[axis], |own| own).to_string(),
-                LONGEST,
-            ),
+            input: TextField::new(known(axis).unwrap_or(ranges[axis]).to_string(), LONGEST),
             proposed: None,
         });
         let fields: Vec<RangeField> = fields.collect();
