@@ -2,8 +2,10 @@
 
 use serde::Deserialize;
 
-use crate::frame::{Frame, FrameError, MAX_FRAME_SIDE, Processing, Rule};
+use crate::frame::{Frame, FrameError, Processing, Rule};
 use crate::imprint::Imprint;
+use crate::matrix::Matrix;
+use crate::sensor::MAX_SIDE;
 
 /// The keys beside `frame` that say which values are active.
 pub(crate) const RULE_KEYS: [&str; 5] = ["at_least", "percent", "low", "high", "least"];
@@ -48,36 +50,46 @@ impl RuleRecord {
     pub(crate) fn imprint(&self, rows: &[Vec<Option<f64>>]) -> Result<Imprint, String> {
         let mut processing = Processing::default();
         processing.rule = Some(self.rule()?);
-        processing.least = self.least.map_or(0, |least| least);
-        let columns = rows.first().map_or(0, Vec::len);
-        let side = |length: usize| {
-            let side = u16::try_from(length).ok();
-            side.filter(|side| (1..=MAX_FRAME_SIDE).contains(side))
-        };
-        let (Some(width), Some(height)) = (side(columns), side(rows.len())) else {
-            return Err(format!(
-                "frame: {} rows of {columns}, expected 1 to 64 of each",
-                rows.len()
-            ));
-        };
-        if let Some(row) = rows.iter().position(|row| row.len() != columns) {
-            let found = rows[row].len();
-            return Err(format!(
-                "frame: row {} has {found} values, expected {columns} as in the first row",
-                row + 1
-            ));
-        }
-        let mut frame = Frame::new(width, height);
-        for (slot, value) in frame.values_mut().iter_mut().zip(rows.iter().flatten()) {
-            *slot = value.map_or(f64::NAN, |value| value);
-        }
+        processing.least = self.least.unwrap_or_default();
+        let wrong = |error: String| format!("frame: {error}");
+        let values = matrix(rows).map_err(wrong)?;
+        let mut frame = Frame::new(values.columns().into(), values.rows().into());
+        frame.values_mut().copy_from_slice(values.values());
         let processed = processing
             .run(&frame)
-            .map_err(|error| format!("frame: {error}"))?;
+            .map_err(|error| wrong(error.to_string()))?;
         processed
             .imprint
-            .ok_or_else(|| "frame: no threshold".to_owned())
+            .ok_or_else(|| wrong("no threshold".to_owned()))
     }
+}
+
+/// A matrix of its rows; NaN where there is no cell.
+///
+/// # Errors
+/// If the rows are of different lengths, or one of the sides is not from 1 to [`MAX_SIDE`]; the message is one sentence.
+pub(crate) fn matrix(rows: &[Vec<Option<f64>>]) -> Result<Matrix<f64>, String> {
+    let (height, width) = (rows.len(), rows.first().map_or(0, Vec::len));
+    let side = |length: usize| {
+        let side = u8::try_from(length).ok();
+        side.filter(|side| (1..=MAX_SIDE).contains(side))
+    };
+    let (Some(columns), Some(lines)) = (side(width), side(height)) else {
+        return Err(format!(
+            "{height} rows of {width}, expected 1 to {MAX_SIDE} of each"
+        ));
+    };
+    if let Some((row, number)) = rows.iter().zip(1..).find(|(row, _)| row.len() != width) {
+        let found = row.len();
+        return Err(format!(
+            "row {number} has {found} values, expected {width} as in the first row"
+        ));
+    }
+    let mut matrix = Matrix::filled(columns, lines, f64::NAN);
+    for (slot, value) in matrix.values_mut().iter_mut().zip(rows.iter().flatten()) {
+        *slot = value.unwrap_or(f64::NAN);
+    }
+    Ok(matrix)
 }
 
 #[cfg(test)]
@@ -114,6 +126,12 @@ mod tests {
         assert_eq!(
             wrong("{\"at_least\":1}", "[]"),
             "frame: 0 rows of 0, expected 1 to 64 of each"
+        );
+        let row_of = |length: usize| format!("[[{}]]", vec!["1"; length].join(","));
+        assert!(imprint("{\"at_least\":1}", &row_of(64)).is_ok());
+        assert_eq!(
+            wrong("{\"at_least\":1}", &row_of(65)),
+            "frame: 1 rows of 65, expected 1 to 64 of each"
         );
     }
 }

@@ -15,19 +15,15 @@
 use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
 
-use crate::formats::framed::RuleRecord;
+use crate::formats::framed::{FrameRows, RuleRecord, matrix};
 use crate::formats::json;
 use crate::formats::recording::answer::SetRule;
 use crate::frame::{LARGEST_VALUE, Rule, Tare};
 use crate::matrix::Matrix;
 use crate::quote::legible;
-use crate::sensor::MAX_SIDE;
 
 /// The name of the form.
 const FORMAT: &str = "taxel-touch/1";
-
-/// A matrix row by row; null where there is no cell.
-type Rows = Vec<Vec<Option<f64>>>;
 
 /// A frame that was marked while it was recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -74,8 +70,8 @@ struct Described {
     #[serde(serialize_with = "rule_or_null")]
     rule: Option<DescribedRule>,
     tare_frames: Option<u64>,
-    tare: Option<Rows>,
-    tare_spread: Option<Rows>,
+    tare: Option<FrameRows>,
+    tare_spread: Option<FrameRows>,
     tare_step: Option<f64>,
     marks: Vec<FrameMark>,
     ended: Option<bool>,
@@ -145,16 +141,17 @@ impl RecordingMetadata {
             }),
             Some(DescribedRule::Other(record)) => Some(SetRule {
                 rule: record.rule().map_err(|error| format!("rule: {error}"))?,
-                least: record.least.map_or(0, |least| least),
+                least: record.least.unwrap_or_default(),
                 from: "file",
             }),
         };
         let positive = |value: &f64| *value > 0.0 && *value <= LARGEST_VALUE;
         let tare = match (described.tare, described.tare_frames) {
             (Some(rows), Some(frames)) if frames > 0 => {
-                let baseline = matrix("tare", &rows)?;
+                let baseline = matrix(&rows).map_err(|error| format!("tare: {error}"))?;
                 let spread = described.tare_spread.as_ref();
-                let spread = spread.map(|rows| matrix("tare_spread", rows)).transpose()?;
+                let spread = spread.map(|rows| matrix(rows)).transpose();
+                let spread = spread.map_err(|error| format!("tare_spread: {error}"))?;
                 let step = described.tare_step.filter(positive);
                 let tare = Tare::from_parts(baseline, spread, step, frames);
                 Some(tare.map_err(|error| format!("tare: {error}"))?)
@@ -200,7 +197,7 @@ impl RecordingMetadata {
     }
 }
 
-fn rows(matrix: &Matrix<f64>) -> Rows {
+fn rows(matrix: &Matrix<f64>) -> FrameRows {
     let row = |row| {
         let values = matrix.row(row).iter();
         values
@@ -208,25 +205,6 @@ fn rows(matrix: &Matrix<f64>) -> Rows {
             .collect()
     };
     (0..matrix.rows()).map(row).collect()
-}
-
-fn matrix(what: &str, rows: &Rows) -> Result<Matrix<f64>, String> {
-    let columns = rows.first().map_or(0, Vec::len);
-    let side = |length: usize| {
-        let side = u8::try_from(length).ok();
-        side.filter(|side| (1..=MAX_SIDE).contains(side))
-    };
-    let even = rows.iter().all(|row| row.len() == columns);
-    let (Some(width), Some(height), true) = (side(columns), side(rows.len()), even) else {
-        return Err(format!(
-            "{what}: expected 1 to 64 rows of one length, up to 64"
-        ));
-    };
-    let mut matrix = Matrix::filled(width, height, f64::NAN);
-    for (slot, value) in matrix.values_mut().iter_mut().zip(rows.iter().flatten()) {
-        *slot = value.map_or(f64::NAN, |value| value);
-    }
-    Ok(matrix)
 }
 
 #[cfg(test)]
@@ -299,7 +277,9 @@ mod tests {
         };
         assert_eq!(wrong("\"marks\":[]"), "right");
         assert!(wrong("\"rule\":{\"percent\":0}").contains("above 0"));
-        assert!(wrong("\"tare_frames\":1,\"tare\":[[1],[2,3]]").contains("rows of one length"));
+        assert!(
+            wrong("\"tare_frames\":1,\"tare\":[[1],[2,3]]").contains("tare: row 2 has 2 values")
+        );
         let unit = wrong("\"unit\":3");
         assert_eq!(unit, "found the number 3, expected a text");
     }
