@@ -2,6 +2,8 @@
 
 use crate::description::{Dimension, Value};
 
+pub use crate::parameter::number::grouped;
+
 /// The text of a value; None if the value does not exist.
 ///
 /// ```
@@ -65,24 +67,6 @@ pub fn fitting(number: f64, width: usize) -> String {
         .unwrap_or_else(|| decimal(number, 0))
 }
 
-/// A large count, its digits in groups of three.
-///
-/// ```
-/// use taxel::formats::value::grouped;
-/// assert_eq!([7_u32, 999, 1000, 3_600_000].map(grouped), ["7", "999", "1,000", "3,600,000"]);
-/// ```
-pub fn grouped(count: impl Into<u128>) -> String {
-    let digits = count.into().to_string();
-    let mut text = String::with_capacity(digits.len() * 4 / 3);
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
-}
-
 /// A count with its noun, in the singular or the plural.
 ///
 /// ```
@@ -109,9 +93,30 @@ pub(crate) fn decimal(number: f64, decimals: usize) -> String {
     }
 }
 
+/// A standard deviation in the same form; one that would look like 0 is told as less than the last decimal.
+pub(crate) fn deviation(number: f64, decimals: usize) -> String {
+    match decimal(number, decimals) {
+        zero if zero == "0" && number > 0.0 => match decimals {
+            0 => "<1".to_owned(),
+            _ => format!("<0.{:0>decimals$}", 1),
+        },
+        text => text,
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::decimal;
+    use super::{decimal, deviation};
+
+    #[test]
+    fn a_deviation_above_0_does_not_look_like_0() {
+        let shown = [0.0, 0.0049, 0.006, 1.5].map(|number| deviation(number, 2));
+        assert_eq!(shown, ["0", "<0.01", "0.01", "1.5"]);
+        assert_eq!(
+            (deviation(0.04, 1), deviation(0.3, 0)),
+            ("<0.1".into(), "<1".into())
+        );
+    }
 
     #[test]
     fn numbers_have_no_more_decimals_than_they_need() {

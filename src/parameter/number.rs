@@ -42,3 +42,21 @@ pub fn complaint(text: &str) -> String {
         _ => "not a number".to_owned(),
     }
 }
+
+/// A large count, its digits in groups of three.
+///
+/// ```
+/// use taxel::parameter::number::grouped;
+/// assert_eq!([7_u32, 999, 1000, 3_600_000].map(grouped), ["7", "999", "1,000", "3,600,000"]);
+/// ```
+pub fn grouped(count: impl Into<u128>) -> String {
+    let digits = count.into().to_string();
+    let mut text = String::with_capacity(digits.len() * 4 / 3);
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}

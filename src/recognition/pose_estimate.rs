@@ -1,5 +1,6 @@
 //! Where a shape lay and how it was turned, given the imprint that it left.
 
+use crate::figure::FigureKind;
 use crate::imprint::Imprint;
 use crate::pose::{Axis, PoseGrid, period};
 use crate::recognition::key::ImprintKey;
@@ -26,14 +27,60 @@ pub struct PoseEstimate {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct AngleEstimate {
-    /// Degrees after which the shape looks the same again.
-    pub period: u32,
+    /// Degrees after which the shape looks the same again; 360/7 for a heptagon.
+    pub period: f64,
     /// Circular mean in degrees, from 0 to below the period. None if the angles point in all directions alike.
     pub mean: Option<f64>,
     /// Circular standard deviation in degrees. None where the mean is none.
     pub spread: Option<f64>,
     /// The fewest neighbouring whole degrees that hold 95 % of the poses: the first of them, and how many.
     pub most: (u32, u32),
+}
+
+impl AngleEstimate {
+    /// Mean and standard deviation. None where the angles spread as far as if nothing were known of them: as far as equally
+    /// likely angles of one period, whose standard deviation is the period over the root of 12.
+    /// The mean lies between the [`ends`](Self::ends), so it may be below 0.
+    #[must_use]
+    pub fn known(&self) -> Option<(f64, f64)> {
+        let (mean, spread) = (self.mean?, self.spread?);
+        if spread >= self.period / 12_f64.sqrt() {
+            return None;
+        }
+        let begun = self.ends().0 < 0 && mean >= f64::from(self.most.0);
+        Some((if begun { mean - self.period } else { mean }, spread))
+    }
+
+    /// The first and the last of the fewest whole degrees that hold 95 %. Those that pass the period begin below 0.
+    #[must_use]
+    pub fn ends(&self) -> (i64, i64) {
+        let (first, count) = (i64::from(self.most.0), i64::from(self.most.1));
+        let (last, degrees) = (first + count - 1, i64::from(whole_degrees(self.period)));
+        if last < degrees {
+            (first, last)
+        } else {
+            (first - degrees, last - degrees)
+        }
+    }
+}
+
+/// Degrees after which a shape looks the same again. Sweeps know whole degrees alone, among which a heptagon repeats
+/// only after a full turn.
+fn symmetry(source: &Source) -> Option<f64> {
+    match source {
+        Source::Figure(figure) if figure.kind() == FigureKind::Heptagon => Some(360.0 / 7.0),
+        _ => period(source).map(f64::from),
+    }
+}
+
+/// The whole degrees that a period begins: 52 of a heptagon, the last one cut short.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "1 to 360"
+)]
+fn whole_degrees(period: f64) -> u32 {
+    period.ceil() as u32
 }
 
 impl Model {
@@ -52,7 +99,7 @@ impl Model {
     /// let touch = "........\n.######.\n.######.\n........".parse()?;
     /// let pose = model.pose_of(0, &touch, &|_| true).expect("the bar leaves it");
     /// let angle = pose.angle.expect("a bar has one");
-    /// assert_eq!(angle.period, 180);
+    /// assert_eq!((angle.period, angle.known().is_some()), (180.0, true));
     /// assert!(angle.spread.is_some_and(|spread| spread < 10.0));
     /// assert!((pose.position[0] - 4.0).abs() < 0.02 && (pose.position[1] - 2.0).abs() < 0.02);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -79,13 +126,13 @@ impl Model {
         let bounds = imprint.bounds()?;
         let key = ImprintKey::of(imprint);
         let source = self.shapes().get(shape)?.source.clone();
-        let period = period(&source);
+        let period = symmetry(&source);
         let grid = PoseGrid::new(source, *self.sensor(), self.anchor(), *self.ranges()).ok()?;
         let wanted = |other: &Imprint| ImprintKey::of(other) == key;
         let runs = Sweep::new(&grid).progress(progress).poses_where(&wanted)?;
         let mut plane = Plane::new(*grid.sensor());
         let mut sums = Sums::default();
-        let mut degrees = vec![0; period.unwrap_or(1) as usize];
+        let mut degrees = vec![0; period.map_or(1, whole_degrees) as usize];
         let mut seen = Vec::new();
         for run in runs {
             let first = grid.pose(run.first);
@@ -110,8 +157,8 @@ impl Model {
                 });
             }
             if let Some(period) = period {
-                let angle = first[Axis::Angle].rem_euclid(f64::from(period));
-                sums.turn(weight, angle / f64::from(period));
+                let angle = first[Axis::Angle].rem_euclid(period);
+                sums.turn(weight, angle / period);
                 degrees[whole(angle, period)] += weight;
             }
         }
@@ -156,7 +203,7 @@ fn chosen(mut seen: Vec<SeenPose>, estimate: &PoseEstimate, most: usize) -> Vec<
         let dx = over(x - estimate.position[0], estimate.spread[0]);
         let dy = over(y - estimate.position[1], estimate.spread[1]);
         let turned = estimate.angle.as_ref().and_then(|own| {
-            let period = f64::from(own.period);
+            let period = own.period;
             let from = (angle - own.mean? + period / 2.0).rem_euclid(period) - period / 2.0;
             Some(over(from, own.spread?))
         });
@@ -194,8 +241,8 @@ fn ordered(distance: f64) -> u64 {
     clippy::cast_sign_loss,
     reason = "0 to 359"
 )]
-fn whole(angle: f64, period: u32) -> usize {
-    (angle as usize).min(period as usize - 1)
+fn whole(angle: f64, period: f64) -> usize {
+    (angle as usize).min(whole_degrees(period) as usize - 1)
 }
 
 /// Sums over poses.
@@ -233,7 +280,7 @@ impl Sums {
         self.sine += real(weight) * sine;
     }
 
-    fn finish(self, angles: Option<(u32, Vec<u64>)>) -> Option<PoseEstimate> {
+    fn finish(self, angles: Option<(f64, Vec<u64>)>) -> Option<PoseEstimate> {
         if self.poses == 0 {
             return None;
         }
@@ -245,15 +292,14 @@ impl Sums {
             *spread = variance.max(0.0).sqrt();
         }
         let angle = angles.map(|(period, degrees)| {
-            let turn = f64::from(period);
             let length = self.cosine.hypot(self.sine) / all;
             let directed = length > 1e-9;
             let mean = self.sine.atan2(self.cosine) / std::f64::consts::TAU;
             let spread = (-2.0 * length.min(1.0).ln()).max(0.0).sqrt() / std::f64::consts::TAU;
             AngleEstimate {
                 period,
-                mean: directed.then(|| (mean * turn).rem_euclid(turn)),
-                spread: directed.then_some(spread * turn),
+                mean: directed.then(|| (mean * period).rem_euclid(period)),
+                spread: directed.then_some(spread * period),
                 most: fewest(&degrees, self.poses),
             }
         });
@@ -348,6 +394,46 @@ mod tests {
             );
         }
         assert_eq!(model.pose_of(7, &Imprint::empty(4, 4), &|_| true), None);
+    }
+
+    /// Of the angles of a heptagon, those that look alike count as one.
+    #[test]
+    fn a_heptagon_repeats_every_seventh_of_a_turn() {
+        let steps = GridSteps {
+            positions: 4,
+            degrees: 1,
+        };
+        let mut shapes = equal_figures();
+        shapes.retain(|shape| shape.name == "heptagon");
+        let training = Training::fitting(shapes, steps).expect("it fits");
+        let grid = training.grids()[0].clone();
+        let model = training.run().expect("not stopped");
+        let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(grid.pose(21)));
+        let pose = model.pose_of(0, &imprint, &|_| true).expect("it leaves it");
+        let angle = pose.angle.expect("it has one");
+        assert!((angle.period - 360.0 / 7.0).abs() < 1e-12, "{angle:?}");
+        assert!(angle.most.1 <= 52, "{angle:?}");
+        let (mean, spread) = angle.known().expect("one of few");
+        assert!((-26.0..52.0).contains(&mean) && spread < 15.0, "{angle:?}");
+    }
+
+    #[test]
+    fn degrees_that_pass_the_period_begin_below_0_and_hold_the_mean() {
+        let estimate = |period, mean, spread, most| AngleEstimate {
+            period,
+            mean: Some(mean),
+            spread: Some(spread),
+            most,
+        };
+        let over = estimate(120.0, 119.0, 5.0, (109, 23));
+        assert_eq!((over.ends(), over.known()), ((-11, 11), Some((-1.0, 5.0))));
+        let within = estimate(120.0, 17.0, 0.5, (16, 3));
+        assert_eq!(
+            (within.ends(), within.known()),
+            ((16, 18), Some((17.0, 0.5)))
+        );
+        let all = estimate(360.0, 180.0, 140.8, (0, 310));
+        assert_eq!((all.ends(), all.known()), ((0, 309), None));
     }
 
     #[test]

@@ -247,6 +247,38 @@ fn a_pose_is_told_in_cells_degrees_and_mm() {
 }
 
 #[test]
+fn a_heptagon_repeats_every_seventh_of_a_turn() {
+    let place = Place::new();
+    place.write(
+        "heptagon.jsonl",
+        "{\"name\":\"heptagon\",\"figure\":\"heptagon\",\"side\":4}\n",
+    );
+    place.done("model train heptagon.jsonl --positions 4 --name h");
+    let near = place.done("figure heptagon --side 4 --x0 5.25 --y0 5 --angle 2 --json");
+    let near = answer(&place.run("recognise - --model h", &near));
+    // What it leaves in one of the few poses of the model.
+    let touched = format!("{{\"imprint\":{}}}\n", near["nearest"]["imprint"]);
+    let rows = near["nearest"]["imprint"].as_array().expect("rows");
+    let rows = rows.iter().filter_map(Value::as_str);
+    let drawn: String = rows.map(|row| format!("{row}\n")).collect();
+    let text = place.run("recognise - --model h --pose", &drawn).stdout;
+    assert!(text.contains("(repeats every 51.43°)"), "{text}");
+    let json = answer(&place.run("recognise - --model h --pose --json", &touched));
+    let angle = &json["pose"]["angle"];
+    let number = |key: &str| angle[key].as_f64().expect("a number");
+    assert!((number("period") - 360.0 / 7.0).abs() < 1e-9, "{angle}");
+    assert!(number("degrees") <= 52.0, "{angle}");
+    // An angle as good as unknown has neither a deviation nor an interval.
+    let dot = "dot=rectangle length=1.2 width=1";
+    place.done(&format!(
+        "model train --shape '{dot}' --positions 4 --name dot"
+    ));
+    let dot = place.run("recognise - --model dot --pose", "....\n.#..\n....\n");
+    let any = "\nangle any (repeats every 180°)\n";
+    assert!(dot.stdout.contains(any), "{}", dot.stdout);
+}
+
+#[test]
 fn the_seven_figures_are_at_hand() {
     let place = Place::new();
     let touched = place.done("figure hexagon --side 4 --x0 5.3 --y0 5.1 --angle 12 --json");

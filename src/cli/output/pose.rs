@@ -2,21 +2,21 @@
 //!
 //! ```text
 //! centre at 3, 3 ± 0.13, 0.13 cells
-//! angle 30.2° ± 1.4° (repeats every 180°); 95 % in 6°, from 27° to 32°
+//! angle 30.2° ± 1.4° (repeats every 180°); 95 % in 27°..32°
 //! ```
 //! Positions are those of the centre about which the shape turns, in cells of the touch, x to the right, y down. All
 //! poses of the model that leave the imprint count alike; `±` is their standard deviation. Angles are degrees as of
 //! flags, modulo the angle after which the shape looks the same.
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::cli::output::charset::Charset;
 use crate::cli::output::plot::{canvas_of_taxels, character};
-use crate::formats::value::decimal;
+use crate::formats::value::{decimal, deviation};
 use crate::geometry::{Ellipse, Pen, Point, Side, Solid};
 use crate::imprint::Imprint;
 use crate::pose::{Anchor, Axis, Placed, Pose, PoseGrid, Ranges};
-use crate::recognition::{Model, PoseEstimate};
+use crate::recognition::{AngleEstimate, Model, PoseEstimate};
 use crate::sensor::Sensor;
 use crate::tui::widget::dots::DotCanvas;
 
@@ -57,12 +57,23 @@ struct AngleJson {
     mean: Option<f64>,
     /// The circular standard deviation; null where the mean is.
     sd: Option<f64>,
-    /// Degrees after which the shape looks the same.
-    period: u32,
+    /// Degrees after which the shape looks the same; whole ones are written without a point.
+    #[serde(serialize_with = "whole_if_it_is")]
+    period: f64,
     /// The first of the neighbouring degrees.
     from: u32,
     /// How many these are; they may pass the period and begin again at 0.
     degrees: u32,
+}
+
+/// Writes a period that is whole as an integer.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes it so")]
+#[expect(clippy::cast_possible_truncation, reason = "at most 360")]
+fn whole_if_it_is<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    match number.fract() {
+        0.0 => serializer.serialize_i64(*number as i64),
+        _ => serializer.serialize_f64(*number),
+    }
 }
 
 /// A shape's pose, as far as one touch tells it.
@@ -146,36 +157,23 @@ impl PoseReport {
     /// The pose in words, and the outline of the shape over the touch.
     pub(crate) fn text(&self, touch: &Imprint, charset: Charset) -> String {
         let estimate = &self.estimate;
-        let pair = |factor: f64, [x, y]: [f64; 2]| {
-            format!("{}, {}", decimal(x * factor, 2), decimal(y * factor, 2))
+        let place = |factor: f64| {
+            let ([x, y], [dx, dy]) = (estimate.position, estimate.spread);
+            format!(
+                "{}, {} ± {}, {}",
+                decimal(x * factor, 2),
+                decimal(y * factor, 2),
+                deviation(dx * factor, 2),
+                deviation(dy * factor, 2)
+            )
         };
-        let (position, spread) = (estimate.position, estimate.spread);
-        let mut text = format!(
-            "centre at {} ± {} cells",
-            pair(1.0, position),
-            pair(1.0, spread)
-        );
+        let mut text = format!("centre at {} cells", place(1.0));
         if let Some(pitch) = self.pitch_mm {
-            let (position, spread) = (pair(pitch, position), pair(pitch, spread));
-            text += &format!(", {position} ± {spread} mm");
+            text += &format!(", {} mm", place(pitch));
         }
         text += &match &estimate.angle {
             None => "; it looks the same at every angle\n".to_owned(),
-            Some(angle) => {
-                let (first, count) = angle.most;
-                let mean = match (angle.mean, angle.spread) {
-                    (Some(mean), Some(spread)) => {
-                        format!("{}° ± {}°", decimal(mean, 1), decimal(spread, 1))
-                    }
-                    _ => "any".to_owned(),
-                };
-                let period = match angle.period {
-                    360 => String::new(),
-                    period => format!(" (repeats every {period}°)"),
-                };
-                let last = (first + count - 1) % angle.period;
-                format!("\nangle {mean}{period}; 95 % in {count}°, from {first}° to {last}°\n")
-            }
+            Some(angle) => format!("\n{}\n", angle_in_words(angle)),
         };
         charset.lines(&(text + &self.drawn(touch, charset)))
     }
@@ -206,6 +204,20 @@ impl PoseReport {
         });
         lines.collect()
     }
+}
+
+/// The angle with its spread, or that any is as likely.
+fn angle_in_words(angle: &AngleEstimate) -> String {
+    let repeats = match decimal(angle.period, 2) {
+        turn if turn == "360" => String::new(),
+        period => format!(" (repeats every {period}°)"),
+    };
+    let Some((mean, spread)) = angle.known() else {
+        return format!("angle any{repeats}");
+    };
+    let (mean, spread) = (decimal(mean, 1), deviation(spread, 1));
+    let (first, last) = angle.ends();
+    format!("angle {mean}° ± {spread}°{repeats}; 95 % in {first}°..{last}°")
 }
 
 /// Draws a boundary as dots.

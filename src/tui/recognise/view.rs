@@ -19,7 +19,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::formats::value::{counted, grouped};
+use crate::formats::value::{counted, decimal, deviation, grouped};
 use crate::imprint::Imprint;
 use crate::pose::{Anchor, Axis};
 use crate::recognition::{Answer, AnswerState, Nearest, PoseEstimate};
@@ -174,8 +174,8 @@ impl Panel<'_> {
         let ranges = model.ranges();
         let steps = format!(
             "grid: {} cells, {}°; {}",
-            decimal(ranges[Axis::X0].step()),
-            decimal(ranges[Axis::Angle].step()),
+            decimal(ranges[Axis::X0].step(), 4),
+            decimal(ranges[Axis::Angle].step(), 4),
             touches(evaluation.touches),
         );
         self.text(&steps, Role::Quiet);
@@ -341,33 +341,34 @@ fn place(trained: &TrainedModel, shape: usize, pose: &PoseEstimate, own: bool) -
     };
     let [x, y] = pose.position;
     let [dx, dy] = pose.spread;
-    let place = format!("{name}{what} {x:.2} ± {dx:.2}, {y:.2} ± {dy:.2}");
+    let (dx, dy) = (spread_of(dx, 2), spread_of(dy, 2));
+    let place = format!("{name}{what} {x:.2} ± {dx}, {y:.2} ± {dy}");
     let poses = counted(pose.poses, "pose");
     let any = || ("any angle".to_owned(), poses.clone());
     let (angle, poses) = pose.angle.as_ref().map_or_else(any, |angle| {
-        let ((first, count), period) = (angle.most, angle.period);
-        let (Some(mean), Some(spread)) = (angle.mean, angle.spread) else {
+        let Some((mean, spread)) = angle.known() else {
             return any();
         };
-        if count >= period {
-            return any();
-        }
-        let turn = match period {
-            360 => String::new(),
+        let turn = match decimal(angle.period, 2) {
+            turn if turn == "360" => String::new(),
             period => format!(" (repeats every {period}°)"),
         };
-        let last = (first + count - 1) % period;
+        let (first, last) = angle.ends();
+        let (mean, spread) = (decimal(mean, 0), spread_of(spread, 1));
         (
-            format!("angle {:.0}° ± {spread:.1}°{turn}", whole(mean, period)),
+            format!("angle {mean}° ± {spread}°{turn}"),
             format!("95 % in {first}°..{last}°; {poses}"),
         )
     });
     [place, angle, poses]
 }
 
-/// The nearest whole degree below a period.
-fn whole(angle: f64, period: u32) -> f64 {
-    angle.round().rem_euclid(f64::from(period))
+/// A standard deviation with all its decimals, so that lines keep their width while a shape is moved.
+fn spread_of(number: f64, decimals: usize) -> String {
+    match deviation(number, decimals) {
+        little if little.starts_with('<') => little,
+        _ => format!("{number:.decimals$}"),
+    }
 }
 
 /// A number of taxels that differ.
@@ -380,12 +381,6 @@ fn differ(count: u32) -> String {
 fn touches(count: u128) -> String {
     let ending = if count == 1 { "" } else { "es" };
     format!("{} touch{ending}", grouped(count))
-}
-
-/// A number as short as it is.
-fn decimal(value: f64) -> String {
-    let value = (value * 1e4).round() / 1e4;
-    value.to_string()
 }
 
 /// A share of a whole in percent.
