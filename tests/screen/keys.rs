@@ -502,7 +502,10 @@ fn a_random_touch_is_named_by_row_letter_or_number_and_scored() {
         &["it was: ellipse; u takes its touch back", "0 of 1 right"],
     );
     let drawn = "<Space>:seed 7<Enter>:recognise figures-30<Enter>t";
-    shows(&format!("{drawn}<Esc>u"), &["undone", "NA 1 in all"]);
+    shows(
+        &format!("{drawn}<Esc>u"),
+        &["undone: random touch", "NA 1 in all"],
+    );
     let many = ":seed 7<Enter>:recognise shapes<Enter>t";
     shows(many, &["> 1 ", "  0 above, 13 below"]);
     shows(&format!("{many}<End>"), &["  13 above, 0 below"]);

@@ -40,15 +40,31 @@ pub(in crate::tui) fn change(app: &mut App, document: Document) {
 
 /// A document that comes from somewhere else, with the name that it is stored under, if it is.
 pub(in crate::tui) fn begin(app: &mut App, document: Document, name: Option<StoredName>) {
+    let brought_by = name
+        .as_ref()
+        .map(|stored| format!("{} loaded", stored.name));
+    begin_from(app, document, name, brought_by);
+}
+
+/// A document that comes from somewhere else without a name; the history calls the step so.
+pub(in crate::tui) fn begin_by(app: &mut App, document: Document, brought_by: &str) {
+    begin_from(app, document, None, Some(brought_by.to_owned()));
+}
+
+/// A document that comes from somewhere else: the name that it is stored under, and what the history calls the step.
+fn begin_from(
+    app: &mut App,
+    document: Document,
+    name: Option<StoredName>,
+    brought_by: Option<String>,
+) {
     let saved = document.clone();
-    app.history.begin(
-        document,
-        DocumentOrigin {
-            loaded: name.as_ref().map(|stored| stored.name.clone()),
-            name,
-            saved,
-        },
-    );
+    let origin = DocumentOrigin {
+        brought_by,
+        name,
+        saved,
+    };
+    app.history.begin(document, origin);
     app.mode = Mode::Draw;
     settle(app);
 }
@@ -143,7 +159,7 @@ pub(in crate::tui) fn replace(app: &mut App, document: Document) {
     let dropped = present.edits.count().saturating_sub(document.edits.count());
     if is_other(app, &document) {
         let nowhere = DocumentOrigin {
-            loaded: None,
+            brought_by: None,
             name: None,
             saved: Document::empty(document.sensor),
         };

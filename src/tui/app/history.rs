@@ -9,8 +9,9 @@ use crate::tui::app::steps::difference;
 /// under which name they are stored.
 #[derive(Clone, Debug)]
 pub struct DocumentOrigin {
-    /// The name of the shape that was loaded, None if it was not one; saving under another name does not change it.
-    pub loaded: Option<String>,
+    /// What brought it, in words: "washer loaded", "random touch"; None where the documents themselves tell. Saving under
+    /// another name does not change it.
+    pub brought_by: Option<String>,
     /// The name that the document was loaded from or stored under.
     pub name: Option<StoredName>,
     /// What would be found again: work that differs from it is unsaved.
@@ -56,7 +57,7 @@ impl History {
     /// Begins with a document that there is nothing to save of.
     pub fn new(document: Document) -> Self {
         let origins = vec![DocumentOrigin {
-            loaded: None,
+            brought_by: None,
             name: None,
             saved: document.clone(),
         }];
@@ -200,12 +201,10 @@ impl History {
 
     /// What leads from one state to the next, in words.
     fn step(&self, from: &Revision, to: &Revision) -> String {
-        let loaded = self.origins.get(to.origin);
-        let loaded = loaded.and_then(|origin| origin.loaded.as_ref());
-        match loaded.filter(|_| from.origin != to.origin) {
-            Some(name) => format!("{name} loaded"),
-            None => difference(&from.document, &to.document),
-        }
+        let origin = self.origins.get(to.origin);
+        let brought_by = origin.and_then(|origin| origin.brought_by.clone());
+        let brought_by = brought_by.filter(|_| from.origin != to.origin);
+        brought_by.unwrap_or_else(|| difference(&from.document, &to.document))
     }
 
     /// The steps from the oldest state to the latest one, in words, and how many of them lead to the present one.

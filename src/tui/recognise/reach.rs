@@ -2,7 +2,7 @@
 
 use crate::imprint::Imprint;
 use crate::sensor::Sensor;
-use crate::tui::app::change::begin;
+use crate::tui::app::change::begin_by;
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Document;
 use crate::tui::app::state::App;
@@ -29,9 +29,9 @@ pub(in crate::tui) fn trained_set(app: &App) -> Option<&ModelChoice> {
     page.trained().map(|trained| &trained.choice)
 }
 
-/// Puts an imprint onto the matrix as if it were drawn: nothing says what made it.
-pub(super) fn put(app: &mut App, sensor: Sensor, imprint: &Imprint) {
+/// Puts an imprint onto the matrix as if it were drawn: nothing there says what made it. The history calls the step as told.
+pub(super) fn put(app: &mut App, sensor: Sensor, imprint: &Imprint, brought_by: &str) {
     let mut document = Document::empty(sensor);
     document.edits = *imprint;
-    begin(app, document, None);
+    begin_by(app, document, brought_by);
 }

@@ -152,7 +152,7 @@ fn touch_again(app: &mut App, mut exercise: Exercise) {
     let sensor = app.history.present().sensor;
     let Some(page) = state(app) else { return };
     if let Some((sensor, imprint)) = exercise.touch(sensor, &mut page.random) {
-        put(app, sensor, &imprint);
+        put(app, sensor, &imprint, "random touch");
     }
     let_go(app);
     app.dialogs.push(Dialog::Exercise(Box::new(exercise)));
@@ -285,7 +285,7 @@ pub(in crate::tui) fn in_confusion(
     if *message == Message::Accept {
         let sensor = app.history.present().sensor;
         if let Some((sensor, imprint)) = page.imprint_on(sensor) {
-            put(app, sensor, &imprint);
+            put(app, sensor, &imprint, "confused imprint");
             return None;
         }
         refuse(app, "there is no imprint in this cell");

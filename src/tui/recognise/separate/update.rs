@@ -93,7 +93,7 @@ fn put_example(app: &mut App, page: &Separate) -> bool {
     };
     let own = *page.request().trained.model.sensor();
     let (sensor, imprint) = onto(&imprint, app.history.present().sensor, own);
-    put(app, sensor, &imprint);
+    put(app, sensor, &imprint, "imprint of a size");
     true
 }
 
