@@ -315,6 +315,14 @@ fn commands_do_what_keys_do() {
 fn the_shape_is_turned_and_zoomed_by_commands() {
     let mut session = session("f<Enter>:turn -20<Enter>");
     shows(&session, &["340°"]);
+    then(&mut session, ":turn 50.5<Enter>", &["30.5°"]);
+    then(&mut session, ":turn 720.25<Enter>", &["30.75°"]);
+    then(
+        &mut session,
+        ":turn far<Enter>",
+        &["! turn takes degrees like 30.5, found \"far\"", ":turn far"],
+    );
+    press(&mut session, "<Esc>");
     then(
         &mut session,
         ":picture washer<Enter><Enter>:zoom in<Enter>:zoom in<Enter>:zoom out<Enter>",

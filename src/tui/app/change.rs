@@ -224,10 +224,10 @@ pub(in crate::tui) fn shift(app: &mut App, dx: f64, dy: f64) {
 }
 
 /// Turns the shape, as seen.
-pub(in crate::tui) fn turn(app: &mut App, clockwise: i16) {
+pub(in crate::tui) fn turn(app: &mut App, clockwise: f64) {
     let Some(source) = movable(app) else { return };
     if let Some(angle) = source.get(Parameter::Angle) {
-        let turned = tidy(angle + f64::from(clockwise) * source.sense());
+        let turned = tidy(angle + clockwise % 360.0 * source.sense());
         let angle = turned.rem_euclid(360.0);
         set(app, source, MoveKind::Turn, &[(Parameter::Angle, angle)]);
     }

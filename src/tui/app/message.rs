@@ -73,8 +73,8 @@ pub enum Message {
     Nudge(Arrow),
     /// Move the shape by a distance in cells along x and y.
     Move(f64, f64),
-    /// Turn the shape clockwise as seen, by whole degrees.
-    Turn(i16),
+    /// Turn the shape clockwise as seen, by degrees.
+    Turn(f64),
     /// Another step of nudging, larger or smaller.
     NudgeStep(i8),
     /// Go to the field of a form this many further on; negative goes back.

@@ -56,7 +56,7 @@ pub enum Arguments {
     Sensor,
     /// Ranges of a sweep.
     Ranges,
-    /// Whole degrees.
+    /// Degrees.
     Degrees,
     /// Column and row of a taxel.
     Taxel,
@@ -207,10 +207,10 @@ actions! {
         NUDGE_RIGHT "nudge-right" ["nudge right"] Message::Nudge(Arrow::Right);
         NUDGE_UP "nudge-up" ["nudge up"] Message::Nudge(Arrow::Up);
         NUDGE_DOWN "nudge-down" ["nudge down"] Message::Nudge(Arrow::Down);
-        TURN_LEFT "turn-left" [] Message::Turn(-1);
-        TURN_RIGHT "turn-right" [] Message::Turn(1);
-        TURN_LEFT_10 "turn-left-10" [] Message::Turn(-10);
-        TURN_RIGHT_10 "turn-right-10" [] Message::Turn(10);
+        TURN_LEFT "turn-left" [] Message::Turn(-1.0);
+        TURN_RIGHT "turn-right" [] Message::Turn(1.0);
+        TURN_LEFT_10 "turn-left-10" [] Message::Turn(-10.0);
+        TURN_RIGHT_10 "turn-right-10" [] Message::Turn(10.0);
         ZOOM_IN "zoom-in" ["zoom in"] Message::Zoom(1);
         ZOOM_OUT "zoom-out" ["zoom out"] Message::Zoom(-1);
         ZOOM_CENTRE "zoom-centre" [] Message::ZoomCentre;

@@ -13,7 +13,7 @@
 
 use crate::figure::{Figure, FigureKind};
 use crate::formats::Name;
-use crate::parameter::Parameter;
+use crate::parameter::{Parameter, number};
 use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, RangeError, default_ranges};
 use crate::quote::shortened;
 use crate::sensor::Sensor;
@@ -128,15 +128,10 @@ fn seed(text: &str) -> Result<Message, String> {
     Ok(Message::Recognise(RecogniseMessage::Seed(seed)))
 }
 
-/// Whole degrees, at most one turn either way.
+/// Degrees: any number of them, either way.
 fn degrees(text: &str) -> Result<Message, String> {
-    match text.parse() {
-        Ok(degrees) if (-360..=360).contains(&degrees) => Ok(Message::Turn(degrees)),
-        _ => Err(format!(
-            "turn takes whole degrees from -360 to 360, found {:?}",
-            shortened(text)
-        )),
-    }
+    let degrees = number::read(text).map(Message::Turn);
+    degrees.ok_or_else(|| format!("turn takes degrees like 30.5, found {:?}", shortened(text)))
 }
 
 /// A taxel of the sensor.
