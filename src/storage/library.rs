@@ -255,26 +255,35 @@ impl Library {
         }
     }
 
+    /// Returns the name of a shape that can be deleted as its file has it.
+    ///
+    /// # Errors
+    /// If there is none of that name, it comes with the program, or the folder cannot be read.
+    pub fn deletable(&self, name: &str) -> Result<String, LibraryError> {
+        let name = Name::new(name)?;
+        if self.folder.is_dir()
+            && let Some(own) = self.own_name(&name)?
+        {
+            return Ok(own);
+        }
+        let shipped = shipped::has(&name);
+        let name = name.to_string();
+        Err(if shipped {
+            LibraryError::Shipped { name }
+        } else {
+            LibraryError::Unknown { name }
+        })
+    }
+
     /// Moves a shape into the trash without reading its file, and returns its name as the file had it.
     ///
     /// # Errors
     /// If there is none of that name, it comes with the program, or the system refuses.
     pub fn delete(&self, name: &str) -> Result<String, LibraryError> {
-        let name = Name::new(name)?;
-        let unknown = || {
-            let shipped = shipped::has(&name);
-            let name = name.to_string();
-            if shipped {
-                LibraryError::Shipped { name }
-            } else {
-                LibraryError::Unknown { name }
-            }
-        };
-        if !self.folder.is_dir() {
-            return Err(unknown());
-        }
+        // Before the lock, which is a file in the folder.
+        self.deletable(name)?;
         let _lock = Lock::wait(&self.folder, &self.waits)?;
-        let own = self.own_name(&name)?.ok_or_else(unknown)?;
+        let own = self.deletable(name)?;
         let path = self.path(&own);
         folder::regular(&path)?;
         folder::make_inner(&self.trash())?;

@@ -263,6 +263,8 @@ pub enum LibraryEvent {
     NotStored(String),
     /// It was not stored, because the file holds something else; the question whether to replace it.
     Differs(Box<StoredShape>, u64, String),
+    /// The shape of that name can be deleted, or not, and why.
+    Deletable(Result<String, String>),
     /// It was removed.
     Removed(String),
     /// It was brought back.

@@ -56,7 +56,6 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
             Some(before) => compare_with(app, "the state before", &before),
             None => inform(app, "nothing to compare with: there was no step yet"),
         },
-        Message::AskRemove(name) => ask(app, format!("Delete {name}?"), Message::Remove(name)),
         Message::Replace(shape, stamp) => {
             let text = format!("Replace {}?", shape.name);
             ask(app, text, Message::Store(shape, Expected::Stamp(stamp)));
@@ -134,6 +133,7 @@ fn library_request(message: Message) -> Result<LibraryRequest, Message> {
         Message::PictureNamed(name) => LibraryRequest::Named(Purpose::Picture, name),
         Message::CompareNamed(name) => LibraryRequest::Named(Purpose::Compare, name),
         Message::Restore(name) => LibraryRequest::Restore(name),
+        Message::AskRemove(name) => LibraryRequest::Deletable(name),
         Message::Remove(name) => LibraryRequest::Remove(name),
         Message::Recover => LibraryRequest::Recover,
         Message::GiveUp => LibraryRequest::GiveUp,

@@ -38,7 +38,9 @@ const QUICK: Duration = Duration::from_millis(100);
 pub(super) enum DiskRequest {
     /// Save a shape.
     Store(Box<StoredShape>, Expected),
-    /// Delete the shape of that name.
+    /// Look whether the shape of that name can be deleted.
+    Deletable(String),
+    /// Delete it.
     Remove(String),
     /// Restore the shape of that name that was deleted last.
     Restore(String),
@@ -101,6 +103,7 @@ impl DiskRequest {
     fn words(&self) -> String {
         match self {
             Self::Store(shape, _) => format!("Saving {}", shape.name),
+            Self::Deletable(name) => format!("Looking for {name}"),
             Self::Remove(name) => format!("Deleting {name}"),
             Self::Restore(name) => format!("Restoring {name}"),
             Self::ThrowAway(_) => "Moving it to the trash".to_owned(),
@@ -167,6 +170,10 @@ impl DiskRequest {
             Self::Named(purpose, name) => {
                 let loaded = library.load(&name).map(Box::new);
                 DiskAnswer::Library(LibraryEvent::Named(purpose, loaded.map_err(sentence)))
+            }
+            Self::Deletable(name) => {
+                let found = library.deletable(&name).map_err(sentence);
+                DiskAnswer::Library(LibraryEvent::Deletable(found))
             }
             Self::Remember(file, lines) => {
                 file.write(&lines);

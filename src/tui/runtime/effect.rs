@@ -103,6 +103,8 @@ pub enum LibraryRequest {
     Named(Purpose, String),
     /// Save a shape, given what its file is expected to hold.
     Store(Box<StoredShape>, Expected),
+    /// Look whether the shape of that name can be deleted.
+    Deletable(String),
     /// Delete a shape.
     Remove(String),
     /// Restore the shape of that name that was deleted last.

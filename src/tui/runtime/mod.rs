@@ -534,6 +534,9 @@ impl World {
                 return self.change(DiskRequest::Store(shape, expected));
             }
             LibraryRequest::Remove(name) => return self.change(DiskRequest::Remove(name)),
+            LibraryRequest::Deletable(name) => {
+                return self.read(app, DiskRequest::Deletable(name));
+            }
             LibraryRequest::Restore(name) => return self.change(DiskRequest::Restore(name)),
             LibraryRequest::Recover => match self.orphan.take() {
                 Some((orphan, _)) => {

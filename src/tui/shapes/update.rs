@@ -76,7 +76,9 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
                 refuse(app, reason);
             }
         }
+        LibraryEvent::Deletable(Ok(name)) => ask_removal(app, name),
         LibraryEvent::Named(_, Err(reason))
+        | LibraryEvent::Deletable(Err(reason))
         | LibraryEvent::Trash(Err(reason))
         | LibraryEvent::Failed(reason) => refuse(app, reason),
         change => on_change(app, change),
@@ -158,6 +160,7 @@ fn on_change(app: &mut App, change: LibraryEvent) {
         | LibraryEvent::Models(_)
         | LibraryEvent::Read(_)
         | LibraryEvent::Named(..)
+        | LibraryEvent::Deletable(_)
         | LibraryEvent::Failed(_) => {}
     }
 }
@@ -236,10 +239,7 @@ fn choose(app: &mut App, mut list: ListDialog) -> Option<Effect> {
             list.accept(!list.is_listed());
             app.dialogs.push(Dialog::List(list));
         }
-        (Some((name, _)), Purpose::Delete) => {
-            let question = Question::new(format!("Delete {name}?"), Message::Remove(name));
-            app.dialogs.push(Dialog::Question(question));
-        }
+        (Some((name, _)), Purpose::Delete) => ask_removal(app, name),
         (Some((_, Some(Ok(loaded)))), Purpose::Load) => {
             if let Err(text) = place(app, &loaded) {
                 app.dialogs.push(Dialog::List(list));
@@ -261,6 +261,12 @@ fn choose(app: &mut App, mut list: ListDialog) -> Option<Effect> {
         (Some((_, Some(Ok(_)))), Purpose::Compare) => app.dialogs.push(Dialog::List(list)),
     }
     None
+}
+
+/// Asks whether a shape shall be deleted.
+fn ask_removal(app: &mut App, name: String) {
+    let question = Question::new(format!("Delete {name}?"), Message::Remove(name));
+    app.dialogs.push(Dialog::Question(question));
 }
 
 /// Opens the form that places an imprint as a picture.
