@@ -57,11 +57,13 @@ fn what_cannot_be_opened_or_written_is_said() {
         &format!(":open {place}/a.png<Enter>"),
         &["a PNG image, expected rows of"],
     );
+    press(&mut session, "<Esc>");
     then(
         &mut session,
         &format!(":open {place}<Enter>"),
         &["not a regular file"],
     );
+    press(&mut session, "<Esc>");
     then(
         &mut session,
         "<Space>:write x.doc<Enter>",

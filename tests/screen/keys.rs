@@ -447,7 +447,7 @@ fn recognise_goes_through_sets_and_takes_one_by_name() {
         ],
     );
     shows(
-        ":recognise nothing<Enter>o",
+        ":recognise nothing<Enter><Esc>o",
         &["Recognise: the seven figures", "Nothing is touched"],
     );
     shows(":seed x<Enter>", &["seed takes a whole number"]);

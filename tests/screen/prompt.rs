@@ -5,7 +5,7 @@ use taxel::tui::keys::binding::Context;
 use taxel::tui::keys::default_keys::DEFAULT_KEYS;
 use taxel::tui::prompt::commands::{commands, find};
 
-use crate::session::{press, session, shows, then};
+use crate::session::{hides, press, session, shows, then};
 
 /// Whoever has no such key, or cannot press it, has a word.
 #[test]
@@ -299,7 +299,10 @@ fn commands_do_what_keys_do() {
             "! expected a flag like --side, found side",
         ),
         ("undo now", "! undo takes nothing, found \"now\""),
-        ("turn round", "! turn takes whole degrees from -360 to 360"),
+        (
+            "turn round",
+            "! turn takes degrees like 30.5, found \"round\"",
+        ),
         ("zoom", "! zoom takes in or out"),
         ("save a/b", "! '/' cannot be in a name"),
         ("load nowhere", "! no shape is called \"nowhere\""),
@@ -328,6 +331,43 @@ fn the_shape_is_turned_and_zoomed_by_commands() {
         ":picture washer<Enter><Enter>:zoom in<Enter>:zoom in<Enter>:zoom out<Enter>",
         &["zoom 1.01 x 1.01"],
     );
+}
+
+/// What one types next belongs to the prompt, not to the matrix.
+#[test]
+fn a_refused_prompt_stays_open() {
+    for (line, refusal) in [
+        ("load nope", "! no shape is called \"nope\""),
+        ("picture nope", "! no shape is called \"nope\""),
+        ("delete nope", "! no shape is called \"nope\""),
+        (
+            "delete arrow",
+            "! \"arrow\" comes with the program; it can be copied under another name",
+        ),
+        ("move 0 -100", "! y0: -96 is out of range"),
+        (
+            "save arrow",
+            "! arrow is the name of a shipped shape; choose another",
+        ),
+        ("recognise nope", "! "),
+        ("open nope.txt", "! nope.txt"),
+    ] {
+        let mut session = session(&format!("f<Enter>:{line}<Enter>"));
+        shows(&session, &[refusal, &format!("\n:{line}")]);
+        then(&mut session, " x", &[&format!(":{line} x")]);
+        // Once it is closed, it stays closed.
+        press(&mut session, "<Esc><Right>");
+        hides(&session, &[&format!(":{line}")]);
+    }
+    let mut saved = session("f<Enter>sarrow<Enter>");
+    shows(
+        &saved,
+        &[
+            "! arrow is the name of a shipped shape; choose another",
+            "Save as: arrow",
+        ],
+    );
+    then(&mut saved, " 2<Enter>", &["saved as arrow 2"]);
 }
 
 #[test]

@@ -185,6 +185,9 @@ pub struct App {
     pub(in crate::tui) count: Option<u16>,
     /// The pages over the matrix; the last one is on top.
     pub(in crate::tui) dialogs: Vec<Dialog>,
+    /// The prompt that the last message came from, until something else is done: it opens again if what it asked for is
+    /// refused.
+    pub(in crate::tui) prompt: Option<Dialog>,
     /// What the line of notices says.
     pub(in crate::tui) notice: Option<Notice>,
     /// What a change of files waits for, if it takes long: the status line says it while there is no notice.
@@ -246,6 +249,7 @@ impl App {
             zoom_centre: false,
             count: None,
             dialogs: Vec::new(),
+            prompt: None,
             notice: None,
             waiting: None,
             saving: VecDeque::new(),

@@ -9,6 +9,7 @@ use crate::tui::app::document::Reading;
 use crate::tui::app::message::Message;
 use crate::tui::app::mouse;
 use crate::tui::app::state::{App, Notice, RunState};
+use crate::tui::explore::message::WorkerEvent;
 use crate::tui::help::Help;
 use crate::tui::history::HistoryDialog;
 use crate::tui::keys::action;
@@ -53,8 +54,13 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
             unknown(app, key);
             return None;
         }
-        Message::Library(answer) => return shapes::update::on_library(app, answer),
-        Message::File(answer) => return files::on_file(app, answer),
+        Message::Library(answer) => {
+            return answered(app, |app| shapes::update::on_library(app, answer));
+        }
+        Message::File(answer) => return answered(app, |app| files::on_file(app, answer)),
+        Message::Worker(told @ WorkerEvent::Recognition(_)) => {
+            return answered(app, |app| explore::work::on_worker(app, told));
+        }
         Message::Worker(told) => return explore::work::on_worker(app, told),
         Message::Mouse(mouse) => {
             let meant = mouse::act(app, mouse)?;
@@ -79,9 +85,23 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
     perform(app, message)
 }
 
+/// Handles the answer to a request. The prompt that it came from opens again where it is refused: so it can be put right,
+/// and what one types next does not reach the matrix. An answer that says nothing leaves the notice as it is.
+fn answered(app: &mut App, handle: impl FnOnce(&mut App) -> Option<Effect>) -> Option<Effect> {
+    let before = app.notice.take();
+    let effect = handle(app);
+    match app.notice {
+        None => app.notice = before,
+        Some(Notice::Info(_)) => app.prompt = None,
+        Some(Notice::Refusal(_)) => app.dialogs.extend(app.prompt.take()),
+    }
+    effect
+}
+
 /// Does what a message of the user says, once.
 fn perform(app: &mut App, message: Message) -> Option<Effect> {
     app.notice = None;
+    app.prompt = None;
     if app.dialogs.is_empty() || matches!(message, Message::Cancel | Message::Quit) {
         app.quits_when_saved = false;
     }

@@ -1,12 +1,13 @@
 //! What messages do in the prompts.
 //!
-//! A prompt stays open until what was typed is valid. Completion asks the library for names where a command takes one;
+//! A prompt stays open until what was typed is valid, and opens again where it is refused: at once by the matrix, or later by
+//! the library. Completion asks the library for names where a command takes one;
 //! the answer completes the word when it arrives.
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
-use crate::tui::app::state::App;
+use crate::tui::app::state::{App, Notice};
 use crate::tui::keys::action::Arguments;
 use crate::tui::keys::key::Arrow;
 use crate::tui::matrix;
@@ -27,6 +28,7 @@ pub(in crate::tui) fn in_command(
             if line.is_empty() {
                 return None;
             }
+            let has_arguments = line.contains(' ');
             match read(&line, app) {
                 Ok(message) => {
                     if app.commands.last() != Some(&line) {
@@ -35,7 +37,9 @@ pub(in crate::tui) fn in_command(
                     return match message {
                         Message::Redraw => Some(Effect::Terminal(TerminalEffect::Redraw)),
                         Message::Suspend => Some(Effect::Terminal(TerminalEffect::Suspend)),
-                        other => matrix::update::act(app, other),
+                        // Without arguments there is nothing to put right.
+                        other if !has_arguments => matrix::update::act(app, other),
+                        other => ask(app, other, Dialog::Command(dialog)),
                     };
                 }
                 Err(error) => refuse(app, error),
@@ -74,6 +78,19 @@ pub(in crate::tui) fn in_command(
     None
 }
 
+/// Does what a prompt asks for. It stays open where that is refused and no other page opens.
+fn ask(app: &mut App, message: Message, prompt: Dialog) -> Option<Effect> {
+    let pages = app.dialogs.len();
+    let effect = matrix::update::act(app, message);
+    let refused = matches!(app.notice, Some(Notice::Refusal(_)));
+    if refused && effect.is_none() && app.dialogs.len() == pages {
+        app.dialogs.push(prompt);
+    } else {
+        app.prompt = Some(prompt);
+    }
+    effect
+}
+
 /// Handles a message in the prompt for a name, which stays open until the name is valid.
 pub(in crate::tui) fn in_name(
     app: &mut App,
@@ -83,7 +100,7 @@ pub(in crate::tui) fn in_name(
     match message {
         Message::Accept => match dialog.name() {
             Ok(name) => {
-                return matrix::update::act(app, app.storing(name));
+                return ask(app, app.storing(name), Dialog::Name(dialog));
             }
             Err(error) => refuse(app, error.to_string()),
         },

@@ -474,6 +474,10 @@ impl World {
                     }
                     LibraryEvent::Differs(shape, stamp, error.to_string())
                 }
+                LibraryError::Shipped { name } => {
+                    let text = "is the name of a shipped shape; choose another";
+                    LibraryEvent::NotStored(format!("{name} {text}"))
+                }
                 _ => LibraryEvent::NotStored(error.to_string()),
             },
             DiskAnswer::Removed(removed) => done(removed, LibraryEvent::Removed),
@@ -530,13 +534,13 @@ impl World {
             LibraryRequest::Named(purpose, name) => {
                 return self.read(app, DiskRequest::Named(purpose, name));
             }
+            LibraryRequest::Deletable(name) => {
+                return self.read(app, DiskRequest::Deletable(name));
+            }
             LibraryRequest::Store(shape, expected) => {
                 return self.change(DiskRequest::Store(shape, expected));
             }
             LibraryRequest::Remove(name) => return self.change(DiskRequest::Remove(name)),
-            LibraryRequest::Deletable(name) => {
-                return self.read(app, DiskRequest::Deletable(name));
-            }
             LibraryRequest::Restore(name) => return self.change(DiskRequest::Restore(name)),
             LibraryRequest::Recover => match self.orphan.take() {
                 Some((orphan, _)) => {
