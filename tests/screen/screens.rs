@@ -202,6 +202,19 @@ fn matrix_and_descriptors_change_places_only_where_one_of_them_is_seen() {
     assert!(wide.screen().contains("both in sight"), "{}", wide.screen());
     wide.resize(40, 24);
     assert!(!wide.screen().contains("NA     –"), "{}", wide.screen());
+    // The hint names what the key leads to.
+    let hints = |keys: &str| {
+        let screen = sized((60, 20), false, keys).screen();
+        screen.lines().last().map(str::to_owned)
+    };
+    let named = |keys: &str, name: &str| {
+        let hints = hints(keys).expect("a last line");
+        assert!(hints.starts_with(name), "{keys}: {hints}");
+    };
+    named("f<Enter>", "i descriptors");
+    named("f<Enter>i", "i matrix");
+    named(":recognise figures-30<Enter>t", "Tab matrix");
+    named(":recognise figures-30<Enter>t<Tab>", "Tab list");
     // A click on the descriptors draws nothing on the matrix that they hide.
     press(&mut wide, "f<Enter>i");
     let before = wide.app().shown().clone();

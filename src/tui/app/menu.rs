@@ -15,7 +15,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::layout::Panes;
 use crate::tui::app::message::Message;
-use crate::tui::app::state::App;
+use crate::tui::app::state::{App, NarrowPage};
 use crate::tui::explore::message::ExploreMessage;
 use crate::tui::keys::binding::{Binding, Context};
 use crate::tui::keys::default_keys::{DEFAULT_KEYS, MENU};
@@ -129,14 +129,21 @@ pub fn hints<'a>(app: &'a App, panes: &Panes) -> Vec<Item<'a>> {
     let page = |row: &&Binding| row.does(&Message::SwitchPage);
     let (first, others): (Vec<_>, Vec<_>) = rest.partition(page);
     let first = first.into_iter().filter(|_| panes.panel.is_none());
-    let rows = first.chain(others).map(|row| (row, row.hint)).collect();
+    // On that page the key leads back to the matrix.
+    let name = |row: &Binding| match app.page {
+        NarrowPage::Panel if row.does(&Message::SwitchPage) => "matrix",
+        _ => row.hint,
+    };
+    let rows = first.chain(others).map(|row| (row, name(row))).collect();
     placed(panes.hints, 2, Role::Quiet, false, rows)
 }
 
 /// The rows of the menu of a page other than the matrix: those of the screen that it is a page of, or its own; of a form,
 /// a list, a prompt or a question those that accept, leave or explain it.
 fn of_menu(context: Context, keymap: &Keymap) -> Vec<&Binding> {
-    let hinted = |row: &&Binding| !row.hint.is_empty() && !row.keys.is_empty();
+    let hinted = |row: &&Binding| {
+        !row.hint.is_empty() && !row.keys.is_empty() && !row.does(&Message::SwitchPage)
+    };
     match context.screen() {
         Some(Context::Matrix) => {
             let own = keymap.of(context).filter(hinted);

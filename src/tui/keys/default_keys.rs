@@ -325,7 +325,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Home => FIRST, End => LAST] "" "first, last shape";
         [Enter => ACCEPT] "name it" "name the shape, or 1 to 9";
         [Char(' ') => TOUCH] "again" "it touches again, in another pose";
-        [Tab => PANEL] "" "on a narrow screen: list or matrix";
+        [Tab => PANEL] "list" "on a narrow screen: list or matrix";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "give up" "show which shape it was";
         [F1 => HELP] "help" "these keys";
     }
