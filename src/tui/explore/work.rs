@@ -9,7 +9,7 @@
 
 use std::sync::Arc;
 
-use crate::formats::value::grouped;
+use crate::formats::value::{counted, grouped};
 use crate::pose::PoseGrid;
 use crate::storage::{Existing, is_poses};
 use crate::tui::app::change::{inform, refuse};
@@ -182,7 +182,7 @@ pub(crate) fn on_worker(app: &mut App, told: WorkerEvent) -> Option<Effect> {
         WorkerEvent::Swept(number, findings) => take_findings(app, number, findings),
         WorkerEvent::Written(number, name) => {
             if finish(app, number).is_some() {
-                inform(app, format!("written: {name}"));
+                inform(app, format!("written: {name}{}", unsifted(app, &name)));
             }
         }
         WorkerEvent::Exists(number, name) => {
@@ -216,6 +216,18 @@ pub(crate) fn on_worker(app: &mut App, told: WorkerEvent) -> Option<Effect> {
         WorkerEvent::Answered => {}
     }
     None
+}
+
+/// Says that a file holds all imprints though their list is filtered. Empty for a drawing, which shows what its page does,
+/// and where nothing is filtered.
+fn unsifted(app: &App, name: &str) -> String {
+    match app.results_below() {
+        Some(results) if !results.filter().is_empty() && drawn_form(name).is_none() => {
+            let imprints = counted(results.sweep().atlas.len() as u64, "imprint");
+            format!(", all {imprints} (the filter does not apply)")
+        }
+        _ => String::new(),
+    }
 }
 
 /// Opens a page in place of the work that asks for it; help over the work is closed.

@@ -28,13 +28,14 @@ fn files_are_those_of_the_command_line() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let mut session = session("fp<Enter>");
     press(&mut session, SHORT);
+    press(&mut session, "/na>=1000<Enter>");
     for name in ["a.csv", "a.jsonl", "a.npz", "a.npy"] {
         let (own, other) = (
             folder.path().join(name),
             folder.path().join(format!("cli-{name}")),
         );
         export(&mut session, &own);
-        shows(&session, &["written: "]);
+        shows(&session, &["written: ", "the filter does not apply"]);
         let flag = if name == "a.npy" {
             "--poses"
         } else {
