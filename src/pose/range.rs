@@ -9,6 +9,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use crate::index::narrow;
+use crate::parameter::number::grouped;
 use crate::quote::shortened;
 
 /// The most values that one range may have.
@@ -186,8 +187,14 @@ impl FromStr for DecimalRange {
         };
         let places = places(start).max(places(end)).max(places(step));
         let units = |text: &str| {
-            units(text, places).ok_or_else(|| RangeError::Number {
-                text: shortened(text),
+            units(text, places).ok_or_else(|| {
+                let is_number = is_decimal(text);
+                let text = shortened(text);
+                if is_number {
+                    RangeError::Digits { text }
+                } else {
+                    RangeError::Number { text }
+                }
             })
         };
         let (first, last, by) = (units(start)?, units(end)?, units(step)?);
@@ -217,18 +224,27 @@ fn places(text: &str) -> usize {
     fraction.trim_end_matches('0').len()
 }
 
+/// What stands before and behind the point of a decimal, without its sign.
+fn parts(text: &str) -> (&str, &str) {
+    let digits = text.strip_prefix(['-', '+']).unwrap_or(text);
+    digits.split_once('.').unwrap_or((digits, ""))
+}
+
+/// Whether a text is a plain decimal, however long.
+fn is_decimal(text: &str) -> bool {
+    let (whole, fraction) = parts(text);
+    let mut digits = whole.bytes().chain(fraction.bytes());
+    let any = digits.clone().next().is_some();
+    any && digits.all(|byte| byte.is_ascii_digit())
+}
+
 /// A decimal in units of `10^-places`; None if the text is not a plain decimal, or too long to be exact.
 fn units(text: &str, places: usize) -> Option<i64> {
-    let (negative, digits) = match text.strip_prefix('-') {
-        Some(digits) => (true, digits),
-        None => (false, text.strip_prefix('+').unwrap_or(text)),
-    };
-    let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
-    let digits = whole.bytes().chain(fraction.bytes());
-    let plain = digits.clone().all(|byte| byte.is_ascii_digit());
-    if !plain || digits.count() == 0 || places > MAX_PLACES {
+    let negative = text.starts_with('-');
+    if !is_decimal(text) || places > MAX_PLACES {
         return None;
     }
+    let (whole, fraction) = parts(text);
     let kept = fraction.trim_end_matches('0').bytes();
     let zeros = std::iter::repeat_n(b'0', places - kept.len());
     let units = whole
@@ -263,11 +279,17 @@ pub enum RangeError {
         /// The text, shortened.
         text: String,
     },
-    /// Not a plain decimal, or with more digits than are exact.
-    #[error(
-        "\"{text}\" is not a decimal number of at most 15 digits, {MAX_PLACES} of them behind the point"
-    )]
+    /// Not a plain decimal.
+    #[error("\"{text}\" is not a number")]
     Number {
+        /// The text, shortened.
+        text: String,
+    },
+    /// A decimal with more digits than are exact.
+    #[error(
+        "\"{text}\" has too many digits: at most 15, and {MAX_PLACES} of them behind the point"
+    )]
+    Digits {
         /// The text, shortened.
         text: String,
     },
@@ -288,7 +310,7 @@ pub enum RangeError {
         step: String,
     },
     /// Too many values.
-    #[error("{count} values, expected at most {MAX_VALUES}")]
+    #[error("{} values, at most {}", grouped(*count), grouped(MAX_VALUES))]
     Many {
         /// The number of values.
         count: u64,
@@ -300,7 +322,8 @@ impl RangeError {
     pub fn expected(&self) -> String {
         match self {
             Self::Form { .. } => "expected a number or start:end:step".to_owned(),
-            Self::Number { .. } => format!("not decimals of 15 digits, {MAX_PLACES} places"),
+            Self::Number { .. } => "not a number".to_owned(),
+            Self::Digits { .. } => format!("at most 15 digits, {MAX_PLACES} decimals"),
             Self::Step { .. } => "expected a step above 0".to_owned(),
             Self::Backwards { start, .. } => format!("expected an end from {start} on"),
             Self::Many { .. } => self.to_string(),

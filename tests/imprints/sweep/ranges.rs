@@ -1,7 +1,7 @@
 //! Ranges and grids of poses: exact, or refused with the reason.
 
 use taxel::figure::FigureKind;
-use taxel::pose::{Anchor, Axis, DecimalRange, MAX_VALUES, PoseGrid, Ranges};
+use taxel::pose::{Anchor, Axis, DecimalRange, PoseGrid, Ranges};
 use taxel::sensor::Sensor;
 
 use super::cases::{figure, picture};
@@ -34,14 +34,14 @@ fn ranges_are_exact_or_refused() {
     assert_eq!(refused("2:1:-1"), refused("1:2:-1"));
     assert_eq!(
         refused("9999999999999999"),
-        "\"9999999999999999\" is not a decimal number of at most 15 digits, 12 of them behind the point"
+        "\"9999999999999999\" has too many digits: at most 15, and 12 of them behind the point"
     );
     assert_eq!(
         refused("1:2"),
         "\"1:2\" is not a range, expected a number or start:end:step"
     );
-    assert!(refused("1:2:x").starts_with("\"x\" is not a decimal number"));
-    assert!(refused("1e5").starts_with("\"1e5\" is not"));
+    assert_eq!(refused("1:2:x"), "\"x\" is not a number");
+    assert_eq!(refused("1e5"), "\"1e5\" is not a number");
     for odd in [
         "",
         ":",
@@ -58,7 +58,7 @@ fn ranges_are_exact_or_refused() {
     }
     assert_eq!(
         refused("0:10:0.000001"),
-        format!("10000001 values, expected at most {MAX_VALUES}")
+        "10,000,001 values, at most 1,000,000"
     );
 }
 
