@@ -10,6 +10,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use crate::tui::matrix::layout::{TaxelGrid, TaxelSize};
+use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -34,7 +35,8 @@ pub(super) fn draw(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: R
     }
 }
 
-/// The numbers of columns, as many as have room for two digits and a blank, and none in the place of an arrow.
+/// The numbers of columns, as many as have room: none in the place of an arrow, and none past the last column, where the
+/// descriptors may follow.
 fn draw_columns(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: Rect) {
     let (cell, line) = (grid.size.columns(), write::row(area, 0));
     let every = match cell {
@@ -51,7 +53,7 @@ fn draw_columns(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: Rect
     {
         let x = grid.x + index * cell + (cell.max(2) - 2) / 2;
         let text = column.to_string();
-        if !more || x + 2 <= end {
+        if x + narrow(text.len()) <= end {
             let place = write::right_of(line, x);
             write::line(buffer, place, theme, [(text.as_str(), Role::Quiet)]);
         }
