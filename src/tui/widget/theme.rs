@@ -315,8 +315,8 @@ impl Theme {
     /// What marks the heading that rows are sorted by, from the largest on or from the smallest.
     pub fn sorted(&self, descending: bool) -> char {
         match (self.ascii, descending) {
-            (true, true) => '-',
-            (true, false) => '+',
+            (true, true) => 'v',
+            (true, false) => '^',
             (false, true) => '↓',
             (false, false) => '↑',
         }

@@ -116,7 +116,8 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
     }
     let field = field(page, &spread)?;
     let key = results.feature().key.as_str();
-    field.draw_axes(theme, buffer, [key, "angle/°"]);
+    let across = if theme.ascii { "angle/deg" } else { "angle/°" };
+    field.draw_axes(theme, buffer, [key, across]);
     let quiet = theme.style(Role::Text);
     for (of, dashed) in CURVES {
         let mut canvas = field.canvas();
