@@ -93,8 +93,13 @@ pub(crate) fn decimal(number: f64, decimals: usize) -> String {
     }
 }
 
-/// A standard deviation in the same form; one that would look like 0 is told as less than the last decimal.
-pub(crate) fn deviation(number: f64, decimals: usize) -> String {
+/// A standard deviation with at most `decimals` decimals; one that would look like 0 is told as less than the last of them.
+///
+/// ```
+/// use taxel::formats::value::deviation;
+/// assert_eq!([0.0, 0.004, 0.5].map(|spread| deviation(spread, 2)), ["0", "<0.01", "0.5"]);
+/// ```
+pub fn deviation(number: f64, decimals: usize) -> String {
     match decimal(number, decimals) {
         zero if zero == "0" && number > 0.0 => match decimals {
             0 => "<1".to_owned(),
