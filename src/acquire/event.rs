@@ -52,7 +52,8 @@ pub enum AcquireEvent<'a> {
     Frame {
         /// The frame.
         frame: &'a Frame,
-        /// Its time in seconds since the first one: its own, or else that of its arrival.
+        /// Its time in seconds since the first one: its own, or else that of its arrival. It goes on growing where a source
+        /// was lost and is back, though the source's own clock may begin anew there.
         time: Option<f64>,
     },
     /// A frame that is shown but not kept, until what follows it confirms it.

@@ -11,6 +11,7 @@
 //! Nothing appears, and nothing is replaced, until the first frame comes. A disk that is full ends a recording after its last whole record,
 //! and the description says why.
 
+use std::collections::VecDeque;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -19,6 +20,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crate::formats::recording::{FrameMark, RecordingMetadata};
+use crate::formats::seconds::usual_step;
 use crate::frame::Frame;
 use crate::index::index;
 use crate::storage::{Existing, FileError, FinishedFile, UnfinishedFile, persist_pair};
@@ -34,6 +36,9 @@ const RECORD_HEAD: u64 = 16;
 
 /// Records are written out after this time at the latest.
 const WRITTEN_OUT: Duration = Duration::from_millis(400);
+
+/// The step is that of the last frames, this many at most.
+const MOST_STEPS: usize = 4096;
 
 /// Bytes that wait at most; with this many, records are written out at once.
 const BUFFER: usize = 1 << 18;
@@ -96,8 +101,10 @@ pub struct FrameRecorder {
     /// What went wrong first.
     reason: Option<String>,
     written: Instant,
-    /// The times of the first frame and of the last one.
-    times: Option<(f64, f64)>,
+    /// The time of the last frame.
+    last_time: Option<f64>,
+    /// The times between the last frames.
+    steps: VecDeque<f64>,
     syncer: Syncer,
 }
 
@@ -190,7 +197,8 @@ impl FrameRecorder {
             in_file: 0,
             reason: None,
             syncer: Syncer::new(&file),
-            times: None,
+            last_time: None,
+            steps: VecDeque::with_capacity(MOST_STEPS),
             file,
             shape: None,
             buffer: Vec::new(),
@@ -294,8 +302,11 @@ impl FrameRecorder {
             return Err(RecorderError::Size { found, expected });
         }
         if let Some(time) = time {
-            let first = self.times.map_or(time, |(first, _)| first);
-            self.times = Some((first, time));
+            if self.steps.len() == MOST_STEPS {
+                self.steps.pop_front();
+            }
+            let last = self.last_time.replace(time);
+            self.steps.extend(last.map(|last| time - last));
         }
         let time = time.unwrap_or(f64::NAN);
         self.buffer.extend(time.to_le_bytes());
@@ -378,14 +389,6 @@ impl FrameRecorder {
         written.map_err(|error| self.refused(error))
     }
 
-    /// The mean time from a frame to the next.
-    fn step(&self) -> Option<f64> {
-        let (first, last) = self.times?;
-        #[expect(clippy::cast_precision_loss, reason = "a mean")]
-        let steps = self.records.checked_sub(1).filter(|&steps| steps > 0)? as f64;
-        Some((last - first) / steps).filter(|&step| step > 0.0)
-    }
-
     /// Writes out everything, and syncs the file. Without a frame nothing appears, and what was to be replaced is there as
     /// before.
     ///
@@ -399,7 +402,7 @@ impl FrameRecorder {
         let written = self.noted(written);
         let synced = self.file.sync_all().map_err(|error| self.refused(error));
         let synced = self.noted(synced);
-        if let Some(step) = self.step()
+        if let Some(step) = usual_step(self.steps.make_contiguous())
             && self.metadata.seconds_per_frame.is_none()
         {
             self.metadata.seconds_per_frame = Some(step);

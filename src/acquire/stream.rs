@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use crate::acquire::byte_input::{ByteInput, ReadOutcome};
 use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions};
 use crate::acquire::source::FrameSource;
+use crate::formats::seconds::to_nanoseconds;
 use crate::formats::stream::{StreamDecoder, StreamEvent, StreamOptions};
 
 /// Bytes read at a time.
@@ -18,6 +19,10 @@ const SILENCE: Duration = Duration::from_secs(2);
 
 /// A source that is gone is tried again after this time.
 const RETRY: Duration = Duration::from_secs(1);
+
+/// So many seconds a source's own clock may be ahead of this machine's behind a gap: the last frame before it may have come
+/// late.
+const LATE: f64 = 1.0;
 
 /// The time between two ticks.
 const TICK: Duration = Duration::from_millis(100);
@@ -30,6 +35,12 @@ struct StreamClock {
     last_tick: Instant,
     /// Bytes until the last frame or the last message.
     bytes: u64,
+    /// The time of the last frame that had one of its own, and when it came.
+    given: Option<(f64, Instant)>,
+    /// Whether the source was opened anew since then.
+    rejoined: bool,
+    /// What is added to the frames' own times.
+    shift: f64,
 }
 
 impl StreamClock {
@@ -40,7 +51,32 @@ impl StreamClock {
             last_frame: now,
             last_tick: now,
             bytes: 0,
+            given: None,
+            rejoined: false,
+            shift: 0.0,
         }
+    }
+
+    /// Notes that what comes now is from a source that was opened anew.
+    fn rejoin(&mut self) {
+        self.rejoined = true;
+    }
+
+    /// The time of a frame that has this one of its own. Behind a gap of the source its clock may have begun anew, or have
+    /// been set: then so much time has gone by as by the clock of this machine, so that times go on growing.
+    fn counted_on(&mut self, own: f64, now: Instant) -> f64 {
+        let mut time = own + self.shift;
+        if std::mem::take(&mut self.rejoined)
+            && let Some((last, when)) = self.given
+        {
+            let gap = (now - when).as_secs_f64();
+            if time <= last || time > last + gap + LATE {
+                self.shift += last + gap - time;
+                time = last + gap;
+            }
+        }
+        self.given = Some((time, now));
+        to_nanoseconds(time)
     }
 }
 
@@ -83,6 +119,7 @@ pub(super) fn run(
                     return Ok(());
                 }
                 decoder.begin_anew();
+                clock.rejoin();
                 continue;
             }
             Ok(ReadOutcome::End) if source.comes_back() && !options.once => {
@@ -97,6 +134,7 @@ pub(super) fn run(
             None => return Ok(()),
         }
         decoder.restart();
+        clock.rejoin();
         clock.last_frame = Instant::now();
     }
     let _ = finish(&mut decoder, timed, &mut clock, consumer);
@@ -182,11 +220,10 @@ fn report(
             let now = Instant::now();
             clock.last_frame = now;
             let arrived = now - *clock.first.get_or_insert(now);
-            let arrived = timed.then_some(arrived.as_secs_f64());
-            consumer(AcquireEvent::Frame {
-                time: frame.time.or(arrived),
-                frame,
-            })
+            let arrived = timed.then(|| to_nanoseconds(arrived.as_secs_f64()));
+            let own = frame.time.map(|own| clock.counted_on(own, now));
+            let time = own.or(arrived);
+            consumer(AcquireEvent::Frame { frame, time })
         }
         StreamEvent::Provisional(frame) => consumer(AcquireEvent::Provisional(frame)),
         StreamEvent::Withdrawn => consumer(AcquireEvent::Withdrawn),

@@ -41,6 +41,9 @@ pub mod array;
 pub mod imprint_file;
 
 #[cfg(feature = "frames")]
+pub(crate) mod seconds;
+
+#[cfg(feature = "frames")]
 pub mod recording;
 
 #[cfg(feature = "frames")]

@@ -405,6 +405,66 @@ fn a_connection_that_is_lost_is_made_again() {
     );
 }
 
+/// Frames of JSON lines a tenth of a second apart, by a clock of their own.
+fn clocked(from: f64, frames: u32) -> String {
+    // What comes first may be torn.
+    let lines = (0..frames).map(|number| {
+        let time = from + f64::from(number) / 10.0;
+        format!("{{\"t\": {time:.1}, \"frame\": [[1, 2], [3, 4]]}}\n")
+    });
+    "torn\n".to_owned() + &lines.collect::<String>()
+}
+
+/// The clock of the sensor may go on while the connection is lost, begin anew, or be set.
+#[test]
+fn times_count_on_when_a_connection_is_made_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("touch.npy");
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let port = listener.local_addr().expect("an address").port();
+    let source = format!("tcp://127.0.0.1:{port}");
+    let path = file.to_str().expect("UTF-8");
+    let mut child = started(&["watch", &source, "--write", path]);
+    let mut output = BufReader::new(child.stdout.take().expect("piped"));
+    let mut times = Vec::new();
+    for from in [100.0, 103.5, 200.0, 1.0] {
+        let (mut connection, _) = listener.accept().expect("it connects");
+        let sent = connection.write_all(clocked(from, 24).as_bytes());
+        sent.expect("it reads");
+        for _ in 0..24 {
+            let mut answer = String::new();
+            output.read_line(&mut answer).expect("it answers");
+            times.push(lines(&answer)[0]["time"].as_f64().expect("a time"));
+        }
+    }
+    let id = rustix::process::Pid::from_child(&child);
+    rustix::process::kill_process(id, rustix::process::Signal::INT).expect("it runs still");
+    let ended = super::finish(child, b"");
+    assert_eq!(ended.status, Some(130), "{}", ended.stderr);
+    // It went on.
+    assert_eq!((times[0], times[23], times[24]), (0.0, 2.3, 3.5));
+    for (index, pair) in times.windows(2).enumerate() {
+        let step = pair[1] - pair[0];
+        let expected = match index {
+            23 => 1.2..1.3,
+            // So long it was gone.
+            47 | 71 => 1.0..20.0,
+            _ => 0.099_999..0.100_001,
+        };
+        let step = (step * 1e6).round() / 1e6;
+        assert!(expected.contains(&step), "{index}: {pair:?}");
+    }
+    let beside = fs::read_to_string(file.with_extension("json")).expect("it is there");
+    let beside: Value = serde_json::from_str(&beside).expect("JSON");
+    assert_eq!(beside["seconds_per_frame"], 0.1, "{beside}");
+    let listed = taxel(&format!("frames {path}"), "");
+    assert!(
+        listed.stdout.contains("step      0.1 s\n"),
+        "{}",
+        listed.stdout
+    );
+}
+
 /// The same at a hundred random moments, with the figures: `cargo test --test cli a_hundred -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes"]

@@ -17,7 +17,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use crate::cli::output::charset::Charset;
 use crate::formats::json;
 use crate::formats::recording::{ChannelInfo, RecordingFormat};
-use crate::formats::value::counted;
+use crate::formats::value::{counted, decimal};
 use crate::frame::{Frame, Peak};
 use crate::parameter::number::short;
 
@@ -164,7 +164,7 @@ fn channel_lines(channel: &ListedChannel) -> Vec<String> {
         row(
             "step",
             info.seconds_per_frame
-                .map(|seconds| format!("{} s", short(seconds))),
+                .map(|seconds| format!("{} s", decimal(seconds, 6))),
         ),
         row("pitch", pitch),
         row("threshold", info.threshold.map(in_unit)),

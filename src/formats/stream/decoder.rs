@@ -34,6 +34,8 @@ pub struct StreamDecoder {
     skipping: bool,
     /// Whether the first line may lack its beginning.
     torn: bool,
+    /// The time from which those of frames count, once there is one.
+    start: Option<f64>,
 }
 
 /// What decodes the next bytes.
@@ -65,6 +67,7 @@ impl StreamDecoder {
             bytes: Vec::new(),
             skipping: false,
             torn: !options.from_start,
+            start: None,
         };
         if let Some(format) = options.format {
             decoder.begin(format, options.from_start);
@@ -89,13 +92,14 @@ impl StreamDecoder {
         &self.counts
     }
 
-    /// Begins anew in the middle of the stream, as after a line was unplugged; frames are counted on.
+    /// Begins anew in the middle of the stream, as after a line was unplugged; frames are counted on, and times count from
+    /// the first frame of all.
     pub fn restart(&mut self) {
         let format = self.format();
         self.reset(format, false);
     }
 
-    /// Begins anew with the first byte of another stream, whose form may be another one; frames are counted on.
+    /// Begins anew with the first byte of another stream, whose form may be another one; frames and times are counted on.
     pub fn begin_anew(&mut self) {
         self.reset(self.options.format, true);
     }
@@ -103,6 +107,9 @@ impl StreamDecoder {
     fn reset(&mut self, format: Option<StreamFormat>, from_start: bool) {
         self.bytes.clear();
         (self.skipping, self.torn) = (false, !from_start);
+        if let State::Json(decoder) = &self.state {
+            self.start = decoder.start();
+        }
         self.state = State::Looking;
         self.options.from_start = from_start;
         if let Some(format) = format {
@@ -115,7 +122,7 @@ impl StreamDecoder {
         let shape = self.options.shape;
         self.state = match (format, shape) {
             (StreamFormat::Lines, _) => State::Lines(LinesDecoder::new(shape, from_start)),
-            (StreamFormat::JsonLines, _) => State::Json(JsonDecoder::new(shape)),
+            (StreamFormat::JsonLines, _) => State::Json(JsonDecoder::new(shape, self.start)),
             (StreamFormat::Ros2, _) => State::Ros(RosDecoder::new(shape, from_start)),
             (StreamFormat::Flexitac, Some(shape)) => State::Flexitac(FlexitacDecoder::new(shape)),
             (StreamFormat::Matsense, Some(shape)) => {

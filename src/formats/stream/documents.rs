@@ -20,13 +20,19 @@ pub(super) struct JsonDecoder {
 }
 
 impl JsonDecoder {
-    /// `shape` is for lists of cells without rows.
-    pub(super) fn new(shape: Option<(u16, u16)>) -> Self {
+    /// `shape` is for lists of cells without rows, `start` the time from which others count; without it that of the first
+    /// frame.
+    pub(super) fn new(shape: Option<(u16, u16)>, start: Option<f64>) -> Self {
         Self {
             line: FrameLine::new(shape),
-            start: None,
+            start,
             frame: Frame::new(1, 1),
         }
+    }
+
+    /// The time from which others count, once there is one.
+    pub(super) fn start(&self) -> Option<f64> {
+        self.start
     }
 
     /// Decodes a line.

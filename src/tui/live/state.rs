@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::formats::recording::{ChannelInfo, FrameMark, SetRule};
+use crate::formats::seconds::usual_step;
 use crate::frame::{Frame, FrameError, Processing, Rule, Tare, TareFrames};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
@@ -286,14 +287,11 @@ impl Live {
             .back_from(newest, RATED)
             .map_while(|frame| frame.time)
             .collect();
-        if let [last, .., first] = times[..]
-            && last > first
-        {
-            #[expect(clippy::cast_precision_loss, reason = "at most 32")]
-            return Some((times.len() - 1) as f64 / (last - first));
-        }
-        let step = self.status.channel.as_deref()?.seconds_per_frame?;
-        (step > 0.0).then(|| 1.0 / step)
+        let steps = times.windows(2).map(|pair| pair[0] - pair[1]);
+        let measured = usual_step(&mut steps.collect::<Vec<f64>>());
+        let stated = || self.status.channel.as_deref()?.seconds_per_frame;
+        let step = measured.or_else(stated).filter(|&step| step > 0.0)?;
+        Some(1.0 / step)
     }
 
     /// Takes what has come.
