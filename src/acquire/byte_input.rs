@@ -10,7 +10,7 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use crate::acquire::growing_file::{GrowingFile, ReadAnew};
 use crate::acquire::serial;
-use crate::acquire::source::FrameSource;
+use crate::acquire::source::{FrameSource, check_address};
 
 /// How long a read waits for bytes.
 const MOMENT: Timespec = Timespec {
@@ -109,6 +109,7 @@ impl ByteInput {
 
 fn connect(address: &str) -> io::Result<TcpStream> {
     use std::net::ToSocketAddrs;
+    check_address(address)?;
     let mut failure = io::Error::new(ErrorKind::NotFound, "no such host");
     for address in address.to_socket_addrs()? {
         match TcpStream::connect_timeout(&address, CONNECTING) {

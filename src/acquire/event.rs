@@ -20,6 +20,8 @@ pub struct AcquireOptions {
     pub stream_shape: Option<(u16, u16)>,
     /// Bits per second of a serial line.
     pub baud: u32,
+    /// Whether a connection or a serial line that cannot be opened yet is tried again each second.
+    pub waits: bool,
     /// Read to the end, as fast as it goes, and stop there.
     pub once: bool,
     /// Begin a recording again at its end.
@@ -35,6 +37,7 @@ impl Default for AcquireOptions {
             shape: None,
             stream_shape: None,
             baud: 115_200,
+            waits: false,
             once: false,
             repeat: false,
             speed: 1.0,
@@ -71,11 +74,13 @@ pub enum AcquireEvent<'a> {
         /// What has come so far.
         counts: &'a StreamCounts,
     },
+    /// The source cannot be opened yet; it is tried again each second.
+    Absent(&'a io::Error),
     /// The source is gone; it is tried again each second.
     Lost(&'a io::Error),
-    /// The source is back.
+    /// The source is there, or is back.
     Back {
-        /// How long it was gone.
+        /// How long it was waited for.
         gap: Duration,
     },
     /// A recording begins again.

@@ -2,11 +2,12 @@
 
 use std::ffi::OsStr;
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, Read};
 use std::os::fd::AsFd;
 use std::os::unix::fs::{FileTypeExt, MetadataExt};
 use std::path::{Path, PathBuf};
 
+use crate::acquire::event::AcquireError;
 use crate::acquire::recorder::RecorderError;
 
 /// Where frames come from.
@@ -53,6 +54,24 @@ impl FrameSource {
         }
     }
 
+    /// Refuses what cannot be read however long it is waited for: a file that cannot be opened, an address without a port.
+    ///
+    /// # Errors
+    /// [`AcquireError::Io`].
+    pub fn check(&self) -> Result<(), AcquireError> {
+        let checked = match self {
+            Self::File(path) => File::open(path)
+                .and_then(|mut file| file.read(&mut [0]))
+                .map(drop),
+            Self::Tcp(address) => check_address(address),
+            Self::Standard | Self::Serial(_) | Self::Fifo(_) => Ok(()),
+        };
+        checked.map_err(|error| AcquireError::Io {
+            doing: "open it",
+            error,
+        })
+    }
+
     /// Refuses to record in the file that is watched, whatever its path, or to describe a recording in it.
     ///
     /// # Errors
@@ -83,5 +102,20 @@ impl FrameSource {
     /// Whether it comes back after it was lost, so that it is tried again.
     pub(super) fn comes_back(&self) -> bool {
         matches!(self, Self::Tcp(_) | Self::Serial(_))
+    }
+}
+
+/// Refuses what is no host with a port.
+///
+/// # Errors
+/// [`io::ErrorKind::InvalidInput`].
+pub(super) fn check_address(address: &str) -> io::Result<()> {
+    let parts = address.rsplit_once(':');
+    match parts.filter(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok()) {
+        Some(_) => Ok(()),
+        None => Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "expected tcp://HOST:PORT with a port up to 65535",
+        )),
     }
 }

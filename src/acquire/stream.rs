@@ -57,11 +57,6 @@ impl StreamClock {
         }
     }
 
-    /// Notes that what comes now is from a source that was opened anew.
-    fn rejoin(&mut self) {
-        self.rejoined = true;
-    }
-
     /// The time of a frame that has this one of its own. Behind a gap of the source its clock may have begun anew, or have
     /// been set: then so much time has gone by as by the clock of this machine, so that times go on growing.
     fn counted_on(&mut self, own: f64, now: Instant) -> f64 {
@@ -96,21 +91,22 @@ pub(super) fn run(
         from_start: !source.comes_back(),
     };
     let mut decoder = StreamDecoder::new(stream);
-    let mut clock = StreamClock::new();
     let open = || ByteInput::open(source, options.baud, options.once);
-    let mut input = open().map_err(|error| refused("open it", error))?;
+    let opened = first_input(source, options, &open, stop, &decoder, consumer)?;
+    let Some(mut input) = opened else {
+        return Ok(());
+    };
+    let mut clock = StreamClock::new();
     // The time of arrival means nothing for a file.
     let timed = !options.once && !matches!(source, FrameSource::File(_));
     let mut bytes = vec![0; CHUNK];
     while !stop.load(Ordering::Relaxed) {
         let lost = match input.read(&mut bytes) {
             Ok(ReadOutcome::Bytes(count)) => {
-                if decode(&mut decoder, &bytes[..count], timed, &mut clock, consumer).is_break()
-                    || tick(&decoder, &mut clock, consumer).is_break()
-                {
-                    return Ok(());
+                match decode(&mut decoder, &bytes[..count], timed, &mut clock, consumer) {
+                    ControlFlow::Continue(()) => continue,
+                    ControlFlow::Break(()) => return Ok(()),
                 }
-                continue;
             }
             Ok(ReadOutcome::Anew(how)) => {
                 if finish(&mut decoder, timed, &mut clock, consumer).is_break()
@@ -119,7 +115,7 @@ pub(super) fn run(
                     return Ok(());
                 }
                 decoder.begin_anew();
-                clock.rejoin();
+                clock.rejoined = true;
                 continue;
             }
             Ok(ReadOutcome::End) if source.comes_back() && !options.once => {
@@ -129,17 +125,36 @@ pub(super) fn run(
             Err(error) if source.comes_back() && !options.once => error,
             Err(error) => return Err(refused("read it", error)),
         };
-        match again(&open, &lost, stop, &decoder, consumer) {
+        match again(&open, AcquireEvent::Lost(&lost), stop, &decoder, consumer) {
             Some(found) => input = found,
             None => return Ok(()),
         }
         decoder.restart();
-        clock.rejoin();
+        clock.rejoined = true;
         clock.last_frame = Instant::now();
     }
     let _ = finish(&mut decoder, timed, &mut clock, consumer);
     let _ = consumer(AcquireEvent::Ended(decoder.counts()));
     Ok(())
+}
+
+/// Opens a source, and waits for one that is not there yet if that is wanted; none if no more is wanted.
+fn first_input(
+    source: &FrameSource,
+    options: &AcquireOptions,
+    open: &dyn Fn() -> io::Result<ByteInput>,
+    stop: &AtomicBool,
+    decoder: &StreamDecoder,
+    consumer: &mut Consumer<'_>,
+) -> Result<Option<ByteInput>, AcquireError> {
+    match open() {
+        Ok(input) => Ok(Some(input)),
+        Err(error) if options.waits && source.comes_back() && source.check().is_ok() => {
+            let absent = AcquireEvent::Absent(&error);
+            Ok(again(open, absent, stop, decoder, consumer))
+        }
+        Err(error) => Err(refused("open it", error)),
+    }
 }
 
 /// The end of what was read: a whole frame is given, a torn one counted.
@@ -162,16 +177,16 @@ fn refused(doing: &'static str, error: io::Error) -> AcquireError {
     AcquireError::Io { doing, error }
 }
 
-/// Opens a source again, each second, until it is there; none if no more is wanted.
+/// Reports why a source is waited for and opens it again, each second, until it is there; none if no more is wanted.
 fn again(
     open: &dyn Fn() -> io::Result<ByteInput>,
-    lost: &io::Error,
+    event: AcquireEvent<'_>,
     stop: &AtomicBool,
     decoder: &StreamDecoder,
     consumer: &mut Consumer<'_>,
 ) -> Option<ByteInput> {
     let since = Instant::now();
-    if consumer(AcquireEvent::Lost(lost)).is_break() {
+    if consumer(event).is_break() {
         return None;
     }
     loop {
@@ -192,6 +207,7 @@ fn again(
     }
 }
 
+/// Decodes bytes, perhaps none, and reports what they bring and that time goes by.
 fn decode(
     decoder: &mut StreamDecoder,
     bytes: &[u8],
@@ -205,7 +221,8 @@ fn decode(
             flow = report(event, timed, clock, consumer);
         }
     });
-    flow
+    flow?;
+    tick(decoder, clock, consumer)
 }
 
 /// Reports an event of the decoder; a frame without a time of its own has that of its arrival.

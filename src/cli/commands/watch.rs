@@ -202,9 +202,13 @@ fn line_writer(asked: &WatchArguments, shelf: &Shelf) -> Result<LineWriter, CliE
 /// The same as a page of the screen.
 ///
 /// # Errors
-/// If the mask or the gain cannot be read, there is no such model or channel, or the source is to be recorded in itself.
+/// If the file, the mask or the gain cannot be read, there is no such model or channel, or the source is to be recorded in itself.
 pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequest, CliError> {
     let source = FrameSource::new(&asked.source);
+    source.check().map_err(|error| CliError::Frames {
+        name: source.name(),
+        message: error.to_string(),
+    })?;
     check_channel(&source, asked)?;
     let write = asked.write.as_ref();
     let fits = write.map(|path| source.refuse_as_target(path));

@@ -114,7 +114,7 @@ pub enum SourceState {
     Live,
     /// None for two seconds, and what may be wrong.
     Silent(String),
-    /// The source is gone, and why; it is tried again each second.
+    /// The source is gone or not there yet, and why; it is tried again each second.
     Lost(String),
     /// It has come to its end.
     Ended,

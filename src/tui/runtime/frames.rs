@@ -109,7 +109,9 @@ impl FrameWatcher {
             }
             let source = source(&request.source);
             let post = || post(WorkerEvent::Live(number, LiveEvent::Waiting));
-            feed.run(&source, &request, &request.options, &stop, &mut |_| {
+            let mut options = request.options.clone();
+            options.waits = true;
+            feed.run(&source, &request, &options, &stop, &mut |_| {
                 post();
                 ControlFlow::Continue(())
             });
@@ -402,6 +404,11 @@ impl FrameFeed {
             } => {
                 let what = counts.silence(bytes_per_second);
                 state(SourceState::Silent(format!("no frame for 2 s: {what}")))
+            }
+            AcquireEvent::Absent(error) => {
+                let name = request.source.to_string_lossy();
+                let text = format!("waiting for {name}, trying again each second: {error}");
+                state(SourceState::Lost(text))
             }
             AcquireEvent::Lost(error) => {
                 let text = format!("lost: {error}; trying again each second");

@@ -353,3 +353,54 @@ fn it_is_drawn_at_most_thirty_times_a_second() {
     assert!(drawn >= 2, "{drawn}");
     watched.ends();
 }
+
+/// A command that watches, in a folder.
+fn watching(folder: &Path, arguments: &str) -> Program {
+    let line = format!(
+        "cd '{}' && exec {TAXEL} watch {arguments}",
+        folder.display()
+    );
+    Program::start(&Start {
+        command: &["sh", "-c", &line],
+        ..Start::default()
+    })
+}
+
+/// It ends with an error on the terminal, and no page was opened.
+fn is_refused(folder: &Path, arguments: &str, said: &str) {
+    let mut program = watching(folder, arguments);
+    program.ends_well(1);
+    program.shows(said);
+    assert_eq!(program.count(b"\x1b[?1049h"), 0, "{arguments}");
+}
+
+#[test]
+fn a_source_that_cannot_be_opened_opens_no_page() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let missing = "error: nope.csv: cannot open it: No such file or directory (os error 2)";
+    is_refused(folder, "nope.csv", missing);
+    let is_folder = "error: .: cannot open it: Is a directory (os error 21)";
+    is_refused(folder, ".", is_folder);
+    let no_port = "error: tcp://robot: cannot open it: expected tcp://HOST:PORT";
+    is_refused(folder, "tcp://robot", no_port);
+}
+
+#[test]
+fn a_connection_that_is_not_there_yet_is_waited_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let address = listener.local_addr().expect("an address");
+    drop(listener);
+    let mut program = watching(folder.path(), &format!("tcp://{address} --at-least 9"));
+    program.shows(&format!("waiting for tcp://{address}, trying again each"));
+    let listener = std::net::TcpListener::bind(address).expect("the same port");
+    let (mut connection, _) = listener.accept().expect("it tries again");
+    let sent = connection.write_all(frames(0..3).as_bytes());
+    sent.expect("it reads");
+    // What came first may have been torn.
+    program.shows("frame 1");
+    program.types(b"q");
+    program.types(b"q");
+    program.ends_well(0);
+}
