@@ -62,13 +62,12 @@ impl TemporaryFile {
 
     /// A new file under a random name.
     fn named(folder: &Path) -> io::Result<Self> {
-        let mut builder = builder();
-        // The default for temporary files is tighter.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let made = builder.tempfile_in(folder);
-        // Its own message would name the temporary file.
-        let (file, path) = made.map_err(|error| plain(&error))?.into_parts();
+        // Not by the builder's own way: its permissions are tighter, and its error names the temporary file in place of
+        // the system's message.
+        let mut options = File::options();
+        options.read(true).write(true).create_new(true);
+        let made = builder().make_in(folder, |path| options.open(path))?;
+        let (file, path) = made.into_parts();
         Ok(Self {
             file,
             path: Some(path),

@@ -202,7 +202,8 @@ fn line_writer(asked: &WatchArguments, shelf: &Shelf) -> Result<LineWriter, CliE
 /// The same as a page of the screen.
 ///
 /// # Errors
-/// If the file, the mask or the gain cannot be read, there is no such model or channel, or the source is to be recorded in itself.
+/// If the file, the mask or the gain cannot be read, there is no such model or channel, or the recording cannot be
+/// begun.
 pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequest, CliError> {
     let source = FrameSource::new(&asked.source);
     source.check().map_err(|error| CliError::Frames {
@@ -210,9 +211,14 @@ pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequ
         message: error.to_string(),
     })?;
     check_channel(&source, asked)?;
-    let write = asked.write.as_ref();
-    let fits = write.map(|path| source.refuse_as_target(path));
-    fits.transpose().map_err(CliError::Recorder)?;
+    if let Some(path) = &asked.write {
+        // Begun and given up: nothing appears before the first frame.
+        let metadata = RecordingMetadata::default();
+        let begun = source
+            .refuse_as_target(path)
+            .and_then(|()| FrameRecorder::create(path, asked.existing, &metadata));
+        drop(begun.map_err(CliError::Recorder)?);
+    }
     let mut request = WatchRequest::new(&asked.source);
     request.options = asked.options.clone();
     request.processing = processing::processing(&asked.processing)?;

@@ -68,6 +68,8 @@ pub struct Live {
     not_drawn: u64,
     /// The name of the file that is written.
     recording: Option<String>,
+    /// Why there is none although one was asked for.
+    not_recorded: Option<String>,
     /// The frames that were marked, in the order of their numbers.
     marks: Vec<FrameMark>,
     /// Those that the recording itself marks, by their labels.
@@ -101,6 +103,7 @@ impl Live {
             bottom: 0.0,
             not_drawn: 0,
             recording: None,
+            not_recorded: None,
             marks: Vec::new(),
             marked: Vec::new(),
             naming: (request.model.clone()).map(|model| Naming::new(model, request.noise())),
@@ -187,6 +190,11 @@ impl Live {
     /// The file that is recorded in; None without one.
     pub fn recording(&self) -> Option<&str> {
         self.recording.as_deref()
+    }
+
+    /// Why nothing is recorded although it was asked for; None where it is, or was not asked for.
+    pub fn not_recorded(&self) -> Option<&str> {
+        self.not_recorded.as_deref()
     }
 
     /// The frames that were marked, in the order of their numbers.
@@ -298,9 +306,9 @@ impl Live {
     pub fn take(&mut self, batch: &FrameBatch) {
         let had_channel = self.status.channel.is_some();
         self.status = batch.status.clone();
-        if let Some(error) = &self.status.record_error {
-            self.recording = None;
+        if let Some(error) = self.status.record_error.clone() {
             self.error = Some(error.clone());
+            self.fail_recording(error);
         }
         if !had_channel && let Some(channel) = self.status.channel.clone() {
             self.take_channel(&channel);
@@ -526,6 +534,13 @@ impl Live {
     /// Notes that a recording has begun, or ended.
     pub fn set_recording(&mut self, name: Option<String>) {
         self.recording = name;
+        self.not_recorded = None;
+    }
+
+    /// Notes that a recording has failed, or cannot be begun, and why.
+    pub fn fail_recording(&mut self, reason: String) {
+        self.recording = None;
+        self.not_recorded = Some(reason);
     }
 
     /// Notes that no more frames are taken.

@@ -285,7 +285,7 @@ pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
         LiveEvent::Named(named) => page.take_name(Ok((**named).clone())),
         LiveEvent::NotNamed(reason) => page.take_name(Err(reason.clone())),
         LiveEvent::NotRecorded(reason) => {
-            page.set_recording(None);
+            page.fail_recording(reason.clone());
             refuse(app, reason.clone());
         }
     }

@@ -206,6 +206,8 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap) -> Vec<PanelLine> {
     if let Some(name) = live.recording() {
         let frames = counted(live.status().recorded.into_iter().sum(), "frame");
         say("recording", format!("{name}, {frames}"));
+    } else if let Some(reason) = live.not_recorded() {
+        say("recording", format!("none: {reason}"));
     }
     lines
 }

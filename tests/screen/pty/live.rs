@@ -404,3 +404,42 @@ fn a_connection_that_is_not_there_yet_is_waited_for() {
     program.types(b"q");
     program.ends_well(0);
 }
+
+#[test]
+fn a_recording_that_cannot_be_begun_opens_no_page() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    fs::write(folder.join("touch.txt"), frames(0..3)).expect("written");
+    fs::write(folder.join("old.npy"), "mine").expect("written");
+    let there = "error: old.npy is there already; --force replaces it";
+    is_refused(folder, "touch.txt --write old.npy", there);
+    let missing = "error: no/new.npy: cannot record: No such file or directory (os error 2)";
+    is_refused(folder, "touch.txt --write no/new.npy", missing);
+    // What is to be replaced is there until the first frame comes, and nothing else appears.
+    fs::write(folder.join("empty.txt"), "").expect("written");
+    let mut program = watching(folder, "empty.txt --write old.npy --force");
+    program.shows("recording  old.npy, 0 frames");
+    program.types(b"q");
+    program.types(b"q");
+    program.ends_well(0);
+    let old = fs::read_to_string(folder.join("old.npy")).expect("it is there");
+    assert_eq!(old, "mine");
+    assert_eq!(fs::read_dir(folder).expect("it is there").count(), 3);
+}
+
+#[test]
+fn why_nothing_is_recorded_stays_on_the_page() {
+    let Some(mut watched) = Watched::start() else {
+        return;
+    };
+    watched.shows_the_first_frame();
+    fs::remove_dir_all(watched.folder.path()).expect("removed");
+    watched.program.types(b"r");
+    watched
+        .program
+        .shows("No such file or directory (os error 2)");
+    watched.sends(1..5);
+    watched.program.shows("frame 4");
+    watched.program.shows("recording  none: ");
+    watched.ends();
+}
