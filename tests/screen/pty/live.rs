@@ -130,12 +130,15 @@ fn a_recording_without_a_frame_leaves_no_file() {
     let Some(mut watched) = Watched::start() else {
         return;
     };
-    watched.shows_the_first_frame();
-    let file = watched.records();
-    watched.program.types(b"r");
-    let said = "touch-1.npy: no frame came, so nothing was written";
-    watched.program.shows(said);
-    assert!(!file.exists() && !file.with_extension("json").exists());
+    // Neither before the first frame of all, nor after it.
+    for _ in 0..2 {
+        let file = watched.records();
+        watched.program.types(b"r");
+        let said = "touch-1.npy: no frame came, so nothing was written";
+        watched.program.shows(said);
+        assert!(!file.exists() && !file.with_extension("json").exists());
+        watched.shows_the_first_frame();
+    }
     watched.ends();
 }
 
