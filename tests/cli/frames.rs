@@ -317,3 +317,45 @@ fn the_noise_of_a_recording_is_reported() {
     let written = std::fs::read_to_string(&mask).expect("it is written");
     assert_eq!(written, ".....\n.....\n.....\n.....\n....#\n");
 }
+
+#[test]
+fn a_listing_is_of_the_channel_that_is_asked_for() {
+    let text = frames("xsensor.csv", "--channel right");
+    assert_eq!((text.status, text.stderr.as_str()), (Some(0), ""));
+    assert!(
+        text.stdout
+            .starts_with("xsensor, 1 channel\n\nchannel   right\n")
+            && !text.stdout.contains("left"),
+        "{}",
+        text.stdout
+    );
+    let listed = answered("xsensor.csv", "--channel right --json");
+    let channels = listed[0]["channels"].as_array().expect("a list");
+    let names: Vec<_> = channels.iter().map(|channel| &channel["name"]).collect();
+    assert_eq!(names, ["right"]);
+    let none = frames("xsensor.csv", "--channel middle");
+    assert_eq!((none.status, none.stdout.as_str()), (Some(1), ""));
+    assert!(
+        none.stderr
+            .contains("no channel \"middle\", expected one of: left, right"),
+        "{}",
+        none.stderr
+    );
+}
+
+/// What would change nothing in a listing is refused there.
+#[test]
+fn a_listing_has_no_threshold_and_no_tare() {
+    for flags in [
+        "--at-least 10",
+        "--percent 50",
+        "--low 5 --high 9",
+        "--tare 2",
+        "--tare 2 --deviations 3",
+        "--least 3",
+        "--gain gain.csv",
+    ] {
+        let arguments = format!("frames {} {flags}", sample("tekscan.asf"));
+        misused(&arguments, "the following required arguments were not provided:");
+    }
+}

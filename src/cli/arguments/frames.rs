@@ -107,8 +107,12 @@ pub(crate) fn command() -> Command {
         .arg(file)
         .args([frame, label, peak, every, flips].map(|arg| arg.help_heading("Frames")))
         .group(ArgGroup::new("choice").args(choices))
-        .args(processing())
-        .args(rules())
+        .args(processing().map(|arg| match arg.get_id().as_str() {
+            // A listing is of values as they are.
+            "tare" | "gain" => arg.requires("choice"),
+            _ => arg,
+        }))
+        .args(rules().map(|arg| arg.requires("choice")))
         .args(naming().map(|arg| arg.requires("choice")))
 }
 

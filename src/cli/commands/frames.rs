@@ -21,6 +21,7 @@
 
 use std::io::Write;
 use std::ops::ControlFlow;
+use std::slice;
 
 use crate::cli::arguments::frames::{FrameChoice, FramesArguments};
 use crate::cli::arguments::request::{Form, Kept, Saving};
@@ -197,9 +198,14 @@ pub(crate) fn frames(
         return Err(damage.unwrap_or_else(|| recording.refused("no frames")));
     }
     let Some(choice) = asked.choice else {
+        let wanted = asked.processing.channel.as_deref();
+        let listed = match wanted {
+            Some(_) => slice::from_ref(&scan.channels[scan.channel(&recording, wanted)?]),
+            None => &scan.channels[..],
+        };
         let text = match output.form {
-            Form::Json(_) => recording_list::json(scan.format, &scan.channels),
-            Form::Table(_) => recording_list::text(scan.format, &scan.channels, output.charset),
+            Form::Json(_) => recording_list::json(scan.format, listed),
+            Form::Table(_) => recording_list::text(scan.format, listed, output.charset),
         };
         output.write(&text)?;
         return damage.map_or(Ok(()), Err);
