@@ -1,11 +1,24 @@
-//! Times of frames in seconds: the usual step from one to the next.
+//! Times of frames in seconds: without the noise of their subtraction, and the usual step from one to the next.
 
 /// A longer time between two frames is a gap, unless most are about as long.
 const GAP: f64 = 1.0;
 
+/// Times up to here are exact to less than a nanosecond; those from 1970 on are to less than a microsecond.
+const FINE: f64 = 1e6;
+
 /// A number of seconds, to the nanosecond.
 pub(crate) fn to_nanoseconds(seconds: f64) -> f64 {
-    let rounded = (seconds * 1e9).round() / 1e9;
+    rounded(seconds, 1e9)
+}
+
+/// The seconds from `start` to `time`, as exactly as these are: 2.3 s − 2.2 s is 0.1 s.
+pub(crate) fn since(start: f64, time: f64) -> f64 {
+    let is_fine = start.abs().max(time.abs()) < FINE;
+    rounded(time - start, if is_fine { 1e9 } else { 1e6 })
+}
+
+fn rounded(seconds: f64, parts: f64) -> f64 {
+    let rounded = (seconds * parts).round() / parts;
     // Too large for that, and so for a fraction of a second.
     if rounded.is_finite() {
         rounded
@@ -30,6 +43,16 @@ pub(crate) fn usual_step(steps: &mut [f64]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_difference_has_no_noise() {
+        assert_eq!(since(2.2, 2.3), 0.1);
+        assert_eq!(since(100.0, 100.1), 0.1);
+        assert_eq!(since(1.7e9, 1.7e9 + 0.1), 0.1);
+        assert_eq!(since(1.0, 1.000_000_002), 2e-9);
+        assert_eq!(since(0.3, 0.1), -0.2);
+        assert_eq!(since(0.0, 1e301), 1e301);
+    }
 
     #[test]
     fn gaps_and_times_that_go_back_do_not_count() {

@@ -356,6 +356,9 @@ fn a_listing_has_no_threshold_and_no_tare() {
         "--gain gain.csv",
     ] {
         let arguments = format!("frames {} {flags}", sample("tekscan.asf"));
-        misused(&arguments, "the following required arguments were not provided:");
+        misused(
+            &arguments,
+            "the following required arguments were not provided:",
+        );
     }
 }

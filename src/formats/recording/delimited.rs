@@ -30,6 +30,7 @@ use crate::formats::recording::event::{
 use crate::formats::recording::lines::{TextLines, is_blank, text};
 use crate::formats::recording::side::side;
 use crate::formats::recording::text_row::{self, Field};
+use crate::formats::seconds::{since, to_nanoseconds};
 use crate::frame::{Frame, MAX_FRAME_SIDE};
 
 /// What parts the fields of a line.
@@ -422,9 +423,9 @@ fn frames(
             continue;
         }
         let time = fields.fill(&slots, &mut frame, layout.separator, (line, number))?;
-        frame.time = time
-            .zip(fields.time)
-            .map(|(time, (_, factor))| (time - *start.get_or_insert(time)) * factor);
+        frame.time = time.zip(fields.time).map(|(time, (_, factor))| {
+            to_nanoseconds(since(*start.get_or_insert(time), time) * factor)
+        });
         if sink(RecordingEvent::Frame(&frame)).is_break() {
             break;
         }

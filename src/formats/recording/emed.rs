@@ -29,6 +29,7 @@ use crate::formats::recording::lines::{TextLines, text};
 use crate::formats::recording::number;
 use crate::formats::recording::side::side;
 use crate::formats::recording::text_row::{self, Field};
+use crate::formats::seconds::to_nanoseconds;
 use crate::frame::{Frame, MAX_FRAME_SIDE};
 
 /// A pressure of 1 kPa on 1 cm² is a force of 0.1 N.
@@ -275,7 +276,7 @@ impl EmedState {
         }
         #[expect(clippy::cast_precision_loss, reason = "fewer than 2^52 pictures")]
         let number = self.frames as f64;
-        frame.time = self.seconds.map(|seconds| seconds * number);
+        frame.time = self.seconds.map(|seconds| to_nanoseconds(seconds * number));
         self.frames += 1;
         self.label = None;
         for note in notes {

@@ -19,6 +19,7 @@ use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent,
 use crate::formats::recording::lines::TextLines;
 use crate::formats::recording::side::shape;
 use crate::formats::recording::text_row::too_large;
+use crate::formats::seconds::since;
 use crate::frame::{Frame, LARGEST_VALUE};
 
 /// Reads a recording.
@@ -59,7 +60,9 @@ pub(super) fn read(
         }
         frame.reset(columns, rows);
         frame.values_mut().copy_from_slice(&line.values);
-        frame.time = line.time.map(|time| time - *start.get_or_insert(time));
+        frame.time = line
+            .time
+            .map(|time| since(*start.get_or_insert(time), time));
         frame.label = line.label;
         if sink(RecordingEvent::Frame(&frame)).is_break() {
             break;

@@ -396,7 +396,7 @@ impl McapState<'_, '_> {
     ) -> Option<Result<bool, RecordingError>> {
         let start = *self.start.get_or_insert(time);
         #[expect(clippy::cast_precision_loss, reason = "a difference in nanoseconds")]
-        let seconds = (i128::from(time) - i128::from(start)) as f64 * 1e-9;
+        let seconds = (i128::from(time) - i128::from(start)) as f64 / 1e9;
         self.frame.time = Some(seconds);
         let mut cdr = CdrReader::new(data)?;
         match kind {

@@ -15,6 +15,7 @@ use crate::formats::recording::cell_names::{FieldRole, role};
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
 use crate::formats::recording::numpy::{self, ArrayLayout, NumberType};
+use crate::formats::seconds::{since, to_nanoseconds};
 
 /// Times of more frames than these are not read: 128 MiB of them.
 const MOST_TIMES: u64 = 1 << 24;
@@ -160,12 +161,12 @@ fn times(
             (whole - *first_whole.get_or_insert(whole)) as f64
         } else {
             let value = number.value(bytes);
-            value - *first.get_or_insert(value)
+            since(*first.get_or_insert(value), value)
         };
         if !time.is_finite() {
             return Ok(Vec::new());
         }
-        times.push(time * factor);
+        times.push(to_nanoseconds(time * factor));
     }
     Ok(times)
 }

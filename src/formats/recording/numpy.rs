@@ -21,6 +21,7 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
 use crate::formats::recording::side::shape;
 use crate::formats::recording::text_row::too_large;
+use crate::formats::seconds::since;
 use crate::frame::{Frame, LARGEST_VALUE};
 use crate::quote::shortened;
 
@@ -429,7 +430,7 @@ fn moment(
         .time
         .map(|(at, number)| number.value(&bytes[at..at + number.size]));
     let time = time.filter(|time| time.is_finite());
-    let time = time.map(|time| time - *start.get_or_insert(time));
+    let time = time.map(|time| since(*start.get_or_insert(time), time));
     let label = record
         .label
         .and_then(|(at, number)| number.whole(&bytes[at..at + number.size]));

@@ -30,6 +30,7 @@ use crate::formats::recording::lines::{TextLines, is_blank, text, unpadded};
 use crate::formats::recording::number;
 use crate::formats::recording::side::stated;
 use crate::formats::recording::text_row::{self, Field};
+use crate::formats::seconds::to_nanoseconds;
 use crate::frame::Frame;
 use crate::quote::shortened;
 
@@ -158,7 +159,9 @@ fn frames(
         frame.reset(columns, rows);
         frame.number = number.into();
         frame.label = Some(title.label);
-        let by_number = info.seconds_per_frame.map(|step| step * f64::from(number));
+        let by_number = info
+            .seconds_per_frame
+            .map(|step| to_nanoseconds(step * f64::from(number)));
         frame.time = title.time.or(by_number);
         values(lines, &mut frame)?;
         if let Some(note) = title

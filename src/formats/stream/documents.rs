@@ -5,6 +5,7 @@
 
 use crate::formats::recording::json_lines::FrameLine;
 use crate::formats::recording::ros_text::{self, RosLine, RosMessage};
+use crate::formats::seconds::since;
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::frame::Frame;
 
@@ -53,7 +54,7 @@ impl JsonDecoder {
                 self.frame.number = counts.frames;
                 self.frame.label = self.line.label;
                 let time = self.line.time;
-                self.frame.time = time.map(|time| time - *self.start.get_or_insert(time));
+                self.frame.time = time.map(|time| since(*self.start.get_or_insert(time), time));
                 counts.frames += 1;
                 sink(StreamEvent::Frame(&self.frame));
             }
