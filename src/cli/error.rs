@@ -40,6 +40,12 @@ pub(crate) enum CliError {
         /// What is wrong with it.
         error: InputError,
     },
+    /// A source of frames without a byte.
+    #[error("{name} is empty")]
+    Empty {
+        /// Its name.
+        name: String,
+    },
     /// Some lines of a batch were wrong. Each has its own message among the answers.
     #[error("{bad} of {lines} lines could not be answered")]
     Lines {

@@ -73,10 +73,9 @@ impl fmt::Display for FrameError {
                 found.0, found.1, expected.0, expected.1
             ),
             Self::Rule { what, expected } => write!(f, "{what}: expected {expected}"),
-            Self::Tare { frames, wanted } => write!(
-                f,
-                "a tare of {wanted} frames, but there are {frames}: expected at most {frames}"
-            ),
+            Self::Tare { frames, wanted } => {
+                write!(f, "a tare of {wanted} frames, but there are {frames}")
+            }
             Self::TareSize { most } => {
                 write!(
                     f,

@@ -76,10 +76,20 @@ fn a_stream_is_a_filter_in_a_pipeline() {
     let run = taxel("watch - --once --tare 3", stream(0..2));
     assert_eq!((run.status, run.stdout.as_str()), (Some(1), ""));
     assert!(
-        run.stderr.contains("a tare of 3 frames, but there are 2"),
+        run.stderr
+            .ends_with("a tare of 3 frames, but there are 2\n"),
         "{}",
         run.stderr
     );
+    let run = taxel("watch - --at-least 3", "");
+    assert_eq!(
+        (run.status, run.stderr.as_str()),
+        (Some(1), "error: standard input is empty\n")
+    );
+    // Numbers are of a known form, but these are no frame.
+    let run = taxel("watch -", "1 2\n3\n\n");
+    let numbers = "7 bytes and no frame: rows, columns or format?";
+    assert!(run.stderr.contains(numbers), "{}", run.stderr);
     misused("watch - --once --speed 2", "the argument '--once'");
     misused("watch - --write touch.txt", "invalid value 'touch.txt'");
 }

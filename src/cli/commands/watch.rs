@@ -493,6 +493,14 @@ impl Watcher<'_> {
         self.shaped(counts)?;
         self.report_dropped(counts);
         if counts.frames == 0 {
+            let name = self.name.clone();
+            if counts.bytes == 0 {
+                return Err(CliError::Empty { name });
+            }
+            if counts.unknown {
+                let error = RecordingError::Unknown;
+                return Err(CliError::Recording { name, error });
+            }
             let bytes = grouped(counts.bytes);
             return Err(self.refused(&format!(
                 "{bytes} bytes and no frame: rows, columns or format?"

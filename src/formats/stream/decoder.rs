@@ -219,6 +219,10 @@ impl StreamDecoder {
         let Some(format) = form(&self.bytes, self.options.shape, ended) else {
             return;
         };
+        let mut lines = self.bytes.split(|&byte| byte == b'\n');
+        self.counts.unknown = format == StreamFormat::Lines
+            && self.options.format.is_none()
+            && !lines.any(|line| is_numbers(line.trim_ascii()));
         self.begin(format, self.options.from_start);
         let bytes = std::mem::take(&mut self.bytes);
         // Counted already.

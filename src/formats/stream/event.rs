@@ -104,6 +104,8 @@ pub struct StreamCounts {
     pub unshaped: Option<u64>,
     /// Whether messages were cut by `ros2 topic echo` without `--full-length`.
     pub cut: bool,
+    /// Whether nothing at its beginning tells its form: text without a line of numbers.
+    pub unknown: bool,
 }
 
 /// The most bytes of a sample.
