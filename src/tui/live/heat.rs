@@ -17,6 +17,7 @@ use crate::matrix::Matrix;
 use crate::tui::live::layout::{CellForm, HeatGrid, NUMBER};
 use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::state::Live;
+use crate::tui::matrix::layout::AxisWindow;
 use crate::tui::widget::heat;
 use crate::tui::widget::theme::{Role, Theme};
 
@@ -42,6 +43,19 @@ impl<'a> HeatMap<'a> {
             range: live.range(),
             grid: HeatGrid::of(area, size, live.numbers(), near(reading)),
         }
+    }
+
+    /// Which columns and rows are visible, counted from 0; None where all are.
+    pub(super) fn window(&self) -> Option<String> {
+        let span = |axis: AxisWindow| {
+            let last = axis.first + axis.count.saturating_sub(1);
+            format!("{}-{last}", axis.first)
+        };
+        let (columns, rows) = (self.grid.columns, self.grid.rows);
+        let (all_columns, all_rows) = (self.reading.values.columns(), self.reading.values.rows());
+        let is_whole = columns.count == all_columns && rows.count == all_rows;
+        let text = || format!("columns {}, rows {}", span(columns), span(rows));
+        (!is_whole && columns.count > 0 && rows.count > 0).then(text)
     }
 
     /// Draws it.

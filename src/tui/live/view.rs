@@ -63,11 +63,12 @@ impl Page for Live {
             (reading.values.columns(), reading.values.rows())
         });
         let panes = LivePanes::of(area, size, self.numbers());
-        let title = title(self);
+        let map = reading.map(|reading| HeatMap::of(self, reading, theme, panes.map));
+        let title = title(self, map.as_ref().and_then(HeatMap::window));
         let pieces = title.iter().map(|(text, role)| (text.as_str(), *role));
         write::line(buffer, panes.title, theme, pieces);
-        if let Some(reading) = reading {
-            HeatMap::of(self, reading, theme, panes.map).draw(buffer, panes.map);
+        if let Some(map) = map {
+            map.draw(buffer, panes.map);
         }
         let lines = lines(self, theme, keymap);
         draw_lines(&lines, theme, buffer, panes.panel);
@@ -92,9 +93,9 @@ impl Page for Live {
     }
 }
 
-/// What is shown, and how.
+/// What is shown, and how; `window`: which part of the taxels.
 /// What is the usual state, such as following the source, is not said; a channel is named only where there are several.
-fn title(live: &Live) -> Vec<(String, Role)> {
+fn title(live: &Live, window: Option<String>) -> Vec<(String, Role)> {
     let mut pieces = vec![(live.request().name(), Role::Title)];
     let mut say = |text: String, role| pieces.push((format!("  {text}"), role));
     let status = live.status();
@@ -123,6 +124,9 @@ fn title(live: &Live) -> Vec<(String, Role)> {
         layer => layer,
     };
     say(layer.name().to_owned(), Role::Quiet);
+    if let Some(window) = window {
+        say(window, Role::Text);
+    }
     if live.holds_peak() {
         say("peak held".to_owned(), Role::Focus);
     }
