@@ -14,7 +14,7 @@ use crate::matrix::Matrix;
 /// The shades from above 0 to the largest value.
 fn shades(charset: Charset) -> &'static [char] {
     match charset {
-        Charset::Ascii => &['.', ':', '-', '=', '+', '*', '#', '%', '@'],
+        Charset::Ascii => &[':', '-', '=', '+', '*', '#', '%', '@'],
         Charset::Unicode => &['░', '▒', '▓', '█'],
     }
 }
@@ -25,7 +25,7 @@ pub(crate) fn heat_map(values: &Matrix<f64>, unit: &str, charset: Charset) -> St
     let largest = values.values().iter().copied().fold(0.0, f64::max);
     let shades = shades(charset);
     let zero = match charset {
-        Charset::Ascii => ' ',
+        Charset::Ascii => '.',
         Charset::Unicode => '·',
     };
     let ruler: Vec<String> = (0..values.columns())
@@ -80,7 +80,7 @@ mod tests {
         );
         assert_eq!(
             heat_map(&values, "", Charset::Ascii),
-            "    0   2   4\n 0      ..----@@\n0 .:-=+*#%@ 100\n"
+            "    0   2   4\n 0  .   ::--==@@\n0 :-=+*#%@ 100\n"
         );
     }
 }

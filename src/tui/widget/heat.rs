@@ -23,7 +23,7 @@ const TONES: [(Color, u8, [u8; 3]); 9] = [
 /// The shades, that of nothing first.
 pub(in crate::tui) fn shades(theme: &Theme) -> &'static [char] {
     if theme.ascii {
-        &[' ', '.', ':', '-', '=', '+', '*', '#', '%', '@']
+        &['.', ':', '-', '=', '+', '*', '#', '%', '@']
     } else {
         &['·', '░', '▒', '▓', '█']
     }
@@ -122,6 +122,6 @@ mod tests {
                 .collect::<String>()
         };
         assert_eq!(shown(false), " ··░░▒▓███");
-        assert_eq!(shown(true), "   .--##@@");
+        assert_eq!(shown(true), " ..:-=#%@@");
     }
 }
