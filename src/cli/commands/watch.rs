@@ -457,6 +457,10 @@ impl Watcher<'_> {
     /// What cannot be decoded without rows and columns is an error.
     fn shaped(&self, counts: &StreamCounts) -> Result<(), CliError> {
         match counts.unshaped.filter(|_| counts.frames == 0) {
+            Some(0) if counts.unknown => Err(CliError::Recording {
+                name: self.name.clone(),
+                error: RecordingError::Unknown,
+            }),
             Some(0) => {
                 Err(self.refused("bytes, but not how many a frame: name --rows and --columns"))
             }

@@ -362,6 +362,22 @@ impl FrameFeed {
         })
     }
 
+    /// Records a frame of the channel that is watched, and shows it. Whether there was nothing new before.
+    fn take_frame(&self, frame: &Frame, time: Option<f64>, request: &WatchRequest) -> bool {
+        let channel = locked(&self.pending).channel;
+        if channel.is_some_and(|channel| channel != frame.channel) {
+            return false;
+        }
+        // An error ends the recording; the frames go on being shown.
+        let recorded = self.recorded(|own| own.add(frame, time));
+        let mut own = frame.clone();
+        own.time = time;
+        self.change(|pending| {
+            pending.note(recorded);
+            pending.push(Arc::new(own), request.history_bytes);
+        })
+    }
+
     /// Notes what a source reports. True if it is to be shown and there was nothing before it.
     fn take_in(&self, event: AcquireEvent<'_>, request: &WatchRequest) -> bool {
         let state = |state: SourceState| self.change(|pending| pending.batch.status.state = state);
@@ -369,20 +385,7 @@ impl FrameFeed {
             AcquireEvent::Channel(info) => {
                 self.change(|pending| pending.add_channel(info, request.channel.as_deref()))
             }
-            AcquireEvent::Frame { frame, time } => {
-                let channel = locked(&self.pending).channel;
-                if channel.is_some_and(|channel| channel != frame.channel) {
-                    return false;
-                }
-                // An error ends the recording; the frames go on being shown.
-                let recorded = self.recorded(|own| own.add(frame, time));
-                let mut own = frame.clone();
-                own.time = time;
-                self.change(|pending| {
-                    pending.note(recorded);
-                    pending.push(Arc::new(own), request.history_bytes);
-                })
-            }
+            AcquireEvent::Frame { frame, time } => self.take_frame(frame, time, request),
             AcquireEvent::Provisional(frame) => {
                 let frame = Some(Arc::new(frame.clone()));
                 self.change(|pending| pending.batch.provisional = frame)
