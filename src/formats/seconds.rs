@@ -1,6 +1,7 @@
 //! Times of frames in seconds: without the noise of their subtraction, and the usual step from one to the next.
 
 /// A longer time between two frames is a gap, unless most are about as long.
+#[cfg(feature = "acquire")]
 const GAP: f64 = 1.0;
 
 /// Times up to here are exact to less than a nanosecond; those from 1970 on are to less than a microsecond.
@@ -30,6 +31,7 @@ fn rounded(seconds: f64, parts: f64) -> f64 {
 /// The usual time from a frame to the next, given the times between frames in any order: their mean without gaps, as where
 /// a connection was lost. The median alone would be 0 where several frames come at once. None where there is no time
 /// above 0.
+#[cfg(feature = "acquire")]
 pub(crate) fn usual_step(steps: &mut [f64]) -> Option<f64> {
     steps.sort_by(f64::total_cmp);
     let median = steps.get(steps.len() / 2)?;
@@ -54,6 +56,7 @@ mod tests {
         assert_eq!(since(0.0, 1e301), 1e301);
     }
 
+    #[cfg(feature = "acquire")]
     #[test]
     fn gaps_and_times_that_go_back_do_not_count() {
         assert_eq!(usual_step(&mut [0.1, 98.1, 0.1, -2.3, 0.1]), Some(0.1));
