@@ -18,7 +18,7 @@ use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::widget::number::around;
+use crate::tui::widget::number::{around, narrow};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -111,9 +111,14 @@ impl Comparison {
         let title = format!("{title}{}", if cut { " (cut)" } else { "" });
         write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
         let every = if cell == 1 { 5 } else { 2 };
-        for column in (0..wide).step_by(every) {
+        let numbers = (0..wide)
+            .step_by(every)
+            .map(|column| (column, column.to_string()));
+        // One that does not fit would touch the descriptors.
+        for (column, number) in
+            numbers.filter(|(column, number)| column * cell + narrow(number.len()) <= wide * cell)
+        {
             let place = write::right_of(write::row(area, 1), area.x + RULER + column * cell);
-            let number = column.to_string();
             write::line(buffer, place, theme, [(number.as_str(), Role::Quiet)]);
         }
         for row in 0..high {

@@ -228,6 +228,22 @@ fn matrix_and_descriptors_change_places_only_where_one_of_them_is_seen() {
     assert_eq!(wide.app().shown(), &before);
 }
 
+/// A number of the ruler is left out where it would touch what stands beside the matrix.
+#[test]
+fn rulers_keep_off_the_descriptors() {
+    let ruler = |keys: &str| {
+        let screen = sized((60, 19), false, keys).screen();
+        let line = screen
+            .lines()
+            .find(|line| line.starts_with("   0    5    10"));
+        line.map(str::to_owned)
+    };
+    for keys in ["f<Enter>", "f<Enter>="] {
+        let line = ruler(keys).expect("a ruler");
+        assert!(line.starts_with("   0    5    10    "), "{keys}: {line}");
+    }
+}
+
 /// Help says all of what keys do, on narrow screens in more lines, and nothing that does not hold where it is asked for.
 #[test]
 fn help_is_whole_and_holds_where_it_is() {
