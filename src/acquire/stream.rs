@@ -20,8 +20,8 @@ const SILENCE: Duration = Duration::from_secs(2);
 /// A source that is gone is tried again after this time.
 const RETRY: Duration = Duration::from_secs(1);
 
-/// So many seconds a source's own clock may be ahead of this machine's behind a gap: the last frame before it may have come
-/// late.
+/// How far a source's clock may run ahead of this machine's across a gap, in seconds: the last frame before the gap may have
+/// come late.
 const LATE: f64 = 1.0;
 
 /// The time between two ticks.
@@ -57,9 +57,9 @@ impl StreamClock {
         }
     }
 
-    /// The time of a frame that has this one of its own. Behind a gap of the source its clock may have begun anew, or have
-    /// been set: then so much time has gone by as by the clock of this machine, so that times go on growing.
-    fn counted_on(&mut self, own: f64, now: Instant) -> f64 {
+    /// The time of a frame, given its own. After a gap the source's clock may have restarted or been set; then the time of the
+    /// gap is taken from this machine's clock, so that times keep growing.
+    fn continued(&mut self, own: f64, now: Instant) -> f64 {
         let mut time = own + self.shift;
         if std::mem::take(&mut self.rejoined)
             && let Some((last, when)) = self.given
@@ -238,7 +238,7 @@ fn report(
             clock.last_frame = now;
             let arrived = now - *clock.first.get_or_insert(now);
             let arrived = timed.then(|| to_nanoseconds(arrived.as_secs_f64()));
-            let own = frame.time.map(|own| clock.counted_on(own, now));
+            let own = frame.time.map(|own| clock.continued(own, now));
             let time = own.or(arrived);
             consumer(AcquireEvent::Frame { frame, time })
         }

@@ -98,8 +98,8 @@ impl ImprintCounter {
         self.tallies[index].count += count;
     }
 
-    /// Puts the keys in the order of their first poses. The result is the former index of each.
-    pub(crate) fn put_in_order(&mut self) -> Vec<usize> {
+    /// Sorts the keys by their first poses. The result is the former index of each.
+    pub(crate) fn sort_by_first_pose(&mut self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.len()).collect();
         order.sort_unstable_by_key(|&index| self.tallies[index].first);
         let mut ordered = Self {
@@ -112,7 +112,7 @@ impl ImprintCounter {
         for &index in &order {
             ordered.keys.extend_from_slice(self.key(index));
         }
-        ordered.slots = ordered.spread_over(self.slots.len());
+        ordered.slots = ordered.slots_for(self.slots.len());
         *self = ordered;
         order
     }
@@ -136,11 +136,11 @@ impl ImprintCounter {
     }
 
     fn grow(&mut self) {
-        self.slots = self.spread_over(self.slots.len() * 2);
+        self.slots = self.slots_for(self.slots.len() * 2);
     }
 
     /// The slots of all keys; `count` of them, a power of two.
-    fn spread_over(&self, count: usize) -> Vec<u64> {
+    fn slots_for(&self, count: usize) -> Vec<u64> {
         let mask = count - 1;
         let mut slots = vec![0; count];
         for (known, &hash) in self.hashes.iter().enumerate() {

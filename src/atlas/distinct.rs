@@ -83,8 +83,8 @@ impl Atlas {
     }
 
     /// Numbers the imprints, all of them described, in the order of their first poses.
-    pub(crate) fn put_in_order(&mut self) {
-        let order = self.counter.put_in_order();
+    pub(crate) fn sort_by_first_pose(&mut self) {
+        let order = self.counter.sort_by_first_pose();
         self.summaries = order.iter().map(|&old| self.summaries[old]).collect();
     }
 

@@ -22,15 +22,15 @@ pub(crate) struct Layout {
     columns: u8,
     /// Rows of the sensor.
     rows: u8,
-    /// Bits that a row takes, as a power of two: 3 to 6.
-    width: u32,
+    /// The binary logarithm of the bits that a row takes: 3 to 6.
+    log_width: u32,
     /// One number per taxel, in reading order.
     numbers: Vec<u64>,
 }
 
 impl Layout {
     pub(crate) fn new(columns: u8, rows: u8) -> Self {
-        let width = columns.next_power_of_two().clamp(8, 64).trailing_zeros();
+        let log_width = columns.next_power_of_two().clamp(8, 64).trailing_zeros();
         let mut seed = *SEED.get_or_init(|| RandomState::new().hash_one(0));
         let numbers = (0..usize::from(columns) * usize::from(rows))
             .map(|_| split_mix(&mut seed))
@@ -38,7 +38,7 @@ impl Layout {
         Self {
             columns,
             rows,
-            width,
+            log_width,
             numbers,
         }
     }
@@ -53,12 +53,12 @@ impl Layout {
 
     /// Number of words in a key.
     pub(crate) fn words(&self) -> usize {
-        (usize::from(self.rows) << self.width).div_ceil(64)
+        (usize::from(self.rows) << self.log_width).div_ceil(64)
     }
 
     /// The word that holds a row, and by how much it is shifted there.
     pub(crate) fn place(&self, row: usize) -> (usize, usize) {
-        let bits = row << self.width;
+        let bits = row << self.log_width;
         (bits / 64, bits % 64)
     }
 

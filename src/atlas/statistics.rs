@@ -118,11 +118,11 @@ impl Total {
         self
     }
 
-    /// The statistics of a feature whose smallest and largest values are `ends`.
+    /// The statistics of a feature whose smallest and largest values are `extremes`.
     fn statistic(
         &self,
         feature: &'static Feature,
-        ends: Option<(f64, f64)>,
+        extremes: Option<(f64, f64)>,
         between: Wide,
         ideal: Option<f64>,
     ) -> Statistic {
@@ -151,7 +151,7 @@ impl Total {
         let of_mean = Wide::square_over(sum, poses);
         let mean = mean(sum, poses);
         let sd = (squares - of_mean).root_mean(poses);
-        (statistic.min, statistic.max) = ends.unzip();
+        (statistic.min, statistic.max) = extremes.unzip();
         statistic.mean = Some(mean);
         statistic.sd = Some(sd);
         statistic.cv = (mean != 0.0).then(|| sd / mean.abs());
@@ -210,7 +210,7 @@ pub(crate) fn statistics(
     parts
         .enumerate()
         .map(|(index, ((total, feature), between))| {
-            total.statistic(feature, table.ends(index), between, ideal(&feature.key))
+            total.statistic(feature, table.extremes(index), between, ideal(&feature.key))
         })
         .collect()
 }

@@ -15,7 +15,7 @@ pub(crate) struct Table {
     /// A row per imprint: each feature, [`NONE`] where it does not exist; of a direction its cosine and sine.
     values: Vec<i64>,
     /// The smallest and the largest value of each feature; infinity and minus infinity where none exists.
-    ends: Vec<(f64, f64)>,
+    extremes: Vec<(f64, f64)>,
 }
 
 /// No value.
@@ -47,7 +47,7 @@ impl Default for Table {
         Self {
             width: widths.sum(),
             values: Vec::new(),
-            ends: vec![NOTHING; features().len()],
+            extremes: vec![NOTHING; features().len()],
         }
     }
 }
@@ -61,21 +61,21 @@ impl Table {
         let new = &summaries[known.min(summaries.len())..];
         let start = self.values.len();
         self.values.resize(summaries.len() * width, NONE);
-        let ends = self.values[start..]
+        let extremes = self.values[start..]
             .par_chunks_mut(width * TOGETHER)
             .zip(new.par_chunks(TOGETHER))
             .map(|(rows, summaries)| {
-                let mut ends = vec![NOTHING; places.len()];
+                let mut extremes = vec![NOTHING; places.len()];
                 for (row, summary) in rows.chunks_exact_mut(width).zip(summaries) {
-                    note(summary, &places, row, &mut ends);
+                    note(summary, &places, row, &mut extremes);
                 }
-                ends
+                extremes
             })
             .reduce(
                 || vec![NOTHING; places.len()],
                 |one, other| joined(&one, &other),
             );
-        self.ends = joined(&self.ends, &ends);
+        self.extremes = joined(&self.extremes, &extremes);
     }
 
     /// The values of an imprint.
@@ -84,8 +84,8 @@ impl Table {
     }
 
     /// The smallest and the largest value of a feature; None if no imprint has one.
-    pub(crate) fn ends(&self, feature: usize) -> Option<(f64, f64)> {
-        let (low, high) = self.ends[feature];
+    pub(crate) fn extremes(&self, feature: usize) -> Option<(f64, f64)> {
+        let (low, high) = self.extremes[feature];
         (low <= high).then_some((low, high))
     }
 }
@@ -95,7 +95,7 @@ fn note(
     summary: &ImprintSummary,
     places: &[(usize, bool)],
     row: &mut [i64],
-    ends: &mut [(f64, f64)],
+    extremes: &mut [(f64, f64)],
 ) {
     let Some(description) = &summary.description else {
         return;
@@ -108,12 +108,12 @@ fn note(
         } else {
             row[place] = fixed(value);
         }
-        let (low, high) = &mut ends[index];
+        let (low, high) = &mut extremes[index];
         (*low, *high) = (low.min(value), high.max(value));
     });
 }
 
-/// The ends of two parts together.
+/// The extremes of two parts together.
 fn joined(one: &[(f64, f64)], other: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let both = one.iter().zip(other);
     both.map(|(one, other)| (one.0.min(other.0), one.1.max(other.1)))

@@ -93,7 +93,8 @@ pub(crate) fn decimal(number: f64, decimals: usize) -> String {
     }
 }
 
-/// A standard deviation with at most `decimals` decimals; one that would look like 0 is told as less than the last of them.
+/// A standard deviation with at most `decimals` decimals. One that would be rounded to 0 is shown as `<0.01`, or less than
+/// one in the last decimal there is.
 ///
 /// ```
 /// use taxel::formats::value::deviation;

@@ -90,7 +90,7 @@ impl Sweep<'_> {
                 *partly_off += found.partly_off * orientations;
             }
         });
-        counter.put_in_order();
+        counter.sort_by_first_pose();
         complete.then_some(counted)
     }
 

@@ -110,7 +110,7 @@ impl<'a> Sweep<'a> {
         let (table, spread) = (&done.table, done.spread);
         let mut result = SweepResult::new(grid.clone(), shard, poses, done.atlas, table, spread);
         if !keep_runs {
-            result.atlas.put_in_order();
+            result.atlas.sort_by_first_pose();
         }
         result
     }

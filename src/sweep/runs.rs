@@ -39,7 +39,7 @@ pub(crate) struct Found {
 }
 
 /// The number of poses of an orientation between two reports of progress, for a shape with few edges.
-const REPORTED: u64 = 4_000;
+const REPORT_EVERY: u64 = 4_000;
 /// This many more edges double the time per pose. A picture may have thousands, and must report as often.
 const EDGES: usize = 64;
 
@@ -58,7 +58,8 @@ pub(crate) fn go(
     for y in task.rows.clone() {
         sweeper.row(y);
         unreported += width;
-        if unreported >= sweeper.reported && !progress(std::mem::take(&mut unreported) * times) {
+        if unreported >= sweeper.report_every && !progress(std::mem::take(&mut unreported) * times)
+        {
             return None;
         }
     }
@@ -101,7 +102,7 @@ struct Sweeper<'a> {
     /// The shape in the first orientation of the first group, at the origin.
     shape: Shape,
     /// The number of poses of an orientation between two reports of progress.
-    reported: u64,
+    report_every: u64,
     /// The top and the bottom of the shape at the origin; None if it has no boundary.
     height: Option<[f64; 2]>,
     /// The values of x0.
@@ -111,7 +112,7 @@ struct Sweeper<'a> {
     /// The same of the mirror image.
     mirrored: Spans,
     /// The x of a place and of its mirror image sum up to this; cell sides, the anchor at the origin.
-    axis: f64,
+    mirror_sum: f64,
     /// The groups.
     groups: Vec<Group<'a>>,
 }
@@ -130,7 +131,7 @@ impl<'a> Sweeper<'a> {
         Self {
             grid,
             shape: Shape::new(&boundary),
-            reported: REPORTED / (1 + boundary.edges.len() / EDGES) as u64,
+            report_every: REPORT_EVERY / (1 + boundary.edges.len() / EDGES) as u64,
             height: boundary.extent().map(|extent| [extent.top, extent.bottom]),
             steps: Steps {
                 first,
@@ -144,7 +145,7 @@ impl<'a> Sweeper<'a> {
             },
             spans: Spans::default(),
             mirrored: Spans::default(),
-            axis: 2.0 * grid.centre_from_anchor(orientation)[0],
+            mirror_sum: 2.0 * grid.centre_from_anchor(orientation)[0],
             groups: groups.collect(),
         }
     }
@@ -179,7 +180,7 @@ impl<'a> Sweeper<'a> {
             self.shape.band(top, row, threshold, &mut self.spans);
             if self.groups.len() > 1 {
                 // A cell is named by its left side, which is the right side of its image.
-                self.spans.mirror(self.axis - 1.0, &mut self.mirrored);
+                self.spans.mirror(self.mirror_sum - 1.0, &mut self.mirrored);
             }
             let spans = [&self.spans, &self.mirrored];
             for (group, spans) in self.groups.iter_mut().zip(spans) {

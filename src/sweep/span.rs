@@ -100,11 +100,11 @@ impl Spans {
         self.level = (level != Level::Below).then_some((at, level));
     }
 
-    /// Writes the spans as they are when right and left are exchanged: a place and its image sum up to `axis`.
-    pub(crate) fn mirror(&self, axis: f64, image: &mut Self) {
+    /// Writes the spans as they are when right and left are exchanged: a place and its image sum up to `sum`.
+    pub(crate) fn mirror(&self, sum: f64, image: &mut Self) {
         let mirrored = |span: &Span| Span {
-            from: axis - span.to,
-            to: axis - span.from,
+            from: sum - span.to,
+            to: sum - span.from,
             ..*span
         };
         image.list.clear();

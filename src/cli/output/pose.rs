@@ -58,7 +58,7 @@ struct AngleJson {
     /// The circular standard deviation; null where the mean is.
     sd: Option<f64>,
     /// Degrees after which the shape looks the same; whole ones are written without a point.
-    #[serde(serialize_with = "whole_if_it_is")]
+    #[serde(serialize_with = "integer_if_whole")]
     period: f64,
     /// The first of the neighbouring degrees.
     from: u32,
@@ -69,7 +69,7 @@ struct AngleJson {
 /// Writes a period that is whole as an integer.
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes it so")]
 #[expect(clippy::cast_possible_truncation, reason = "at most 360")]
-fn whole_if_it_is<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+fn integer_if_whole<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
     match number.fract() {
         0.0 => serializer.serialize_i64(*number as i64),
         _ => serializer.serialize_f64(*number),

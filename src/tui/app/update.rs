@@ -58,10 +58,10 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
             return answered(app, |app| shapes::update::on_library(app, answer));
         }
         Message::File(answer) => return answered(app, |app| files::on_file(app, answer)),
-        Message::Worker(told @ WorkerEvent::Recognition(_)) => {
-            return answered(app, |app| explore::work::on_worker(app, told));
+        Message::Worker(event @ WorkerEvent::Recognition(_)) => {
+            return answered(app, |app| explore::work::on_worker(app, event));
         }
-        Message::Worker(told) => return explore::work::on_worker(app, told),
+        Message::Worker(event) => return explore::work::on_worker(app, event),
         Message::Mouse(mouse) => {
             let meant = mouse::act(app, mouse)?;
             return handle(app, meant);

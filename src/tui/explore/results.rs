@@ -304,8 +304,8 @@ impl Results {
         self.selected = row.min(self.rows.len().saturating_sub(1));
     }
 
-    /// The first of so many visible rows: that of last time as long as the selected row is in sight, else rows page by page.
-    /// The last page is full.
+    /// The first row of a list that shows `visible` rows. It stays the same while the selected row is visible, else the list
+    /// turns by whole pages. The last page is full.
     pub fn first_row(&self, visible: usize) -> usize {
         let visible = visible.max(1);
         let last = self.rows.len().saturating_sub(visible);

@@ -182,7 +182,7 @@ pub(crate) fn on_worker(app: &mut App, told: WorkerEvent) -> Option<Effect> {
         WorkerEvent::Swept(number, findings) => take_findings(app, number, findings),
         WorkerEvent::Written(number, name) => {
             if finish(app, number).is_some() {
-                inform(app, format!("written: {name}{}", unsifted(app, &name)));
+                inform(app, format!("written: {name}{}", filter_remark(app, &name)));
             }
         }
         WorkerEvent::Exists(number, name) => {
@@ -220,7 +220,7 @@ pub(crate) fn on_worker(app: &mut App, told: WorkerEvent) -> Option<Effect> {
 
 /// Says that a file holds all imprints though their list is filtered. Empty for a drawing, which shows what its page does,
 /// and where nothing is filtered.
-fn unsifted(app: &App, name: &str) -> String {
+fn filter_remark(app: &App, name: &str) -> String {
     match app.results_below() {
         Some(results) if !results.filter().is_empty() && drawn_form(name).is_none() => {
             let imprints = counted(results.sweep().atlas.len() as u64, "imprint");

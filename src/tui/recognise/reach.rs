@@ -29,7 +29,8 @@ pub(in crate::tui) fn trained_set(app: &App) -> Option<&ModelChoice> {
     page.trained().map(|trained| &trained.choice)
 }
 
-/// Puts an imprint onto the matrix as if it were drawn: nothing there says what made it. The history calls the step as told.
+/// Puts an imprint onto the matrix as if it were drawn: nothing there says what made it. `brought_by` is
+/// the history's name for the step.
 pub(super) fn put(app: &mut App, sensor: Sensor, imprint: &Imprint, brought_by: &str) {
     let mut document = Document::empty(sensor);
     document.edits = *imprint;
