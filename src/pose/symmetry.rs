@@ -15,8 +15,8 @@ use crate::parameter::Parameter;
 use crate::pose::range::DecimalRange;
 use crate::source::Source;
 
-/// The rotation, in degrees, after which a shape looks the same; None if it looks the same at every angle.
-pub(crate) fn period(source: &Source) -> Option<u32> {
+/// How many rotations of a full turn leave a shape as it is, the order of its rotational symmetry; None of any angle.
+fn order(source: &Source) -> Option<u32> {
     let figure = match source {
         Source::Figure(figure) => figure,
         Source::Picture(picture) => {
@@ -26,24 +26,33 @@ pub(crate) fn period(source: &Source) -> Option<u32> {
                     bounds.top + bounds.bottom - 1 - row,
                 )
             };
-            return Some(if maps_onto_itself(picture.imprint(), half_turned) {
-                180
-            } else {
-                360
-            });
+            let turns = maps_onto_itself(picture.imprint(), half_turned);
+            return Some(if turns { 2 } else { 1 });
         }
     };
     let equal = |one: Parameter, other: Parameter| figure.get(one) == figure.get(other);
     match figure.kind() {
         FigureKind::Ellipse if equal(Parameter::RadiusX, Parameter::RadiusY) => None,
-        FigureKind::Rectangle if equal(Parameter::Length, Parameter::Width) => Some(90),
-        FigureKind::Ellipse | FigureKind::Rectangle => Some(180),
-        FigureKind::Triangle => Some(120),
-        FigureKind::Pentagon => Some(72),
-        FigureKind::Hexagon => Some(60),
-        FigureKind::Heptagon => Some(360),
-        FigureKind::Octagon => Some(45),
+        FigureKind::Rectangle if equal(Parameter::Length, Parameter::Width) => Some(4),
+        FigureKind::Ellipse | FigureKind::Rectangle => Some(2),
+        FigureKind::Triangle => Some(3),
+        FigureKind::Pentagon => Some(5),
+        FigureKind::Hexagon => Some(6),
+        FigureKind::Heptagon => Some(7),
+        FigureKind::Octagon => Some(8),
     }
+}
+
+/// The least rotation in whole degrees after which a shape looks the same, 360 of a heptagon; None if it looks the same at
+/// every angle.
+pub(crate) fn period(source: &Source) -> Option<u32> {
+    order(source).map(|order| if 360 % order == 0 { 360 / order } else { 360 })
+}
+
+/// The least rotation in degrees after which a shape looks the same, 360/7 of a heptagon; None as of [`period`].
+#[cfg(feature = "recognition")]
+pub(crate) fn exact_period(source: &Source) -> Option<f64> {
+    order(source).map(|order| 360.0 / f64::from(order))
 }
 
 /// The sum of two angles, in degrees, at which a shape shows its mirror image, right and left exchanged; None if it has

@@ -1,8 +1,7 @@
 //! Where a shape lay and how it was turned, given the imprint that it left.
 
-use crate::figure::FigureKind;
 use crate::imprint::Imprint;
-use crate::pose::{Axis, PoseGrid, period};
+use crate::pose::{Axis, PoseGrid, exact_period};
 use crate::recognition::key::ImprintKey;
 use crate::recognition::model::{Model, share};
 use crate::source::Source;
@@ -64,15 +63,6 @@ impl AngleEstimate {
     }
 }
 
-/// Degrees after which a shape looks the same again. Sweeps know whole degrees alone, among which a heptagon repeats
-/// only after a full turn.
-fn symmetry(source: &Source) -> Option<f64> {
-    match source {
-        Source::Figure(figure) if figure.kind() == FigureKind::Heptagon => Some(360.0 / 7.0),
-        _ => period(source).map(f64::from),
-    }
-}
-
 /// The whole degrees that a period begins: 52 of a heptagon, the last one cut short.
 #[expect(
     clippy::cast_possible_truncation,
@@ -126,7 +116,7 @@ impl Model {
         let bounds = imprint.bounds()?;
         let key = ImprintKey::of(imprint);
         let source = self.shapes().get(shape)?.source.clone();
-        let period = symmetry(&source);
+        let period = exact_period(&source);
         let grid = PoseGrid::new(source, *self.sensor(), self.anchor(), *self.ranges()).ok()?;
         let wanted = |other: &Imprint| ImprintKey::of(other) == key;
         let runs = Sweep::new(&grid).progress(progress).poses_where(&wanted)?;
