@@ -87,6 +87,21 @@ fn the_imprint_goes_to_the_matrix_and_the_source_stays() {
 }
 
 #[test]
+fn an_imprint_from_a_frame_is_not_saved() {
+    let mut page = watched(6, "+<Enter>");
+    then(&mut page, "q", &["The imprint is not saved. Quit anyway?"]);
+    then(&mut page, "<Esc>stouched<Enter>", &["saved as touched"]);
+    then(&mut page, "q", &[]);
+    hides(&page, &["not saved"]);
+    let mut page = watched(6, "+<Enter>nq");
+    shows(&page, &["An earlier drawing is not saved. Quit anyway?"]);
+    // Back on the page nothing was taken yet.
+    then(&mut page, "<Esc>uq", &["not saved"]);
+    then(&mut page, "<Esc>uq", &[]);
+    hides(&page, &["not saved"]);
+}
+
+#[test]
 fn a_frame_is_marked_and_unmarked() {
     shows(&watched(0, "m"), &["! no frame yet"]);
     let mut page = watched(6, "m");

@@ -64,9 +64,29 @@ fn begin_from(
         name,
         saved,
     };
+    begin_with(app, document, origin);
+}
+
+/// A document that is stored nowhere: all of it would be lost.
+pub(in crate::tui) fn begin_unsaved(app: &mut App, document: Document) {
+    let origin = stored_nowhere(&document);
+    begin_with(app, document, origin);
+}
+
+/// Puts a document of that origin onto the matrix.
+fn begin_with(app: &mut App, document: Document, origin: DocumentOrigin) {
     app.history.begin(document, origin);
     app.mode = Mode::Draw;
     settle(app);
+}
+
+/// The origin of a document of which nothing would be found again.
+fn stored_nowhere(document: &Document) -> DocumentOrigin {
+    DocumentOrigin {
+        brought_by: None,
+        name: None,
+        saved: Document::empty(document.sensor),
+    }
 }
 
 /// Brings back into range what depends on the document.
@@ -158,12 +178,8 @@ pub(in crate::tui) fn replace(app: &mut App, document: Document) {
     }
     let dropped = present.edits.count().saturating_sub(document.edits.count());
     if is_other(app, &document) {
-        let nowhere = DocumentOrigin {
-            brought_by: None,
-            name: None,
-            saved: Document::empty(document.sensor),
-        };
-        app.history.begin(document, nowhere);
+        let origin = stored_nowhere(&document);
+        app.history.begin(document, origin);
         settle(app);
     } else {
         change(app, document);

@@ -7,7 +7,7 @@ use crate::formats::recording::RecordingMetadata;
 use crate::formats::value::counted;
 use crate::parameter::Parameter;
 use crate::sensor::Sensor;
-use crate::tui::app::change::{begin, inform, refuse};
+use crate::tui::app::change::{begin_unsaved, inform, refuse};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Document;
 use crate::tui::app::message::{Endpoint, Message};
@@ -127,11 +127,12 @@ fn document(page: &Live) -> Option<Document> {
     Some(document)
 }
 
-/// Puts the imprint onto the matrix; the source goes on meanwhile.
+/// Puts the imprint onto the matrix; the source goes on meanwhile. No source sends the same frame again, so the imprint
+/// counts as unsaved.
 fn take(app: &mut App, page: Box<Live>, document: Document) {
     let number = page.reading().map(|reading| reading.frame.number);
     app.live = Some(page);
-    begin(app, document, None);
+    begin_unsaved(app, document);
     let back = app.key_of(&action::WATCH);
     if let Some(number) = number {
         inform(
