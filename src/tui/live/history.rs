@@ -3,10 +3,14 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use crate::formats::seconds::usual_step;
 use crate::frame::Frame;
 
 /// The memory for values, in bytes, unless another one is set.
 pub const HISTORY_BYTES: usize = 32 << 20;
+
+/// Frames that the rate is computed from, at most.
+const RATED: usize = 32;
 
 /// The bytes that a frame counts for.
 pub(in crate::tui) fn bytes_of(frame: &Frame) -> usize {
@@ -71,6 +75,14 @@ impl FrameHistory {
         let numbers = (self.first..=number).rev().take(count);
         numbers.filter_map(|number| self.get(number))
     }
+
+    /// Frames a second, by the times of the last ones; None if they have no times, or all the same.
+    pub fn rate(&self) -> Option<f64> {
+        let frames = self.back_from(self.newest()?, RATED);
+        let times: Vec<f64> = frames.map_while(|frame| frame.time).collect();
+        let steps = times.windows(2).map(|pair| pair[0] - pair[1]);
+        usual_step(&mut steps.collect::<Vec<f64>>()).map(f64::recip)
+    }
 }
 
 #[cfg(test)]
@@ -96,5 +108,24 @@ mod tests {
         assert!(history.get(0).is_none() && history.get(newest + 1).is_none());
         assert_eq!(history.back_from(newest, 3).count(), 3);
         assert_eq!(history.back_from(newest, 2 * most).count(), most);
+    }
+
+    #[test]
+    fn the_rate_is_that_of_the_last_times() {
+        let mut history = FrameHistory::new(HISTORY_BYTES);
+        let mut push = |time| {
+            let mut frame = Frame::new(2, 2);
+            frame.time = time;
+            history.push(Arc::new(frame));
+            history.rate()
+        };
+        assert_eq!([push(Some(0.0)), push(Some(0.5))], [None, Some(2.0)]);
+        let mut time = 0.5;
+        let faster = std::iter::repeat_with(|| {
+            time += 0.25;
+            push(Some(time))
+        });
+        assert_eq!(faster.take(RATED).last(), Some(Some(4.0)));
+        assert_eq!(push(None), None, "the newest frame has no time");
     }
 }

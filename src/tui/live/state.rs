@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use crate::formats::recording::{ChannelInfo, FrameMark, SetRule};
-use crate::formats::seconds::usual_step;
 use crate::frame::{Frame, FrameError, Processing, Rule, Tare, TareFrames};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
@@ -16,9 +15,6 @@ use crate::tui::recognise::sets::ModelChoice;
 
 /// Frames that a tare by key is made of, at most.
 const TARED: usize = 30;
-
-/// Frames that the rate is computed from, at most.
-const RATED: usize = 32;
 
 /// How a tare was made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -289,17 +285,11 @@ impl Live {
 
     /// Frames a second, by the times of the last ones; what the recording says where they have none.
     pub fn rate(&self) -> Option<f64> {
-        let newest = self.history.newest()?;
-        let times: Vec<f64> = self
-            .history
-            .back_from(newest, RATED)
-            .map_while(|frame| frame.time)
-            .collect();
-        let steps = times.windows(2).map(|pair| pair[0] - pair[1]);
-        let measured = usual_step(&mut steps.collect::<Vec<f64>>());
-        let stated = || self.status.channel.as_deref()?.seconds_per_frame;
-        let step = measured.or_else(stated).filter(|&step| step > 0.0)?;
-        Some(1.0 / step)
+        let stated = || {
+            let step = self.status.channel.as_deref()?.seconds_per_frame?;
+            (step > 0.0).then(|| 1.0 / step)
+        };
+        self.history.rate().or_else(stated)
     }
 
     /// Takes what has come.
