@@ -410,15 +410,15 @@ Examples:
 
 /// `taxel watch`: what is answered, what a stream may be, and what is recorded.
 pub(crate) const WATCH_EXAMPLES: &str = "\
-On a terminal the frames are shown, on a page that stays open when the source
-has ended, with --once too. With --json, or in a pipeline, each frame is
+On a terminal the frames are shown on a page, which stays open when the source
+has ended, even with --once. With --json, or in a pipeline, each frame is
 answered by one line, as of 'taxel frames --all --json'; without a threshold its
 imprint is null. Streams are numbers in lines, JSON lines, what
 'ros2 topic echo' prints, FlexiTac's and MatSense's bytes; the form is
 recognised from the content. A recording is played at its own rate. A serial
-line or a connection that is lost is tried again each second, and waited for on
-a terminal where it is not there yet. Torn, short, long and garbled frames are
-dropped and counted.
+line or connection that is lost is tried again each second, unless --once is
+given; on a terminal, taxel also waits for one that is not there yet. Torn,
+short, long and garbled frames are dropped and counted.
 
 --write records every frame, read or not; numpy can open the file at any moment.
 A .json of the same name says what the values are.
