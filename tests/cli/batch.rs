@@ -28,6 +28,23 @@ fn the_files_of_the_examples_are_answered() {
 }
 
 #[test]
+fn sizes_and_pose_have_no_defaults() {
+    let lines = [
+        (r#"{"figure":"hexagon"}"#, "side"),
+        (r#"{"figure":"hexagon","side":3}"#, "x0"),
+        (r#"{"figure":"hexagon","side":3,"x0":1,"y0":1}"#, "angle"),
+        (r##"{"picture":["#"],"x0":1,"y0":1,"angle":0}"##, "zoom_x"),
+    ];
+    for (line, missing) in lines {
+        let run = taxel("batch", line);
+        let answer = format!("{{\"error\":\"line 1: {missing}: missing, expected a number ");
+        assert!(run.stdout.starts_with(&answer), "{line}: {run:?}");
+    }
+    let solid = r#"{"figure":"hexagon","side":3,"x0":1,"y0":1,"angle":0}"#;
+    assert_eq!(taxel("batch", solid).status, Some(0));
+}
+
+#[test]
 fn bad_lines_are_answered_in_their_places() {
     let lines: [&[u8]; 14] = [
         POINT.as_bytes(),

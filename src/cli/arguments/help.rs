@@ -92,8 +92,9 @@ pub(crate) const BATCH_EXAMPLES: &str = r###"Each line is a JSON object:
   {"picture":["##","#."],"x0":5,"y0":3,"angle":10,"zoom_x":1.5,"zoom_y":1}
   {"picture":"washer","x0":2,"y0":2,"angle":0,"zoom_x":1,"zoom_y":1}
   {"imprint":[".##.","#..#",".##."]}
-A figure without "thickness" is solid. A picture's name is one of the library. A
-line may bring a sensor of its own:
+Sizes, place, angle and zooms have no defaults here, unlike the flags of other
+commands; a figure without "thickness" is solid. A picture's name is one of the
+library. A line may bring a sensor of its own:
   "sensor":{"columns":32,"rows":32,"threshold":0.5}
 
 Each answer is one line, in the order of the poses. A line that is wrong or
