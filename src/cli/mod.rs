@@ -269,13 +269,10 @@ impl Surroundings {
                 let folder = shelf.library()?.folder().to_owned();
                 return write(&[folder.as_os_str().as_encoded_bytes(), b"\n"].concat());
             }
-            Chore::Check => {
-                let (text, broken, shapes) = library::check(shelf, charset)?;
+            Chore::Check(json) => {
+                let (text, result) = library::check(shelf, json, charset)?;
                 print(&text)?;
-                return match broken {
-                    0 => Ok(()),
-                    _ => Err(CliError::Shapes { broken, shapes }),
-                };
+                return result;
             }
         };
         print(&text)

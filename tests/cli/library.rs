@@ -104,6 +104,7 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
         shelf.does("library|check", ""),
         format!("{count} shapes, all whole\n")
     );
+    assert_eq!(shelf.does("library|check|--json", ""), "[]\n");
     let path = shelf.does("library|path", "");
     assert_eq!(path, format!("{}\n", shelf.folder.display()));
 }
@@ -205,6 +206,14 @@ fn broken_shapes_are_listed_and_checked_with_the_reason() {
             format!("error: 2 of {all} shapes cannot be read\n")
         )
     );
+    let run = shelf.run("library|check|--json", "");
+    assert_eq!(
+        run.stdout.replace(&folder, "FOLDER"),
+        "[{\"finding\":\"broken\",\"name\":\"bad\\u00e9\",\"reason\":\"FOLDER/bad\\u00e9.json: line 1, column 26: format: \\\"taxel-shape/9\\\" is not known here, expected \\\"taxel-shape/1\\\"\"},\
+         {\"finding\":\"broken\",\"name\":\"dir\",\"reason\":\"FOLDER/dir.json: is a folder, expected a regular file\"},\
+         {\"finding\":\"left over\",\"path\":\"FOLDER/notes.txt\",\"reason\":\"no shape: its name is not NAME.json\"}]\n"
+    );
+    assert_eq!(run.status, Some(1));
     let json = shelf.does("library|list|--json", "");
     assert!(
         json.is_ascii() && json.starts_with(r#"[{"name":"bad\u00e9","origin":"broken","error":"/"#)

@@ -310,7 +310,7 @@ fn library() -> Command {
         .subcommand(delete.arg(name("Which shape")))
         .subcommand(restore.arg(name("Which shape")))
         .subcommand(command("path", "Print the library's folder", PATH_EXAMPLES))
-        .subcommand(command("check", "Check every file", CHECK_EXAMPLES))
+        .subcommand(command("check", "Check every file", CHECK_EXAMPLES).arg(json()))
 }
 
 /// `--save` and `--export`: at least one of them must be given for `--force` to make sense.

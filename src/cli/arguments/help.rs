@@ -380,13 +380,16 @@ Examples:
   ls \"$(taxel library path)\"";
 
 /// `taxel library check`.
-pub(crate) const CHECK_EXAMPLES: &str = "\
-Reads every shape, and lists what else is in the folder. The exit status is 1 if
-a shape is broken.
+pub(crate) const CHECK_EXAMPLES: &str = r#"Reads every shape, and lists what else is in the folder. The exit status is 1 if
+a shape is broken. With --json the answer is an array with an object for each
+finding, in one line; it is empty if there is none:
+  {"finding":"broken","name":"ring","reason":"..."}
+  {"finding":"left over","path":"shapes/notes.txt","reason":"..."}
 
 Examples:
   taxel library check
-  taxel library check --library ./shapes";
+  taxel library check --json
+  taxel library check --library ./shapes"#;
 
 /// `taxel frames`: the forms of recordings, the order of processing, and what happens to a damaged one.
 pub(crate) const FRAMES_EXAMPLES: &str = "\

@@ -131,8 +131,8 @@ pub(crate) enum Chore {
     Restore(Name),
     /// Print the library's folder.
     Path,
-    /// Read every shape, and report what is damaged or left over.
-    Check,
+    /// Read every shape, and report what is damaged or left over, in JSON or not.
+    Check(bool),
 }
 
 /// What to keep of a touch, besides printing it.
@@ -388,7 +388,7 @@ fn chore(matches: &ArgMatches, settings: &Effective) -> Result<Chore, CliError> 
         }
         ("delete", Some(name)) => Chore::Delete(name),
         ("restore", Some(name)) => Chore::Restore(name),
-        ("check", _) => Chore::Check,
+        ("check", _) => Chore::Check(own.get_flag("json")),
         _ => Chore::Path,
     })
 }

@@ -10,10 +10,11 @@
 //! ```
 
 use std::ffi::OsStr;
-use std::fmt::Write;
+use std::fmt::{self, Write};
 
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
-use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde::Serialize;
+use serde::ser::{SerializeMap, Serializer};
 
 use crate::cli::arguments::request::{Form, Saving};
 use crate::cli::commands::describe;
@@ -215,26 +216,63 @@ pub(crate) fn restore(shelf: &Shelf, name: &str) -> Result<String, CliError> {
     Ok(format!("restored {name}\n"))
 }
 
-/// Reads every shape, and looks for other files in the folder. Returns the report, the number of damaged shapes, and
-/// the number of all shapes.
-pub(crate) fn check(shelf: &Shelf, charset: Charset) -> Result<(String, usize, usize), CliError> {
-    let library = shelf.library()?;
-    let lines = lines(&library)?;
-    let mut text = String::new();
-    let mut broken = 0;
-    for line in &lines {
-        if let Err(reason) = &line.found {
-            broken += 1;
-            let line = format!("broken: {}: {reason}", line.name);
-            text += &(charset.line(&line).into_owned() + "\n");
+/// What `taxel library check` finds.
+#[derive(Serialize)]
+#[serde(tag = "finding")]
+enum Finding {
+    /// A shape that cannot be read.
+    #[serde(rename = "broken")]
+    Broken { name: String, reason: String },
+    /// A file that is no shape.
+    #[serde(rename = "left over")]
+    LeftOver { path: String, reason: &'static str },
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Broken { name, reason } => write!(f, "broken: {name}: {reason}"),
+            Self::LeftOver { path, reason } => write!(f, "left over: {path}: {reason}"),
         }
     }
-    for (path, what) in library.leftovers()? {
-        let line = format!("left over: {}: {what}", path.display());
-        text += &(charset.line(&line).into_owned() + "\n");
-    }
-    if broken == 0 {
-        text += &format!("{} shapes, all whole\n", lines.len());
-    }
-    Ok((text, broken, lines.len()))
+}
+
+/// Reads every shape, and looks for other files in the folder. Returns the report, a line for each finding or an array
+/// of objects in JSON; and [`CliError::Shapes`] if a shape is damaged, for after the report.
+///
+/// # Errors
+/// If the folder cannot be listed.
+pub(crate) fn check(
+    shelf: &Shelf,
+    as_json: bool,
+    charset: Charset,
+) -> Result<(String, Result<(), CliError>), CliError> {
+    let library = shelf.library()?;
+    let lines = lines(&library)?;
+    let shapes = lines.len();
+    let broken = lines.into_iter().filter_map(|line| {
+        let (name, reason) = (line.name, line.found.err()?);
+        Some(Finding::Broken { name, reason })
+    });
+    let mut findings: Vec<Finding> = broken.collect();
+    let broken = findings.len();
+    findings.extend(library.leftovers()?.into_iter().map(|(path, reason)| {
+        let path = path.display().to_string();
+        Finding::LeftOver { path, reason }
+    }));
+    let text = if as_json {
+        json::ascii(&findings) + "\n"
+    } else {
+        let lines = findings.iter().map(Finding::to_string);
+        let whole = (broken == 0).then(|| format!("{shapes} shapes, all whole"));
+        let lines = lines.chain(whole);
+        lines
+            .map(|line| charset.line(&line).into_owned() + "\n")
+            .collect()
+    };
+    let result = match broken {
+        0 => Ok(()),
+        _ => Err(CliError::Shapes { broken, shapes }),
+    };
+    Ok((text, result))
 }
