@@ -16,6 +16,27 @@ fn frames(name: &str, flags: &str) -> Run {
     taxel(&format!("frames {} {flags}", sample(name)), "")
 }
 
+#[test]
+fn a_recording_in_place_of_a_command_gives_tips() {
+    let touch = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scripts/touch.csv");
+    let tips = format!(
+        "unrecognized subcommand '{touch}'\n\n  \
+         tip: 'taxel frames {touch}' lists what is in it\n  \
+         tip: 'taxel watch {touch}' plays it\n\nUsage: "
+    );
+    misused(touch, &tips);
+    // No such file; and a file of another kind.
+    misused(
+        "touch.csv",
+        "unrecognized subcommand 'touch.csv'\n\nUsage: ",
+    );
+    let script = touch.replace("touch.csv", "live.taxel");
+    misused(
+        &script,
+        &format!("unrecognized subcommand '{script}'\n\nUsage: "),
+    );
+}
+
 fn answers(run: &Run) -> Vec<Value> {
     let lines = run.stdout.lines();
     lines

@@ -3,11 +3,12 @@
 //!
 //! Settings are resolved on the way, since they decide about defaults: the sensor of a figure, the pitch of a table.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
 use clap::ArgMatches;
-use clap::error::ErrorKind;
+use clap::builder::StyledStr;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::parser::ValueSource;
 
 use crate::cli::arguments::definitions;
@@ -171,7 +172,7 @@ pub(crate) fn read(arguments: Vec<OsString>) -> Result<Asked, CliError> {
     let mut command = groups::grouped(definitions::all());
     let matches = match command.try_get_matches_from_mut(arguments) {
         Ok(matches) => matches,
-        Err(error) if error.use_stderr() => return Err(error.into()),
+        Err(error) if error.use_stderr() => return Err(with_tip(error).into()),
         Err(help) => {
             let none = Chosen::default();
             return Ok(Asked {
@@ -216,6 +217,28 @@ pub(crate) fn read(arguments: Vec<OsString>) -> Result<Asked, CliError> {
         library_named,
         settings,
     })
+}
+
+/// Endings of files that hold frames. Those of `.txt` and `.json` may as well be imprints and shapes.
+const RECORDINGS: [&str; 8] = ["apd", "asf", "csv", "jsonl", "lst", "mcap", "npy", "npz"];
+
+/// Names the commands that read a recording, where one is given in place of a command.
+fn with_tip(mut error: clap::Error) -> clap::Error {
+    let Some(ContextValue::String(given)) = error.get(ContextKind::InvalidSubcommand) else {
+        return error;
+    };
+    let path = Path::new(given);
+    let ending = path.extension().map(OsStr::to_ascii_lowercase);
+    let is_recording = ending.is_some_and(|ending| RECORDINGS.iter().any(|own| ending == *own));
+    if is_recording && path.is_file() {
+        let tips = [
+            format!("'taxel frames {given}' lists what is in it"),
+            format!("'taxel watch {given}' plays it"),
+        ];
+        let tips = tips.into_iter().map(StyledStr::from).collect();
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(tips));
+    }
+    error
 }
 
 /// The first flag of the screen that is given. Before a command such a flag would have no effect, so it is refused.
