@@ -354,13 +354,19 @@ fn place(trained: &TrainedModel, shape: usize, pose: &PoseEstimate, own: bool) -
             period => format!(" (repeats every {period}°)"),
         };
         let (first, last) = angle.ends();
-        let (mean, spread) = (decimal(mean, 0), spread_of(spread, 1));
+        let (mean, spread) = (decimal(half_up(mean), 0), spread_of(spread, 1));
         (
             format!("angle {mean}° ± {spread}°{turn}"),
             format!("95 % in {first}°..{last}°; {poses}"),
         )
     });
     [place, angle, poses]
+}
+
+/// A number to whole ones, half of one up. Formatting alone would make 22 of 22.5 and 24 of 23.5: symmetric shapes often
+/// have a mean that ends so.
+fn half_up(number: f64) -> f64 {
+    (number + 0.5).floor()
 }
 
 /// A standard deviation with all its decimals, so that lines keep their width while a shape is moved.
@@ -435,5 +441,11 @@ mod tests {
         assert_eq!(bar_of(0.0001, 10), (1, 9));
         assert_eq!(bar_of(1.0, 0), (0, 0));
         assert_eq!(bar_of(0.5, 10), (5, 5));
+    }
+
+    #[test]
+    fn half_a_degree_is_rounded_up() {
+        let shown = [22.5, 23.5, 22.49, -0.5, -1.2].map(|mean| decimal(half_up(mean), 0));
+        assert_eq!(shown, ["23", "24", "22", "0", "-1"]);
     }
 }
