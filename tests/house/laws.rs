@@ -25,7 +25,8 @@ const OWNED: [(&str, &str); 5] = [
 const SHARED_NAMES: &str = "";
 
 /// The number of lines in `src` where an impossible case becomes a value (`unwrap_or(0)` and the like, true defaults among
-/// them) is at most this. It only goes down.
+/// them) is at most this. Such a value hides a mistake as a plausible number, but nothing in the text tells it from a true
+/// default: so they are counted, not forbidden, and a new one takes the place of another. It only goes down.
 const MOST_FALLBACKS: usize = 47;
 
 /// What breaks the law, as `file:line: what; law: which`.
