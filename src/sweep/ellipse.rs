@@ -107,7 +107,7 @@ fn follow(ring: &Ring, tracks: &mut Tracks) -> Option<Passages> {
     if first <= from + 2.0 * NEAR || last >= to - 2.0 * NEAR {
         return None;
     }
-    let covered = |oval: &EllipseBand, u: f64| oval.coverage(&oval.at(u), &oval.at(u + 1.0));
+    let covered = |band: &EllipseBand, u: f64| band.coverage(&band.at(u), &band.at(u + 1.0));
     let least = covered(outer, first).min(covered(outer, last));
     // The hole is nowhere high enough to matter.
     if least - inner.highest() > threshold + DOUBT {

@@ -41,7 +41,7 @@ impl Ring {
 
     /// The coverage at a place, minus the threshold.
     fn excess(&self, u: f64) -> f64 {
-        let covered = |oval: &EllipseBand| oval.coverage(&oval.at(u), &oval.at(u + 1.0));
+        let covered = |band: &EllipseBand| band.coverage(&band.at(u), &band.at(u + 1.0));
         let outer = covered(&self.outer);
         let inner = self.inner.as_ref().map_or(0.0, covered);
         if outer == 1.0 && inner == 0.0 {

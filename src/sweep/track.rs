@@ -41,18 +41,18 @@ impl Track {
     }
 
     /// The passage through a level in the present band, rising or falling; None if it is not certain.
-    pub(crate) fn follow(&mut self, oval: &EllipseBand, level: f64, rising: bool) -> Option<f64> {
+    pub(crate) fn follow(&mut self, band: &EllipseBand, level: f64, rising: bool) -> Option<f64> {
         let mut u = self.expected()?;
         for _ in 0..4 {
-            let (left, right) = (oval.at(u), oval.at(u + 1.0));
-            let excess = oval.coverage(&left, &right) - level;
+            let (left, right) = (band.at(u), band.at(u + 1.0));
+            let excess = band.coverage(&left, &right) - level;
             let slope = right.height - left.height;
             if (slope > 0.0) != rising {
                 return None;
             }
             let way = excess / slope;
             let around = way.abs() * 1.5 + NEAR;
-            let change = oval.change(&left, around) + oval.change(&right, around);
+            let change = band.change(&left, around) + band.change(&right, around);
             let steep = slope.abs() - change;
             u -= way;
             let enough = slope.abs() <= 1.5 * steep && way.abs() * change <= 0.5 * NEAR * steep;
