@@ -116,9 +116,9 @@ impl Sums {
     }
 }
 
-/// A place of a box on the observed matrix.
+/// A position of a box on the observed matrix.
 #[derive(Clone, Copy, Debug, Default)]
-struct Place {
+struct BoxPosition {
     column: u8,
     row: u8,
     /// Observed taxels inside of the box, and dead ones.
@@ -153,7 +153,7 @@ impl Observed {
     }
 
     /// Visits all places of a box in reading order; none if it does not fit.
-    fn each_place(&self, (width, height): (u8, u8), mut visit: impl FnMut(Place)) {
+    fn each_place(&self, (width, height): (u8, u8), mut visit: impl FnMut(BoxPosition)) {
         let (columns, rows) = self.size();
         let size = (usize::from(width), usize::from(height));
         if width > columns {
@@ -163,7 +163,7 @@ impl Observed {
             for column in 0..=columns - width {
                 let corner = (usize::from(column), usize::from(row));
                 let dead = self.dead.as_ref();
-                visit(Place {
+                visit(BoxPosition {
                     column,
                     row,
                     inside: self.active.inside(corner, size),
@@ -174,7 +174,7 @@ impl Observed {
     }
 
     /// The least distance of a key of `count` taxels in a place. It grows with neither of the place's numbers.
-    fn bound(&self, count: u32, place: Place) -> u32 {
+    fn bound(&self, count: u32, place: BoxPosition) -> u32 {
         let apart = if place.inside > count {
             place.inside - count
         } else {
@@ -188,7 +188,7 @@ impl Observed {
 /// What the keys of a box are compared with: parts of the observed imprint as large as the box, those with the most taxels
 /// first.
 struct Windows {
-    places: Vec<Place>,
+    places: Vec<BoxPosition>,
     /// Words of each.
     length: usize,
     /// For each place the taxels inside, as a key would have them, and which of them are not dead.
@@ -233,7 +233,7 @@ impl Windows {
 }
 
 /// Cuts a window out of an imprint.
-fn cut(imprint: &Imprint, of: &KeyBox, place: Place, bits: &mut [u64]) {
+fn cut(imprint: &Imprint, of: &KeyBox, place: BoxPosition, bits: &mut [u64]) {
     let mask = u64::MAX.unbounded_shr(64 - u32::from(of.width));
     let rows = &imprint.words()[usize::from(place.row)..];
     for (index, &row) in rows.iter().take(usize::from(of.height)).enumerate() {
@@ -301,7 +301,7 @@ impl KeyIndex {
         let task = |group: &Group, windows: &Windows, keys: Range<usize>| {
             let mut best: Option<(u32, R, usize, (u8, u8))> = None;
             let most = least.load(Ordering::Relaxed);
-            let take = |key: usize, place: Place, distance: u32| {
+            let take = |key: usize, place: BoxPosition, distance: u32| {
                 let key = wide(self.numbers[key]);
                 let own = (distance, rank(key), key, (place.row, place.column));
                 if best.as_ref().is_none_or(|best| own < *best) {
@@ -334,7 +334,7 @@ impl KeyIndex {
     /// The group of the least bound, with its box. None if no key fits the matrix.
     fn promising(&self, observed: &Observed) -> Option<(&KeyBox, &Group)> {
         let bounds = self.boxes.iter().filter_map(|of| {
-            let mut most: Option<Place> = None;
+            let mut most: Option<BoxPosition> = None;
             observed.each_place((of.width, of.height), |place| {
                 let most = most.get_or_insert(place);
                 most.inside = most.inside.max(place.inside);
@@ -367,7 +367,7 @@ impl KeyIndex {
                 let block = start..keys.end.min(start + BLOCK);
                 // A bit for each key that has such a place.
                 let mut found = 0_u64;
-                let count = |key: usize, _: Place, distance: u32| {
+                let count = |key: usize, _: BoxPosition, distance: u32| {
                     found |= 1 << (key - start);
                     at[(key - start) * width + wide(distance - least)] += 1;
                     most
@@ -431,7 +431,7 @@ impl KeyIndex {
         windows: &Windows,
         observed: &Observed,
         most: u32,
-        take: impl FnMut(usize, Place, u32) -> u32,
+        take: impl FnMut(usize, BoxPosition, u32) -> u32,
     ) {
         let skipped = group.bits + (keys.start - group.keys.start) * windows.length;
         pulp::Arch::new().dispatch(Comparison {
@@ -460,7 +460,7 @@ struct Comparison<'a, F> {
     take: F,
 }
 
-impl<F: FnMut(usize, Place, u32) -> u32> WithSimd for Comparison<'_, F> {
+impl<F: FnMut(usize, BoxPosition, u32) -> u32> WithSimd for Comparison<'_, F> {
     type Output = ();
 
     #[expect(
@@ -483,7 +483,7 @@ impl<F: FnMut(usize, Place, u32) -> u32> WithSimd for Comparison<'_, F> {
     clippy::inline_always,
     reason = "so that it is compiled for the registers that are there"
 )]
-impl<F: FnMut(usize, Place, u32) -> u32> Comparison<'_, F> {
+impl<F: FnMut(usize, BoxPosition, u32) -> u32> Comparison<'_, F> {
     /// Compares keys of `N` words; 0 for any number.
     #[inline(always)]
     fn words<const N: usize>(mut self) {

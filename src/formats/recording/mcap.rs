@@ -150,7 +150,7 @@ pub(super) fn read(
     };
     let mut magic = [0; MAGIC];
     whole(input, &mut magic)?;
-    let ended = state.records(input, Place::File)?;
+    let ended = state.records(input, Container::File)?;
     if state.given.is_empty() && ended == Ended::AtFooter {
         return Err(RecordingError::damaged(
             "no messages with frames, expected std_msgs/*MultiArray, sensor_msgs/Image or tactile_msgs/TactileState",
@@ -159,9 +159,9 @@ pub(super) fn read(
     Ok(())
 }
 
-/// Where records stand.
+/// What records stand in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Place {
+enum Container {
     /// In the file, up to its footer.
     File,
     /// In a chunk, up to its end.
@@ -266,19 +266,23 @@ fn pass_over(input: &mut dyn Read, length: u64) -> Result<(), RecordingError> {
 
 impl McapState<'_, '_> {
     /// Reads records, up to the footer or the end of a chunk.
-    fn records(&mut self, input: &mut dyn Read, place: Place) -> Result<Ended, RecordingError> {
+    fn records(
+        &mut self,
+        input: &mut dyn Read,
+        within: Container,
+    ) -> Result<Ended, RecordingError> {
         loop {
             let mut head = [0; 9];
-            if place == Place::Chunk && input.read(&mut head[..1]).map_err(refused)? == 0 {
+            if within == Container::Chunk && input.read(&mut head[..1]).map_err(refused)? == 0 {
                 return Ok(Ended::OfChunk);
             }
-            let known = usize::from(place == Place::Chunk);
+            let known = usize::from(within == Container::Chunk);
             whole(input, &mut head[known..])?;
             let [kind, length @ ..] = head;
             let length = u64::from_le_bytes(length);
             match kind {
-                FOOTER if place == Place::File => return Ok(Ended::AtFooter),
-                CHUNK if place == Place::File => {
+                FOOTER if within == Container::File => return Ok(Ended::AtFooter),
+                CHUNK if within == Container::File => {
                     if self.chunk(input)? == Ended::ByReader {
                         return Ok(Ended::ByReader);
                     }
@@ -311,10 +315,13 @@ impl McapState<'_, '_> {
         let head = ChunkHead::read(input)?;
         let mut packed = Read::take(&mut *input, head.length);
         let ended = match head.compression.as_str() {
-            "" => self.records(&mut packed, Place::Chunk)?,
+            "" => self.records(&mut packed, Container::Chunk)?,
             "lz4" => {
                 let unpacked = lz4_flex::frame::FrameDecoder::new(&mut packed);
-                self.records(&mut BufReader::new(unpacked.take(head.size)), Place::Chunk)?
+                self.records(
+                    &mut BufReader::new(unpacked.take(head.size)),
+                    Container::Chunk,
+                )?
             }
             "zstd" => {
                 let unpacked = ruzstd::decoding::StreamingDecoder::new_with_max_window_size(
@@ -323,7 +330,10 @@ impl McapState<'_, '_> {
                 );
                 let unpacked =
                     unpacked.map_err(|_| RecordingError::damaged("a chunk cannot be unpacked"))?;
-                self.records(&mut BufReader::new(unpacked.take(head.size)), Place::Chunk)?
+                self.records(
+                    &mut BufReader::new(unpacked.take(head.size)),
+                    Container::Chunk,
+                )?
             }
             other => {
                 let message =

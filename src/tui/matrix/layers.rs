@@ -12,7 +12,7 @@ use crate::geometry::{Ellipse, Pen, Point, Side, Solid};
 use crate::recognition::PlacedSource;
 use crate::source::Source;
 use crate::tui::matrix::layout::{TaxelGrid, TaxelSize};
-use crate::tui::widget::dots::{DOTS, DotCanvas, Place, glyph};
+use crate::tui::widget::dots::{DOTS, DotCanvas, DotPosition, glyph};
 use crate::tui::widget::theme::{Role, Theme};
 
 /// Straight pieces of an ellipse: on the largest matrix none strays by a dot.
@@ -62,7 +62,7 @@ impl<'a> DotGrid<'a> {
     }
 
     /// A line between two places, faint or not.
-    fn stroke(&mut self, from: Place, to: Place) {
+    fn stroke(&mut self, from: DotPosition, to: DotPosition) {
         let faint = self.faint;
         // By place, so that short pieces of a curve are as faint as a long line.
         let start = from.0 + from.1;
@@ -78,7 +78,7 @@ impl<'a> DotGrid<'a> {
     }
 
     /// A place on the plane, in cell sides, among the dots.
-    fn place(&self, x: f64, y: f64) -> Place {
+    fn place(&self, x: f64, y: f64) -> DotPosition {
         let (across, down) = self.dots();
         let (left, top) = (self.grid.columns.first, self.grid.rows.first);
         (
@@ -95,7 +95,7 @@ impl Pen<f64> for DotGrid<'_> {
         let length = dx.hypot(dy);
         if length > 0.0 {
             let aside = (-dy / length * INSIDE, dx / length * INSIDE);
-            let moved = |place: Place| (place.0 + aside.0, place.1 + aside.1);
+            let moved = |place: DotPosition| (place.0 + aside.0, place.1 + aside.1);
             self.stroke(moved(from), moved(to));
         }
     }
@@ -116,7 +116,7 @@ impl Pen<f64> for DotGrid<'_> {
                 along(ellipse.centre.y, ellipse.across.y, ellipse.along.y),
             )
         };
-        let places: Vec<Place> = (0..=PIECES).map(at).collect();
+        let places: Vec<DotPosition> = (0..=PIECES).map(at).collect();
         for pair in places.windows(2) {
             self.stroke(pair[0], pair[1]);
         }
@@ -210,7 +210,7 @@ fn draw_rectangle(dots: &mut DotGrid<'_>, region: &Description) {
     clippy::cast_sign_loss,
     reason = "within the screen"
 )]
-fn character_at(dots: &DotGrid<'_>, (x, y): Place, screen: Rect) -> Option<Position> {
+fn character_at(dots: &DotGrid<'_>, (x, y): DotPosition, screen: Rect) -> Option<Position> {
     let ((x, y), (width, height)) = (dots.place(x, y), dots.canvas.size());
     let visible = x >= 0.0 && y >= 0.0 && x < width && y < height;
     let place = visible.then(|| {

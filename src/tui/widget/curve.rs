@@ -13,7 +13,6 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use crate::formats::axis_ends;
-use crate::tui::widget::dots::Place;
 use crate::tui::widget::plot::{DotKind, PlotField};
 use crate::tui::widget::theme::{Role, Theme};
 
@@ -23,7 +22,7 @@ pub struct Curve<'a> {
     /// What the upward axis and the other one are.
     pub labels: [&'a str; 2],
     /// Its points: a value and a share, in the order of the line.
-    pub points: &'a [Place],
+    pub points: &'a [(f64, f64)],
     /// The values along the axis, in ascending order.
     pub values: &'a [f64],
     /// A share that is marked.
@@ -36,9 +35,9 @@ impl Curve<'_> {
     /// Draws it, with shares in percent. Nothing where there is no room.
     pub fn draw(&self, theme: &Theme, buffer: &mut Buffer, area: Rect) {
         let x = axis_ends(self.values.iter().copied());
-        let percent = |(value, share): Place| (value, 100.0 * share);
+        let percent = |(value, share): (f64, f64)| (value, 100.0 * share);
         let points = self.points.iter().map(|&point| percent(point));
-        let points: Vec<Place> = points.collect();
+        let points: Vec<(f64, f64)> = points.collect();
         let level = 100.0 * self.level;
         let shares = points.iter().map(|point| point.1);
         let y = axis_ends(shares.chain([0.0, level]));
@@ -47,7 +46,7 @@ impl Curve<'_> {
         };
         plot.draw_axes(theme, buffer, self.labels);
         let mut marks = plot.canvas();
-        let dots = |ends: [Place; 2]| ends.map(|end| plot.dot(end));
+        let dots = |ends: [(f64, f64); 2]| ends.map(|end| plot.dot(end));
         let [left, right] = dots([(x.0, level), (x.1, level)]);
         marks.dashed(left, right, |step| step % 4 == 0);
         if let Some(at) = self.at {

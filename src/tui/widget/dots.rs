@@ -10,8 +10,8 @@ pub const DOTS: (u16, u16) = (2, 4);
 /// The bit of each dot in a Braille character, by row and column.
 const BITS: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
 
-/// A place among the dots, from the top left corner; dot (i, j) covers `[i, i+1] × [j, j+1]`.
-pub type Place = (f64, f64);
+/// A position among the dots, from the top left corner; dot (i, j) covers `[i, i+1] × [j, j+1]`.
+pub type DotPosition = (f64, f64);
 
 /// A field of dots, as large as some characters of the screen.
 #[derive(Clone, Debug)]
@@ -36,7 +36,7 @@ impl DotCanvas {
     }
 
     /// The number of dots across and down.
-    pub fn size(&self) -> Place {
+    pub fn size(&self) -> DotPosition {
         let (across, down) = DOTS;
         (
             f64::from(self.columns) * f64::from(across),
@@ -50,7 +50,7 @@ impl DotCanvas {
         clippy::cast_sign_loss,
         reason = "within the field"
     )]
-    pub fn set(&mut self, (x, y): Place) {
+    pub fn set(&mut self, (x, y): DotPosition) {
         let (width, height) = self.size();
         if !(x >= 0.0 && y >= 0.0 && x < width && y < height) {
             return;
@@ -64,7 +64,7 @@ impl DotCanvas {
     }
 
     /// Sets the dots of a straight line, but for what lies outside.
-    pub fn line(&mut self, from: Place, to: Place) {
+    pub fn line(&mut self, from: DotPosition, to: DotPosition) {
         self.dashed(from, to, |_| true);
     }
 
@@ -74,7 +74,7 @@ impl DotCanvas {
         clippy::cast_sign_loss,
         reason = "no longer than the field"
     )]
-    pub fn dashed(&mut self, from: Place, to: Place, shown: impl Fn(u32) -> bool) {
+    pub fn dashed(&mut self, from: DotPosition, to: DotPosition, shown: impl Fn(u32) -> bool) {
         let Some((from, to)) = clipped(from, to, self.size()) else {
             return;
         };
@@ -96,7 +96,11 @@ impl DotCanvas {
 }
 
 /// The part of a line within `[0, width] × [0, height]`; None where there is none, or a coordinate is not a number.
-fn clipped(from: Place, to: Place, (width, height): Place) -> Option<(Place, Place)> {
+fn clipped(
+    from: DotPosition,
+    to: DotPosition,
+    (width, height): DotPosition,
+) -> Option<(DotPosition, DotPosition)> {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
     let (mut start, mut end) = (0.0_f64, 1.0_f64);
     // Each border as how fast the line leaves through it, and how far inside it starts.
@@ -154,7 +158,7 @@ pub fn glyph(theme: &Theme, dots: u8) -> char {
 mod tests {
     use super::*;
 
-    fn drawn(ascii: bool, from: Place, to: Place) -> String {
+    fn drawn(ascii: bool, from: DotPosition, to: DotPosition) -> String {
         let mut canvas = DotCanvas::new(3, 2);
         canvas.line(from, to);
         let mut text = vec![vec![' '; 3]; 2];

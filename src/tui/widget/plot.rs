@@ -15,7 +15,7 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 
 use crate::formats::axis_marks;
-use crate::tui::widget::dots::{DOTS, DotCanvas, Place, glyph};
+use crate::tui::widget::dots::{DOTS, DotCanvas, DotPosition, glyph};
 use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
@@ -77,7 +77,7 @@ impl PlotField {
     }
 
     /// Where a point lies among the dots.
-    pub fn dot(&self, (x, y): (f64, f64)) -> Place {
+    pub fn dot(&self, (x, y): (f64, f64)) -> DotPosition {
         let wide = f64::from(self.field.width) * f64::from(DOTS.0);
         let high = f64::from(self.field.height) * f64::from(DOTS.1);
         let share = |at: f64, (low, high): (f64, f64)| (at - low) / (high - low);
