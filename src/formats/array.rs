@@ -288,8 +288,8 @@ mod tests {
     #[test]
     fn what_is_wrong_is_told() {
         let wrong = |bytes: &[u8], message: &str| {
-            let told = read(bytes).map_err(|error| error.to_string());
-            assert_eq!(told, Err(message.to_owned()));
+            let outcome = read(bytes).map_err(|error| error.to_string());
+            assert_eq!(outcome, Err(message.to_owned()));
         };
         let small =
             |code: &str, shape: &str, numbers: &[u8]| file(1, &header(code, false, shape), numbers);

@@ -312,8 +312,9 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_told_with_its_place() {
-        let told = |bytes: &[u8]| read(bytes).map_err(|error| error.to_string());
-        let wrong = |bytes: &[u8], message: &str| assert_eq!(told(bytes), Err(message.to_owned()));
+        let outcome = |bytes: &[u8]| read(bytes).map_err(|error| error.to_string());
+        let wrong =
+            |bytes: &[u8], message: &str| assert_eq!(outcome(bytes), Err(message.to_owned()));
         wrong(b"", "expected P1, P4, P2 or P5 at the start");
         wrong(
             b"P6\n1 1\n255\n\0\0\0",

@@ -452,8 +452,8 @@ mod tests {
     #[test]
     fn what_is_wrong_is_told_with_its_place() {
         let wrong = |bytes: &[u8], message: &str| {
-            let told = read(bytes).map_err(|error| error.to_string());
-            assert_eq!(told, Err(message.to_owned()));
+            let outcome = read(bytes).map_err(|error| error.to_string());
+            assert_eq!(outcome, Err(message.to_owned()));
         };
         wrong(b"", "found 0 lines, expected 1 to 64");
         wrong(b"# only\n", "found 0 lines, expected 1 to 64");

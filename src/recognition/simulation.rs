@@ -139,7 +139,7 @@ impl Draw {
 
 impl Model {
     /// Draws touches of each shape on a matrix of that many columns and rows, flips taxels as `noise` says, names the
-    /// shape as `told` says, and counts. Dead taxels of `noise` always read as inactive; those of `told` are left out.
+    /// shape as `assumed` says, and counts. Dead taxels of `noise` always read as inactive; those of `assumed` are left out.
     ///
     /// `per_shape` touches are drawn of each shape. `progress` is called with the number of touches done since the last
     /// call, and stops it by returning `false`; then there is no result.
@@ -147,13 +147,13 @@ impl Model {
         &self,
         (columns, rows): (u8, u8),
         noise: &Noise,
-        told: &Noise,
+        assumed: &Noise,
         per_shape: u64,
         seed: u64,
         progress: &(dyn Fn(u64) -> bool + Sync),
     ) -> Option<RecognitionRate> {
         let judge = |rate: &mut RecognitionRate, shape: usize, touch: &Imprint| {
-            rate.add(self, told, shape, touch);
+            rate.add(self, assumed, shape, touch);
         };
         self.simulated((columns, rows), noise, per_shape, seed, progress, &judge)
     }
@@ -327,10 +327,10 @@ impl RecognitionRate {
     }
 
     /// Names one touch.
-    fn add(&mut self, model: &Model, told: &Noise, shape: usize, touch: &Imprint) {
+    fn add(&mut self, model: &Model, assumed: &Noise, shape: usize, touch: &Imprint) {
         self.touches += 1;
         self.held += u64::from(model.keys().find(&ImprintKey::of(touch)).is_some());
-        let Some(posterior) = model.posterior_under(touch, told) else {
+        let Some(posterior) = model.posterior_under(touch, assumed) else {
             return;
         };
         // The first of equals, as everywhere.

@@ -332,9 +332,9 @@ mod tests {
         let grid = grid.expect("in range");
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
         let stopped = pool.expect("threads").install(|| {
-            let told = AtomicU64::new(0);
+            let done = AtomicU64::new(0);
             // Some orientations are complete by then, but far from all.
-            let go_on = |poses| told.fetch_add(poses, Ordering::Relaxed) < 1_000_000;
+            let go_on = |poses| done.fetch_add(poses, Ordering::Relaxed) < 1_000_000;
             Sweep::new(&grid).progress(&go_on).run()
         });
         assert!(!stopped.complete() && stopped.poses > 0);

@@ -313,7 +313,7 @@ impl Effective {
             }
             None => "# no file\n".to_owned(),
         };
-        let mut line = |entry: &str, origin: &SettingOrigin| text += &told(entry, origin);
+        let mut line = |entry: &str, origin: &SettingOrigin| text += &commented(entry, origin);
         let quoted = |text: &str| quoted(text, charset);
         let theme = named(&Palette::NAMES, self.theme.value.as_ref());
         line(&format!("theme = \"{theme}\""), &self.theme.origin);
@@ -347,7 +347,7 @@ impl Effective {
                 (Parameter::Pitch, SettingOrigin::Default) => "# pitch is not set".to_owned(),
                 (parameter, _) => format!("{name} = {}", value(*parameter)),
             };
-            told(&entry, origin)
+            commented(&entry, origin)
         };
         self.of_sensor.iter().map(line).collect()
     }
@@ -366,7 +366,7 @@ impl Effective {
                 let written = sensors.get(setting.key);
                 let origin =
                     written.map_or(SettingOrigin::Default, |own| SettingOrigin::File(own.line));
-                text += &told(&entry, &origin);
+                text += &commented(&entry, &origin);
             }
         }
         text
@@ -388,7 +388,7 @@ impl Effective {
                 let origin =
                     change.map_or(SettingOrigin::Default, |own| SettingOrigin::File(own.line));
                 let entry = format!("{} = \"{action}\"", quoted(&key.to_string()));
-                text += &told(&entry, &origin);
+                text += &commented(&entry, &origin);
             }
         }
         text
@@ -396,7 +396,7 @@ impl Effective {
 }
 
 /// A line of the text: the entry, and its origin as a comment, aligned.
-fn told(entry: &str, origin: &SettingOrigin) -> String {
+fn commented(entry: &str, origin: &SettingOrigin) -> String {
     format!("{entry:<37}  # {origin}\n")
 }
 

@@ -332,8 +332,9 @@ impl PageLayout<'_> {
             return;
         };
         let (pitch, unit) = (self.subject.pitch_mm.unwrap_or(1.0), self.unit());
-        let told = |value: Value| value::times(value, pitch, 4).unwrap_or_else(|| "–".to_owned());
-        let rect = told(Value::Rect(description.rect));
+        let formatted =
+            |value: Value| value::times(value, pitch, 4).unwrap_or_else(|| "–".to_owned());
+        let rect = formatted(Value::Rect(description.rect));
         self.legend_row(
             &mut y,
             &format!("rectangle {rect} {unit}"),
@@ -341,11 +342,11 @@ impl PageLayout<'_> {
                 layout.line("legend", stretch(place), RECTANGLE);
             },
         );
-        let cg = told(Value::Point(description.cg()));
+        let cg = formatted(Value::Point(description.cg()));
         self.legend_row(&mut y, &format!("CG {cg} {unit}"), |layout, place| {
             layout.line("legend", cross(place, 3.5), POINT);
         });
-        let cd = told(Value::Point(description.cd()));
+        let cd = formatted(Value::Point(description.cd()));
         self.legend_row(&mut y, &format!("CD {cd} {unit}"), |layout, place| {
             layout.line("legend", circle(place, 3.5), POINT);
         });

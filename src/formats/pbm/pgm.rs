@@ -167,8 +167,8 @@ mod tests {
                 "found 2 bytes after the image, expected one image and no more",
             ),
         ] {
-            let told = read(bytes).map_err(|error| error.to_string());
-            assert_eq!(told, Err(message.to_owned()));
+            let outcome = read(bytes).map_err(|error| error.to_string());
+            assert_eq!(outcome, Err(message.to_owned()));
         }
     }
 }

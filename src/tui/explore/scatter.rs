@@ -145,7 +145,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
 /// The selected imprint in one line.
 fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
     let index = usize::try_from(entry.id).ok();
-    let told = |values: &[Option<f64>]| {
+    let formatted = |values: &[Option<f64>]| {
         let value = index.and_then(|index| *values.get(index)?);
         value.map_or_else(|| theme.none().to_owned(), |value| fitting(value, VALUE))
     };
@@ -153,9 +153,9 @@ fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
         "imprint {}: {} {}, {} {}; {}",
         entry.id,
         features()[results.across()].key,
-        told(results.across_values()),
+        formatted(results.across_values()),
         results.feature().key,
-        told(results.values()),
+        formatted(results.values()),
         counted(entry.count, "pose")
     )
 }

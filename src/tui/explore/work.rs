@@ -160,8 +160,8 @@ pub(crate) fn in_running(app: &mut App, mut running: Running, message: &Message)
 }
 
 /// Handles an event of a worker.
-pub(crate) fn on_worker(app: &mut App, told: WorkerEvent) -> Option<Effect> {
-    match told {
+pub(crate) fn on_worker(app: &mut App, event: WorkerEvent) -> Option<Effect> {
+    match event {
         WorkerEvent::Progress(number, progress) => {
             if let Some(running) = running(app, number) {
                 running.progress = Some(progress);

@@ -387,8 +387,8 @@ impl<'a> EventLoop<'a> {
 
     /// Says that something cannot be done here.
     fn refuse(&mut self, reason: &str) {
-        let told = Message::Worker(WorkerEvent::Refused(reason.to_owned()));
-        let _ = self.world.handle(&mut self.app, told);
+        let message = Message::Worker(WorkerEvent::Refused(reason.to_owned()));
+        let _ = self.world.handle(&mut self.app, message);
     }
 
     /// Nothing is known of what the terminal shows: all of it is drawn next time.

@@ -62,6 +62,6 @@ pub fn run(
     watch: &mut dyn FnMut(&Input),
 ) -> io::Result<Outcome> {
     let (sender, mailbox) = mailbox::new()?;
-    let world = world.with_workers(Arc::new(move |told| sender.send(Message::Worker(told))));
+    let world = world.with_workers(Arc::new(move |event| sender.send(Message::Worker(event))));
     event_loop::run(app, first, world, settings, mailbox, watch)
 }

@@ -172,17 +172,17 @@ fn nearest(results: &Results, spread: &[AngleSpread]) -> Option<AngleSpread> {
 
 /// The values at an angle in one line.
 fn detail(at: &AngleSpread) -> String {
-    let told = |value: f64| fitting(value, VALUE);
+    let formatted = |value: f64| fitting(value, VALUE);
     let angle = Axis::Angle.parameter().format(at.degrees);
     let ends = at.min.zip(at.max);
     ends.map_or_else(
-        || format!("angle {angle}°: mean {}", told(at.mean)),
+        || format!("angle {angle}°: mean {}", formatted(at.mean)),
         |(min, max)| {
             format!(
                 "angle {angle}°: min {}, mean {}, max {}",
-                told(min),
-                told(at.mean),
-                told(max)
+                formatted(min),
+                formatted(at.mean),
+                formatted(max)
             )
         },
     )
