@@ -190,6 +190,11 @@ impl Bounds {
     pub fn rows(&self) -> Range<u8> {
         self.top..self.bottom
     }
+
+    /// Returns the number of its taxels.
+    pub fn area(&self) -> u32 {
+        u32::from(self.right - self.left) * u32::from(self.bottom - self.top)
+    }
 }
 
 impl fmt::Display for Imprint {

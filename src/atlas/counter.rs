@@ -100,8 +100,11 @@ impl ImprintCounter {
 
     /// Sorts the keys by their first poses. The result is the former index of each.
     pub(crate) fn sort_by_first_pose(&mut self) -> Vec<usize> {
-        let mut order: Vec<usize> = (0..self.len()).collect();
-        order.sort_unstable_by_key(|&index| self.tallies[index].first);
+        // Beside their indices, first poses are compared without a look into the tallies.
+        let firsts = self.tallies.iter().map(|tally| tally.first);
+        let mut order: Vec<(u64, usize)> = firsts.zip(0..).collect();
+        order.sort_unstable();
+        let order: Vec<usize> = order.into_iter().map(|(_, index)| index).collect();
         let mut ordered = Self {
             length: self.length,
             keys: Vec::with_capacity(self.keys.len()),

@@ -7,13 +7,19 @@ use rayon::prelude::*;
 use crate::atlas::feature::{ImprintSummary, feature_values, features};
 use crate::atlas::sums::{fixed, signed};
 
+/// Rows in a part of a table. One vector of all rows would be copied whenever it grows, and fill pages on one thread.
+const PART: usize = 256;
+
 /// The values of all features of the imprints of an atlas.
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
     /// The length of a row.
     width: usize,
-    /// A row per imprint: each feature, [`NONE`] where it does not exist; of a direction its cosine and sine.
-    values: Vec<i64>,
+    /// A row per imprint: each feature, [`NONE`] where it does not exist; of a direction its cosine and sine. All parts
+    /// but the last have [`PART`] rows.
+    parts: Vec<Vec<i64>>,
+    /// The number of rows.
+    imprints: usize,
     /// The smallest and the largest value of each feature; infinity and minus infinity where none exists.
     extremes: Vec<(f64, f64)>,
 }
@@ -46,7 +52,8 @@ impl Default for Table {
         let widths = features().iter().map(|feature| width(feature.circular));
         Self {
             width: widths.sum(),
-            values: Vec::new(),
+            parts: Vec::new(),
+            imprints: 0,
             extremes: vec![NOTHING; features().len()],
         }
     }
@@ -55,32 +62,31 @@ impl Default for Table {
 impl Table {
     /// Adds the values of the imprints that are not in it yet.
     pub(crate) fn extend(&mut self, summaries: &[ImprintSummary]) {
-        const TOGETHER: usize = 256;
         let (places, width) = (places(), self.width);
-        let known = self.values.len() / width;
-        let new = &summaries[known.min(summaries.len())..];
-        let start = self.values.len();
-        self.values.resize(summaries.len() * width, NONE);
-        let extremes = self.values[start..]
-            .par_chunks_mut(width * TOGETHER)
-            .zip(new.par_chunks(TOGETHER))
-            .map(|(rows, summaries)| {
-                let mut extremes = vec![NOTHING; places.len()];
-                for (row, summary) in rows.chunks_exact_mut(width).zip(summaries) {
-                    note(summary, &places, row, &mut extremes);
-                }
-                extremes
-            })
-            .reduce(
-                || vec![NOTHING; places.len()],
-                |one, other| joined(&one, &other),
-            );
-        self.extremes = joined(&self.extremes, &extremes);
+        let new = &summaries[self.imprints.min(summaries.len())..];
+        let room = self.imprints.next_multiple_of(PART) - self.imprints;
+        let (first, rest) = new.split_at(room.min(new.len()));
+        if let Some(part) = self.parts.last_mut() {
+            note(first, &places, width, part, &mut self.extremes);
+        }
+        let parts = rest.par_chunks(PART).map(|summaries| {
+            let mut part = Vec::with_capacity(width * PART);
+            let mut extremes = vec![NOTHING; places.len()];
+            note(summaries, &places, width, &mut part, &mut extremes);
+            (part, extremes)
+        });
+        for (part, extremes) in parts.collect::<Vec<_>>() {
+            self.parts.push(part);
+            for ((low, high), other) in self.extremes.iter_mut().zip(extremes) {
+                (*low, *high) = (low.min(other.0), high.max(other.1));
+            }
+        }
+        self.imprints = summaries.len();
     }
 
     /// The values of an imprint.
     pub(crate) fn row(&self, index: usize) -> &[i64] {
-        &self.values[index * self.width..][..self.width]
+        &self.parts[index / PART][index % PART * self.width..][..self.width]
     }
 
     /// The smallest and the largest value of a feature; None if no imprint has one.
@@ -90,32 +96,31 @@ impl Table {
     }
 }
 
-/// Writes the values of an imprint into a row.
+/// Adds rows of the values of imprints.
 fn note(
-    summary: &ImprintSummary,
+    summaries: &[ImprintSummary],
     places: &[(usize, bool)],
-    row: &mut [i64],
+    width: usize,
+    part: &mut Vec<i64>,
     extremes: &mut [(f64, f64)],
 ) {
-    let Some(description) = &summary.description else {
-        return;
-    };
-    feature_values(description, |index, value| {
-        let (place, circular) = places[index];
-        if circular {
-            let (sin, cos) = value.to_radians().sin_cos();
-            (row[place], row[place + 1]) = (signed(cos), signed(sin));
-        } else {
-            row[place] = fixed(value);
-        }
-        let (low, high) = &mut extremes[index];
-        (*low, *high) = (low.min(value), high.max(value));
-    });
-}
-
-/// The extremes of two parts together.
-fn joined(one: &[(f64, f64)], other: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    let both = one.iter().zip(other);
-    both.map(|(one, other)| (one.0.min(other.0), one.1.max(other.1)))
-        .collect()
+    for summary in summaries {
+        let start = part.len();
+        part.resize(start + width, NONE);
+        let Some(description) = &summary.description else {
+            continue;
+        };
+        let row = &mut part[start..];
+        feature_values(description, |index, value| {
+            let (place, circular) = places[index];
+            if circular {
+                let (sin, cos) = value.to_radians().sin_cos();
+                (row[place], row[place + 1]) = (signed(cos), signed(sin));
+            } else {
+                row[place] = fixed(value);
+            }
+            let (low, high) = &mut extremes[index];
+            (*low, *high) = (low.min(value), high.max(value));
+        });
+    }
 }

@@ -75,10 +75,6 @@ impl Description {
         )
     }
 
-    fn area(&self) -> u32 {
-        u32::from(self.rect.right - self.rect.left) * u32::from(self.rect.bottom - self.rect.top)
-    }
-
     fn diagonals(&self) -> [f64; 2] {
         let sides = self.sides();
         let rising = sides.y.atan2(sides.x).to_degrees();
@@ -468,8 +464,8 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         "Area",
         "rectangle's taxels",
         Dimension::Area,
-        |d| Value::Count(d.area()),
-        |d| Some(whole([d.area()])),
+        |d| Value::Count(d.rect.area()),
+        |d| Some(whole([d.rect.area()])),
     ),
     Descriptor::new(
         "diagonals",
@@ -499,8 +495,8 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         "Fill",
         "NA/Area",
         Dimension::Share,
-        |d| Value::Number(f64::from(d.na) / f64::from(d.area())),
-        |d| Some(ratios([i64::from(d.na), 0], i64::from(d.area()))),
+        |d| Value::Number(f64::from(d.na) / f64::from(d.rect.area())),
+        |d| Some(ratios([i64::from(d.na), 0], i64::from(d.rect.area()))),
     ),
     Descriptor::new(
         "cg_cd",

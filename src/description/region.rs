@@ -179,16 +179,20 @@ fn rows_mut(matrix: &mut Imprint, bounds: Bounds) -> &mut [u64] {
 /// Shows the connected components of a matrix in reading order: exteriors 8-connected, holes 4-connected.
 fn components(matrix: &Imprint, bounds: Bounds, kind: RegionKind, mut visit: impl FnMut(&Region)) {
     let diagonal = kind == RegionKind::Exterior;
+    let none = || Imprint::empty(matrix.columns(), matrix.rows());
     if hangs_together(rows(matrix, bounds), diagonal) {
-        let runs = rows(matrix, bounds).iter().all(|&word| is_run(word));
-        show(kind, matrix, bounds, runs, visit);
+        if rows(matrix, bounds).iter().all(|&word| is_run(word)) {
+            visit(&Region::borrowed(kind, matrix, None, bounds));
+        } else {
+            show_filled(kind, matrix, bounds, &mut none(), visit);
+        }
         return;
     }
-    let mut rest = *matrix;
+    // All pieces use the same memory, of which only the rows that were written are cleared.
+    let (mut rest, mut piece, mut filled) = (*matrix, none(), none());
     let bottom = usize::from(bounds.bottom);
     for top in usize::from(bounds.top)..bottom {
         while rest.words()[top] != 0 {
-            let mut piece = Imprint::empty(matrix.columns(), matrix.rows());
             let open = &mut rest.words_mut()[top..bottom];
             let seeds = &mut piece.words_mut()[top..bottom];
             seeds[0] = spread(open[0] & open[0].wrapping_neg(), open[0]);
@@ -201,28 +205,33 @@ fn components(matrix: &Imprint, bounds: Bounds, kind: RegionKind, mut visit: imp
                 runs &= is_run(taxels);
             }
             if let Some(bounds) = Bounds::around(across, top, end) {
-                show(kind, &piece, bounds, runs, &mut visit);
+                if runs {
+                    visit(&Region::borrowed(kind, &piece, None, bounds));
+                } else {
+                    show_filled(kind, &piece, bounds, &mut filled, &mut visit);
+                    rows_mut(&mut filled, bounds).fill(0);
+                }
             }
+            piece.words_mut()[top..top + end].fill(0);
         }
     }
 }
 
-/// Shows a component, filled. If all of its rows are runs there is nothing to fill.
-fn show(
+/// Shows a component of which some rows are not runs, filled. `filled` is empty at first.
+fn show_filled(
     kind: RegionKind,
     piece: &Imprint,
     bounds: Bounds,
-    runs: bool,
+    filled: &mut Imprint,
     mut visit: impl FnMut(&Region),
 ) {
-    if runs {
-        visit(&Region::borrowed(kind, piece, None, bounds));
-        return;
-    }
-    let mut filled = Imprint::empty(piece.columns(), piece.rows());
-    let encloses = fill(piece, bounds, &mut filled);
-    let filled = encloses.then_some(&filled);
-    visit(&Region::borrowed(kind, piece, filled, bounds));
+    let encloses = fill(piece, bounds, filled);
+    visit(&Region::borrowed(
+        kind,
+        piece,
+        encloses.then_some(&*filled),
+        bounds,
+    ));
 }
 
 /// Whether the first row is one run, and every run of another row meets the row above: then all is one component. Nearly
