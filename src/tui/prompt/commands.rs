@@ -13,6 +13,8 @@
 //! assert_eq!((line.as_str(), candidates.len()), ("figure he", 2));
 //! ```
 
+use std::sync::LazyLock;
+
 use crate::figure::FigureKind;
 use crate::parameter::Parameter;
 use crate::pose::Axis;
@@ -56,6 +58,12 @@ const SHORT: [(&str, &str); 2] = [("q", "quit"), ("q!", "quit!")];
 
 /// Actions that work on the matrix, where the prompt opens: those that have a key there or have no key at all.
 pub fn actions() -> impl Iterator<Item = &'static Action> {
+    static LISTED: LazyLock<Vec<&Action>> = LazyLock::new(|| of_the_matrix().collect());
+    LISTED.iter().copied()
+}
+
+/// Finds them.
+fn of_the_matrix() -> impl Iterator<Item = &'static Action> {
     let places = [Context::Matrix, Context::Grab, Context::Everywhere];
     let bound = |action: &Action, places: &[Context]| {
         let mut rows = DEFAULT_KEYS
@@ -80,7 +88,14 @@ fn recognises(action: &Action) -> bool {
 }
 
 /// All commands by name.
-pub fn commands() -> Vec<PromptCommand> {
+pub fn commands() -> &'static [PromptCommand] {
+    // Each key in the prompt asks for them.
+    static LISTED: LazyLock<Vec<PromptCommand>> = LazyLock::new(listed);
+    &LISTED
+}
+
+/// Makes them from the actions.
+fn listed() -> Vec<PromptCommand> {
     let mut names: Vec<&str> = actions()
         .flat_map(spellings)
         .map(|line| split(line).0)
@@ -132,8 +147,8 @@ fn command(name: &'static str) -> PromptCommand {
 pub fn find(name: &str) -> Option<PromptCommand> {
     let short = SHORT.iter().find(|(short, _)| *short == name);
     let name = short.map_or(name, |(_, name)| *name);
-    let listed = commands().into_iter().find(|command| command.name == name);
-    listed.or_else(|| {
+    let listed = commands().iter().find(|command| command.name == name);
+    listed.cloned().or_else(|| {
         actions()
             .find(|action| action.name == name)
             .map(|action| command(action.name))
@@ -262,8 +277,10 @@ pub fn offers(typed: &str, given: &[String]) -> Vec<Offer> {
     });
     let name = typed.split(' ').next().unwrap_or(typed);
     let more = name.len() < typed.len();
-    let mut named: Vec<PromptCommand> = commands();
-    named.retain(|command| command.name == name || !more && command.name.contains(name));
+    let named = commands().iter();
+    let fits =
+        |command: &&PromptCommand| command.name == name || !more && command.name.contains(name);
+    let mut named: Vec<&PromptCommand> = named.filter(fits).collect();
     named.sort_by_key(|command| !command.name.starts_with(name));
     let named = named.into_iter().map(|command| Offer {
         line: command.name.to_owned(),
