@@ -1,10 +1,4 @@
 //! A script that is read only, from any bytes.
 #![no_main]
 
-use libfuzzer_sys::fuzz_target;
-
-#[path = "../../tests/files/hostile/bodies/mod.rs"]
-#[allow(dead_code, reason = "every target has one of the bodies")]
-mod bodies;
-
-fuzz_target!(|bytes: &[u8]| bodies::body("script")(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| taxel_fuzz::run("script", bytes));
