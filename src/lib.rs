@@ -61,10 +61,11 @@
 //!               sensors; drawings as SVG and PNG
 //!  storage      files: atomic writes, the folder of stored shapes, journal, trash
 //!  acquire      where frames come from: serial, pipes, tcp, files; recording them
+//!  memory       a bound on the memory of sweeps and trainings
 //!  tui          the screen                                                         ratatui, crossterm
 //!  cli          the command line over all of it                                    clap
 //! ```
-//! Files and streams are touched by `storage`, `acquire`, `formats`, `cli`, `tui::runtime`, `tui::terminal` and `main` only.
+//! Files and streams are touched by `storage`, `acquire`, `memory`, `formats`, `cli`, `tui::runtime`, `tui::terminal` and `main` only.
 //!
 //! The way of a pose:
 //! ```text
@@ -169,6 +170,9 @@ pub mod storage;
 
 #[cfg(all(feature = "acquire", unix))]
 pub mod acquire;
+
+#[cfg(feature = "tui")]
+mod memory;
 
 #[cfg(feature = "tui")]
 pub mod tui;

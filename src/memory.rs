@@ -4,6 +4,8 @@
 //! of what is allowed is in use: the next step still fits, and nothing has to be given up in the middle of it.
 
 use std::fmt;
+#[cfg(target_os = "linux")]
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -79,6 +81,8 @@ impl fmt::Display for MemorySize {
 /// Watches over the memory of a piece of work.
 #[derive(Debug)]
 pub(crate) struct MemoryGuard {
+    /// What the user can do where it is too little; the end of each message.
+    advice: &'static str,
     /// What is allowed; None where the system does not say what is free.
     allowed: Option<MemorySize>,
     /// When memory is looked at next.
@@ -89,8 +93,9 @@ pub(crate) struct MemoryGuard {
 
 impl MemoryGuard {
     /// A guard with this bound, or with all that the machine has free and limits allow.
-    pub(crate) fn new(allowed: Option<MemorySize>) -> Self {
+    pub(crate) fn new(allowed: Option<MemorySize>, advice: &'static str) -> Self {
         Self {
+            advice,
             allowed: allowed.or_else(free),
             due: Mutex::new(Instant::now()),
             exceeded: AtomicBool::new(false),
@@ -135,19 +140,18 @@ impl MemoryGuard {
     /// The message after it has stopped the work.
     pub(crate) fn message(&self) -> String {
         let allowed = self.allowed.unwrap_or(MemorySize(0));
-        format!(
-            "stopped: it needs more memory than the {allowed} that it may use; take coarser steps, sweep it in shards \
-             (--shard 1/8, ..., then taxel merge), or allow more (--memory)"
-        )
+        let advice = self.advice;
+        format!("stopped: it needs more memory than the {allowed} that it may use; {advice}")
     }
 
     /// The message where shards cannot be merged within the bound.
     #[cfg(feature = "cli")]
     pub(crate) fn message_of_merge(&self) -> String {
         let allowed = self.allowed.unwrap_or(MemorySize(0));
+        let advice = self.advice;
         format!(
             "stopped: what is merged needs more memory than half of the {allowed} that it may use, and writing it the \
-             other half; allow more (--memory), or merge on a machine that has more"
+             other half; {advice}"
         )
     }
 
@@ -158,10 +162,7 @@ impl MemoryGuard {
     #[cfg(feature = "cli")]
     pub(crate) fn check_bytes(&self, needed: MemorySize) -> Result<(), String> {
         match self.allowed {
-            Some(allowed) if needed > allowed => Err(format!(
-                "it needs about {needed} of memory and may use {allowed}; allow more (--memory), or merge on a machine \
-                 that has more"
-            )),
+            Some(allowed) if needed > allowed => Err(self.refusal(needed, allowed)),
             _ => Ok(()),
         }
     }
@@ -179,10 +180,12 @@ impl MemoryGuard {
         if expected.0 / 2 <= allowed.0 {
             return Ok(());
         }
-        Err(format!(
-            "it needs about {expected} of memory and may use {allowed}; take coarser steps, sweep it in shards (--shard \
-             1/8, ..., then taxel merge), or allow more (--memory)"
-        ))
+        Err(self.refusal(expected, allowed))
+    }
+
+    fn refusal(&self, needed: MemorySize, allowed: MemorySize) -> String {
+        let advice = self.advice;
+        format!("it needs about {needed} of memory and may use {allowed}; {advice}")
     }
 }
 
@@ -224,25 +227,47 @@ pub(crate) fn peak() -> Option<MemorySize> {
 }
 
 /// What the program may use: what the machine has free, with what it uses already, or less where a limit is set for the
-/// process or its control group.
+/// process, its control group or a group around that.
 #[cfg(target_os = "linux")]
 fn free() -> Option<MemorySize> {
     use rustix::process::{Resource, getrlimit};
-    let number = |path: &str| {
-        std::fs::read_to_string(path)
-            .ok()?
-            .trim()
-            .parse::<u64>()
-            .ok()
-    };
     let limits = [
         Some(listed("/proc/meminfo", "MemAvailable:")?.0 + used()?.0),
         getrlimit(Resource::As).current,
         getrlimit(Resource::Data).current,
-        number("/sys/fs/cgroup/memory.max"),
-        number("/sys/fs/cgroup/memory/memory.limit_in_bytes"),
     ];
-    limits.into_iter().flatten().min().map(MemorySize)
+    let groups = std::fs::read_to_string("/proc/self/cgroup").ok();
+    let files = groups.iter().flat_map(|table| group_limits(table));
+    let of_groups = files.filter_map(|file| {
+        // A group without a limit has the word `max`, and the outermost group may have no file.
+        let limit = std::fs::read_to_string(file).ok()?;
+        limit.trim().parse().ok()
+    });
+    let all = limits.into_iter().flatten().chain(of_groups);
+    all.min().map(MemorySize)
+}
+
+/// The files with the limits of control groups, given the table `/proc/self/cgroup`: of the process's own group and of each
+/// one around it.
+///
+/// `0::/user.slice/job` is a group of version 2, `9:memory:/job` one of version 1. See cgroups(7).
+#[cfg(target_os = "linux")]
+fn group_limits(table: &str) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for line in table.lines() {
+        let mut parts = line.splitn(3, ':').skip(1);
+        let (Some(controllers), Some(group)) = (parts.next(), parts.next()) else {
+            continue;
+        };
+        let (root, name) = match controllers {
+            "" => ("/sys/fs/cgroup", "memory.max"),
+            "memory" => ("/sys/fs/cgroup/memory", "memory.limit_in_bytes"),
+            _ => continue,
+        };
+        let around = Path::new(group.trim_start_matches('/')).ancestors();
+        files.extend(around.map(|group| Path::new(root).join(group).join(name)));
+    }
+    files
 }
 
 /// Elsewhere the system is not asked.
@@ -251,12 +276,13 @@ pub(crate) fn peak() -> Option<MemorySize> {
     None
 }
 
-/// Nor how much is in use now.
+/// Elsewhere the system is not asked.
 #[cfg(not(target_os = "linux"))]
 fn used() -> Option<MemorySize> {
     None
 }
 
+/// Elsewhere the system is not asked.
 #[cfg(not(target_os = "linux"))]
 fn free() -> Option<MemorySize> {
     None
@@ -289,8 +315,8 @@ mod tests {
 
     #[test]
     fn a_guard_stops_what_needs_too_much() {
-        let small = MemoryGuard::new(Some(MemorySize(1024)));
-        let large = MemoryGuard::new(Some(MemorySize(1 << 50)));
+        let small = MemoryGuard::new(Some(MemorySize(1024)), "work in shards (--shard)");
+        let large = MemoryGuard::new(Some(MemorySize(1 << 50)), "");
         assert!(large.allows() && !large.exceeded());
         assert_eq!(small.allows(), used().is_none());
         assert_eq!(small.exceeded(), used().is_some());
@@ -306,5 +332,33 @@ mod tests {
         let refused = small.check(&grid).expect_err("far too little");
         assert!(refused.contains("--shard"), "{refused}");
         assert_eq!(large.check(&grid), Ok(()));
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn limits_are_those_of_all_groups_around_the_process() {
+        let files = |table: &str| {
+            let files = group_limits(table).into_iter();
+            let names = files.map(|file| file.to_string_lossy().into_owned());
+            names.collect::<Vec<_>>()
+        };
+        assert_eq!(
+            files("0::/user.slice/job\n"),
+            [
+                "/sys/fs/cgroup/user.slice/job/memory.max",
+                "/sys/fs/cgroup/user.slice/memory.max",
+                "/sys/fs/cgroup/memory.max",
+            ]
+        );
+        assert_eq!(
+            files("12:cpu,cpuacct:/a\n9:memory:/slurm/uid_1\n0::/\n"),
+            [
+                "/sys/fs/cgroup/memory/slurm/uid_1/memory.limit_in_bytes",
+                "/sys/fs/cgroup/memory/slurm/memory.limit_in_bytes",
+                "/sys/fs/cgroup/memory/memory.limit_in_bytes",
+                "/sys/fs/cgroup/memory.max",
+            ]
+        );
+        assert_eq!(files("nonsense"), [""; 0]);
     }
 }

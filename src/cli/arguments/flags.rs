@@ -11,12 +11,12 @@ use clap::{Arg, ArgAction, ArgMatches, value_parser};
 
 use crate::cli::arguments::parameters;
 use crate::formats::{Name, NameError};
+use crate::memory::MemorySize;
 use crate::parameter::Parameter;
 use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, RangeError, Ranges};
 use crate::sensor::SENSOR_PARAMETERS;
 use crate::storage::is_poses;
 use crate::sweep::{Shard, ShardError};
-use crate::tui::runtime::memory::MemorySize;
 
 /// A flag without a value, `--NAME`.
 pub(super) fn switch(name: &'static str, help: &'static str) -> Arg {
@@ -88,6 +88,9 @@ pub(super) fn memory() -> Arg {
     )
     .value_parser(|text: &str| text.parse::<MemorySize>())
 }
+
+/// What to do where memory does not suffice for work that has the flags [`memory`] and [`shard`].
+pub(crate) const TOO_LITTLE_MEMORY: &str = "take coarser steps, work in shards (--shard 1/8, ..., then taxel merge), or allow more (--memory)";
 
 /// The value of [`memory`], if it is given.
 pub(super) fn memory_of(matches: &ArgMatches) -> Option<MemorySize> {

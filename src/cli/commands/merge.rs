@@ -19,10 +19,10 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, EvaluationJson};
 use crate::cli::signals::Signals;
 use crate::formats::{MODEL_FORMAT, archive_kind, json};
+use crate::memory::{MemoryGuard, MemorySize, peak};
 use crate::recognition::{Evaluation, Model, ModelMerge, TrainingError};
 use crate::storage::{ArchiveFileError, load_atlas, load_model, open_archive, save_model};
 use crate::sweep::{Shard, SweepMerge};
-use crate::tui::runtime::memory::{MemoryGuard, MemorySize, peak};
 
 /// What the program needs without any shard.
 const BYTES_OF_PROGRAM: u64 = 24 << 20;
@@ -79,7 +79,10 @@ pub(crate) fn merge(
         .first()
         .is_some_and(|part| part.format == MODEL_FORMAT);
     parts.sort_by_key(|part| part.shard.number());
-    let memory = MemoryGuard::new(wanted.memory);
+    let memory = MemoryGuard::new(
+        wanted.memory,
+        "allow more (--memory), or merge on a machine that has more",
+    );
     let say = |text: &str| {
         if !wanted.quiet {
             crate::cli::note(text, charset);

@@ -18,6 +18,7 @@ use std::sync::atomic::Ordering;
 
 use serde_json::json;
 
+use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
 use crate::cli::arguments::model::train::{ModelTarget, TrainArguments};
 use crate::cli::arguments::parameters::ShardFile;
 use crate::cli::commands::resume::{self, KEPT};
@@ -31,12 +32,12 @@ use crate::cli::signals::Signals;
 use crate::cli::threads;
 use crate::formats::value::counted;
 use crate::formats::{Name, json};
+use crate::memory::MemoryGuard;
 use crate::pose::{Anchor, Axis, GivenRanges, GridError, Ranges, common_ranges, smallest_sensor};
 use crate::recognition::{Evaluation, GridSteps, Model, NamedShape, Training, TrainingError};
 use crate::sensor::Sensor;
 use crate::storage::{ModelCache, ModelFolder, UnfinishedFile, load_model, model_hash, save_model};
 use crate::tui::recognise::sets::{ModelChoice, unknown_set};
-use crate::tui::runtime::memory::MemoryGuard;
 
 /// The smallest side of a sensor that training chooses.
 const LEAST_SIDE: u8 = 16;
@@ -70,7 +71,7 @@ pub(crate) fn train(
     if !asked.quiet {
         crate::cli::note(&grid_text(&sensor, anchor, &ranges), charset);
     }
-    let memory = MemoryGuard::new(asked.memory);
+    let memory = MemoryGuard::new(asked.memory, TOO_LITTLE_MEMORY);
     let progress = Progress::new(training.poses(), asked.quiet, charset);
     let tell = |poses: u64| {
         progress.add(poses);

@@ -23,6 +23,7 @@ use crate::cli::signals::Signals;
 use crate::cli::threads;
 use crate::formats::Name;
 use crate::formats::separation::{SeparationCurve, csv, drawing};
+use crate::memory::MemoryGuard;
 use crate::pose::{Axis, DecimalRange, Ranges};
 use crate::recognition::{Model, Separation, TrainingError};
 use crate::sensor::Sensor;
@@ -54,14 +55,16 @@ pub(crate) fn separate(
     let more = asked.wanted.map_or(0, |_| REFINED);
     let points = (asked.sizes.count() + more) * thresholds.len() as u64;
     let progress = Progress::new(separation.touches() * points, asked.quiet, charset);
+    let memory = MemoryGuard::new(None, "take fewer shapes, smaller sizes or coarser steps");
     let tell = |poses: u64| {
         progress.add(poses);
-        !signals.stopped.load(Ordering::Relaxed)
+        !signals.stopped.load(Ordering::Relaxed) && memory.allows()
     };
     let pool = threads::pool(asked.jobs)?;
     let curves = pool.install(|| curves(asked, &separation, &thresholds, &tell));
     progress.finish();
     let curves = curves.map_err(|error| match error {
+        TrainingError::Stopped if memory.exceeded() => CliError::Memory(memory.message()),
         TrainingError::Stopped => signals.failure(),
         error => error.into(),
     })?;

@@ -14,6 +14,7 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
+use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
 use crate::cli::arguments::parameters::ShardFile;
 use crate::cli::commands::resume::{self, KEPT};
 use crate::cli::error::CliError;
@@ -23,12 +24,12 @@ use crate::cli::output::sweep_summary::SweepSummary;
 use crate::cli::signals::Signals;
 use crate::cli::threads;
 use crate::formats::value::{counted, grouped};
+use crate::memory::{MemoryGuard, MemorySize};
 use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, Ranges, common_ranges, default_ranges};
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::storage::{ArchiveFileError, AtlasFile, FinishedFile, PoseFile, persist_pair};
 use crate::sweep::{Shard, Sweep, SweepResult};
-use crate::tui::runtime::memory::{MemoryGuard, MemorySize};
 
 /// What a sweep or a merge is to write and print.
 #[derive(Clone, Debug)]
@@ -120,7 +121,7 @@ pub(crate) fn sweep(
         file.check(wanted.there.existing())?;
     }
     let pool = threads::pool(jobs)?;
-    let memory = MemoryGuard::new(wanted.memory);
+    let memory = MemoryGuard::new(wanted.memory, TOO_LITTLE_MEMORY);
     memory.check(grid).map_err(CliError::Memory)?;
     let mut poses = match &wanted.poses {
         Some(path) => Some(PoseFile::new(path, grid, wanted.there.existing())?),

@@ -17,7 +17,6 @@
 //! reading          what is read from it, for the page that asked
 //! journal_writer   unsaved work, written beside the program
 //! write_access     where files may be written
-//! memory           a bound on the memory of sweeps and trainings
 //! reminders        what is remembered for the next run
 //! shape_log        which stored shapes were used, for a record
 //! mailbox          messages from the workers, which wake the event loop
@@ -58,8 +57,6 @@ mod reading;
 mod shape_log;
 
 mod reminders;
-
-pub(crate) mod memory;
 
 pub use crate::tui::runtime::progress::WorkerEventSink;
 

@@ -16,6 +16,7 @@ use std::time::Instant;
 
 use crate::formats::Name;
 use crate::imprint::Imprint;
+use crate::memory::MemoryGuard;
 use crate::recognition::{Model, TrainingError};
 use crate::storage::{Library, ModelCache, ModelFolder, load_model};
 use crate::sweep::Shard;
@@ -83,8 +84,14 @@ impl ModelStore {
             return Ok(model);
         }
         begun(training.poses());
-        let model = training.progress(progress).run();
+        let memory = MemoryGuard::new(
+            None,
+            "take fewer shapes or coarser steps, or train it in shards on the command line (taxel model train --shard)",
+        );
+        let within = |poses| progress(poses) && memory.allows();
+        let model = training.progress(&within).run();
         let model = model.map_err(|error| match error {
+            TrainingError::Stopped if memory.exceeded() => memory.message(),
             TrainingError::Stopped => "training was stopped".to_owned(),
             error => error.to_string(),
         })?;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::formats::separation::said;
+use crate::memory::MemoryGuard;
 use crate::recognition::{SeparationPoint, SmallestSize, TrainingError};
 use crate::tui::explore::message::WorkerEvent;
 use crate::tui::recognise::confused::ConfusedPair;
@@ -81,8 +82,12 @@ fn scan(
     take: &mut dyn FnMut(SizeFound),
     progress: &(dyn Fn(u64) -> bool + Sync),
 ) -> Result<Option<SmallestSize>, String> {
+    let memory = MemoryGuard::new(None, "take fewer shapes, smaller sizes or coarser steps");
+    let progress = &|poses| progress(poses) && memory.allows();
+    let memory = &memory;
     let sentence = |place: String| {
         move |error: TrainingError| match error {
+            TrainingError::Stopped if memory.exceeded() => memory.message(),
             TrainingError::Stopped => "stopped; what was found stays".to_owned(),
             error => format!("{place}: {error}"),
         }

@@ -15,6 +15,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use crate::memory::MemoryGuard;
 use crate::pose::PoseGrid;
 use crate::recognition::Noise;
 use crate::storage::{ArchiveFileError, AtlasFile, Existing, ModelCache, PoseFile, is_poses};
@@ -23,7 +24,6 @@ use crate::tui::explore::message::{Findings, WorkerEvent};
 use crate::tui::recognise::sets::ModelChoice;
 use crate::tui::runtime::effect::Work;
 use crate::tui::runtime::frames::FrameWatcher;
-use crate::tui::runtime::memory::MemoryGuard;
 use crate::tui::runtime::models::{self, ModelStore, ModelWorker};
 use crate::tui::runtime::naming::ShapeNamer;
 use crate::tui::runtime::progress::{
@@ -280,7 +280,10 @@ fn sweep(
     stop: &AtomicBool,
     clock: Option<&ProgressReporter<'_>>,
 ) -> WorkerEvent {
-    let memory = MemoryGuard::new(None);
+    let memory = MemoryGuard::new(
+        None,
+        "take coarser steps, or sweep it in shards on the command line (taxel sweep --shard)",
+    );
     if let Err(message) = memory.check(grid) {
         return WorkerEvent::Failed(number, message);
     }

@@ -13,11 +13,11 @@ use crate::cli::arguments::model::shape_set::{self, SetArguments};
 use crate::cli::arguments::parameters::{Given, ShardFile};
 use crate::cli::error::CliError;
 use crate::formats::Name;
+use crate::memory::MemorySize;
 use crate::parameter::Parameter;
 use crate::pose::{Anchor, Axis, GivenRanges};
 use crate::sensor::Sensor;
 use crate::sweep::Shard;
-use crate::tui::runtime::memory::MemorySize;
 
 /// A set of shapes, how to train it, and where the model goes.
 #[derive(Clone, Debug)]
