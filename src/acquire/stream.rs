@@ -125,11 +125,13 @@ pub(super) fn run(
             Err(error) if source.comes_back() && !options.once => error,
             Err(error) => return Err(refused("read it", error)),
         };
+        if restart(&mut decoder, timed, &mut clock, consumer).is_break() {
+            return Ok(());
+        }
         match again(&open, AcquireEvent::Lost(&lost), stop, &decoder, consumer) {
             Some(found) => input = found,
             None => return Ok(()),
         }
-        decoder.restart();
         clock.rejoined = true;
         clock.last_frame = Instant::now();
     }
@@ -166,6 +168,22 @@ fn finish(
 ) -> ControlFlow<()> {
     let mut flow = ControlFlow::Continue(());
     decoder.finish(&mut |event| {
+        if flow.is_continue() {
+            flow = report(event, timed, clock, consumer);
+        }
+    });
+    flow
+}
+
+/// The same where a connection is lost that will be made again: what comes next may begin inside of a frame.
+fn restart(
+    decoder: &mut StreamDecoder,
+    timed: bool,
+    clock: &mut StreamClock,
+    consumer: &mut Consumer<'_>,
+) -> ControlFlow<()> {
+    let mut flow = ControlFlow::Continue(());
+    decoder.restart(&mut |event| {
         if flow.is_continue() {
             flow = report(event, timed, clock, consumer);
         }
@@ -273,4 +291,57 @@ fn tick(
         bytes_per_second,
         counts,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+    use std::net::TcpListener;
+
+    use super::*;
+    use crate::formats::stream::StreamFormat;
+
+    /// Two connections: the first ends with the last byte of a frame, the second one byte behind it.
+    #[test]
+    fn what_a_lost_connection_leaves_is_given_counted_or_withdrawn() {
+        const FRAME: [u8; 6] = [0xaa, 0x55, 1, 2, 3, 4];
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+        let address = listener.local_addr().expect("its address").to_string();
+        let sender = std::thread::spawn(move || {
+            for rest in [&b""[..], &b"?"[..]] {
+                let (mut connection, _) = listener.accept().expect("a connection");
+                connection.write_all(&FRAME.repeat(2)).expect("sent");
+                std::thread::sleep(Duration::from_millis(300));
+                connection.write_all(rest).expect("sent");
+            }
+        });
+        let options = AcquireOptions {
+            format: Some(StreamFormat::Flexitac),
+            shape: Some((2, 2)),
+            ..AcquireOptions::default()
+        };
+        let (mut events, mut dropped) = (Vec::new(), 0);
+        let source = FrameSource::Tcp(address);
+        let result = run(&source, &options, &AtomicBool::new(false), &mut |event| {
+            let losses = events.iter().filter(|event| **event == "lost").count();
+            match event {
+                AcquireEvent::Frame { .. } => events.push("frame"),
+                AcquireEvent::Provisional(_) => events.push("provisional"),
+                AcquireEvent::Withdrawn => events.push("withdrawn"),
+                AcquireEvent::Lost(_) => events.push("lost"),
+                AcquireEvent::Tick(counts) if losses == 2 => {
+                    dropped = counts.dropped;
+                    return ControlFlow::Break(());
+                }
+                _ => {}
+            }
+            ControlFlow::Continue(())
+        });
+        sender.join().expect("all was sent");
+        assert!(result.is_ok());
+        let first = ["frame", "provisional", "frame", "lost"];
+        let second = ["frame", "provisional", "withdrawn", "lost"];
+        assert_eq!(events, [first, second].concat());
+        assert_eq!(dropped, 1);
+    }
 }

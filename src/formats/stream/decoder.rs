@@ -92,10 +92,12 @@ impl StreamDecoder {
         &self.counts
     }
 
-    /// Begins anew in the middle of the stream, as after a line was unplugged; frames are counted on, and times count from
-    /// the first frame of all.
-    pub fn restart(&mut self) {
+    /// Ends what came before as [`Self::finish`] does and begins anew in the middle of the stream, as after a line was
+    /// unplugged. Frames are counted on, and times count from the first frame of all.
+    pub fn restart(&mut self, sink: &mut StreamSink<'_>) {
+        // A form that `finish` has to guess from a few bytes does not hold for what comes next.
         let format = self.format();
+        self.finish(sink);
         self.reset(format, false);
     }
 
