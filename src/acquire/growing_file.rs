@@ -103,13 +103,24 @@ impl GrowingFile {
             return Ok(None);
         };
         let own = self.file.metadata()?;
-        // The rest of the old one comes first: it is looked at after the new one was there.
+        // Read the old file to its end before switching: bytes may have been appended before the rename.
         let is_own = (named.dev(), named.ino()) == (own.dev(), own.ino());
         if is_own || !named.is_file() || own.len() > self.place {
             return Ok(None);
         }
-        *self = Self::open(&self.path)?;
-        Ok(Some(ReadAnew::Replaced))
+        self.switched(Self::open(&self.path))
+    }
+
+    /// Goes on with the file that has its name now. One that has vanished again since it was looked at is waited for.
+    fn switched(&mut self, opened: io::Result<Self>) -> io::Result<Option<ReadAnew>> {
+        match opened {
+            Ok(file) => {
+                *self = file;
+                Ok(Some(ReadAnew::Replaced))
+            }
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(error),
+        }
     }
 
     /// Whether what was read is no longer there.
@@ -130,5 +141,25 @@ impl GrowingFile {
             Err(error) if error.kind() == ErrorKind::UnexpectedEof => Ok(true),
             read => read.map(|()| bytes != self.last),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_new_file_that_vanishes_at_once_does_not_end_the_watch() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("growing");
+        fs::write(&path, "1 2").expect("written");
+        let mut growing = GrowingFile::open(&path).expect("opened");
+        // Gone between the look at its name and its opening.
+        let vanished = GrowingFile::open(&folder.path().join("vanished"));
+        assert!(matches!(growing.switched(vanished), Ok(None)));
+        let mut bytes = [0; 8];
+        assert!(matches!(growing.read(&mut bytes), Ok(3)));
+        let refused = Err(ErrorKind::PermissionDenied.into());
+        assert!(growing.switched(refused).is_err());
     }
 }
