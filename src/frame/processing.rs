@@ -2,7 +2,7 @@
 
 use crate::frame::error::FrameError;
 use crate::frame::recorded::{Frame, LARGEST_VALUE};
-use crate::frame::rule::{Rule, without_small};
+use crate::frame::rule::{Rule, check_size, without_small};
 use crate::frame::tare::Tare;
 use crate::frame::view::View;
 use crate::imprint::Imprint;
@@ -81,7 +81,8 @@ impl Processing {
             summary(self.tared.values()).0
         };
         let rule = self.rule.as_ref();
-        let imprint = rule.map(|rule| rule.imprint(&self.tared, self.tare.as_ref()));
+        let (tare, gain) = (self.tare.as_ref(), self.gain.as_ref());
+        let imprint = rule.map(|rule| rule.imprint(&self.tared, tare, gain));
         let imprint = imprint.transpose()?.map(|imprint| {
             if self.least > 1 {
                 without_small(&imprint, self.least)
@@ -116,14 +117,7 @@ fn summary(values: &[f64]) -> (f64, Option<f64>, u32) {
 
 /// Multiplies each value by the gain of its cell; what becomes too large has no value.
 fn multiply(values: &mut Matrix<f64>, gain: &Matrix<f64>) -> Result<(), FrameError> {
-    let size = |of: &Matrix<f64>| (u16::from(of.columns()), u16::from(of.rows()));
-    if size(gain) != size(values) {
-        return Err(FrameError::Size {
-            what: "gain",
-            found: size(gain),
-            expected: size(values),
-        });
-    }
+    check_size("gain", gain, values)?;
     for (value, gain) in values.values_mut().iter_mut().zip(gain.values()) {
         *value *= gain;
         if value.abs() > LARGEST_VALUE {
@@ -158,6 +152,28 @@ mod tests {
         assert_eq!(processed.tared_sum, 17.0);
         let imprint = processed.imprint.map(|imprint| imprint.to_string());
         assert_eq!(imprint.as_deref(), Some(".#"));
+    }
+
+    #[test]
+    fn the_noise_of_a_cell_is_multiplied_as_its_values_are() {
+        let mut tare = TareFrames::new(3);
+        for value in [10.0, 11.0, 12.0] {
+            tare.add(&Matrix::filled(1, 1, value)).expect("it fits");
+        }
+        let mut processing = Processing {
+            tare: Some(tare.finish().expect("three frames")),
+            gain: Some(Matrix::filled(1, 1, 10.0)),
+            rule: Some(Rule::Noise(3.0)),
+            ..Processing::default()
+        };
+        let mut active = |value: f64| {
+            let mut frame = Frame::new(1, 1);
+            frame.values_mut().copy_from_slice(&[value]);
+            let processed = processing.run(&frame).expect("it fits");
+            processed.imprint.map(|imprint| imprint.count())
+        };
+        // Three deviations of 1.4826 above 11.
+        assert_eq!((active(15.4), active(15.5)), (Some(0), Some(1)));
     }
 
     #[test]

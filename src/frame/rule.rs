@@ -79,14 +79,16 @@ impl Rule {
         Ok(Self::Noise(checked("noise", deviations, fits, expected)?))
     }
 
-    /// The imprint of tared values.
+    /// The imprint of values from which the tare was taken off and which were then multiplied by the gain. A margin of noise,
+    /// which is measured before the gain, is multiplied as well.
     ///
     /// # Errors
-    /// If noise is asked for without a tare of two frames or more, or its size differs.
+    /// If noise is asked for without a tare of two frames or more, or its size or that of the gain differs.
     pub fn imprint(
         &self,
         values: &Matrix<f64>,
         tare: Option<&Tare>,
+        gain: Option<&Matrix<f64>>,
     ) -> Result<Imprint, FrameError> {
         Ok(match *self {
             Self::AtLeast(threshold) => from(values, threshold),
@@ -117,18 +119,35 @@ impl Rule {
             Self::Noise(deviations) => {
                 let tare = tare.filter(|tare| tare.frames() > 1);
                 let tare = tare.ok_or(FrameError::NoTare)?;
-                let size = |of: &Matrix<f64>| (u16::from(of.columns()), u16::from(of.rows()));
-                if size(tare.baseline()) != size(values) {
-                    return Err(FrameError::Size {
-                        what: "tare",
-                        found: size(tare.baseline()),
-                        expected: size(values),
-                    });
+                check_size("tare", tare.baseline(), values)?;
+                if let Some(gain) = gain {
+                    check_size("gain", gain, values)?;
                 }
+                let factor = |index: usize| gain.map_or(1.0, |gain| gain.values()[index].abs());
+                // A margin is above 0, so a value of 0 is never active: not even that of a cell whose gain is 0.
                 active(values, |index, value| {
-                    value >= tare.margin(index, deviations)
+                    value > 0.0 && value >= factor(index) * tare.margin(index, deviations)
                 })
             }
+        })
+    }
+}
+
+/// Refuses a matrix of another size than that of the values.
+pub(super) fn check_size(
+    what: &'static str,
+    found: &Matrix<f64>,
+    values: &Matrix<f64>,
+) -> Result<(), FrameError> {
+    let size = |of: &Matrix<f64>| (u16::from(of.columns()), u16::from(of.rows()));
+    let (found, expected) = (size(found), size(values));
+    if found == expected {
+        Ok(())
+    } else {
+        Err(FrameError::Size {
+            what,
+            found,
+            expected,
         })
     }
 }
@@ -182,7 +201,7 @@ mod tests {
     }
 
     fn imprint(rule: Result<Rule, FrameError>, values: &Matrix<f64>) -> String {
-        let imprint = rule.and_then(|rule| rule.imprint(values, None));
+        let imprint = rule.and_then(|rule| rule.imprint(values, None, None));
         imprint.expect("a rule that fits").to_string()
     }
 
@@ -247,9 +266,42 @@ mod tests {
         let rule = Rule::noise(3.0).expect("in range");
         let mut values = matrix(&[&[6.0, 6.0]]);
         tare.take_off(&mut values).expect("of one size");
-        let imprint = rule.imprint(&values, Some(&tare)).expect("a tare");
+        let imprint = rule.imprint(&values, Some(&tare), None).expect("a tare");
         assert_eq!(imprint.to_string(), "#.");
-        assert_eq!(rule.imprint(&values, None), Err(FrameError::NoTare));
+        assert_eq!(rule.imprint(&values, None, None), Err(FrameError::NoTare));
+    }
+
+    #[test]
+    fn a_gain_changes_no_decision_about_noise() {
+        let mut tare = TareFrames::new(3);
+        for frame in [10.0, 11.0, 12.0] {
+            let cells = [frame; 5];
+            tare.add(&matrix(&[&cells])).expect("of one size");
+        }
+        let tare = tare.finish().expect("three frames");
+        // A deviation of 1.4826 above the median of 11; of the last cell the sign is turned.
+        let (quiet, loud) = (11.0 + 4.4, 11.0 + 4.5);
+        let gain = matrix(&[&[1.0, 10.0, 0.01, 0.0, -10.0]]);
+        let rule = Rule::noise(3.0).expect("in range");
+        let imprint = |frame: [f64; 5]| {
+            let mut values = matrix(&[&frame]);
+            tare.take_off(&mut values).expect("of one size");
+            for (value, gain) in values.values_mut().iter_mut().zip(gain.values()) {
+                *value *= gain;
+            }
+            let imprint = rule.imprint(&values, Some(&tare), Some(&gain));
+            imprint.expect("all of one size").to_string()
+        };
+        let below = |value: f64| 22.0 - value;
+        assert_eq!(imprint([quiet, quiet, quiet, quiet, below(quiet)]), ".....");
+        assert_eq!(imprint([loud, loud, loud, loud, below(loud)]), "###.#");
+        // One step counts as much, where deviations are smaller.
+        let rule = Rule::noise(0.1).expect("in range");
+        let values = matrix(&[&[0.9, 9.0, 0.009, 0.0, 9.0]]);
+        let imprint = rule.imprint(&values, Some(&tare), Some(&gain));
+        assert_eq!(imprint.map(|imprint| imprint.count()), Ok(0));
+        let other = Matrix::filled(2, 2, 1.0);
+        assert!(rule.imprint(&values, Some(&tare), Some(&other)).is_err());
     }
 
     #[test]
