@@ -118,19 +118,19 @@ impl Model {
     pub fn recognise(&self, evidence: Evidence<'_>) -> Answer {
         let at_rim = evidence.touches.iter().any(Imprint::touches_rim);
         let Some(noise) = evidence.noise else {
-            let ranking = self.ranking(evidence.touches);
-            return judged(ranking, at_rim, evidence.reject_below);
+            let posterior = self.possible(evidence.touches);
+            return judged(posterior, at_rim, evidence.reject_below);
         };
-        let (ranking, method) = self.ranking_under(noise, evidence.touches);
-        let mut answer = judged(ranking, at_rim, evidence.reject_below);
+        let (posterior, method) = self.possible_under(noise, evidence.touches);
+        let mut answer = judged(posterior, at_rim, evidence.reject_below);
         if answer.state == AnswerState::Certain && noise.flip() > 0.0 {
             answer.state = AnswerState::Likely;
         }
         Answer { method, ..answer }
     }
 
-    /// The shapes of positive probability under a noise, the likeliest first, and which keys that took.
-    fn ranking_under(&self, noise: &Noise, touches: &[Imprint]) -> (Vec<(usize, f64)>, Method) {
+    /// The shapes that may leave the touches under a noise, and which keys that took.
+    fn possible_under(&self, noise: &Noise, touches: &[Imprint]) -> (Posterior, Method) {
         let weight = |shape: &NamedShape| f64::from(shape.weight).ln();
         let mut logarithms: Vec<f64> = self.shapes().iter().map(weight).collect();
         let mut method = Method::Exact;
@@ -147,14 +147,15 @@ impl Model {
             }
         }
         let finite = |logarithm: f64| Some(logarithm).filter(|own| own.is_finite());
-        (shares(logarithms.into_iter().map(finite)), method)
+        let odds = logarithms.into_iter().map(finite);
+        (Posterior::of_logarithms(odds), method)
     }
 
-    /// The shapes of positive probability, the likeliest first.
-    fn ranking(&self, touches: &[Imprint]) -> Vec<(usize, f64)> {
+    /// The shapes that leave all of the touches.
+    fn possible(&self, touches: &[Imprint]) -> Posterior {
         if let [touch] = touches {
-            let posterior = self.posterior(touch).unwrap_or_default();
-            return ranked(posterior.into_iter().enumerate());
+            let shares = self.posterior(touch).unwrap_or_default();
+            return Posterior::of_shares(shares.into_iter().map(Some));
         }
         // ln(w Π n), of the shapes that leave every one of the keys.
         let mut logarithms: Vec<Option<f64>> = self
@@ -173,7 +174,7 @@ impl Model {
                 *logarithm = logarithm.zip(more).map(|(sum, more)| sum + more);
             }
         }
-        shares(logarithms.into_iter())
+        Posterior::of_logarithms(logarithms.into_iter())
     }
 
     /// Returns the imprint of the model that is most like the touch that explains the answer least: the first that no
@@ -185,12 +186,46 @@ impl Model {
     }
 }
 
-/// The answer that a ranking gives.
-pub(super) fn judged(
+/// How probable the shapes are.
+struct Posterior {
+    /// Those of positive probability, the likeliest first, equals in their order.
     ranking: Vec<(usize, f64)>,
-    at_rim: bool,
-    reject_below: Option<f64>,
-) -> Answer {
+    /// How many are possible at all. That may be more: the probability of some may be too small for an `f64`.
+    possible: usize,
+}
+
+impl Posterior {
+    /// Of shares; None or 0 for shapes that are impossible.
+    fn of_shares(shares: impl Iterator<Item = Option<f64>>) -> Self {
+        let shares = shares.map(|share| share.filter(|&share| share > 0.0));
+        let mut ranking: Vec<(usize, f64)> = shares
+            .enumerate()
+            .filter_map(|(shape, share)| Some((shape, share?)))
+            .collect();
+        ranking.sort_by(|(_, one), (_, other)| other.total_cmp(one));
+        Self {
+            possible: ranking.len(),
+            ranking,
+        }
+    }
+
+    /// Of the logarithms of odds; None for odds of 0.
+    fn of_logarithms(logarithms: impl Iterator<Item = Option<f64>> + Clone) -> Self {
+        let finite = logarithms.clone().flatten();
+        let possible = finite.clone().count();
+        let most = finite.fold(f64::NEG_INFINITY, f64::max);
+        let odds = logarithms.map(|own| own.map(|own| (own - most).exp()));
+        let sum: f64 = odds.clone().flatten().sum();
+        Self {
+            possible,
+            ..Self::of_shares(odds.map(|odds| odds.map(|odds| odds / sum)))
+        }
+    }
+}
+
+/// The answer that a posterior gives.
+fn judged(posterior: Posterior, at_rim: bool, reject_below: Option<f64>) -> Answer {
+    let Posterior { ranking, possible } = posterior;
     let mut answer = Answer {
         state: AnswerState::Unknown,
         shape: None,
@@ -212,28 +247,10 @@ pub(super) fn judged(
     } else if !equal.is_empty() {
         answer.tied = std::iter::once(first).chain(equal).collect();
         AnswerState::Tied
-    } else if answer.ranking.len() == 1 && !at_rim {
+    } else if possible == 1 && !at_rim {
         AnswerState::Certain
     } else {
         AnswerState::Likely
     };
     answer
-}
-
-/// The ranking of odds whose logarithms are given; None for odds of 0.
-fn shares(logarithms: impl Iterator<Item = Option<f64>> + Clone) -> Vec<(usize, f64)> {
-    let most = logarithms
-        .clone()
-        .flatten()
-        .fold(f64::NEG_INFINITY, f64::max);
-    let odds = |logarithm: Option<f64>| logarithm.map_or(0.0, |own| (own - most).exp());
-    let sum: f64 = logarithms.clone().map(odds).sum();
-    ranked(logarithms.map(|own| odds(own) / sum).enumerate())
-}
-
-/// Those of positive probability, the likeliest first, equals in their order.
-pub(super) fn ranked(posterior: impl Iterator<Item = (usize, f64)>) -> Vec<(usize, f64)> {
-    let mut ranked: Vec<_> = posterior.filter(|&(_, share)| share > 0.0).collect();
-    ranked.sort_by(|(_, one), (_, other)| other.total_cmp(one));
-    ranked
 }
