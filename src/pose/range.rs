@@ -96,6 +96,28 @@ impl DecimalRange {
         scaled(self.step, self.places)
     }
 
+    /// `count` values from `start` on, each `step` from the last, all in units of the last of `places` decimals; `count` and
+    /// `step` are above 0.
+    pub(crate) fn in_units(start: i64, step: i64, places: u32, count: u64) -> Self {
+        Self::shortest(start, step, places, count)
+    }
+
+    /// The values from this range's first one on to below the next unit, in steps that divide a unit into `parts`: a
+    /// divisor of 100.
+    pub(crate) fn divided_unit(&self, parts: u8) -> Self {
+        const PLACES: u32 = 2;
+        let places = self.places.max(PLACES);
+        let start = self.start * 10_i64.pow(places - self.places);
+        let step = 10_i64.pow(places) / i64::from(parts);
+        Self::shortest(start, step, places, parts.into())
+    }
+
+    /// The smallest whole number that is not below the first value.
+    pub(crate) fn whole_start(&self) -> Self {
+        let start = -(-self.start).div_euclid(10_i64.pow(self.places));
+        Self::shortest(start, 1, 0, 1)
+    }
+
     /// The values with these indices as a range of their own; None if `indices` is empty or leaves the range.
     ///
     /// ```

@@ -61,7 +61,7 @@ pub use noise::{Distances, Method, Noise, NoiseError};
 pub use peers::{Peer, PeerEvaluation, PeerSettings};
 pub use pose_estimate::{AngleEstimate, PlacedSource, PoseEstimate};
 pub use separation::{Separation, SeparationPoint, SizeAxis, SmallestSize};
-pub use sets::{GridSteps, default_figures, equal_figures};
+pub use sets::{GridSteps, GridStepsError, default_figures, equal_figures};
 #[cfg(feature = "tui")]
 pub(crate) use simulation::below;
 pub use simulation::{MOST_TOUCHES, RecognitionRate, TouchesUntil, random_taxels};

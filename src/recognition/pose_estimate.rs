@@ -333,10 +333,7 @@ mod tests {
 
     #[test]
     fn the_poses_of_an_imprint_agree_with_its_count_and_with_a_sum_by_hand() {
-        let steps = GridSteps {
-            positions: 10,
-            degrees: 5,
-        };
+        let steps = GridSteps::new(10, 5).expect("divisors");
         let training = Training::fitting(equal_figures(), steps).expect("they fit");
         let grids = training.grids().to_vec();
         let model = training.run().expect("not stopped");
@@ -389,10 +386,7 @@ mod tests {
     /// Of the angles of a heptagon, those that look alike count as one.
     #[test]
     fn a_heptagon_repeats_every_seventh_of_a_turn() {
-        let steps = GridSteps {
-            positions: 4,
-            degrees: 1,
-        };
+        let steps = GridSteps::new(4, 1).expect("divisors");
         let mut shapes = equal_figures();
         shapes.retain(|shape| shape.name == "heptagon");
         let training = Training::fitting(shapes, steps).expect("it fits");

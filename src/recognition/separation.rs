@@ -223,9 +223,9 @@ impl Separation {
         else {
             return Ok(None);
         };
-        let (start, side) = (ranges[Axis::X0].value(0), fit.side());
-        let whole = start.ceil();
-        let side = if whole == start {
+        let (start, whole) = (ranges[Axis::X0].value(0), ranges[Axis::X0].whole_start());
+        let side = fit.side();
+        let side = if whole.value(0) == start {
             side
         } else if side < Sensor::LARGEST.side() {
             side + 1
@@ -233,9 +233,7 @@ impl Separation {
             return Ok(None);
         };
         let sensor = Sensor::new(side, side)?.with(Parameter::Threshold, threshold)?;
-        let step = 1.0 / f64::from(self.positions);
-        let cell = format!("{whole:.0}:{:.2}:{step:.2}", whole + 1.0 - step);
-        let cell: DecimalRange = cell.parse().unwrap_or(ranges[Axis::X0]);
+        let cell = whole.divided_unit(self.positions);
         let ranges = ranges.with(Axis::X0, cell).with(Axis::Y0, cell);
         PoseGrid::new(source, sensor, Anchor::Centre, ranges).map(Some)
     }

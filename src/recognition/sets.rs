@@ -34,6 +34,10 @@ const EQUAL: [(FigureKind, &[(Parameter, f64)]); 7] = [
 ];
 
 /// Returns the seven figures, each of about 30 cells: only their form tells them apart.
+#[expect(
+    clippy::missing_panics_doc,
+    reason = "the sizes are constants, and a test reads them all"
+)]
 pub fn equal_figures() -> Vec<NamedShape> {
     let sensor = Sensor::default();
     let shape = |(kind, sizes): (FigureKind, &[(Parameter, f64)])| {
@@ -42,18 +46,35 @@ pub fn equal_figures() -> Vec<NamedShape> {
         let figure = sizes.try_fold(default, |figure, &(parameter, value)| {
             figure.with(parameter, value, &sensor)
         });
-        Some(NamedShape::new(kind.name(), figure.ok()?))
+        let figure = figure.expect("the sizes in the table are in range");
+        NamedShape::new(kind.name(), figure)
     };
-    EQUAL.into_iter().filter_map(shape).collect()
+    EQUAL.map(shape).to_vec()
 }
 
 /// The steps of a grid of poses: one cell of positions, all angles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GridSteps {
-    /// Steps of a cell in each direction; a divisor of 100.
-    pub positions: u8,
-    /// Degrees from one angle to the next; a divisor of 360.
-    pub degrees: u16,
+    positions: u8,
+    degrees: u16,
+}
+
+/// Why there is no grid in these steps.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GridStepsError {
+    /// Steps of a cell that are not whole hundredths.
+    #[error("{found} positions in a cell: expected a divisor of 100")]
+    Positions {
+        /// What was given.
+        found: u8,
+    },
+    /// An angle that does not lead around.
+    #[error("steps of {found} degrees: expected a divisor of 360")]
+    Degrees {
+        /// What was given.
+        found: u16,
+    },
 }
 
 impl GridSteps {
@@ -62,15 +83,47 @@ impl GridSteps {
         positions: 100,
         degrees: 1,
     };
-}
 
-impl GridSteps {
-    /// Returns the same cell of positions, as a range of hundredths begins, in these steps.
-    pub fn cell(self, fine: &DecimalRange) -> DecimalRange {
-        let hundredths = 100 / u32::from(self.positions.clamp(1, 100));
-        let (first, step) = (fine.value(0), f64::from(hundredths) / 100.0);
-        let text = format!("{first:.2}:{:.2}:{step:.2}", first + 1.0 - step);
-        text.parse().unwrap_or(*fine)
+    /// Tenths of a cell and every second degree: of 200 poses of [`Self::FINE`], one.
+    pub const COARSE: Self = Self {
+        positions: 10,
+        degrees: 2,
+    };
+
+    /// This many positions of a cell in each direction, a divisor of 100, and degrees from one angle to the next, a
+    /// divisor of 360.
+    ///
+    /// # Errors
+    /// If one is not a divisor.
+    pub fn new(positions: u8, degrees: u16) -> Result<Self, GridStepsError> {
+        if positions == 0 || !100_u8.is_multiple_of(positions) {
+            return Err(GridStepsError::Positions { found: positions });
+        }
+        if degrees == 0 || !360_u16.is_multiple_of(degrees) {
+            return Err(GridStepsError::Degrees { found: degrees });
+        }
+        Ok(Self { positions, degrees })
+    }
+
+    /// Returns how many positions of a cell there are in each direction.
+    pub fn positions(self) -> u8 {
+        self.positions
+    }
+
+    /// Returns the degrees from one angle to the next.
+    pub fn degrees(self) -> u16 {
+        self.degrees
+    }
+
+    /// Returns all angles.
+    fn angles(self) -> DecimalRange {
+        let count = u64::from(360 / self.degrees);
+        DecimalRange::in_units(0, self.degrees.into(), 0, count)
+    }
+
+    /// Returns the cell of positions that begins where this range does, in these steps.
+    pub(crate) fn cell(self, fine: &DecimalRange) -> DecimalRange {
+        fine.divided_unit(self.positions)
     }
 }
 
@@ -81,9 +134,8 @@ impl Training<'_> {
     /// # Errors
     /// [`TrainingError::Large`] if no sensor is large enough, and those of [`Training::new`].
     pub fn fitting(shapes: Vec<NamedShape>, steps: GridSteps) -> Result<Self, TrainingError> {
-        let angles = format!("0:{}:{}", 360 - steps.degrees.clamp(1, 360), steps.degrees);
         let mut given = GivenRanges::default();
-        given[Axis::Angle] = angles.parse().ok();
+        given[Axis::Angle] = Some(steps.angles());
         let sources: Vec<&Source> = shapes.iter().map(|shape| &shape.source).collect();
         let fit = smallest_sensor(sources, Anchor::Centre, &given, 16);
         let fit = fit.map_err(|error| TrainingError::Grid {
@@ -111,12 +163,7 @@ mod tests {
 
     #[test]
     fn equal_figures_cover_thirty_cells_and_are_hard_to_tell_apart() {
-        let steps = GridSteps {
-            positions: 10,
-            degrees: 5,
-        };
-        // All of the sizes are in range, so none is left out.
-        assert_eq!(equal_figures().len(), FigureKind::ALL.len());
+        let steps = GridSteps::new(10, 5).expect("divisors");
         let training = Training::fitting(equal_figures(), steps).expect("they fit");
         let grid = &training.grids()[0];
         assert_eq!(grid.sensor().columns(), 16);
@@ -137,11 +184,38 @@ mod tests {
     }
 
     #[test]
-    fn figures_of_default_sizes_are_told_apart_by_any_touch() {
-        let steps = GridSteps {
-            positions: 20,
-            degrees: 3,
+    fn steps_that_would_be_another_grid_are_refused() {
+        let error = |positions, degrees| {
+            let steps = GridSteps::new(positions, degrees);
+            steps.map_err(|error| error.to_string())
         };
+        let positions = |found: u8| {
+            let expected = "expected a divisor of 100";
+            Err(format!("{found} positions in a cell: {expected}"))
+        };
+        assert_eq!(error(0, 1), positions(0));
+        assert_eq!(error(7, 1), positions(7));
+        assert_eq!(error(101, 1), positions(101));
+        for degrees in [0, 7, 361] {
+            assert_eq!(
+                GridSteps::new(10, degrees),
+                Err(GridStepsError::Degrees { found: degrees })
+            );
+        }
+        let cell = |positions, fine: &str| {
+            let steps = GridSteps::new(positions, 360).expect("divisors");
+            assert_eq!(steps.angles().to_string(), "0");
+            let fine: DecimalRange = fine.parse().expect("a range");
+            steps.cell(&fine).to_string()
+        };
+        assert_eq!(cell(1, "7:7.99:0.01"), "7");
+        assert_eq!(cell(4, "-7.35:-6.36:0.01"), "-7.35:-6.6:0.25");
+        assert_eq!(cell(100, "7.005:8:0.001"), "7.005:7.995:0.01");
+    }
+
+    #[test]
+    fn figures_of_default_sizes_are_told_apart_by_any_touch() {
+        let steps = GridSteps::new(20, 3).expect("divisors");
         let training = Training::fitting(default_figures(), steps).expect("they fit");
         let model = training.run().expect("not stopped");
         assert_eq!(Evaluation::of(&model).error(), 0.0);

@@ -34,7 +34,7 @@ use crate::formats::value::counted;
 use crate::formats::{Name, json};
 use crate::memory::MemoryGuard;
 use crate::pose::{Anchor, Axis, GivenRanges, GridError, Ranges, common_ranges, smallest_sensor};
-use crate::recognition::{Evaluation, GridSteps, Model, NamedShape, Training, TrainingError};
+use crate::recognition::{Evaluation, Model, NamedShape, Training, TrainingError};
 use crate::sensor::Sensor;
 use crate::storage::{ModelCache, ModelFolder, UnfinishedFile, load_model, model_hash, save_model};
 use crate::tui::recognise::sets::{ModelChoice, unknown_set};
@@ -164,11 +164,7 @@ fn grid(
     };
     let anchor = asked.anchor.unwrap_or(usual);
     let (sensor, mut ranges) = fitting(shapes, asked.sensor, anchor, &asked.ranges)?;
-    if let Some(positions) = asked.positions {
-        let steps = GridSteps {
-            positions,
-            ..GridSteps::FINE
-        };
+    if let Some(steps) = asked.positions {
         for axis in [Axis::X0, Axis::Y0] {
             if asked.ranges[axis].is_none() {
                 ranges[axis] = steps.cell(&ranges[axis]);

@@ -25,7 +25,7 @@ use crate::formats::Name;
 use crate::formats::separation::{SeparationCurve, csv, drawing};
 use crate::memory::MemoryGuard;
 use crate::pose::{Axis, DecimalRange, Ranges};
-use crate::recognition::{Model, Separation, TrainingError};
+use crate::recognition::{GridSteps, Model, Separation, TrainingError};
 use crate::sensor::Sensor;
 use crate::storage::UnfinishedFile;
 use crate::tui::recognise::sets::ModelChoice;
@@ -145,14 +145,18 @@ fn set(asked: &SeparateArguments, shelf: &Shelf) -> Result<(Separation, f64), Cl
     {
         let model = model::find(what, shelf)?;
         let separation = Separation::new(model.shapes().to_vec())?
-            .positions(asked.positions.unwrap_or(positions(&model)))
+            .positions(
+                asked
+                    .positions
+                    .map_or(positions(&model), GridSteps::positions),
+            )
             .angles(asked.angles.unwrap_or(model.ranges()[Axis::Angle]));
         return Ok((separation, model.sensor().threshold()));
     }
     let mut separation = Separation::new(shape_set::read(&asked.set, shelf)?)?
         .angles(asked.angles.unwrap_or(Ranges::default()[Axis::Angle]));
-    if let Some(positions) = asked.positions {
-        separation = separation.positions(positions);
+    if let Some(steps) = asked.positions {
+        separation = separation.positions(steps.positions());
     }
     Ok((separation, Sensor::default().threshold()))
 }

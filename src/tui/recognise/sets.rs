@@ -35,10 +35,7 @@ pub enum ModelChoice {
 
 /// The steps of the grid of the shapes that come with the program. In hundredths and whole degrees they leave 5.2
 /// million imprints; in these steps they are trained in a second or two.
-const SHIPPED_STEPS: GridSteps = GridSteps {
-    positions: 10,
-    degrees: 2,
-};
+const SHIPPED_STEPS: GridSteps = GridSteps::COARSE;
 
 impl ModelChoice {
     /// Those that need no file.

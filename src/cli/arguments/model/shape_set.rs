@@ -13,6 +13,7 @@ use std::ffi::OsString;
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, value_parser};
 
 use crate::cli::arguments::flags::{option, switch};
+use crate::recognition::GridSteps;
 
 /// A set of shapes, not read yet.
 #[derive(Clone, Debug)]
@@ -73,10 +74,11 @@ pub(super) fn positions() -> Arg {
     .help_heading("Grid")
 }
 
-/// A number of positions whose step is a whole number of hundredths of a cell, as ranges are exact in hundredths.
-fn parse_positions(text: &str) -> Result<u8, &'static str> {
+/// A number of positions whose step is a whole number of hundredths of a cell, as ranges are exact in hundredths. Angles
+/// have ranges of their own.
+fn parse_positions(text: &str) -> Result<GridSteps, &'static str> {
     let number = text.trim().parse::<u8>().ok();
     number
-        .filter(|&number| number > 0 && 100_u8.is_multiple_of(number))
+        .and_then(|number| GridSteps::new(number, GridSteps::FINE.degrees()).ok())
         .ok_or("expected 1, 2, 4, 5, 10, 20, 25, 50 or 100")
 }

@@ -16,6 +16,7 @@ use crate::formats::Name;
 use crate::memory::MemorySize;
 use crate::parameter::Parameter;
 use crate::pose::{Anchor, Axis, GivenRanges};
+use crate::recognition::GridSteps;
 use crate::sensor::Sensor;
 use crate::sweep::Shard;
 
@@ -29,7 +30,7 @@ pub(crate) struct TrainArguments {
     /// The given axes of the grid. Those not given are chosen so that the sensor cuts no shape off.
     pub(crate) ranges: GivenRanges,
     /// Positions of a cell in each direction, where its range is not given.
-    pub(crate) positions: Option<u8>,
+    pub(crate) positions: Option<GridSteps>,
     /// The sensor, if its columns or rows are given; otherwise the smallest one, changed by the other values.
     pub(crate) sensor: Option<Sensor>,
     /// The values of the sensor's flags.
@@ -123,7 +124,7 @@ impl TrainArguments {
             set: SetArguments::of(matches),
             anchor: matches.get_one::<Anchor>("anchor").copied(),
             ranges: flags::ranges_of(matches),
-            positions: matches.get_one::<u8>("positions").copied(),
+            positions: matches.get_one::<GridSteps>("positions").copied(),
             sensor: sized.then_some(sensor),
             given,
             shard: flags::shard_of(matches),
