@@ -15,6 +15,7 @@ use crate::recognition::evaluation::Evaluation;
 use crate::recognition::model::{Model, ShapeCount, share};
 use crate::recognition::noise::Noise;
 use crate::recognition::simulation::RecognitionRate;
+use crate::sensor::Sensor;
 
 /// A descriptor that says something of the shape: one that does not change when the imprint is moved.
 #[derive(Clone, Copy, Debug)]
@@ -168,12 +169,12 @@ impl GivenDescriptors {
     /// ```
     /// use taxel::recognition::{GivenDescriptors, GridSteps, Noise, Training, equal_figures};
     ///
-    /// let steps = GridSteps { positions: 4, degrees: 15 };
+    /// let steps = GridSteps::new(4, 15)?;
     /// let model = Training::fitting(equal_figures(), steps)?.run()?;
     /// let given: GivenDescriptors = "na,p".parse()?;
     /// let rate = |noise: f64| {
     ///     let noise = Noise::new(noise).expect("below ½");
-    ///     given.rate(&model, (16, 16), &noise, 100, 0, &|_| true).expect("not stopped")
+    ///     given.rate(&model, model.sensor(), &noise, 100, 0, &|_| true).expect("not stopped")
     /// };
     /// assert!(rate(0.0).accuracy() > rate(0.02).accuracy());
     /// assert_eq!(rate(0.0).held_share(), 1.0);
@@ -182,7 +183,7 @@ impl GivenDescriptors {
     pub fn rate(
         &self,
         model: &Model,
-        size: (u8, u8),
+        sensor: &Sensor,
         noise: &Noise,
         per_shape: u64,
         seed: u64,
@@ -206,7 +207,7 @@ impl GivenDescriptors {
             let named = names.get(&self.values(description.as_ref()));
             rate.count(shape, named.copied());
         };
-        model.simulated(size, noise, per_shape, seed, progress, &judge)
+        model.simulated(sensor, noise, per_shape, seed, progress, &judge)
     }
 
     /// The values of these descriptors, in steps where they are rounded.

@@ -14,6 +14,7 @@ use crate::recognition::key::ImprintKey;
 use crate::recognition::model::{Model, share};
 use crate::recognition::noise::Noise;
 use crate::recognition::scan::places;
+use crate::sensor::Sensor;
 
 /// How often noisy touches are named right.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -94,8 +95,9 @@ fn count(count: u64) -> f64 {
     count as f64
 }
 
-/// Returns that many different taxels of a matrix, drawn with a seed; all of them if there are no more.
-pub fn random_taxels(columns: u8, rows: u8, count: u32, seed: u64) -> Imprint {
+/// Returns that many different taxels of a sensor, drawn with a seed; all of them if there are no more.
+pub fn random_taxels(sensor: &Sensor, count: u32, seed: u64) -> Imprint {
+    let (columns, rows) = (sensor.columns(), sensor.rows());
     let mut taxels = Imprint::empty(columns, rows);
     let mut random = generator(seed, 0);
     let cells = u32::from(columns) * u32::from(rows);
@@ -138,14 +140,14 @@ impl Draw {
 }
 
 impl Model {
-    /// Draws touches of each shape on a matrix of that many columns and rows, flips taxels as `noise` says, names the
-    /// shape as `assumed` says, and counts. Dead taxels of `noise` always read as inactive; those of `assumed` are left out.
+    /// Draws touches of each shape on a sensor, of which only the columns and rows count, flips taxels as `noise` says,
+    /// names the shape as `assumed` says, and counts. Dead taxels of `noise` always read as inactive; those of `assumed` are left out.
     ///
     /// `per_shape` touches are drawn of each shape. `progress` is called with the number of touches done since the last
     /// call, and stops it by returning `false`; then there is no result.
     pub fn recognition_rate(
         &self,
-        (columns, rows): (u8, u8),
+        sensor: &Sensor,
         noise: &Noise,
         assumed: &Noise,
         per_shape: u64,
@@ -155,13 +157,13 @@ impl Model {
         let judge = |rate: &mut RecognitionRate, shape: usize, touch: &Imprint| {
             rate.add(self, assumed, shape, touch);
         };
-        self.simulated((columns, rows), noise, per_shape, seed, progress, &judge)
+        self.simulated(sensor, noise, per_shape, seed, progress, &judge)
     }
 
     /// Draws touches as [`Self::recognition_rate`] does; `judge` names the shape of each and counts.
     pub(super) fn simulated(
         &self,
-        (columns, rows): (u8, u8),
+        sensor: &Sensor,
         noise: &Noise,
         per_shape: u64,
         seed: u64,
@@ -169,6 +171,7 @@ impl Model {
         judge: &(dyn Fn(&mut RecognitionRate, usize, &Imprint) + Sync),
     ) -> Option<RecognitionRate> {
         const CHUNK: u64 = 50;
+        let (columns, rows) = (sensor.columns(), sensor.rows());
         let places = |key: usize| {
             let key = self.keys().get(key);
             places((key.width, key.height), (columns, rows))
@@ -301,11 +304,7 @@ impl Model {
                     None => *logarithm = f64::NEG_INFINITY,
                 }
             }
-            let (best, most) = logarithms
-                .iter()
-                .copied()
-                .enumerate()
-                .max_by(|(_, one), (_, other)| one.total_cmp(other))?;
+            let (best, most) = first_of_most(&logarithms)?;
             let sum: f64 = logarithms.iter().map(|own| (own - most).exp()).sum();
             if 1.0 / sum >= until {
                 return Some((touches, best == shape));
@@ -333,17 +332,17 @@ impl RecognitionRate {
         let Some(posterior) = model.posterior_under(touch, assumed) else {
             return;
         };
-        // The first of equals, as everywhere.
-        let best = posterior
-            .iter()
-            .enumerate()
-            .rev()
-            .max_by(|one, other| one.1.total_cmp(other.1));
-        if let Some((named, &probability)) = best {
+        if let Some((named, probability)) = first_of_most(&posterior) {
             self.right += u64::from(named == shape);
             self.claimed += probability;
         }
     }
+}
+
+/// The largest of some values and its index; of equals the first one, as everywhere.
+fn first_of_most(values: &[f64]) -> Option<(usize, f64)> {
+    let values = values.iter().copied().enumerate().rev();
+    values.max_by(|(_, one), (_, other)| one.total_cmp(other))
 }
 
 /// Mean and standard error of runs.
@@ -366,5 +365,36 @@ fn summary(runs: u64, lengths: &[Option<(u32, bool)>]) -> TouchesUntil {
         reached,
         runs,
         right: lengths.iter().flatten().filter(|(_, right)| *right).count() as u64,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::Figure;
+    use crate::pose::{Anchor, Ranges};
+    use crate::recognition::{NamedShape, Training};
+
+    #[test]
+    fn more_taxels_than_there_are_is_all_of_them() {
+        let taxels = random_taxels(&Sensor::LARGEST, 5000, 0);
+        assert_eq!(taxels.count(), 64 * 64);
+        assert_eq!(random_taxels(&Sensor::default(), 7, 1).count(), 7);
+    }
+
+    /// Two names of one shape are as probable after every touch.
+    #[test]
+    fn of_equals_the_first_is_named_after_several_touches_too() {
+        let sensor = Sensor::default();
+        let bar = Figure::rectangle(4.0, 2.0).on(&sensor).expect("in range");
+        let shapes = ["one", "other"].map(|name| NamedShape::new(name, bar));
+        let training = Training::new(shapes, sensor, Anchor::Centre, Ranges::default());
+        let model = training.expect("a set").run().expect("not stopped");
+        let touches = model.touches_until(0.4, 10, 0, &|_| true);
+        let right = touches.map(|own| own.iter().map(|own| own.right).collect());
+        assert_eq!(right, Some(vec![10, 0]));
+        let noise = Noise::new(0.0).expect("in range");
+        let rate = model.recognition_rate(&sensor, &noise, &noise, 10, 0, &|_| true);
+        assert_eq!(rate.map(|rate| (rate.touches, rate.right)), Some((20, 10)));
     }
 }

@@ -34,6 +34,7 @@ use crate::formats::{LinePlot, json};
 use crate::recognition::{
     GivenDescriptors, Model, Noise, RecognitionRate, TouchesUntil, TrainingError, random_taxels,
 };
+use crate::sensor::Sensor;
 use crate::storage::UnfinishedFile;
 
 /// A line of the table: the noise, the number of dead taxels, and what was reached.
@@ -64,8 +65,10 @@ pub(crate) fn degradation(
     }
     let given = given_of(asked, all_asked);
     let signals = Signals::heard().map_err(CliError::System)?;
-    let sizes = (model.sensor().columns(), model.sensor().rows());
-    let (columns, rows) = asked.size.unwrap_or(sizes);
+    let sensor = asked
+        .size
+        .map(|(columns, rows)| Sensor::clamped(columns, rows));
+    let sensor = sensor.unwrap_or(*model.sensor());
     let values: Vec<f64> = asked.noise.values().collect();
     let each = asked.touches * model.shapes().len() as u64;
     let all = each * values.len() as u64 * asked.dead.len() as u64;
@@ -76,22 +79,19 @@ pub(crate) fn degradation(
     };
     let mut table = Vec::new();
     for &dead in &asked.dead {
-        let mask = random_taxels(columns, rows, dead, asked.seed);
+        let mask = random_taxels(&sensor, dead, asked.seed);
         for &value in &values {
             let noise = Noise::new(value)?.without(mask);
             let rate = match &given {
                 None => model.recognition_rate(
-                    (columns, rows),
+                    &sensor,
                     &noise,
                     &noise,
                     asked.touches,
                     asked.seed,
                     &tell,
                 ),
-                Some(given) => {
-                    let size = (columns, rows);
-                    given.rate(model, size, &noise, asked.touches, asked.seed, &tell)
-                }
+                Some(given) => given.rate(model, &sensor, &noise, asked.touches, asked.seed, &tell),
             };
             let rate = rate.ok_or_else(|| signals.failure())?;
             table.push(NoiseRow {
@@ -104,7 +104,7 @@ pub(crate) fn degradation(
     progress.finish();
     write_noise(&table, all_asked)?;
     Ok(match all_asked.form {
-        EvaluationForm::Json => noise_json(&table, (columns, rows), asked.seed),
+        EvaluationForm::Json => noise_json(&table, &sensor, asked.seed),
         EvaluationForm::Csv => noise_csv(&table),
         EvaluationForm::Text => {
             let text = noise_text(&table, asked.seed, given.is_some(), charset);
@@ -169,7 +169,7 @@ fn noise_curves(table: &[NoiseRow], charset: Charset) -> String {
 }
 
 /// One line of JSON: size of the matrix, seed, and a list of the rows, with all digits.
-fn noise_json(table: &[NoiseRow], (columns, rows): (u8, u8), seed: u64) -> String {
+fn noise_json(table: &[NoiseRow], sensor: &Sensor, seed: u64) -> String {
     let rows_json: Vec<_> = table
         .iter()
         .map(|row| {
@@ -185,7 +185,12 @@ fn noise_json(table: &[NoiseRow], (columns, rows): (u8, u8), seed: u64) -> Strin
             })
         })
         .collect();
-    let answer = json!({"columns": columns, "rows": rows, "seed": seed, "degradation": rows_json});
+    let answer = json!({
+        "columns": sensor.columns(),
+        "rows": sensor.rows(),
+        "seed": seed,
+        "degradation": rows_json,
+    });
     json::text(&answer) + "\n"
 }
 
