@@ -125,11 +125,13 @@ pub fn each_region(imprint: &Imprint, mut visit: impl FnMut(&Region)) {
         return;
     };
     // The taxels around a hole are 8-connected, so there is one piece that encloses it.
-    let mut holes = Imprint::empty(imprint.columns(), imprint.rows());
+    let mut holes: Option<Imprint> = None;
     components(imprint, bounds, RegionKind::Exterior, |piece| {
         if let Some(filled) = &piece.filled {
             let bounds = piece.bounds;
-            let holes = rows_mut(&mut holes, bounds).iter_mut();
+            let holes =
+                holes.get_or_insert_with(|| Imprint::empty(imprint.columns(), imprint.rows()));
+            let holes = rows_mut(holes, bounds).iter_mut();
             let inside = rows(filled, bounds).iter().zip(rows(imprint, bounds));
             for (hole, (filled, active)) in holes.zip(inside) {
                 *hole |= filled & !active;
@@ -137,8 +139,10 @@ pub fn each_region(imprint: &Imprint, mut visit: impl FnMut(&Region)) {
         }
         visit(piece);
     });
-    if let Some(bounds) = holes.bounds() {
-        components(&holes, bounds, RegionKind::Hole, visit);
+    if let Some(holes) = &holes
+        && let Some(bounds) = holes.bounds()
+    {
+        components(holes, bounds, RegionKind::Hole, visit);
     }
 }
 
