@@ -143,6 +143,20 @@ fn the_shape_is_named_by_sets_of_shapes_in_turn() {
 }
 
 #[test]
+fn a_page_that_is_opened_again_names_by_the_model_that_it_shows() {
+    let mut page = watched(6, "n+++++++");
+    shows(&page, &["shape      unknown", "model      figures"]);
+    then(&mut page, "<Esc>w", &["model      figures"]);
+    page.frames(5);
+    shows(&page, &["frame 4", "shape      ", "nearest    "]);
+    hides(&page, &["…", "training or"]);
+    // Nor does it name by a model that was given up.
+    then(&mut page, "nnn<Esc>w", &[]);
+    page.frames(6);
+    hides(&page, &["nearest"]);
+}
+
+#[test]
 fn a_broken_description_beside_a_recording_is_told() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a.npy");

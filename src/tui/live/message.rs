@@ -57,10 +57,10 @@ pub enum LiveEvent {
     NotRecorded(String),
     /// It could not be finished, and why.
     NotFinished(String),
-    /// What the model says of an imprint.
-    Named(Box<NamedImprint>),
-    /// There is no model, and why.
-    NotNamed(String),
+    /// What a model says of an imprint; the number of the work that names.
+    Named(u64, Box<NamedImprint>),
+    /// There is no model, and why; the number of the work that would name.
+    NotNamed(u64, String),
 }
 
 /// Frames that have come, and how the source is.

@@ -40,13 +40,22 @@ impl NamedImprint {
     }
 }
 
-/// The model of the page, and its last answer.
-#[derive(Clone, Debug)]
-pub struct Naming {
+/// By what imprints are named.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamingRequest {
+    /// The number of this work, which its answers carry: those of a model before are told apart by it.
+    pub number: u64,
     /// The set of shapes.
     pub choice: ModelChoice,
     /// How often a taxel flips.
     pub noise: Option<Noise>,
+}
+
+/// The model of the page, and its last answer.
+#[derive(Clone, Debug)]
+pub struct Naming {
+    /// What was asked for.
+    pub request: NamingRequest,
     /// The last answer.
     pub answer: Option<Box<NamedImprint>>,
     /// Why there are no answers.
@@ -56,11 +65,10 @@ pub struct Naming {
 }
 
 impl Naming {
-    /// Names by a set of shapes, under a noise if one is given.
-    pub fn new(choice: ModelChoice, noise: Option<Noise>) -> Self {
+    /// Names by a set of shapes. Nothing is known of any imprint yet.
+    pub fn new(request: NamingRequest) -> Self {
         Self {
-            choice,
-            noise,
+            request,
             answer: None,
             failure: None,
             asked: false,
@@ -97,7 +105,11 @@ mod tests {
 
     #[test]
     fn one_imprint_is_asked_for_at_a_time_and_none_twice() {
-        let mut naming = Naming::new(ModelChoice::Figures, None);
+        let mut naming = Naming::new(NamingRequest {
+            number: 1,
+            choice: ModelChoice::Figures,
+            noise: None,
+        });
         let [one, other]: [Imprint; 2] = ["##", "#."].map(|text| text.parse().expect("rows"));
         assert!(!naming.ask(&Imprint::empty(2, 1)));
         assert!(naming.ask(&one));

@@ -8,7 +8,7 @@ use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::tui::live::history::FrameHistory;
 use crate::tui::live::message::{FeedStatus, FrameBatch, SourceState};
-use crate::tui::live::naming::{NamedImprint, Naming};
+use crate::tui::live::naming::{NamedImprint, Naming, NamingRequest};
 use crate::tui::live::reading::{HeatLayer, LiveReading, round_up, tidy};
 use crate::tui::live::request::WatchRequest;
 use crate::tui::recognise::sets::ModelChoice;
@@ -102,13 +102,14 @@ impl Live {
             not_recorded: None,
             marks: Vec::new(),
             marked: Vec::new(),
-            naming: (request.model.clone()).map(|model| Naming::new(model, request.noise())),
+            naming: None,
             reading: None,
             error: None,
             request,
             number,
         };
         live.set_rule(live.request.rule);
+        live.name_by(live.request.model.clone(), number);
         live
     }
 
@@ -229,18 +230,39 @@ impl Live {
         self.naming.as_ref()
     }
 
-    /// Names imprints by the next set of shapes: the one that was asked for, those that need no file, then none.
-    pub fn next_model(&mut self) -> Option<&ModelChoice> {
+    /// What is asked of whoever names imprints; None where they are not named.
+    pub fn naming_request(&self) -> Option<&NamingRequest> {
+        self.naming.as_ref().map(|naming| &naming.request)
+    }
+
+    /// Names imprints by a set of shapes, as a piece of work of this number; by none without one. What was said before is
+    /// forgotten.
+    fn name_by(&mut self, choice: Option<ModelChoice>, number: u64) {
+        let noise = self.request.noise();
+        self.naming = choice.map(|choice| {
+            Naming::new(NamingRequest {
+                number,
+                choice,
+                noise,
+            })
+        });
+    }
+
+    /// Names imprints by the next set of shapes: the one that was asked for, those that need no file, then none. It is a
+    /// piece of work of this number.
+    pub fn next_model(&mut self, number: u64) {
         let asked = self.request.model.iter();
         let others = ModelChoice::BUILT_IN.iter();
         let others = others.filter(|other| Some(*other) != self.request.model.as_ref());
         let mut all = asked.chain(others);
         let next = match &self.naming {
             None => all.next(),
-            Some(naming) => all.skip_while(|own| **own != naming.choice).nth(1),
+            Some(naming) => {
+                let present = &naming.request.choice;
+                all.skip_while(|own| *own != present).nth(1)
+            }
         };
-        self.naming = next.map(|choice| Naming::new(choice.clone(), self.request.noise()));
-        self.naming.as_ref().map(|naming| &naming.choice)
+        self.name_by(next.cloned(), number);
     }
 
     /// The imprint that is to be named now; None while an answer is on its way, or where nothing is active. Notes that it is.
@@ -249,9 +271,10 @@ impl Live {
         self.naming.as_mut()?.ask(&imprint).then_some(imprint)
     }
 
-    /// Takes what a model says, or why there is none.
-    pub fn take_name(&mut self, named: Result<NamedImprint, String>) {
-        if let Some(naming) = &mut self.naming {
+    /// Takes what a model says, or why there is none. What the model of another number says is dropped.
+    pub fn take_name(&mut self, number: u64, named: Result<NamedImprint, String>) {
+        let naming = self.naming.as_mut();
+        if let Some(naming) = naming.filter(|naming| naming.request.number == number) {
             match named {
                 Ok(named) => naming.take(named),
                 Err(reason) => naming.fail(reason),
@@ -545,6 +568,8 @@ impl Live {
         self.stopped = false;
         self.frozen = None;
         self.status.state = SourceState::Waiting;
+        let choice = self.naming.take().map(|naming| naming.request.choice);
+        self.name_by(choice, number);
     }
 
     /// The frame that is shown, before anything is done with it.

@@ -1,12 +1,14 @@
 //! What messages do on the live page, and what its source reports. The source goes on while the imprint is on the matrix,
 //! and ends when the page is closed.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::formats::recording::RecordingMetadata;
 use crate::formats::value::counted;
 use crate::parameter::Parameter;
 use crate::sensor::Sensor;
+use crate::storage::Existing;
 use crate::tui::app::change::{begin_unsaved, inform, refuse};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Document;
@@ -44,13 +46,26 @@ fn watch(app: &mut App, request: Arc<WatchRequest>) -> Effect {
             .as_ref()
             .map(|(path, _)| path.to_string_lossy().into_owned()),
     );
+    let write = request.write.clone();
+    let watched = begin(&page, write);
     app.live = None;
     app.dialogs.push(Dialog::Live(Box::new(page)));
-    Effect::Work(Work::Watch(app.works, request))
+    watched
+}
+
+/// Watches the source of a page. Its imprints are named as the page says.
+fn begin(page: &Live, write: Option<(PathBuf, Existing)>) -> Effect {
+    Effect::Work(Work::Watch {
+        number: page.number(),
+        request: Arc::clone(page.request()),
+        write,
+        naming: page.naming_request().cloned().map(Box::new),
+    })
 }
 
 /// Opens the page of the last source, which is watched again if it was left.
-/// Its history, marks and settings are still there; frames that came while it was left are not.
+/// Its history and settings are still there; frames that came while it was left are not. The recording that was asked for
+/// at the start is finished, and stays as it is.
 fn open(app: &mut App) -> Option<Effect> {
     let Some(mut page) = app.live.take() else {
         refuse(
@@ -63,10 +78,7 @@ fn open(app: &mut App) -> Option<Effect> {
     if page.stopped() {
         app.works += 1;
         page.restart(app.works);
-        effect = Some(Effect::Work(Work::Watch(
-            app.works,
-            Arc::clone(page.request()),
-        )));
+        effect = Some(begin(&page, None));
     }
     app.dialogs.push(Dialog::Live(page));
     effect
@@ -189,14 +201,15 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
         LiveMessage::Record => return Some(record(page)),
         LiveMessage::Mark => return mark(app, page),
         LiveMessage::NextModel => {
-            let model = page.next_model().cloned();
-            let text = match &model {
-                Some(model) => format!("shapes are named by {model}"),
+            app.works += 1;
+            page.next_model(app.works);
+            let naming = page.naming_request().cloned().map(Box::new);
+            let text = match &naming {
+                Some(naming) => format!("shapes are named by {}", naming.choice),
                 None => "shapes are not named".to_owned(),
             };
             inform(app, text);
-            let model = model.map(|model| Box::new((model, page.request().noise())));
-            return Some(Effect::Work(Work::NameBy(page.number(), model)));
+            return Some(Effect::Work(Work::NameBy(page.number(), naming)));
         }
         LiveMessage::Open | LiveMessage::Watch(_) | LiveMessage::Source(_) => {}
     }
@@ -283,8 +296,8 @@ pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
             page.set_recording(Some(name.clone()));
             inform(app, format!("recording in {name}"));
         }
-        LiveEvent::Named(named) => page.take_name(Ok((**named).clone())),
-        LiveEvent::NotNamed(reason) => page.take_name(Err(reason.clone())),
+        LiveEvent::Named(by, named) => page.take_name(*by, Ok((**named).clone())),
+        LiveEvent::NotNamed(by, reason) => page.take_name(*by, Err(reason.clone())),
         LiveEvent::NotRecorded(reason) => {
             page.fail_recording(reason.clone());
             refuse(app, reason.clone());

@@ -231,10 +231,10 @@ fn regions(reading: &LiveReading) -> String {
 /// The name of the shape, the nearest imprint, and by which model and noise; none where nothing is active. What is said
 /// of an earlier imprint ends in dots.
 fn named(naming: &Naming, shown: Option<&Imprint>) -> [(&'static str, Option<String>); 3] {
-    let noise = naming.noise;
-    let model = match noise {
-        Some(noise) => format!("{}, noise {}", naming.choice.name(), noise.flip()),
-        None => naming.choice.name().to_owned(),
+    let name = naming.request.choice.name();
+    let model = match naming.request.noise {
+        Some(noise) => format!("{name}, noise {}", noise.flip()),
+        None => name.to_owned(),
     };
     let shown = shown.filter(|imprint| !imprint.is_empty());
     let answer = naming.answer.as_ref().filter(|_| shown.is_some());

@@ -1,15 +1,17 @@
 //! Effects that `update` returns: what the runtime or the terminal has to do.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::formats::StoredShape;
 use crate::formats::recording::{FrameMark, RecordingMetadata};
 use crate::imprint::Imprint;
 use crate::pose::PoseGrid;
-use crate::recognition::{Noise, SeparationPoint};
+use crate::recognition::SeparationPoint;
 use crate::storage::{Existing, Expected};
 use crate::tui::app::message::Purpose;
 use crate::tui::explore::message::Findings;
+use crate::tui::live::naming::NamingRequest;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::recognise::separate::request::SeparationRequest;
 use crate::tui::recognise::sets::{ModelChoice, TrainedModel};
@@ -70,8 +72,18 @@ pub enum Work {
     Separate(u64, Arc<SeparationRequest>, Vec<SeparationPoint>),
     /// Stop that.
     StopSeparating,
-    /// Watch a source of frames.
-    Watch(u64, Arc<WatchRequest>),
+    /// Watch a source of frames, recorded from the start or not, and name their imprints or not.
+    Watch {
+        /// The number of this work.
+        number: u64,
+        /// What is watched.
+        request: Arc<WatchRequest>,
+        /// The file that all frames are recorded in. Where a source is watched again that is none: a finished recording is
+        /// left alone.
+        write: Option<(PathBuf, Existing)>,
+        /// How imprints are named.
+        naming: Option<Box<NamingRequest>>,
+    },
     /// Stop that.
     StopWatching,
     /// Record all frames of the source that is watched.
@@ -80,8 +92,8 @@ pub enum Work {
     StopRecording,
     /// Write the marks into the description of the recording.
     Mark(Vec<FrameMark>),
-    /// Name the imprints of that source by a set of shapes, under a noise; None names them no more.
-    NameBy(u64, Option<Box<(ModelChoice, Option<Noise>)>>),
+    /// Name the imprints of the source of that number; None names them no more.
+    NameBy(u64, Option<Box<NamingRequest>>),
     /// Name an imprint.
     Name(Box<Imprint>),
     /// Search a model for the nearest imprint, and for the poses of a shape, None for that of the nearest imprint.

@@ -9,13 +9,14 @@
 use std::ffi::OsStr;
 use std::mem::take;
 use std::ops::ControlFlow;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
 use crate::acquire::{AcquireEvent, AcquireOptions, FrameSource, acquire};
 use crate::formats::recording::{ChannelInfo, FrameMark, RecordingMetadata};
 use crate::frame::Frame;
-use crate::storage::location;
+use crate::storage::{Existing, location};
 use crate::tui::explore::message::WorkerEvent;
 use crate::tui::live::history::bytes_of;
 use crate::tui::live::message::{FrameBatch, LiveEvent, SourceState};
@@ -75,12 +76,13 @@ struct Pending {
 }
 
 impl FrameWatcher {
-    /// Watches a source. Returns an event where the recording that is asked for cannot be begun. The source before has to
-    /// be stopped first.
+    /// Watches a source, recorded in a file if one is given. Returns an event where that cannot be begun. The source
+    /// before has to be stopped first.
     pub(super) fn watch(
         &mut self,
         number: u64,
         request: Arc<WatchRequest>,
+        write: Option<(PathBuf, Existing)>,
         post: Option<WorkerEventSink>,
     ) -> Option<WorkerEvent> {
         let watched = Watched {
@@ -92,19 +94,20 @@ impl FrameWatcher {
             begins: false,
         };
         let feed = Arc::clone(&watched.feed);
-        if let Some((path, _)) = &request.write {
-            *locked(&feed.recording) = Some(Recording::new(path.clone()));
-        }
+        let existing = write.map(|(path, existing)| {
+            *locked(&feed.recording) = Some(Recording::new(path));
+            existing
+        });
         let Some(post) = post else {
             self.watched = Some(watched);
-            let refused = feed.begin_recording(&request).err()?;
+            let refused = feed.begin_recording(&request, existing).err()?;
             return Some(WorkerEvent::Live(number, LiveEvent::NotRecorded(refused)));
         };
         let stop = Arc::clone(&watched.stop);
         // It is not joined: opening a pipe waits for its other end.
         let thread = std::thread::Builder::new().spawn(move || {
             // Before the first frame: each one is wanted. Not on the screen's thread: the disk may hang.
-            if let Err(refused) = feed.begin_recording(&request) {
+            if let Err(refused) = feed.begin_recording(&request, existing) {
                 post(WorkerEvent::Live(number, LiveEvent::NotRecorded(refused)));
             }
             let source = source(&request.source);
@@ -148,7 +151,7 @@ impl FrameWatcher {
     }
 
     /// Notes that it has begun, or cannot be: from now on each frame of the source of that number goes into it. Returns
-    /// it if that source is gone.
+    /// what is to be finished: it, if that source is gone, or the recording in whose place it comes.
     pub(super) fn begun(
         &mut self,
         number: u64,
@@ -159,11 +162,11 @@ impl FrameWatcher {
             return recording;
         };
         watched.begins = false;
-        *locked(&watched.feed.recording) = Some(recording?);
+        let before = locked(&watched.feed.recording).replace(recording?);
         let mut pending = locked(&watched.feed.pending);
         pending.batch.status.recorded = Some(0);
         pending.batch.status.record_error = None;
-        None
+        before
     }
 
     /// Records no more frames. Returns the recording, which is to be finished, and the number of the source.
@@ -296,8 +299,12 @@ impl FrameFeed {
     }
 
     /// Creates the file of the recording that is asked for together with the source.
-    fn begin_recording(&self, request: &WatchRequest) -> Result<(), String> {
-        let (Some(recording), Some((_, existing))) = (self.recording(), &request.write) else {
+    fn begin_recording(
+        &self,
+        request: &WatchRequest,
+        existing: Option<Existing>,
+    ) -> Result<(), String> {
+        let (Some(recording), Some(existing)) = (self.recording(), existing) else {
             return Ok(());
         };
         let metadata = RecordingMetadata {
@@ -308,7 +315,7 @@ impl FrameFeed {
         source(&request.source)
             .refuse_as_target(recording.path())
             .map_err(|error| error.to_string())?;
-        recording.begin(*existing, &metadata)?;
+        recording.begin(existing, &metadata)?;
         locked(&self.pending).batch.status.recorded = Some(0);
         Ok(())
     }
@@ -468,5 +475,30 @@ impl Pending {
                 self.batch.status.record_error = Some(error);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tui::runtime::write_access::WriteAccess;
+
+    #[test]
+    fn a_recording_that_another_one_comes_after_is_finished() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let write = Some((folder.path().join("a.npy"), Existing::Kept));
+        let request = Arc::new(WatchRequest::new("none"));
+        let mut watcher = FrameWatcher::default();
+        assert_eq!(watcher.watch(7, request, write, None), None);
+        assert_eq!(watcher.begins(), Some(7));
+        let access = WriteAccess::below(folder.path().to_owned());
+        let metadata = RecordingMetadata::default();
+        let next = Recording::in_free_file(&access, &metadata).map(|(_, next)| next);
+        let over = watcher.begun(7, next.ok()).expect("the one before");
+        assert!(over.path().ends_with("a.npy"));
+        assert_eq!(
+            over.finish(),
+            Some(LiveEvent::Recorded(over.path().to_string_lossy().into(), 0))
+        );
     }
 }

@@ -347,7 +347,7 @@ impl World {
                 let (number, recording) = self.workers.frames.end_recording()?;
                 return self.change(DiskRequest::EndRecording(number, recording));
             }
-            Work::Watch(..) | Work::StopWatching => {
+            Work::Watch { .. } | Work::StopWatching => {
                 if let Some((number, recording)) = self.workers.frames.stop() {
                     let ended = self.change(DiskRequest::EndRecording(number, recording));
                     self.later.extend(ended);
@@ -512,11 +512,11 @@ impl World {
             Ok((name, recording)) => (LiveEvent::Recording(name), Some(recording)),
             Err(refused) => (LiveEvent::NotRecorded(refused), None),
         };
-        match self.workers.frames.begun(number, recording) {
-            // The source was left meanwhile.
-            Some(unused) => self.change(DiskRequest::EndRecording(number, unused)),
-            None => Some(Message::Worker(WorkerEvent::Live(number, event))),
-        }
+        // The source was left meanwhile, or something else was recorded still.
+        let over = self.workers.frames.begun(number, recording);
+        let ended = over.and_then(|over| self.change(DiskRequest::EndRecording(number, over)));
+        self.later.extend(ended);
+        Some(Message::Worker(WorkerEvent::Live(number, event)))
     }
 
     /// Performs a request to the library; the answer is a message. There may be none yet.

@@ -10,17 +10,16 @@
 use std::cell::OnceCell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Sender, channel};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
 use crate::imprint::Imprint;
 use crate::recognition::{Evidence, Model, Noise};
 use crate::tui::explore::message::WorkerEvent;
 use crate::tui::live::message::LiveEvent;
-use crate::tui::live::naming::NamedImprint;
-use crate::tui::recognise::sets::ModelChoice;
+use crate::tui::live::naming::{NamedImprint, NamingRequest};
 use crate::tui::runtime::models::ModelStore;
-use crate::tui::runtime::progress::{WorkerEventSink, guarded};
+use crate::tui::runtime::progress::{WorkerEventSink, caught};
 use crate::tui::runtime::threads;
 
 /// A model that is asked on the thread that waits for its answer.
@@ -28,10 +27,8 @@ use crate::tui::runtime::threads;
 struct OwnModel {
     /// Where the model is read from.
     store: ModelStore,
-    /// Which set it is of.
-    choice: ModelChoice,
-    /// The noise of the sensor; None to take each taxel as it is read.
-    noise: Option<Noise>,
+    /// What was asked for.
+    naming: NamingRequest,
     /// The model, or why there is none.
     model: OnceCell<Result<Model, String>>,
 }
@@ -45,19 +42,20 @@ pub(super) struct ShapeNamer {
     here: Option<OwnModel>,
     /// The way to the thread; dropped to end it. None without a thread.
     imprints: Option<Sender<Imprint>>,
-    /// Set to break off a training.
+    /// Set to break off a training, and to say nothing any more.
     stop: Arc<AtomicBool>,
     /// Waited for at the end of the program, so that a model is written as a whole.
     thread: Option<JoinHandle<()>>,
 }
 
 impl ShapeNamer {
-    /// Prepares a model in place of the one before. Events carry the number of the source whose frames are named.
+    /// Prepares a model in place of the one before. Events carry the number of the source whose frames are named, and that
+    /// of the request.
     pub(super) fn begin(
         &mut self,
         number: u64,
         store: ModelStore,
-        (choice, noise): (ModelChoice, Option<Noise>),
+        naming: NamingRequest,
         post: Option<WorkerEventSink>,
     ) {
         self.end();
@@ -67,36 +65,33 @@ impl ShapeNamer {
         let Some(post) = post else {
             self.here = Some(OwnModel {
                 store,
-                choice,
-                noise,
+                naming,
                 model: OnceCell::new(),
             });
             return;
         };
         let (imprints, waiting) = channel::<Imprint>();
         self.imprints = Some(imprints);
+        let by = naming.number;
         let refused = Arc::clone(&post);
         let work = move || {
-            let ended = guarded(number, || {
-                let progress = |_: u64| !stop.load(Ordering::Relaxed);
-                let model = match store.model(&choice, &|_| (), &progress) {
-                    Ok(model) => model,
-                    Err(reason) => return WorkerEvent::Live(number, LiveEvent::NotNamed(reason)),
-                };
-                while let Ok(imprint) = waiting.recv() {
-                    let named = named(&model, noise.as_ref(), &imprint);
-                    post(WorkerEvent::Live(number, LiveEvent::Named(Box::new(named))));
+            let say = |event| {
+                // Nobody waits for what a model says that was given up.
+                if !stop.load(Ordering::Relaxed) {
+                    post(WorkerEvent::Live(number, event));
                 }
-                WorkerEvent::Live(number, LiveEvent::Waiting)
-            });
-            post(ended);
+            };
+            let ended = caught(|| answer(&store, &naming, &waiting, &stop, &say));
+            if let Err(reason) = ended.flatten() {
+                say(LiveEvent::NotNamed(by, reason));
+            }
         };
         let thread = std::thread::Builder::new().spawn(move || threads::run(work));
         match thread {
             Ok(thread) => self.thread = Some(thread),
             Err(error) => {
                 let reason = format!("the system gives no thread for it: {error}");
-                refused(WorkerEvent::Live(number, LiveEvent::NotNamed(reason)));
+                refused(WorkerEvent::Live(number, LiveEvent::NotNamed(by, reason)));
             }
         }
     }
@@ -109,10 +104,18 @@ impl ShapeNamer {
             return None;
         }
         let own = self.here.as_ref()?;
-        let train = || own.store.model(&own.choice, &|_| (), &|_| true);
+        let NamingRequest {
+            number,
+            choice,
+            noise,
+        } = &own.naming;
+        let train = || own.store.model(choice, &|_| (), &|_| true);
         let event = match own.model.get_or_init(train) {
-            Ok(model) => LiveEvent::Named(Box::new(named(model, own.noise.as_ref(), imprint))),
-            Err(reason) => LiveEvent::NotNamed(reason.clone()),
+            Ok(model) => {
+                let named = named(model, noise.as_ref(), imprint);
+                LiveEvent::Named(*number, Box::new(named))
+            }
+            Err(reason) => LiveEvent::NotNamed(*number, reason.clone()),
         };
         Some(WorkerEvent::Live(self.number, event))
     }
@@ -133,10 +136,67 @@ impl ShapeNamer {
     }
 }
 
+/// Prepares a model, and names imprints by it until there are no more.
+///
+/// # Errors
+/// Why there is no model.
+fn answer(
+    store: &ModelStore,
+    naming: &NamingRequest,
+    imprints: &Receiver<Imprint>,
+    stop: &AtomicBool,
+    say: &dyn Fn(LiveEvent),
+) -> Result<(), String> {
+    let progress = |_: u64| !stop.load(Ordering::Relaxed);
+    let model = store.model(&naming.choice, &|_| (), &progress)?;
+    while let Ok(imprint) = imprints.recv() {
+        let named = named(&model, naming.noise.as_ref(), &imprint);
+        say(LiveEvent::Named(naming.number, Box::new(named)));
+    }
+    Ok(())
+}
+
 /// Names an imprint, with the noise of the sensor where that is known. One touch is all the evidence: frames of a
 /// source may be of different shapes.
 fn named(model: &Model, noise: Option<&Noise>, imprint: &Imprint) -> NamedImprint {
     let touches = [*imprint];
     let evidence = Evidence::of(&touches).under(noise);
     NamedImprint::new(model, imprint, &model.recognise(evidence))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+
+    use super::*;
+    use crate::tui::recognise::sets::ModelChoice;
+    use crate::tui::runtime::recording::locked;
+
+    #[test]
+    fn a_training_that_is_given_up_says_nothing() {
+        let events = Arc::new(Mutex::new(Vec::new()));
+        let posted = Arc::clone(&events);
+        let post: WorkerEventSink = Arc::new(move |event| locked(&posted).push(event));
+        let mut namer = ShapeNamer::default();
+        let naming = |number, choice| NamingRequest {
+            number,
+            choice,
+            noise: None,
+        };
+        let store = ModelStore::default();
+        let figures = naming(1, ModelChoice::Figures);
+        namer.begin(7, store.clone(), figures, Some(Arc::clone(&post)));
+        let given_up = namer.leave().expect("a thread");
+        let missing = ModelChoice::File("no/such.taxel".into());
+        namer.begin(7, store, naming(2, missing), Some(post));
+        let next = namer.thread.take().expect("a thread");
+        for thread in [given_up, next] {
+            thread.join().expect("no panic");
+        }
+        let events = locked(&events);
+        let [WorkerEvent::Live(7, LiveEvent::NotNamed(2, reason))] = &events[..] else {
+            panic!("{events:?}");
+        };
+        assert!(reason.contains("no/such.taxel"), "{reason}");
+    }
 }

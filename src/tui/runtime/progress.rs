@@ -78,9 +78,16 @@ pub(super) fn on_a_thread(
 
 /// Turns a panic into an event; without it the program would wait for ever.
 pub(super) fn guarded(number: u64, work: impl FnOnce() -> WorkerEvent) -> WorkerEvent {
-    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
-        WorkerEvent::Failed(number, "the work failed; this is a bug".to_owned())
-    })
+    caught(work).unwrap_or_else(|message| WorkerEvent::Failed(number, message))
+}
+
+/// Turns a panic into an error.
+///
+/// # Errors
+/// A sentence, where it panics.
+pub(super) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    let done = catch_unwind(AssertUnwindSafe(work));
+    done.map_err(|_| "the work failed; this is a bug".to_owned())
 }
 
 /// Counts poses that are done, and returns whether to go on.

@@ -17,11 +17,10 @@ use std::time::{Duration, Instant};
 
 use crate::memory::MemoryGuard;
 use crate::pose::PoseGrid;
-use crate::recognition::Noise;
 use crate::storage::{ArchiveFileError, AtlasFile, Existing, ModelCache, PoseFile, is_poses};
 use crate::sweep::{Sweep, SweepResult, TimingSample};
 use crate::tui::explore::message::{Findings, WorkerEvent};
-use crate::tui::recognise::sets::ModelChoice;
+use crate::tui::live::naming::NamingRequest;
 use crate::tui::runtime::effect::Work;
 use crate::tui::runtime::frames::FrameWatcher;
 use crate::tui::runtime::models::{self, ModelStore, ModelWorker};
@@ -141,16 +140,18 @@ impl Workers {
     /// Work about a source of frames.
     fn perform_live(&mut self, work: Work) -> Option<WorkerEvent> {
         match work {
-            Work::Watch(number, request) => {
-                let model = request.model.clone();
-                self.name_by(
-                    number,
-                    model.map(|model| Box::new((model, request.noise()))),
-                );
-                self.frames.watch(number, request, self.post.clone())
+            Work::Watch {
+                number,
+                request,
+                write,
+                naming,
+            } => {
+                self.name_by(number, naming);
+                let post = self.post.clone();
+                self.frames.watch(number, request, write, post)
             }
-            Work::NameBy(number, model) => {
-                self.name_by(number, model);
+            Work::NameBy(number, naming) => {
+                self.name_by(number, naming);
                 None
             }
             Work::Name(imprint) => self.namer.name(&imprint),
@@ -167,11 +168,11 @@ impl Workers {
     }
 
     /// Prepares the model that names the imprints of frames.
-    fn name_by(&mut self, number: u64, model: Option<Box<(ModelChoice, Option<Noise>)>>) {
-        match model {
-            Some(model) => {
+    fn name_by(&mut self, number: u64, naming: Option<Box<NamingRequest>>) {
+        match naming {
+            Some(naming) => {
                 let store = self.models.store.clone();
-                self.namer.begin(number, store, *model, self.post.clone());
+                self.namer.begin(number, store, *naming, self.post.clone());
             }
             None => self.namer.end(),
         }

@@ -431,6 +431,32 @@ fn a_recording_that_cannot_be_begun_opens_no_page() {
 }
 
 #[test]
+fn a_page_that_is_opened_again_leaves_its_recording_alone() {
+    for force in ["", "--force"] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let folder = folder.path();
+        let rows = "time,r0c0,r0c1\n0.0,1,2\n0.1,3,4\n0.2,5,6\n";
+        fs::write(folder.join("touch.csv"), rows).expect("written");
+        let file = folder.join("a.npy");
+        let mut program = watching(folder, &format!("touch.csv --write a.npy {force}"));
+        program.shows("ended");
+        program.types(b"\x1b");
+        program.shows("a.npy: 3 frames recorded");
+        assert_eq!(records(&file), Some(3));
+        // What is there now is told from what a second recording would write.
+        fs::write(&file, "mine").expect("written");
+        program.types(b"w");
+        program.shows("ended");
+        let screen = program.rows();
+        assert!(!screen.contains("recording"), "{screen}");
+        program.types(b"q");
+        program.types(b"q");
+        program.ends_well(0);
+        assert_eq!(fs::read_to_string(&file).expect("it is there"), "mine");
+    }
+}
+
+#[test]
 fn why_nothing_is_recorded_stays_on_the_page() {
     let Some(mut watched) = Watched::start() else {
         return;
