@@ -157,6 +157,42 @@ fn a_page_that_is_opened_again_names_by_the_model_that_it_shows() {
 }
 
 #[test]
+fn marks_and_the_age_of_the_tare_end_with_the_source_that_they_belong_to() {
+    let mut page = watched(3, "mt");
+    page.frames(3);
+    shows(
+        &page,
+        &["marked     frame 2", "tare       3 frames, 0.3 s ago"],
+    );
+    // Frames are counted from 0 again.
+    then(&mut page, "<Esc>w", &["tare       3 frames"]);
+    page.frames(6);
+    shows(&page, &["frame 5", "tare       3 frames"]);
+    hides(&page, &["marked", "ago"]);
+}
+
+#[test]
+fn a_tare_of_the_users_own_stays_where_the_page_is_opened_again() {
+    let mut page = watched(6, "tp");
+    shows(&page, &["tare       6 frames", "peak held"]);
+    then(&mut page, "<Esc>w", &[]);
+    page.frames(1);
+    shows(&page, &["tare       6 frames", "frame 0"]);
+    hides(&page, &["peak held"]);
+}
+
+#[test]
+fn values_far_below_1_have_shades_and_fine_steps() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.csv");
+    std::fs::write(&path, "time,r0c0,r0c1\n0.0,0.001,0.004\n").expect("written");
+    let mut page = session(&format!(":watch {}<Enter>", path.display()));
+    page.frames(1);
+    shows(&page, &["frame 0", "0.005"]);
+    then(&mut page, "++", &["threshold  0.00055"]);
+}
+
+#[test]
 fn a_broken_description_beside_a_recording_is_told() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a.npy");

@@ -6,6 +6,8 @@
 //! history    the frames that have come, as many as fit into some memory
 //! naming     what a model says of the imprint
 //! reading    what is read off one frame: values, imprint, descriptors
+//! marks      frames that were marked
+//! range      between which values shades are spread
 //! state      which frame is shown and how
 //! layout     where taxels and numbers stand
 //! heat       the heat map, with the edge of the imprint
@@ -22,6 +24,10 @@ pub mod history;
 pub mod naming;
 
 pub mod reading;
+
+mod marks;
+
+mod range;
 
 pub mod state;
 

@@ -99,9 +99,24 @@ fn largest(values: &Matrix<f64>) -> Option<(f64, (u8, u8))> {
     largest
 }
 
-/// The least of 1, 2, 5, 10, 20, 50 … and their tenths, hundredths … that is not below a value; 1 for none above 0.
+/// Lifts the values of a frame to those of another one where these are larger; takes the other one if its size differs.
+pub(super) fn hold(held: &mut Frame, frame: &Frame) {
+    if (held.columns(), held.rows()) == (frame.columns(), frame.rows()) {
+        for (own, &other) in held.values_mut().iter_mut().zip(frame.values()) {
+            *own = own.max(other);
+        }
+        held.number = frame.number;
+        held.label = frame.label;
+        held.time = frame.time;
+    } else {
+        held.copy_from(frame);
+    }
+}
+
+/// The least of 1, 2, 5, 10, 20, 50 … and their tenths, hundredths … that is not below a value; 1 for none above 0, as for
+/// one so small that it has no tenth.
 pub(super) fn round_up(value: f64) -> f64 {
-    if value <= 0.0 || !value.is_finite() {
+    if value < f64::MIN_POSITIVE || !value.is_finite() {
         return 1.0;
     }
     let unit = 10_f64.powf(value.log10().floor());

@@ -7,9 +7,11 @@ use crate::frame::{Frame, FrameError, Processing, Rule, Tare, TareFrames};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::tui::live::history::FrameHistory;
+use crate::tui::live::marks::FrameMarks;
 use crate::tui::live::message::{FeedStatus, FrameBatch, SourceState};
 use crate::tui::live::naming::{NamedImprint, Naming, NamingRequest};
-use crate::tui::live::reading::{HeatLayer, LiveReading, round_up, tidy};
+use crate::tui::live::range::ShadeRange;
+use crate::tui::live::reading::{HeatLayer, LiveReading, hold, round_up, tidy};
 use crate::tui::live::request::WatchRequest;
 use crate::tui::recognise::sets::ModelChoice;
 
@@ -48,28 +50,22 @@ pub struct Live {
     layer: HeatLayer,
     /// Whether values are numbers and not shades.
     numbers: bool,
-    /// Whether shades go over the values of this frame only.
-    own_range: bool,
+    /// Between which values shades are spread.
+    range: ShadeRange,
     /// The largest value that each cell has had, while that is shown.
     held: Option<Arc<Frame>>,
     /// The first frames, until they are enough for the tare that was asked for.
     first: Option<TareFrames>,
     /// How the tare was made; None if nothing is taken off.
     tare: Option<TareMark>,
-    /// The upper end of the fixed range.
-    top: f64,
-    /// The least value that was shown, at most 0.
-    bottom: f64,
     /// Frames that came between two pictures of the screen and were never seen.
     not_drawn: u64,
     /// The name of the file that is written.
     recording: Option<String>,
     /// Why there is none although one was asked for.
     not_recorded: Option<String>,
-    /// The frames that were marked, in the order of their numbers.
-    marks: Vec<FrameMark>,
-    /// Those that the recording itself marks, by their labels.
-    marked: Vec<FrameMark>,
+    /// The frames that were marked.
+    marks: FrameMarks,
     /// The model that names imprints, and its last answer.
     naming: Option<Naming>,
     /// The frame that is shown, processed; None before the first.
@@ -91,17 +87,14 @@ impl Live {
             stopped: false,
             layer: HeatLayer::Tared,
             numbers: false,
-            own_range: false,
+            range: ShadeRange::default(),
             held: None,
             first: (request.tare > 0).then(|| TareFrames::new(request.tare)),
             tare: None,
-            top: 1.0,
-            bottom: 0.0,
             not_drawn: 0,
             recording: None,
             not_recorded: None,
-            marks: Vec::new(),
-            marked: Vec::new(),
+            marks: FrameMarks::default(),
             naming: None,
             reading: None,
             error: None,
@@ -196,33 +189,20 @@ impl Live {
 
     /// The frames that were marked, in the order of their numbers.
     pub fn marks(&self) -> &[FrameMark] {
-        &self.marks
+        self.marks.own()
     }
 
     /// Whether the frame that is shown is marked.
     pub fn is_marked(&self) -> bool {
-        let Some(reading) = &self.reading else {
-            return false;
-        };
-        let label = reading
-            .frame
-            .label
-            .and_then(|label| u64::try_from(label).ok());
-        let is = |marks: &[FrameMark], number: u64| marks.iter().any(|mark| mark.number == number);
-        is(&self.marks, reading.frame.number) || label.is_some_and(|label| is(&self.marked, label))
+        let reading = self.reading.as_ref();
+        reading.is_some_and(|reading| self.marks.has(&reading.frame))
     }
 
     /// Marks the frame that is shown, or takes its mark off. Returns its number and whether it is marked now; None before
     /// the first frame.
     pub fn mark(&mut self) -> Option<(u64, bool)> {
         let frame = &self.reading.as_ref()?.frame;
-        let (number, time) = (frame.number, frame.time);
-        let index = self.marks.binary_search_by_key(&number, |mark| mark.number);
-        match index {
-            Ok(index) => drop(self.marks.remove(index)),
-            Err(index) => self.marks.insert(index, FrameMark { number, time }),
-        }
-        Some((number, index.is_err()))
+        Some((frame.number, self.marks.switch(frame)))
     }
 
     /// The model that names imprints, and its last answer; None without one.
@@ -291,19 +271,7 @@ impl Live {
 
     /// The values between which shades are spread.
     pub fn range(&self) -> (f64, f64) {
-        let reading = self.reading.as_ref();
-        let largest = reading
-            .and_then(|reading| reading.max)
-            .map(|(largest, _)| largest);
-        let least = reading.map_or(0.0, |reading| reading.least);
-        match largest {
-            Some(largest) if self.own_range && (largest > 0.0 || least < 0.0) => {
-                (least.min(0.0), largest.max(0.0))
-            }
-            // What little a tare leaves below 0 is noise.
-            _ if self.bottom < -self.top / 20.0 => (-round_up(-self.bottom), self.top),
-            _ => (0.0, self.top),
-        }
+        self.range.ends(self.reading.as_ref())
     }
 
     /// Frames a second, by the times of the last ones; what the recording says where they have none.
@@ -344,7 +312,7 @@ impl Live {
         if self.rule.is_none() {
             self.set_rule(channel.own_rule(self.processing.least));
         }
-        self.marked.clone_from(&channel.marks);
+        self.marks.set_recorded(&channel.marks);
         let baseline = channel.tare.as_ref().map(Tare::baseline);
         let size = baseline.map(|own| (own.columns().into(), own.rows().into()));
         let seen = channel
@@ -360,10 +328,9 @@ impl Live {
         }
     }
 
-    /// Takes a new frame into the history, the held peak and a tare being made. The top of the range only grows.
+    /// Takes a new frame into the history, the held peak, the range and a tare being made.
     fn add(&mut self, frame: &Arc<Frame>) {
-        let largest = frame.values().iter().copied().fold(0.0, f64::max);
-        self.top = self.top.max(round_up(largest));
+        self.range.add(frame);
         if let Some(held) = &mut self.held {
             hold(Arc::make_mut(held), frame);
         }
@@ -453,9 +420,9 @@ impl Live {
     /// twentieth of that. In percent the step is 5 %, in deviations of the noise it is 1.
     pub fn step_threshold(&mut self, direction: i8) {
         let by = f64::from(direction);
-        let step = round_up(self.top / 100.0) * by;
+        let step = round_up(self.range.top() / 100.0) * by;
         let rule = match self.rule.map(|set| set.rule) {
-            None => Rule::at_least(round_up(self.top / 20.0)),
+            None => Rule::at_least(round_up(self.range.top() / 20.0)),
             Some(Rule::Percent(percent)) => Rule::percent((percent + 5.0 * by).clamp(5.0, 100.0)),
             Some(Rule::Hysteresis { low, high }) => {
                 Rule::hysteresis(tidy(low + step), tidy(high + step))
@@ -470,7 +437,7 @@ impl Live {
     /// imprint of the frame that is shown.
     pub fn switch_unit(&mut self) {
         let largest = self.reading.as_ref().and_then(|reading| reading.max);
-        let largest = largest.map_or(self.top, |(largest, _)| largest);
+        let largest = largest.map_or(self.range.top(), |(largest, _)| largest);
         let rule = match self.rule.map(|set| set.rule) {
             Some(Rule::Percent(percent)) => Rule::at_least(tidy(percent / 100.0 * largest)),
             Some(Rule::AtLeast(threshold)) if largest > 0.0 => {
@@ -540,8 +507,8 @@ impl Live {
 
     /// Spreads shades over the values of the frame, or over a fixed range. Returns whether over those of the frame.
     pub fn switch_range(&mut self) -> bool {
-        self.own_range = !self.own_range;
-        self.own_range
+        self.range.is_own = !self.range.is_own;
+        self.range.is_own
     }
 
     /// Notes that a recording has begun, or ended.
@@ -591,7 +558,7 @@ impl Live {
         let Some(frame) = shown else { return };
         match LiveReading::of(frame, &mut self.processing, self.layer) {
             Ok(reading) => {
-                self.bottom = self.bottom.min(reading.least);
+                self.range.add_shown(&reading);
                 self.reading = Some(reading);
                 self.error = None;
             }
@@ -600,19 +567,5 @@ impl Live {
                 self.reading = None;
             }
         }
-    }
-}
-
-/// Lifts the values of a frame to those of another one where these are larger; takes the other one if its size differs.
-fn hold(held: &mut Frame, frame: &Frame) {
-    if (held.columns(), held.rows()) == (frame.columns(), frame.rows()) {
-        for (own, &other) in held.values_mut().iter_mut().zip(frame.values()) {
-            *own = own.max(other);
-        }
-        held.number = frame.number;
-        held.label = frame.label;
-        held.time = frame.time;
-    } else {
-        held.copy_from(frame);
     }
 }
