@@ -68,8 +68,8 @@ pub enum LiveEvent {
 pub struct FrameBatch {
     /// The frames, the newest last. Their times are those of their arrival where they have none of their own.
     pub frames: Vec<Arc<Frame>>,
-    /// A frame after these that is not confirmed yet.
-    pub provisional: Option<Arc<Frame>>,
+    /// What has become of a frame after these that is not confirmed yet.
+    pub provisional: ProvisionalChange,
     /// How the source is.
     pub status: FeedStatus,
 }
@@ -79,6 +79,19 @@ impl PartialEq for FrameBatch {
     fn eq(&self, other: &Self) -> bool {
         std::ptr::eq(self, other)
     }
+}
+
+/// What has become of a frame that is shown before it is confirmed. A change, not a state: a report that is about something
+/// else takes nothing off the screen.
+#[derive(Clone, Debug, Default)]
+pub enum ProvisionalChange {
+    /// It is as before.
+    #[default]
+    Unchanged,
+    /// There is one, or another one.
+    Shown(Arc<Frame>),
+    /// There is none: it was confirmed or withdrawn.
+    Gone,
 }
 
 /// How a source is.

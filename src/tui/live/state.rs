@@ -8,7 +8,7 @@ use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::tui::live::history::FrameHistory;
 use crate::tui::live::marks::FrameMarks;
-use crate::tui::live::message::{FeedStatus, FrameBatch, SourceState};
+use crate::tui::live::message::{FeedStatus, FrameBatch, ProvisionalChange, SourceState};
 use crate::tui::live::naming::{NamedImprint, Naming, NamingRequest};
 use crate::tui::live::range::ShadeRange;
 use crate::tui::live::reading::{HeatLayer, LiveReading, hold, round_up, tidy};
@@ -301,8 +301,14 @@ impl Live {
             let unseen = batch.frames.len().saturating_sub(1);
             self.not_drawn += unseen as u64;
         }
-        self.provisional.clone_from(&batch.provisional);
-        if !batch.frames.is_empty() || batch.provisional.is_some() {
+        let before = self.provisional.take();
+        let (provisional, is_changed) = match &batch.provisional {
+            ProvisionalChange::Unchanged => (before, false),
+            ProvisionalChange::Shown(frame) => (Some(Arc::clone(frame)), true),
+            ProvisionalChange::Gone => (None, before.is_some()),
+        };
+        self.provisional = provisional;
+        if !batch.frames.is_empty() || is_changed {
             self.read();
         }
     }
@@ -544,8 +550,9 @@ impl Live {
         let newest = || self.provisional.as_ref().filter(|_| self.frozen.is_none());
         let number = self.frozen.or(self.history.newest());
         let frame = newest().or_else(|| self.history.get(number?));
-        // One that has left the history stays as long as it is looked at.
-        let kept = || self.reading.as_ref().map(|reading| &reading.frame);
+        // One that has left the history stays as long as it is looked at; but not one that was withdrawn.
+        let reading = self.reading.as_ref().filter(|_| self.frozen.is_some());
+        let kept = || reading.map(|reading| &reading.frame);
         frame.or_else(kept).cloned()
     }
 
@@ -555,7 +562,10 @@ impl Live {
             Some(held) if self.frozen.is_none() => Some(Arc::clone(held)),
             _ => self.shown(),
         };
-        let Some(frame) = shown else { return };
+        let Some(frame) = shown else {
+            self.reading = None;
+            return;
+        };
         match LiveReading::of(frame, &mut self.processing, self.layer) {
             Ok(reading) => {
                 self.range.add_shown(&reading);

@@ -19,7 +19,7 @@ use crate::frame::Frame;
 use crate::storage::{Existing, location};
 use crate::tui::explore::message::WorkerEvent;
 use crate::tui::live::history::bytes_of;
-use crate::tui::live::message::{FrameBatch, LiveEvent, SourceState};
+use crate::tui::live::message::{FrameBatch, LiveEvent, ProvisionalChange, SourceState};
 use crate::tui::live::request::WatchRequest;
 use crate::tui::runtime::progress::WorkerEventSink;
 use crate::tui::runtime::recording::{Recording, locked};
@@ -364,7 +364,7 @@ impl FrameFeed {
         pending.bytes = 0;
         Some(FrameBatch {
             frames: take(&mut pending.batch.frames),
-            provisional: pending.batch.provisional.take(),
+            provisional: take(&mut pending.batch.provisional),
             status: pending.batch.status.clone(),
         })
     }
@@ -394,10 +394,12 @@ impl FrameFeed {
             }
             AcquireEvent::Frame { frame, time } => self.take_frame(frame, time, request),
             AcquireEvent::Provisional(frame) => {
-                let frame = Some(Arc::new(frame.clone()));
-                self.change(|pending| pending.batch.provisional = frame)
+                let shown = ProvisionalChange::Shown(Arc::new(frame.clone()));
+                self.change(|pending| pending.batch.provisional = shown)
             }
-            AcquireEvent::Withdrawn => self.change(|pending| pending.batch.provisional = None),
+            AcquireEvent::Withdrawn => {
+                self.change(|pending| pending.batch.provisional = ProvisionalChange::Gone)
+            }
             AcquireEvent::Tick(counts) => {
                 let written = self.recorded(Recording::tick);
                 let mut pending = locked(&self.pending);
@@ -455,7 +457,7 @@ impl Pending {
     /// Half of them go at once, so that a full buffer does not move all frames for each new one. At least one stays.
     fn push(&mut self, frame: Arc<Frame>, most: usize) {
         self.batch.status.state = SourceState::Live;
-        self.batch.provisional = None;
+        self.batch.provisional = ProvisionalChange::Gone;
         self.bytes += bytes_of(&frame);
         self.batch.frames.push(frame);
         if self.bytes > most && self.batch.frames.len() > 1 {
@@ -481,7 +483,45 @@ impl Pending {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::stream::StreamCounts;
+    use crate::tui::live::state::Live;
     use crate::tui::runtime::write_access::WriteAccess;
+
+    /// What a page shows after an event of its source: the number of the frame.
+    fn after(page: &mut Live, feed: &FrameFeed, event: AcquireEvent<'_>) -> Option<u64> {
+        feed.take_in(event, &WatchRequest::new("none"));
+        if let Some(batch) = feed.take() {
+            page.take(&batch);
+        }
+        page.reading().map(|reading| reading.frame.number)
+    }
+
+    #[test]
+    fn a_provisional_frame_is_shown_until_it_is_withdrawn() {
+        let feed = FrameFeed::default();
+        let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
+        let mut frame = Frame::new(2, 2);
+        let mut counts = StreamCounts::default();
+        let shown = after(&mut page, &feed, AcquireEvent::Provisional(&frame));
+        assert_eq!(shown, Some(0));
+        // Of what was lost before it.
+        counts.dropped = 3;
+        let shown = after(&mut page, &feed, AcquireEvent::Tick(&counts));
+        assert_eq!((shown, page.status().lost), (Some(0), 3));
+        let shown = after(&mut page, &feed, AcquireEvent::Withdrawn);
+        assert_eq!(shown, None, "there is no other frame");
+        let time = None;
+        let whole = AcquireEvent::Frame {
+            frame: &frame.clone(),
+            time,
+        };
+        assert_eq!(after(&mut page, &feed, whole), Some(0));
+        frame.number = 1;
+        let shown = after(&mut page, &feed, AcquireEvent::Provisional(&frame));
+        assert_eq!(shown, Some(1));
+        let shown = after(&mut page, &feed, AcquireEvent::Withdrawn);
+        assert_eq!(shown, Some(0));
+    }
 
     #[test]
     fn a_recording_that_another_one_comes_after_is_finished() {
