@@ -29,8 +29,8 @@ use crate::cli::output::line_writer::LineWriter;
 use crate::cli::signals::Signals;
 use crate::formats::json;
 use crate::formats::recording::{
-    ChannelInfo, FrameAnswer, ReadOptions, RecordingError, RecordingEvent, RecordingMetadata,
-    SetRule,
+    ChannelChoice, ChannelInfo, FrameAnswer, ReadOptions, RecordingError, RecordingEvent,
+    RecordingMetadata, SetRule,
 };
 use crate::formats::stream::StreamCounts;
 use crate::formats::value::grouped;
@@ -59,8 +59,8 @@ struct Watcher<'a> {
     metadata: RecordingMetadata,
     /// All channels so far, in the order in which they came.
     channels: Vec<ChannelInfo>,
-    /// The number of the channel that is answered.
-    channel: Option<usize>,
+    /// Which of them is answered.
+    choice: ChannelChoice,
     /// The first frame of a recording, until it is clear that no other channel comes with it.
     held: Option<(Frame, Option<f64>)>,
     begun: bool,
@@ -115,7 +115,7 @@ pub(crate) fn watch(
         recorder: recorder.transpose().map_err(CliError::Recorder)?,
         metadata,
         channels: Vec::new(),
-        channel: None,
+        choice: ChannelChoice::new(asked.processing.channel.as_deref()),
         held: None,
         begun: false,
         lines,
@@ -304,20 +304,15 @@ impl Watcher<'_> {
     /// If there are several channels and none is chosen: unlike a file, a stream cannot be read again to list them.
     fn add_channel(&mut self, info: &ChannelInfo) -> Result<(), CliError> {
         self.channels.push(info.clone());
-        let names: Vec<&str> = self
-            .channels
-            .iter()
-            .map(|channel| channel.name.as_deref().unwrap_or("unnamed"))
-            .collect();
-        let asked = self.asked.processing.channel.as_deref();
-        match asked {
-            None if names.len() > 1 => {
-                let names = names.join(", ");
-                let message = format!("several channels, choose one with --channel: {names}");
-                return Err(self.refused(&message));
-            }
-            Some(asked) if names.last() != Some(&asked) => return Ok(()),
-            _ => self.channel = Some(names.len() - 1),
+        let is_chosen = self.choice.add(info);
+        let names = self.choice.names();
+        if self.asked.processing.channel.is_none() && names.len() > 1 {
+            let names = names.join(", ");
+            let message = format!("several channels, choose one with --channel: {names}");
+            return Err(self.refused(&message));
+        }
+        if !is_chosen {
+            return Ok(());
         }
         if self.rule.is_none() {
             self.set_rule(info.own_rule(self.asked.processing.least));
@@ -342,13 +337,10 @@ impl Watcher<'_> {
 
     /// Takes a frame of the channel that is watched: it is recorded, and answered at once or as soon as there is a tare.
     fn add_frame(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), CliError> {
-        if self.channel.unwrap_or(frame.channel) != frame.channel {
+        if !self.choice.takes(frame.channel) {
             return Ok(());
         }
         let asked = self.asked.processing.channel.as_deref();
-        if let (Some(_), None, false) = (asked, self.channel, self.channels.is_empty()) {
-            return Ok(());
-        }
         let is_first = !std::mem::replace(&mut self.begun, true);
         if let (true, Some(asked), true) = (is_first, asked, self.channels.is_empty()) {
             let text = format!("no channel {asked:?}: a stream has none, and all frames are taken");

@@ -26,6 +26,8 @@ mod error;
 
 mod event;
 
+mod channel_choice;
+
 pub(crate) mod number;
 
 mod lines;
@@ -71,6 +73,7 @@ mod answer;
 mod description;
 
 pub use answer::{FrameAnswer, SetRule};
+pub use channel_choice::ChannelChoice;
 pub use description::{FrameMark, RecordingMetadata};
 pub use detect::{read, recognised};
 pub use error::RecordingError;

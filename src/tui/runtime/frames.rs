@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
 use crate::acquire::{AcquireEvent, AcquireOptions, FrameSource, acquire};
-use crate::formats::recording::{ChannelInfo, FrameMark, RecordingMetadata};
+use crate::formats::recording::{ChannelChoice, ChannelInfo, FrameMark, RecordingMetadata};
 use crate::frame::Frame;
 use crate::storage::{Existing, location};
 use crate::tui::explore::message::WorkerEvent;
@@ -69,10 +69,8 @@ struct Pending {
     bytes: usize,
     /// Whether there is something that was not taken yet.
     is_new: bool,
-    /// The names of the channels so far.
-    channels: Vec<Option<String>>,
-    /// The number of the channel that is watched.
-    channel: Option<usize>,
+    /// The channels so far, and which of them is watched.
+    channels: ChannelChoice,
 }
 
 impl FrameWatcher {
@@ -88,7 +86,7 @@ impl FrameWatcher {
         let watched = Watched {
             number,
             request: Arc::clone(&request),
-            feed: Arc::default(),
+            feed: Arc::new(FrameFeed::of(&request)),
             stop: Arc::default(),
             taken: 0,
             begins: false,
@@ -215,7 +213,7 @@ impl FrameWatcher {
         let mut options = request.options.clone();
         (options.once, options.repeat) = (true, false);
         let (skipped, mut seen) = (watched.taken, 0);
-        let feed = FrameFeed::default();
+        let feed = FrameFeed::of(&request);
         let mut events = Vec::new();
         let source = source(&request.source);
         if self.only_files && !is_file(&source) {
@@ -284,6 +282,13 @@ fn is_file(source: &FrameSource) -> bool {
 }
 
 impl FrameFeed {
+    /// What comes of the channel that is asked for.
+    fn of(request: &WatchRequest) -> Self {
+        let feed = Self::default();
+        locked(&feed.pending).channels = ChannelChoice::new(request.channel.as_deref());
+        feed
+    }
+
     /// What is recorded in.
     fn recording(&self) -> Option<Arc<Recording>> {
         locked(&self.recording).clone()
@@ -371,8 +376,7 @@ impl FrameFeed {
 
     /// Records a frame of the channel that is watched, and shows it. Whether there was nothing new before.
     fn take_frame(&self, frame: &Frame, time: Option<f64>, request: &WatchRequest) -> bool {
-        let channel = locked(&self.pending).channel;
-        if channel.is_some_and(|channel| channel != frame.channel) {
+        if !locked(&self.pending).channels.takes(frame.channel) {
             return false;
         }
         // An error ends the recording; the frames go on being shown.
@@ -389,9 +393,7 @@ impl FrameFeed {
     fn take_in(&self, event: AcquireEvent<'_>, request: &WatchRequest) -> bool {
         let state = |state: SourceState| self.change(|pending| pending.batch.status.state = state);
         match event {
-            AcquireEvent::Channel(info) => {
-                self.change(|pending| pending.add_channel(info, request.channel.as_deref()))
-            }
+            AcquireEvent::Channel(info) => self.change(|pending| pending.add_channel(info)),
             AcquireEvent::Frame { frame, time } => self.take_frame(frame, time, request),
             AcquireEvent::Provisional(frame) => {
                 let shown = ProvisionalChange::Shown(Arc::new(frame.clone()));
@@ -442,15 +444,12 @@ impl FrameFeed {
 }
 
 impl Pending {
-    /// Adds a channel. The first one that is asked for, or the first one of all, is watched.
-    fn add_channel(&mut self, info: &ChannelInfo, asked: Option<&str>) {
-        let name = info.name.as_deref().unwrap_or("unnamed");
-        if self.channel.is_none() && asked.is_none_or(|asked| asked == name) {
-            self.channel = Some(self.channels.len());
+    /// Adds a channel.
+    fn add_channel(&mut self, info: &ChannelInfo) {
+        if self.channels.add(info) {
             self.batch.status.channel = Some(Arc::new(info.clone()));
         }
-        self.channels.push(info.name.clone());
-        self.batch.status.channels = self.channels.len();
+        self.batch.status.channels = self.channels.names().len();
     }
 
     /// Adds a frame; the oldest go where nobody takes them and there is no memory for more.
@@ -521,6 +520,32 @@ mod tests {
         assert_eq!(shown, Some(1));
         let shown = after(&mut page, &feed, AcquireEvent::Withdrawn);
         assert_eq!(shown, Some(0));
+    }
+
+    #[test]
+    fn frames_of_other_channels_are_not_shown_before_the_one_that_is_asked_for() {
+        let mut request = WatchRequest::new("none");
+        request.channel = Some("right".to_owned());
+        let feed = FrameFeed::of(&request);
+        for (index, name) in ["left", "right"].into_iter().enumerate() {
+            let info = ChannelInfo {
+                name: Some(name.to_owned()),
+                ..ChannelInfo::default()
+            };
+            feed.take_in(AcquireEvent::Channel(&info), &request);
+            let mut frame = Frame::new(2, 2);
+            frame.channel = index;
+            let (frame, time) = (&frame, None);
+            feed.take_in(AcquireEvent::Frame { frame, time }, &request);
+        }
+        let batch = feed.take().expect("a frame");
+        let channels = batch.frames.iter().map(|frame| frame.channel);
+        assert_eq!(channels.collect::<Vec<_>>(), [1]);
+        let channel = batch.status.channel.expect("the one that is asked for");
+        assert_eq!(
+            (channel.name.as_deref(), batch.status.channels),
+            (Some("right"), 2)
+        );
     }
 
     #[test]
