@@ -23,8 +23,8 @@ const TARED: usize = 30;
 pub struct TareMark {
     /// How many frames it was made of.
     pub frames: u64,
-    /// The number of the last of these.
-    pub number: u64,
+    /// The number of the last of these; None where that is of another recording, or of the source as it was watched before.
+    pub number: Option<u64>,
     /// Its time.
     pub time: Option<f64>,
 }
@@ -58,6 +58,8 @@ pub struct Live {
     first: Option<TareFrames>,
     /// How the tare was made; None if nothing is taken off.
     tare: Option<TareMark>,
+    /// Whether the tare that a recording's own description names is taken once that is known.
+    own_tare: bool,
     /// Frames that came between two pictures of the screen and were never seen.
     not_drawn: u64,
     /// The name of the file that is written.
@@ -91,6 +93,7 @@ impl Live {
             held: None,
             first: (request.tare > 0).then(|| TareFrames::new(request.tare)),
             tare: None,
+            own_tare: request.own_tare && request.tare == 0,
             not_drawn: 0,
             recording: None,
             not_recorded: None,
@@ -324,11 +327,11 @@ impl Live {
         let seen = channel
             .shape
             .map(|(rows, columns)| self.processing.view.size(columns, rows));
-        if self.request.own_tare && self.request.tare == 0 && size.is_some() && size == seen {
+        if std::mem::take(&mut self.own_tare) && size.is_some() && size == seen {
             self.processing.tare.clone_from(&channel.tare);
             self.tare = channel.tare.as_ref().map(|tare| TareMark {
                 frames: tare.frames(),
-                number: 0,
+                number: None,
                 time: None,
             });
         }
@@ -365,7 +368,7 @@ impl Live {
             Ok(tare) => {
                 self.tare = Some(TareMark {
                     frames: tare.frames(),
-                    number: last.number,
+                    number: Some(last.number),
                     time: last.time,
                 });
                 self.processing.tare = Some(tare);
@@ -535,11 +538,21 @@ impl Live {
         self.recording = None;
     }
 
-    /// Takes frames again, those of a piece of work of this number; the history stays.
+    /// Takes frames again, those of a piece of work of this number; history, threshold and tare stay. The frames are
+    /// counted from 0 again, so what goes by their numbers is given up: marks, the held peak, the age of the tare.
     pub fn restart(&mut self, number: u64) {
         self.number = number;
         self.stopped = false;
         self.frozen = None;
+        self.provisional = None;
+        self.held = None;
+        self.marks.clear();
+        self.tare = self.tare.map(|tare| TareMark {
+            number: None,
+            time: None,
+            ..tare
+        });
+        self.read();
         self.status.state = SourceState::Waiting;
         let choice = self.naming.take().map(|naming| naming.request.choice);
         self.name_by(choice, number);

@@ -310,7 +310,7 @@ fn tare(live: &Live) -> String {
         }
         (Some(_), Some(_)) => None,
         _ => {
-            let frames = frame.number.checked_sub(mark.number)?;
+            let frames = frame.number.checked_sub(mark.number?)?;
             Some(format!(", {} ago", counted(frames, "frame")))
         }
     });
