@@ -24,10 +24,13 @@ pub struct SetRule {
 }
 
 impl SetRule {
-    /// Has frames processed by a rule, or without one.
+    /// Has frames processed by a rule, or without one. Without one, how many taxels a piece has at least stays: it holds for
+    /// the rule that is set later.
     pub fn apply(rule: Option<Self>, processing: &mut Processing) {
         processing.rule = rule.map(|set| set.rule);
-        processing.least = rule.map_or(0, |set| set.least);
+        if let Some(set) = rule {
+            processing.least = set.least;
+        }
     }
 }
 
@@ -131,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rule_is_applied_and_taken_away_with_its_least() {
+    fn a_rule_is_applied_with_its_least_and_taken_away_without() {
         let mut processing = Processing::default();
         let rule = SetRule {
             rule: Rule::AtLeast(2.0),
@@ -144,7 +147,7 @@ mod tests {
             (Some(Rule::AtLeast(2.0)), 3)
         );
         SetRule::apply(None, &mut processing);
-        assert_eq!((processing.rule, processing.least), (None, 0));
+        assert_eq!((processing.rule, processing.least), (None, 3));
     }
 
     #[test]

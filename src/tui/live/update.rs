@@ -304,3 +304,27 @@ pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Frame;
+    use crate::tui::live::message::FrameBatch;
+
+    #[test]
+    fn small_pieces_are_dropped_by_a_threshold_that_a_key_sets() {
+        let mut request = WatchRequest::new("none");
+        request.processing.least = 4;
+        let mut page = Live::new(Arc::new(request), 7);
+        let mut frame = Frame::new(8, 8);
+        frame.values_mut()[9] = 30.0;
+        page.take(&FrameBatch {
+            frames: vec![Arc::new(frame)],
+            ..FrameBatch::default()
+        });
+        page.step_threshold(1);
+        assert_eq!(page.rule().map(|set| set.least), Some(4));
+        let imprint = page.reading().and_then(|reading| reading.imprint);
+        assert_eq!(imprint.map(|imprint| imprint.count()), Some(0));
+    }
+}
