@@ -189,7 +189,7 @@ fn values_far_below_1_have_shades_and_fine_steps() {
     let mut page = session(&format!(":watch {}<Enter>", path.display()));
     page.frames(1);
     shows(&page, &["frame 0", "0.005"]);
-    then(&mut page, "++", &["threshold  0.00055"]);
+    then(&mut page, "+++", &["threshold  0.0006"]);
 }
 
 #[test]

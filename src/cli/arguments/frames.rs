@@ -19,7 +19,7 @@ use crate::cli::arguments::recognise::parse_noise;
 use crate::cli::commands::naming::NamingArguments;
 use crate::cli::error::CliError;
 use crate::cli::settings::sensors::SensorSettings;
-use crate::formats::recording::SetRule;
+use crate::formats::recording::{RuleOrigin, SetRule};
 use crate::frame::{Crop, FrameError, Rule};
 use crate::parameter::number;
 use crate::recognition::Noise;
@@ -63,7 +63,7 @@ pub(crate) struct ProcessingArguments {
     /// The threshold; None for that of the recording.
     pub(crate) rule: Option<Rule>,
     /// Where that is from: `flag` or `settings`.
-    pub(crate) rule_from: &'static str,
+    pub(crate) rule_from: RuleOrigin,
     /// The smallest 8-connected piece that is kept, in taxels; 0 keeps all.
     pub(crate) least: u32,
 }
@@ -322,7 +322,11 @@ impl ProcessingArguments {
     /// If a threshold is out of range.
     pub(crate) fn of(matches: &ArgMatches, settings: &SensorSettings) -> Result<Self, CliError> {
         let asked = rule(matches)?;
-        let rule_from = if asked.is_some() { "flag" } else { "settings" };
+        let rule_from = if asked.is_some() {
+            RuleOrigin::Flag
+        } else {
+            RuleOrigin::Settings
+        };
         let side = |id| matches.get_one::<u16>(id).copied();
         let flip = matches.get_one::<String>("flip");
         let flips = |axis: char| flip.is_some_and(|flip| flip.contains(axis));

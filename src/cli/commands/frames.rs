@@ -500,7 +500,7 @@ impl Selection {
         if self.rule.least > 1 {
             text += &format!(", in pieces of {} taxels or more", self.rule.least);
         }
-        text + &format!(" (by {})", self.rule.from)
+        text + &format!(" (by {})", self.rule.from.name())
     }
 }
 

@@ -3,7 +3,7 @@
 //! Flags of `taxel watch` and `taxel frames` override them. On the screen they are what `:watch SOURCE` begins with.
 
 use crate::acquire::AcquireOptions;
-use crate::formats::recording::SetRule;
+use crate::formats::recording::{RuleOrigin, SetRule};
 use crate::formats::stream::StreamFormat;
 use crate::frame::Rule;
 use crate::tui::live::history::HISTORY_BYTES;
@@ -244,7 +244,7 @@ impl SensorSettings {
         self.apply(&mut request.options);
         let least = self.least().unwrap_or_default();
         request.processing.least = least;
-        let from = "settings";
+        let from = RuleOrigin::Settings;
         request.rule = self.rule().map(|rule| SetRule { rule, least, from });
         request.tare = self.tare().unwrap_or_default();
         request.own_tare = self.tare().is_none();

@@ -19,8 +19,34 @@ pub struct SetRule {
     pub rule: Rule,
     /// Pieces of fewer taxels are dropped; 0 or 1 drops none.
     pub least: u32,
-    /// Where it is from: `flag`, `file` or `settings`.
-    pub from: &'static str,
+    /// Where it is from.
+    pub from: RuleOrigin,
+}
+
+/// Where a rule is from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RuleOrigin {
+    /// An argument of the command.
+    #[default]
+    Flag,
+    /// The recording, or the description beside it.
+    File,
+    /// The user's settings.
+    Settings,
+    /// A key of the live page.
+    Key,
+}
+
+impl RuleOrigin {
+    /// Its name in answers and descriptions.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Flag => "flag",
+            Self::File => "file",
+            Self::Settings => "settings",
+            Self::Key => "key",
+        }
+    }
 }
 
 impl SetRule {
@@ -90,7 +116,7 @@ impl Serialize for SetRule {
         if self.least > 1 {
             map.serialize_entry("least", &self.least)?;
         }
-        map.serialize_entry("from", self.from)?;
+        map.serialize_entry("from", self.from.name())?;
         map.end()
     }
 }
@@ -139,7 +165,7 @@ mod tests {
         let rule = SetRule {
             rule: Rule::AtLeast(2.0),
             least: 3,
-            from: "flag",
+            from: RuleOrigin::Flag,
         };
         SetRule::apply(Some(rule), &mut processing);
         assert_eq!(
@@ -156,7 +182,7 @@ mod tests {
             json::text(&SetRule {
                 rule,
                 least,
-                from: "flag",
+                from: RuleOrigin::Flag,
             })
         };
         assert_eq!(

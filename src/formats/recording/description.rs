@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::formats::framed::{FrameRows, RuleRecord, matrix};
 use crate::formats::json;
-use crate::formats::recording::answer::SetRule;
+use crate::formats::recording::answer::{RuleOrigin, SetRule};
 use crate::frame::{LARGEST_VALUE, Rule, Tare};
 use crate::matrix::Matrix;
 use crate::quote::legible;
@@ -137,12 +137,12 @@ impl RecordingMetadata {
             Some(DescribedRule::Noise { noise, least }) => Some(SetRule {
                 rule: Rule::noise(noise).map_err(|error| format!("rule: {error}"))?,
                 least,
-                from: "file",
+                from: RuleOrigin::File,
             }),
             Some(DescribedRule::Other(record)) => Some(SetRule {
                 rule: record.rule().map_err(|error| format!("rule: {error}"))?,
                 least: record.least.unwrap_or_default(),
-                from: "file",
+                from: RuleOrigin::File,
             }),
         };
         let positive = |value: &f64| *value > 0.0 && *value <= LARGEST_VALUE;
@@ -236,7 +236,7 @@ mod tests {
                 rule: Some(SetRule {
                     rule,
                     least: 3,
-                    from: "file",
+                    from: RuleOrigin::File,
                 }),
                 tare: Some(tare.clone().finish().expect("two frames")),
                 marks: vec![FrameMark {

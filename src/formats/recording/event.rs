@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::ControlFlow;
 
-use crate::formats::recording::answer::SetRule;
+use crate::formats::recording::answer::{RuleOrigin, SetRule};
 use crate::formats::recording::description::{FrameMark, RecordingMetadata};
 use crate::frame::{Frame, Rule, Tare};
 
@@ -116,7 +116,7 @@ impl ChannelInfo {
     /// The rule of the recording itself: that of its description, else its threshold.
     pub fn own_rule(&self, least: u32) -> Option<SetRule> {
         let threshold = self.threshold.and_then(|own| Rule::at_least(own).ok());
-        let from = "file";
+        let from = RuleOrigin::File;
         self.rule
             .or_else(|| threshold.map(|rule| SetRule { rule, least, from }))
     }

@@ -72,7 +72,7 @@ mod answer;
 
 mod description;
 
-pub use answer::{FrameAnswer, SetRule};
+pub use answer::{FrameAnswer, RuleOrigin, SetRule};
 pub use channel_choice::ChannelChoice;
 pub use description::{FrameMark, RecordingMetadata};
 pub use detect::{read, recognised};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::formats::recording::{ChannelInfo, FrameMark, SetRule};
+use crate::formats::recording::{ChannelInfo, FrameMark, RuleOrigin, SetRule};
 use crate::frame::{Frame, FrameError, Processing, Rule, Tare, TareFrames};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
@@ -419,7 +419,7 @@ impl Live {
     /// Takes a rule that a key leads to, and reads the frame anew; a value out of range changes nothing.
     fn choose(&mut self, rule: &Result<Rule, FrameError>) {
         if let &Ok(rule) = rule {
-            let (least, from) = (self.processing.least, "key");
+            let (least, from) = (self.processing.least, RuleOrigin::Key);
             self.set_rule(Some(SetRule { rule, least, from }));
             self.read();
         }

@@ -25,10 +25,10 @@ use crate::tui::runtime::effect::{Effect, Work};
 /// What concerns the open page only, such as a tare, does nothing here: there is no page to do it on.
 pub(in crate::tui) fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> {
     match asked {
-        LiveMessage::Watch(request) => Some(watch(app, Arc::clone(request))),
+        LiveMessage::Watch(request) => Some(watch(app, request)),
         LiveMessage::Source(name) => {
             let request = app.watch_settings.for_source(name);
-            Some(watch(app, Arc::new(request)))
+            Some(watch(app, &Arc::new(request)))
         }
         LiveMessage::Open => open(app),
         _ => None,
@@ -37,9 +37,9 @@ pub(in crate::tui) fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> 
 
 /// Opens a page for a source, in place of the one before.
 /// What is still reported of the source before has its own number, and is dropped.
-fn watch(app: &mut App, request: Arc<WatchRequest>) -> Effect {
+fn watch(app: &mut App, request: &Arc<WatchRequest>) -> Effect {
     app.works += 1;
-    let mut page = Live::new(Arc::clone(&request), app.works);
+    let mut page = Live::new(Arc::clone(request), app.works);
     page.set_recording(
         request
             .write

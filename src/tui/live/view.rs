@@ -11,6 +11,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::description::Descriptor;
+use crate::formats::recording::RuleOrigin;
 use crate::formats::value::{self, counted, fitting, grouped};
 use crate::frame::Rule;
 use crate::imprint::Imprint;
@@ -291,8 +292,8 @@ fn threshold(live: &Live, keymap: &Keymap) -> String {
         Rule::Noise(deviations) => format!("{} x noise", fitting(deviations, 5)),
     };
     match set.from {
-        "file" => format!("{text}, of the file"),
-        _ => text,
+        RuleOrigin::File => format!("{text}, of the file"),
+        RuleOrigin::Flag | RuleOrigin::Settings | RuleOrigin::Key => text,
     }
 }
 

@@ -493,7 +493,7 @@ impl World {
                     LibraryEvent::Failed(text)
                 }
             }
-            DiskAnswer::Recording(number, begun) => return self.recording(number, begun),
+            DiskAnswer::Recording(number, begun) => return Some(self.recording(number, begun)),
             DiskAnswer::Live(number, event) => {
                 return Some(Message::Worker(WorkerEvent::Live(number, event)));
             }
@@ -507,7 +507,7 @@ impl World {
         &mut self,
         number: u64,
         begun: Result<(String, Arc<Recording>), String>,
-    ) -> Option<Message> {
+    ) -> Message {
         let (event, recording) = match begun {
             Ok((name, recording)) => (LiveEvent::Recording(name), Some(recording)),
             Err(refused) => (LiveEvent::NotRecorded(refused), None),
@@ -516,7 +516,7 @@ impl World {
         let over = self.workers.frames.begun(number, recording);
         let ended = over.and_then(|over| self.change(DiskRequest::EndRecording(number, over)));
         self.later.extend(ended);
-        Some(Message::Worker(WorkerEvent::Live(number, event)))
+        Message::Worker(WorkerEvent::Live(number, event))
     }
 
     /// Performs a request to the library; the answer is a message. There may be none yet.
