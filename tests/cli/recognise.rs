@@ -65,6 +65,13 @@ fn an_answer_has_its_keys_in_order() {
 #[test]
 fn people_read_names_bars_and_differences() {
     let place = place();
+    for (noise, how) in [
+        ("0", "noise 0: only the key of the imprint is looked up"),
+        ("0.01", "noise 0.01: every key in every place is compared"),
+    ] {
+        let text = place.done(&format!("recognise bar.txt --model r --noise {noise}"));
+        assert_eq!(text.lines().nth(1), Some(how), "{text}");
+    }
     let text = place.done("recognise bar.txt --model r");
     assert!(text.starts_with("a: likely\n  a  ██"), "{text}");
     let square = place.run("recognise - --model r", SQUARE);

@@ -155,8 +155,7 @@ pub(crate) struct FramesOutput<'a> {
     pub(crate) namer: Option<FrameNamer<'a>>,
     /// Standard output.
     pub(crate) answers: &'a mut dyn Write,
-    /// A line each.
-    /// Standard error.
+    /// Takes notes for standard error, one line each.
     pub(crate) notes: &'a mut dyn FnMut(&str),
 }
 

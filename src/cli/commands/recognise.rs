@@ -266,23 +266,23 @@ fn input(what: &OsStr, shelf: &Shelf) -> Result<Asked, CliError> {
 fn is_line(text: &[u8]) -> bool {
     /// The only key that matters here; stored shapes have it.
     #[derive(Deserialize)]
-    struct Keys {
+    struct FormatKey {
         format: Option<serde::de::IgnoredAny>,
     }
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     if !text.trim_ascii_start().starts_with(b"{") {
         return false;
     }
-    match serde_json::from_slice::<Keys>(text) {
+    match serde_json::from_slice::<FormatKey>(text) {
         Ok(keys) => keys.format.is_none(),
         // An object that goes on in the next line is a stored shape.
         Err(error) => !error.is_eof(),
     }
 }
 
-/// A line: one touch or several, and what is copied into its answer.
+/// The keys of a line that mean something; others are ignored.
 #[derive(Deserialize)]
-struct Keys<'a> {
+struct LineKeys<'a> {
     /// One touch: a text for each row, `#` for an active taxel.
     #[serde(borrow)]
     imprint: Option<Vec<Text<'a>>>,
@@ -310,7 +310,7 @@ fn framed(line: &[u8], frame: Option<&RawValue>) -> Result<Option<Imprint>, Stri
     rule.imprint(&rows).map(Some)
 }
 
-/// A question, read and checked.
+/// A line, read and checked: one touch or several, and what is copied into its answer.
 struct Line {
     /// One or more imprints, each in a matrix of its own size.
     touches: Vec<Imprint>,
@@ -324,7 +324,7 @@ impl Line {
     /// # Errors
     /// What is wrong with the line, with the key and the row.
     fn read(line: &[u8]) -> Result<Self, String> {
-        let keys: Keys<'_> = serde_json::from_slice(line).map_err(|error| {
+        let keys: LineKeys<'_> = serde_json::from_slice(line).map_err(|error| {
             format!(
                 "column {}: {}",
                 error.column().max(1),

@@ -11,7 +11,7 @@ use crate::cli::output::evaluation::{bar, percent};
 use crate::cli::output::pose::PoseReport;
 use crate::formats::described::Rows;
 use crate::imprint::Imprint;
-use crate::recognition::{Answer, AnswerState, Evidence, Model, Nearest, Noise};
+use crate::recognition::{Answer, AnswerState, Evidence, Method, Model, Nearest, Noise};
 
 /// How many shapes a text shows, unless another number is asked for.
 const SHOWN: usize = 8;
@@ -98,7 +98,7 @@ struct Ranked<'a> {
 
 /// An answer for people: the name and how far it can be trusted, bars, and the nearest imprint.
 /// ```text
-/// ellipse: probable
+/// ellipse: likely
 ///   ellipse  ##########################         87.3 %
 ///   hexagon  ####                               12.7 %
 /// nearest: ellipse, 2 taxels differ
@@ -124,8 +124,13 @@ impl AnswerText<'_> {
     pub(crate) fn text(&self, charset: Charset) -> String {
         let mut text = self.verdict();
         if let Some(noise) = self.noise {
-            let flip = noise.flip();
-            text += &format!("noise {flip}: every key in every place is compared\n");
+            // Cannot fail: the text is kept in memory.
+            let _ = writeln!(
+                text,
+                "noise {}: {}",
+                noise.flip(),
+                compared(self.answer.method)
+            );
         }
         if self.answer.at_rim {
             text += "the imprint reaches the rim of the matrix: it may be cut off\n";
@@ -197,6 +202,15 @@ impl AnswerText<'_> {
              \x20 # both   + only in the touch   - only in the nearest imprint\n",
             differences(self.touch, &nearest.imprint)
         )
+    }
+}
+
+/// What the imprint was compared with, in words.
+fn compared(method: Method) -> &'static str {
+    match method {
+        Method::Exact => "only the key of the imprint is looked up",
+        Method::OneFlip => "keys that differ by one taxel at most are looked up",
+        Method::Scan => "every key in every place is compared",
     }
 }
 
