@@ -61,7 +61,7 @@ pub enum AcquireEvent<'a> {
     },
     /// A frame that is shown but not kept, until what follows it confirms it.
     Provisional(&'a Frame),
-    /// The provisional frame was none.
+    /// The provisional frame was invalid.
     Withdrawn,
     /// Something odd in a recording.
     Note(&'a RecordingNote),

@@ -99,7 +99,7 @@ pub(crate) enum CliError {
         /// The argument.
         name: String,
     },
-    /// A noise that is none.
+    /// An invalid noise.
     #[error(transparent)]
     Noise(#[from] NoiseError),
     /// A mask of another size than the imprint.

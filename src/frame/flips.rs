@@ -2,8 +2,8 @@
 //!
 //! A taxel that is the same in the first and the last of three frames in a row is taken to have been so all the time: if
 //! it differs in the middle one, it has flipped. If every taxel flips with probability e, a share e(1−e) / (1 − 2e(1−e)) of
-//! these does so; that gives e. What moves changes taxels too, but seldom for one frame only, and what rests, or nothing at
-//! all on the sensor, changes none: so idle frames and repeated ones count most.
+//! these does so; that gives e. A moving contact changes taxels, too, but
+//! rarely for one frame only. Frames of a contact at rest or of an empty sensor give the best estimate.
 //!
 //! A taxel is stuck on if it is active wherever none of its neighbours is, and off or dead if it is never active where three
 //! quarters of its neighbours are; each in ten frames or more. A hole of one taxel that never moves looks the same.

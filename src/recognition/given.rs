@@ -43,7 +43,7 @@ pub enum GivenError {
         /// The descriptor.
         key: &'static str,
     },
-    /// A rounding that is none.
+    /// An invalid rounding.
     #[error("rounding {found:?}: expected a descriptor and a step above 0, such as cg_cd=0.01")]
     Rounding {
         /// What was given.

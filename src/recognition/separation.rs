@@ -253,11 +253,12 @@ impl Separation {
         Ok(point)
     }
 
-    /// Returns the same with the model that it was counted from, and the evaluation of that.
+    /// Returns the same with the model that it was counted from, and the evaluation of that. The sensor of the model is that
+    /// of its first shape only, so it stays in the crate.
     ///
     /// # Errors
     /// Those of [`Self::at`].
-    pub fn model_at(
+    pub(crate) fn model_at(
         &self,
         axis: SizeAxis,
         value: f64,

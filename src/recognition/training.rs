@@ -55,7 +55,7 @@ impl fmt::Debug for Training<'_> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrainingError {
-    /// A set that is none.
+    /// An invalid set: a name is missing or given twice, or a weight is 0.
     #[error(transparent)]
     Set(#[from] ModelError),
     /// A shape that has no such poses.
@@ -123,8 +123,8 @@ impl<'a> Training<'a> {
         })
     }
 
-    /// A training in which each shape has a grid of its own, of as many poses as the others. The model of it tells the
-    /// sensor and the poses of the first.
+    /// A training in which each shape has a grid of its own, of as many poses as the others. The sensor and the
+    /// poses that its model gives are those of the first.
     pub(super) fn of_grids(shapes: Vec<NamedShape>, grids: Vec<PoseGrid>) -> Self {
         Self {
             grids,

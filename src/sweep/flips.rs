@@ -42,7 +42,7 @@ pub(crate) struct Marker<'s, 'e, 'a> {
 impl Marker<'_, '_, '_> {
     /// Marks all spans of a row of the sensor.
     pub(crate) fn spans(&mut self, spans: &Spans) {
-        // Ends that are sharper than the grid is fine, or taxel by taxel.
+        // Fast path only if span ends are known more precisely than the grid step.
         if spans.sharp() && NEAR * self.steps.per_cell < 0.25 {
             for span in spans.all() {
                 self.span(span);

@@ -85,7 +85,7 @@ pub enum StreamEvent<'a> {
     Frame(&'a Frame),
     /// A frame whose last byte is here, though what follows it is not: to be shown, not to be kept.
     Provisional(&'a Frame),
-    /// The provisional frame was none.
+    /// The provisional frame was invalid.
     Withdrawn,
 }
 

@@ -82,7 +82,7 @@ impl FlexitacDecoder {
         }
     }
 
-    /// Takes one frame off, or drops what is none; false if more bytes are needed.
+    /// Takes one frame off, or drops invalid bytes; false if more bytes are needed.
     fn step(&mut self, ended: bool, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) -> bool {
         let period = self.period();
         if self.in_step {
@@ -112,7 +112,7 @@ impl FlexitacDecoder {
         self.search(ended, counts)
     }
 
-    /// Takes back a frame that was shown and is none.
+    /// Withdraws a frame that was shown and has proved invalid.
     fn withdraw(&mut self, sink: &mut StreamSink<'_>) {
         if std::mem::take(&mut self.shown) {
             sink(StreamEvent::Withdrawn);
