@@ -77,7 +77,7 @@ impl TareFrames {
             return Err(FrameError::Tare { frames, wanted });
         };
         let mut baseline = Matrix::filled(columns, rows, f64::NAN);
-        let mut spread = baseline.clone();
+        let mut deviation = baseline.clone();
         let cells = baseline.values().len();
         let mut present = Vec::new();
         for cell in 0..cells {
@@ -89,11 +89,11 @@ impl TareFrames {
                 *value = (*value - middle).abs();
             }
             baseline.values_mut()[cell] = middle;
-            spread.values_mut()[cell] = median(&mut present);
+            deviation.values_mut()[cell] = median(&mut present);
         }
         Ok(Tare {
             baseline,
-            spread,
+            deviation,
             step: step(self.values),
             frames,
         })
@@ -127,7 +127,7 @@ fn step(mut values: Vec<f64>) -> f64 {
 pub struct Tare {
     baseline: Matrix<f64>,
     /// The median absolute deviation of each cell.
-    spread: Matrix<f64>,
+    deviation: Matrix<f64>,
     /// One step of the values.
     step: f64,
     frames: u64,
@@ -146,31 +146,31 @@ impl Tare {
     /// If the sizes differ.
     pub fn from_parts(
         baseline: Matrix<f64>,
-        spread: Option<Matrix<f64>>,
+        deviation: Option<Matrix<f64>>,
         step: Option<f64>,
         frames: u64,
     ) -> Result<Self, FrameError> {
         let size = |of: &Matrix<f64>| (u16::from(of.columns()), u16::from(of.rows()));
-        let spread =
-            spread.unwrap_or_else(|| Matrix::filled(baseline.columns(), baseline.rows(), 0.0));
-        if size(&spread) != size(&baseline) {
+        let deviation =
+            deviation.unwrap_or_else(|| Matrix::filled(baseline.columns(), baseline.rows(), 0.0));
+        if size(&deviation) != size(&baseline) {
             return Err(FrameError::Size {
                 what: "tare",
-                found: size(&spread),
+                found: size(&deviation),
                 expected: size(&baseline),
             });
         }
         Ok(Self {
             baseline,
-            spread,
+            deviation,
             step: step.unwrap_or(1.0),
             frames,
         })
     }
 
     /// The median absolute deviation of each cell.
-    pub fn spread(&self) -> &Matrix<f64> {
-        &self.spread
+    pub fn median_absolute_deviation(&self) -> &Matrix<f64> {
+        &self.deviation
     }
 
     /// The smallest difference between two of its values.
@@ -186,8 +186,8 @@ impl Tare {
     /// By how much a tared value of each cell must exceed 0 to stand out from noise: `k` standard deviations, estimated
     /// from the median absolute deviation, but at least one step of the values.
     pub(crate) fn margin(&self, index: usize, k: f64) -> f64 {
-        let spread = self.spread.values()[index];
-        (k * MAD_TO_DEVIATION * spread).max(self.step)
+        let deviation = self.deviation.values()[index];
+        (k * MAD_TO_DEVIATION * deviation).max(self.step)
     }
 
     /// Takes it off.

@@ -17,7 +17,7 @@ pub struct PoseEstimate {
     /// Mean position x, y of the centre, about which the shape turns, in cells on the matrix of the imprint.
     pub position: [f64; 2],
     /// Standard deviation of each.
-    pub spread: [f64; 2],
+    pub standard_deviation: [f64; 2],
     /// The angle; None if any angle looks the same, as of a disc.
     pub angle: Option<AngleEstimate>,
 }
@@ -31,7 +31,7 @@ pub struct AngleEstimate {
     /// Circular mean in degrees, from 0 to below the period. None if the angles point in all directions alike.
     pub mean: Option<f64>,
     /// Circular standard deviation in degrees. None where the mean is none.
-    pub spread: Option<f64>,
+    pub standard_deviation: Option<f64>,
     /// The fewest neighbouring whole degrees that hold 95 % of the poses: the first of them, and how many.
     pub most: (u32, u32),
 }
@@ -42,12 +42,12 @@ impl AngleEstimate {
     /// The mean lies between the [`ends`](Self::ends), so it may be below 0.
     #[must_use]
     pub fn known(&self) -> Option<(f64, f64)> {
-        let (mean, spread) = (self.mean?, self.spread?);
-        if spread >= self.period / 12_f64.sqrt() {
+        let (mean, deviation) = (self.mean?, self.standard_deviation?);
+        if deviation >= self.period / 12_f64.sqrt() {
             return None;
         }
         let begun = self.ends().0 < 0 && mean >= f64::from(self.most.0);
-        Some((if begun { mean - self.period } else { mean }, spread))
+        Some((if begun { mean - self.period } else { mean }, deviation))
     }
 
     /// The first and the last of the fewest whole degrees that hold 95 %. Those that pass the period begin below 0.
@@ -90,7 +90,7 @@ impl Model {
     /// let pose = model.pose_of(0, &touch, &|_| true).expect("the bar leaves it");
     /// let angle = pose.angle.expect("a bar has one");
     /// assert_eq!((angle.period, angle.known().is_some()), (180.0, true));
-    /// assert!(angle.spread.is_some_and(|spread| spread < 10.0));
+    /// assert!(angle.standard_deviation.is_some_and(|spread| spread < 10.0));
     /// assert!((pose.position[0] - 4.0).abs() < 0.02 && (pose.position[1] - 2.0).abs() < 0.02);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -121,7 +121,7 @@ impl Model {
         let wanted = |other: &Imprint| ImprintKey::of(other) == key;
         let runs = Sweep::new(&grid).progress(progress).poses_where(&wanted)?;
         let mut plane = Plane::new(*grid.sensor());
-        let mut sums = Sums::default();
+        let mut sums = PoseMoments::default();
         let mut degrees = vec![0; period.map_or(1, whole_degrees) as usize];
         let mut seen = Vec::new();
         for run in runs {
@@ -185,17 +185,23 @@ struct SeenPose {
 }
 
 /// The pose nearest to the mean, then others spread evenly over the 95 % nearest to it, in order of distance; at most
-/// `most` of them. Distances are in units of the spread of each number.
+/// `most` of them. Distances are in units of the standard deviation of each number.
 fn chosen(mut seen: Vec<SeenPose>, estimate: &PoseEstimate, most: usize) -> Vec<SeenPose> {
     let distance = |own: &SeenPose| {
-        let over = |from: f64, spread: f64| if spread > 0.0 { from / spread } else { 0.0 };
+        let over = |from: f64, deviation: f64| {
+            if deviation > 0.0 {
+                from / deviation
+            } else {
+                0.0
+            }
+        };
         let [x, y, angle] = own.place;
-        let dx = over(x - estimate.position[0], estimate.spread[0]);
-        let dy = over(y - estimate.position[1], estimate.spread[1]);
+        let dx = over(x - estimate.position[0], estimate.standard_deviation[0]);
+        let dy = over(y - estimate.position[1], estimate.standard_deviation[1]);
         let turned = estimate.angle.as_ref().and_then(|own| {
             let period = own.period;
             let from = (angle - own.mean? + period / 2.0).rem_euclid(period) - period / 2.0;
-            Some(over(from, own.spread?))
+            Some(over(from, own.standard_deviation?))
         });
         let da = turned.unwrap_or_default();
         dx * dx + dy * dy + da * da
@@ -235,9 +241,9 @@ fn whole(angle: f64, period: f64) -> usize {
     (angle as usize).min(whole_degrees(period) as usize - 1)
 }
 
-/// Sums over poses.
+/// Sums over poses of positions, their squares and directions.
 #[derive(Debug, Default)]
-struct Sums {
+struct PoseMoments {
     poses: u64,
     position: [f64; 2],
     squares: [f64; 2],
@@ -245,7 +251,7 @@ struct Sums {
     sine: f64,
 }
 
-impl Sums {
+impl PoseMoments {
     /// Adds neighbours on a row from one x to another: `count` of them, which count as `weight` poses.
     fn add(&mut self, weight: u64, (from, to): (f64, f64), count: u64, y: f64) {
         let (poses, number) = (real(weight), real(count));
@@ -276,27 +282,26 @@ impl Sums {
         }
         let all = real(self.poses);
         let position = self.position.map(|sum| sum / all);
-        let mut spread = [0.0; 2];
-        for (axis, spread) in spread.iter_mut().enumerate() {
-            let variance = self.squares[axis] / all - position[axis] * position[axis];
-            *spread = variance.max(0.0).sqrt();
-        }
+        let standard_deviation = [0, 1].map(|axis| {
+            let variance: f64 = self.squares[axis] / all - position[axis] * position[axis];
+            variance.max(0.0).sqrt()
+        });
         let angle = angles.map(|(period, degrees)| {
             let length = self.cosine.hypot(self.sine) / all;
             let directed = length > 1e-9;
             let mean = self.sine.atan2(self.cosine) / std::f64::consts::TAU;
-            let spread = (-2.0 * length.min(1.0).ln()).max(0.0).sqrt() / std::f64::consts::TAU;
+            let deviation = (-2.0 * length.min(1.0).ln()).max(0.0).sqrt() / std::f64::consts::TAU;
             AngleEstimate {
                 period,
                 mean: directed.then(|| (mean * period).rem_euclid(period)),
-                spread: directed.then_some(spread * period),
+                standard_deviation: directed.then_some(deviation * period),
                 most: fewest(&degrees, self.poses),
             }
         });
         Some(PoseEstimate {
             poses: self.poses,
             position,
-            spread,
+            standard_deviation,
             angle,
         })
     }
@@ -363,7 +368,7 @@ mod tests {
             let own = own.filter(|count| usize::from(count.shape) == shape);
             assert_eq!(own.map(|count| count.poses).sum::<u64>(), estimate.poses);
             assert!((estimate.position[0] - mean).abs() < 1e-9);
-            assert!((estimate.spread[0] - spread).abs() < 1e-6);
+            assert!((estimate.standard_deviation[0] - spread).abs() < 1e-6);
             let (same, poses) = (model.poses_of(shape, &imprint, 9, &|_| true)).expect("it does");
             assert_eq!(same, estimate);
             assert!((1..=9).contains(&poses.len()));
@@ -406,7 +411,7 @@ mod tests {
         let estimate = |period, mean, spread, most| AngleEstimate {
             period,
             mean: Some(mean),
-            spread: Some(spread),
+            standard_deviation: Some(spread),
             most,
         };
         let over = estimate(120.0, 119.0, 5.0, (109, 23));

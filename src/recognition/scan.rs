@@ -83,17 +83,17 @@ pub(super) struct Observed {
     living: Option<Imprint>,
     count: u32,
     /// Active taxels above and left of each corner of a cell, and dead ones.
-    active: Sums,
-    dead: Option<Sums>,
+    active: IntegralImage,
+    dead: Option<IntegralImage>,
 }
 
-/// Sums of the taxels above and left of each corner of a cell, row after row.
-struct Sums {
+/// A summed-area table: the number of taxels above and left of each corner of a cell, row after row.
+struct IntegralImage {
     width: usize,
     sums: Vec<u16>,
 }
 
-impl Sums {
+impl IntegralImage {
     fn of(imprint: &Imprint) -> Self {
         let width = usize::from(imprint.columns()) + 1;
         let mut sums = vec![0_u16; width * (usize::from(imprint.rows()) + 1)];
@@ -140,8 +140,8 @@ impl Observed {
         });
         Self {
             count: seen.count(),
-            active: Sums::of(&seen),
-            dead: dead.filter(|_| living.is_some()).map(Sums::of),
+            active: IntegralImage::of(&seen),
+            dead: dead.filter(|_| living.is_some()).map(IntegralImage::of),
             seen,
             living,
         }

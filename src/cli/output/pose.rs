@@ -141,12 +141,12 @@ impl PoseReport {
             poses: estimate.poses,
             centre: [x, y],
             centre_in_box: [x - self.corner[0], y - self.corner[1]],
-            centre_sd: estimate.spread,
+            centre_sd: estimate.standard_deviation,
             centre_mm: in_mm([x, y]),
-            centre_sd_mm: in_mm(estimate.spread),
+            centre_sd_mm: in_mm(estimate.standard_deviation),
             angle: estimate.angle.as_ref().map(|angle| AngleJson {
                 mean: angle.mean,
-                sd: angle.spread,
+                sd: angle.standard_deviation,
                 period: angle.period,
                 from: angle.most.0,
                 degrees: angle.most.1,
@@ -158,7 +158,7 @@ impl PoseReport {
     pub(crate) fn text(&self, touch: &Imprint, charset: Charset) -> String {
         let estimate = &self.estimate;
         let place = |factor: f64| {
-            let ([x, y], [dx, dy]) = (estimate.position, estimate.spread);
+            let ([x, y], [dx, dy]) = (estimate.position, estimate.standard_deviation);
             format!(
                 "{}, {} ± {}, {}",
                 decimal(x * factor, 2),

@@ -188,7 +188,7 @@ impl RecordingMetadata {
             rule: self.rule.map(DescribedRule::Set),
             tare_frames: tare.map(Tare::frames),
             tare: tare.map(|tare| rows(tare.baseline())),
-            tare_spread: tare.map(|tare| rows(tare.spread())),
+            tare_spread: tare.map(|tare| rows(tare.median_absolute_deviation())),
             tare_step: tare.map(Tare::step),
             marks: self.marks.clone(),
             ended: self.ended,

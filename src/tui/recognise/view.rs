@@ -340,7 +340,7 @@ fn place(trained: &TrainedModel, shape: usize, pose: &PoseEstimate, own: bool) -
         Anchor::Corner => "corner",
     };
     let [x, y] = pose.position;
-    let [dx, dy] = pose.spread;
+    let [dx, dy] = pose.standard_deviation;
     let (dx, dy) = (spread_of(dx, 2), spread_of(dy, 2));
     let place = format!("{name}{what} {x:.2} ± {dx}, {y:.2} ± {dy}");
     let poses = counted(pose.poses, "pose");
