@@ -21,10 +21,10 @@ use crate::recognition::given::{GivenTable, ShapeDescriptor};
 use crate::recognition::model::{Model, share};
 use crate::recognition::simulation::Draw;
 
-/// A classifier that is not the best one.
+/// A classifier by descriptors or by samples: not the best one, whose answers are those of the model itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Peer {
+pub enum Classifier {
     /// The nearest class mean, in units of each class's standard deviation.
     Z,
     /// A Gaussian for each class, with independent features.
@@ -39,7 +39,7 @@ pub enum Peer {
     Template,
 }
 
-impl Peer {
+impl Classifier {
     /// All of them.
     pub const ALL: [Self; 6] = [
         Self::Z,
@@ -62,29 +62,31 @@ impl Peer {
         }
     }
 
-    /// Returns the peer of that name.
+    /// Returns the classifier of that name.
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|peer| peer.name() == name)
+        Self::ALL
+            .into_iter()
+            .find(|classifier| classifier.name() == name)
     }
 }
 
-/// What the peers may use.
+/// What classifiers may use, and how much of it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct PeerSettings {
+pub struct ClassifierSettings {
     /// The descriptors that the features come from; None for all that do not change under shifts.
     pub descriptors: Option<Vec<ShapeDescriptor>>,
-    /// How many neighbours of [`Peer::Knn`] vote.
+    /// How many neighbours of [`Classifier::Knn`] vote.
     pub neighbours: usize,
-    /// How many poses of each shape [`Peer::Knn`] draws.
+    /// How many poses of each shape [`Classifier::Knn`] draws.
     pub sample: usize,
     /// The seed that they are drawn with.
     pub seed: u64,
-    /// How many imprints of each shape [`Peer::Template`] compares with.
+    /// How many imprints of each shape [`Classifier::Template`] compares with.
     pub templates: usize,
 }
 
-impl Default for PeerSettings {
+impl Default for ClassifierSettings {
     /// All descriptors, 1 neighbour of 2,000 poses with seed 0, 100 templates.
     fn default() -> Self {
         Self {
@@ -97,16 +99,16 @@ impl Default for PeerSettings {
     }
 }
 
-/// What a peer reached.
+/// What a classifier reached on a model's touches.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct PeerEvaluation {
+pub struct ClassifierEvaluation {
     /// Which one.
-    pub peer: Peer,
+    pub classifier: Classifier,
     /// As for the best classifier. `information_bits` is what the given name tells of the shape; `certain` counts nothing,
     /// since these classifiers do not know when they are.
     pub evaluation: Evaluation,
-    /// The features that it used; empty for [`Peer::Template`].
+    /// The features that it used; empty for [`Classifier::Template`].
     pub features: Vec<String>,
     /// Those that were left out, with the reason.
     pub dropped: Vec<(String, &'static str)>,
@@ -120,46 +122,53 @@ const RIDGE: f64 = 0.001;
 /// The same for single variances, which only need not be 0.
 const LEAST_VARIANCE: f64 = 1e-9;
 
-impl Peer {
+impl Classifier {
     /// Trains it on a model's touches and classifies all of them.
     ///
     /// Ties go to the first in the order of the set.
-    pub fn evaluate(self, model: &Model, settings: &PeerSettings) -> PeerEvaluation {
-        if self == Self::Template {
-            let templates = Templates::new(model, settings.templates.max(1));
-            let scores = |key: usize| templates.scores(model, key);
-            return PeerEvaluation {
-                peer: self,
-                evaluation: evaluate(model, scores),
-                features: Vec::new(),
-                dropped: Vec::new(),
-            };
-        }
-        let table = FeatureTable::new(model, settings.descriptors.as_deref());
-        let evaluation = match self {
+    pub fn evaluate(self, model: &Model, settings: &ClassifierSettings) -> ClassifierEvaluation {
+        let features = || FeatureTable::new(model, settings.descriptors.as_deref());
+        let (evaluation, table) = match self {
             Self::Z => {
+                let table = features();
                 let classes = table.gaussians(model);
-                evaluate(model, |key| table.z_scores(&classes, key))
+                let scores = |key| table.z_scores(&classes, key);
+                (evaluate(model, scores), Some(table))
             }
             Self::Diagonal => {
+                let table = features();
                 let classes = table.gaussians(model);
-                evaluate(model, |key| table.diagonal_scores(model, &classes, key))
+                let scores = |key| table.diagonal_scores(model, &classes, key);
+                (evaluate(model, scores), Some(table))
             }
             Self::Lda | Self::Qda => {
+                let table = features();
                 let classes = table.covariances(model, self == Self::Lda);
-                evaluate(model, |key| table.covariance_scores(model, &classes, key))
+                let scores = |key| table.covariance_scores(model, &classes, key);
+                (evaluate(model, scores), Some(table))
             }
-            Self::Knn | Self::Template => {
+            Self::Knn => {
+                let table = features();
                 let sample = Sample::new(model, settings);
                 let neighbours = settings.neighbours.max(1);
-                evaluate(model, |key| sample.scores(&table, neighbours, key))
+                let scores = |key| sample.scores(&table, neighbours, key);
+                (evaluate(model, scores), Some(table))
+            }
+            Self::Template => {
+                let templates = Templates::new(model, settings.templates.max(1));
+                (evaluate(model, |key| templates.scores(model, key)), None)
             }
         };
-        PeerEvaluation {
-            peer: self,
+        let (features, dropped) = match table {
+            Some(table) => (table.names, table.dropped),
+            // Imprints are compared, not features.
+            None => (Vec::new(), Vec::new()),
+        };
+        ClassifierEvaluation {
+            classifier: self,
             evaluation,
-            features: table.names,
-            dropped: table.dropped,
+            features,
+            dropped,
         }
     }
 }
@@ -463,7 +472,7 @@ struct Sample {
 }
 
 impl Sample {
-    fn new(model: &Model, settings: &PeerSettings) -> Self {
+    fn new(model: &Model, settings: &ClassifierSettings) -> Self {
         let shapes = model.shapes().len();
         let mut random = Pcg64::seed_from_u64(settings.seed);
         let mut sample = Vec::new();

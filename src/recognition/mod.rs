@@ -13,7 +13,7 @@
 //!                                     -> scan         all keys in all places: the nearest, and those within a distance
 //!                                     -> Evaluation   of the model: the limit of one touch
 //!                                     -> given        the same where only some descriptors are known
-//!                                     -> peers        the paper's way: classifiers on descriptors
+//!                                     -> classifiers  the paper's way: classifiers on descriptors
 //! shapes + sizes                      -> Separation   the limit against size and threshold
 //! ```
 //!
@@ -42,7 +42,7 @@ mod answer;
 
 mod noise;
 
-mod peers;
+mod classifiers;
 
 mod simulation;
 
@@ -51,6 +51,7 @@ mod half_step;
 mod scan;
 
 pub use answer::{Answer, AnswerState, Evidence};
+pub use classifiers::{Classifier, ClassifierEvaluation, ClassifierSettings};
 pub use evaluation::Evaluation;
 pub use given::{GivenDescriptors, GivenError, GivenTable, Rounding, ShapeDescriptor, greedy};
 pub use half_step::HalfStep;
@@ -58,7 +59,6 @@ pub use key::{ImprintKey, KeyTable};
 pub use model::{Model, ModelError, ModelMerge, ModelParts, NamedShape, ShapeCount};
 pub use nearest::Nearest;
 pub use noise::{Distances, Method, Noise, NoiseError};
-pub use peers::{Peer, PeerEvaluation, PeerSettings};
 pub use pose_estimate::{AngleEstimate, PlacedSource, PoseEstimate};
 pub use separation::{Separation, SeparationPoint, SizeAxis, SmallestSize};
 pub use sets::{GridSteps, GridStepsError, default_figures, equal_figures};

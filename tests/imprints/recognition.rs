@@ -4,8 +4,9 @@ use std::collections::HashMap;
 
 use taxel::prelude::*;
 use taxel::recognition::{
-    AnswerState, Evaluation, Evidence, GivenDescriptors, ImprintKey, Model, ModelError, ModelMerge,
-    NamedShape, Peer, PeerSettings, Rounding, Training, TrainingError, greedy,
+    AnswerState, Classifier, ClassifierSettings, Evaluation, Evidence, GivenDescriptors,
+    ImprintKey, Model, ModelError, ModelMerge, NamedShape, Rounding, Training, TrainingError,
+    greedy,
 };
 use taxel::sweep::Shard;
 
@@ -112,17 +113,17 @@ fn seven_figures_are_told_apart_as_often_as_published() {
     );
 
     // Nor does any classifier by descriptors.
-    let settings = PeerSettings::default();
-    for peer in Peer::ALL {
-        let reached = peer.evaluate(&model, &settings).evaluation;
+    let settings = ClassifierSettings::default();
+    for classifier in Classifier::ALL {
+        let reached = classifier.evaluate(&model, &settings).evaluation;
         let sum: u128 = reached.confusion.iter().flatten().sum();
-        println!("{} {:.4}", peer.name(), reached.error());
+        println!("{} {:.4}", classifier.name(), reached.error());
         assert_eq!(sum, limit.touches);
-        assert!(reached.right <= limit.right, "{}", peer.name());
+        assert!(reached.right <= limit.right, "{}", classifier.name());
         assert!(
             reached.error() < 0.65,
             "{} guesses: {}",
-            peer.name(),
+            classifier.name(),
             reached.error()
         );
     }

@@ -17,7 +17,7 @@ use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, EvaluationJson, NamedBy};
 use crate::formats::{ConfusionMap, json};
-use crate::recognition::{Evaluation, Model, Peer, PeerEvaluation, greedy};
+use crate::recognition::{Classifier, ClassifierEvaluation, Evaluation, Model, greedy};
 
 /// Evaluates a model. Returns what is printed.
 ///
@@ -36,13 +36,13 @@ pub(crate) fn confusion(
             let given = given.clone().rounded(asked.roundings.clone());
             shown(asked, &given.evaluate(&model), None, charset)
         }
-        Evaluated::Peer(peer) => {
-            let reached = peer.evaluate(&model, &asked.peers);
+        Evaluated::Classifier(classifier) => {
+            let reached = classifier.evaluate(&model, &asked.classifiers);
             shown(asked, &reached.evaluation, Some(&reached), charset)
         }
         Evaluated::Greedy => Ok(chosen(&model, asked, charset)),
         Evaluated::Pairs => Ok(pairs(&model, as_json, charset)),
-        Evaluated::AllPeers => all_peers(&model, asked, charset),
+        Evaluated::AllClassifiers => all_classifiers(&model, asked, charset),
         Evaluated::Noise(noise) => noise::degradation(&model, noise, asked, charset),
         Evaluated::HalfStep => noise::half_step(&model, as_json, charset),
     }
@@ -81,7 +81,7 @@ fn pairs(model: &Model, as_json: bool, charset: Charset) -> String {
 ///
 /// # Errors
 /// [`CliError::Ending`] for a file that is not a table.
-fn all_peers(
+fn all_classifiers(
     model: &Model,
     asked: &ConfusionArguments,
     charset: Charset,
@@ -93,32 +93,32 @@ fn all_peers(
             expected: ".csv",
         });
     }
-    let all = Peer::ALL.map(|peer| peer.evaluate(model, &asked.peers));
+    let all = Classifier::ALL.map(|classifier| classifier.evaluate(model, &asked.classifiers));
     let limit = Evaluation::of(model);
     if let Some(path) = &asked.export {
-        let table = evaluation::peers_csv(&all, &limit);
+        let table = evaluation::classifiers_csv(&all, &limit);
         put(path, table.as_bytes(), asked.existing)?;
     }
     match asked.form {
         EvaluationForm::Json => {}
-        EvaluationForm::Csv => return Ok(evaluation::peers_csv(&all, &limit)),
-        EvaluationForm::Text => return Ok(evaluation::peers(&all, &limit, charset)),
+        EvaluationForm::Csv => return Ok(evaluation::classifiers_csv(&all, &limit)),
+        EvaluationForm::Text => return Ok(evaluation::classifiers(&all, &limit, charset)),
     }
     let errors = all.iter().map(|reached| {
         let error = json!(reached.evaluation.error());
-        (reached.peer.name().to_owned(), error)
+        (reached.classifier.name().to_owned(), error)
     });
     let limit = ("limit".to_owned(), json!(limit.error()));
     let table: serde_json::Map<_, _> = errors.chain([limit]).collect();
     Ok(json::text(&table) + "\n")
 }
 
-/// One evaluation, in the form that is asked for; `peer` is the classifier, if it is not the best one. Writes the file
+/// One evaluation, in the form that is asked for; `classifier` is what another classifier than the best one reached. Writes the file
 /// of its matrix too, if one is asked for.
 fn shown(
     asked: &ConfusionArguments,
     own: &Evaluation,
-    peer: Option<&PeerEvaluation>,
+    classifier: Option<&ClassifierEvaluation>,
     charset: Charset,
 ) -> Result<String, CliError> {
     if let Some(path) = &asked.export {
@@ -128,16 +128,16 @@ fn shown(
         EvaluationForm::Json => {
             json::ascii(&EvaluationJson {
                 evaluation: own,
-                peer,
+                classifier,
             }) + "\n"
         }
         EvaluationForm::Csv => evaluation::csv(own),
         EvaluationForm::Text => {
             let matrix = evaluation::matrix(own, charset);
             let worst = evaluation::worst_pairs(own, charset);
-            let features = charset.lines(&evaluation::features(peer));
-            let named = match (&asked.of, peer) {
-                (_, Some(_)) => NamedBy::Peer,
+            let features = charset.lines(&evaluation::features(classifier));
+            let named = match (&asked.of, classifier) {
+                (_, Some(_)) => NamedBy::Classifier,
                 (Evaluated::Given(_), None) => NamedBy::Descriptors,
                 _ => NamedBy::Imprint,
             };

@@ -176,7 +176,7 @@ fn leave_model(model: &Model, wanted: &Wanted) -> Result<String, CliError> {
     Ok(if wanted.json {
         json::ascii(&EvaluationJson {
             evaluation: &limit,
-            peer: None,
+            classifier: None,
         }) + "\n"
     } else {
         evaluation::summary(&limit, evaluation::NamedBy::Imprint)

@@ -22,20 +22,20 @@ use serde_json::json;
 
 use crate::cli::output::charset::Charset;
 use crate::formats::value::{counted, grouped};
-use crate::recognition::{Evaluation, Peer, PeerEvaluation, ShapeDescriptor};
+use crate::recognition::{Classifier, ClassifierEvaluation, Evaluation, ShapeDescriptor};
 
 /// An evaluation as an object of JSON, its keys in the order of the documentation.
 pub(crate) struct EvaluationJson<'a> {
     /// What is shown.
     pub(crate) evaluation: &'a Evaluation,
-    /// Of a peer: `certain` is null, since it does not know when it is, and so is `keys_of_one_shape`.
-    pub(crate) peer: Option<&'a PeerEvaluation>,
+    /// Of a classifier: `certain` is null, since it does not know when it is, and so is `keys_of_one_shape`.
+    pub(crate) classifier: Option<&'a ClassifierEvaluation>,
 }
 
 impl Serialize for EvaluationJson<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let own = self.evaluation;
-        let known = |number: u128| self.peer.is_none().then_some(number);
+        let known = |number: u128| self.classifier.is_none().then_some(number);
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("labels", &own.labels)?;
         map.serialize_entry("touches", &own.touches)?;
@@ -50,10 +50,10 @@ impl Serialize for EvaluationJson<'_> {
         map.serialize_entry("keys", &own.keys)?;
         map.serialize_entry("keys_of_one_shape", &known(own.keys_of_one_shape as u128))?;
         map.serialize_entry("confusion", &own.confusion)?;
-        if let Some(peer) = self.peer {
-            map.serialize_entry("classifier", peer.peer.name())?;
-            map.serialize_entry("features", &peer.features)?;
-            let dropped = peer
+        if let Some(reached) = self.classifier {
+            map.serialize_entry("classifier", reached.classifier.name())?;
+            map.serialize_entry("features", &reached.features)?;
+            let dropped = reached
                 .dropped
                 .iter()
                 .map(|(name, reason)| (name.as_str(), *reason));
@@ -101,7 +101,7 @@ pub(crate) enum NamedBy {
     /// The best one that sees some descriptors.
     Descriptors,
     /// Another method, which is not the best one.
-    Peer,
+    Classifier,
 }
 
 impl NamedBy {
@@ -110,7 +110,7 @@ impl NamedBy {
         match self {
             Self::Imprint => "  the limit: no method errs less",
             Self::Descriptors => "  no method that sees only these descriptors errs less",
-            Self::Peer => "",
+            Self::Classifier => "",
         }
     }
 }
@@ -305,7 +305,11 @@ pub(crate) fn greedy(
 /// lda                    8.4 %   99.9 %   1.179 bits
 /// limit of one touch     1.6 %  100.0 %   1.538 bits
 /// ```
-pub(crate) fn peers(reached: &[PeerEvaluation], limit: &Evaluation, charset: Charset) -> String {
+pub(crate) fn classifiers(
+    reached: &[ClassifierEvaluation],
+    limit: &Evaluation,
+    charset: Charset,
+) -> String {
     let mut text = String::from("classifier             error  top two  information\n");
     let mut line = |name: &str, evaluation: &Evaluation| {
         let _ = writeln!(
@@ -316,18 +320,20 @@ pub(crate) fn peers(reached: &[PeerEvaluation], limit: &Evaluation, charset: Cha
             evaluation.information_bits
         );
     };
-    for peer in reached {
-        line(peer.peer.name(), &peer.evaluation);
+    for own in reached {
+        line(own.classifier.name(), &own.evaluation);
     }
     line("limit of one touch", limit);
     charset.lines(&(text + &features(reached.first())))
 }
 
 /// The table of all classifiers with commas, and with a row of names; the limit is the last row.
-pub(crate) fn peers_csv(reached: &[PeerEvaluation], limit: &Evaluation) -> String {
+pub(crate) fn classifiers_csv(reached: &[ClassifierEvaluation], limit: &Evaluation) -> String {
     let mut text = String::from("classifier,error,right_in_top_two,information_bits\n");
-    let peers = reached.iter().map(|own| (own.peer.name(), &own.evaluation));
-    for (name, own) in peers.chain([("limit", limit)]) {
+    let classifiers = reached
+        .iter()
+        .map(|own| (own.classifier.name(), &own.evaluation));
+    for (name, own) in classifiers.chain([("limit", limit)]) {
         let top_two = ratio(own.right_in_top_two, own.touches);
         // Cannot fail: the text is kept in memory.
         let _ = writeln!(
@@ -340,15 +346,15 @@ pub(crate) fn peers_csv(reached: &[PeerEvaluation], limit: &Evaluation) -> Strin
     text
 }
 
-/// The features that a peer used, and those that it left out.
-/// Empty without a peer, and for templates, which compare imprints. A feature is left out if it has one value only or
+/// The features that a classifier used, and those that it left out.
+/// Empty without a classifier, and for templates, which compare imprints. A feature is left out if it has one value only or
 /// copies another one.
-pub(crate) fn features(peer: Option<&PeerEvaluation>) -> String {
-    let Some(peer) = peer.filter(|peer| peer.peer != Peer::Template) else {
+pub(crate) fn features(reached: Option<&ClassifierEvaluation>) -> String {
+    let Some(reached) = reached.filter(|own| own.classifier != Classifier::Template) else {
         return String::new();
     };
-    let mut text = format!("features: {}\n", peer.features.join(", "));
-    for (name, reason) in &peer.dropped {
+    let mut text = format!("features: {}\n", reached.features.join(", "));
+    for (name, reason) in &reached.dropped {
         let _ = writeln!(text, "left out: {name}, {reason}");
     }
     text

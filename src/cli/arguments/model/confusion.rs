@@ -25,7 +25,9 @@ use crate::cli::arguments::model::{number, seed, which_model};
 use crate::cli::arguments::parameters;
 use crate::index::wide;
 use crate::pose::{DecimalRange, RangeError};
-use crate::recognition::{GivenDescriptors, GivenError, Noise, Peer, PeerSettings, Rounding};
+use crate::recognition::{
+    Classifier, ClassifierSettings, GivenDescriptors, GivenError, Noise, Rounding,
+};
 use crate::storage::Existing;
 
 /// What is evaluated of a model, and how it is shown.
@@ -38,7 +40,7 @@ pub(crate) struct ConfusionArguments {
     /// The steps in which descriptors are measured, for `--given` and `--greedy`.
     pub(crate) roundings: Vec<Rounding>,
     /// Neighbours, samples, templates and seed of the other methods.
-    pub(crate) peers: PeerSettings,
+    pub(crate) classifiers: ClassifierSettings,
     /// How the answer is printed.
     pub(crate) form: EvaluationForm,
     /// The file for the matrix: `.csv`, `.svg` or `.png`.
@@ -59,9 +61,9 @@ pub(crate) enum Evaluated {
     /// The best one, for each pair of shapes.
     Pairs,
     /// One of the methods in use, from its own features.
-    Peer(Peer),
+    Classifier(Classifier),
     /// All of these methods, in a table.
-    AllPeers,
+    AllClassifiers,
     /// The best one, from noisy touches.
     Noise(NoiseArguments),
     /// The best one, from touches between the poses of the model.
@@ -119,7 +121,10 @@ pub(super) fn command() -> Command {
 
 /// `--given`, `--greedy`, `--pairs` and `--classifier`: what is asked, other than about noise.
 fn questions() -> [Arg; 4] {
-    let classifiers = Peer::ALL.map(Peer::name).into_iter().chain(["all"]);
+    let classifiers = Classifier::ALL
+        .map(Classifier::name)
+        .into_iter()
+        .chain(["all"]);
     [
         option(
             "given",
@@ -239,7 +244,7 @@ impl ConfusionArguments {
             model: flags::word(matches, "model"),
             of: Evaluated::of(matches),
             roundings: roundings.copied().collect(),
-            peers: peers(matches),
+            classifiers: classifiers(matches),
             form: EvaluationForm::of(matches),
             export: matches.get_one::<PathBuf>("export").cloned(),
             existing: parameters::existing(matches),
@@ -255,7 +260,7 @@ impl Evaluated {
             return Self::HalfStep;
         }
         if let Some(name) = matches.get_one::<String>("classifier") {
-            return Peer::from_name(name).map_or(Self::AllPeers, Self::Peer);
+            return Classifier::from_name(name).map_or(Self::AllClassifiers, Self::Classifier);
         }
         if let Some(&noise) = matches.get_one::<DecimalRange>("noise") {
             return Self::Noise(NoiseArguments::of(matches, noise));
@@ -288,15 +293,15 @@ impl NoiseArguments {
 }
 
 /// The settings of the other classifiers; those that are not given keep their defaults.
-fn peers(matches: &ArgMatches) -> PeerSettings {
-    let mut peers = PeerSettings::default();
+fn classifiers(matches: &ArgMatches) -> ClassifierSettings {
+    let mut classifiers = ClassifierSettings::default();
     let limit = |id: &str, usual: usize| {
         let own = matches.get_one::<u32>(id);
         own.map_or(usual, |&number| wide(number))
     };
-    peers.neighbours = limit("neighbours", peers.neighbours);
-    peers.sample = limit("sample", peers.sample);
-    peers.templates = limit("templates", peers.templates);
-    peers.seed = number(matches, "seed", peers.seed);
-    peers
+    classifiers.neighbours = limit("neighbours", classifiers.neighbours);
+    classifiers.sample = limit("sample", classifiers.sample);
+    classifiers.templates = limit("templates", classifiers.templates);
+    classifiers.seed = number(matches, "seed", classifiers.seed);
+    classifiers
 }
