@@ -67,6 +67,26 @@ pub fn fitting(number: f64, width: usize) -> String {
         .unwrap_or_else(|| decimal(number, 0))
 }
 
+/// The same of a measured value, which may lie far below 1: it has three digits that count then, and where these do not fit a
+/// power of ten.
+///
+/// ```
+/// use taxel::formats::value::measured;
+/// assert_eq!([23.656_854, 0.000_55, 5.5e-7].map(|number| measured(number, 7)), ["23.6569", "0.00055", "5.5e-7"]);
+/// ```
+pub fn measured(number: f64, width: usize) -> String {
+    let size = number.abs();
+    if !(f64::MIN_POSITIVE..0.01).contains(&size) {
+        return fitting(number, width);
+    }
+    let rounded = format!("{number:.2e}").parse().unwrap_or(number);
+    let plain = rounded.to_string();
+    if plain.len() <= width {
+        return plain;
+    }
+    format!("{rounded:e}")
+}
+
 /// A count with its noun, in the singular or the plural.
 ///
 /// ```

@@ -11,7 +11,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 
-use crate::formats::value::fitting;
+use crate::formats::value::{fitting, measured};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::tui::live::layout::{CellForm, HeatGrid, NUMBER};
@@ -256,7 +256,7 @@ fn put(buffer: &mut Buffer, area: Rect, (x, y): (u16, u16), sign: char, style: S
 /// Shades from the lower to the upper end of the range, with these.
 pub(super) fn scale(theme: &Theme, (low, high): (f64, f64), unit: &str) -> String {
     let shades: String = heat::shades(theme).iter().skip(1).collect();
-    format!("{} {shades} {}{unit}", fitting(low, 7), fitting(high, 7))
+    format!("{} {shades} {}{unit}", measured(low, 7), measured(high, 7))
 }
 
 /// How many cells have values.

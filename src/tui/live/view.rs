@@ -12,7 +12,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::description::Descriptor;
 use crate::formats::recording::RuleOrigin;
-use crate::formats::value::{self, counted, fitting, grouped};
+use crate::formats::value::{self, counted, fitting, grouped, measured};
 use crate::frame::Rule;
 use crate::imprint::Imprint;
 use crate::recognition::AnswerState;
@@ -186,9 +186,12 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap) -> Vec<PanelLine> {
     say("tare", tare(live));
     if let Some(reading) = live.reading() {
         say("range", scale(theme, live.range(), &unit));
-        say("sum", format!("{}{unit}", fitting(reading.sum, 9)));
+        // What rounding leaves of large values is no measured one.
+        let is_small = live.range().1 < 0.1;
+        let value = if is_small { measured } else { fitting };
+        say("sum", format!("{}{unit}", value(reading.sum, 9)));
         let peak = reading.max.map(|(largest, (column, row))| {
-            format!("{}{unit} at {column}, {row}", fitting(largest, 9))
+            format!("{}{unit} at {column}, {row}", value(largest, 9))
         });
         say("peak", peak.unwrap_or_else(|| theme.none().to_owned()));
         let cells = counted(cells(&reading.values) as u64, "cell");
@@ -284,10 +287,10 @@ fn threshold(live: &Live, keymap: &Keymap) -> String {
     };
     let unit = live.unit();
     let text = match set.rule {
-        Rule::AtLeast(threshold) => format!("{}{unit}", fitting(threshold, 7)),
+        Rule::AtLeast(threshold) => format!("{}{unit}", measured(threshold, 7)),
         Rule::Percent(percent) => format!("{} % of the peak", fitting(percent, 5)),
         Rule::Hysteresis { low, high } => {
-            format!("{} to {}{unit}", fitting(low, 7), fitting(high, 7))
+            format!("{} to {}{unit}", measured(low, 7), measured(high, 7))
         }
         Rule::Noise(deviations) => format!("{} x noise", fitting(deviations, 5)),
     };
