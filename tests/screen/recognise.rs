@@ -14,7 +14,7 @@ use taxel::recognition::{NamedShape, Training};
 use taxel::sensor::Sensor;
 use taxel::storage::{Existing, Library, ModelCache, ModelFolder};
 use taxel::tui::app::message::Message;
-use taxel::tui::explore::message::WorkerEvent;
+use taxel::tui::app::worker_event::WorkerEvent;
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! document   what is on the matrix, and its reading      history: all its states
-//! message    what a key means
+//! message    what a key means                          worker_event: what workers report
 //! page       what the screen knows of a page            dialog: the table of pages
 //! line_prompt  pages that are one line of text
 //! state      App                                        update: the only writer of it
@@ -15,6 +15,8 @@
 pub mod document;
 
 pub mod message;
+
+pub mod worker_event;
 
 pub mod page;
 

@@ -3,13 +3,13 @@
 //! The top page receives the message, or the matrix if there is none. A notice stays until the next message from the
 //! user.
 
-use crate::tui::app::change::{compare_with, refuse, settle};
+use crate::tui::app::change::{compare_with, inform, refuse, settle};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Reading;
 use crate::tui::app::message::Message;
 use crate::tui::app::mouse;
 use crate::tui::app::state::{App, Notice, RunState};
-use crate::tui::explore::message::WorkerEvent;
+use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::help::Help;
 use crate::tui::history::HistoryDialog;
 use crate::tui::keys::action;
@@ -59,9 +59,15 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
         }
         Message::File(answer) => return answered(app, |app| files::on_file(app, answer)),
         Message::Worker(event @ WorkerEvent::Recognition(_)) => {
-            return answered(app, |app| explore::work::on_worker(app, event));
+            return answered(app, |app| {
+                on_worker(app, event);
+                None
+            });
         }
-        Message::Worker(event) => return explore::work::on_worker(app, event),
+        Message::Worker(event) => {
+            on_worker(app, event);
+            return None;
+        }
         Message::Mouse(mouse) => {
             let meant = mouse::act(app, mouse)?;
             return handle(app, meant);
@@ -295,5 +301,32 @@ fn at_question(app: &mut App, question: Question, message: &Message) -> Option<E
             app.dialogs.push(Dialog::Question(question));
             None
         }
+    }
+}
+
+/// Has a page take an event.
+fn on_worker(app: &mut App, event: WorkerEvent) {
+    match event {
+        WorkerEvent::Progress(number, progress) => {
+            if !explore::work::on_progress(app, number, progress) {
+                recognise::update::on_progress(app, number, progress);
+            }
+        }
+        WorkerEvent::Estimate(grid, time) => explore::work::on_estimate(app, &grid, time),
+        WorkerEvent::Swept(number, findings) => explore::work::take_findings(app, number, findings),
+        WorkerEvent::Written(number, name) => explore::work::on_written(app, number, &name),
+        WorkerEvent::Exists(number, name) => explore::work::on_existing(app, number, name),
+        WorkerEvent::Failed(number, reason) => {
+            if !explore::work::on_failure(app, number, &reason) {
+                recognise::update::on_failure(app, number, &reason);
+            }
+        }
+        WorkerEvent::Recognition(event) => recognise::update::on_worker(app, event),
+        WorkerEvent::Live(number, event) => live::update::on_worker(app, number, &event),
+        WorkerEvent::Refused(reason) => refuse(app, reason),
+        WorkerEvent::Waiting(what) => app.waiting = what,
+        WorkerEvent::GivenUp(what) => inform(app, format!("{what}: no longer waited for")),
+        // The runtime takes the answer itself.
+        WorkerEvent::Answered => {}
     }
 }

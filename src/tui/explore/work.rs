@@ -1,4 +1,4 @@
-//! The way to results: the form of ranges, a sweep or an export in progress, and the events of its worker.
+//! The way to results: the form of ranges, a sweep or an export in progress, and what its worker reports.
 //!
 //! ```text
 //! Open -> form of ranges -> Start -> Running -> Swept -> results        Stop: the results so far
@@ -8,6 +8,7 @@
 //! Each piece of work has a number, and its events carry it. Events of work that is no longer waited for are dropped.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use crate::formats::value::{counted, grouped};
 use crate::pose::PoseGrid;
@@ -18,13 +19,12 @@ use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Mode};
 use crate::tui::explore::drawing::drawn_form;
 use crate::tui::explore::export::ExportDialog;
-use crate::tui::explore::message::{ExploreMessage, Findings, WorkerEvent};
+use crate::tui::explore::message::{ExploreMessage, Findings, SweepProgress};
 use crate::tui::explore::pages;
 use crate::tui::explore::ranges::state::{RangesForm, explored};
 use crate::tui::explore::results::Results;
 use crate::tui::explore::running::{Running, WorkKind};
 use crate::tui::runtime::effect::{Effect, FileRequest, Work};
-use crate::tui::{live, recognise};
 
 /// Handles what a key, a command or an answered question asks for.
 pub(crate) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
@@ -159,63 +159,58 @@ pub(crate) fn in_running(app: &mut App, mut running: Running, message: &Message)
     stops.then_some(Effect::Work(Work::Stop))
 }
 
-/// Handles an event of a worker.
-pub(crate) fn on_worker(app: &mut App, event: WorkerEvent) -> Option<Effect> {
-    match event {
-        WorkerEvent::Progress(number, progress) => {
-            if let Some(running) = running(app, number) {
-                running.progress = Some(progress);
-            } else {
-                recognise::update::on_progress(app, number, progress);
-            }
-        }
-        WorkerEvent::Estimate(grid, time) => {
-            let mut dialogs = app.dialogs.iter_mut().rev();
-            let form = dialogs.find_map(|dialog| match dialog {
-                Dialog::Ranges(form) => Some(form),
-                _ => None,
-            });
-            if let Some(form) = form {
-                form.take_estimate(&grid, time);
-            }
-        }
-        WorkerEvent::Swept(number, findings) => take_findings(app, number, findings),
-        WorkerEvent::Written(number, name) => {
-            if finish(app, number).is_some() {
-                inform(app, format!("written: {name}{}", filter_remark(app, &name)));
-            }
-        }
-        WorkerEvent::Exists(number, name) => {
-            if let Some(place) = finish(app, number) {
-                let text = format!("{name} is there already. Replace it?");
-                let yes = Message::Explore(ExploreMessage::Write(name, Existing::Replaced));
-                ask(app, place, Dialog::Question(Question::new(text, yes)));
-            }
-        }
-        WorkerEvent::Failed(number, reason) => {
-            let name = running(app, number).and_then(|running| match &running.job {
-                WorkKind::Write(name, _) if !running.stopping => Some(name.clone()),
-                _ => None,
-            });
-            if let Some(place) = finish(app, number) {
-                // To be put right.
-                if let Some(name) = name {
-                    ask(app, place, Dialog::Export(ExportDialog::new(&name)));
-                }
-                refuse(app, reason);
-            } else {
-                recognise::update::on_failure(app, number, &reason);
-            }
-        }
-        WorkerEvent::Recognition(event) => recognise::update::on_worker(app, event),
-        WorkerEvent::Live(number, event) => live::update::on_worker(app, number, &event),
-        WorkerEvent::Refused(reason) => refuse(app, reason),
-        WorkerEvent::Waiting(what) => app.waiting = what,
-        WorkerEvent::GivenUp(what) => inform(app, format!("{what}: no longer waited for")),
-        // The runtime takes the answer itself.
-        WorkerEvent::Answered => {}
+/// Shows how far a sweep or an export is. Returns whether it is one that is waited for.
+pub(in crate::tui) fn on_progress(app: &mut App, number: u64, progress: SweepProgress) -> bool {
+    let running = running(app, number);
+    let waited = running.is_some();
+    if let Some(running) = running {
+        running.progress = Some(progress);
     }
-    None
+    waited
+}
+
+/// Shows in the form of ranges how long its grid will take.
+pub(in crate::tui) fn on_estimate(app: &mut App, grid: &PoseGrid, time: Duration) {
+    let mut dialogs = app.dialogs.iter_mut().rev();
+    let form = dialogs.find_map(|dialog| match dialog {
+        Dialog::Ranges(form) => Some(form),
+        _ => None,
+    });
+    if let Some(form) = form {
+        form.take_estimate(grid, time);
+    }
+}
+
+/// Says that a file was written.
+pub(in crate::tui) fn on_written(app: &mut App, number: u64, name: &str) {
+    if finish(app, number).is_some() {
+        inform(app, format!("written: {name}{}", filter_remark(app, name)));
+    }
+}
+
+/// Asks whether a file that exists is to be replaced.
+pub(in crate::tui) fn on_existing(app: &mut App, number: u64, name: String) {
+    if let Some(place) = finish(app, number) {
+        let text = format!("{name} is there already. Replace it?");
+        let yes = Message::Explore(ExploreMessage::Write(name, Existing::Replaced));
+        ask(app, place, Dialog::Question(Question::new(text, yes)));
+    }
+}
+
+/// Says why a sweep or an export failed, and asks for another name of a file. Returns whether it is one that is waited for.
+pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) -> bool {
+    let name = running(app, number).and_then(|running| match &running.job {
+        WorkKind::Write(name, _) if !running.stopping => Some(name.clone()),
+        _ => None,
+    });
+    let Some(place) = finish(app, number) else {
+        return false;
+    };
+    if let Some(name) = name {
+        ask(app, place, Dialog::Export(ExportDialog::new(&name)));
+    }
+    refuse(app, reason);
+    true
 }
 
 /// Says that a file holds all imprints though their list is filtered. Empty for a drawing, which shows what its page does,
@@ -258,7 +253,7 @@ fn finish(app: &mut App, number: u64) -> Option<usize> {
 
 /// Results in place of the work, and of earlier results.
 /// A stopped sweep gives results of what was complete, as the notice says; one stopped before that gives none.
-fn take_findings(app: &mut App, number: u64, findings: Arc<Findings>) {
+pub(in crate::tui) fn take_findings(app: &mut App, number: u64, findings: Arc<Findings>) {
     let Some(place) = finish(app, number) else {
         return;
     };

@@ -20,7 +20,7 @@ use crate::storage::{
     Expected, Library, LibraryError, LoadedShape, Orphan, RememberedFile, UNNAMED,
 };
 use crate::tui::app::message::{FileEvent, LibraryEvent, Purpose};
-use crate::tui::explore::message::WorkerEvent;
+use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::live::message::LiveEvent;
 use crate::tui::runtime::effect::FileRequest;
 use crate::tui::runtime::files;

@@ -17,7 +17,7 @@ use crate::acquire::{AcquireEvent, AcquireOptions, FrameSource, acquire};
 use crate::formats::recording::{ChannelChoice, ChannelInfo, FrameMark, RecordingMetadata};
 use crate::frame::Frame;
 use crate::storage::{Existing, location};
-use crate::tui::explore::message::WorkerEvent;
+use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::live::history::bytes_of;
 use crate::tui::live::message::{FrameBatch, LiveEvent, ProvisionalChange, SourceState};
 use crate::tui::live::request::WatchRequest;

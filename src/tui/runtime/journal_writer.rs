@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 use crate::formats::StoredShape;
 use crate::storage::{Journal, Orphan};
 use crate::tui::app::state::App;
-use crate::tui::explore::message::WorkerEvent;
+use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::runtime::progress::WorkerEventSink;
 
 /// Changes are gathered for this time before they are written, so a crash loses less than a second of work.

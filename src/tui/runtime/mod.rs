@@ -85,7 +85,7 @@ use crate::storage::{
 use crate::tui::app::message::{Leftover, LibraryEvent, Message};
 use crate::tui::app::state::App;
 use crate::tui::app::update::update;
-use crate::tui::explore::message::WorkerEvent;
+use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::keys::key::Key;
 use crate::tui::live::message::LiveEvent;
 use crate::tui::runtime::effect::{Effect, FileRequest, LibraryRequest, TerminalEffect, Work};

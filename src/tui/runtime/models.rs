@@ -20,7 +20,7 @@ use crate::memory::MemoryGuard;
 use crate::recognition::{Model, TrainingError};
 use crate::storage::{Library, ModelCache, ModelFolder, load_model};
 use crate::sweep::Shard;
-use crate::tui::explore::message::WorkerEvent;
+use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::recognise::message::{Look, Prepared, RecognitionEvent};
 use crate::tui::recognise::sets::{ModelChoice, TrainedModel, unknown_set};
 use crate::tui::runtime::progress::{

@@ -15,7 +15,7 @@ use std::thread::JoinHandle;
 
 use crate::imprint::Imprint;
 use crate::recognition::{Evidence, Model, Noise};
-use crate::tui::explore::message::WorkerEvent;
+use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::live::message::LiveEvent;
 use crate::tui::live::naming::{NamedImprint, NamingRequest};
 use crate::tui::runtime::models::ModelStore;

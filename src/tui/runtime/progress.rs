@@ -6,7 +6,8 @@ use std::sync::{Arc, Mutex};
 use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
-use crate::tui::explore::message::{SweepProgress, WorkerEvent};
+use crate::tui::app::worker_event::WorkerEvent;
+use crate::tui::explore::message::SweepProgress;
 use crate::tui::runtime::threads;
 
 /// Takes events of workers, from any thread.

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::formats::separation::said;
 use crate::memory::MemoryGuard;
 use crate::recognition::{SeparationPoint, SmallestSize, TrainingError};
-use crate::tui::explore::message::WorkerEvent;
+use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::recognise::confused::ConfusedPair;
 use crate::tui::recognise::message::RecognitionEvent;
 use crate::tui::recognise::separate::found::{SizeFound, SizesFound};

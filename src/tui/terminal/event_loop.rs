@@ -23,7 +23,7 @@ use rustix::io::Errno;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
 use crate::tui::app::view::view;
-use crate::tui::explore::message::WorkerEvent;
+use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::keys::action;
 use crate::tui::runtime::World;
 use crate::tui::runtime::effect::TerminalEffect;

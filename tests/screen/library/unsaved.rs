@@ -5,7 +5,7 @@ use std::sync::mpsc::channel;
 
 use taxel::storage::{Library, LibraryEntry, ShapeOrigin};
 use taxel::tui::app::message::Message;
-use taxel::tui::explore::message::WorkerEvent;
+use taxel::tui::app::worker_event::WorkerEvent;
 use taxel::tui::runtime::World;
 
 use super::session_on;
