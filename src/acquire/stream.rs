@@ -9,7 +9,7 @@ use crate::acquire::byte_input::{ByteInput, ReadOutcome};
 use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions};
 use crate::acquire::source::FrameSource;
 use crate::formats::seconds::to_nanoseconds;
-use crate::formats::stream::{StreamDecoder, StreamEvent, StreamOptions};
+use crate::formats::stream::{StreamDecoder, StreamEvent, StreamOptions, StreamSink};
 
 /// Bytes read at a time.
 const CHUNK: usize = 1 << 16;
@@ -29,7 +29,9 @@ const TICK: Duration = Duration::from_millis(100);
 
 /// What is measured while a stream is read.
 struct StreamClock {
-    /// The first frame's time.
+    /// Whether a frame without a time of its own has that of its arrival.
+    timed: bool,
+    /// When the first frame came.
     first: Option<Instant>,
     last_frame: Instant,
     last_tick: Instant,
@@ -44,9 +46,10 @@ struct StreamClock {
 }
 
 impl StreamClock {
-    fn new() -> Self {
+    fn new(timed: bool) -> Self {
         let now = Instant::now();
         Self {
+            timed,
             first: None,
             last_frame: now,
             last_tick: now,
@@ -96,20 +99,20 @@ pub(super) fn run(
     let Some(mut input) = opened else {
         return Ok(());
     };
-    let mut clock = StreamClock::new();
     // The time of arrival means nothing for a file.
     let timed = !options.once && !matches!(source, FrameSource::File(_));
+    let mut clock = StreamClock::new(timed);
     let mut bytes = vec![0; CHUNK];
     while !stop.load(Ordering::Relaxed) {
         let lost = match input.read(&mut bytes) {
             Ok(ReadOutcome::Bytes(count)) => {
-                match decode(&mut decoder, &bytes[..count], timed, &mut clock, consumer) {
+                match decode(&mut decoder, &bytes[..count], &mut clock, consumer) {
                     ControlFlow::Continue(()) => continue,
                     ControlFlow::Break(()) => return Ok(()),
                 }
             }
             Ok(ReadOutcome::Anew(how)) => {
-                if finish(&mut decoder, timed, &mut clock, consumer).is_break()
+                if step(&mut decoder, StreamDecoder::finish, &mut clock, consumer).is_break()
                     || consumer(AcquireEvent::Anew(how)).is_break()
                 {
                     return Ok(());
@@ -125,7 +128,8 @@ pub(super) fn run(
             Err(error) if source.comes_back() && !options.once => error,
             Err(error) => return Err(refused("read it", error)),
         };
-        if restart(&mut decoder, timed, &mut clock, consumer).is_break() {
+        // What comes next may begin inside of a frame.
+        if step(&mut decoder, StreamDecoder::restart, &mut clock, consumer).is_break() {
             return Ok(());
         }
         match again(&open, AcquireEvent::Lost(&lost), stop, &decoder, consumer) {
@@ -135,7 +139,7 @@ pub(super) fn run(
         clock.rejoined = true;
         clock.last_frame = Instant::now();
     }
-    let _ = finish(&mut decoder, timed, &mut clock, consumer);
+    let _ = step(&mut decoder, StreamDecoder::finish, &mut clock, consumer);
     let _ = consumer(AcquireEvent::Ended(decoder.counts()));
     Ok(())
 }
@@ -159,33 +163,17 @@ fn first_input(
     }
 }
 
-/// The end of what was read: a whole frame is given, a torn one counted.
-fn finish(
+/// Has a decoder take a step, and reports its events until no more are wanted.
+fn step(
     decoder: &mut StreamDecoder,
-    timed: bool,
+    how: impl FnOnce(&mut StreamDecoder, &mut StreamSink<'_>),
     clock: &mut StreamClock,
     consumer: &mut Consumer<'_>,
 ) -> ControlFlow<()> {
     let mut flow = ControlFlow::Continue(());
-    decoder.finish(&mut |event| {
+    how(decoder, &mut |event| {
         if flow.is_continue() {
-            flow = report(event, timed, clock, consumer);
-        }
-    });
-    flow
-}
-
-/// The same where a connection is lost that will be made again: what comes next may begin inside of a frame.
-fn restart(
-    decoder: &mut StreamDecoder,
-    timed: bool,
-    clock: &mut StreamClock,
-    consumer: &mut Consumer<'_>,
-) -> ControlFlow<()> {
-    let mut flow = ControlFlow::Continue(());
-    decoder.restart(&mut |event| {
-        if flow.is_continue() {
-            flow = report(event, timed, clock, consumer);
+            flow = report(event, clock, consumer);
         }
     });
     flow
@@ -229,24 +217,17 @@ fn again(
 fn decode(
     decoder: &mut StreamDecoder,
     bytes: &[u8],
-    timed: bool,
     clock: &mut StreamClock,
     consumer: &mut Consumer<'_>,
 ) -> ControlFlow<()> {
-    let mut flow = ControlFlow::Continue(());
-    decoder.push(bytes, &mut |event| {
-        if flow.is_continue() {
-            flow = report(event, timed, clock, consumer);
-        }
-    });
-    flow?;
+    let push = |decoder: &mut StreamDecoder, sink: &mut StreamSink<'_>| decoder.push(bytes, sink);
+    step(decoder, push, clock, consumer)?;
     tick(decoder, clock, consumer)
 }
 
 /// Reports an event of the decoder; a frame without a time of its own has that of its arrival.
 fn report(
     event: StreamEvent<'_>,
-    timed: bool,
     clock: &mut StreamClock,
     consumer: &mut Consumer<'_>,
 ) -> ControlFlow<()> {
@@ -255,7 +236,7 @@ fn report(
             let now = Instant::now();
             clock.last_frame = now;
             let arrived = now - *clock.first.get_or_insert(now);
-            let arrived = timed.then(|| to_nanoseconds(arrived.as_secs_f64()));
+            let arrived = clock.timed.then(|| to_nanoseconds(arrived.as_secs_f64()));
             let own = frame.time.map(|own| clock.continued(own, now));
             let time = own.or(arrived);
             consumer(AcquireEvent::Frame { frame, time })

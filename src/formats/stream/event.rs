@@ -148,4 +148,4 @@ impl StreamCounts {
 }
 
 /// Takes what a decoder reports.
-pub(super) type StreamSink<'a> = dyn FnMut(StreamEvent<'_>) + 'a;
+pub type StreamSink<'a> = dyn FnMut(StreamEvent<'_>) + 'a;

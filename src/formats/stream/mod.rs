@@ -36,4 +36,4 @@ mod matsense;
 mod decoder;
 
 pub use decoder::StreamDecoder;
-pub use event::{StreamCounts, StreamEvent, StreamFormat, StreamOptions};
+pub use event::{StreamCounts, StreamEvent, StreamFormat, StreamOptions, StreamSink};
