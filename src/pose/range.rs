@@ -98,12 +98,14 @@ impl DecimalRange {
 
     /// `count` values from `start` on, each `step` from the last, all in units of the last of `places` decimals; `count` and
     /// `step` are above 0.
+    #[cfg(feature = "recognition")]
     pub(crate) fn in_units(start: i64, step: i64, places: u32, count: u64) -> Self {
         Self::shortest(start, step, places, count)
     }
 
     /// The values from this range's first one on to below the next unit, in steps that divide a unit into `parts`: a
     /// divisor of 100.
+    #[cfg(feature = "recognition")]
     pub(crate) fn divided_unit(&self, parts: u8) -> Self {
         const PLACES: u32 = 2;
         let places = self.places.max(PLACES);
@@ -113,6 +115,7 @@ impl DecimalRange {
     }
 
     /// The smallest whole number that is not below the first value.
+    #[cfg(feature = "recognition")]
     pub(crate) fn whole_start(&self) -> Self {
         let start = -(-self.start).div_euclid(10_i64.pow(self.places));
         Self::shortest(start, 1, 0, 1)
