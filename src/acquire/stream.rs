@@ -46,10 +46,11 @@ struct StreamClock {
 }
 
 impl StreamClock {
-    fn new(timed: bool) -> Self {
+    fn new(source: &FrameSource, options: &AcquireOptions) -> Self {
         let now = Instant::now();
         Self {
-            timed,
+            // The time of arrival means nothing for a file.
+            timed: !options.once && !matches!(source, FrameSource::File(_)),
             first: None,
             last_frame: now,
             last_tick: now,
@@ -99,9 +100,7 @@ pub(super) fn run(
     let Some(mut input) = opened else {
         return Ok(());
     };
-    // The time of arrival means nothing for a file.
-    let timed = !options.once && !matches!(source, FrameSource::File(_));
-    let mut clock = StreamClock::new(timed);
+    let mut clock = StreamClock::new(source, options);
     let mut bytes = vec![0; CHUNK];
     while !stop.load(Ordering::Relaxed) {
         let lost = match input.read(&mut bytes) {
