@@ -110,7 +110,7 @@ impl ImprintSummary {
             }
             summary.pieces = summary.pieces.saturating_add(1);
             let best = summary.description.as_ref().map(|best| best.nae);
-            // Most pieces are too small at a look.
+            // The bounds alone show that most pieces are too small.
             if is_main(region.bounds().area(), best) && is_main(region.area(), best) {
                 summary.description = Some(Description::of(region));
             }

@@ -223,7 +223,7 @@ enum Finding {
     /// A shape that cannot be read.
     #[serde(rename = "broken")]
     Broken { name: String, reason: String },
-    /// A file that is no shape.
+    /// A file that is not a shape.
     #[serde(rename = "left over")]
     LeftOver { path: String, reason: &'static str },
 }

@@ -40,10 +40,10 @@ impl NamedImprint {
     }
 }
 
-/// By what imprints are named.
+/// Which model names the imprints of frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamingRequest {
-    /// The number of this work, which its answers carry: those of a model before are told apart by it.
+    /// The number of this request. Answers carry it, so late ones of an earlier model can be dropped.
     pub number: u64,
     /// The set of shapes.
     pub choice: ModelChoice,
