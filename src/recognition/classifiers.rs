@@ -15,11 +15,11 @@ use rayon::prelude::*;
 
 use crate::atlas::{feature_values, features};
 use crate::description::{Description, Descriptor};
-use crate::imprint::Imprint;
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::given::{GivenTable, ShapeDescriptor};
 use crate::recognition::model::{Model, share};
 use crate::recognition::simulation::Draw;
+use crate::recognition::templates::Templates;
 
 /// A classifier by descriptors or by samples: not the best one, whose answers are those of the model itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -521,84 +521,9 @@ impl Sample {
     }
 }
 
-/// The most frequent imprints of each shape.
-struct Templates(Vec<Vec<Imprint>>);
-
-impl Templates {
-    fn new(model: &Model, most: usize) -> Self {
-        let mut all: Vec<Vec<(std::cmp::Reverse<u64>, usize)>> =
-            vec![Vec::new(); model.shapes().len()];
-        for key in 0..model.keys().len() {
-            for count in model.counts(key) {
-                all[usize::from(count.shape)].push((std::cmp::Reverse(count.poses), key));
-            }
-        }
-        let imprints = |mut own: Vec<(std::cmp::Reverse<u64>, usize)>| {
-            own.sort_unstable();
-            let first = own.iter().take(most);
-            first
-                .filter_map(|&(_, key)| model.keys().imprint(key))
-                .collect()
-        };
-        Self(all.into_iter().map(imprints).collect())
-    }
-
-    /// The least number of taxels that differ, over all templates of a shape and all their shifts.
-    fn scores(&self, model: &Model, key: usize) -> Scores {
-        let imprint = model.keys().imprint(key);
-        let own = |templates: &Vec<Imprint>| {
-            let distances = templates.iter().map(|template| match &imprint {
-                Some(imprint) => distance(imprint, template),
-                None => template.count(),
-            });
-            distances.min().map_or(f64::INFINITY, f64::from)
-        };
-        self.0.iter().map(own).collect()
-    }
-}
-
-/// The least number of taxels in which two imprints differ, over all shifts of one against the other.
-fn distance(one: &Imprint, other: &Imprint) -> u32 {
-    let sum = one.count() + other.count();
-    let mut shared = 0;
-    let (rows, columns) = (i32::from(one.rows()), i32::from(one.columns()));
-    for down in 1 - i32::from(other.rows())..rows {
-        let first = usize::try_from(down.max(0)).expect("not negative");
-        let skipped = usize::try_from((-down).max(0)).expect("not negative");
-        let pairs = || {
-            one.words()[first..]
-                .iter()
-                .zip(&other.words()[skipped.min(other.words().len())..])
-        };
-        for across in 1 - i32::from(other.columns())..columns {
-            let moved = |word: u64| {
-                if across < 0 {
-                    word >> across.unsigned_abs()
-                } else {
-                    word.unbounded_shl(across.unsigned_abs())
-                }
-            };
-            let common = pairs()
-                .map(|(own, &word)| (own & moved(word)).count_ones())
-                .sum();
-            shared = shared.max(common);
-        }
-    }
-    sum - 2 * shared
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn distances_take_the_best_shift() {
-        let read = |text: &str| text.parse::<Imprint>().expect("an imprint");
-        assert_eq!(distance(&read("##.#"), &read("#.#")), 1);
-        assert_eq!(distance(&read("#.\n##"), &read("##\n.#\n.#")), 3);
-        assert_eq!(distance(&read("#"), &read("###\n###")), 5);
-        assert_eq!(distance(&read("#..\n...\n..#"), &read("#..\n...\n..#")), 0);
-    }
 
     #[test]
     fn ties_go_to_the_first() {

@@ -13,7 +13,7 @@
 //!                                     -> scan         all keys in all places: the nearest, and those within a distance
 //!                                     -> Evaluation   of the model: the limit of one touch
 //!                                     -> given        the same where only some descriptors are known
-//!                                     -> classifiers  the paper's way: classifiers on descriptors
+//!                                     -> classifiers  the paper's way: classifiers on descriptors, and templates
 //! shapes + sizes                      -> Separation   the limit against size and threshold
 //! ```
 //!
@@ -41,6 +41,8 @@ mod nearest;
 mod answer;
 
 mod noise;
+
+mod templates;
 
 mod classifiers;
 
