@@ -4,7 +4,6 @@
 //! first taxel can be passed before the walk is over, so the walk ends by Jacob Eliosoff's criterion: at the first
 //! taxel, about to leave it in the first direction again.
 
-use std::collections::VecDeque;
 use std::f64::consts::{PI, SQRT_2};
 
 use crate::common::Random;
@@ -44,34 +43,35 @@ fn taxels(mask: &Mask) -> Vec<(usize, usize)> {
     mask.iter().enumerate().flat_map(row).collect()
 }
 
-/// The component of `mask` that holds a taxel; every `stride`-th neighbour counts: 1 all eight, 2 the four beside.
-fn component(mask: &Mask, start: (usize, usize), stride: usize) -> Mask {
-    let mut found = blank(mask);
-    let mut queue = VecDeque::from([start]);
-    found[start.1][start.0] = true;
-    while let Some((column, row)) = queue.pop_front() {
+/// Takes the component that holds a taxel out of `mask`; every `stride`-th neighbour counts: 1 all eight, 2 the four
+/// beside.
+fn take_component(mask: &mut Mask, start: (usize, usize), stride: usize) -> Vec<(usize, usize)> {
+    let mut found = vec![start];
+    mask[start.1][start.0] = false;
+    let mut visited = 0;
+    while let Some(&(column, row)) = found.get(visited) {
+        visited += 1;
         for (dx, dy) in AROUND.iter().step_by(stride) {
             let (x, y) = (
                 column.wrapping_add_signed(*dx),
                 row.wrapping_add_signed(*dy),
             );
-            if x < mask[0].len() && y < mask.len() && mask[y][x] && !found[y][x] {
-                found[y][x] = true;
-                queue.push_back((x, y));
+            if x < mask[0].len() && y < mask.len() && mask[y][x] {
+                mask[y][x] = false;
+                found.push((x, y));
             }
         }
     }
     found
 }
 
-fn components(mask: &Mask, stride: usize) -> Vec<Mask> {
+/// The components of a mask in reading order of their first taxels, and so each one's taxels.
+fn components(mask: &Mask, stride: usize) -> Vec<Vec<(usize, usize)>> {
     let (mut rest, mut found) = (mask.clone(), Vec::new());
     for (column, row) in taxels(mask) {
         if rest[row][column] {
-            let piece = component(&rest, (column, row), stride);
-            for (i, j) in taxels(&piece) {
-                rest[j][i] = false;
-            }
+            let mut piece = take_component(&mut rest, (column, row), stride);
+            piece.sort_unstable_by_key(|&(column, row)| (row, column));
             found.push(piece);
         }
     }
@@ -84,8 +84,9 @@ fn enclosed(mask: &Mask) -> Mask {
     for (column, row) in taxels(mask) {
         open[row + 1][column + 1] = false;
     }
-    let outside = component(&open, (0, 0), 2);
-    let inner = |row: usize, column: usize| !mask[row][column] && !outside[row + 1][column + 1];
+    take_component(&mut open, (0, 0), 2);
+    // What the flood did not reach.
+    let inner = |row: usize, column: usize| open[row + 1][column + 1];
     (0..mask.len())
         .map(|row| {
             (0..mask[0].len())
@@ -132,8 +133,8 @@ fn walk(filled: &Mask) -> (u32, u32) {
 /// What the plain implementation says of a region.
 struct Plain {
     kind: RegionKind,
-    taxels: Mask,
-    filled: Mask,
+    taxels: Vec<(usize, usize)>,
+    filled: Vec<(usize, usize)>,
     nae: u32,
     values: Vec<(&'static str, Value)>,
 }
@@ -142,18 +143,22 @@ fn count(value: usize) -> u32 {
     u32::try_from(value).expect("at most 4096")
 }
 
-fn plain_region(kind: RegionKind, mask: &Mask) -> Plain {
-    let mut filled = mask.clone();
-    for (column, row) in taxels(&enclosed(mask)) {
-        filled[row][column] = true;
-    }
-    let (own, all) = (taxels(mask), taxels(&filled));
+fn plain_region(kind: RegionKind, own: &[(usize, usize)]) -> Plain {
     let number = |value: usize| f64::from(count(value));
     let sum =
         |of: fn(&(usize, usize)) -> usize| own.iter().map(|t| number(of(t)) + 0.5).sum::<f64>();
-    let least = |of: fn(&(usize, usize)) -> usize| all.iter().map(of).min().expect("not empty");
-    let most = |of: fn(&(usize, usize)) -> usize| all.iter().map(of).max().expect("not empty") + 1;
+    let least = |of: fn(&(usize, usize)) -> usize| own.iter().map(of).min().expect("not empty");
+    let most = |of: fn(&(usize, usize)) -> usize| own.iter().map(of).max().expect("not empty") + 1;
     let (left, top, right, bottom) = (least(|t| t.0), least(|t| t.1), most(|t| t.0), most(|t| t.1));
+    // Filled within its own bounds: a small region of a large matrix would be lost in its mask.
+    let mut filled = vec![vec![false; right - left]; bottom - top];
+    for (column, row) in own {
+        filled[row - top][column - left] = true;
+    }
+    for (column, row) in taxels(&enclosed(&filled)) {
+        filled[row][column] = true;
+    }
+    let all = taxels(&filled);
     let (width, height) = (number(right - left), number(bottom - top));
     let open = |&&(column, row): &&(usize, usize)| {
         let (x, y) = (column.cast_signed(), row.cast_signed());
@@ -215,8 +220,11 @@ fn plain_region(kind: RegionKind, mask: &Mask) -> Plain {
     Plain {
         kind,
         nae: count(all.len()),
-        taxels: mask.clone(),
-        filled,
+        taxels: own.to_vec(),
+        filled: all
+            .iter()
+            .map(|(column, row)| (column + left, row + top))
+            .collect(),
         values,
     }
 }
@@ -257,8 +265,9 @@ fn compare(imprint: &Imprint) -> usize {
     let (mut active, mut inactive) = (0, 0);
     for (region, plain) in found.iter().zip(&expected) {
         assert_eq!(region.kind(), plain.kind, "{imprint}");
-        assert_eq!(mask(region.taxels()), plain.taxels, "{region:?}\n{imprint}");
-        assert_eq!(mask(region.filled()), plain.filled, "{region:?}\n{imprint}");
+        let found = [region.taxels(), region.filled()].map(|set| taxels(&mask(set)));
+        assert_eq!(found[0], plain.taxels, "{region:?}\n{imprint}");
+        assert_eq!(found[1], plain.filled, "{region:?}\n{imprint}");
         let description = Description::of(region);
         for descriptor in DESCRIPTORS {
             let expected = plain.values.iter().find(|(key, _)| *key == descriptor.key);

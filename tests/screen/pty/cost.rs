@@ -14,92 +14,99 @@ const FIRST_TOGGLE: usize = 180;
 
 #[test]
 fn bytes_at_80_x_24() {
-    for variables in [
-        &[("TERM", "xterm-256color"), ("LANG", "C.UTF-8")][..],
-        &[("TERM", "xterm"), ("LANG", "C.UTF-8")],
-        &[("TERM", "linux"), ("LANG", "C")],
-        &[("TERM", "vt100"), ("LANG", "C")],
-        &[("TERM", "dumb"), ("LANG", "C")],
-    ] {
-        let mut program = Program::start(&Start {
-            variables,
-            ..Start::default()
+    // Together: each waits for its program most of the time.
+    std::thread::scope(|scope| {
+        for variables in [
+            &[("TERM", "xterm-256color"), ("LANG", "C.UTF-8")],
+            &[("TERM", "xterm"), ("LANG", "C.UTF-8")],
+            &[("TERM", "linux"), ("LANG", "C")],
+            &[("TERM", "vt100"), ("LANG", "C")],
+            &[("TERM", "dumb"), ("LANG", "C")],
+        ] {
+            scope.spawn(move || bytes_with(variables));
+        }
+    });
+}
+
+fn bytes_with(variables: &[(&str, &str)]) {
+    let mut program = Program::start(&Start {
+        variables,
+        ..Start::default()
+    });
+    let ascii = !variables.contains(&("LANG", "C.UTF-8"));
+    let mut script = session(ascii, (80, 24));
+    let first = program.written(|program| program.shows("? Help"));
+    println!(
+        "{variables:?}: first frame {first} bytes in {} reads",
+        program.reads
+    );
+    assert!(first <= 2200, "first frame: {first} bytes");
+    let mut over = Vec::new();
+    let mut press = |name: &str, notation: &str, bytes: &[u8], most: usize| {
+        let written = program.written(|program| {
+            program.types(bytes);
+            script.keys(notation).expect("keys");
+            if variables.contains(&("TERM", "dumb")) {
+                program.agrees_plainly(&script);
+            } else {
+                program.agrees(&script);
+            }
         });
-        let ascii = !variables.contains(&("LANG", "C.UTF-8"));
-        let mut script = session(ascii, (80, 24));
-        let first = program.written(|program| program.shows("? Help"));
-        println!(
-            "{variables:?}: first frame {first} bytes in {} reads",
-            program.reads
-        );
-        assert!(first <= 2200, "first frame: {first} bytes");
-        let mut over = Vec::new();
-        let mut press = |name: &str, notation: &str, bytes: &[u8], most: usize| {
-            let written = program.written(|program| {
-                program.types(bytes);
-                script.keys(notation).expect("keys");
-                if variables.contains(&("TERM", "dumb")) {
-                    program.agrees_plainly(&script);
-                } else {
-                    program.agrees(&script);
-                }
-            });
-            println!("  {name}: {written} bytes");
-            if std::env::var_os("PTY_SHOW").is_some() {
-                let sent = &program.bytes[program.bytes.len() - written..];
-                println!("    {}", String::from_utf8_lossy(sent).escape_debug());
-            }
-            if written > most {
-                over.push(format!("{name}: {written} bytes, at most {most}"));
-            }
-        };
-        let arrows: [(&str, &str, &[u8]); 4] = [
-            ("left", "<Left>", b"\x1b[D"),
-            ("up", "<Up>", b"\x1b[A"),
-            ("right", "<Right>", b"\x1b[C"),
-            ("down", "<Down>", b"\x1b[B"),
-        ];
-        for (name, notation, bytes) in arrows {
-            press(name, notation, bytes, MOVE);
+        println!("  {name}: {written} bytes");
+        if std::env::var_os("PTY_SHOW").is_some() {
+            let sent = &program.bytes[program.bytes.len() - written..];
+            println!("    {}", String::from_utf8_lossy(sent).escape_debug());
         }
-        // Esc says nothing here; what it had written would be counted with the move.
-        press(
-            "nothing, then right",
-            "<Esc><Right>",
-            b"\x1b\x1b\x1b[C",
-            MOVE,
-        );
-        press("a figure", "f<CR>", b"f\r", 4000);
-        // Over all of it, its edges and the corners of the matrix.
-        for (turns, index) in [(10, 0), (5, 1), (10, 2), (6, 3), (12, 0), (7, 1)] {
-            let (name, notation, bytes) = arrows[index];
-            for turn in 0..turns {
-                press(&format!("{name} {turn} on a figure"), notation, bytes, MOVE);
-            }
+        if written > most {
+            over.push(format!("{name}: {written} bytes, at most {most}"));
         }
-        press("first column", "<Home>", b"\x1b[H", MOVE);
-        press("last row", "<PageDown>", b"\x1b[6~", MOVE);
-        press("last column", "<End>", b"\x1b[F", MOVE);
-        press("first row", "<PageUp>", b"\x1b[5~", MOVE);
-        press(
-            "to the middle",
-            "<8x:Left><8x:Down>",
-            &b"\x1b[D\x1b[B".repeat(8),
-            8 * 2 * MOVE,
-        );
-        press("toggle that makes a hole", "<Space>", b" ", TOGGLE);
-        press("toggle back", "<Space>", b" ", TOGGLE);
-        press("help", "?", b"?", 2500);
-        // The menu of the matrix comes back with it.
-        press("help closed", "<Esc>", b"\x1b\x1b", 2590);
-        press("empty", "n", b"n", 2500);
-        press("first toggle", "<Space>", b" ", FIRST_TOGGLE);
-        for name in ["second toggle", "third toggle"] {
-            press("right, off an active taxel", "<Right>", b"\x1b[C", MOVE);
-            press(name, "<Space>", b" ", TOGGLE);
-        }
-        assert!(over.is_empty(), "{variables:?}: {over:#?}");
+    };
+    let arrows: [(&str, &str, &[u8]); 4] = [
+        ("left", "<Left>", b"\x1b[D"),
+        ("up", "<Up>", b"\x1b[A"),
+        ("right", "<Right>", b"\x1b[C"),
+        ("down", "<Down>", b"\x1b[B"),
+    ];
+    for (name, notation, bytes) in arrows {
+        press(name, notation, bytes, MOVE);
     }
+    // Esc says nothing here; what it had written would be counted with the move.
+    press(
+        "nothing, then right",
+        "<Esc><Right>",
+        b"\x1b\x1b\x1b[C",
+        MOVE,
+    );
+    press("a figure", "f<CR>", b"f\r", 4000);
+    // Over all of it, its edges and the corners of the matrix.
+    for (turns, index) in [(10, 0), (5, 1), (10, 2), (6, 3), (12, 0), (7, 1)] {
+        let (name, notation, bytes) = arrows[index];
+        for turn in 0..turns {
+            press(&format!("{name} {turn} on a figure"), notation, bytes, MOVE);
+        }
+    }
+    press("first column", "<Home>", b"\x1b[H", MOVE);
+    press("last row", "<PageDown>", b"\x1b[6~", MOVE);
+    press("last column", "<End>", b"\x1b[F", MOVE);
+    press("first row", "<PageUp>", b"\x1b[5~", MOVE);
+    press(
+        "to the middle",
+        "<8x:Left><8x:Down>",
+        &b"\x1b[D\x1b[B".repeat(8),
+        8 * 2 * MOVE,
+    );
+    press("toggle that makes a hole", "<Space>", b" ", TOGGLE);
+    press("toggle back", "<Space>", b" ", TOGGLE);
+    press("help", "?", b"?", 2500);
+    // The menu of the matrix comes back with it.
+    press("help closed", "<Esc>", b"\x1b\x1b", 2590);
+    press("empty", "n", b"n", 2500);
+    press("first toggle", "<Space>", b" ", FIRST_TOGGLE);
+    for name in ["second toggle", "third toggle"] {
+        press("right, off an active taxel", "<Right>", b"\x1b[C", MOVE);
+        press(name, "<Space>", b" ", TOGGLE);
+    }
+    assert!(over.is_empty(), "{variables:?}: {over:#?}");
 }
 
 #[test]

@@ -52,32 +52,39 @@ fn hanging() -> Option<Program> {
 
 #[test]
 fn a_hanging_disk_holds_neither_keys_nor_the_end() {
-    for (keys, signal, status) in [
-        (&b"q"[..], None, 0),
-        (b"", Some(Signal::TERM), 143),
-        (b"", Some(Signal::HUP), 129),
-    ] {
-        let Some(mut program) = hanging() else { return };
-        program.types(b" sname\r");
-        program.shows("Saving name: waiting for the disk");
-        program.types(b"\x1b[C ");
-        program.shows("NA 2 in all");
-        // Back to what is being saved: nothing else is lost.
-        program.types(b"u");
-        program.shows("undone");
-        program.types(keys);
-        if let Some(signal) = signal {
-            program.signal(signal);
+    // Together: most of their time they wait for that disk.
+    std::thread::scope(|scope| {
+        for (keys, signal, status) in [
+            (&b"q"[..], None, 0),
+            (b"", Some(Signal::TERM), 143),
+            (b"", Some(Signal::HUP), 129),
+        ] {
+            scope.spawn(move || ends_before_the_disk(keys, signal, status));
         }
-        let begun = Instant::now();
-        program.shows("Saving name: not done yet, because the disk does not answer");
-        program.shows("unsaved work may not be on the disk");
-        program.is_left();
-        println!("the shell has the terminal after {:?}", begun.elapsed());
-        // The system waits for the one who traces.
-        let (ended, _) = program.ends();
-        assert_eq!(ended.code(), Some(status));
+    });
+}
+
+fn ends_before_the_disk(keys: &[u8], signal: Option<Signal>, status: i32) {
+    let Some(mut program) = hanging() else { return };
+    program.types(b" sname\r");
+    program.shows("Saving name: waiting for the disk");
+    program.types(b"\x1b[C ");
+    program.shows("NA 2 in all");
+    // Back to what is being saved: nothing else is lost.
+    program.types(b"u");
+    program.shows("undone");
+    program.types(keys);
+    if let Some(signal) = signal {
+        program.signal(signal);
     }
+    let begun = Instant::now();
+    program.shows("Saving name: not done yet, because the disk does not answer");
+    program.shows("unsaved work may not be on the disk");
+    program.is_left();
+    println!("the shell has the terminal after {:?}", begun.elapsed());
+    // The system waits for the one who traces.
+    let (ended, _) = program.ends();
+    assert_eq!(ended.code(), Some(status));
 }
 
 #[test]
