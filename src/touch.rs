@@ -138,7 +138,7 @@ impl Plane {
             return 0.0;
         }
         let area = areas.row(row, &columns).nth(column - columns.start);
-        area.map_or(0.0, tidy)
+        area.map_or(0.0, share)
     }
 
     /// All coverages of the last touch in reading order, each 0 to 1.
@@ -154,7 +154,7 @@ impl Plane {
         for row in areas.rows() {
             let cells = &mut all[row * width..][columns.clone()];
             for (cell, area) in cells.iter_mut().zip(areas.row(row, &columns)) {
-                *cell = tidy(area);
+                *cell = share(area);
             }
         }
         all
@@ -168,7 +168,7 @@ pub(crate) fn least(threshold: f64) -> Double {
 }
 
 /// A share of a cell without the roundings that show: never below 0 or above 1, and 0, ½ and 1 just these.
-fn tidy(area: f64) -> f64 {
+fn share(area: f64) -> f64 {
     let near = (area * 2.0).round() / 2.0;
     let area = if (area - near).abs() < f64::TIE {
         near

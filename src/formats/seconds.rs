@@ -1,5 +1,7 @@
 //! Times of frames in seconds: without the noise of their subtraction, and the usual step from one to the next.
 
+use crate::parameter::number::to_decimals;
+
 /// A longer time between two frames is a gap, unless most are about as long.
 #[cfg(feature = "acquire")]
 const GAP: f64 = 1.0;
@@ -9,23 +11,13 @@ const FINE: f64 = 1e6;
 
 /// A number of seconds, to the nanosecond.
 pub(crate) fn to_nanoseconds(seconds: f64) -> f64 {
-    rounded(seconds, 1e9)
+    to_decimals(seconds, 9)
 }
 
 /// The seconds from `start` to `time`, as exactly as these are: 2.3 s − 2.2 s is 0.1 s.
 pub(crate) fn since(start: f64, time: f64) -> f64 {
     let is_fine = start.abs().max(time.abs()) < FINE;
-    rounded(time - start, if is_fine { 1e9 } else { 1e6 })
-}
-
-fn rounded(seconds: f64, parts: f64) -> f64 {
-    let rounded = (seconds * parts).round() / parts;
-    // Too large for that, and so for a fraction of a second.
-    if rounded.is_finite() {
-        rounded
-    } else {
-        seconds
-    }
+    to_decimals(time - start, if is_fine { 9 } else { 6 })
 }
 
 /// The usual time from a frame to the next, given the times between frames in any order: their mean without gaps, as where

@@ -28,6 +28,19 @@ pub fn short(number: f64) -> String {
     }
 }
 
+/// Rounds to some decimals, so that what computing adds to the last digits neither shows nor drifts: 0.1 + 0.2 is 0.3.
+/// Never a negative zero. A number so large that it has no such decimals remains as it is.
+///
+/// ```
+/// use taxel::parameter::number;
+/// assert_eq!([0.1 + 0.2, -1e-12, 1e300].map(|value| number::to_decimals(value, 9)), [0.3, 0.0, 1e300]);
+/// ```
+pub fn to_decimals(value: f64, decimals: i32) -> f64 {
+    let parts = 10_f64.powi(decimals);
+    let rounded = (value * parts).round() / parts + 0.0;
+    if rounded.is_finite() { rounded } else { value }
+}
+
 /// Returns the message for a text that is not a number; if a decimal point would make it one, with the right spelling.
 ///
 /// ```

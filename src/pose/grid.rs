@@ -9,6 +9,7 @@
 //! given point for every zoom. Cells, degrees. Convention of this project.
 
 use crate::geometry::{Point, Real};
+use crate::parameter::number::to_decimals;
 use crate::parameter::{Parameter, ParameterError};
 use crate::pose::axis::{Anchor, Axis, Pose, PoseIndex, Ranges};
 use crate::pose::boundary::Boundary;
@@ -252,7 +253,8 @@ impl PoseGrid {
                 let zoom = |parameter| zoomed.get(parameter).unwrap_or(1.0);
                 let x0 = (pose[Axis::X0] - centre.x) / zoom(Parameter::ZoomX);
                 let y0 = (pose[Axis::Y0] - centre.y) / zoom(Parameter::ZoomY);
-                pose.with(Axis::X0, tidy(x0)).with(Axis::Y0, tidy(y0))
+                pose.with(Axis::X0, to_decimals(x0, 9))
+                    .with(Axis::Y0, to_decimals(y0, 9))
             }
         };
         with(zoomed, &placement, corner)
@@ -307,11 +309,6 @@ impl PoseGrid {
             anchor.y * T::decimal(pose[Axis::ZoomY]),
         )
     }
-}
-
-/// Rounds to nine decimals; never a negative zero.
-fn tidy(value: f64) -> f64 {
-    (value * 1e9).round() / 1e9 + 0.0
 }
 
 /// Why a grid was refused.

@@ -6,6 +6,7 @@
 
 use crate::figure::Figure;
 use crate::parameter::Parameter;
+use crate::parameter::number::to_decimals;
 use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, PoseGrid, smallest_sensor};
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::model::{Model, NamedShape, check_shapes, share};
@@ -214,7 +215,7 @@ impl Separation {
                         .map_or(scale, |own| own * scale);
                     // The error of a zoom out of range names it.
                     Sensor::LARGEST.check(axis.parameter(), zoom)?;
-                    given[axis] = format!("{:.9}", tidy(zoom)).parse().ok();
+                    given[axis] = format!("{:.9}", to_decimals(zoom, 9)).parse().ok();
                 }
                 source.clone()
             }
@@ -330,9 +331,9 @@ impl Separation {
         if first > 0 {
             let (from, to) = (scan[first - 1].value, scan[first].value);
             let step = (to - from) / f64::from(FINER);
-            found.step = tidy(step.abs());
+            found.step = to_decimals(step.abs(), 9);
             for index in 1..FINER {
-                let value = tidy(from + f64::from(index) * step);
+                let value = to_decimals(from + f64::from(index) * step, 9);
                 let point = self.at(axis, value, scan[first].threshold, progress)?;
                 if point.error() <= error {
                     found.point = point;
@@ -355,18 +356,13 @@ fn enlarged(figure: &Figure, scale: f64) -> Result<Option<Figure>, crate::pose::
         let Some(length) = figure.get(parameter) else {
             continue;
         };
-        let length = tidy(length * scale);
+        let length = to_decimals(length * scale, 9);
         if length > f64::from(sensor.side()) {
             return Ok(None);
         }
         scaled = scaled.with(parameter, length, &sensor)?;
     }
     Ok(Some(scaled))
-}
-
-/// Without the last digits, which come of computing: 3.399, not 3.3990000000000005.
-fn tidy(value: f64) -> f64 {
-    (value * 1e9).round() / 1e9
 }
 
 #[cfg(test)]

@@ -30,6 +30,7 @@ use crate::formats::recording::number;
 use crate::formats::recording::side::stated;
 use crate::formats::recording::text_row;
 use crate::frame::Frame;
+use crate::parameter::number::to_decimals;
 
 /// No file has more sensors: each has a name of its own.
 const MOST_CHANNELS: usize = 64;
@@ -215,7 +216,11 @@ impl XsensorState {
         frame.time = moment
             .zip(start)
             .map(|((day, seconds), (first_day, first_seconds))| {
-                rounded(f64::from(day - first_day) * 86_400.0 + seconds - first_seconds)
+                // Both clocks tell thousandths.
+                to_decimals(
+                    f64::from(day - first_day) * 86_400.0 + seconds - first_seconds,
+                    3,
+                )
             });
         Ok(sink(RecordingEvent::Frame(frame)).is_break())
     }
@@ -230,11 +235,6 @@ impl XsensorState {
         let day = date.and_then(|date| days(date)).unwrap_or(1);
         Some((day, hours * 3600.0 + minutes * 60.0 + seconds))
     }
-}
-
-/// The difference of two clocks that tell thousandths.
-fn rounded(seconds: f64) -> f64 {
-    (seconds * 1000.0).round() / 1000.0
 }
 
 /// The number of a day such as `2022 Aug 16`, from an arbitrary one on.

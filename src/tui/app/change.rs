@@ -6,6 +6,7 @@
 use crate::formats::value::counted;
 use crate::imprint::Imprint;
 use crate::parameter::Parameter;
+use crate::parameter::number::to_decimals;
 use crate::source::Source;
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Document;
@@ -234,7 +235,7 @@ pub(in crate::tui) fn shift(app: &mut App, dx: f64, dy: f64) {
     let moved: Vec<(Parameter, f64)> = ways
         .into_iter()
         .filter(|(_, by)| *by != 0.0)
-        .filter_map(|(parameter, by)| Some((parameter, tidy(source.get(parameter)? + by))))
+        .filter_map(|(parameter, by)| Some((parameter, rounded(source.get(parameter)? + by))))
         .collect();
     set(app, source, MoveKind::Along, &moved);
 }
@@ -243,7 +244,7 @@ pub(in crate::tui) fn shift(app: &mut App, dx: f64, dy: f64) {
 pub(in crate::tui) fn turn(app: &mut App, clockwise: f64) {
     let Some(source) = movable(app) else { return };
     if let Some(angle) = source.get(Parameter::Angle) {
-        let turned = tidy(angle + clockwise % 360.0 * source.sense());
+        let turned = rounded(angle + clockwise % 360.0 * source.sense());
         let angle = turned.rem_euclid(360.0);
         set(app, source, MoveKind::Turn, &[(Parameter::Angle, angle)]);
     }
@@ -258,7 +259,7 @@ pub(in crate::tui) fn zoom(app: &mut App, direction: i8) {
         let text = format!("a figure has no zoom; {figure} changes its size");
         return refuse(app, text);
     };
-    let (x, y) = (tidy(x + by), tidy(y + by));
+    let (x, y) = (rounded(x + by), rounded(y + by));
     let mut values = vec![(Parameter::ZoomX, x), (Parameter::ZoomY, y)];
     if let Source::Picture(picture) = &source
         && app.zoom_centre
@@ -266,14 +267,14 @@ pub(in crate::tui) fn zoom(app: &mut App, direction: i8) {
         && y > 0.0
     {
         let (x0, y0) = picture.corner_about_centre(x, y);
-        values.extend([(Parameter::X0, tidy(x0)), (Parameter::Y0, tidy(y0))]);
+        values.extend([(Parameter::X0, rounded(x0)), (Parameter::Y0, rounded(y0))]);
     }
     set(app, source, MoveKind::Zoom, &values);
 }
 
-/// Rounds to 6 decimals, so that steps of a hundredth do not drift; -0 becomes 0.
-fn tidy(value: f64) -> f64 {
-    (value * 1e6).round() / 1e6 + 0.0
+/// What a person reads: steps of a hundredth do not drift.
+fn rounded(value: f64) -> f64 {
+    to_decimals(value, 6)
 }
 
 /// Gives the source new values and touches the matrix anew, in the step of the history that the last message began if
@@ -309,13 +310,13 @@ fn set(app: &mut App, source: Source, way: MoveKind, values: &[(Parameter, f64)]
 
 #[cfg(test)]
 mod tests {
-    use super::tidy;
+    use super::rounded;
 
     #[test]
     fn steps_lead_to_zero_and_not_to_minus_zero() {
         let there = [0.3, -0.1, -0.1, -0.1].iter().sum::<f64>();
         assert!(there < 0.0);
-        assert_eq!(tidy(there).to_string(), "0");
-        assert_eq!(tidy(0.1 + 0.2).to_string(), "0.3");
+        assert_eq!(rounded(there).to_string(), "0");
+        assert_eq!(rounded(0.1 + 0.2).to_string(), "0.3");
     }
 }

@@ -124,11 +124,11 @@ pub(super) fn round_up(value: f64) -> f64 {
     let fits = steps.map(|step| step * unit).into_iter();
     // What rounding has made a little too large is not rounded up once more.
     let mut fits = fits.filter(|step| *step >= value * (1.0 - 1e-12));
-    fits.next().map_or(10.0 * unit, tidy)
+    fits.next().map_or(10.0 * unit, nine_digits)
 }
 
 /// Rounds to nine digits, so that steps do not drift.
-pub(super) fn tidy(value: f64) -> f64 {
+pub(super) fn nine_digits(value: f64) -> f64 {
     let text = format!("{value:.8e}");
     text.parse::<f64>().map_or(value, |value| value + 0.0)
 }
@@ -141,6 +141,6 @@ mod tests {
     fn ranges_end_at_round_numbers() {
         let rounded = [0.0, 0.03, 1.0, 1.2, 45.0, 100.0, 255.0, 1e300].map(round_up);
         assert_eq!(rounded, [1.0, 0.05, 1.0, 2.0, 50.0, 100.0, 500.0, 1e300]);
-        assert_eq!(tidy(0.1 + 0.2), 0.3);
+        assert_eq!(nine_digits(0.1 + 0.2), 0.3);
     }
 }
