@@ -67,24 +67,28 @@ pub fn fitting(number: f64, width: usize) -> String {
         .unwrap_or_else(|| decimal(number, 0))
 }
 
-/// The same of a measured value, which may lie far below 1: it has three digits that count then, and where these do not fit a
-/// power of ten.
+/// The same of a measured value, which may lie far below 1. It has three digits that count then; where these do not fit,
+/// a power of ten with as many as do; and where no power of ten fits, it is 0.
 ///
 /// ```
 /// use taxel::formats::value::measured;
 /// assert_eq!([23.656_854, 0.000_55, 5.5e-7].map(|number| measured(number, 7)), ["23.6569", "0.00055", "5.5e-7"]);
+/// assert_eq!([0.5, 0.005_7, 5.5e-10].map(|number| measured(number, 4)), ["0.5", "6e-3", "0"]);
 /// ```
 pub fn measured(number: f64, width: usize) -> String {
     let size = number.abs();
     if !(f64::MIN_POSITIVE..0.01).contains(&size) {
         return fitting(number, width);
     }
-    let rounded = format!("{number:.2e}").parse().unwrap_or(number);
-    let plain = rounded.to_string();
-    if plain.len() <= width {
-        return plain;
-    }
-    format!("{rounded:e}")
+    let rounded = |digits: usize| {
+        let text = format!("{number:.digits$e}");
+        text.parse::<f64>().unwrap_or(number)
+    };
+    let powers = [2, 1, 0].map(|digits| format!("{:e}", rounded(digits)));
+    std::iter::once(rounded(2).to_string())
+        .chain(powers)
+        .find(|text| text.len() <= width)
+        .unwrap_or_else(|| fitting(number, width))
 }
 
 /// A count with its noun, in the singular or the plural.

@@ -11,7 +11,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 
-use crate::formats::value::{fitting, measured};
+use crate::formats::value::measured;
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::tui::live::layout::{CellForm, HeatGrid, NUMBER};
@@ -206,7 +206,7 @@ impl<'a> HeatMap<'a> {
         let text = if value.is_nan() {
             String::new()
         } else {
-            fitting(value, width)
+            measured(value, width)
         };
         let text = if text.chars().count() > width {
             "9999".replace('9', if value > 0.0 { "^" } else { "v" })
