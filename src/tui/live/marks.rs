@@ -41,6 +41,11 @@ impl FrameMarks {
         index.is_err()
     }
 
+    /// Takes the mark that a key has set off the frame of a number.
+    pub(super) fn take_off(&mut self, number: u64) {
+        self.own.retain(|mark| mark.number != number);
+    }
+
     /// Gives up those that a key has set.
     pub(super) fn clear(&mut self) {
         self.own.clear();

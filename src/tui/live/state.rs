@@ -11,7 +11,7 @@ use crate::tui::live::marks::FrameMarks;
 use crate::tui::live::message::{FeedStatus, FrameBatch, ProvisionalChange, SourceState};
 use crate::tui::live::naming::{NamedImprint, Naming, NamingRequest};
 use crate::tui::live::range::ShadeRange;
-use crate::tui::live::reading::{HeatLayer, LiveReading, hold, round_up, tidy};
+use crate::tui::live::reading::{HeatLayer, LiveReading, hold, nine_digits, round_up};
 use crate::tui::live::request::WatchRequest;
 use crate::tui::recognise::sets::ModelChoice;
 
@@ -305,6 +305,12 @@ impl Live {
             self.not_drawn += unseen as u64;
         }
         let before = self.provisional.take();
+        if let (ProvisionalChange::Gone, Some(gone)) = (&batch.provisional, &before)
+            && self.history.newest() < Some(gone.number)
+        {
+            // Withdrawn: another frame will have its number.
+            self.marks.take_off(gone.number);
+        }
         let (provisional, is_changed) = match &batch.provisional {
             ProvisionalChange::Unchanged => (before, false),
             ProvisionalChange::Shown(frame) => (Some(Arc::clone(frame)), true),
@@ -434,10 +440,10 @@ impl Live {
             None => Rule::at_least(round_up(self.range.top() / 20.0)),
             Some(Rule::Percent(percent)) => Rule::percent((percent + 5.0 * by).clamp(5.0, 100.0)),
             Some(Rule::Hysteresis { low, high }) => {
-                Rule::hysteresis(tidy(low + step), tidy(high + step))
+                Rule::hysteresis(nine_digits(low + step), nine_digits(high + step))
             }
             Some(Rule::Noise(deviations)) => Rule::noise((deviations + by).max(1.0)),
-            Some(Rule::AtLeast(threshold)) => Rule::at_least(tidy(threshold + step)),
+            Some(Rule::AtLeast(threshold)) => Rule::at_least(nine_digits(threshold + step)),
         };
         self.choose(&rule);
     }
@@ -448,7 +454,7 @@ impl Live {
         let largest = self.reading.as_ref().and_then(|reading| reading.max);
         let largest = largest.map_or(self.range.top(), |(largest, _)| largest);
         let rule = match self.rule.map(|set| set.rule) {
-            Some(Rule::Percent(percent)) => Rule::at_least(tidy(percent / 100.0 * largest)),
+            Some(Rule::Percent(percent)) => Rule::at_least(nine_digits(percent / 100.0 * largest)),
             Some(Rule::AtLeast(threshold)) if largest > 0.0 => {
                 Rule::percent((100.0 * threshold / largest).round().clamp(1.0, 100.0))
             }
