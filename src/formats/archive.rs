@@ -13,7 +13,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::atlas::{Atlas, ImprintSummary, feature_values, features};
 use crate::formats::npy::Dtype;
-use crate::formats::npz::{ArchiveError, ArrayReader, ArrayWriter, HEADER, little_endian};
+use crate::formats::npz::{
+    ArchiveError, ArrayReader, ArrayWriter, HEADER, format_in, little_endian,
+};
 use crate::formats::record::{Record, Values};
 use crate::pose::{Anchor, Axis, PoseGrid, Ranges};
 use crate::quote::shortened;
@@ -144,14 +146,16 @@ fn feature_columns(atlas: &Atlas) -> Vec<Vec<u8>> {
 pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
     let mut archive = ArrayReader::new(input)?;
     let header = archive.header()?;
-    let header: ArchiveHeader<Record<'_>, Values> = serde_json::from_slice(&header)
-        .map_err(|error| ArchiveError::Header(crate::formats::json::message(&error)))?;
-    if header.format != FORMAT {
+    // First: an archive of another form has other keys.
+    let found = format_in(&header)?;
+    if found != FORMAT {
         return Err(ArchiveError::Format {
-            found: shortened(&header.format),
+            found: shortened(&found),
             expected: FORMAT,
         });
     }
+    let header: ArchiveHeader<Record<'_>, Values> = serde_json::from_slice(&header)
+        .map_err(|error| ArchiveError::Header(crate::formats::json::message(&error)))?;
     let sensor = header.sensor.sensor(Sensor::default())?;
     let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
     let source = header.source.source(&sensor, &no_name)?;

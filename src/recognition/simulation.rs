@@ -58,10 +58,10 @@ impl RecognitionRate {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct TouchesUntil {
-    /// The mean, over the runs that reached it.
-    pub mean: f64,
-    /// Its standard error.
-    pub standard_error: f64,
+    /// The mean, over the runs that reached it; None if none did.
+    pub mean: Option<f64>,
+    /// Its standard error; None of fewer than two runs.
+    pub standard_error: Option<f64>,
     /// Runs that reached it within [`MOST_TOUCHES`].
     pub reached: u64,
     /// Runs in all.
@@ -353,15 +353,14 @@ fn summary(runs: u64, lengths: &[Option<(u32, bool)>]) -> TouchesUntil {
         .map(|(length, _)| f64::from(*length))
         .collect();
     let reached = own.len() as u64;
-    let mean = own.iter().sum::<f64>() / count(reached.max(1));
-    let squares: f64 = own
-        .iter()
-        .map(|length| (length - mean) * (length - mean))
-        .sum();
-    let variance = squares / count(reached.saturating_sub(1).max(1));
+    let mean = (reached > 0).then(|| own.iter().sum::<f64>() / count(reached));
+    let standard_error = mean.filter(|_| reached > 1).map(|mean| {
+        let squares = own.iter().map(|length| (length - mean) * (length - mean));
+        (squares.sum::<f64>() / count(reached - 1) / count(reached)).sqrt()
+    });
     TouchesUntil {
         mean,
-        standard_error: (variance / count(reached.max(1))).sqrt(),
+        standard_error,
         reached,
         runs,
         right: lengths.iter().flatten().filter(|(_, right)| *right).count() as u64,
@@ -393,6 +392,14 @@ mod tests {
         let touches = model.touches_until(0.4, 10, 0, &|_| true);
         let right = touches.map(|own| own.iter().map(|own| own.right).collect());
         assert_eq!(right, Some(vec![10, 0]));
+        // They are never told apart, so there is no mean.
+        let never = model.touches_until(0.9, 2, 0, &|_| true);
+        let means = never.map(|own| {
+            own.iter()
+                .map(|own| (own.mean, own.standard_error))
+                .collect()
+        });
+        assert_eq!(means, Some(vec![(None, None), (None, None)]));
         let noise = Noise::new(0.0).expect("in range");
         let rate = model.recognition_rate(&sensor, &noise, &noise, 10, 0, &|_| true);
         assert_eq!(rate.map(|rate| (rate.touches, rate.right)), Some((20, 10)));

@@ -62,7 +62,14 @@ pub struct ModelFolder(PathBuf);
 impl ModelFolder {
     /// The folder `models` beside the folder of a library.
     pub fn beside(library: &Path) -> Self {
-        Self(library.with_file_name("models"))
+        // `.` has no name to put another beside.
+        let whole = match library.file_name() {
+            Some(_) => library.to_owned(),
+            None => library
+                .canonicalize()
+                .unwrap_or_else(|_| library.to_owned()),
+        };
+        Self(whole.with_file_name("models"))
     }
 
     /// Returns its path; it may not exist yet.

@@ -87,7 +87,7 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
     );
     assert_eq!(
         shelf.does("library|delete|My Ring", ""),
-        "deleted my ring; taxel library restore brings it back\n"
+        "deleted my ring; taxel library restore NAME brings it back\n"
     );
     shelf.refuses("library|show|my ring", "no shape is called \"my ring\"");
     shelf.refuses("library|delete|my ring", "no shape is called \"my ring\"");

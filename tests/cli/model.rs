@@ -631,3 +631,76 @@ fn ascii_is_kept_to() {
         assert!(run.stdout.is_ascii(), "{}", run.stdout);
     }
 }
+
+#[test]
+fn shapes_that_are_never_told_apart_have_no_number_of_touches() {
+    let place = Place::new();
+    let disc = "ellipse radius_x=2 radius_y=2";
+    let bar = "rectangle length=6 width=3";
+    place.done(&format!(
+        "model train --shape 'a={disc}' --shape 'b={disc}' --shape 'c={bar}' --out t.npz {COARSE}"
+    ));
+    let text = place.done("model touches t.npz --runs 5 --quiet");
+    assert!(
+        text.contains("a                 –  5 runs never\n"),
+        "{text}"
+    );
+    assert!(text.ends_with("all shapes        –\n"), "{text}");
+    let answer = place.json("model touches t.npz --runs 5 --quiet --json");
+    assert_eq!(answer["mean"], Value::Null);
+    assert_eq!(answer["shapes"][0]["standard_error"], Value::Null);
+    assert!(answer["shapes"][2]["mean"].is_number(), "{answer}");
+}
+
+#[test]
+fn a_built_in_set_is_meant_before_a_file_of_its_name() {
+    let place = Place::new();
+    fs::create_dir(place.path("figures")).expect("a folder");
+    let text = place.done("recognise washer");
+    assert!(!text.is_empty());
+    let run = place.run("recognise washer --model ./figures", "");
+    refused(&run, 1, "./figures: not a regular file");
+}
+
+#[test]
+fn what_cannot_be_read_or_written_so_is_said_before_any_work() {
+    let place = Place::new();
+    let run = place.run("model train missing.jsonl --out x.npz", "");
+    let message = "missing.jsonl: cannot read: No such file or directory (os error 2)";
+    refused(&run, 1, message);
+    for shard in ["1/2", "2/2"] {
+        let out = format!("part-{}.npz", &shard[..1]);
+        place.done(&format!(
+            "model train parts.jsonl --shard {shard} --out {out} {COARSE}"
+        ));
+    }
+    place.write("model.csv", "kept");
+    let merge = "merge part-1.npz part-2.npz --out model.csv --force --quiet";
+    let run = place.run(merge, "");
+    refused(&run, 1, "model.csv: a model is written as .npz");
+    assert_eq!(place.read("model.csv"), b"kept");
+    // An atlas has other keys than a model: it is told by its format.
+    place.done("sweep rectangle --length 3 --width 2 --angle 0 --atlas atlas.npz --quiet");
+    let run = place.run("merge atlas.npz part-2.npz --out all.npz --quiet", "");
+    assert_eq!(run.status, Some(1));
+    assert!(run.stderr.contains("format"), "{}", run.stderr);
+    misused(
+        "model confusion figures --test half-step --csv",
+        "the argument '--test <half-step>' cannot be used with '--csv'",
+    );
+}
+
+/// `.` has no name to put another beside: the models stand beside the folder that it is.
+#[test]
+fn a_library_named_by_a_dot_has_its_models_beside_it() {
+    let place = Place::new();
+    let folder = place.0.path().join("library");
+    fs::create_dir(&folder).expect("a folder");
+    let line = format!("--library . model train ../parts.jsonl --name p {COARSE}");
+    let mut program = program(&line.split_whitespace().collect::<Vec<_>>(), "C.UTF-8");
+    program.current_dir(&folder);
+    let run = finish(program.spawn().expect("it starts"), b"");
+    assert_eq!(run.status, Some(0), "{}", run.stderr);
+    assert!(place.0.path().join("models/p.npz").exists());
+    place.done("model show p");
+}

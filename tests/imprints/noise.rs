@@ -246,7 +246,12 @@ fn touches_until_certain_are_as_published() {
         let touches = model
             .touches_until(0.99, 4000, 3, &|_| true)
             .expect("not stopped");
-        let mean = touches.iter().map(|own| own.mean).sum::<f64>() / float(touches.len() as u64);
+        let mean = touches
+            .iter()
+            .map(|own| own.mean)
+            .sum::<Option<f64>>()
+            .expect("reached")
+            / float(touches.len() as u64);
         println!("{mean} {expected}");
         assert!(
             (mean / expected - 1.0).abs() < 0.02,

@@ -266,7 +266,9 @@ fn parse_atlas(text: &str) -> Result<AtlasFile, &'static str> {
 /// With `--export` each frame has a file of its own; a single shape can be saved, so not with `--all`.
 fn frames() -> Command {
     let keeping = keeping().map(|arg| match arg.get_id().as_str() {
-        "save" => arg.requires("choice").conflicts_with("all"),
+        "save" => arg
+            .requires("choice")
+            .conflicts_with_all(["all", "noise-report"]),
         "export" => arg.requires("choice").help(parameters::wrapped(
             "Write the imprint, or a drawing of it, with the frame's number in the name",
             52,

@@ -4,7 +4,7 @@
 //! ```text
 //! --frame N | --label L | --peak | --all             which frames; none of them: a listing
 //! --crop --flip --turn --mask --tare --gain          from the recording's values to those that count
-//! --at-least | --percent | --low --high | --noise    from values to active taxels; --least drops small pieces
+//! --at-least | --percent | --low --high | --deviations   from values to active taxels; --least drops small pieces
 //! ```
 //! Only one rule can be given. Values are in the recording's own unit.
 
@@ -199,7 +199,7 @@ pub(crate) fn naming() -> [Arg; 2] {
 }
 
 /// The flags that say which values are active.
-/// `--high` is not a rule by itself: it goes with `--low`. `--noise` needs a tare, whose frames show the noise of each
+/// `--high` is not a rule by itself: it goes with `--low`. `--deviations` needs a tare, whose frames show the noise of each
 /// cell.
 pub(crate) fn rules() -> [Arg; 6] {
     let value = |flag: &'static str, value: &'static str, help: &'static str| {

@@ -203,7 +203,7 @@ pub(crate) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String
 pub(crate) fn delete(shelf: &Shelf, name: &str) -> Result<String, CliError> {
     let name = shelf.library()?.delete(name)?;
     Ok(format!(
-        "deleted {name}; taxel library restore brings it back\n"
+        "deleted {name}; taxel library restore NAME brings it back\n"
     ))
 }
 

@@ -78,6 +78,9 @@ pub(crate) fn merge(
     let is_model = parts
         .first()
         .is_some_and(|part| part.format == MODEL_FORMAT);
+    if is_model {
+        check_model_file(wanted)?;
+    }
     parts.sort_by_key(|part| part.shard.number());
     let memory = MemoryGuard::new(
         wanted.memory,
@@ -144,6 +147,18 @@ fn within(memory: &MemoryGuard) -> Result<(), CliError> {
         return Ok(());
     }
     Err(CliError::Memory(memory.message_of_merge()))
+}
+
+/// A model has one form.
+fn check_model_file(wanted: &Wanted) -> Result<(), CliError> {
+    match &wanted.atlas {
+        Some(file) if !file.is_archive() => Err(CliError::Ending {
+            name: file.path().to_string_lossy().into_owned(),
+            what: "a model",
+            expected: ".npz",
+        }),
+        _ => Ok(()),
+    }
 }
 
 /// The model of all shards of a training.

@@ -109,7 +109,7 @@ fn trained(
     Ok(if asked.json {
         let mut text = card_json(model, &limit)?;
         text.insert("file".to_owned(), json!(name));
-        json::text(&text) + "\n"
+        json::ascii(&text) + "\n"
     } else {
         charset.lines(&format!("{done}: {name}\n")) + &evaluation::summary(&limit, NamedBy::Imprint)
     })
@@ -241,12 +241,16 @@ pub(crate) fn choice(which: &OsStr, shelf: &Shelf) -> Result<ModelChoice, CliErr
     {
         return Ok(ModelChoice::Stored(name.clone()));
     }
+    // Before a file of that name, so that a folder `figures` does not change what the default means; `./figures` is the
+    // file.
+    let built_in = name.map(ModelChoice::from_name);
+    if let Some(own) = built_in.filter(|own| ModelChoice::BUILT_IN.contains(own)) {
+        return Ok(own);
+    }
     if Path::new(which).exists() {
         return Ok(ModelChoice::File(which.into()));
     }
-    let built_in = name.map(ModelChoice::from_name);
-    let built_in = built_in.filter(|own| ModelChoice::BUILT_IN.contains(own));
-    built_in.ok_or_else(|| unknown(which, shelf))
+    Err(unknown(which, shelf))
 }
 
 /// That nothing has a name, and which sets there are.

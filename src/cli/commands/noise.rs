@@ -30,6 +30,7 @@ use crate::cli::output::evaluation::{self, bar, percent};
 use crate::cli::output::plot;
 use crate::cli::output::progress::Progress;
 use crate::cli::signals::Signals;
+use crate::formats::value::counted;
 use crate::formats::{LinePlot, json};
 use crate::recognition::{
     GivenDescriptors, Model, Noise, RecognitionRate, TouchesUntil, TrainingError, random_taxels,
@@ -321,20 +322,24 @@ pub(crate) fn touches(
 }
 
 /// The mean of the shapes' means, each shape counted once, and its standard error. Their runs are independent, so the
-/// variances add up.
-fn mean(results: &[TouchesUntil]) -> (f64, f64) {
+/// variances add up. None if a shape has none.
+fn mean(results: &[TouchesUntil]) -> (Option<f64>, Option<f64>) {
     #[expect(clippy::cast_precision_loss, reason = "the number of shapes is small")]
     let shapes = results.len() as f64;
-    let mean = results.iter().map(|own| own.mean).sum::<f64>() / shapes;
-    let variance: f64 = results.iter().map(|own| own.standard_error.powi(2)).sum();
-    (mean, variance.sqrt() / shapes)
+    let mean = results.iter().map(|own| own.mean).sum::<Option<f64>>();
+    let variances = results.iter().map(|own| Some(own.standard_error?.powi(2)));
+    let variance = variances.sum::<Option<f64>>();
+    (
+        mean.map(|sum| sum / shapes),
+        variance.map(|sum| sum.sqrt() / shapes),
+    )
 }
 
 /// One line of JSON: what was asked, the mean of all shapes, and each shape.
 fn touches_json(
     asked: &TouchesArguments,
     shapes: &[(&str, &TouchesUntil)],
-    (mean, error): (f64, f64),
+    (mean, error): (Option<f64>, Option<f64>),
 ) -> String {
     let shapes: Vec<_> = shapes
         .iter()
@@ -364,7 +369,7 @@ fn touches_json(
 fn touches_text(
     asked: &TouchesArguments,
     shapes: &[(&str, &TouchesUntil)],
-    (mean, error): (f64, f64),
+    (mean, error): (Option<f64>, Option<f64>),
 ) -> String {
     let widths = shapes.iter().map(|(name, _)| name.chars().count());
     let width = widths.fold("all shapes".len(), usize::max);
@@ -377,12 +382,20 @@ fn touches_text(
     for (name, own) in shapes {
         let left = match own.runs - own.reached {
             0 => String::new(),
-            never => format!("  {never} runs never"),
+            never => format!("  {} never", counted(never, "run")),
         };
-        let (mean, error) = (own.mean, own.standard_error);
+        let value = with_error(own.mean, own.standard_error);
         // Cannot fail: the text is kept in memory.
-        let _ = writeln!(text, "  {name:<width$}  {mean:>7.2} ± {error:.2}{left}");
+        let _ = writeln!(text, "  {name:<width$}  {value}{left}");
     }
-    let _ = writeln!(text, "  {:<width$}  {mean:>7.2} ± {error:.2}", "all shapes");
+    let value = with_error(mean, error);
+    let _ = writeln!(text, "  {:<width$}  {value}", "all shapes");
     text
+}
+
+/// A mean and its standard error, as far as there are such.
+fn with_error(mean: Option<f64>, error: Option<f64>) -> String {
+    let mean = mean.map_or("–".to_owned(), |mean| format!("{mean:.2}"));
+    let error = error.map_or(String::new(), |error| format!(" ± {error:.2}"));
+    format!("{mean:>7}{error}")
 }

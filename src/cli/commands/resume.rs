@@ -92,6 +92,9 @@ fn whole<T>(path: &Path, read: Result<T, ArchiveFileError>) -> Result<Option<T>,
             error: ArchiveError::Io(error),
             ..
         }) if error.raw_os_error().is_some() => Err(ArchiveFileError::new(path, error).into()),
+        Err(error) if matches!(error.error, ArchiveError::Format { .. }) => {
+            Err(foreign(path, &error.error.to_string()))
+        }
         Err(error) => Err(torn(path, &error.error.to_string())),
     }
 }

@@ -130,8 +130,8 @@ pub(crate) fn watch(
     let acquired = acquire(&source, &asked.options, &signals.stopped, &mut |event| {
         watcher.on(event)
     });
-    watcher.finish(acquired)?;
     let stopped = signals.stopped.load(std::sync::atomic::Ordering::Relaxed);
+    watcher.finish(acquired, stopped)?;
     Ok(match signals.failure() {
         CliError::Stopped { status } if stopped => status,
         _ => 0,
@@ -508,12 +508,12 @@ impl Watcher<'_> {
     /// Writes out everything.
     /// The first error in this order is returned: of recording, of writing answers, of the frames, of the source. A
     /// tare that lacks frames is an error of the frames: nothing was answered.
-    fn finish(mut self, acquired: Result<(), AcquireError>) -> Result<(), CliError> {
+    fn finish(mut self, acquired: Result<(), AcquireError>, stopped: bool) -> Result<(), CliError> {
         let mut failure = self.failure.take();
         if failure.is_none() {
             failure = self.release().err();
         }
-        if let (None, Some((tare, _))) = (&failure, &self.tare) {
+        if let (None, Some((tare, _)), false) = (&failure, &self.tare, stopped) {
             let wanted = tare.wanted();
             let frames = wanted - tare.missing();
             failure = Some(self.refused(&FrameError::Tare { frames, wanted }.to_string()));

@@ -7,7 +7,7 @@ use crate::cli::error::CliError;
 use crate::cli::input::recording::{RecordingFile, dead_cells};
 use crate::cli::output::recording_list::ListedChannel;
 use crate::formats::recording::{ChannelInfo, ReadOptions, RecordingEvent, SetRule};
-use crate::frame::{FrameError, Peak, Processing, Tare, TareFrames, View};
+use crate::frame::{Peak, Processing, Tare, TareFrames, View};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 
@@ -45,18 +45,16 @@ pub(crate) fn mask(asked: &ProcessingArguments) -> Result<Option<Imprint>, CliEr
 fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
     let mut file = RecordingFile::open(path, ReadOptions::default())?;
     let mut gain = Matrix::filled(1, 1, 1.0);
-    let mut found = Err(FrameError::Tare {
-        frames: 0,
-        wanted: 1,
-    });
+    let mut found = None;
     let read = file.read(&mut |event| {
         if let RecordingEvent::Frame(frame) = event {
-            found = View::default().of(frame, &mut gain);
+            found = Some(View::default().of(frame, &mut gain));
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
     });
     read.map_err(|error| file.damaged(error))?;
+    let found = found.ok_or_else(|| file.refused(&"no frame, expected one of factors"))?;
     found.map_err(|error| file.refused(&error))?;
     Ok(gain)
 }

@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 
 use crate::cli::arguments::model::shape_set::SetArguments;
 use crate::cli::error::CliError;
+use crate::cli::input::content::InputError;
 use crate::cli::input::shapes::Shelf;
 use crate::formats::{ShapeLookup, named_shape, named_shape_of_words};
 use crate::picture::Picture;
@@ -42,9 +43,9 @@ pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape
             )?;
         } else if let Some(path) = file_of_lines(what, shelf) {
             let name = path.to_string_lossy().into_owned();
-            let mut file = File::open(&path).map_err(|error| CliError::File {
+            let mut file = File::open(&path).map_err(|error| CliError::Input {
                 name: name.clone(),
-                error,
+                error: InputError::Read(error),
             })?;
             lines(&mut file, &name, &lookup, &mut shapes)?;
         } else {

@@ -184,7 +184,7 @@ pub(crate) fn matrix(evaluation: &Evaluation, charset: Charset) -> String {
         }
     };
     let shapes = labels.len();
-    let numbers = (shapes - 1).to_string().len();
+    let numbers = shapes.to_string().len();
     let name = labels
         .iter()
         .map(|label| label.chars().count())

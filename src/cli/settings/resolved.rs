@@ -323,7 +323,11 @@ impl Effective {
         line(&format!("charset = \"{characters}\""), &self.charset.origin);
         line(&format!("mouse = {}", self.mouse.value), &self.mouse.origin);
         let library = match &self.library.value {
-            Some(folder) => format!("library = {}", quoted(&folder.to_string_lossy())),
+            // A file of settings means the same in every folder.
+            Some(folder) => {
+                let whole = std::path::absolute(folder).unwrap_or_else(|_| folder.clone());
+                format!("library = {}", quoted(&whole.to_string_lossy()))
+            }
             None => "# no library: there is no home".to_owned(),
         };
         line(&library, &self.library.origin);

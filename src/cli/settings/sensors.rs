@@ -43,6 +43,8 @@ pub(crate) enum SettingKind {
     Whole(u64, u64),
     /// A number in a range.
     Number(f64, f64),
+    /// A share above 0 %.
+    Percent,
 }
 
 /// A row of the table of settings.
@@ -61,7 +63,7 @@ pub(crate) const TABLES: [&str; 2] = ["source", "frames"];
 /// All of them.
 pub(crate) const SENSOR_SETTINGS: [SensorSetting; 11] = {
     use SensorKey as Key;
-    use SettingKind::{Format, Number, Whole};
+    use SettingKind::{Format, Number, Percent, Whole};
     const fn row(
         table: &'static str,
         name: &'static str,
@@ -82,7 +84,7 @@ pub(crate) const SENSOR_SETTINGS: [SensorSetting; 11] = {
         row("source", "rows", Key::Rows, Whole(1, 512)),
         row("source", "columns", Key::Columns, Whole(1, 512)),
         row("frames", "at_least", Key::AtLeast, value),
-        row("frames", "percent", Key::Percent, Number(0.0, 100.0)),
+        row("frames", "percent", Key::Percent, Percent),
         row("frames", "low", Key::Low, value),
         row("frames", "high", Key::High, value),
         row("frames", "least", Key::Least, Whole(1, 4096)),
@@ -117,6 +119,7 @@ impl SettingKind {
             }
             Self::Whole(least, most) => format!("a whole number, {least} to {most}"),
             Self::Number(least, most) => format!("a number, {least:?} to {most:?}"),
+            Self::Percent => "a number above 0, up to 100".to_owned(),
         }
     }
 
@@ -135,6 +138,9 @@ impl SettingKind {
             .then_some(SettingValue::Whole(number as u64)),
             Self::Number(least, most) => (least..=most)
                 .contains(&number)
+                .then_some(SettingValue::Number(number)),
+            Self::Percent => Rule::percent(number)
+                .is_ok()
                 .then_some(SettingValue::Number(number)),
         }
     }

@@ -167,7 +167,7 @@ fn output() -> [Arg; 5] {
         .value_parser(parse_report)
         .conflicts_with_all(["greedy", "pairs", "test"]);
     let csv = switch("csv", "Print comma-separated values")
-        .conflicts_with_all(["json", "greedy", "pairs"]);
+        .conflicts_with_all(["json", "greedy", "pairs", "test"]);
     [export, replace(), json(), quiet(), csv]
 }
 
