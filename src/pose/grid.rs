@@ -9,7 +9,7 @@
 //! given point for every zoom. Cells, degrees. Convention of this project.
 
 use crate::geometry::{Point, Real};
-use crate::parameter::number::to_decimals;
+use crate::parameter::number::{grouped, to_decimals};
 use crate::parameter::{Parameter, ParameterError};
 use crate::pose::axis::{Anchor, Axis, Pose, PoseIndex, Ranges};
 use crate::pose::boundary::Boundary;
@@ -325,7 +325,7 @@ pub enum GridError {
         noun: &'static str,
     },
     /// Too many poses.
-    #[error("{poses} poses, expected at most {MAX_POSES}")]
+    #[error("{} poses, expected at most {}", grouped(*poses), grouped(MAX_POSES))]
     Poses {
         /// Their number.
         poses: u128,

@@ -399,7 +399,7 @@ fn what_is_no_sweep_is_refused() {
             "",
         ),
         1,
-        "360000000000000 poses, expected at most 1000000000000",
+        "360,000,000,000,000 poses, expected at most 1,000,000,000,000",
     );
     refused(
         &taxel("sweep hexagon --zoom-x 2", ""),

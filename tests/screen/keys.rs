@@ -289,6 +289,22 @@ fn quitting_asks_where_work_would_be_lost() {
             &["An earlier drawing is not saved. Quit anyway? (y/n)"],
         );
     }
+    // Both may be, and saving one does not give up the other.
+    let both = "<Space>n<Right><Space>q";
+    shows(
+        both,
+        &["The imprint and an earlier one are not saved. Quit anyway? (y/n, s: save first)"],
+    );
+    let saved = session(&format!("{both}sa name<Enter>"));
+    assert!(!saved.app().ended());
+    let screen = saved.screen();
+    assert!(
+        screen.contains("An earlier drawing is not saved. Quit anyway? (y/n)"),
+        "{screen}"
+    );
+    assert!(session("<Space>qsa name<Enter>").app().ended());
+    // What is empty cannot be saved.
+    shows("lwasher<Enter>", &["NA 36"]);
     for nothing_lost in ["<Space><Space>nq", "<Space>saa<Enter>nq", "<Space>nuuq"] {
         assert!(session(nothing_lost).app().ended(), "{nothing_lost}");
     }
@@ -540,4 +556,24 @@ fn the_confusion_matrix_starts_at_the_worst_pair() {
         &["likely: ellipse", "drawn by hand"],
     );
     shows(&format!("{open}<Esc>"), &["Recognise:"]);
+}
+
+#[test]
+fn a_turn_beyond_a_whole_one_has_no_digits_of_computing() {
+    shows(
+        ":figure hexagon --angle 350<Enter>:turn 15.3<Enter>",
+        &["5.3°"],
+    );
+}
+
+#[test]
+fn esc_takes_a_count_back() {
+    let screen = session("12<Esc>").screen();
+    assert!(
+        !screen.contains("12 times") && !screen.contains("does nothing"),
+        "{screen}"
+    );
+    // Again, when the keys without a meaning have been named.
+    let screen = session("<Esc>12<Esc>").screen();
+    assert!(!screen.contains("12 times"), "{screen}");
 }

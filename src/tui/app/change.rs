@@ -15,6 +15,7 @@ use crate::tui::app::state::{App, Mode, MoveKind, Notice};
 use crate::tui::compare::{Comparison, heading};
 use crate::tui::keys::action;
 use crate::tui::keys::key::Arrow;
+use crate::tui::runtime::effect::Effect;
 
 /// Shows a notice.
 pub(in crate::tui) fn inform(app: &mut App, text: impl Into<String>) {
@@ -244,8 +245,9 @@ pub(in crate::tui) fn shift(app: &mut App, dx: f64, dy: f64) {
 pub(in crate::tui) fn turn(app: &mut App, clockwise: f64) {
     let Some(source) = movable(app) else { return };
     if let Some(angle) = source.get(Parameter::Angle) {
-        let turned = rounded(angle + clockwise % 360.0 * source.sense());
-        let angle = turned.rem_euclid(360.0);
+        let turned = angle + clockwise % 360.0 * source.sense();
+        // What rounds up to a whole turn is none.
+        let angle = rounded(turned.rem_euclid(360.0)) % 360.0;
         set(app, source, MoveKind::Turn, &[(Parameter::Angle, angle)]);
     }
 }
@@ -270,6 +272,24 @@ pub(in crate::tui) fn zoom(app: &mut App, direction: i8) {
         values.extend([(Parameter::X0, rounded(x0)), (Parameter::Y0, rounded(y0))]);
     }
     set(app, source, MoveKind::Zoom, &values);
+}
+
+/// Does what a prompt asks for. The prompt stays open where that is refused and no other page opens; where the answer comes
+/// later, it opens again if that is a refusal.
+pub(in crate::tui) fn from_prompt(
+    app: &mut App,
+    prompt: Dialog,
+    act: impl FnOnce(&mut App) -> Option<Effect>,
+) -> Option<Effect> {
+    let pages = app.dialogs.len();
+    let effect = act(app);
+    let refused = matches!(app.notice, Some(Notice::Refusal(_)));
+    if refused && effect.is_none() && app.dialogs.len() == pages {
+        app.dialogs.push(prompt);
+    } else {
+        app.prompt = Some(prompt);
+    }
+    effect
 }
 
 /// What a person reads: steps of a hundredth do not drift.

@@ -7,6 +7,7 @@
 //! line_prompt  pages that are one line of text
 //! state      App                                        update: the only writer of it
 //! change     what changes the document                mouse: what clicks and drags do
+//! quit       the end, and the question before it
 //! steps      what a step of the history did, in words
 //! layout     the panes of the screen                    view: draws them
 //! menu, title, status      the lines above and below
@@ -33,6 +34,8 @@ pub mod steps;
 pub mod history;
 
 pub mod change;
+
+pub(in crate::tui) mod quit;
 
 pub mod mouse;
 

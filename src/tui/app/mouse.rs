@@ -38,7 +38,8 @@ pub(in crate::tui) fn act(app: &mut App, mouse: Mouse) -> Option<Message> {
         (MouseKind::ScrollDown, _) => return scroll(app, WHEEL),
         (MouseKind::Release, _) => app.paint = None,
         (MouseKind::Press, Some(Target::Taxel(column, row, whole))) => {
-            app.notice = None;
+            app.begin_action();
+            app.count = None;
             app.paint = Some((!app.reading().imprint.get(column, row), (column, row)));
             let mut document = app.history.present().clone();
             document.edits.toggle(column, row);

@@ -388,6 +388,17 @@ impl App {
         form.unwrap_or_else(|| self.history.present())
     }
 
+    /// Before anything that the user asks for: what belongs to the action before ends.
+    pub(in crate::tui) fn begin_action(&mut self) {
+        self.notice = None;
+        self.prompt = None;
+        if self.dialogs.is_empty() {
+            self.quits_when_saved = false;
+        }
+        // A key between press and release: what is dragged on would change another document than the press did.
+        self.paint = None;
+    }
+
     /// Whether there is work that would be lost.
     pub fn unsaved(&self) -> bool {
         self.history.present() != &self.history.origin().saved

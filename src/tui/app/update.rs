@@ -8,6 +8,7 @@ use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Reading;
 use crate::tui::app::message::Message;
 use crate::tui::app::mouse;
+use crate::tui::app::quit::can_save_first;
 use crate::tui::app::state::{App, Notice, RunState};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::help::Help;
@@ -50,8 +51,12 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
             return None;
         }
         Message::Unknown(key) => {
-            app.count = None;
-            unknown(app, key);
+            // As Esc, it takes a count that was begun back.
+            if app.count.take().is_some() {
+                app.notice = None;
+            } else {
+                unknown(app, key);
+            }
             return None;
         }
         Message::Library(answer) => {
@@ -106,13 +111,10 @@ fn answered(app: &mut App, handle: impl FnOnce(&mut App) -> Option<Effect>) -> O
 
 /// Does what a message of the user says, once.
 fn perform(app: &mut App, message: Message) -> Option<Effect> {
-    app.notice = None;
-    app.prompt = None;
-    if app.dialogs.is_empty() || matches!(message, Message::Cancel | Message::Quit) {
+    app.begin_action();
+    if matches!(message, Message::Cancel | Message::Quit) {
         app.quits_when_saved = false;
     }
-    // A key between press and release: what is dragged on would change another document than the press did.
-    app.paint = None;
     if !message.moves_shape() {
         app.moves = None;
     }
@@ -141,7 +143,11 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
     match message {
         Message::Cancel | Message::Quit if !page.cancels_itself() => return None,
         Message::Help => {
-            let help = Help::new(page.context());
+            let context = match app.context() {
+                Context::Grab => Context::Grab,
+                _ => page.context(),
+            };
+            let help = Help::new(context);
             app.dialogs.extend([dialog, Dialog::Help(help)]);
             return None;
         }
@@ -287,7 +293,7 @@ fn in_history(app: &mut App, mut list: HistoryDialog, message: &Message) -> Opti
 
 /// Handles the answer to a question. Without an answer the question stays.
 fn at_question(app: &mut App, question: Question, message: &Message) -> Option<Effect> {
-    if *message == Message::Save && question.yes == Message::QuitNow && app.unsaved() {
+    if *message == Message::Save && question.yes == Message::QuitNow && can_save_first(app) {
         let effect = matrix::update::act(app, Message::Save);
         app.quits_when_saved = true;
         return effect;

@@ -25,7 +25,7 @@ impl ExportKind {
     /// What a name can end in.
     fn endings(self) -> &'static str {
         match self {
-            Self::Imprints => ".csv, .jsonl, .npz, .npy or .svg",
+            Self::Imprints => ".csv, .jsonl, .npz, .npy, .svg or .png",
             Self::Curve => ".csv, .svg or .png",
         }
     }
@@ -38,7 +38,8 @@ impl ExportKind {
             }
             Self::Curve => {
                 let ending = std::path::Path::new(name).extension();
-                ending.is_some_and(|ending| ["csv", "svg", "png"].iter().any(|own| ending == *own))
+                let mut own = ["csv", "svg", "png"].iter();
+                ending.is_some_and(|ending| own.any(|own| ending.eq_ignore_ascii_case(own)))
             }
         }
     }
@@ -109,7 +110,8 @@ impl LinePrompt for ExportDialog {
 
     /// What a name can end in.
     fn behind(&self, _columns: u16) -> Cow<'_, str> {
-        format!("   ({})", self.what.endings()).into()
+        let short = self.what.endings().replace(", ", " ").replace(" or ", " ");
+        format!("   ({short})").into()
     }
 }
 

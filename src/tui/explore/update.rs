@@ -9,7 +9,7 @@ use ratatui::layout::Rect;
 use crate::formats::value::{counted, grouped};
 use crate::storage::{Existing, is_poses};
 use crate::touch::Plane;
-use crate::tui::app::change::{change, compare_with, inform, refuse};
+use crate::tui::app::change::{change, compare_with, from_prompt, inform, refuse};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
@@ -239,9 +239,16 @@ pub(crate) fn in_export(
     if *message == Message::Accept {
         match dialog.name() {
             Ok(name) if dialog.what == ExportKind::Curve => {
-                return recognise::update::act(app, RecogniseMessage::WriteSizes(name));
+                return from_prompt(app, Dialog::Export(dialog), |app| {
+                    recognise::update::act(app, RecogniseMessage::WriteSizes(name))
+                });
             }
             Ok(name) => match missing(app, &name) {
+                None if drawn_form(&name).is_some() => {
+                    return from_prompt(app, Dialog::Export(dialog), |app| {
+                        act(app, ExploreMessage::Write(name, Existing::Kept))
+                    });
+                }
                 None => return act(app, ExploreMessage::Write(name, Existing::Kept)),
                 Some(missing) => refuse(app, missing),
             },

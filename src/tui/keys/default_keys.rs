@@ -198,7 +198,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('m') => MARK, Char('\'') => JUMP]
             "" "mark what is selected by a letter; go to a mark";
         [Char('x') => EXPORT]
-            "export" "write .csv .jsonl .npz imprints, .npy poses, .svg plot";
+            "export" "write .csv .jsonl .npz imprints, .npy poses, .svg .png";
         [Char('e') => RANGES] "ranges" "explore other ranges";
         [Char('?') => HELP] "help" "all keys";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]

@@ -18,12 +18,12 @@ use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::History;
 use crate::tui::app::message::{Copied, Endpoint, Layer, Message, Purpose};
+use crate::tui::app::quit::quit;
 use crate::tui::app::state::{App, Display, Mode, NarrowPage, RunState, UnfinishedSave};
 use crate::tui::form::state::FormDialog;
 use crate::tui::help::Help;
 use crate::tui::history::HistoryDialog;
 use crate::tui::keys::action;
-use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Arrow;
 use crate::tui::matrix::files;
 use crate::tui::matrix::layers::Layers;
@@ -224,27 +224,6 @@ fn proposed_name(app: &App) -> String {
             .map_or_else(|| "picture".to_owned(), |name| format!("{name} moved")),
         None => "drawing".to_owned(),
     }
-}
-
-/// Quits, after a question if work would be lost.
-/// The imprint on the matrix can be saved from the question; an earlier drawing must be brought back first, so there
-/// is no key for it. What is being saved needs no question: the end waits for it, and says if it was in vain.
-fn quit(app: &mut App) {
-    let what = if app.unsaved() && !app.is_being_saved() {
-        "The imprint"
-    } else if app.history.left_unsaved() {
-        "An earlier drawing"
-    } else {
-        app.run_state = RunState::Quit;
-        return;
-    };
-    let text = format!("{what} is not saved. Quit anyway?");
-    let key = app.keymap().label(Context::Question, &action::SAVE);
-    let mut question = Question::new(text, Message::QuitNow);
-    if app.unsaved() && !key.is_empty() {
-        question.more = format!(", {key}: save first");
-    }
-    app.dialogs.push(Dialog::Question(question));
 }
 
 /// Switches the mouse: it sets taxels, or the terminal selects text with it.

@@ -4,10 +4,10 @@
 //! the library. Completion asks the library for names where a command takes one;
 //! the answer completes the word when it arrives.
 
-use crate::tui::app::change::refuse;
+use crate::tui::app::change::{from_prompt, refuse};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
-use crate::tui::app::state::{App, Notice};
+use crate::tui::app::state::App;
 use crate::tui::keys::action::Arguments;
 use crate::tui::keys::key::Arrow;
 use crate::tui::matrix;
@@ -78,17 +78,9 @@ pub(in crate::tui) fn in_command(
     None
 }
 
-/// Does what a prompt asks for. It stays open where that is refused and no other page opens.
+/// Does what a prompt asks for.
 fn ask(app: &mut App, message: Message, prompt: Dialog) -> Option<Effect> {
-    let pages = app.dialogs.len();
-    let effect = matrix::update::act(app, message);
-    let refused = matches!(app.notice, Some(Notice::Refusal(_)));
-    if refused && effect.is_none() && app.dialogs.len() == pages {
-        app.dialogs.push(prompt);
-    } else {
-        app.prompt = Some(prompt);
-    }
-    effect
+    from_prompt(app, prompt, |app| matrix::update::act(app, message))
 }
 
 /// Handles a message in the prompt for a name, which stays open until the name is valid.

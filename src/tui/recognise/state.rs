@@ -306,6 +306,19 @@ impl Recognition {
         Some((trained, self.present, shape))
     }
 
+    /// Takes that a search failed: nothing was found, and this imprint is not searched for again.
+    pub fn fail_look(&mut self) {
+        if let Some(trained) = self.trained().cloned() {
+            self.take_look(Look {
+                trained,
+                imprint: self.present,
+                nearest: None,
+                pose: None,
+                poses: Vec::new(),
+            });
+        }
+    }
+
     /// Whether outlines of poses are shown; None for where taxels are large.
     pub fn outlines(&self) -> Option<bool> {
         self.outlines

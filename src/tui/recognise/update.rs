@@ -318,6 +318,14 @@ pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) {
 /// The number is of a training or of the work on sizes; the page that waits for another number takes no notice.
 pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) {
     separate::update::on_failure(app, number, reason);
+    // A search has no number.
+    if number == 0 {
+        if let Some(page) = state(app) {
+            page.fail_look();
+            refuse(app, reason);
+        }
+        return;
+    }
     let prepared = Prepared {
         number,
         stored: Vec::new(),

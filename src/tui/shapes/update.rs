@@ -11,7 +11,8 @@ use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Document;
 use crate::tui::app::history::StoredName;
 use crate::tui::app::message::{Endpoint, Leftover, LibraryEvent, Message, Purpose};
-use crate::tui::app::state::{App, Mode, RunState};
+use crate::tui::app::quit::quit;
+use crate::tui::app::state::{App, Mode};
 use crate::tui::form::state::FormDialog;
 use crate::tui::keys::action::{self, Arguments};
 use crate::tui::keys::binding::Context;
@@ -168,9 +169,6 @@ fn on_change(app: &mut App, change: LibraryEvent) {
 /// A shape is saved, as it was when that was asked for.
 fn on_stored(app: &mut App, name: String, stamp: u64) {
     inform(app, format!("saved as {name}"));
-    if app.quits_when_saved {
-        app.run_state = RunState::Quit;
-    }
     if let Some(save) = app.saving.pop_front() {
         let name = StoredName {
             name,
@@ -178,6 +176,10 @@ fn on_stored(app: &mut App, name: String, stamp: u64) {
             owner: ShapeOrigin::Own,
         };
         app.history.stored(save.origin, save.document, name);
+    }
+    if std::mem::take(&mut app.quits_when_saved) {
+        // Asks once more if an earlier drawing is not saved.
+        quit(app);
     }
 }
 

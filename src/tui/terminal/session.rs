@@ -18,10 +18,11 @@ use rustix::termios::{OptionalActions, QueueSelector, Termios, tcflush, tcgetatt
 use crate::tui::terminal::device::Device;
 use crate::tui::terminal::settings::TerminalSettings;
 
-/// Buttons only, places as numbers. Crossterm's own command also has every motion reported, a flood on a slow line.
-const MOUSE_ON: &str = "\x1b[?1000h\x1b[?1006h";
+/// Buttons, and motion while one is down, places as numbers. Crossterm's own command has every motion reported, a flood on a
+/// slow line.
+const MOUSE_ON: &str = "\x1b[?1000h\x1b[?1002h\x1b[?1006h";
 /// Ends the reports of the mouse.
-const MOUSE_OFF: &str = "\x1b[?1006l\x1b[?1000l";
+const MOUSE_OFF: &str = "\x1b[?1006l\x1b[?1002l\x1b[?1000l";
 /// Shows what a frame that was cut off has held back.
 const SHOW_FRAME: &str = "\x1b[?2026l";
 /// Marks pasted text.

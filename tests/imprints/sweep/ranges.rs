@@ -113,6 +113,6 @@ fn grids_are_in_range_or_refused() {
     let many = paper.with(Axis::X0, fine).with(Axis::Y0, fine);
     assert_eq!(
         grid(ring(), many).expect_err("no grid").to_string(),
-        "360000000000000 poses, expected at most 1000000000000"
+        "360,000,000,000,000 poses, expected at most 1,000,000,000,000"
     );
 }

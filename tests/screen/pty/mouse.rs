@@ -26,7 +26,7 @@ fn it_clicks_drags_and_scrolls() {
     use MouseKind::{Drag, Press, Release, ScrollDown, ScrollUp};
     let mut program = Program::started(&Start::default());
     let mut script = session(false, (80, 24));
-    assert_eq!(program.count(b"\x1b[?1000h\x1b[?1006h"), 1);
+    assert_eq!(program.count(b"\x1b[?1000h\x1b[?1002h\x1b[?1006h"), 1);
     let mut act = |acts: &[(MouseKind, u16, u16)], shown: &str| {
         for &(kind, column, row) in acts {
             point(&mut program, &mut script, kind, column, row);
@@ -82,7 +82,7 @@ fn m_gives_it_back_to_the_terminal_and_takes_it_again() {
     let mut program = Program::started(&Start::default());
     assert_eq!(
         program.screen().mouse_protocol_mode(),
-        vt100::MouseProtocolMode::PressRelease
+        vt100::MouseProtocolMode::ButtonMotion
     );
     program.types(b"m");
     program.shows("the mouse selects text");
@@ -92,7 +92,7 @@ fn m_gives_it_back_to_the_terminal_and_takes_it_again() {
     program.types(b"m");
     program.shows("the mouse sets taxels");
     program.until("the mouse", |program| {
-        program.screen().mouse_protocol_mode() == vt100::MouseProtocolMode::PressRelease
+        program.screen().mouse_protocol_mode() == vt100::MouseProtocolMode::ButtonMotion
     });
     program.types(b"q");
     program.ends_well(0);

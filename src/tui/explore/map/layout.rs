@@ -163,9 +163,11 @@ impl MapPane {
 fn seen(at: u64, all: u64, stride: u64, room: u64, block: u64) -> (u64, u64) {
     let shown = all.div_ceil(stride);
     let seen = shown.min(room);
-    let first = (at / stride).saturating_sub(seen / 2).min(shown - seen);
+    // Rounded up, so that the last one can be seen where it stands in a block that is not full.
+    let last = (shown - seen).next_multiple_of(block);
+    let first = (at / stride).saturating_sub(seen / 2).min(last);
     let first = first - first % block;
-    (first * stride, seen)
+    (first * stride, seen.min(shown.saturating_sub(first)))
 }
 
 #[cfg(test)]
@@ -191,14 +193,19 @@ mod tests {
 
     #[test]
     fn what_is_in_sight_keeps_the_cursor_and_whole_blocks() {
-        for (all, stride, room, block) in
-            [(100, 3, 20, 2), (7, 2, 9, 2), (50, 1, 4, 1), (5, 5, 0, 2)]
-        {
+        for (all, stride, room, block) in [
+            (100, 3, 20, 2),
+            (101, 2, 34, 2),
+            (101, 1, 34, 2),
+            (7, 2, 9, 2),
+            (50, 1, 4, 1),
+            (5, 5, 0, 2),
+        ] {
             for at in 0..all {
                 let (first, count) = seen(at, all, stride, room, block);
                 assert!(first.is_multiple_of(stride * block) && count <= room);
                 assert!((first + count * stride).saturating_sub(all) < stride * block.max(2));
-                let here = first <= at && at < first + (count + block) * stride;
+                let here = first <= at && at < first + count * stride;
                 assert!(here || room == 0, "{at} of {all}: {first}, {count}");
             }
         }

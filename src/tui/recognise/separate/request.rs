@@ -135,7 +135,10 @@ impl SeparationFlags {
                 }
                 self.sizes = Some((axis, sizes));
             }
-            "--threshold" => self.threshold = Some(share()?),
+            "--threshold" => {
+                let above = share().ok().filter(|threshold| *threshold > 0.0);
+                self.threshold = Some(above.ok_or("--threshold takes a number above 0, up to 1")?);
+            }
             "--want" => self.wanted = Some(share()?),
             "--angle" => self.angles = Some(range()?),
             _ => {

@@ -219,7 +219,8 @@ impl Separate {
             smallest: self.smallest.clone(),
         }];
         let ending = std::path::Path::new(name).extension();
-        match ending.and_then(|ending| ending.to_str()) {
+        let ending = ending.map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+        match ending.as_deref() {
             Some("csv") => Ok(csv(request.axis, &curves).into_bytes()),
             Some("svg") => {
                 let plot = drawing(request.axis, &curves, Some(request.wanted));

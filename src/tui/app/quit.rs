@@ -1,0 +1,37 @@
+//! The end of the program: at once, or after a question where work would be lost.
+
+use crate::tui::app::dialog::{Dialog, Question};
+use crate::tui::app::message::Message;
+use crate::tui::app::state::{App, RunState};
+use crate::tui::keys::action;
+use crate::tui::keys::binding::Context;
+
+/// Quits, after a question if work would be lost.
+/// The imprint on the matrix can be saved from the question; an earlier drawing must be brought back first, so there
+/// is no key for it. What is being saved needs no question: the end waits for it, and says if it was in vain.
+pub(in crate::tui) fn quit(app: &mut App) {
+    let what = match (
+        app.unsaved() && !app.is_being_saved(),
+        app.history.left_unsaved(),
+    ) {
+        (true, true) => "The imprint and an earlier one are",
+        (true, false) => "The imprint is",
+        (false, true) => "An earlier drawing is",
+        (false, false) => {
+            app.run_state = RunState::Quit;
+            return;
+        }
+    };
+    let text = format!("{what} not saved. Quit anyway?");
+    let key = app.keymap().label(Context::Question, &action::SAVE);
+    let mut question = Question::new(text, Message::QuitNow);
+    if can_save_first(app) && !key.is_empty() {
+        question.more = format!(", {key}: save first");
+    }
+    app.dialogs.push(Dialog::Question(question));
+}
+
+/// Whether there is something on the matrix that can be saved before the end.
+pub(in crate::tui) fn can_save_first(app: &App) -> bool {
+    app.unsaved() && !app.is_being_saved() && !app.reading().imprint.is_empty()
+}
