@@ -9,7 +9,7 @@
 //! | `touches` | `taxel model touches` |
 //!
 //! `show`, `list` and `delete` are small enough to stand here. A model is named as in `taxel recognise --model`: a model
-//! beside the library takes precedence over a file, and `figures` stands for the seven figures ([`DEFAULT_MODEL`]).
+//! beside the library takes precedence over a built-in set such as `figures` ([`DEFAULT_MODEL`]), and that over a file.
 
 use std::ffi::OsString;
 
