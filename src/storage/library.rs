@@ -19,6 +19,7 @@ use crate::storage::lock;
 use crate::storage::lock::Lock;
 use crate::storage::name_index::NameIndex;
 use crate::storage::shipped;
+use crate::storage::temporary::is_temporary;
 use crate::storage::trash::Trash;
 
 /// Where a shape comes from.
@@ -383,7 +384,7 @@ impl Library {
                 Some(".lock" | ".trash" | ".journal" | COMMANDS | RECOGNISED_SET | FORMS) => {
                     continue;
                 }
-                Some(name) if name.starts_with(TEMPORARY) => {
+                Some(name) if name.starts_with(TEMPORARY) || is_temporary(name) => {
                     "half-written by a program that died, or being written"
                 }
                 Some(name) if name_of(name).is_some() => continue,

@@ -278,7 +278,7 @@ fn temporaries(folder: &Path) -> impl Iterator<Item = PathBuf> {
 }
 
 /// Whether a file's name is one of ours: `.taxel-` and six letters or digits.
-fn is_temporary(name: &str) -> bool {
+pub(crate) fn is_temporary(name: &str) -> bool {
     let random = name.strip_prefix(PREFIX);
     random.is_some_and(|random| {
         random.len() == RANDOM && random.bytes().all(|byte| byte.is_ascii_alphanumeric())

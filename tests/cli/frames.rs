@@ -337,6 +337,11 @@ fn the_noise_of_a_recording_is_reported() {
     assert!(run.stdout.contains("stuck on: 4,4\n"), "{}", run.stdout);
     let written = std::fs::read_to_string(&mask).expect("it is written");
     assert_eq!(written, ".....\n.....\n.....\n.....\n....#\n");
+    // What says nothing of many frames is refused, not ignored.
+    for flag in ["--save mask", "--model figures", "--heat"] {
+        let line = format!("frames - --noise-report --at-least 5 {flag}");
+        misused(&line, "the argument '--noise-report' cannot be used with");
+    }
 }
 
 #[test]

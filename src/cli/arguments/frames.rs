@@ -113,13 +113,15 @@ pub(crate) fn command() -> Command {
             _ => arg,
         }))
         .args(rules().map(|arg| arg.requires("choice")))
-        .args(naming().map(|arg| arg.requires("choice")))
+        .args(naming().map(|arg| arg.requires("choice").conflicts_with("noise-report")))
 }
 
 /// The flag that shows values.
-/// Not with `--json`, which has no place for values.
+/// Not with `--json`, which has no place for values, nor with a report on many frames.
 pub(crate) fn heat() -> Arg {
-    switch("heat", "Show the values in shades, in drawings too").requires("choice")
+    switch("heat", "Show the values in shades, in drawings too")
+        .requires("choice")
+        .conflicts_with("noise-report")
 }
 
 /// The flags that say how frames are looked at.

@@ -18,6 +18,7 @@ use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, EvaluationJson};
 use crate::cli::signals::Signals;
+use crate::formats::value::counted;
 use crate::formats::{MODEL_FORMAT, archive_kind, json};
 use crate::memory::{MemoryGuard, MemorySize, peak};
 use crate::recognition::{Evaluation, Model, ModelMerge, TrainingError};
@@ -137,8 +138,8 @@ fn bound(parts: &[Part], memory: &MemoryGuard) -> Result<String, CliError> {
     memory
         .check_bytes(MemorySize(least))
         .map_err(CliError::Memory)?;
-    let (files, sum) = (parts.len(), MemorySize(sum));
-    Ok(format!("{files} files of {sum}: at most {most} of memory"))
+    let (files, sum) = (counted(parts.len() as u64, "file"), MemorySize(sum));
+    Ok(format!("{files} of {sum}: at most {most} of memory"))
 }
 
 /// Stops a merge that comes near to what it may use.

@@ -151,7 +151,7 @@ fn noise_plot(table: &[NoiseRow]) -> LinePlot {
     let plot = LinePlot::new("noise", "right");
     let curves = noise_points(table).into_iter();
     curves.fold(plot, |plot, (dead, points)| {
-        plot.with_curve(&format!("{dead} dead taxels"), &points)
+        plot.with_curve(&counted(dead.into(), "dead taxel"), &points)
     })
 }
 
@@ -163,7 +163,7 @@ fn noise_curves(table: &[NoiseRow], charset: Charset) -> String {
         match (curve.is_empty(), dead) {
             (true, _) => String::new(),
             (false, 0) => format!("\n{curve}"),
-            (false, dead) => format!("\n{dead} dead taxels\n{curve}"),
+            (false, dead) => format!("\n{}\n{curve}", counted(dead.into(), "dead taxel")),
         }
     });
     curves.collect()

@@ -76,7 +76,8 @@ pub(super) fn command() -> Command {
         .args(sizes())
         .args([
             range(Axis::Angle, "that of the model, or 0:359:1"),
-            shape_set::positions(),
+            shape_set::positions()
+                .help("Positions of a cell each way;\ndefault those of the model, or 100"),
             want,
         ])
         .group(
