@@ -67,6 +67,10 @@ fn what_is_unknown_or_unfit_is_refused_with_its_place() {
             "2:1: expected one threshold: at_least, percent, or low and high, found percent",
         ),
         (
+            "[frames]\npercent = 0\n",
+            "2:11: expected a number above 0, up to 100, found \"0\"",
+        ),
+        (
             "[frames]\nlow = 5\nhigh = 4\n",
             "2:1: expected a number at most that of high, found low",
         ),

@@ -577,3 +577,10 @@ fn esc_takes_a_count_back() {
     let screen = session("<Esc>12<Esc>").screen();
     assert!(!screen.contains("12 times"), "{screen}");
 }
+
+/// On the page of recognition the keys that hold a shape are in force, not those of the page.
+#[test]
+fn help_lists_the_keys_of_a_held_shape() {
+    shows("f<Enter>rg?", &["While a shape is held"]);
+    shows("f<Enter>r?", &["Recognising"]);
+}
