@@ -663,7 +663,7 @@ fn a_built_in_set_is_meant_before_a_file_of_its_name() {
 }
 
 #[test]
-fn what_cannot_be_read_or_written_so_is_said_before_any_work() {
+fn files_that_cannot_be_used_are_refused_before_any_work() {
     let place = Place::new();
     let run = place.run("model train missing.jsonl --out x.npz", "");
     let message = "missing.jsonl: cannot read: No such file or directory (os error 2)";
@@ -679,7 +679,7 @@ fn what_cannot_be_read_or_written_so_is_said_before_any_work() {
     let run = place.run(merge, "");
     refused(&run, 1, "model.csv: a model is written as .npz");
     assert_eq!(place.read("model.csv"), b"kept");
-    // An atlas has other keys than a model: it is told by its format.
+    // An atlas has other keys than a model; the message names its format.
     place.done("sweep rectangle --length 3 --width 2 --angle 0 --atlas atlas.npz --quiet");
     let run = place.run("merge atlas.npz part-2.npz --out all.npz --quiet", "");
     assert_eq!(run.status, Some(1));

@@ -65,7 +65,7 @@ fn take_component(mask: &mut Mask, start: (usize, usize), stride: usize) -> Vec<
     found
 }
 
-/// The components of a mask in reading order of their first taxels, and so each one's taxels.
+/// The components of a mask in reading order of their first taxels; the taxels of each in reading order.
 fn components(mask: &Mask, stride: usize) -> Vec<Vec<(usize, usize)>> {
     let (mut rest, mut found) = (mask.clone(), Vec::new());
     for (column, row) in taxels(mask) {

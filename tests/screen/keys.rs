@@ -304,7 +304,11 @@ fn quitting_asks_where_work_would_be_lost() {
     );
     assert!(session("<Space>qsa name<Enter>").app().ended());
     // What is empty cannot be saved.
-    shows("lwasher<Enter>", &["NA 36"]);
+    let emptied = session("<Space>saa<Enter><Space>q").screen();
+    assert!(
+        emptied.contains("not saved. Quit anyway? (y/n)"),
+        "{emptied}"
+    );
     for nothing_lost in ["<Space><Space>nq", "<Space>saa<Enter>nq", "<Space>nuuq"] {
         assert!(session(nothing_lost).app().ended(), "{nothing_lost}");
     }
@@ -573,6 +577,12 @@ fn esc_takes_a_count_back() {
         !screen.contains("12 times") && !screen.contains("does nothing"),
         "{screen}"
     );
+    // Another key without a meaning is named, and takes it back too.
+    let screen = session("12a").screen();
+    assert!(
+        !screen.contains("12 times") && screen.contains("a does nothing"),
+        "{screen}"
+    );
     // Again, when the keys without a meaning have been named.
     let screen = session("<Esc>12<Esc>").screen();
     assert!(!screen.contains("12 times"), "{screen}");
@@ -583,4 +593,6 @@ fn esc_takes_a_count_back() {
 fn help_lists_the_keys_of_a_held_shape() {
     shows("f<Enter>rg?", &["While a shape is held"]);
     shows("f<Enter>r?", &["Recognising"]);
+    // A prompt has its own keys, whatever is held below.
+    shows("f<Enter>g:<F1>", &["In the command line"]);
 }

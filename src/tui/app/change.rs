@@ -292,7 +292,7 @@ pub(in crate::tui) fn from_prompt(
     effect
 }
 
-/// What a person reads: steps of a hundredth do not drift.
+/// Rounds to the six decimals that a moved value keeps, so that steps of a hundredth do not drift.
 fn rounded(value: f64) -> f64 {
     to_decimals(value, 6)
 }

@@ -312,7 +312,12 @@ impl App {
 
     /// Where keys are looked up.
     pub fn context(&self) -> Context {
-        match (self.dialogs.last().map(Dialog::page), self.mode) {
+        self.context_on(self.dialogs.last().map(Dialog::page))
+    }
+
+    /// The same with this page on top; None for the matrix.
+    pub(in crate::tui) fn context_on(&self, page: Option<&dyn Page>) -> Context {
+        match (page, self.mode) {
             (Some(page), Mode::Grab) if page.leaves_matrix() => Context::Grab,
             (Some(page), _) => page.context(),
             (None, Mode::Grab) => Context::Grab,
@@ -388,7 +393,7 @@ impl App {
         form.unwrap_or_else(|| self.history.present())
     }
 
-    /// Before anything that the user asks for: what belongs to the action before ends.
+    /// Called before each action of the user: ends what belongs to the last one.
     pub(in crate::tui) fn begin_action(&mut self) {
         self.notice = None;
         self.prompt = None;

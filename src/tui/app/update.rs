@@ -51,10 +51,12 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
             return None;
         }
         Message::Unknown(key) => {
-            // As Esc, it takes a count that was begun back.
-            if app.count.take().is_some() {
+            let counted = app.count.take().is_some();
+            if counted {
                 app.notice = None;
-            } else {
+            }
+            // Esc has had a meaning then.
+            if !counted || key != Key::Esc {
                 unknown(app, key);
             }
             return None;
@@ -143,11 +145,7 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
     match message {
         Message::Cancel | Message::Quit if !page.cancels_itself() => return None,
         Message::Help => {
-            let context = match app.context() {
-                Context::Grab => Context::Grab,
-                _ => page.context(),
-            };
-            let help = Help::new(context);
+            let help = Help::new(app.context_on(Some(page)));
             app.dialogs.extend([dialog, Dialog::Help(help)]);
             return None;
         }

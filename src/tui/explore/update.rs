@@ -244,6 +244,7 @@ pub(crate) fn in_export(
                 });
             }
             Ok(name) => match missing(app, &name) {
+                // The export of a sweep shows its progress, and opens this prompt again itself.
                 None if drawn_form(&name).is_some() => {
                     return from_prompt(app, Dialog::Export(dialog), |app| {
                         act(app, ExploreMessage::Write(name, Existing::Kept))

@@ -306,7 +306,7 @@ impl Recognition {
         Some((trained, self.present, shape))
     }
 
-    /// Takes that a search failed: nothing was found, and this imprint is not searched for again.
+    /// Notes that a search failed, so that this imprint is not searched for again.
     pub fn fail_look(&mut self) {
         if let Some(trained) = self.trained().cloned() {
             self.take_look(Look {

@@ -163,7 +163,7 @@ impl MapPane {
 fn seen(at: u64, all: u64, stride: u64, room: u64, block: u64) -> (u64, u64) {
     let shown = all.div_ceil(stride);
     let seen = shown.min(room);
-    // Rounded up, so that the last one can be seen where it stands in a block that is not full.
+    // Rounded up to whole blocks: otherwise the last one could not be reached where its block is not full.
     let last = (shown - seen).next_multiple_of(block);
     let first = (at / stride).saturating_sub(seen / 2).min(last);
     let first = first - first % block;

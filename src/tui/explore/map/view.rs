@@ -8,7 +8,7 @@
 //! imprint 0 at x0 5.00, y0 5.00; 366 poses                 and its pose
 //! ```
 //! Neighbouring imprints have different letters, so that borders are visible without colours; the same letter elsewhere
-//! may be another imprint. A pose whose imprint the stopped sweep has not met is blank.
+//! may be another imprint. A pose whose imprint the stopped sweep has not found is blank.
 //!
 //! A map that does not fit in letters is a picture first, with a colour for each imprint in each half of a character;
 //! without colours with a shade in each character. Six colours and five shades seldom have to repeat beside each other.

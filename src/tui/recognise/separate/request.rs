@@ -117,11 +117,11 @@ impl SeparationFlags {
             let range = text.parse();
             range.map_err(|error: RangeError| format!("{flag}: {error}"))
         };
-        let share = || {
+        let number = |expected: &str, fits: fn(f64) -> bool| {
             let number: Option<f64> = text.parse().ok();
-            let number = number.filter(|number| (0.0..=1.0).contains(number));
             let found = shortened(text);
-            number.ok_or_else(|| format!("{flag} takes a number from 0 to 1, found {found}"))
+            let number = number.filter(|number| fits(*number));
+            number.ok_or_else(|| format!("{flag} takes {expected}, found {found}"))
         };
         match flag {
             "--scale" | "--pitch" => {
@@ -136,10 +136,14 @@ impl SeparationFlags {
                 self.sizes = Some((axis, sizes));
             }
             "--threshold" => {
-                let above = share().ok().filter(|threshold| *threshold > 0.0);
-                self.threshold = Some(above.ok_or("--threshold takes a number above 0, up to 1")?);
+                let fits = |number| number > 0.0 && number <= 1.0;
+                self.threshold = Some(number("a number above 0, up to 1", fits)?);
             }
-            "--want" => self.wanted = Some(share()?),
+            "--want" => {
+                self.wanted = Some(number("a number from 0 to 1", |number| {
+                    (0.0..=1.0).contains(&number)
+                })?);
+            }
             "--angle" => self.angles = Some(range()?),
             _ => {
                 let steps = text.parse().ok().filter(|steps: &u8| *steps > 0);
