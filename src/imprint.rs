@@ -6,6 +6,7 @@
 use std::fmt;
 use std::ops::Range;
 
+use crate::parameter::number::counted;
 use crate::sensor::MAX_SIDE;
 
 /// A binary matrix from 1 × 1 to 64 × 64.
@@ -316,26 +317,18 @@ impl fmt::Display for ImprintError {
         match self {
             Self::Rows => f.write_str("expected 1 to 64 rows"),
             Self::Columns { row, found } => {
-                let noun = if *found == 1 {
-                    "character"
-                } else {
-                    "characters"
-                };
-                write!(f, "row {row} has {found} {noun}, expected 1 to 64")
+                let found = counted(*found as u64, "character");
+                write!(f, "row {row} has {found}, expected 1 to 64")
             }
             Self::Ragged {
                 row,
                 found,
                 expected,
             } => {
-                let noun = if *found == 1 {
-                    "character"
-                } else {
-                    "characters"
-                };
+                let found = counted(*found as u64, "character");
                 write!(
                     f,
-                    "row {row} has {found} {noun}, expected {expected} as in the first row"
+                    "row {row} has {found}, expected {expected} as in the first row"
                 )
             }
             Self::Character { row, column, found } => write!(

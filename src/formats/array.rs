@@ -10,6 +10,7 @@ use crate::formats::mask::Mask;
 use crate::formats::npy;
 use crate::formats::npy::Dtype;
 use crate::imprint::Imprint;
+use crate::parameter::number::counted;
 use crate::quote::shortened;
 use crate::sensor::MAX_SIDE;
 
@@ -60,7 +61,8 @@ impl fmt::Display for ArrayError {
                 sides(found)
             ),
             Self::Length { found, expected } => {
-                write!(f, "found {found} bytes of numbers, expected {expected}")
+                let found = counted(*found as u64, "byte");
+                write!(f, "found {found} of numbers, expected {expected}")
             }
             Self::Value { row, column } => write!(
                 f,
@@ -316,7 +318,7 @@ mod tests {
         );
         wrong(
             &small("|b1", "(1, 2)", b"\x01"),
-            "found 1 bytes of numbers, expected 2",
+            "found 1 byte of numbers, expected 2",
         );
         let third = "expected 0, or the one other value of active taxels";
         wrong(

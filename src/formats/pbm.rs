@@ -11,6 +11,7 @@ mod pgm;
 use std::fmt;
 
 use crate::imprint::Imprint;
+use crate::parameter::number::counted;
 use crate::sensor::MAX_SIDE;
 
 /// Why bytes are not a bitmap, or not one that is an imprint.
@@ -103,7 +104,7 @@ impl fmt::Display for PbmError {
                 found,
                 expected,
                 unit,
-            } => write!(f, "found {found} {unit}, expected {expected}"),
+            } => write!(f, "{unit}: found {found}, expected {expected}"),
             Self::Maximum { line, column } => write!(
                 f,
                 "line {line}, column {column}: expected the brightest shade, 1 to 65535"
@@ -119,7 +120,8 @@ impl fmt::Display for PbmError {
             Self::Unclear => f.write_str("one shade of grey everywhere, expected two"),
             Self::Long { found } => write!(
                 f,
-                "found {found} bytes after the image, expected one image and no more"
+                "found {} after the image, expected one image and no more",
+                counted(*found as u64, "byte")
             ),
         }
     }
@@ -359,7 +361,7 @@ mod tests {
         );
         wrong(
             b"P1\n1 1\n1 # one\n1",
-            "found 1 bytes after the image, expected one image and no more",
+            "found 1 byte after the image, expected one image and no more",
         );
     }
 

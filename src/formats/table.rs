@@ -10,6 +10,7 @@ use std::fmt;
 
 use crate::formats::mask::Mask;
 use crate::imprint::Imprint;
+use crate::parameter::number::counted;
 use crate::quote::shortened;
 use crate::sensor::MAX_SIDE;
 
@@ -103,16 +104,23 @@ impl fmt::Display for TableError {
                 first,
                 expected,
             } => {
-                let noun = if *found == 1 { "value" } else { "values" };
+                let found = counted(*found as u64, "value");
                 write!(
                     f,
-                    "line {line}: found {found} {noun}, expected {expected} as in line {first}"
+                    "line {line}: found {found}, expected {expected} as in line {first}"
                 )
             }
             Self::Columns { line, found } => {
-                write!(f, "line {line}: found {found} values, expected 1 to 64")
+                let found = counted(*found as u64, "value");
+                write!(f, "line {line}: found {found}, expected 1 to 64")
             }
-            Self::Lines { found } => write!(f, "found {found} lines, expected 1 to 64"),
+            Self::Lines { found } => {
+                write!(
+                    f,
+                    "found {}, expected 1 to 64",
+                    counted(*found as u64, "line")
+                )
+            }
         }
     }
 }
@@ -465,7 +473,7 @@ mod tests {
         );
         wrong(
             &b"1,".repeat(999),
-            "line 1: found 1000 values, expected 1 to 64",
+            "line 1: found 1,000 values, expected 1 to 64",
         );
         wrong(b"1,0\n1", "line 2: found 1 value, expected 2 as in line 1");
         wrong(

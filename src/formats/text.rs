@@ -5,6 +5,7 @@
 use std::fmt;
 
 use crate::imprint::{Imprint, ImprintError};
+use crate::parameter::number::counted;
 
 /// Why bytes are not an imprint as text.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -76,10 +77,10 @@ impl fmt::Display for TextError {
                 found,
                 expected,
             } => {
-                let noun = if *found == 1 { "taxel" } else { "taxels" };
+                let found = counted(*found as u64, "taxel");
                 write!(
                     f,
-                    "line {line}, column {column}: found {found} {noun}, expected {expected} as in line 1"
+                    "line {line}, column {column}: found {found}, expected {expected} as in line 1"
                 )
             }
             Self::Columns {
@@ -90,7 +91,13 @@ impl fmt::Display for TextError {
                 f,
                 "line {line}, column {column}: found {found} taxels, expected 1 to 64"
             ),
-            Self::Lines { found } => write!(f, "found {found} lines, expected 1 to 64"),
+            Self::Lines { found } => {
+                write!(
+                    f,
+                    "found {}, expected 1 to 64",
+                    counted(*found as u64, "line")
+                )
+            }
         }
     }
 }

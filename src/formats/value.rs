@@ -2,7 +2,7 @@
 
 use crate::description::{Dimension, Value};
 
-pub use crate::parameter::number::grouped;
+pub use crate::parameter::number::{counted, grouped};
 
 /// The text of a value; None if the value does not exist.
 ///
@@ -89,17 +89,6 @@ pub fn measured(number: f64, width: usize) -> String {
         .chain(powers)
         .find(|text| text.len() <= width)
         .unwrap_or_else(|| fitting(number, width))
-}
-
-/// A count with its noun, in the singular or the plural.
-///
-/// ```
-/// use taxel::formats::value::counted;
-/// assert_eq!([0, 1, 2000].map(|count| counted(count, "pose")), ["0 poses", "1 pose", "2,000 poses"]);
-/// ```
-pub fn counted(count: u64, noun: &str) -> String {
-    let plural = if count == 1 { "" } else { "s" };
-    format!("{} {noun}{plural}", grouped(count))
 }
 
 /// A number with at most `decimals` decimals, without trailing zeros, and without a minus before a zero.

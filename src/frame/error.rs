@@ -74,7 +74,7 @@ impl fmt::Display for FrameError {
             ),
             Self::Rule { what, expected } => write!(f, "{what}: expected {expected}"),
             Self::Tare { frames, wanted } => {
-                write!(f, "a tare of {wanted} frames, but there are {frames}")
+                write!(f, "frames for the tare: found {frames}, expected {wanted}")
             }
             Self::TareSize { most } => {
                 write!(

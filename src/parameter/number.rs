@@ -73,3 +73,14 @@ pub fn grouped(count: impl Into<u128>) -> String {
     }
     text
 }
+
+/// A count with its noun, in the singular or the plural.
+///
+/// ```
+/// use taxel::parameter::number::counted;
+/// assert_eq!([0, 1, 2000].map(|count| counted(count, "pose")), ["0 poses", "1 pose", "2,000 poses"]);
+/// ```
+pub fn counted(count: u64, noun: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{} {noun}{plural}", grouped(count))
+}

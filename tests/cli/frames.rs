@@ -152,7 +152,7 @@ fn rules_are_those_of_flags_or_of_the_recording() {
     refused(
         "tekscan.asf",
         "--peak --at-least 1 --tare 4",
-        "a tare of 4 frames, but there are 3",
+        "frames for the tare: found 3, expected 4",
     );
     let own = answered("xsensor.csv", "--channel left --frame 0 --json");
     assert_eq!(

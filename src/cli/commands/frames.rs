@@ -124,7 +124,7 @@ impl Scan {
         let names: Vec<&str> = self
             .channels
             .iter()
-            .map(|channel| channel.info.name.as_deref().unwrap_or("unnamed"))
+            .map(|channel| channel.info.shown_name())
             .collect();
         match (asked, &names[..]) {
             (None, [_]) => Ok(0),

@@ -26,7 +26,7 @@ use crate::cli::commands::model;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
-use crate::cli::output::evaluation::{self, bar, percent};
+use crate::cli::output::evaluation::{self, bar, percent, percent_fine};
 use crate::cli::output::plot;
 use crate::cli::output::progress::Progress;
 use crate::cli::signals::Signals;
@@ -284,11 +284,6 @@ pub(crate) fn half_step(model: &Model, json: bool, charset: Charset) -> Result<S
         percent_fine(result.error_with_nearest())
     );
     Ok(charset.lines(&text))
-}
-
-/// A share as percent, with three decimals.
-fn percent_fine(share: f64) -> String {
-    format!("{:.3} %", 100.0 * share)
 }
 
 /// How many touches of one shape it takes until it is as probable as wanted. Returns what is printed.

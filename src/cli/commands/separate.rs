@@ -162,20 +162,17 @@ fn set(asked: &SeparateArguments, shelf: &Shelf) -> Result<(Separation, f64), Cl
 }
 
 /// Whether an argument is a model, rather than a shape or a file of shapes.
-/// A kept model takes precedence over a shape of the library of the same name; a file is a model if it ends in `.npz`.
+/// A kept model takes precedence over a shape of the library of the same name, and that over a built-in set; a file is
+/// a model if it ends in `.npz`.
 fn is_model(what: &OsStr, shelf: &Shelf) -> bool {
-    let path = Path::new(what);
-    let name = what.to_str().and_then(|name| Name::new(name).ok());
-    let kept = name.is_some_and(|name| model::is_kept(&name, shelf));
-    let known = || {
-        what.to_str()
-            .is_some_and(|name| shelf.imprint(name).is_ok())
+    let Some(name) = what.to_str().and_then(|name| Name::new(name).ok()) else {
+        return ending(Path::new(what)) == "npz";
     };
     let built_in = || {
-        let mut own = ModelChoice::BUILT_IN.iter();
-        own.any(|own| what == own.name()) && !path.exists() && !known()
+        let choice = ModelChoice::from_name(name.clone());
+        ModelChoice::BUILT_IN.contains(&choice) && shelf.imprint(name.as_str()).is_err()
     };
-    kept || ending(path) == "npz" || built_in()
+    ending(Path::new(what)) == "npz" || model::is_kept(&name, shelf) || built_in()
 }
 
 /// The positions of a model's cell in each direction; 100 where it has another grid than one cell.

@@ -153,7 +153,7 @@ fn check_channel(source: &FrameSource, asked: &WatchArguments) -> Result<(), Cli
     let mut found = false;
     let read = RecordingFile::open(path, options)?.read(&mut |event| {
         if let RecordingEvent::Channel(info) = event {
-            let name = info.name.as_deref().unwrap_or("unnamed");
+            let name = info.shown_name();
             found = name == wanted;
             names.push(name.to_owned());
         }

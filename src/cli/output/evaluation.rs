@@ -21,7 +21,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::json;
 
 use crate::cli::output::charset::Charset;
-use crate::formats::value::{counted, grouped};
+use crate::formats::value::{counted, decimal, grouped};
 use crate::recognition::{Classifier, ClassifierEvaluation, Evaluation, ShapeDescriptor};
 
 /// An evaluation as an object of JSON, its keys in the order of the documentation.
@@ -75,6 +75,11 @@ pub(crate) fn number(count: u128) -> serde_json::Value {
 /// One decimal: `98.4 %`. A share of 0.99999 is shown as `100.0 %`.
 pub(crate) fn percent(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)
+}
+
+/// A share as percent, to three decimals.
+pub(crate) fn percent_fine(share: f64) -> String {
+    format!("{} %", decimal(100.0 * share, 3))
 }
 
 /// A bar for a share, of at most `width` characters.

@@ -15,11 +15,10 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::cli::output::charset::Charset;
-use crate::cli::output::evaluation::{number, percent};
+use crate::cli::output::evaluation::{number, percent, percent_fine};
 use crate::cli::output::plot;
 use crate::formats::json;
 use crate::formats::separation::{SeparationCurve, said, short};
-use crate::formats::value::decimal;
 use crate::pose::DecimalRange;
 use crate::recognition::{SeparationPoint, SizeAxis};
 
@@ -134,11 +133,6 @@ fn found(axis: SizeAxis, sizes: &DecimalRange, curve: &SeparationCurve, wanted: 
         }
     }
     text
-}
-
-/// A share in percent, to three decimals.
-fn percent_fine(share: f64) -> String {
-    format!("{} %", decimal(100.0 * share, 3))
 }
 
 /// One object: the axis, the points, and with `--want` what was found for each threshold.

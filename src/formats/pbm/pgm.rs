@@ -136,7 +136,7 @@ mod tests {
                 b"P5 1 1 65536 \0",
                 "line 1, column 8: expected the brightest shade, 1 to 65535",
             ),
-            (b"P2 2 1 9 1", "found 1 taxels, expected 2"),
+            (b"P2 2 1 9 1", "taxels: found 1, expected 2"),
             (
                 b"P2 2 1 9\n1 x",
                 "line 2, column 3: expected a shade, 0 to the brightest",
@@ -153,7 +153,7 @@ mod tests {
                 b"P2 2 1 9 4 4",
                 "one shade of grey everywhere, expected two",
             ),
-            (b"P5 2 1 9 \0", "found 1 bytes of taxels, expected 2"),
+            (b"P5 2 1 9 \0", "bytes of taxels: found 1, expected 2"),
             (
                 b"P5 1 1 9 \x0a",
                 "line 1, column 9: expected a shade, 0 to the brightest",

@@ -24,7 +24,7 @@ impl ChannelChoice {
 
     /// Adds the next channel. Returns whether it is the one that is watched.
     pub fn add(&mut self, info: &ChannelInfo) -> bool {
-        let name = info.name.as_deref().unwrap_or("unnamed");
+        let name = info.shown_name();
         let fits = self.asked.as_deref().is_none_or(|asked| asked == name);
         let is_chosen = fits && self.chosen.is_none();
         if is_chosen {

@@ -103,6 +103,11 @@ pub struct ChannelInfo {
 }
 
 impl ChannelInfo {
+    /// The name that a channel is listed and chosen by: `unnamed` where the recording gives it none.
+    pub fn shown_name(&self) -> &str {
+        self.name.as_deref().unwrap_or("unnamed")
+    }
+
     /// Fills in what the recording does not say itself, but the description beside it does.
     pub fn complete(&mut self, description: &RecordingMetadata) {
         self.unit = self.unit.take().or_else(|| description.unit.clone());

@@ -25,6 +25,7 @@ use crate::formats::recording::side::shape;
 use crate::formats::recording::text_row::too_large;
 use crate::frame::{Frame, LARGEST_VALUE};
 use crate::index::wide;
+use crate::parameter::number::counted;
 use crate::quote::legible;
 
 /// Bytes of the magic number at the start, which was recognised already.
@@ -490,7 +491,11 @@ impl McapState<'_, '_> {
                 self.frame.values_mut().copy_from_slice(&self.values);
             }
             Some(shape) => {
-                let message = format!("{name}: found {found} values, expected {}", cells(shape));
+                let message = format!(
+                    "{name}: found {}, expected {}",
+                    counted(found as u64, "value"),
+                    cells(shape)
+                );
                 return Err(RecordingError::damaged(message));
             }
             // Counted only: rows and columns have to be named.

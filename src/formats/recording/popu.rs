@@ -19,6 +19,7 @@ use crate::formats::recording::event::{ChannelInfo, RecordingEvent, Sink};
 use crate::formats::recording::json_lines::CellsSeed;
 use crate::formats::recording::side::side;
 use crate::frame::{Frame, MAX_FRAME_SIDE};
+use crate::parameter::number::counted;
 
 /// Stands in an error of serde's for a sink that wants no more.
 const ENOUGH: &str = "no more is wanted";
@@ -156,7 +157,10 @@ impl<'de> Visitor<'de> for SnapshotsSeed<'_, '_, '_> {
             map.next_value_seed(SnapshotSeed(&mut *self.0))?;
             let (found, expected) = (self.0.values.len(), self.0.frame.values().len());
             if found != expected {
-                let message = format!("found {found} values, expected {expected}");
+                let message = format!(
+                    "found {}, expected {expected}",
+                    counted(found as u64, "value")
+                );
                 return Err(A::Error::custom(message));
             }
             self.0.frame.values_mut().copy_from_slice(&self.0.values);

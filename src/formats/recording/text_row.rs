@@ -7,6 +7,7 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::lines::text;
 use crate::formats::recording::number;
 use crate::frame::LARGEST_VALUE;
+use crate::parameter::number::counted;
 use crate::quote::shortened;
 
 /// What a field says of its cell.
@@ -65,7 +66,8 @@ pub(crate) fn fill(
 
 /// A line with another number of values.
 pub(crate) fn count(line: u64, found: usize, expected: usize) -> RecordingError {
-    RecordingError::in_line(line, format!("found {found} values, expected {expected}"))
+    let found = counted(found as u64, "value");
+    RecordingError::in_line(line, format!("found {found}, expected {expected}"))
 }
 
 /// That a value is beyond all that are taken.

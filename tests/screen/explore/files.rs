@@ -129,7 +129,7 @@ fn a_plot_is_written_as_a_drawing() {
     let path = folder.path().join("6.svg");
     std::fs::write(&path, "mine").expect("written");
     export(&mut session, &path);
-    shows(&session, &["Replace "]);
+    shows(&session, &["is there already. Replace it?"]);
     press(&mut session, "n");
     assert_eq!(std::fs::read(&path).ok().as_deref(), Some(&b"mine"[..]));
     export(&mut session, &path);

@@ -189,8 +189,7 @@ fn noisy() -> [Arg; 5] {
     .requires("noise");
     let touches = option("touches", "N", "Noisy touches of each shape; default 1000")
         .value_parser(value_parser!(u64).range(1..=1_000_000_000))
-        .default_value("1000")
-        .hide_default_value(true);
+        .requires("noise");
     let matrix = option("matrix", "CxR", "Size of the matrix; default the model's")
         .value_parser(parse_matrix)
         .requires("noise");
