@@ -13,7 +13,7 @@
 //! is exact, since its coverages are multiples of 1e-18; with more decimals a coverage can come nearer than 1e-20
 //! (0.9999999999 × 0.50000000005). Turned figures of hundredths come within 3e-11.
 
-use crate::geometry::{Double, Extent, Overlap, Real, Solid, cell_area};
+use crate::geometry::{Double, Extent, Overlap, Real, Solid, cell_area, row_areas};
 use crate::imprint::Imprint;
 use crate::sensor::Sensor;
 
@@ -108,9 +108,11 @@ impl Plane {
         let least = least(threshold);
         let areas = self.areas.grid();
         let columns = areas.columns();
-        // The last cell that was decided and that no boundary crosses: its neighbours share its area. So full cells
-        // are decided once a row at a threshold of 1, not one by one.
-        let mut open: Option<(usize, bool)> = None;
+        // Cells next to each other that no boundary seems to cross, as full ones at a threshold of 1, are decided by
+        // one drawing of their row. Their areas need not be the same: an edge that is horizontal up to a rounding of
+        // `f64` has a height in more digits.
+        let mut open = None;
+        let mut whole: Option<Vec<Double>> = None;
         for (column, area) in columns.clone().zip(areas.row(row, &columns)) {
             if (area - threshold).abs() >= doubt {
                 continue;
@@ -118,13 +120,16 @@ impl Plane {
             let (Ok(cell_column), Ok(cell_row)) = (u8::try_from(column), u8::try_from(row)) else {
                 continue;
             };
-            let crossed = areas.crosses(row, column);
-            let enough = match open {
-                Some((last, enough)) if last + 1 == column && !crossed => enough,
-                _ => cell_area::<Double>(solid, cell_column, cell_row) >= least,
+            let is_open = !areas.crosses(row, column);
+            if is_open && open == column.checked_sub(1) && whole.is_none() {
+                whole = Some(row_areas(solid, self.sensor.columns(), cell_row));
+            }
+            open = is_open.then_some(column);
+            let area = match &whole {
+                Some(areas) => areas[column],
+                None => cell_area(solid, cell_column, cell_row),
             };
-            open = (!crossed).then_some((column, enough));
-            active = active & !(1 << column) | u64::from(enough) << column;
+            active = active & !(1 << column) | u64::from(area >= least) << column;
         }
         active
     }

@@ -134,14 +134,13 @@ impl<T: Real> CellGrid<T> {
             .map(move |areas| areas[row % 2])
     }
 
-    /// Whether a piece of boundary that is not horizontal runs through a cell. Neighbours in a row through which none
-    /// runs have the same area.
+    /// Whether a piece of boundary that is not horizontal, up to a rounding, runs through a cell.
     pub(crate) fn crosses(&self, row: usize, column: usize) -> bool {
         let CellSums { here, beyond } = self.entries[row / 2 * self.stride + column + 1];
         (here[row % 2], beyond[row % 2]) != (T::ZERO, T::ZERO)
     }
 
-    /// The place in a row, from [`Self::start`] on, of the column that `x` lies in by [`Real::cell`], and that column's
+    /// The index of the entry in a row, from [`Self::start`] on, of the column that `x` lies in by [`Real::cell`], and that column's
     /// right end.
     pub(crate) fn locate(&self, x: T) -> (usize, T) {
         if x < T::ZERO {

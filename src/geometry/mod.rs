@@ -25,6 +25,7 @@ pub(crate) use outline::Moving;
 pub use outline::{Ellipse, Extent, Pen, Point, Polygon, Side, Solid, Turn};
 pub(crate) use overlap::Overlap;
 pub use overlap::cell_area;
+pub(crate) use overlap::row_areas;
 #[cfg(feature = "sweep")]
 pub(crate) use real::nearest;
 pub use real::{Double, Real};

@@ -59,7 +59,7 @@ impl<T: Real> Overlap<T> {
         } else {
             (top, -T::ONE)
         };
-        let (mut here, mut place) = (from, from.x.cell());
+        let (mut here, mut cell) = (from, from.x.cell());
         loop {
             let ends = row == last;
             let next = if ends {
@@ -68,7 +68,7 @@ impl<T: Real> Overlap<T> {
                 // Kept between the ends: the slope of an edge that is horizontal up to a rounding means nothing.
                 Point::new(here.x.max(edge.x_at(line)).min(to.x), line)
             };
-            place = self.slice(row, edge, (here, place), next);
+            cell = self.slice(row, edge, (here, cell), next);
             if ends {
                 return;
             }
@@ -221,6 +221,25 @@ impl<T: Real> Pen<T> for Overlap<T> {
     fn ellipse(&mut self, ellipse: &Ellipse<T>, material: Side) {
         self.arcs.draw(&mut self.grid, ellipse, material);
     }
+}
+
+/// The areas of a shape inside the first `columns` cells of a row, by the same method.
+pub(crate) fn row_areas<T: Real>(solid: &impl Solid, columns: u8, row: u8) -> Vec<T> {
+    let start = Point::new(T::ZERO, T::whole(-i32::from(row)));
+    let mut overlap = Overlap::new(columns, 1);
+    solid.draw(&mut Moving {
+        by: start,
+        pen: &mut overlap,
+    });
+    let grid = overlap.grid();
+    let mut areas = vec![T::ZERO; columns.into()];
+    let drawn = grid.columns();
+    if grid.rows().contains(&0) && !drawn.is_empty() {
+        for (area, found) in areas[drawn.clone()].iter_mut().zip(grid.row(0, &drawn)) {
+            *area = found;
+        }
+    }
+    areas
 }
 
 /// The area of a shape inside the one cell whose top left corner is (`column`, `row`), by the same method.

@@ -4,6 +4,7 @@
 
 use crate::common::figure;
 use taxel::geometry::{Double, Real, cell_area};
+use taxel::parameter::Parameter;
 use taxel::sensor::Sensor;
 use taxel::touch::Plane;
 
@@ -385,4 +386,35 @@ fn areas_of_cells_hold_twenty_eight_digits() {
             1e-28,
         );
     }
+}
+
+/// Edges that are horizontal up to a rounding of `f64` have heights all the same, and taxels in doubt along them are
+/// decided each by its own area.
+#[test]
+fn edges_that_f64_takes_for_horizontal_are_decided_with_more_digits() {
+    let rows = |text: &str, side| {
+        let figure = figure(text, side);
+        let mut plane = Plane::new(Sensor::new(side, side).expect("in range"));
+        plane.touch(&figure).words().to_vec()
+    };
+    let upright = "rectangle length=0.5 width=4 x0=28.25 angle=89.99999999999999";
+    let (above, below) = (
+        rows(&format!("{upright} y0=3.25"), 64),
+        rows(&format!("{upright} y0=18.25"), 64),
+    );
+    assert!(above.iter().any(|&row| row != 0));
+    assert_eq!(above[..40], below[15..55]);
+    let flat = "rectangle length=6 width=0.5 y0=4 angle=5.551115123125783e-17";
+    let (on, cut) = (
+        rows(&format!("{flat} x0=3.5"), 16),
+        rows(&format!("{flat} x0=-3.5"), 16),
+    );
+    for (on, cut) in on.iter().zip(cut) {
+        assert_eq!(on >> 7, cut);
+    }
+    // A threshold of a height that vanishes beside its place: of the six cells below it, half a cell counts at each end.
+    let thin = figure("rectangle length=6 width=1e-18 x0=4 y0=4.5", 16);
+    let sensor = Sensor::default().with(Parameter::Threshold, 1e-18);
+    let imprint = Plane::new(sensor.expect("in range")).touch(&thin);
+    assert_eq!((imprint.words()[4], imprint.count()), (0b11_1111 << 4, 6));
 }
