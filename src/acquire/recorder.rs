@@ -16,7 +16,7 @@ use std::collections::VecDeque;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{SyncSender, sync_channel};
+use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -62,6 +62,12 @@ pub enum RecorderError {
     /// There is a file already.
     #[error("{} is there already; --force replaces it", path.display())]
     Exists {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The file is not named as an array.
+    #[error("{}: expected a file that ends in .npy", path.display())]
+    Ending {
         /// The file.
         path: PathBuf,
     },
@@ -124,7 +130,8 @@ enum Names {
 #[derive(Debug)]
 struct Syncer {
     ask: Option<SyncSender<()>>,
-    thread: Option<JoinHandle<()>>,
+    /// Ends at the first error. The system reports an error of the disk once only, to whoever asks first.
+    thread: Option<JoinHandle<io::Result<()>>>,
     last: Instant,
 }
 
@@ -134,9 +141,9 @@ impl Syncer {
         let thread = file.try_clone().and_then(|file| {
             std::thread::Builder::new().spawn(move || {
                 while asked.recv().is_ok() {
-                    // What the disk refuses is reported by the next write, or at the end.
-                    let _ = file.sync_data();
+                    file.sync_data()?;
                 }
+                Ok(())
             })
         });
         // Without it the file is synced at its end.
@@ -149,38 +156,55 @@ impl Syncer {
     }
 
     /// Has the file synced if that was long ago, and does not wait for it.
-    fn tick(&mut self) {
+    ///
+    /// # Errors
+    /// What an earlier one has failed with.
+    fn tick(&mut self) -> io::Result<()> {
         if self.last.elapsed() >= SYNCED {
             self.last = Instant::now();
-            if let Some(ask) = &self.ask {
-                // If it is full, the last sync still runs.
-                let _ = ask.try_send(());
+            let asked = self.ask.as_ref().map(|ask| ask.try_send(()));
+            // If it is full, the last sync still runs.
+            if let Some(Err(TrySendError::Disconnected(()))) = asked {
+                return self.end();
             }
         }
+        Ok(())
+    }
+
+    /// Waits until no sync runs any more.
+    ///
+    /// # Errors
+    /// What one of them has failed with.
+    fn end(&mut self) -> io::Result<()> {
+        self.ask = None;
+        let ended = self.thread.take().map(JoinHandle::join);
+        // It does not panic.
+        ended.and_then(Result::ok).unwrap_or(Ok(()))
     }
 }
 
 impl Drop for Syncer {
     fn drop(&mut self) {
-        self.ask = None;
-        if let Some(thread) = self.thread.take() {
-            // It does not panic.
-            let _ = thread.join();
-        }
+        // An error was reported by the end of the recording; one that is given up says nothing.
+        let _ = self.end();
     }
 }
 
 impl FrameRecorder {
-    /// Creates the file, and `.json` beside it: both, or none. They appear with the first frame, and what is to be replaced
+    /// Creates the file, whose name ends in `.npy`, and `.json` beside it: both, or none. They appear with the first frame, and what is to be replaced
     /// stays until then.
     ///
     /// # Errors
-    /// If one of the two is there and is to be kept, or they cannot be created.
+    /// If the name ends otherwise, if one of the two is there and is to be kept, or if they cannot be created.
     pub fn create(
         path: &Path,
         existing: Existing,
         metadata: &RecordingMetadata,
     ) -> Result<Self, RecorderError> {
+        if !is_array(path) {
+            let path = path.to_owned();
+            return Err(RecorderError::Ending { path });
+        }
         let mut metadata = metadata.clone();
         metadata.ended = Some(false);
         let array = || {
@@ -294,7 +318,8 @@ impl FrameRecorder {
         }
         self.names = match std::mem::replace(&mut self.names, Names::Refused) {
             Names::Waiting(array, description) => {
-                persist_pair(array, description).map_err(refused)?;
+                self.file = persist_pair(array, description).map_err(refused)?;
+                self.syncer = Syncer::new(&self.file);
                 Names::Given
             }
             names => names,
@@ -351,8 +376,8 @@ impl FrameRecorder {
         self.in_file = self.records;
         self.written = Instant::now();
         self.count()?;
-        self.syncer.tick();
-        Ok(())
+        let synced = self.syncer.tick();
+        synced.map_err(|error| self.refused(error))
     }
 
     /// Cuts off a torn record behind `start`, and counts the whole ones.
@@ -401,7 +426,9 @@ impl FrameRecorder {
         }
         let written = self.write_out();
         let written = self.noted(written);
-        let synced = self.file.sync_all().map_err(|error| self.refused(error));
+        let earlier = self.syncer.end();
+        let synced = earlier.and(self.file.sync_all());
+        let synced = synced.map_err(|error| self.refused(error));
         let synced = self.noted(synced);
         if let Some(step) = usual_step(self.steps.make_contiguous())
             && self.metadata.seconds_per_frame.is_none()
@@ -463,16 +490,19 @@ fn refused(error: FileError) -> RecorderError {
     }
 }
 
+/// Whether a path ends as the file of an array does.
+fn is_array(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("npy"))
+}
+
 /// The description beside an array, `touch.json` of `touch.npy`. None where there is none, or what is there is something
 /// else.
 ///
 /// # Errors
 /// What is wrong with it, or why it cannot be read, headed by its path.
 pub fn description_beside(path: &Path) -> Option<Result<RecordingMetadata, String>> {
-    let is_array = path
-        .extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("npy"));
-    if !is_array {
+    if !is_array(path) {
         return None;
     }
     let beside = path.with_extension("json");
@@ -491,4 +521,27 @@ pub fn description_beside(path: &Path) -> Option<Result<RecordingMetadata, Strin
         Err(error) => Err(format!("cannot read: {error}")),
     };
     Some(read.map_err(|error| format!("{}: {error}", beside.display())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_of_a_sync_is_not_lost() {
+        // Nothing there can be synced.
+        let mut syncer = Syncer::new(&File::open("/dev/null").expect("opened"));
+        syncer.last = Instant::now().checked_sub(SYNCED).expect("later than that");
+        assert!(syncer.tick().is_ok(), "it does not wait");
+        assert!(syncer.end().is_err());
+    }
+
+    #[test]
+    fn a_recording_is_named_as_an_array() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("touch.json");
+        let metadata = RecordingMetadata::default();
+        let refused = FrameRecorder::create(&path, Existing::Replaced, &metadata);
+        assert!(matches!(refused, Err(RecorderError::Ending { .. })));
+    }
 }

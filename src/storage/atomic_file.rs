@@ -101,7 +101,7 @@ impl UnfinishedFile {
         &self.path
     }
 
-    /// The same open file, for what is written into it once it has its name.
+    /// The same open file, for what is still to be changed in it before it has its name.
     ///
     /// # Errors
     /// What the system reports.
@@ -160,20 +160,31 @@ impl FinishedFile {
     /// [`ErrorKind::AlreadyExists`] if a file that is to be kept has come meanwhile; else what the system reports. The
     /// old file is there as before, unless syncing the folder failed ([`FileError::is_in_place`]).
     pub fn persist(self) -> Result<(), FileError> {
+        self.persist_open().map(drop)
+    }
+
+    /// The same. Returns the open file, for what is written into it from now on.
+    ///
+    /// # Errors
+    /// As for [`Self::persist`].
+    fn persist_open(self) -> Result<File, FileError> {
         let folder = folder_of(&self.path);
         let replace = self.existing == Existing::Replaced;
         let named = self.file.persist(folder, &self.path, replace);
-        named.map_err(|error| FileError::new("put it in its place", &self.path, error))?;
-        sync_folder(folder)
+        let refuse = |error| FileError::new("put it in its place", &self.path, error);
+        let file = named.map_err(refuse)?;
+        sync_folder(folder)?;
+        Ok(file)
     }
 }
 
 /// Gives two files that belong together their names. Whenever the program dies, there is never one of these beside an
-/// older one of the other: what stands under the second name is removed first, and named last.
+/// older one of the other: what stands under the second name is removed first, and named last. Returns the first file,
+/// open, for what is written into it from now on.
 ///
 /// # Errors
 /// As for [`FinishedFile::persist`].
-pub fn persist_pair(first: FinishedFile, second: FinishedFile) -> Result<(), FileError> {
+pub fn persist_pair(first: FinishedFile, second: FinishedFile) -> Result<File, FileError> {
     let refuse = |doing, error| FileError::new(doing, second.path(), error);
     match second.existing {
         Existing::Replaced => match fs::remove_file(second.path()) {
@@ -188,8 +199,9 @@ pub fn persist_pair(first: FinishedFile, second: FinishedFile) -> Result<(), Fil
         }
         Existing::Kept => {}
     }
-    first.persist()?;
-    second.persist()
+    let file = first.persist_open()?;
+    second.persist()?;
+    Ok(file)
 }
 
 /// Writes a file that replaces `path`: under a temporary name that only the holder of a lock uses, or without a lock

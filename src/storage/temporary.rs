@@ -79,29 +79,30 @@ impl TemporaryFile {
         &self.file
     }
 
-    /// Gives the file its name, in place of the file that has it if `replace`.
+    /// Gives the file its name, in place of the file that has it if `replace`. Returns the open file that has the name:
+    /// a copy, where the file system does not link a file without one.
     ///
     /// # Errors
     /// [`ErrorKind::AlreadyExists`] if there is a file of that name and it is to be kept; else what the system reports.
-    pub(crate) fn persist(self, folder: &Path, path: &Path, replace: bool) -> io::Result<()> {
-        match self.path {
-            Some(named) => rename(named, path, replace),
+    pub(crate) fn persist(self, folder: &Path, path: &Path, replace: bool) -> io::Result<File> {
+        let (file, named) = match self.path {
+            Some(named) => (self.file, named),
             None if !replace => match link(&self.file, path) {
                 Err(error) if error.kind() != ErrorKind::AlreadyExists => {
-                    rename(copied(self.file, folder)?, path, replace)
+                    copied(self.file, folder)?
                 }
-                linked => linked,
+                linked => return linked.map(|()| self.file),
             },
             None => {
                 // A link cannot replace a file; renaming can.
                 let linked = builder().make_in(folder, |path| link(&self.file, path));
-                let named = match linked {
-                    Ok(linked) => NamedTempFile::into_parts(linked).1,
+                match linked {
+                    Ok(linked) => (self.file, NamedTempFile::into_parts(linked).1),
                     Err(_) => copied(self.file, folder)?,
-                };
-                rename(named, path, replace)
+                }
             }
-        }
+        };
+        rename(named, path, replace).map(|()| file)
     }
 }
 
@@ -163,14 +164,15 @@ fn rename(from: TempPath, path: &Path, replace: bool) -> io::Result<()> {
 }
 
 /// The content under a random name, for a file system that does not link a file without a name.
-fn copied(mut file: File, folder: &Path) -> io::Result<TempPath> {
+fn copied(mut file: File, folder: &Path) -> io::Result<(File, TempPath)> {
     let mut copy = TemporaryFile::named(folder)?;
     file.rewind()?;
     let permissions = file.metadata()?.permissions();
     io::copy(&mut Read::by_ref(&mut file), &mut copy.file)?;
     copy.file.set_permissions(permissions)?;
     copy.file.sync_all()?;
-    copy.path.ok_or_else(|| ErrorKind::NotFound.into())
+    let path = copy.path.ok_or(ErrorKind::NotFound)?;
+    Ok((copy.file, path))
 }
 
 /// A file without a name; None where the system has no such files, or could not name it later.
@@ -374,8 +376,11 @@ mod tests {
             for (replace, content) in [(false, "one"), (true, "two")] {
                 let mut file = make(folder.path()).expect("made");
                 file.write_all(content.as_bytes()).expect("written");
-                file.persist(folder.path(), &path, replace).expect("named");
+                let mut file = file.persist(folder.path(), &path, replace).expect("named");
                 assert_eq!(fs::read_to_string(&path).ok().as_deref(), Some(content));
+                file.write_all(b"!").expect("written");
+                let more = format!("{content}!");
+                assert_eq!(fs::read_to_string(&path).ok(), Some(more));
             }
             let file = make(folder.path()).expect("made");
             let kept = file
@@ -386,8 +391,12 @@ mod tests {
         }
         let mut file = TemporaryFile::new(folder.path()).expect("made");
         file.write_all(b"three").expect("written");
-        let copy = copied(file.file, folder.path()).expect("copied");
-        assert_eq!(fs::read_to_string(&copy).ok().as_deref(), Some("three"));
+        let (mut open, copy) = copied(file.file, folder.path()).expect("copied");
+        open.write_all(b", four").expect("written");
+        assert_eq!(
+            fs::read_to_string(&copy).ok().as_deref(),
+            Some("three, four")
+        );
         drop(copy);
         assert_eq!(fs::read_dir(folder.path()).expect("read").count(), 0);
     }

@@ -2,6 +2,8 @@
 //! folders that a stranger has filled.
 
 use std::fs;
+use std::path::Path;
+use std::process::Command;
 
 use taxel::storage::{Library, Orphan};
 
@@ -28,6 +30,23 @@ pub(crate) fn done_without() -> String {
     assert_eq!(run.status.code(), Some(0), "{run:?}");
     let text = fs::read_to_string(&target).expect("written");
     assert!(text.ends_with("</svg>\n"), "whole");
+    // What is recorded goes on in the file that has the name, be it a copy.
+    let (frames, array) = (
+        state.folder.join("frames.txt"),
+        state.folder.join("rec.npy"),
+    );
+    fs::write(&frames, "1 2\n3 4\n\n".repeat(50)).expect("written");
+    let (source, name) = (frames.to_string_lossy(), array.to_string_lossy());
+    let mut watch = Command::new(env!("CARGO_BIN_EXE_taxel"));
+    let arguments = ["--format", "lines", "--once", "--at-least", "1", "--write"];
+    watch
+        .args(["watch", &source])
+        .args(arguments)
+        .arg(&*name)
+        .env("TAXEL_CONFIG", "/dev/null");
+    let run = strace::refused(&watch, "?linkat", "EPERM");
+    assert_eq!(run.status.code(), Some(0), "{run:?}");
+    assert_eq!(recorded(&array), 50);
     // The message names the file that was asked for, not the temporary one.
     fs::remove_file(&target).expect("removed");
     let run = strace::refused(&export, "?fsync,?fdatasync", "EIO");
@@ -39,6 +58,18 @@ pub(crate) fn done_without() -> String {
     );
     "no locks, no links, no names without replacing: saved; what is refused is told by its own name"
         .to_owned()
+}
+
+/// How many frames an array holds, as its header and as its length say.
+fn recorded(path: &Path) -> usize {
+    let array = fs::read(path).expect("it is there");
+    let header = String::from_utf8_lossy(&array[10..256]).into_owned();
+    let records = (array.len() - 256) / (16 + 4 * 8);
+    assert!(
+        header.contains(&format!("'shape': ({records},)")),
+        "{header}"
+    );
+    records
 }
 
 pub(crate) fn crafted() -> String {

@@ -175,7 +175,7 @@ pub(super) fn leave(
         None => None,
     };
     let named = match (atlas, poses) {
-        (Some(atlas), Some(poses)) => persist_pair(atlas, poses),
+        (Some(atlas), Some(poses)) => persist_pair(atlas, poses).map(drop),
         (Some(file), None) | (None, Some(file)) => file.persist(),
         (None, None) => Ok(()),
     };

@@ -227,7 +227,6 @@ pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequ
     request.processing.least = asked.processing.least;
     request.tare = asked.processing.tare.unwrap_or_default();
     request.own_tare = asked.processing.tare.is_none();
-    request.channel.clone_from(&asked.processing.channel);
     let model = asked.naming.model.as_ref();
     request.model = model.map(|model| model::choice(model, shelf)).transpose()?;
     request.noise = asked.naming.noise;
