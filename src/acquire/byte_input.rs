@@ -4,9 +4,11 @@ use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::net::TcpStream;
 use std::os::fd::{AsFd, BorrowedFd};
+use std::path::Path;
 use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::fs::{Mode, OFlags, open};
 
 use crate::acquire::growing_file::{GrowingFile, ReadAnew};
 use crate::acquire::serial;
@@ -55,7 +57,7 @@ impl ByteInput {
             FrameSource::Standard => Self::Standard(io::stdin()),
             FrameSource::Tcp(address) => Self::Tcp(connect(address)?),
             FrameSource::Serial(path) => Self::Device(serial::open_line(path, baud)?),
-            FrameSource::Fifo(path) => Self::Device(File::open(path)?),
+            FrameSource::Fifo(path) => Self::Device(open_fifo(path)?),
             FrameSource::File(path) if once => Self::File(File::open(path)?),
             FrameSource::File(path) => Self::Growing(GrowingFile::open(path)?),
         })
@@ -107,6 +109,12 @@ impl ByteInput {
     }
 }
 
+/// Opens a pipe with a name. To open it in the usual way would wait for its writer, and no signal could end that.
+fn open_fifo(path: &Path) -> io::Result<File> {
+    let flags = OFlags::RDONLY | OFlags::NONBLOCK | OFlags::CLOEXEC;
+    Ok(open(path, flags, Mode::empty())?.into())
+}
+
 fn connect(address: &str) -> io::Result<TcpStream> {
     use std::net::ToSocketAddrs;
     check_address(address)?;
@@ -118,4 +126,31 @@ fn connect(address: &str) -> io::Result<TcpStream> {
         }
     }
     Err(failure)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use rustix::fs::{CWD, FileType, mknodat};
+
+    use super::*;
+
+    #[test]
+    fn a_pipe_without_a_writer_is_waited_for_a_moment_at_a_time() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("pipe");
+        mknodat(CWD, &path, FileType::Fifo, Mode::from_raw_mode(0o600), 0).expect("made");
+        let source = FrameSource::new(path.as_os_str());
+        let mut input = ByteInput::open(&source, 0, false).expect("opened");
+        let mut bytes = [0; 8];
+        let mut read = || input.read(&mut bytes).expect("read");
+        assert_eq!(read(), ReadOutcome::Bytes(0));
+        let mut writer = File::options().write(true).open(&path).expect("opened");
+        assert_eq!(read(), ReadOutcome::Bytes(0));
+        writer.write_all(b"1 2").expect("written");
+        assert_eq!(read(), ReadOutcome::Bytes(3));
+        drop(writer);
+        assert_eq!(read(), ReadOutcome::End);
+    }
 }

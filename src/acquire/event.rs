@@ -18,6 +18,9 @@ pub struct AcquireOptions {
     pub shape: Option<(u16, u16)>,
     /// Those of streams, where `shape` does not say them; recordings say their own.
     pub stream_shape: Option<(u16, u16)>,
+    /// The channel of a recording whose frames are played at its rate; without a name the first one. Those of the others
+    /// are given at once.
+    pub channel: Option<String>,
     /// Bits per second of a serial line.
     pub baud: u32,
     /// Whether a connection or a serial line that cannot be opened yet is tried again each second.
@@ -26,7 +29,7 @@ pub struct AcquireOptions {
     pub once: bool,
     /// Begin a recording again at its end.
     pub repeat: bool,
-    /// How many times as fast as it was recorded a recording is played.
+    /// How many times as fast as it was recorded a recording is played; 1 if it is not above 0.
     pub speed: f64,
 }
 
@@ -36,6 +39,7 @@ impl Default for AcquireOptions {
             format: None,
             shape: None,
             stream_shape: None,
+            channel: None,
             baud: 115_200,
             waits: false,
             once: false,
@@ -55,8 +59,9 @@ pub enum AcquireEvent<'a> {
     Frame {
         /// The frame.
         frame: &'a Frame,
-        /// Its time in seconds since the first one: its own, or else that of its arrival. It goes on growing where a source
-        /// was lost and is back, though the source's own clock may begin anew there.
+        /// Its time in seconds: its own, or that of its arrival since the first one where it comes from a device, a pipe or
+        /// a connection; None otherwise. After a gap it goes on growing, even if the source's own clock began anew; a
+        /// recording that is repeated begins again.
         time: Option<f64>,
     },
     /// A frame that is shown but not kept, until what follows it confirms it.
@@ -65,7 +70,7 @@ pub enum AcquireEvent<'a> {
     Withdrawn,
     /// Something odd in a recording.
     Note(&'a RecordingNote),
-    /// Ten times a second, frames or not: what has come so far.
+    /// What has come so far: at least ten times a second, frames or not, unless a source is read as fast as it goes.
     Tick(&'a StreamCounts),
     /// No frame for two seconds.
     Silent {

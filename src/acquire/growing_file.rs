@@ -38,7 +38,7 @@ pub(super) struct GrowingFile {
     path: PathBuf,
     file: File,
     /// How many bytes were read.
-    place: u64,
+    offset: u64,
     /// The last of them.
     last: Vec<u8>,
     /// Whether all that was there has been read.
@@ -56,7 +56,7 @@ impl GrowingFile {
         Ok(Self {
             path: path.to_owned(),
             file: File::open(path)?,
-            place: 0,
+            offset: 0,
             last: Vec::new(),
             at_end: false,
             changed: None,
@@ -76,7 +76,7 @@ impl GrowingFile {
         if self.at_end {
             std::thread::sleep(GROWTH);
         }
-        self.place += count as u64;
+        self.offset += count as u64;
         let read = &bytes[..count];
         self.last.extend(&read[count.saturating_sub(REMEMBERED)..]);
         let old = self.last.len().saturating_sub(REMEMBERED);
@@ -94,7 +94,7 @@ impl GrowingFile {
         }
         if self.was_cut()? {
             self.file.seek(SeekFrom::Start(0))?;
-            (self.place, self.at_end, self.changed) = (0, false, None);
+            (self.offset, self.at_end, self.changed) = (0, false, None);
             self.last.clear();
             return Ok(Some(ReadAnew::Cut));
         }
@@ -105,7 +105,7 @@ impl GrowingFile {
         let own = self.file.metadata()?;
         // Read the old file to its end before switching: bytes may have been appended before the rename.
         let is_own = (named.dev(), named.ino()) == (own.dev(), own.ino());
-        if is_own || !named.is_file() || own.len() > self.place {
+        if is_own || !named.is_file() || own.len() > self.offset {
             return Ok(None);
         }
         self.switched(Self::open(&self.path))
@@ -126,7 +126,7 @@ impl GrowingFile {
     /// Whether what was read is no longer there.
     fn was_cut(&mut self) -> io::Result<bool> {
         let found = self.file.metadata()?;
-        if found.len() < self.place {
+        if found.len() < self.offset {
             return Ok(true);
         }
         let changed = found.modified().ok();
@@ -135,7 +135,7 @@ impl GrowingFile {
         }
         self.changed = changed;
         let mut bytes = vec![0; self.last.len()];
-        let start = self.place - self.last.len() as u64;
+        let start = self.offset - self.last.len() as u64;
         match self.file.read_exact_at(&mut bytes, start) {
             // Cut between the two looks.
             Err(error) if error.kind() == ErrorKind::UnexpectedEof => Ok(true),

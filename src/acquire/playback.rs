@@ -10,9 +10,10 @@ use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions};
 use crate::acquire::recorder::description_beside;
 use crate::acquire::stream::Consumer;
 use crate::formats::recording::{
-    ChannelInfo, ReadOptions, RecordingEvent, RecordingMetadata, RecordingNote, read,
+    ChannelChoice, ChannelInfo, ReadOptions, RecordingEvent, RecordingMetadata, RecordingNote, read,
 };
 use crate::formats::stream::StreamCounts;
+use crate::frame::Frame;
 
 /// The rate of a recording that does not say its own: ten frames a second.
 const STEP: f64 = 0.1;
@@ -29,20 +30,26 @@ struct Pace {
     /// Seconds from one frame to the next, where frames have no time.
     step: f64,
     speed: f64,
+    /// The frames of the channel so far.
     frames: u32,
+    /// The channel that sets the pace. Frames of others, which come before it, between its own or after it, wait for nothing.
+    channel: ChannelChoice,
 }
 
 impl Pace {
-    /// Waits for a frame; `Break` if no more is wanted.
+    /// Waits until a frame is due; `Break` if no more is wanted.
     fn wait(
         &mut self,
-        time: Option<f64>,
+        frame: &Frame,
         stop: &AtomicBool,
         consumer: &mut Consumer<'_>,
     ) -> ControlFlow<()> {
+        if !self.channel.takes(frame.channel) {
+            return ControlFlow::Continue(());
+        }
         let own = f64::from(self.frames) * self.step;
         self.frames = self.frames.saturating_add(1);
-        let seconds = (time.unwrap_or(own) / self.speed).clamp(0.0, LONGEST);
+        let seconds = (frame.time.unwrap_or(own) / self.speed).clamp(0.0, LONGEST);
         let due = self.begun + Duration::from_secs_f64(seconds);
         loop {
             let left = due.saturating_duration_since(Instant::now());
@@ -80,15 +87,22 @@ pub(super) fn run(
         let mut pace = Pace {
             begun: Instant::now(),
             step: STEP,
-            speed: options.speed,
+            speed: if options.speed > 0.0 {
+                options.speed
+            } else {
+                1.0
+            },
             frames: 0,
+            channel: ChannelChoice::new(options.channel.as_deref()),
         };
         let mut flow = ControlFlow::Continue(());
         read(&mut file, reading, &mut |event| {
             flow = match event {
                 RecordingEvent::Channel(info) => {
                     let info = completed(info, description.as_ref());
-                    pace.step = info.seconds_per_frame.unwrap_or(STEP);
+                    if pace.channel.add(&info) {
+                        pace.step = info.seconds_per_frame.unwrap_or(STEP);
+                    }
                     match round {
                         0 => consumer(AcquireEvent::Channel(&info)),
                         _ => ControlFlow::Continue(()),
@@ -96,7 +110,7 @@ pub(super) fn run(
                 }
                 RecordingEvent::Frame(frame) => {
                     let time = frame.time;
-                    let given_up = !options.once && pace.wait(time, stop, consumer).is_break();
+                    let given_up = !options.once && pace.wait(frame, stop, consumer).is_break();
                     if given_up || stop.load(Ordering::Relaxed) {
                         ControlFlow::Break(())
                     } else {
@@ -137,4 +151,40 @@ fn completed(info: &ChannelInfo, description: Option<&RecordingMetadata>) -> Cha
         info.complete(description);
     }
     info
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_frames_of_the_channel_that_is_watched_are_waited_for() {
+        let mut pace = Pace {
+            begun: Instant::now(),
+            step: 1000.0,
+            speed: 1.0,
+            frames: 0,
+            channel: ChannelChoice::new(Some("right")),
+        };
+        for (name, is_watched) in [("left", false), ("right", true)] {
+            let name = Some(name.to_owned());
+            let info = ChannelInfo {
+                name,
+                ..ChannelInfo::default()
+            };
+            assert_eq!(pace.channel.add(&info), is_watched);
+        }
+        let mut frame = Frame::new(1, 1);
+        let mut waits = |frame: &Frame| {
+            // It stops at the first wait.
+            let consumer = &mut |_: AcquireEvent<'_>| ControlFlow::Break(());
+            pace.wait(frame, &AtomicBool::new(false), consumer)
+                .is_break()
+        };
+        frame.time = Some(1000.0);
+        assert!(!waits(&frame), "of the other channel");
+        (frame.channel, frame.time) = (1, None);
+        assert!(!waits(&frame), "the first one");
+        assert!(waits(&frame), "the second one");
+    }
 }

@@ -27,7 +27,8 @@ pub enum FrameSource {
 }
 
 impl FrameSource {
-    /// The source of that name. A path that does not exist counts as a file.
+    /// The source of that name. A path that does not exist counts as a file, but in `/dev` and `/dev/serial` as a serial
+    /// line, which may be plugged in later.
     pub fn new(name: &OsStr) -> Self {
         if name == "-" {
             return Self::Standard;
@@ -39,6 +40,7 @@ impl FrameSource {
         match fs::metadata(&path).map(|metadata| metadata.file_type()) {
             Ok(kind) if kind.is_char_device() => Self::Serial(path),
             Ok(kind) if kind.is_fifo() => Self::Fifo(path),
+            Err(_) if is_for_devices(&path) => Self::Serial(path),
             _ => Self::File(path),
         }
     }
@@ -77,7 +79,7 @@ impl FrameSource {
     /// # Errors
     /// [`RecorderError::IsSource`].
     pub fn refuse_as_target(&self, target: &Path) -> Result<(), RecorderError> {
-        let place = |file: fs::Metadata| (file.dev(), file.ino());
+        let identity = |file: fs::Metadata| (file.dev(), file.ino());
         let source = match self {
             Self::Standard => io::stdin()
                 .as_fd()
@@ -87,12 +89,12 @@ impl FrameSource {
             Self::Tcp(_) | Self::Serial(_) | Self::Fifo(_) => return Ok(()),
         };
         // What is not there is nothing that can be lost.
-        let Ok(source) = source.map(place) else {
+        let Ok(source) = source.map(identity) else {
             return Ok(());
         };
         let both = [target.to_owned(), target.with_extension("json")];
         for path in both {
-            if fs::metadata(&path).is_ok_and(|found| place(found) == source) {
+            if fs::metadata(&path).is_ok_and(|found| identity(found) == source) {
                 return Err(RecorderError::IsSource { path });
             }
         }
@@ -103,6 +105,11 @@ impl FrameSource {
     pub(super) fn comes_back(&self) -> bool {
         matches!(self, Self::Tcp(_) | Self::Serial(_))
     }
+}
+
+/// Whether a path is one where a device appears when it is plugged in.
+fn is_for_devices(path: &Path) -> bool {
+    path.parent() == Some(Path::new("/dev")) || path.starts_with("/dev/serial")
 }
 
 /// Refuses what is no host with a port.
@@ -117,5 +124,23 @@ pub(super) fn check_address(address: &str) -> io::Result<()> {
             io::ErrorKind::InvalidInput,
             "expected tcp://HOST:PORT with a port up to 65535",
         )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_that_is_not_plugged_in_is_a_line_all_the_same() {
+        for (name, is_line) in [
+            ("/dev/ttyUSB9999", true),
+            ("/dev/serial/by-id/usb-none", true),
+            ("/dev/shm/none.npy", false),
+            ("none.npy", false),
+        ] {
+            let source = FrameSource::new(OsStr::new(name));
+            assert_eq!(matches!(source, FrameSource::Serial(_)), is_line, "{name}");
+        }
     }
 }

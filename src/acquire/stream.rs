@@ -35,7 +35,9 @@ struct StreamClock {
     first: Option<Instant>,
     last_frame: Instant,
     last_tick: Instant,
-    /// Bytes until the last frame or the last message.
+    /// Whether a frame has come since then.
+    frame_came: bool,
+    /// Bytes until the last frame or the last message of silence.
     bytes: u64,
     /// The time of the last frame that had one of its own, and when it came.
     given: Option<(f64, Instant)>,
@@ -54,6 +56,7 @@ impl StreamClock {
             first: None,
             last_frame: now,
             last_tick: now,
+            frame_came: false,
             bytes: 0,
             given: None,
             rejoined: false,
@@ -137,6 +140,7 @@ pub(super) fn run(
         }
         clock.rejoined = true;
         clock.last_frame = Instant::now();
+        clock.bytes = decoder.counts().bytes;
     }
     let _ = step(&mut decoder, StreamDecoder::finish, &mut clock, consumer);
     let _ = consumer(AcquireEvent::Ended(decoder.counts()));
@@ -234,6 +238,7 @@ fn report(
         StreamEvent::Frame(frame) => {
             let now = Instant::now();
             clock.last_frame = now;
+            clock.frame_came = true;
             let arrived = now - *clock.first.get_or_insert(now);
             let arrived = clock.timed.then(|| to_nanoseconds(arrived.as_secs_f64()));
             let own = frame.time.map(|own| clock.continued(own, now));
@@ -258,9 +263,11 @@ fn tick(
     clock.last_tick = now;
     let counts = decoder.counts();
     consumer(AcquireEvent::Tick(counts))?;
+    if std::mem::take(&mut clock.frame_came) {
+        clock.bytes = counts.bytes;
+    }
     let silent = now - clock.last_frame;
     if silent < SILENCE {
-        clock.bytes = counts.bytes;
         return ControlFlow::Continue(());
     }
     clock.last_frame = now;
@@ -280,6 +287,34 @@ mod tests {
 
     use super::*;
     use crate::formats::stream::StreamFormat;
+
+    #[test]
+    fn silence_comes_with_the_rate_of_all_bytes_since_the_last_frame() {
+        let options = AcquireOptions::default();
+        let source = FrameSource::Standard;
+        let mut decoder = StreamDecoder::new(StreamOptions::default());
+        let mut clock = StreamClock::new(&source, &options);
+        let mut said = Vec::new();
+        // Junk, looked at before two seconds have gone by and after.
+        for seconds in [1, 2] {
+            decoder.push(&[b'?'; 100], &mut |_| ());
+            let now = Instant::now();
+            let ago = |time| now.checked_sub(time).expect("later than that");
+            clock.last_tick = ago(TICK);
+            clock.last_frame = ago(Duration::from_secs(seconds));
+            let flow = tick(&decoder, &mut clock, &mut |event| {
+                if let AcquireEvent::Silent {
+                    bytes_per_second, ..
+                } = event
+                {
+                    said.push(bytes_per_second.round());
+                }
+                ControlFlow::Continue(())
+            });
+            assert!(flow.is_continue());
+        }
+        assert_eq!(said, [100.0]);
+    }
 
     /// Two connections: the first ends with the last byte of a frame, the second one byte behind it.
     #[test]

@@ -118,6 +118,7 @@ impl WatchArguments {
             options.format = StreamFormat::from_name(name);
         }
         options.shape = processing.shape;
+        options.channel.clone_from(&processing.channel);
         options.baud = matches.get_one("baud").copied().unwrap_or(options.baud);
         options.once = matches.get_flag("once");
         options.repeat = matches.get_flag("loop");

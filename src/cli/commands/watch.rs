@@ -518,7 +518,7 @@ impl Watcher<'_> {
             failure = Some(self.refused(&FrameError::Tare { frames, wanted }.to_string()));
         }
         let recorded = self.recorder.take().map(FrameRecorder::finish);
-        if let (Some(Ok(0)), Some(path)) = (&recorded, &self.asked.write) {
+        if let (Some(Ok(0)), Some(path), None) = (&recorded, &self.asked.write, &failure) {
             let path = path.display();
             self.say(&format!("no frame came, so {path} was not written"));
         }

@@ -91,7 +91,7 @@ pub(crate) fn own_tare(info: &ChannelInfo, view: &View) -> Option<Tare> {
 /// The median of each cell over these frames is its value at rest, and is taken off from then on.
 ///
 /// # Errors
-/// If the channel has fewer frames than wanted: `a tare of 5 frames, but there are 3: …`.
+/// If the channel has fewer frames than wanted: `frames for the tare: found 3, expected 5: …`.
 pub(crate) fn tare(
     recording: &mut RecordingFile,
     channel: usize,

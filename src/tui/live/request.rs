@@ -27,8 +27,6 @@ pub struct WatchRequest {
     pub tare: u64,
     /// Whether the tare of a recording's own description is taken, where `tare` is 0.
     pub own_tare: bool,
-    /// The channel of a recording; without a name the first one.
-    pub channel: Option<String>,
     /// The file that all frames are recorded in from the start.
     pub write: Option<(PathBuf, Existing)>,
     /// The set of shapes that imprints are compared with.
@@ -56,7 +54,6 @@ impl WatchRequest {
             rule: None,
             tare: 0,
             own_tare: true,
-            channel: None,
             write: None,
             model: None,
             noise: None,

@@ -285,7 +285,7 @@ impl FrameFeed {
     /// What comes of the channel that is asked for.
     fn of(request: &WatchRequest) -> Self {
         let feed = Self::default();
-        locked(&feed.pending).channels = ChannelChoice::new(request.channel.as_deref());
+        locked(&feed.pending).channels = ChannelChoice::new(request.options.channel.as_deref());
         feed
     }
 
@@ -536,7 +536,7 @@ mod tests {
     #[test]
     fn frames_of_other_channels_are_not_shown_before_the_one_that_is_asked_for() {
         let mut request = WatchRequest::new("none");
-        request.channel = Some("right".to_owned());
+        request.options.channel = Some("right".to_owned());
         let feed = FrameFeed::of(&request);
         for (index, name) in ["left", "right"].into_iter().enumerate() {
             let info = ChannelInfo {
