@@ -244,12 +244,15 @@ impl Figure {
             *size = sensor.default_value(parameter);
         }
         let at_origin = FigureBuilder::new(kind, sizes).0;
-        let room = |end: f64| (f64::from(sensor.side()) - end).floor().max(0.0);
+        let room = |side: u8, end: f64| (f64::from(side) - end).floor().max(0.0);
         let (right, bottom) =
             Extent::of(&at_origin).map_or((0.0, 0.0), |extent| (extent.right, extent.bottom));
+        let (columns, rows) = (sensor.columns(), sensor.rows());
         Self {
-            x0: sensor.default_value(Parameter::X0).min(room(right)),
-            y0: sensor.default_value(Parameter::Y0).min(room(bottom)),
+            x0: sensor
+                .default_value(Parameter::X0)
+                .min(room(columns, right)),
+            y0: sensor.default_value(Parameter::Y0).min(room(rows, bottom)),
             ..at_origin
         }
     }
@@ -474,17 +477,24 @@ mod tests {
 
     #[test]
     fn a_new_figure_lies_on_a_sensor_of_any_size() {
-        for side in 1..=64 {
+        let sides = (1..=64).flat_map(|side| [(side, side), (side, 16), (16, side)]);
+        for (columns, rows) in sides {
             for kind in FigureKind::ALL {
-                let sensor = Sensor::new(side, side).expect("in range");
+                let sensor = Sensor::new(columns, rows).expect("in range");
                 let figure = Figure::default_of(kind, &sensor);
                 let extent = Extent::of(&figure).expect("it has a boundary");
-                let side = f64::from(side);
-                assert!(extent.left >= 0.0 && extent.left + 0.5 < side, "{figure}");
-                assert!(extent.top >= 0.0 && extent.top + 0.5 < side, "{figure}");
-                // Wholly, wherever there is room for it.
-                let fits = extent.right - extent.left <= side && extent.bottom - extent.top <= side;
-                assert!(!fits || extent.right.max(extent.bottom) <= side, "{figure}");
+                for (low, high, side) in [
+                    (extent.left, extent.right, f64::from(columns)),
+                    (extent.top, extent.bottom, f64::from(rows)),
+                ] {
+                    assert!(
+                        low >= 0.0 && low + 0.5 < side,
+                        "{figure} on {columns} × {rows}"
+                    );
+                    // Wholly, wherever there is room for it.
+                    let fits = high - low <= side;
+                    assert!(!fits || high <= side, "{figure} on {columns} × {rows}");
+                }
             }
         }
     }

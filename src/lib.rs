@@ -65,7 +65,7 @@
 //!  tui          the screen                                                         ratatui, crossterm
 //!  cli          the command line over all of it                                    clap
 //! ```
-//! Files and streams are touched by `storage`, `acquire`, `memory`, `formats`, `cli`, `tui::runtime`, `tui::terminal` and `main` only.
+//! Files and streams are touched by `storage`, `acquire`, `memory`, `cli`, `tui::runtime`, `tui::terminal` and `main` only.
 //!
 //! The way of a pose:
 //! ```text
@@ -100,7 +100,7 @@
 //!
 //! # Stability
 //!
-//! From `geometry` to `storage` the crate follows semantic versioning; what is likely to grow is non-exhaustive. `tui`
+//! From `geometry` to `acquire` the crate follows semantic versioning; what is likely to grow is non-exhaustive. `tui`
 //! and `cli` are the program: their items are public for tests and scripts, and follow the program.
 //!
 //! # Invariants

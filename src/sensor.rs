@@ -187,8 +187,8 @@ impl Sensor {
         self.check(parameter, value)
     }
 
-    /// Returns the next value in steps of the paper's last decimal, `direction` of them away: hundredths below ten, tenths
-    /// from ten on, whole degrees. Angles wrap around, other parameters stop at the ends of their range.
+    /// Returns the next value in steps of the paper's last decimal, up or down by the sign of `direction`: hundredths below
+    /// ten, tenths from ten on, whole degrees. Angles wrap around, other parameters stop at the ends of their range.
     pub fn step(&self, parameter: Parameter, value: f64, direction: i32) -> f64 {
         // From ten up the steps are tenths, from ten down hundredths; below zero likewise, the other way.
         let towards = match direction {

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::matrix::Matrix;
+
 /// What is wrong with a frame or with the way it is to be processed.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -90,3 +92,22 @@ impl fmt::Display for FrameError {
 }
 
 impl std::error::Error for FrameError {}
+
+/// Refuses a matrix of another size than that of the values.
+pub(super) fn check_size(
+    what: &'static str,
+    found: &Matrix<f64>,
+    values: &Matrix<f64>,
+) -> Result<(), FrameError> {
+    let size = |of: &Matrix<f64>| (u16::from(of.columns()), u16::from(of.rows()));
+    let (found, expected) = (size(found), size(values));
+    if found == expected {
+        Ok(())
+    } else {
+        Err(FrameError::Size {
+            what,
+            found,
+            expected,
+        })
+    }
+}

@@ -8,6 +8,7 @@
 //! A taxel is stuck on if it is active wherever none of its neighbours is, and off or dead if it is never active where three
 //! quarters of its neighbours are; each in ten frames or more. A hole of one taxel that never moves looks the same.
 
+use crate::frame::rule::unite;
 use crate::imprint::Imprint;
 
 /// Frames that it takes to call a taxel stuck.
@@ -61,9 +62,7 @@ impl FlipReport {
     /// The taxels that say nothing: stuck on or off.
     pub fn mask(&self) -> Imprint {
         let mut mask = self.stuck_on;
-        for (word, off) in mask.words_mut().iter_mut().zip(self.stuck_off.words()) {
-            *word |= off;
-        }
+        unite(&mut mask, &self.stuck_off);
         mask
     }
 }
@@ -143,42 +142,45 @@ impl FlipCounter {
                 let counts = self.taxels[index];
                 // One frame in a hundred may be a flip.
                 let (alone, on) = counts.alone;
-                if alone >= ENOUGH && 100 * (alone - on) <= alone {
+                if alone >= ENOUGH && alone - on <= alone / 100 {
                     stuck_on.set(column, row, true);
                 }
                 let (amid, on) = counts.amid;
-                if amid >= ENOUGH && 100 * on <= amid {
+                if amid >= ENOUGH && on <= amid / 100 {
                     stuck_off.set(column, row, true);
                 }
             }
         }
-        let noise = noise(self.flips, self.repeated);
-        #[expect(clippy::cast_precision_loss, reason = "an estimate")]
-        let standard_error =
-            noise.map(|_| (self.flips.max(1) as f64).sqrt() / self.repeated as f64);
+        let estimate = noise(self.flips, self.repeated);
         FlipReport {
             frames: self.frames,
             cells: self.cells.count(),
             repeated: self.repeated,
             flips: self.flips,
-            noise,
-            standard_error,
+            noise: estimate.map(|(noise, _)| noise),
+            standard_error: estimate.map(|(_, error)| error),
             stuck_on,
             stuck_off,
         }
     }
 }
 
-/// The flip probability e at which the given share of repeated states differs.
-fn noise(flips: u64, repeated: u64) -> Option<f64> {
+/// The flip probability e at which the given share of repeated states differs, and its standard error: that of the share
+/// times the slope of e over it.
+#[expect(clippy::cast_precision_loss, reason = "an estimate")]
+fn noise(flips: u64, repeated: u64) -> Option<(f64, f64)> {
     if repeated == 0 {
         return None;
     }
-    #[expect(clippy::cast_precision_loss, reason = "an estimate")]
     let share = flips as f64 / repeated as f64;
-    let product = share / (1.0 + 2.0 * share);
-    let root = 1.0 - 4.0 * product;
-    (root > 0.0).then(|| (1.0 - root.sqrt()) / 2.0)
+    let of_share = (flips.max(1) as f64).sqrt() / repeated as f64;
+    let growth = 1.0 + 2.0 * share;
+    // e (1 - e)
+    let product = share / growth;
+    // (1 - 2e)^2
+    let square = 1.0 - 4.0 * product;
+    let root = square.sqrt();
+    (square > 0.0).then(|| ((1.0 - root) / 2.0, of_share / (growth * growth * root)))
 }
 
 #[cfg(test)]
@@ -191,6 +193,18 @@ mod tests {
         *state ^= *state >> 7;
         *state ^= *state << 17;
         *state
+    }
+
+    #[test]
+    fn the_error_of_the_noise_is_that_of_the_flips_times_the_slope() {
+        for flips in [10_000, 100_000, 400_000] {
+            let repeated = 1_000_000;
+            let (noise_at, error) = noise(flips, repeated).expect("below a half");
+            let (later, _) = noise(flips + 100, repeated).expect("below a half");
+            let slope = (later - noise_at) / 1e-4;
+            let of_share = f64::from(u32::try_from(flips).expect("small")).sqrt() / 1e6;
+            assert!((error / (slope * of_share) - 1.0).abs() < 1e-3, "{flips}");
+        }
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! A frame from what the sensor sends to its imprint, without allocating anything per frame.
 
-use crate::frame::error::FrameError;
+use crate::frame::error::{FrameError, check_size};
 use crate::frame::recorded::{Frame, LARGEST_VALUE};
-use crate::frame::rule::{Rule, check_size, without_small};
+use crate::frame::rule::{Rule, without_small};
 use crate::frame::tare::Tare;
 use crate::frame::view::View;
 use crate::imprint::Imprint;

@@ -1,7 +1,7 @@
 //! Which values make a taxel active.
 
 use crate::description::{RegionKind, each_region};
-use crate::frame::error::FrameError;
+use crate::frame::error::{FrameError, check_size};
 use crate::frame::recorded::LARGEST_VALUE;
 use crate::frame::tare::Tare;
 use crate::imprint::Imprint;
@@ -62,11 +62,10 @@ impl Rule {
     /// # Errors
     /// If one is not finite, or `low` is above `high`.
     pub fn hysteresis(low: f64, high: f64) -> Result<Self, FrameError> {
-        let expected = "a number at most that of the upper threshold";
-        Ok(Self::Hysteresis {
-            low: checked("lower threshold", low, low <= high, expected)?,
-            high: checked("upper threshold", high, true, "a number, -1e300 to 1e300")?,
-        })
+        let high = checked("upper threshold", high, true, "a number, -1e300 to 1e300")?;
+        let expected = "at most the upper threshold";
+        let low = checked("lower threshold", low, low <= high, expected)?;
+        Ok(Self::Hysteresis { low, high })
     }
 
     /// Standard deviations of noise; needs a tare.
@@ -133,25 +132,6 @@ impl Rule {
     }
 }
 
-/// Refuses a matrix of another size than that of the values.
-pub(super) fn check_size(
-    what: &'static str,
-    found: &Matrix<f64>,
-    values: &Matrix<f64>,
-) -> Result<(), FrameError> {
-    let size = |of: &Matrix<f64>| (u16::from(of.columns()), u16::from(of.rows()));
-    let (found, expected) = (size(found), size(values));
-    if found == expected {
-        Ok(())
-    } else {
-        Err(FrameError::Size {
-            what,
-            found,
-            expected,
-        })
-    }
-}
-
 /// The cells from a threshold on.
 fn from(values: &Matrix<f64>, threshold: f64) -> Imprint {
     active(values, |_, value| value >= threshold)
@@ -170,7 +150,8 @@ fn active(values: &Matrix<f64>, is_active: impl Fn(usize, f64) -> bool) -> Impri
     imprint
 }
 
-fn unite(imprint: &mut Imprint, piece: &Imprint) {
+/// Adds the active taxels of an imprint of the same size.
+pub(super) fn unite(imprint: &mut Imprint, piece: &Imprint) {
     for (word, piece) in imprint.words_mut().iter_mut().zip(piece.words()) {
         *word |= piece;
     }

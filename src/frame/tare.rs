@@ -1,6 +1,6 @@
 //! What the cells show when nothing touches them: the median of each over some frames, and how much it varies.
 
-use crate::frame::error::FrameError;
+use crate::frame::error::{FrameError, check_size};
 use crate::matrix::Matrix;
 
 /// The values that a tare keeps until it is finished: 256 MiB of them.
@@ -150,16 +150,9 @@ impl Tare {
         step: Option<f64>,
         frames: u64,
     ) -> Result<Self, FrameError> {
-        let size = |of: &Matrix<f64>| (u16::from(of.columns()), u16::from(of.rows()));
         let deviation =
             deviation.unwrap_or_else(|| Matrix::filled(baseline.columns(), baseline.rows(), 0.0));
-        if size(&deviation) != size(&baseline) {
-            return Err(FrameError::Size {
-                what: "tare",
-                found: size(&deviation),
-                expected: size(&baseline),
-            });
-        }
+        check_size("tare", &deviation, &baseline)?;
         Ok(Self {
             baseline,
             deviation,
@@ -195,15 +188,7 @@ impl Tare {
     /// # Errors
     /// If the values are of another size.
     pub fn take_off(&self, values: &mut Matrix<f64>) -> Result<(), FrameError> {
-        let size = |of: &Matrix<f64>| (u16::from(of.columns()), u16::from(of.rows()));
-        let (found, expected) = (size(&self.baseline), size(values));
-        if found != expected {
-            return Err(FrameError::Size {
-                what: "tare",
-                found,
-                expected,
-            });
-        }
+        check_size("tare", &self.baseline, values)?;
         for (value, baseline) in values.values_mut().iter_mut().zip(self.baseline.values()) {
             *value -= baseline;
         }
