@@ -65,7 +65,8 @@
 //!  tui          the screen                                                         ratatui, crossterm
 //!  cli          the command line over all of it                                    clap
 //! ```
-//! Files and streams are touched by `storage`, `acquire`, `memory`, `cli`, `tui::runtime`, `tui::terminal` and `main` only.
+//! Files and streams are opened by `storage`, `acquire`, `memory`, `cli`, `tui::runtime`, `tui::terminal` and `main` only;
+//! `formats` reads and writes those that it is given.
 //!
 //! The way of a pose:
 //! ```text

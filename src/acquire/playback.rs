@@ -37,6 +37,17 @@ struct Pace {
 }
 
 impl Pace {
+    fn new(options: &AcquireOptions) -> Self {
+        let is_speed = options.speed > 0.0;
+        Self {
+            begun: Instant::now(),
+            step: STEP,
+            speed: if is_speed { options.speed } else { 1.0 },
+            frames: 0,
+            channel: ChannelChoice::new(options.channel.as_deref()),
+        }
+    }
+
     /// Waits until a frame is due; `Break` if no more is wanted.
     fn wait(
         &mut self,
@@ -84,17 +95,7 @@ pub(super) fn run(
     };
     let mut round = 0;
     loop {
-        let mut pace = Pace {
-            begun: Instant::now(),
-            step: STEP,
-            speed: if options.speed > 0.0 {
-                options.speed
-            } else {
-                1.0
-            },
-            frames: 0,
-            channel: ChannelChoice::new(options.channel.as_deref()),
-        };
+        let mut pace = Pace::new(options);
         let mut flow = ControlFlow::Continue(());
         read(&mut file, reading, &mut |event| {
             flow = match event {
@@ -159,13 +160,13 @@ mod tests {
 
     #[test]
     fn only_frames_of_the_channel_that_is_watched_are_waited_for() {
-        let mut pace = Pace {
-            begun: Instant::now(),
-            step: 1000.0,
-            speed: 1.0,
-            frames: 0,
-            channel: ChannelChoice::new(Some("right")),
-        };
+        let mut pace = Pace::new(&AcquireOptions {
+            channel: Some("right".to_owned()),
+            // Counts as 1.
+            speed: 0.0,
+            ..AcquireOptions::default()
+        });
+        pace.step = 10_000.0;
         for (name, is_watched) in [("left", false), ("right", true)] {
             let name = Some(name.to_owned());
             let info = ChannelInfo {

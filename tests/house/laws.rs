@@ -10,7 +10,7 @@ use std::path::Path;
 use crate::source::{Source, Token, listed, paths, read, shipped, source};
 
 /// The modules that may touch files and streams.
-const DOORS: &str = "storage acquire memory cli tui/runtime tui/terminal main";
+const DOORS: &str = "storage acquire memory formats cli tui/runtime tui/terminal main";
 
 /// Crates that a single room names.
 const OWNED: [(&str, &str); 5] = [
