@@ -1,9 +1,9 @@
 //! The answer to one touch, or to several of one shape.
 
 use crate::imprint::Imprint;
-use crate::recognition::model::{Model, NamedShape};
+use crate::recognition::model::Model;
 use crate::recognition::nearest::Nearest;
-use crate::recognition::noise::{Method, Noise};
+use crate::recognition::noise::{Method, NEGLIGIBLE, Noise};
 
 /// How far an answer can be trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -116,7 +116,9 @@ impl Model {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn recognise(&self, evidence: Evidence<'_>) -> Answer {
-        let at_rim = evidence.touches.iter().any(Imprint::touches_rim);
+        let dead = evidence.noise.and_then(Noise::dead);
+        let reaches_rim = |touch: &Imprint| without(touch, dead).touches_rim();
+        let at_rim = evidence.touches.iter().any(reaches_rim);
         let Some(noise) = evidence.noise else {
             let posterior = self.possible(evidence.touches);
             return judged(posterior, at_rim, evidence.reject_below);
@@ -131,24 +133,51 @@ impl Model {
 
     /// The shapes that may leave the touches under a noise, and which keys that took.
     fn possible_under(&self, noise: &Noise, touches: &[Imprint]) -> (Posterior, Method) {
-        let weight = |shape: &NamedShape| f64::from(shape.weight).ln();
-        let mut logarithms: Vec<f64> = self.shapes().iter().map(weight).collect();
+        let mut further = 0;
+        loop {
+            let (odds, method) = self.odds_under(noise, touches, further);
+            let most = (odds.iter()).fold(f64::NEG_INFINITY, |most, [_, odds]| most.max(*odds));
+            let sum = |which: usize| -> f64 {
+                let own = odds.iter().map(|odds| odds[which]);
+                own.map(|odds| (odds - most).exp()).sum()
+            };
+            let (least, all) = (sum(0), sum(1));
+            // The sums are equal where nothing lies further away, or where nothing is possible.
+            if all - least <= NEGLIGIBLE * least || !most.is_finite() {
+                let finite = |[odds, _]: [f64; 2]| Some(odds).filter(|own| own.is_finite());
+                let odds = odds.into_iter().map(finite);
+                return (Posterior::of_logarithms(odds), method);
+            }
+            further = 2 * further + 4;
+        }
+    }
+
+    /// The logarithm of w Π P(touch | s) for each shape, at least and at most, and which keys that took. `further` more
+    /// distances are looked at than one touch needs.
+    fn odds_under(
+        &self,
+        noise: &Noise,
+        touches: &[Imprint],
+        further: u32,
+    ) -> (Vec<[f64; 2]>, Method) {
+        let weights = self.shapes().iter();
+        let mut odds: Vec<[f64; 2]> = weights
+            .map(|shape| [f64::from(shape.weight).ln(); 2])
+            .collect();
         let mut method = Method::Exact;
         for touch in touches {
-            let Some(distances) = self.distances(touch, noise) else {
-                logarithms.fill(f64::NEG_INFINITY);
+            let Some(distances) = self.distances_further(touch, noise, further) else {
+                odds.fill([f64::NEG_INFINITY; 2]);
                 continue;
             };
             method = method.max(distances.method);
-            let likelihoods = self.likelihoods(touch, &distances, noise);
-            let shapes = self.shapes().iter().zip(likelihoods);
-            for (sum, (shape, likelihood)) in logarithms.iter_mut().zip(shapes) {
-                *sum += likelihood.ln() - weight(shape);
+            let likelihoods = self.log_likelihoods(touch, &distances, noise);
+            for (odds, likelihood) in odds.iter_mut().zip(likelihoods) {
+                odds[0] += likelihood[0];
+                odds[1] += likelihood[1];
             }
         }
-        let finite = |logarithm: f64| Some(logarithm).filter(|own| own.is_finite());
-        let odds = logarithms.into_iter().map(finite);
-        (Posterior::of_logarithms(odds), method)
+        (odds, method)
     }
 
     /// The shapes that leave all of the touches.
@@ -177,13 +206,23 @@ impl Model {
         Posterior::of_logarithms(logarithms.into_iter())
     }
 
-    /// Returns the imprint of the model that is most like the touch that explains the answer least: the first that no
-    /// shape leaves, otherwise the last one. None without a touch, or if no key fits its matrix.
+    /// Returns the imprint of the model nearest to the first touch that no shape leaves, else to the last touch. Dead taxels
+    /// of the noise are left out. None without a touch, or if no key fits its matrix.
     pub fn nearest_of(&self, evidence: Evidence<'_>) -> Option<Nearest> {
-        let unknown = |touch: &&Imprint| self.counts_of(touch).is_empty();
+        let dead = evidence.noise.and_then(Noise::dead);
+        let unknown = |touch: &&Imprint| self.counts_of(&without(touch, dead)).is_empty();
         let touches = evidence.touches;
-        self.nearest(touches.iter().find(unknown).or(touches.last())?)
+        self.nearest_without(touches.iter().find(unknown).or(touches.last())?, dead)
     }
+}
+
+/// An imprint without taxels that are known to be dead.
+fn without(imprint: &Imprint, dead: Option<&Imprint>) -> Imprint {
+    let mut rest = *imprint;
+    for (column, row) in dead.into_iter().flat_map(Imprint::active) {
+        rest.set(column, row, false);
+    }
+    rest
 }
 
 /// How probable the shapes are.

@@ -205,6 +205,9 @@ impl Model {
     /// Returns the shapes that could never be rejected, whatever else is touched: every key of theirs is left by another
     /// shape of the set too, so a touch of them is never certain.
     pub fn never_certain(&self) -> Vec<usize> {
+        if self.poses() == 0 {
+            return Vec::new();
+        }
         let mut certain = vec![false; self.shapes().len()];
         for key in 0..self.keys().len() {
             if let [only] = self.counts(key) {

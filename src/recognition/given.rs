@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use rayon::prelude::*;
 
 use crate::atlas::ImprintSummary;
-use crate::description::{DESCRIPTORS, Description, Descriptor, ExactValue, Value};
+use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension, ExactValue, Value};
 use crate::imprint::Imprint;
 use crate::quote::shortened;
 use crate::recognition::evaluation::Evaluation;
@@ -212,16 +212,23 @@ impl GivenDescriptors {
 
     /// The values of these descriptors, in steps where they are rounded.
     fn values(&self, description: Option<&Description>) -> Vec<ExactValue> {
-        let value = |descriptor: &ShapeDescriptor| {
-            let mut roundings = self.roundings.iter();
-            let rounding = roundings.find(|own| own.descriptor == *descriptor);
-            let description = description?;
-            match rounding {
-                Some(rounding) => rounding.rounded((descriptor.0.measure)(description)),
-                None => (descriptor.0.exact)(description),
-            }
+        let value = |&descriptor: &ShapeDescriptor| {
+            let rounding = Rounding::of(descriptor, &self.roundings);
+            known(descriptor, rounding, description?)
         };
         self.descriptors.iter().map(value).collect()
+    }
+}
+
+/// What is known of a description by one of its descriptors, in steps if it is rounded.
+fn known(
+    descriptor: ShapeDescriptor,
+    rounding: Option<&Rounding>,
+    description: &Description,
+) -> ExactValue {
+    match rounding {
+        Some(rounding) => rounding.rounded((descriptor.0.measure)(description)),
+        None => (descriptor.0.exact)(description),
     }
 }
 
@@ -291,16 +298,9 @@ impl<'a> GivenTable<'a> {
         descriptor: ShapeDescriptor,
         roundings: &[Rounding],
     ) -> Classes {
-        let rounding = roundings
-            .iter()
-            .find(|rounding| rounding.descriptor == descriptor);
-        let value = |description: &Option<Description>| {
-            let description = description.as_ref()?;
-            match rounding {
-                Some(rounding) => rounding.rounded((descriptor.0.measure)(description)),
-                None => (descriptor.0.exact)(description),
-            }
-        };
+        let rounding = Rounding::of(descriptor, roundings);
+        let value =
+            |description: &Option<Description>| known(descriptor, rounding, description.as_ref()?);
         let mut numbers = HashMap::new();
         let members = classes.iter().zip(&self.descriptions);
         let number = members.map(|(&class, description)| {
@@ -335,12 +335,34 @@ impl<'a> GivenTable<'a> {
 }
 
 impl Rounding {
+    /// Returns the descriptor that is measured in steps.
+    pub fn descriptor(&self) -> ShapeDescriptor {
+        self.descriptor
+    }
+
+    /// That of a descriptor, if there is one.
+    fn of(descriptor: ShapeDescriptor, all: &[Self]) -> Option<&Self> {
+        all.iter().find(|own| own.descriptor == descriptor)
+    }
+
+    /// Returns how many steps a number is. Directions of 180° and −180° are the same one, if a whole number of steps makes
+    /// a turn.
     #[expect(
         clippy::cast_possible_truncation,
         reason = "values of descriptors over a step of at least 1e-9 are far below 2⁶³"
     )]
-    fn rounded(&self, value: Value) -> Option<[i64; 4]> {
-        let steps = |value: f64| (value / self.step).round() as i64;
+    fn steps(&self, number: f64) -> i64 {
+        let (steps, turn) = ((number / self.step).round() as i64, 360.0 / self.step);
+        let is_circular = self.descriptor.0.dimension == Dimension::Direction;
+        if is_circular && turn >= 1.0 && turn.fract() == 0.0 {
+            steps.rem_euclid(turn as i64)
+        } else {
+            steps
+        }
+    }
+
+    fn rounded(&self, value: Value) -> ExactValue {
+        let steps = |number| self.steps(number);
         let mut rounded = [0; 4];
         match value {
             Value::None => return None,
@@ -386,5 +408,22 @@ pub fn greedy(model: &Model, roundings: &[Rounding]) -> Vec<(ShapeDescriptor, Ev
             }
             _ => return chosen,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_ends_of_a_turn_are_one_direction() {
+        let steps = |text: &str, numbers: [f64; 3]| {
+            let rounding: Rounding = text.parse().expect("a rounding");
+            numbers.map(|number| rounding.steps(number))
+        };
+        let (turn, numbers) = ("cg_cd_direction=", [180.0, -179.9, -80.0]);
+        assert_eq!(steps(&format!("{turn}180"), numbers), [1, 1, 0]);
+        assert_eq!(steps(&format!("{turn}30"), numbers), [6, 6, 9]);
+        assert_eq!(steps("cg_cd=30", numbers), [6, -6, -3]);
     }
 }

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use std::sync::OnceLock;
 
 use crate::imprint::Imprint;
-use crate::pose::{Anchor, Ranges};
+use crate::pose::{Anchor, Axis, MAX_POSES, Ranges};
 use crate::quote::shortened;
 use crate::recognition::key::{ImprintKey, KeyTable};
 use crate::recognition::scan::KeyIndex;
@@ -275,6 +275,10 @@ impl Model {
             "counts that do not sum up to the number of poses",
         )?;
         check(
+            poses(&head.ranges, head.shard) == Some(head.poses),
+            "a number of poses that is not that of the ranges",
+        )?;
+        check(
             head.cut.iter().all(|&cut| cut <= head.poses),
             "more poses cut off than there are",
         )?;
@@ -434,9 +438,22 @@ impl Model {
     }
 }
 
-/// A part of a whole, which is above 0.
+/// The number of poses of a grid, or of its part; None if they are too many for any grid.
+fn poses(ranges: &Ranges, shard: Shard) -> Option<u64> {
+    let count = |axis: Axis| ranges[axis].count();
+    let others = [Axis::Y0, Axis::Angle, Axis::ZoomX, Axis::ZoomY].map(count);
+    let rows = others.into_iter().try_fold(1, u64::checked_mul);
+    let own = rows.map(|rows| shard.rows(rows));
+    let poses = own.and_then(|rows| (rows.end - rows.start).checked_mul(count(Axis::X0)));
+    poses.filter(|&poses| poses <= MAX_POSES)
+}
+
+/// A part of a whole; 0 of nothing, as in a shard that has no pose.
 #[expect(clippy::cast_precision_loss, reason = "a share has no more digits")]
 pub(super) fn share(part: u128, whole: u128) -> f64 {
+    if whole == 0 {
+        return 0.0;
+    }
     part as f64 / whole as f64
 }
 

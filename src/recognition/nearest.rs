@@ -23,12 +23,22 @@ pub struct Nearest {
 
 impl Model {
     /// Returns the imprint of this model that differs least from an observed one, over all keys and all their shifts on
-    /// the observed matrix; of equals that which is left in the most poses, then the first. None if no key fits the
-    /// matrix.
+    /// the observed matrix; of equals that which one shape leaves in the most poses, then the first. None if no key fits
+    /// the matrix.
     ///
     /// The first call arranges the keys, which takes longer.
     pub fn nearest(&self, observed: &Imprint) -> Option<Nearest> {
-        if let Some(key) = self.keys().find(&ImprintKey::of(observed)) {
+        self.nearest_without(observed, None)
+    }
+
+    /// The same, where the active taxels of `dead` do not count.
+    pub(super) fn nearest_without(
+        &self,
+        observed: &Imprint,
+        dead: Option<&Imprint>,
+    ) -> Option<Nearest> {
+        let alike = self.keys().find(&ImprintKey::of(observed));
+        if let Some(key) = alike.filter(|_| dead.is_none()) {
             return Some(Nearest {
                 shape: self.most_frequent(key).0,
                 distance: 0,
@@ -37,7 +47,7 @@ impl Model {
             });
         }
         let rank = |key: usize| Reverse(self.most_frequent(key).1);
-        let found = (self.index()).nearest(&Observed::new(observed, None), rank)?;
+        let found = (self.index()).nearest(&Observed::new(observed, dead), rank)?;
         let mut imprint = Imprint::empty(observed.columns(), observed.rows());
         let (column, row) = found.place;
         for (index, word) in self.keys().get(found.key).rows().enumerate() {

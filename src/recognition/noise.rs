@@ -8,8 +8,9 @@
 //! Taxels that are known to be dead are left out of d and of `cells`.
 //!
 //! What is summed are integers: for each shape, how many touches lie at each distance. So one scan serves any e, and
-//! neither threads nor the order of keys matter. Only distances up to D are kept: D follows from e and the least distance,
-//! and what lies beyond changes no probability by more than 1e-9.
+//! neither threads nor the order of keys matter. Only distances up to D are kept: D follows from e, the weights and the
+//! least distance, and what lies beyond changes no probability by more than 1e-9. Several touches may contradict each
+//! other, and then what is improbable for one decides: D grows until that holds for all of them together.
 //!
 //! The search for the near keys is that of [`scan`](super::scan).
 
@@ -19,7 +20,7 @@ use crate::recognition::model::Model;
 use crate::recognition::scan::{Observed, places};
 
 /// What a probability may change by leaving out far keys.
-const NEGLIGIBLE: f64 = 1e-9;
+pub(super) const NEGLIGIBLE: f64 = 1e-9;
 
 /// The probability that a taxel flips, from 0 to below ½, and the taxels that are known to be dead.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,7 +51,7 @@ impl Noise {
         }
     }
 
-    /// The active taxels of `dead` say nothing: they are stuck on or off.
+    /// The active taxels of `dead` say nothing: they are stuck on or off. Those beyond an imprint do not matter.
     #[must_use]
     pub fn without(self, dead: Imprint) -> Self {
         let dead = (!dead.is_empty()).then_some(dead);
@@ -67,14 +68,19 @@ impl Noise {
         self.dead.as_ref()
     }
 
-    /// Distances beyond the least one that matter, if sums of all touches are at most `touches`.
-    fn reach(&self, touches: f64) -> u32 {
+    /// By how much a touch is less probable for each taxel that differs.
+    fn ratio(&self) -> f64 {
+        self.flip / (1.0 - self.flip)
+    }
+
+    /// Distances beyond the least one that matter, if all touches together are at most `odds` times as probable as the
+    /// nearest one, distances apart.
+    fn reach(&self, odds: f64) -> u32 {
         if self.flip == 0.0 {
             return 0;
         }
-        let ratio = (self.flip / (1.0 - self.flip)).ln();
-        // The nearest touch weighs at least 1, all beyond D at most touches · ratio^(D + 1 − least).
-        let steps = (NEGLIGIBLE / touches).ln() / ratio;
+        // The nearest touch weighs 1, all beyond D at most odds · ratio^(D + 1 − least).
+        let steps = (NEGLIGIBLE / odds).ln() / self.ratio().ln();
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -158,17 +164,9 @@ impl Model {
         distances: &Distances,
         noise: &Noise,
     ) -> Vec<f64> {
-        let ratio = noise.flip / (1.0 - noise.flip);
-        let likelihood = |(touches, total): (&Vec<u64>, u64)| {
-            if total == 0 {
-                return 0.0;
-            }
-            // From far to near: a sum of small numbers first.
-            let sum = touches
-                .iter()
-                .rev()
-                .fold(0.0, |sum, &touches| sum * ratio + float(touches));
-            sum / float(total)
+        let likelihood = |(touches, total): (&Vec<u64>, u64)| match total {
+            0 => 0.0,
+            total => weighed(touches, noise) / float(total),
         };
         let totals = self.touches_on((imprint.columns(), imprint.rows()));
         let weights = self.shapes().iter().map(|shape| shape.weight);
@@ -176,6 +174,51 @@ impl Model {
         own.zip(weights)
             .map(|(own, weight)| own * f64::from(weight))
             .collect()
+    }
+
+    /// ln P(imprint | s) for each shape, all plus one number: at least, as far as `distances` reach, and at most. A shape
+    /// without a touch that fits the matrix has −∞ for both.
+    pub(super) fn log_likelihoods(
+        &self,
+        imprint: &Imprint,
+        distances: &Distances,
+        noise: &Noise,
+    ) -> Vec<[f64; 2]> {
+        let fall = noise.ratio().ln();
+        let all = u32::from(imprint.columns()) * u32::from(imprint.rows());
+        let bounds = |(touches, total): (&Vec<u64>, u64)| {
+            if total == 0 {
+                return [f64::NEG_INFINITY; 2];
+            }
+            // From the shape's own nearest touch on, so that no sum is too small for an `f64`.
+            let from = touches.iter().position(|&touches| touches > 0);
+            let least = from.map_or(f64::NEG_INFINITY, |from| {
+                let sum = (weighed(&touches[from..], noise) / float(total)).ln();
+                if from == 0 {
+                    sum
+                } else {
+                    sum + float(from as u64) * fall
+                }
+            });
+            let reached = touches.len() as u64;
+            let beyond = if u64::from(distances.least) + reached > u64::from(all) {
+                f64::NEG_INFINITY
+            } else {
+                float(reached) * fall
+            };
+            [least, log_of_sum(least, beyond)]
+        };
+        let totals = self.touches_on((imprint.columns(), imprint.rows()));
+        let own = distances.touches.iter().zip(totals);
+        own.map(bounds).collect()
+    }
+
+    /// The first shape of the set that leaves nothing on a matrix of some columns and rows, since none of its imprints fits
+    /// there.
+    pub fn first_too_large(&self, size: (u8, u8)) -> Option<usize> {
+        self.touches_on(size)
+            .iter()
+            .position(|&touches| touches == 0)
     }
 
     /// The touches of each shape on a matrix of some columns and rows: its poses, in every place where they fit.
@@ -200,9 +243,23 @@ impl Model {
     /// Returns how many touches of each shape lie at the distances from an imprint that matter under a noise. None if
     /// there is none.
     pub fn distances(&self, imprint: &Imprint, noise: &Noise) -> Option<Distances> {
+        self.distances_further(imprint, noise, 0)
+    }
+
+    /// The same, and those of `further` distances more.
+    pub(super) fn distances_further(
+        &self,
+        imprint: &Imprint,
+        noise: &Noise,
+        further: u32,
+    ) -> Option<Distances> {
         let totals = self.touches_on((imprint.columns(), imprint.rows()));
-        let touches: f64 = totals.into_iter().map(float).sum();
-        let reach = noise.reach(touches.max(1.0));
+        // Of each shape all touches together weigh w; the nearest one weighs w / T of its shape.
+        let weights = self.shapes().iter().map(|shape| f64::from(shape.weight));
+        let of_all: f64 = weights.clone().sum();
+        let of_one = totals.iter().zip(weights);
+        let odds = of_one.map(|(&total, weight)| float(total) / weight * of_all);
+        let reach = noise.reach(odds.fold(1.0, f64::max)) + further;
         if noise.dead.is_none() && reach <= 1 {
             let near = self.near(imprint, reach);
             if near.is_some() || noise.flip == 0.0 {
@@ -211,6 +268,9 @@ impl Model {
         }
         let observed = Observed::new(imprint, noise.dead.as_ref());
         let least = self.index().nearest(&observed, |_| ())?.distance;
+        if noise.flip == 0.0 && least > 0 {
+            return None;
+        }
         Some(Distances {
             least,
             touches: self.histogram(&observed, least, least + reach),
@@ -221,9 +281,12 @@ impl Model {
     /// By looking up keys: those of the imprint itself, and, if more matter, of all imprints that differ by one taxel. None
     /// if that is not enough.
     fn near(&self, imprint: &Imprint, reach: u32) -> Option<Distances> {
+        let nowhere = places((0, 0), (imprint.columns(), imprint.rows()));
         let at = |imprint: &Imprint, sums: &mut [u64]| {
+            // Nothing lies in every place alike.
+            let times = if imprint.is_empty() { nowhere } else { 1 };
             for count in self.counts_of(imprint) {
-                sums[usize::from(count.shape)] += count.poses;
+                sums[usize::from(count.shape)] += count.poses * times;
             }
         };
         let shapes = self.shapes().len();
@@ -277,6 +340,26 @@ impl Model {
     }
 }
 
+/// The sum of touches at distances from the first one on, each as probable as its distance makes it.
+fn weighed(touches: &[u64], noise: &Noise) -> f64 {
+    // From far to near: a sum of small numbers first.
+    let touches = touches.iter().rev();
+    touches.fold(0.0, |sum, &touches| sum * noise.ratio() + float(touches))
+}
+
+/// ln(e^one + e^other).
+fn log_of_sum(one: f64, other: f64) -> f64 {
+    let (low, high) = if one < other {
+        (one, other)
+    } else {
+        (other, one)
+    };
+    if low == f64::NEG_INFINITY {
+        return high;
+    }
+    high + (low - high).exp().ln_1p()
+}
+
 /// Sums added up.
 fn added(mut one: Vec<u64>, other: Vec<u64>) -> Vec<u64> {
     one.iter_mut()
@@ -292,4 +375,68 @@ fn added(mut one: Vec<u64>, other: Vec<u64>) -> Vec<u64> {
 )]
 fn float(count: u64) -> f64 {
     count as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::Figure;
+    use crate::pose::{Anchor, Axis, Ranges};
+    use crate::recognition::{NamedShape, Training};
+    use crate::sensor::Sensor;
+
+    fn rectangles() -> Model {
+        let sensor = Sensor::default();
+        let shapes = [(5.0, 3.0), (5.0, 3.3), (4.2, 4.2)].map(|(length, width)| {
+            let figure = Figure::rectangle(length, width).on(&sensor);
+            NamedShape::new(format!("{length} × {width}"), figure.expect("in range"))
+        });
+        let range = |text: &str| text.parse().expect("a range");
+        let ranges = Ranges::default()
+            .with(Axis::X0, range("5:5.9:0.1"))
+            .with(Axis::Y0, range("5:5.9:0.1"))
+            .with(Axis::Angle, range("0:350:10"));
+        let training = Training::new(shapes, sensor, Anchor::Corner, ranges).expect("a set");
+        training.run().expect("nothing is cut off")
+    }
+
+    #[test]
+    fn many_tasks_on_several_threads_find_what_one_finds() {
+        let model = rectangles();
+        let tasks = model.keys().len() / 64;
+        assert!(tasks > 4, "{tasks} tasks");
+        let mut touch = Imprint::empty(16, 16);
+        for row in 3..7 {
+            touch.set_word(row, 0b1111_1000);
+        }
+        touch.toggle(12, 12);
+        let noise = Noise::new(0.03).expect("in range");
+        let with = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            let found = || (model.distances(&touch, &noise), model.nearest(&touch));
+            pool.expect("threads").install(found)
+        };
+        let one = with(1);
+        assert!(one.0.is_some() && one.1.is_some());
+        for _ in 0..10 {
+            assert_eq!((with(2), with(4)), (one.clone(), one.clone()));
+        }
+    }
+
+    #[test]
+    fn a_mask_of_another_size_is_cut_or_filled_up() {
+        let model = rectangles();
+        let touch: Imprint = "......\n.####.\n.####.\n.####.\n.#....\n......"
+            .parse()
+            .expect("an imprint");
+        let mask = |columns, rows| {
+            let mut dead = Imprint::empty(columns, rows);
+            dead.set(1, 4, true);
+            let noise = Noise::new(0.01).expect("in range").without(dead);
+            model.posterior_under(&touch, &noise)
+        };
+        let own = mask(6, 6);
+        assert!(own.is_some());
+        assert_eq!((mask(2, 5), mask(64, 64)), (own.clone(), own));
+    }
 }

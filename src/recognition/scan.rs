@@ -24,8 +24,8 @@ use crate::recognition::key::{KeyRef, KeyTable, or_bits};
 /// Keys that are compared with all windows before the next ones are, so that what is counted of them stays in the cache.
 const BLOCK: usize = 64;
 
-/// Keys of one task. Fewer keys than this are compared on the calling thread.
-const TASK: usize = 1 << 15;
+/// Keys of one task. Fewer keys than this are compared on the calling thread. In tests few models have so many.
+const TASK: usize = if cfg!(test) { 64 } else { 1 << 15 };
 
 /// All keys of a model, by box and number of taxels.
 #[derive(Clone, Debug)]
@@ -129,19 +129,28 @@ struct BoxPosition {
 impl Observed {
     pub(super) fn new(imprint: &Imprint, dead: Option<&Imprint>) -> Self {
         let mut seen = *imprint;
-        let living = dead.filter(|dead| !dead.is_empty()).map(|dead| {
-            let mut living = Imprint::empty(imprint.columns(), imprint.rows());
-            for row in 0..usize::from(imprint.rows()) {
-                let dead = dead.words().get(row).copied().unwrap_or_default();
-                living.set_word(row, !dead);
-                seen.set_word(row, seen.words()[row] & !dead);
+        let empty = Imprint::empty(imprint.columns(), imprint.rows());
+        // On the matrix of the imprint; what lies beyond it is dropped.
+        let dead = dead.map(|dead| {
+            let mut own = empty;
+            for (row, &word) in dead.words().iter().enumerate() {
+                own.set_word(row, word);
+            }
+            own
+        });
+        let dead = dead.filter(|dead| !dead.is_empty());
+        let living = dead.map(|dead| {
+            let mut living = empty;
+            for (row, &word) in dead.words().iter().enumerate() {
+                living.set_word(row, !word);
+                seen.set_word(row, seen.words()[row] & !word);
             }
             living
         });
         Self {
             count: seen.count(),
             active: IntegralImage::of(&seen),
-            dead: dead.filter(|_| living.is_some()).map(IntegralImage::of),
+            dead: dead.as_ref().map(IntegralImage::of),
             seen,
             living,
         }

@@ -4,7 +4,9 @@ use crate::imprint::Imprint;
 use crate::recognition::model::Model;
 
 /// The most frequent imprints of each shape.
-pub(super) struct Templates(Vec<Vec<Imprint>>);
+///
+/// None is the imprint of nothing.
+pub(super) struct Templates(Vec<Vec<Option<Imprint>>>);
 
 impl Templates {
     pub(super) fn new(model: &Model, most: usize) -> Self {
@@ -18,9 +20,7 @@ impl Templates {
         let imprints = |mut own: Vec<(std::cmp::Reverse<u64>, usize)>| {
             own.sort_unstable();
             let first = own.iter().take(most);
-            first
-                .filter_map(|&(_, key)| model.keys().imprint(key))
-                .collect()
+            first.map(|&(_, key)| model.keys().imprint(key)).collect()
         };
         Self(all.into_iter().map(imprints).collect())
     }
@@ -28,10 +28,11 @@ impl Templates {
     /// The least number of taxels that differ, over all templates of a shape and all their shifts.
     pub(super) fn scores(&self, model: &Model, key: usize) -> Vec<f64> {
         let imprint = model.keys().imprint(key);
-        let own = |templates: &Vec<Imprint>| {
-            let distances = templates.iter().map(|template| match &imprint {
-                Some(imprint) => distance(imprint, template),
-                None => template.count(),
+        let own = |templates: &Vec<Option<Imprint>>| {
+            let distances = templates.iter().map(|template| match (&imprint, template) {
+                (Some(imprint), Some(template)) => distance(imprint, template),
+                (Some(only), None) | (None, Some(only)) => only.count(),
+                (None, None) => 0,
             });
             distances.min().map_or(f64::INFINITY, f64::from)
         };

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use taxel::prelude::*;
 use taxel::recognition::{
     AnswerState, Classifier, ClassifierSettings, Evaluation, Evidence, GivenDescriptors,
-    ImprintKey, Model, ModelError, ModelMerge, NamedShape, Rounding, Training, TrainingError,
-    greedy,
+    ImprintKey, Model, ModelError, ModelMerge, ModelParts, NamedShape, Rounding, ShapeCount,
+    Training, TrainingError, greedy,
 };
 use taxel::sweep::Shard;
 
@@ -433,13 +433,62 @@ fn two_names_for_one_shape_can_never_be_told_apart() {
     assert_eq!((limit.recall(1), limit.precision(1)), (0.0, None));
     let bar: Imprint = ".....\n.###.\n.###.\n.....".parse().expect("an imprint");
     let answer = model.recognise(Evidence::of(&[bar]));
-    if answer.state == AnswerState::Tied {
-        assert_eq!(
-            (answer.shape, answer.tied.as_slice()),
-            (Some(0), [0, 1].as_slice())
-        );
-    } else {
-        assert_eq!(answer.ranking.len(), 3);
+    assert_eq!(
+        (answer.state, answer.shape, answer.tied.as_slice()),
+        (AnswerState::Tied, Some(0), [0, 1].as_slice())
+    );
+}
+
+#[test]
+fn a_shape_that_may_leave_nothing_is_named_by_its_template() {
+    let sensor = sensor(16);
+    let shape = |name: &str, (length, width): (f64, f64)| {
+        let figure = Figure::rectangle(length, width).on(&sensor);
+        NamedShape::new(name, figure.expect("in range"))
+    };
+    let shapes = vec![shape("bar", (3.0, 1.0)), shape("dot", (0.5, 0.5))];
+    let model = train(shapes, 16, ranges("5:5.9:0.1", "5:5.9:0.1", "0"));
+    let nothing = Imprint::empty(16, 16);
+    assert_eq!(model.recognise(Evidence::of(&[nothing])).shape, Some(1));
+    let reached = Classifier::Template.evaluate(&model, &ClassifierSettings::default());
+    assert_eq!(reached.evaluation.error(), 0.0);
+}
+
+/// More shards than rows: some have no pose at all.
+#[test]
+fn a_shard_without_a_pose_has_numbers_all_the_same() {
+    let disc = Figure::ellipse(2.0, 2.0).on(&sensor(16)).expect("in range");
+    let shapes = vec![NamedShape::new("disc", disc)];
+    let training = Training::new(shapes, sensor(16), Anchor::Corner, ranges("5", "5", "0"));
+    let shard = "1/2".parse().expect("a shard");
+    let model = training
+        .expect("a set")
+        .shard(shard)
+        .run()
+        .expect("trained");
+    assert_eq!(model.poses(), 0);
+    let limit = Evaluation::of(&model);
+    assert_eq!(
+        (limit.accuracy(), limit.error(), limit.recall(0)),
+        (0.0, 0.0, 0.0)
+    );
+    assert!(model.never_certain().is_empty());
+}
+
+#[test]
+fn a_model_has_as_many_poses_as_its_ranges_say() {
+    let disc = Figure::ellipse(2.0, 2.0).on(&sensor(16)).expect("in range");
+    let parts = |poses| {
+        let grid = (Anchor::Corner, ranges("5:5.1:0.1", "5", "0"));
+        let shapes = vec![NamedShape::new("disc", disc)];
+        let mut parts = ModelParts::new(shapes, sensor(16), grid, (Shard::WHOLE, poses));
+        let key = "#".parse().expect("an imprint");
+        parts.keys = vec![(Some(key), vec![ShapeCount::new(0, poses)])];
+        parts
+    };
+    assert!(Model::from_parts(parts(2)).is_ok());
+    for poses in [1, 3, u64::MAX] {
+        assert!(Model::from_parts(parts(poses)).is_err(), "{poses}");
     }
 }
 
