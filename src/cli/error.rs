@@ -22,6 +22,14 @@ pub(crate) enum CliError {
     /// The arguments are wrong: clap's own message, with the usage of the command.
     #[error(transparent)]
     Usage(#[from] clap::Error),
+    /// A flag that the others leave nothing to do.
+    #[error("--{flag} has no effect {reason}")]
+    Unused {
+        /// The flag without its dashes.
+        flag: &'static str,
+        /// With or without what.
+        reason: String,
+    },
     /// A number out of range.
     #[error("--{flag} {text}: out of range, {expected}")]
     Range {
@@ -93,6 +101,16 @@ pub(crate) enum CliError {
     /// The argument is neither the name of a set of shapes nor a file.
     #[error("{0}")]
     NoSet(String),
+    /// A matrix on which none of a shape's imprints fits.
+    #[error("{name}: none of its imprints fits on {columns} x {rows} taxels")]
+    NoTouch {
+        /// The first such shape.
+        name: String,
+        /// Columns of the matrix.
+        columns: u8,
+        /// Its rows.
+        rows: u8,
+    },
     /// There is no model of that name beside the library.
     #[error("no model is called {name:?}; 'taxel model list' shows all")]
     NoModel {
@@ -292,6 +310,7 @@ impl CliError {
         match self {
             _ if self.is_closed_pipe() => 0,
             Self::Usage(_)
+            | Self::Unused { .. }
             | Self::Settings { .. }
             | Self::NoScript { .. }
             | Self::Script {

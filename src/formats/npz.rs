@@ -205,6 +205,13 @@ pub enum ArchiveError {
     /// Numbers that contradict each other.
     #[error("{0}")]
     Parts(#[from] PartsError),
+    /// A part of a model where a whole one is wanted.
+    #[cfg(feature = "recognition")]
+    #[error("shard {shard} of a model only; 'taxel merge' puts shards together")]
+    PartOfModel {
+        /// Which part.
+        shard: Shard,
+    },
     /// Shapes or numbers that make no model.
     #[cfg(feature = "recognition")]
     #[error("{0}")]

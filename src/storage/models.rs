@@ -13,11 +13,12 @@ use std::sync::atomic::AtomicBool;
 
 use xxhash_rust::xxh3::xxh3_128;
 
-use crate::formats::{Name, read_model, write_model};
+use crate::formats::{ArchiveError, Name, read_model, write_model};
 use crate::recognition::{Model, Training};
 use crate::storage::atomic_file::{Existing, UnfinishedFile};
 use crate::storage::first_error::FirstErrorWriter;
 use crate::storage::sweep_file::{ArchiveFileError, open_archive};
+use crate::sweep::Shard;
 
 /// The ending of a model's file.
 const ENDING: &str = "npz";
@@ -32,6 +33,22 @@ const MAX_CACHED: u64 = 64 << 20;
 pub fn load_model(path: &Path) -> Result<Model, ArchiveFileError> {
     let file = open_archive(path)?;
     read_model(BufReader::new(file)).map_err(|error| ArchiveFileError::new(path, error))
+}
+
+/// Reads a model from a file that holds all of it: one that can be asked.
+///
+/// # Errors
+/// Those of [`load_model`]; [`ArchiveError::PartOfModel`] for a shard, which knows some of the poses only.
+pub fn load_whole_model(path: &Path) -> Result<Model, ArchiveFileError> {
+    let model = load_model(path)?;
+    let shard = model.shard();
+    if shard == Shard::WHOLE {
+        return Ok(model);
+    }
+    Err(ArchiveFileError::new(
+        path,
+        ArchiveError::PartOfModel { shard },
+    ))
 }
 
 /// Writes a model to a file: all of it or nothing; nothing either if `stopped` becomes true on the way.
@@ -77,9 +94,17 @@ impl ModelFolder {
         &self.0
     }
 
-    /// Returns the file of a model.
+    /// Returns the file of a model: that of the same name in other cases, if there is one, as for shapes. So a folder can
+    /// move to a file system that makes no difference between them.
     pub fn file(&self, name: &Name) -> PathBuf {
-        self.0.join(format!("{name}.{ENDING}"))
+        let path = |name: &Name| self.0.join(format!("{name}.{ENDING}"));
+        let own = path(name);
+        if own.exists() {
+            return own;
+        }
+        let names = self.names().into_iter().flatten();
+        let alike = names.into_iter().find(|other| name.same(other.as_str()));
+        alike.map_or(own, |other| path(&other))
     }
 
     /// Returns the names of all models, sorted; files that do not look like models are left out.

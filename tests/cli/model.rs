@@ -704,3 +704,107 @@ fn a_library_named_by_a_dot_has_its_models_beside_it() {
     assert!(place.0.path().join("models/p.npz").exists());
     place.done("model show p");
 }
+
+#[test]
+fn one_shard_is_shown_and_merged_but_not_asked() {
+    let place = Place::new();
+    let train = format!("model train parts.jsonl {COARSE} --shard 1/2");
+    place.done(&format!("{train} --out half.npz"));
+    place.done(&format!("{train} --name half"));
+    assert!(place.done("model show half.npz").contains("shard 1/2"));
+    let said = "half.npz: shard 1/2 of a model only; 'taxel merge' puts shards together";
+    for line in [
+        "model confusion half.npz",
+        "model separate half --scale 1",
+        "model touches half.npz",
+        "recognise washer --model half",
+    ] {
+        let run = place.run(line, "");
+        assert_eq!(run.status, Some(1), "{line}");
+        assert!(run.stderr.contains(said), "{line}: {}", run.stderr);
+    }
+}
+
+#[test]
+fn flags_that_would_be_ignored_are_refused() {
+    for (line, message) in [
+        (
+            "model confusion figures --seed 5",
+            "--seed has no effect without --noise or --classifier knn, which draw touches",
+        ),
+        (
+            "model confusion figures --classifier lda --neighbours 3",
+            "--neighbours has no effect with --classifier lda",
+        ),
+        (
+            "model confusion figures --classifier knn --templates 3",
+            "--templates has no effect with --classifier knn",
+        ),
+        (
+            "model confusion figures --classifier template --given na",
+            "--given has no effect with --classifier template",
+        ),
+        (
+            "model confusion figures --given na --round cg_cd=0.01",
+            "--round has no effect for cg_cd, which --given does not name",
+        ),
+        (
+            "model confusion figures --given cg_cd --round cg_cd=0.5 --round cg_cd=0.1",
+            "--round has no effect for cg_cd a second time",
+        ),
+        (
+            "model train a.jsonl --out a.npz --positions 10 --x0 5 --y0 5",
+            "--positions has no effect with both --x0 and --y0",
+        ),
+    ] {
+        refused(&taxel(line, ""), 2, message);
+    }
+    for line in [
+        "model confusion figures --force",
+        "model confusion figures --touches 10",
+        "model separate figures --scale 1 --force",
+    ] {
+        misused(line, "the following required arguments were not provided");
+    }
+}
+
+#[test]
+fn a_classifier_can_be_given_descriptors() {
+    let place = Place::new();
+    place.done(&format!("model train parts.jsonl {COARSE} --out m.npz"));
+    let error = |more: &str| {
+        let line = format!("model confusion m.npz --classifier lda {more} --json");
+        place.json(&line)["error"].as_f64().expect("a number")
+    };
+    assert!(error("--given na") > error(""), "less is known");
+}
+
+#[test]
+fn what_cannot_work_is_refused_with_its_reason() {
+    let place = Place::new();
+    let train = format!("model train parts.jsonl {COARSE}");
+    let run = place.run(&format!("{train} --out model.txt"), "");
+    refused(&run, 1, "model.txt: a model is written as .npz");
+    place.done(&format!("{train} --name parts"));
+    // Another case is the same name.
+    let run = place.run(&format!("{train} --name Parts"), "");
+    assert_eq!(run.status, Some(1), "{}", run.stderr);
+    assert!(run.stderr.contains("parts.npz"), "{}", run.stderr);
+    place.done("model show PARTS");
+    for (line, message) in [
+        (
+            "model separate parts --pitch 0:2:1",
+            "--pitch 0: out of range, expected above 0",
+        ),
+        (
+            "model confusion parts --noise 0.01 --matrix 3x3",
+            "disc: none of its imprints fits on 3 x 3 taxels",
+        ),
+    ] {
+        refused(&place.run(line, ""), 1, message);
+    }
+    place.write("there.csv", "kept");
+    let run = place.run("model confusion parts --export there.csv", "");
+    assert_eq!(run.status, Some(1), "{}", run.stderr);
+    assert_eq!(place.read("there.csv"), b"kept");
+}

@@ -18,6 +18,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, EvaluationJson, NamedBy};
 use crate::formats::{ConfusionMap, json};
 use crate::recognition::{Classifier, ClassifierEvaluation, Evaluation, Model, greedy};
+use crate::storage::UnfinishedFile;
 
 /// Evaluates a model. Returns what is printed.
 ///
@@ -29,6 +30,10 @@ pub(crate) fn confusion(
     charset: Charset,
 ) -> Result<String, CliError> {
     let model = model::find(&asked.model, shelf)?;
+    if let Some(path) = &asked.export {
+        // What cannot be written is refused before the work.
+        drop(UnfinishedFile::new(path, asked.existing)?);
+    }
     let as_json = asked.form == EvaluationForm::Json;
     match &asked.of {
         Evaluated::Imprints => shown(asked, &Evaluation::of(&model), None, charset),

@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
+use crate::cli::arguments::model::train::model_file;
 use crate::cli::commands::sweep::{Wanted, leave};
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
@@ -153,12 +154,8 @@ fn within(memory: &MemoryGuard) -> Result<(), CliError> {
 /// A model has one form.
 fn check_model_file(wanted: &Wanted) -> Result<(), CliError> {
     match &wanted.atlas {
-        Some(file) if !file.is_archive() => Err(CliError::Ending {
-            name: file.path().to_string_lossy().into_owned(),
-            what: "a model",
-            expected: ".npz",
-        }),
-        _ => Ok(()),
+        Some(file) => model_file(file.path()),
+        None => Ok(()),
     }
 }
 

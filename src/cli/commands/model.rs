@@ -36,7 +36,10 @@ use crate::memory::MemoryGuard;
 use crate::pose::{Anchor, Axis, GivenRanges, GridError, Ranges, common_ranges, smallest_sensor};
 use crate::recognition::{Evaluation, Model, NamedShape, Training, TrainingError};
 use crate::sensor::Sensor;
-use crate::storage::{ModelCache, ModelFolder, UnfinishedFile, load_model, model_hash, save_model};
+use crate::storage::{
+    ArchiveFileError, ModelCache, ModelFolder, UnfinishedFile, load_model, load_whole_model,
+    model_hash, save_model,
+};
 use crate::tui::recognise::sets::{ModelChoice, unknown_set};
 
 /// The smallest side of a sensor that training chooses.
@@ -215,14 +218,24 @@ pub(crate) fn is_kept(name: &Name, shelf: &Shelf) -> bool {
     folder(shelf).is_ok_and(|models| models.file(name).exists())
 }
 
-/// Finds a model: one beside the library, then a file, then a built-in set, which is trained if the cache has not got it.
+/// Finds a model that can be asked: one beside the library, then a file, then a built-in set, which is trained if the cache
+/// has not got it.
 ///
 /// # Errors
-/// [`CliError::NoSet`] if nothing has that name; otherwise why the file cannot be read.
+/// [`CliError::NoSet`] if nothing has that name; otherwise why the file cannot be read, or that it is one shard only.
 pub(crate) fn find(which: &OsStr, shelf: &Shelf) -> Result<Model, CliError> {
+    found(which, shelf, &load_whole_model)
+}
+
+/// The same, where files are read in a way of one's own.
+fn found(
+    which: &OsStr,
+    shelf: &Shelf,
+    load: &dyn Fn(&Path) -> Result<Model, ArchiveFileError>,
+) -> Result<Model, CliError> {
     match choice(which, shelf)? {
-        ModelChoice::Stored(name) => Ok(load_model(&folder(shelf)?.file(&name))?),
-        ModelChoice::File(path) => Ok(load_model(&path)?),
+        ModelChoice::Stored(name) => Ok(load(&folder(shelf)?.file(&name))?),
+        ModelChoice::File(path) => Ok(load(&path)?),
         own => match own.training() {
             Some(training) => kept_or_trained(training?),
             None => Err(unknown(which, shelf)),
@@ -284,7 +297,7 @@ pub(crate) fn show(
     shelf: &Shelf,
     charset: Charset,
 ) -> Result<String, CliError> {
-    let model = find(which, shelf)?;
+    let model = found(which, shelf, &load_model)?;
     let limit = Evaluation::of(&model);
     if json {
         return Ok(json::ascii(&card_json(&model, &limit)?) + "\n");

@@ -36,7 +36,6 @@ use crate::recognition::{
     GivenDescriptors, Model, Noise, RecognitionRate, TouchesUntil, TrainingError, random_taxels,
 };
 use crate::sensor::Sensor;
-use crate::storage::UnfinishedFile;
 
 /// A line of the table: the noise, the number of dead taxels, and what was reached.
 struct NoiseRow {
@@ -60,16 +59,20 @@ pub(crate) fn degradation(
     all_asked: &ConfusionArguments,
     charset: Charset,
 ) -> Result<String, CliError> {
-    let export = all_asked.export.as_deref();
-    if let Some(path) = export {
-        drop(UnfinishedFile::new(path, all_asked.existing)?);
-    }
     let given = given_of(asked, all_asked);
     let signals = Signals::heard().map_err(CliError::System)?;
     let sensor = asked
         .size
         .map(|(columns, rows)| Sensor::clamped(columns, rows));
     let sensor = sensor.unwrap_or(*model.sensor());
+    let (columns, rows) = (sensor.columns(), sensor.rows());
+    if let Some(shape) = model.first_too_large((columns, rows)) {
+        return Err(CliError::NoTouch {
+            name: model.shapes()[shape].name.clone(),
+            columns,
+            rows,
+        });
+    }
     let values: Vec<f64> = asked.noise.values().collect();
     let each = asked.touches * model.shapes().len() as u64;
     let all = each * values.len() as u64 * asked.dead.len() as u64;

@@ -109,7 +109,7 @@ impl<'a> Recogniser<'a> {
                 touch: imprint,
                 answer: &answer,
                 top: self.asked.top,
-                noise: self.asked.noise,
+                noise: self.noise,
             };
             let pose = self.pose(&touches, &answer);
             let pose = match pose {
@@ -148,12 +148,16 @@ impl<'a> Recogniser<'a> {
         Ok(all_expected.into_inner())
     }
 
+    fn evidence<'b>(&'b self, touches: &'b [Imprint]) -> Evidence<'b> {
+        Evidence::of(touches).under(self.noise.as_ref())
+    }
+
     /// Names the shape that left all these touches.
     ///
     /// # Errors
     /// [`CliError::Mask`] if the mask of dead taxels has another size than a touch.
     fn answer(&self, touches: &[Imprint]) -> Result<Answer, CliError> {
-        let mut evidence = Evidence::of(touches).under(self.noise.as_ref());
+        let mut evidence = self.evidence(touches);
         if let Some(noise) = &self.noise {
             let size = |imprint: &Imprint| (imprint.columns(), imprint.rows());
             for touch in touches {
@@ -184,7 +188,7 @@ impl<'a> Recogniser<'a> {
             model: self.model,
             answer,
             noise: self.asked.noise,
-            nearest: self.model.nearest_of(Evidence::of(touches)),
+            nearest: self.model.nearest_of(self.evidence(touches)),
             top: self.asked.top,
             asks_pose: self.asked.pose,
             pose: self.pose(touches, answer),

@@ -1,9 +1,9 @@
 //! `taxel model separate`: the error of a set against the size of its shapes and the threshold of the sensor.
 //!
-//! Sizes are tried from the smallest on, each for every threshold; each is a training of its own, so the work grows
-//! with their product. With `--want ERROR` the first size that reaches it is then searched between the last one that
-//! does not and itself. Everything that can be refused is refused before the first training: a set of one shape, a size
-//! at which no sensor holds the shapes, a file that exists.
+//! For each threshold, sizes are tried from the smallest on; each is a training of its own, so the work grows with their
+//! product. With `--want ERROR` the first size that reaches it is then searched between the last one that does not and
+//! itself. What can be refused is refused before the first training: a size at which no sensor holds the shapes, a file
+//! that exists.
 
 use std::ffi::OsStr;
 use std::path::Path;

@@ -187,11 +187,13 @@ impl AnswerText<'_> {
     /// The nearest imprint of the model and where it differs from the touch; nothing if it is the touch.
     fn nearest(&self) -> String {
         let touches = [*self.touch];
-        let nearest = self.model.nearest_of(Evidence::of(&touches));
+        let evidence = Evidence::of(&touches).under(self.noise.as_ref());
+        let nearest = self.model.nearest_of(evidence);
         let Some(nearest) = nearest.filter(|nearest| nearest.distance > 0) else {
             return String::new();
         };
         let (name, distance) = (self.name(nearest.shape), nearest.distance);
+        let dead = self.noise.as_ref().and_then(Noise::dead);
         let differ = if distance == 1 {
             "taxel differs"
         } else {
@@ -199,8 +201,9 @@ impl AnswerText<'_> {
         };
         format!(
             "nearest: {name}, {distance} {differ}\n{}\
-             \x20 # both   + only in the touch   - only in the nearest imprint\n",
-            differences(self.touch, &nearest.imprint)
+             \x20 # both   + only in the touch   - only in the nearest imprint{}\n",
+            differences(self.touch, &nearest.imprint, dead),
+            if dead.is_some() { "   x dead" } else { "" }
         )
     }
 }
@@ -214,13 +217,15 @@ fn compared(method: Method) -> &'static str {
     }
 }
 
-/// Two imprints of one size in one matrix: `#` both, `+` only the touch, `-` only the nearest, `.` neither.
-fn differences(touch: &Imprint, nearest: &Imprint) -> String {
+/// Two imprints of one size in one matrix: `#` both, `+` only the touch, `-` only the nearest, `.` neither, `x` dead.
+fn differences(touch: &Imprint, nearest: &Imprint, dead: Option<&Imprint>) -> String {
     let mut text = String::new();
     for row in 0..touch.rows() {
         text.push_str("  ");
         for column in 0..touch.columns() {
+            let is_dead = dead.is_some_and(|dead| dead.get(column, row));
             text.push(match (touch.get(column, row), nearest.get(column, row)) {
+                _ if is_dead => 'x',
                 (true, true) => '#',
                 (true, false) => '+',
                 (false, true) => '-',

@@ -168,7 +168,7 @@ pub(crate) fn json_text(axis: SizeAxis, curves: &[SeparationCurve], wanted: Opti
 /// All points, and with `--want` what was found for each threshold.
 #[derive(Serialize)]
 struct CurvesJson {
-    /// `scale` or `pitch`.
+    /// `scale` or `pitch_mm`.
     axis: &'static str,
     /// All points, threshold by threshold.
     points: Vec<PointJson>,

@@ -18,8 +18,7 @@ use crate::formats::Name;
 use crate::imprint::Imprint;
 use crate::memory::MemoryGuard;
 use crate::recognition::{Model, TrainingError};
-use crate::storage::{Library, ModelCache, ModelFolder, load_model};
-use crate::sweep::Shard;
+use crate::storage::{Library, ModelCache, ModelFolder, load_whole_model};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::recognise::message::{Look, Prepared, RecognitionEvent};
 use crate::tui::recognise::sets::{ModelChoice, TrainedModel, unknown_set};
@@ -70,7 +69,7 @@ impl ModelStore {
             (Some(training), _) => training.map_err(|error| error.to_string())?,
             (None, ModelChoice::Stored(name)) => return self.stored(name),
             (None, ModelChoice::File(path)) => {
-                return load_model(path).map_err(|error| error.to_string());
+                return load_whole_model(path).map_err(|error| error.to_string());
             }
             (None, _) => return Err(format!("{choice} cannot be trained")),
         };
@@ -105,20 +104,13 @@ impl ModelStore {
     fn stored(&self, name: &Name) -> Result<Model, String> {
         let folder = self.folder.as_ref();
         let folder = folder.ok_or_else(|| format!("there is no model {name}"))?;
-        let model = load_model(&folder.file(name)).map_err(|error| {
+        load_whole_model(&folder.file(name)).map_err(|error| {
             if error.is_missing() {
                 unknown_set(name.as_str(), &self.names())
             } else {
                 error.to_string()
             }
-        })?;
-        if model.shard() != Shard::WHOLE {
-            let shard = model.shard();
-            return Err(format!(
-                "model {name} is shard {shard} only; 'taxel merge' puts shards together"
-            ));
-        }
-        Ok(model)
+        })
     }
 }
 

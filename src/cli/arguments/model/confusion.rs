@@ -15,6 +15,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
+use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
 
 use crate::cli::arguments::flags::{
@@ -23,6 +24,7 @@ use crate::cli::arguments::flags::{
 use crate::cli::arguments::help::MODEL_CONFUSION_EXAMPLES;
 use crate::cli::arguments::model::{number, seed, which_model};
 use crate::cli::arguments::parameters;
+use crate::cli::error::CliError;
 use crate::index::wide;
 use crate::pose::{DecimalRange, RangeError};
 use crate::recognition::{
@@ -100,7 +102,7 @@ pub(super) fn command() -> Command {
         .group(ArgGroup::new("of").args(["greedy", "pairs", "classifier", "noise", "test"]))
         .group(
             ArgGroup::new("not_given")
-                .args(["greedy", "pairs", "classifier", "test"])
+                .args(["greedy", "pairs", "test"])
                 .conflicts_with("given"),
         )
         .arg(
@@ -168,7 +170,8 @@ fn output() -> [Arg; 5] {
         .conflicts_with_all(["greedy", "pairs", "test"]);
     let csv = switch("csv", "Print comma-separated values")
         .conflicts_with_all(["json", "greedy", "pairs", "test"]);
-    [export, replace(), json(), quiet(), csv]
+    let force = replace().requires("export");
+    [export, force, json(), quiet(), csv]
 }
 
 /// The flags of noisy touches.
@@ -237,9 +240,14 @@ fn parse_rounding(text: &str) -> Result<Rounding, GivenError> {
 
 impl ConfusionArguments {
     /// What the arguments of [`command`] ask for.
-    pub(super) fn of(matches: &ArgMatches) -> Self {
+    ///
+    /// # Errors
+    /// [`CliError::Unused`] for a flag that the others leave nothing to do.
+    pub(super) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
+        check_classifier(matches)?;
+        check_roundings(matches)?;
         let roundings = matches.get_many::<Rounding>("round").into_iter().flatten();
-        Self {
+        Ok(Self {
             model: flags::word(matches, "model"),
             of: Evaluated::of(matches),
             roundings: roundings.copied().collect(),
@@ -247,8 +255,55 @@ impl ConfusionArguments {
             form: EvaluationForm::of(matches),
             export: matches.get_one::<PathBuf>("export").cloned(),
             existing: parameters::existing(matches),
+        })
+    }
+}
+
+/// Refuses settings that the classifier does not have.
+fn check_classifier(matches: &ArgMatches) -> Result<(), CliError> {
+    let name = matches.get_one::<String>("classifier").map(String::as_str);
+    let is = |one: &str| name.is_some_and(|name| name == one || name == "all");
+    let is_drawn = is("knn") || matches.contains_id("noise");
+    let given = |id: &str| matches.value_source(id) == Some(ValueSource::CommandLine);
+    let unused = |flag, reason: String| Err(CliError::Unused { flag, reason });
+    for (flag, has_effect) in [
+        ("neighbours", is("knn")),
+        ("sample", is("knn")),
+        ("templates", is("template")),
+        ("given", name != Some("template")),
+    ] {
+        if let Some(name) = name.filter(|_| given(flag) && !has_effect) {
+            return unused(flag, format!("with --classifier {name}"));
         }
     }
+    if name.is_some() && given("given") && given("round") {
+        return unused("round", "with --classifier".to_owned());
+    }
+    if given("seed") && !is_drawn {
+        let reason = "without --noise or --classifier knn, which draw touches".to_owned();
+        return unused("seed", reason);
+    }
+    Ok(())
+}
+
+/// Refuses two steps for one descriptor, and those of descriptors that are not given.
+fn check_roundings(matches: &ArgMatches) -> Result<(), CliError> {
+    let roundings = matches.get_many::<Rounding>("round").into_iter().flatten();
+    let keys: Vec<_> = roundings.map(Rounding::descriptor).collect();
+    let given = matches.get_one::<GivenDescriptors>("given");
+    for (index, key) in keys.iter().enumerate() {
+        let name = key.key();
+        let reason = if keys[..index].contains(key) {
+            format!("for {name} a second time")
+        } else if given.is_some_and(|given| !given.descriptors().contains(key)) {
+            format!("for {name}, which --given does not name")
+        } else {
+            continue;
+        };
+        let flag = "round";
+        return Err(CliError::Unused { flag, reason });
+    }
+    Ok(())
 }
 
 impl Evaluated {
@@ -302,5 +357,7 @@ fn classifiers(matches: &ArgMatches) -> ClassifierSettings {
     classifiers.sample = limit("sample", classifiers.sample);
     classifiers.templates = limit("templates", classifiers.templates);
     classifiers.seed = number(matches, "seed", classifiers.seed);
+    let given = matches.get_one::<GivenDescriptors>("given");
+    classifiers.descriptors = given.map(|given| given.descriptors().to_vec());
     classifiers
 }

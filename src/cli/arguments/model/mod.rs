@@ -58,7 +58,7 @@ impl ModelRequest {
     /// What the arguments of [`command`] ask for.
     ///
     /// # Errors
-    /// [`CliError::Range`] for a value of the sensor out of range.
+    /// [`CliError::Range`] for a value out of range; [`CliError::Unused`] for a flag that would be ignored.
     pub(super) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
         let Some((command, own)) = matches.subcommand() else {
             // Required: there is always one.
@@ -72,8 +72,8 @@ impl ModelRequest {
                 None => Self::List(false),
             },
             "touches" => Self::Touches(touches::TouchesArguments::of(own)),
-            "confusion" => Self::Confusion(Box::new(confusion::ConfusionArguments::of(own))),
-            "separate" => Self::Separate(Box::new(separate::SeparateArguments::of(own))),
+            "confusion" => Self::Confusion(Box::new(confusion::ConfusionArguments::of(own)?)),
+            "separate" => Self::Separate(Box::new(separate::SeparateArguments::of(own)?)),
             _ => Self::List(own.get_flag("json")),
         })
     }

@@ -19,6 +19,8 @@ use crate::cli::arguments::flags::{
 use crate::cli::arguments::help::MODEL_SEPARATE_EXAMPLES;
 use crate::cli::arguments::model::shape_set::{self, SetArguments};
 use crate::cli::arguments::parameters;
+use crate::cli::error::CliError;
+use crate::parameter::number::short;
 use crate::pose::{Axis, DecimalRange};
 use crate::recognition::{GridSteps, SizeAxis};
 use crate::storage::Existing;
@@ -86,7 +88,14 @@ pub(super) fn command() -> Command {
                 .multiple(true)
                 .required(true),
         )
-        .args([export, replace(), jobs(), json(), csv, quiet()])
+        .args([
+            export,
+            replace().requires("export"),
+            jobs(),
+            json(),
+            csv,
+            quiet(),
+        ])
 }
 
 /// `--scale`, `--pitch` and `--threshold`. Their ids are not those of the sensor's own flags, which take a number.
@@ -120,13 +129,28 @@ fn sizes() -> [Arg; 3] {
 
 impl SeparateArguments {
     /// What the arguments of [`command`] ask for.
-    pub(super) fn of(matches: &ArgMatches) -> Self {
+    ///
+    /// # Errors
+    /// [`CliError::Range`] for sizes that are not above 0.
+    pub(super) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
         let range = |id: &str| matches.get_one::<DecimalRange>(id).copied();
+        for (id, flag) in [("range_scale", "scale"), ("range_pitch", "pitch")] {
+            if let Some(first) = range(id)
+                .map(|range| range.value(0))
+                .filter(|&first| first <= 0.0)
+            {
+                return Err(CliError::Range {
+                    flag: flag.to_owned(),
+                    text: short(first),
+                    expected: "expected above 0".to_owned(),
+                });
+            }
+        }
         let (axis, sizes) = match range("range_pitch") {
             Some(pitch) => (SizeAxis::Pitch, Some(pitch)),
             None => (SizeAxis::Scale, range("range_scale")),
         };
-        Self {
+        Ok(Self {
             set: SetArguments::of(matches),
             axis,
             sizes: sizes.unwrap_or(DecimalRange::whole(1)),
@@ -139,6 +163,6 @@ impl SeparateArguments {
             export: matches.get_one::<PathBuf>("export").cloned(),
             existing: parameters::existing(matches),
             quiet: matches.get_flag("quiet"),
-        }
+        })
     }
 }

@@ -1,6 +1,6 @@
 //! `taxel model train`: its flags, and what they ask for.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, ArgMatches, Command, value_parser};
 
@@ -111,7 +111,8 @@ impl TrainArguments {
     /// What the arguments of [`command`] ask for.
     ///
     /// # Errors
-    /// [`CliError::Range`] for a value of the sensor out of range.
+    /// [`CliError::Range`] for a value of the sensor out of range; [`CliError::Ending`] for a file that is not named as a
+    /// model; [`CliError::Unused`] for positions of a cell where all are given.
     pub(super) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
         let given = Given::of(matches);
         let sensor = given.sensor(Sensor::default())?;
@@ -120,11 +121,20 @@ impl TrainArguments {
             Some(name) => ModelTarget::Named(name.clone()),
             None => ModelTarget::File(matches.get_one("out").cloned().unwrap_or_default()),
         };
+        if let ModelTarget::File(path) = &to {
+            model_file(path)?;
+        }
+        let ranges = flags::ranges_of(matches);
+        let positions = matches.get_one::<GridSteps>("positions").copied();
+        if positions.is_some() && ranges[Axis::X0].is_some() && ranges[Axis::Y0].is_some() {
+            let (flag, reason) = ("positions", "with both --x0 and --y0".to_owned());
+            return Err(CliError::Unused { flag, reason });
+        }
         Ok(Self {
             set: SetArguments::of(matches),
             anchor: matches.get_one::<Anchor>("anchor").copied(),
-            ranges: flags::ranges_of(matches),
-            positions: matches.get_one::<GridSteps>("positions").copied(),
+            ranges,
+            positions,
             sensor: sized.then_some(sensor),
             given,
             shard: flags::shard_of(matches),
@@ -137,4 +147,22 @@ impl TrainArguments {
             quiet: matches.get_flag("quiet"),
         })
     }
+}
+
+/// Refuses a file that is not named as a model, which would be taken for something else when it is read.
+///
+/// # Errors
+/// [`CliError::Ending`].
+pub(crate) fn model_file(path: &Path) -> Result<(), CliError> {
+    if path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("npz"))
+    {
+        return Ok(());
+    }
+    Err(CliError::Ending {
+        name: path.to_string_lossy().into_owned(),
+        what: "a model",
+        expected: ".npz",
+    })
 }
