@@ -32,6 +32,8 @@ struct Pace {
     speed: f64,
     /// The frames of the channel so far.
     frames: u32,
+    /// When the first and the last of them were due, in seconds of the recording.
+    span: Option<(f64, f64)>,
     /// The channel that sets the pace. Frames of others, which come before it, between its own or after it, wait for nothing.
     channel: ChannelChoice,
 }
@@ -44,6 +46,7 @@ impl Pace {
             step: STEP,
             speed: if is_speed { options.speed } else { 1.0 },
             frames: 0,
+            span: None,
             channel: ChannelChoice::new(options.channel.as_deref()),
         }
     }
@@ -60,7 +63,33 @@ impl Pace {
         }
         let own = f64::from(self.frames) * self.step;
         self.frames = self.frames.saturating_add(1);
-        let seconds = (frame.time.unwrap_or(own) / self.speed).clamp(0.0, LONGEST);
+        let due = frame.time.unwrap_or(own);
+        self.span = Some((self.span.map_or(due, |(first, _)| first), due));
+        self.until(due, stop, consumer)
+    }
+
+    /// Waits for as long after the last frame as one frame lasts, so that a recording that is repeated keeps its pace.
+    fn last_frame(&self, stop: &AtomicBool, consumer: &mut Consumer<'_>) -> ControlFlow<()> {
+        let Some((first, last)) = self.span else {
+            return ControlFlow::Continue(());
+        };
+        let mean = (last - first) / f64::from(self.frames - 1);
+        let step = if mean > 0.0 && mean.is_finite() {
+            mean
+        } else {
+            self.step
+        };
+        self.until(last + step, stop, consumer)
+    }
+
+    /// Waits until a time of the recording has come.
+    fn until(
+        &self,
+        seconds: f64,
+        stop: &AtomicBool,
+        consumer: &mut Consumer<'_>,
+    ) -> ControlFlow<()> {
+        let seconds = (seconds / self.speed).clamp(0.0, LONGEST);
         let due = self.begun + Duration::from_secs_f64(seconds);
         loop {
             let left = due.saturating_duration_since(Instant::now());
@@ -123,7 +152,12 @@ pub(super) fn run(
             flow
         })?;
         round += 1;
-        if flow.is_break() || !options.repeat || consumer(AcquireEvent::Again).is_break() {
+        // What has no frame is not repeated: it would be read again and again without a pause.
+        let ends = flow.is_break() || !options.repeat || pace.frames == 0;
+        if ends
+            || pace.last_frame(stop, consumer).is_break()
+            || consumer(AcquireEvent::Again).is_break()
+        {
             return Ok(());
         }
     }
@@ -187,5 +221,30 @@ mod tests {
         (frame.channel, frame.time) = (1, None);
         assert!(!waits(&frame), "the first one");
         assert!(waits(&frame), "the second one");
+    }
+
+    #[test]
+    fn the_last_frame_of_a_round_lasts_as_long_as_the_others() {
+        let with = |times: &[Option<f64>]| {
+            let mut pace = Pace::new(&AcquireOptions::default());
+            // All are due.
+            pace.begun = Instant::now()
+                .checked_sub(Duration::from_hours(2))
+                .expect("later");
+            pace.step = 4000.0;
+            let stop = AtomicBool::new(false);
+            let consumer = &mut |_: AcquireEvent<'_>| ControlFlow::Break(());
+            let mut frame = Frame::new(1, 1);
+            for &time in times {
+                frame.time = time;
+                assert!(pace.wait(&frame, &stop, consumer).is_continue());
+            }
+            pace.last_frame(&stop, consumer).is_break()
+        };
+        assert!(with(&[None, None]), "until 8,000 s, and 7,200 are gone");
+        assert!(!with(&[None]), "until 4,000 s");
+        assert!(with(&[Some(1000.0), Some(5000.0)]), "until 9,000 s");
+        assert!(!with(&[Some(5000.0), Some(6000.0)]), "until 7,000 s");
+        assert!(!with(&[]), "there is none");
     }
 }
