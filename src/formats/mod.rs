@@ -40,6 +40,9 @@ pub mod array;
 
 pub mod imprint_file;
 
+#[cfg(feature = "json")]
+mod content;
+
 #[cfg(feature = "frames")]
 pub(crate) mod seconds;
 
@@ -89,6 +92,9 @@ pub use record::RecordError;
 
 #[cfg(feature = "json")]
 pub use shape::{ShapeError, StoredShape};
+
+#[cfg(feature = "json")]
+pub use content::{Content, ContentError, read_content};
 
 #[cfg(feature = "sweep")]
 pub use npz::{ArchiveError, ArchiveKind, kind_of as archive_kind};

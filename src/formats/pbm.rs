@@ -349,12 +349,12 @@ mod tests {
             b"P4\n8 1#\xff",
             "line 2, column 4: expected one space or line end before the bits",
         );
-        wrong(b"P1\n2 2\n111", "found 3 taxels, expected 4");
+        wrong(b"P1\n2 2\n111", "taxels: found 3, expected 4");
         wrong(
             b"P4\n9 2\n\xff\xff\xff",
-            "found 3 bytes of taxels, expected 4",
+            "bytes of taxels: found 3, expected 4",
         );
-        wrong(b"P4\n9 2", "found 0 bytes of taxels, expected 4");
+        wrong(b"P4\n9 2", "bytes of taxels: found 0, expected 4");
         wrong(
             b"P4\n8 1\n\xffP4",
             "found 2 bytes after the image, expected one image and no more",

@@ -466,7 +466,7 @@ mod tests {
         wrong(b"", "found 0 lines, expected 1 to 64");
         wrong(b"# only\n", "found 0 lines, expected 1 to 64");
         wrong(&b"1\n".repeat(65), "found 65 lines, expected 1 to 64");
-        wrong(&b"1\n".repeat(9999), "found 9999 lines, expected 1 to 64");
+        wrong(&b"1\n".repeat(9999), "found 9,999 lines, expected 1 to 64");
         wrong(
             &b"1,".repeat(65),
             "line 1: found 65 values, expected 1 to 64",

@@ -4,6 +4,7 @@ use std::fmt;
 
 use rayon::prelude::*;
 
+use crate::parameter::number::grouped;
 use crate::pose::{Anchor, GridError, PoseGrid, Ranges};
 use crate::recognition::key::{ImprintKey, KeyTable};
 use crate::recognition::model::{
@@ -68,7 +69,8 @@ pub enum TrainingError {
     },
     /// Poses that the sensor cuts off, which would tell of its rim.
     #[error(
-        "{name}: the {columns} x {rows} sensor cuts off {cut} of {poses} poses; use a larger sensor or other positions, or allow it"
+        "{name}: the {columns} x {rows} sensor cuts off {} of {} poses; use a larger sensor or other positions, or allow it",
+        grouped(*cut), grouped(*poses)
     )]
     Cut {
         /// The first shape with such poses.

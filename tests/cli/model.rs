@@ -445,14 +445,14 @@ fn sets_that_make_no_sense_are_refused_in_one_sentence() {
     refused(
         &place.run(cut, ""),
         1,
-        "t: the 16 x 16 sensor cuts off 3600 of 3600 poses; use a larger sensor or other positions, \
+        "t: the 16 x 16 sensor cuts off 3,600 of 3,600 poses; use a larger sensor or other positions, \
          or allow it with --allow-cut",
     );
     place.done(&format!("{cut} --allow-cut"));
     refused(
         &train("--shape 'huge=ellipse radius_x=40 radius_y=40'", ""),
         1,
-        "huge: the 64 x 64 sensor cuts off 7200 of 7200 poses; use a larger sensor or other positions, \
+        "huge: the 64 x 64 sensor cuts off 7,200 of 7,200 poses; use a larger sensor or other positions, \
          or allow it with --allow-cut",
     );
     refused(
@@ -807,4 +807,27 @@ fn what_cannot_work_is_refused_with_its_reason() {
     let run = place.run("model confusion parts --export there.csv", "");
     assert_eq!(run.status, Some(1), "{}", run.stderr);
     assert_eq!(place.read("there.csv"), b"kept");
+}
+
+#[test]
+fn a_torn_first_line_is_answered_by_its_error_as_any_other() {
+    let place = Place::new();
+    place.done(&format!("model train parts.jsonl {COARSE} --out m.npz"));
+    let line = "{\"imprint\":[\".....\",\".###.\",\".###.\",\".....\"]}\n";
+    let torn = "{\"imprint\":[\".....\"\n";
+    let run = place.run("recognise - --model m.npz", &format!("\n\n{torn}{line}"));
+    assert_eq!(run.status, Some(1));
+    let answers: Vec<&str> = run.stdout.lines().collect();
+    assert_eq!(answers.len(), 2, "{}", run.stderr);
+    assert!(
+        answers[0].starts_with("{\"error\":\"line 3: "),
+        "{}",
+        answers[0]
+    );
+    assert!(answers[1].starts_with("{\"answer\":"), "{}", answers[1]);
+    // A stored shape goes on in its next line.
+    let shape = place.done("export washer - --format json");
+    assert!(shape.starts_with("{\n"));
+    let run = place.run("recognise - --model m.npz", &shape);
+    assert_eq!(run.status, Some(0), "{}", run.stderr);
 }

@@ -300,3 +300,25 @@ fn what_is_wrong_with_a_recording_is_called_by_its_name() {
     let listed: Value = serde_json::from_str(&run.stdout).expect(&run.stdout);
     assert_eq!((run.status, &listed["format"]), (Some(1), &"mcap".into()));
 }
+
+#[test]
+fn a_recording_without_frames_is_refused_and_not_repeated() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let empty = folder.path().join("empty.npy");
+    let header = "{'descr': '<f8', 'fortran_order': False, 'shape': (0, 4, 4), }";
+    let mut array = b"\x93NUMPY\x01\x00".to_vec();
+    array.extend(118_u16.to_le_bytes());
+    array.extend(format!("{header:<117}\n").bytes());
+    fs::write(&empty, array).expect("written");
+    let name = empty.to_str().expect("UTF-8");
+    for more in ["--once", "--loop"] {
+        let run = taxel(&format!("watch {name} {more} --json --at-least 1"), "");
+        super::refused(&run, 1, &format!("{name}: no frames"));
+    }
+    let run = taxel("watch - --format lines --loop", "");
+    super::refused(
+        &run,
+        2,
+        "--loop has no effect on a stream: it is for recordings",
+    );
+}

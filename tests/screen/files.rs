@@ -28,6 +28,15 @@ fn the_matrix_is_written_by_the_ending_and_opened_by_the_content() {
             &["opened", "drawn by hand", "NA 51 in all"],
         );
     }
+    // Some editors begin a text with a byte order mark.
+    let shape = std::fs::read(folder.path().join("made.json")).expect("written");
+    let marked = [b"\xef\xbb\xbf", &shape[..]].concat();
+    std::fs::write(folder.path().join("marked.json"), marked).expect("written");
+    then(
+        &mut session,
+        &format!("n:open {place}/marked.json<Enter>"),
+        &["ellipse rx 4.00"],
+    );
     // A shape brings back what touched.
     then(
         &mut session,

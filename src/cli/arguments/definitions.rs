@@ -276,7 +276,11 @@ fn frames() -> Command {
         _ => arg,
     });
     frames::command()
-        .args(of_sensor(&[Parameter::Pitch]))
+        .args(
+            of_sensor(&[Parameter::Pitch])
+                .into_iter()
+                .map(|arg| arg.requires("choice")),
+        )
         .args(keeping)
         .group(kept())
         .args([json().conflicts_with("heat"), frames::heat()])

@@ -18,8 +18,8 @@ describes it. Without a command the screen opens, where all of this is live.";
 /// Below the flags of `taxel --help`: units, exit status and an example of most commands.
 pub(crate) const EXAMPLES: &str = "\
 All lengths are in sides of a sensory cell, x to the right, y down.
-Exit status: 0 done, 1 wrong input, 2 wrong command line, 128 + n ended by
-signal n.
+Exit status: 0 done, 1 wrong input, 2 wrong command line, 3 another answer than
+expected, 128 + n ended by signal n.
 
 Examples:
   taxel

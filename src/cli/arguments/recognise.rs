@@ -91,7 +91,11 @@ pub(super) fn command() -> Command {
             "Imprint: shape of the library, or file; '-' for standard input",
         ))
         .args([model, top, reject, expect, noise, mask, pose])
-        .args(of_sensor(&[Parameter::Pitch]))
+        .args(
+            of_sensor(&[Parameter::Pitch])
+                .into_iter()
+                .map(|arg| arg.requires("pose")),
+        )
         .args([jobs(), json()])
 }
 

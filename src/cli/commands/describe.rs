@@ -1,9 +1,9 @@
 //! `taxel describe`: prints an imprint or a stored shape with its descriptors.
 
 use crate::cli::arguments::request::Form;
-use crate::cli::input::content::Content;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::report;
+use crate::formats::Content;
 
 /// Returns the answer: one line of JSON, or the matrix and a table of its regions. For a stored shape the table is
 /// preceded by its name, what made it, and its sensor.

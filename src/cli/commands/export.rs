@@ -7,9 +7,9 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use crate::cli::error::CliError;
-use crate::cli::input::content::Content;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::settings::pitch::Pitch;
+use crate::formats::Content;
 use crate::formats::{Drawing, ImprintFormat};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;

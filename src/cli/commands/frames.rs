@@ -504,7 +504,7 @@ impl Selection {
 }
 
 /// The side of a cell in mm, and a line if the recording's cells are not square.
-/// `--pitch` overrides the recording, and the recording overrides the settings.
+/// `--pitch` overrides the recording. The pitch of the settings is that of the simulated sensor, and says nothing here.
 ///
 /// # Errors
 /// [`CliError::Frames`] if `--pitch` is given although the recording says that its cells are not square.
@@ -514,7 +514,7 @@ fn cell_size(
     info: &ChannelInfo,
 ) -> Result<(Option<f64>, Option<String>), CliError> {
     let Some([x, y]) = info.pitch_mm else {
-        return Ok((pitch.of(None), None));
+        return Ok((pitch.given, None));
     };
     if x == y {
         return Ok((pitch.given.or(Some(x)), None));

@@ -5,7 +5,7 @@
 //! printed after:
 //! ```text
 //! 8 files of 155.2M: at most 682.8M of memory
-//! merged: 212907 imprints, 402.3M of memory
+//! merged: 212,907 imprints, 402.3M of memory
 //! ```
 
 use std::io::BufReader;
@@ -121,7 +121,8 @@ pub(crate) fn merge(
         (result.atlas.len(), summary)
     };
     if let Some(peak) = peak() {
-        say(&format!("merged: {imprints} imprints, {peak} of memory"));
+        let imprints = counted(imprints as u64, "imprint");
+        say(&format!("merged: {imprints}, {peak} of memory"));
     }
     Ok(summary)
 }

@@ -30,7 +30,7 @@ use crate::cli::output::evaluation::{self, bar, percent, percent_fine};
 use crate::cli::output::plot;
 use crate::cli::output::progress::Progress;
 use crate::cli::signals::Signals;
-use crate::formats::value::counted;
+use crate::formats::value::{counted, grouped};
 use crate::formats::{LinePlot, json};
 use crate::recognition::{
     GivenDescriptors, Model, Noise, RecognitionRate, TouchesUntil, TrainingError, random_taxels,
@@ -61,18 +61,7 @@ pub(crate) fn degradation(
 ) -> Result<String, CliError> {
     let given = given_of(asked, all_asked);
     let signals = Signals::heard().map_err(CliError::System)?;
-    let sensor = asked
-        .size
-        .map(|(columns, rows)| Sensor::clamped(columns, rows));
-    let sensor = sensor.unwrap_or(*model.sensor());
-    let (columns, rows) = (sensor.columns(), sensor.rows());
-    if let Some(shape) = model.first_too_large((columns, rows)) {
-        return Err(CliError::NoTouch {
-            name: model.shapes()[shape].name.clone(),
-            columns,
-            rows,
-        });
-    }
+    let sensor = matrix(model, asked.size)?;
     let values: Vec<f64> = asked.noise.values().collect();
     let each = asked.touches * model.shapes().len() as u64;
     let all = each * values.len() as u64 * asked.dead.len() as u64;
@@ -131,6 +120,24 @@ fn write_noise(table: &[NoiseRow], asked: &ConfusionArguments) -> Result<(), Cli
         _ => noise_csv(table).into_bytes(),
     };
     put(path, &content, asked.existing)
+}
+
+/// The matrix that is touched: of the size that is asked for, else that of the model.
+///
+/// # Errors
+/// [`CliError::NoTouch`] if a shape can leave nothing on it.
+fn matrix(model: &Model, size: Option<(u8, u8)>) -> Result<Sensor, CliError> {
+    let sensor = size.map(|(columns, rows)| Sensor::clamped(columns, rows));
+    let sensor = sensor.unwrap_or(*model.sensor());
+    let (columns, rows) = (sensor.columns(), sensor.rows());
+    match model.first_too_large((columns, rows)) {
+        None => Ok(sensor),
+        Some(shape) => Err(CliError::NoTouch {
+            name: model.shapes()[shape].name.clone(),
+            columns,
+            rows,
+        }),
+    }
 }
 
 /// The descriptors that are known, measured in the steps that are asked for; None for the whole imprint.
@@ -242,7 +249,8 @@ fn noise_text(table: &[NoiseRow], seed: u64, given: bool, charset: Charset) -> S
     let touches = table.first().map_or(0, |row| row.rate.touches);
     let _ = writeln!(
         text,
-        "{touches} touches a row, seed {seed}; held: {} that some shape leaves without noise",
+        "{} touches a row, seed {seed}; held: {} that some shape leaves without noise",
+        grouped(touches),
         if given { "values" } else { "imprints" }
     );
     text
@@ -372,9 +380,9 @@ fn touches_text(
     let widths = shapes.iter().map(|(name, _)| name.chars().count());
     let width = widths.fold("all shapes".len(), usize::max);
     let mut text = format!(
-        "touches until a shape is {} probable; {} runs each, seed {}\n",
+        "touches until a shape is {} probable; {} each, seed {}\n",
         percent(asked.until),
-        asked.runs,
+        counted(asked.runs, "run"),
         asked.seed
     );
     for (name, own) in shapes {

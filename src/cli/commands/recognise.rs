@@ -19,12 +19,13 @@ use serde_json::value::RawValue;
 use crate::cli::arguments::recognise::RecogniseArguments;
 use crate::cli::commands::model;
 use crate::cli::error::CliError;
-use crate::cli::input::content::{self, Content};
+use crate::cli::input::content;
 use crate::cli::input::lines::{self, MAX_LINE};
 use crate::cli::input::shapes::{Located, Shelf};
 use crate::cli::output::answer::{AnswerJson, AnswerText};
 use crate::cli::output::charset::Charset;
 use crate::cli::output::pose::PoseReport;
+use crate::formats::Content;
 use crate::formats::framed::{FrameRows, RuleRecord};
 use crate::formats::json;
 use crate::formats::record::Text;
@@ -241,33 +242,49 @@ fn input(what: &OsStr, shelf: &Shelf) -> Result<Asked, CliError> {
         Located::File(path, file) => (path.to_string_lossy().into_owned(), Box::new(file)),
         Located::Standard => ("standard input".to_owned(), Box::new(io::stdin())),
     };
-    // The first line decides: in lines of JSON it is a whole object, and not that of a stored shape.
-    let mut input = BufReader::new(input);
-    let mut start = Vec::new();
     let refused = |error: content::InputError| CliError::Input {
         name: name.clone(),
         error,
     };
+    let mut input = BufReader::new(input);
+    let (mut blank, mut start) = (0, Vec::new());
     loop {
-        let length = start.len();
-        let mut line = (&mut input).take(MAX_LINE as u64);
-        line.read_until(b'\n', &mut start)
-            .map_err(|error| refused(error.into()))?;
-        if start.len() == length || !start[length..].trim_ascii().is_empty() {
+        let length = line(&mut input, &mut start).map_err(|error| refused(error.into()))?;
+        if length == 0 || !start.trim_ascii().is_empty() {
             break;
         }
+        start.clear();
+        blank += 1;
     }
-    if is_line(&start) {
-        return Ok(Asked::Lines(Box::new(Cursor::new(start).chain(input))));
+    // Blank lines are not kept, however many there are, but they count.
+    let blank = io::repeat(b'\n').take(blank);
+    let is_line = if let Some(is_line) = is_line(&start) {
+        is_line
+    } else {
+        let length = start.len();
+        line(&mut input, &mut start).map_err(|error| refused(error.into()))?;
+        // In an object that goes on no other one begins here: the first line was torn.
+        start[length..].trim_ascii_start().starts_with(b"{")
+    };
+    let whole = blank.chain(Cursor::new(start)).chain(input);
+    if is_line {
+        return Ok(Asked::Lines(Box::new(whole)));
     }
-    match content::read_from(Cursor::new(start).chain(input)).map_err(refused)? {
+    match content::read_from(whole).map_err(refused)? {
         Content::Imprint(imprint) => Ok(Asked::Imprint(imprint)),
         Content::Shape(shape) => Ok(Asked::Imprint(shape.imprint)),
     }
 }
 
-/// Whether a text is a whole object of JSON that is not a stored shape, or would be if its one line were not wrong.
-fn is_line(text: &[u8]) -> bool {
+/// Reads a line, or as much of it as a line may have. Returns its length; 0 at the end.
+fn line(input: &mut impl BufRead, start: &mut Vec<u8>) -> io::Result<usize> {
+    let mut limited = Read::by_ref(input).take(MAX_LINE as u64);
+    limited.read_until(b'\n', start)
+}
+
+/// Whether the first line of a text is a question of its own: a whole object of JSON that is not a stored shape, or would be
+/// if it were not wrong. None of an object that does not end with it: a stored shape, or a line that was torn.
+fn is_line(text: &[u8]) -> Option<bool> {
     /// The only key that matters here; stored shapes have it.
     #[derive(Deserialize)]
     struct FormatKey {
@@ -275,14 +292,17 @@ fn is_line(text: &[u8]) -> bool {
     }
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     if !text.trim_ascii_start().starts_with(b"{") {
-        return false;
+        return Some(false);
     }
     match serde_json::from_slice::<FormatKey>(text) {
-        Ok(keys) => keys.format.is_none(),
-        // An object that goes on in the next line is a stored shape.
-        Err(error) => !error.is_eof(),
+        Ok(keys) => Some(keys.format.is_none()),
+        Err(error) if error.is_eof() => None,
+        Err(_) => Some(true),
     }
 }
+
+/// Why a line with none of its keys, or with two, is refused.
+const ONE_KEY: &str = "expected exactly one of the keys frame (with values), imprint, touches";
 
 /// The keys of a line that mean something; others are ignored.
 #[derive(Deserialize)]
@@ -343,7 +363,7 @@ impl Line {
         let touches = match (&keys.imprint, &keys.touches) {
             (None, None) if framed.is_some() => framed.into_iter().collect(),
             _ if framed.is_some() => {
-                return Err("expected exactly one of the keys frame, imprint, touches".to_owned());
+                return Err(ONE_KEY.to_owned());
             }
             (Some(rows), None) => vec![imprint("imprint", rows)?],
             (None, Some(touches)) if !touches.is_empty() => {
@@ -353,7 +373,7 @@ impl Line {
                     .collect::<Result<_, _>>()?
             }
             (None, Some(_)) => return Err("touches: empty, expected at least one".to_owned()),
-            _ => return Err("expected exactly one of the keys imprint, touches".to_owned()),
+            _ => return Err(ONE_KEY.to_owned()),
         };
         // Values are not repeated.
         let copied = [
@@ -388,11 +408,12 @@ mod tests {
 
     #[test]
     fn lines_are_told_from_stored_shapes() {
-        assert!(is_line(b"{\"imprint\":[\"##\"]}\n"));
-        assert!(is_line(b"{\"imprint\":}\n"));
-        assert!(!is_line(b"{\"format\":\"taxel-shape/1\"}\n"));
-        assert!(!is_line(b"{\n"));
-        assert!(!is_line(b"##..\n"));
+        assert_eq!(is_line(b"{\"imprint\":[\"##\"]}\n"), Some(true));
+        assert_eq!(is_line(b"{\"imprint\":}\n"), Some(true));
+        assert_eq!(is_line(b"{\"format\":\"taxel-shape/1\"}\n"), Some(false));
+        assert_eq!(is_line(b"##..\n"), Some(false));
+        assert_eq!(is_line(b"{\n"), None);
+        assert_eq!(is_line(b"{\"imprint\":[\"##\"\n"), None);
     }
 
     #[test]
@@ -409,7 +430,7 @@ mod tests {
         }
         assert_eq!(
             text,
-            "expected exactly one of the keys imprint, touches\n\
+            "expected exactly one of the keys frame (with values), imprint, touches\n\
              imprint: row 2 has 1 character, expected 2 as in the first row\n\
              touches, number 2: row 1, column 1: found 'x', expected '#' or '.'\n\
              touches: empty, expected at least one\n"

@@ -17,7 +17,9 @@
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use crate::acquire::{AcquireError, AcquireEvent, FrameRecorder, FrameSource, acquire};
+use crate::acquire::{
+    AcquireError, AcquireEvent, AcquireOptions, FrameRecorder, FrameSource, acquire,
+};
 use crate::cli::arguments::watch::WatchArguments;
 use crate::cli::commands::model;
 use crate::cli::commands::naming::FrameNamer;
@@ -98,7 +100,7 @@ pub(crate) fn watch(
         rule,
         ..RecordingMetadata::default()
     };
-    check_channel(&source, asked)?;
+    check(&source, asked)?;
     // What can be refused is refused before a recording begins.
     let lines = line_writer(asked, shelf)?;
     let recorder = asked.write.as_ref().map(|path| {
@@ -136,6 +138,23 @@ pub(crate) fn watch(
         CliError::Stopped { status } if stopped => status,
         _ => 0,
     })
+}
+
+/// Refuses flags that mean nothing for a source: of playing for a stream, and a channel that a recording does not have.
+fn check(source: &FrameSource, asked: &WatchArguments) -> Result<(), CliError> {
+    let usual = AcquireOptions::default();
+    if !matches!(source, FrameSource::File(_)) || asked.options.format.is_some() {
+        for (flag, is_given) in [
+            ("loop", asked.options.repeat),
+            ("speed", asked.options.speed != usual.speed),
+        ] {
+            if is_given {
+                let reason = "on a stream: it is for recordings".to_owned();
+                return Err(CliError::Unused { flag, reason });
+            }
+        }
+    }
+    check_channel(source, asked)
 }
 
 /// Refuses a channel that a recording does not have. It is read for that until the channel comes: played at its own rate, it
@@ -210,7 +229,7 @@ pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequ
         name: source.name(),
         message: error.to_string(),
     })?;
-    check_channel(&source, asked)?;
+    check(&source, asked)?;
     if let Some(path) = &asked.write {
         // Begun and given up: nothing appears before the first frame.
         let metadata = RecordingMetadata::default();
@@ -517,8 +536,14 @@ impl Watcher<'_> {
             let frames = wanted - tare.missing();
             failure = Some(self.refused(&FrameError::Tare { frames, wanted }.to_string()));
         }
+        // A stream has said so already.
+        if failure.is_none() && acquired.is_ok() && !stopped && !self.begun {
+            failure = Some(self.refused("no frames"));
+        }
         let recorded = self.recorder.take().map(FrameRecorder::finish);
-        if let (Some(Ok(0)), Some(path), None) = (&recorded, &self.asked.write, &failure) {
+        // A file that could not be begun is not for want of frames.
+        let refused = matches!(failure, Some(CliError::Recorder(_)));
+        if let (Some(Ok(0)), Some(path), false) = (&recorded, &self.asked.write, refused) {
             let path = path.display();
             self.say(&format!("no frame came, so {path} was not written"));
         }

@@ -1,15 +1,13 @@
 //! Reads an imprint in any form, or a stored shape, from a file or from standard input.
 //!
-//! The form is recognised from the content, never from the file's name: `{` begins a stored shape, anything else is an
-//! imprint as text, PBM, CSV or NPY ([`imprint_file`]). At most [`MAX_BYTES`] are read.
+//! The form is recognised from the content, never from the file's name ([`read_content`]). At most [`MAX_BYTES`] are read.
 
 use std::io::{self, Read};
 use std::path::PathBuf;
 
 use crate::formats::recording::{RecordingFormat, recognised};
 use crate::formats::shape::MAX_BYTES;
-use crate::formats::{ImprintFormatError, ShapeError, StoredShape, imprint_file};
-use crate::imprint::Imprint;
+use crate::formats::{Content, ContentError, read_content};
 use crate::quote::legible;
 
 /// How many of the first bytes show whether a file is a recording.
@@ -34,16 +32,6 @@ impl InputSource {
     }
 }
 
-/// What was read.
-#[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
-pub(crate) enum Content {
-    /// An imprint: a matrix without a sensor or a name.
-    Imprint(Imprint),
-    /// A stored shape: an imprint with its name, sensor and source.
-    Shape(StoredShape),
-}
-
 /// Why input cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum InputError {
@@ -53,12 +41,9 @@ pub(crate) enum InputError {
     /// It is larger than any imprint or shape.
     #[error("larger than 1 MiB, the limit for an imprint or a shape")]
     Large,
-    /// It is not an imprint in any known form.
-    #[error(transparent)]
-    Imprint(#[from] ImprintFormatError),
-    /// It starts like JSON, but is not a stored shape.
+    /// It is neither an imprint nor a stored shape.
     #[error("{}", legible(&.0.to_string()))]
-    Shape(#[from] ShapeError),
+    Content(#[from] ContentError),
     /// It looks like a recording.
     #[error("{0}; if this is a recording, use taxel frames")]
     Recording(Box<InputError>),
@@ -83,13 +68,7 @@ fn read(bytes: &[u8]) -> Result<Content, InputError> {
     if bytes.len() > MAX_BYTES {
         return Err(InputError::Large);
     }
-    // Some editors begin every text with a byte order mark.
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    if bytes.trim_ascii_start().starts_with(b"{") {
-        Ok(Content::Shape(StoredShape::read(bytes)?))
-    } else {
-        Ok(Content::Imprint(imprint_file::read(bytes)?))
-    }
+    Ok(read_content(bytes)?)
 }
 
 /// Whether bytes that are no imprint look like a recording. Of JSON this is said only where there is a frame: most is a

@@ -7,7 +7,8 @@ use std::path::Path;
 use crate::acquire::description_beside;
 use crate::cli::error::CliError;
 use crate::cli::input::content;
-use crate::cli::input::content::{Content, InputError};
+use crate::cli::input::content::InputError;
+use crate::formats::Content;
 use crate::formats::recording::{
     ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata, read,
     recognised,

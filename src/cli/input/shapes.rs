@@ -12,7 +12,8 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use crate::cli::error::CliError;
 use crate::cli::input::content;
-use crate::cli::input::content::{Content, InputSource};
+use crate::cli::input::content::InputSource;
+use crate::formats::Content;
 use crate::formats::StoredShape;
 use crate::imprint::Imprint;
 use crate::storage::{Expected, Library, LibraryError};

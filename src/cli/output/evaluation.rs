@@ -291,7 +291,7 @@ pub(crate) fn greedy(
             "+ {:<24} {:>11}  {:>7}",
             descriptor.key(),
             percent(evaluation.error()),
-            evaluation.keys
+            grouped(evaluation.keys as u64)
         );
     }
     let _ = writeln!(
@@ -299,7 +299,7 @@ pub(crate) fn greedy(
         "{:<26} {:>11}  {:>7}",
         "limit: the whole imprint",
         percent(limit.error()),
-        limit.keys
+        grouped(limit.keys as u64)
     );
     charset.lines(&text)
 }

@@ -19,6 +19,7 @@ use crate::cli::output::evaluation::{number, percent, percent_fine};
 use crate::cli::output::plot;
 use crate::formats::json;
 use crate::formats::separation::{SeparationCurve, said, short};
+use crate::formats::value::grouped;
 use crate::pose::DecimalRange;
 use crate::recognition::{SeparationPoint, SizeAxis};
 
@@ -52,7 +53,7 @@ pub(crate) fn text(
             short(point.threshold),
             percent(point.error()),
             percent(point.certain()),
-            point.keys,
+            grouped(point.keys as u64),
             side = point.side
         );
     }

@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use crate::formats::{StoredShape, imprint_file};
+use crate::formats::{Content, imprint_file, read_content};
 use crate::storage::{Existing, UnfinishedFile, location};
 use crate::tui::app::message::{FileEvent, OpenedFile};
 use crate::tui::runtime::effect::FileRequest;
@@ -44,14 +44,9 @@ fn open(name: &str) -> Result<OpenedFile, String> {
     file.take(MOST + 1)
         .read_to_end(&mut bytes)
         .map_err(sentence)?;
-    if bytes.trim_ascii_start().starts_with(b"{") {
-        return match StoredShape::read(&bytes) {
-            Ok(shape) => Ok(OpenedFile::Shape(Box::new(shape))),
-            Err(error) => Err(error.to_string()),
-        };
-    }
-    match imprint_file::read(&bytes) {
-        Ok(imprint) => Ok(OpenedFile::Imprint(Box::new(imprint))),
+    match read_content(&bytes) {
+        Ok(Content::Shape(shape)) => Ok(OpenedFile::Shape(Box::new(shape))),
+        Ok(Content::Imprint(imprint)) => Ok(OpenedFile::Imprint(Box::new(imprint))),
         Err(error) => Err(error.to_string()),
     }
 }

@@ -1,0 +1,40 @@
+//! An imprint in any form, or a stored shape: which of the two shows in the first character.
+
+use crate::formats::imprint_file::{self, ImprintFormatError};
+use crate::formats::shape::{ShapeError, StoredShape};
+use crate::imprint::Imprint;
+
+/// What a file holds.
+#[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
+pub enum Content {
+    /// An imprint: a matrix without a sensor or a name.
+    Imprint(Imprint),
+    /// A stored shape: an imprint with its name, sensor and source.
+    Shape(StoredShape),
+}
+
+/// Why bytes are neither.
+#[derive(Debug, thiserror::Error)]
+pub enum ContentError {
+    /// They are not an imprint in any known form.
+    #[error(transparent)]
+    Imprint(#[from] ImprintFormatError),
+    /// They start like JSON, but are not a stored shape.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+}
+
+/// Reads any bytes: a stored shape if the first character is `{`, otherwise an imprint as text, PBM, CSV or NPY. A byte
+/// order mark, with which some editors begin every text, is skipped.
+///
+/// # Errors
+/// What is wrong, and where.
+pub fn read_content(bytes: &[u8]) -> Result<Content, ContentError> {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    if bytes.trim_ascii_start().starts_with(b"{") {
+        Ok(Content::Shape(StoredShape::read(bytes)?))
+    } else {
+        Ok(Content::Imprint(imprint_file::read(bytes)?))
+    }
+}
