@@ -1,6 +1,6 @@
-//! Files that other programs read, and files of theirs: numpy, Pillow and netpbm, where they are there.
+//! Files that other programs read, and files of theirs: numpy, Pillow, mcap and netpbm, where they are installed.
 //!
-//! With `TAXEL_NUMPY` set, numpy and Pillow must be there.
+//! With `TAXEL_NUMPY` set, Python must have its packages; with `TAXEL_CI` set, netpbm must be there.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -9,6 +9,8 @@ use tempfile::TempDir;
 
 use super::finish;
 use super::program;
+use super::python_has;
+use super::skip::lacking;
 
 /// What the washer is, as rows of `#` and `.`, and its files in a folder.
 fn washer() -> (String, TempDir) {
@@ -53,25 +55,11 @@ fn others(folder: &Path, name: &str, arguments: &[&str]) -> Option<String> {
     Some(said)
 }
 
-/// Python, where it has a module.
-fn python(module: &str) -> Option<&'static str> {
-    let found = Command::new("python3")
-        .args(["-c", &format!("import {module}")])
-        .stderr(Stdio::null())
-        .status();
-    if found.is_ok_and(|status| status.success()) {
-        return Some("python3");
-    }
-    assert!(std::env::var_os("TAXEL_NUMPY").is_none(), "no {module}");
-    eprintln!("SKIPPED: no {module} in python3");
-    None
-}
-
 #[test]
 fn numpy_reads_and_is_read() {
-    let Some(python) = python("numpy") else {
+    if !python_has("numpy") {
         return;
-    };
+    }
     let (text, folder) = washer();
     let script = "
 import numpy as np
@@ -91,7 +79,7 @@ np.save('mask.npy', a.astype('u1') * 255)
 for row in a:
     print(''.join('#' if cell else '.' for cell in row))
 ";
-    let said = others(folder.path(), python, &["-c", script]);
+    let said = others(folder.path(), "python3", &["-c", script]);
     assert_eq!(said.as_ref(), Some(&text));
     for name in [
         "int.npy",
@@ -112,9 +100,9 @@ for row in a:
 
 #[test]
 fn pillow_reads_and_is_read() {
-    let Some(python) = python("PIL.Image") else {
+    if !python_has("PIL.Image") {
         return;
-    };
+    }
     let (text, folder) = washer();
     // Black is an active taxel; Pillow's own bitmaps have 0 for black.
     let script = "
@@ -130,7 +118,7 @@ assert page.mode == 'L' and round(page.info['dpi'][0]) == 288, (page.mode, page.
 for y in range(16):
     print(''.join('.' if a.getpixel((x, y)) else '#' for x in range(16)))
 ";
-    let said = others(folder.path(), python, &["-c", script]);
+    let said = others(folder.path(), "python3", &["-c", script]);
     assert_eq!(said.as_ref(), Some(&text));
     for name in ["pillow.pbm", "mask.pgm"] {
         export(folder.path(), &format!("{name} back.txt --force"));
@@ -141,16 +129,16 @@ for y in range(16):
 
 #[test]
 fn python_parses_the_drawing_as_xml() {
-    let Some(python) = python("xml.dom.minidom") else {
+    if !python_has("xml.dom.minidom") {
         return;
-    };
+    }
     let (_, folder) = washer();
     let script = "
 import xml.dom.minidom
 page = xml.dom.minidom.parse('a.svg').documentElement
 print(page.tagName, page.namespaceURI, len(page.getElementsByTagName('path')) > 5)
 ";
-    let said = others(folder.path(), python, &["-c", script]);
+    let said = others(folder.path(), "python3", &["-c", script]);
     assert_eq!(
         said.as_deref(),
         Some("svg http://www.w3.org/2000/svg True\n")
@@ -162,7 +150,7 @@ fn netpbm_reads_and_is_read() {
     let (text, folder) = washer();
     let path = folder.path();
     if others(path, "pamfile", &["a.pbm"]).is_none() {
-        eprintln!("SKIPPED: no netpbm");
+        lacking("netpbm");
         return;
     }
     let plain = others(path, "pnmtoplainpnm", &["a.pbm"]);
@@ -180,9 +168,9 @@ fn netpbm_reads_and_is_read() {
 /// Chunks of each packing, written by the package of the format's authors.
 #[test]
 fn recordings_of_the_mcap_package_are_read() {
-    let Some(python) = python("mcap, lz4, zstandard") else {
+    if !python_has("mcap, lz4, zstandard") {
         return;
-    };
+    }
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let script = "
 import struct
@@ -206,7 +194,7 @@ for name, packing in [('none', CompressionType.NONE), ('lz4', CompressionType.LZ
             writer.add_message(channel, log_time=frame * 10_000_000, data=message(values), publish_time=0)
         writer.finish()
 ";
-    others(folder.path(), python, &["-c", script]).expect("Python is there");
+    others(folder.path(), "python3", &["-c", script]).expect("Python is there");
     for name in ["none", "lz4", "zstd"] {
         let file = format!("{name}.mcap");
         let arguments = ["frames", &file, "--all", "--at-least", "100", "--json"];

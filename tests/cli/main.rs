@@ -3,6 +3,9 @@
 #[path = "../common/paper.rs"]
 mod paper;
 
+#[path = "../common/skip.rs"]
+mod skip;
+
 mod config;
 
 mod figure;
@@ -136,6 +139,21 @@ fn misused(line: &str, message: &str) {
         "{line}: {}",
         run.stderr
     );
+}
+
+/// Whether Python has these modules; where not, the test is skipped. With `TAXEL_NUMPY` set they must be there.
+fn python_has(modules: &str) -> bool {
+    let found = Command::new("python3")
+        .args(["-c", &format!("import {modules}")])
+        .stderr(Stdio::null())
+        .status();
+    let there = found.is_ok_and(|status| status.success());
+    if !there {
+        let must = std::env::var_os("TAXEL_NUMPY").is_some();
+        assert!(!must, "Python has no {modules}");
+        skip::skipped(&format!("Python has no {modules}"));
+    }
+    there
 }
 
 /// The paper's Fig. 1.

@@ -1,6 +1,9 @@
-//! The programs of `examples/python`, each run where Python has what it needs; skipped aloud where not.
+//! The programs of `examples/python`, each run where Python has what it needs. With `TAXEL_NUMPY` set it must.
 
-use std::process::{Command, Output};
+use std::process::Command;
+
+use super::python_has;
+use super::skip::skipped;
 
 /// Runs an example, if Python has these modules, and returns what it prints.
 fn printed(name: &str, modules: &str) -> Option<String> {
@@ -9,26 +12,18 @@ fn printed(name: &str, modules: &str) -> Option<String> {
 
 /// The same with arguments.
 fn printed_with(name: &str, modules: &str, arguments: &[&str]) -> Option<String> {
-    let python = |arguments: &[&str]| -> Option<Output> {
-        let mut python = Command::new("python3");
-        python
-            .args(arguments)
-            .env("TAXEL", env!("CARGO_BIN_EXE_taxel"))
-            .env("TAXEL_CONFIG", "/dev/null")
-            .env("PYTHONIOENCODING", "utf-8");
-        python.output().ok()
-    };
-    let found = python(&["-c", &format!("import {modules}")]);
-    if !found.is_some_and(|output| output.status.success()) {
-        eprintln!("SKIPPED: python3 with {modules} is not there");
+    if !python_has(modules) {
         return None;
     }
     let path = format!("{}/examples/python/{name}", env!("CARGO_MANIFEST_DIR"));
-    let whole: Vec<&str> = [path.as_str()]
-        .into_iter()
-        .chain(arguments.iter().copied())
-        .collect();
-    let output = python(&whole).expect("it was found before");
+    let output = Command::new("python3")
+        .arg(path)
+        .args(arguments)
+        .env("TAXEL", env!("CARGO_BIN_EXE_taxel"))
+        .env("TAXEL_CONFIG", "/dev/null")
+        .env("PYTHONIOENCODING", "utf-8")
+        .output()
+        .expect("it was found before");
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{name}: {said}");
     Some(String::from_utf8(output.stdout).expect("text"))
@@ -86,7 +81,9 @@ fn real_footsteps_are_named() {
         "/../shared/reference/data/pressuRe/fscan_testL.asf"
     );
     if !std::path::Path::new(recording).exists() {
-        eprintln!("SKIPPED: no recording of an insole at {recording}");
+        skipped(&format!(
+            "there is no recording of an insole at {recording}"
+        ));
         return;
     }
     let Some(printed) = printed_with("footsteps.py", "json", &[recording]) else {

@@ -6,6 +6,7 @@ use std::process::Command;
 
 use super::misused;
 use super::program;
+use super::skip::lacking;
 use super::taxel;
 
 /// Every command that has a help.
@@ -43,11 +44,11 @@ const COMMANDS: [&str; 31] = [
     "man",
 ];
 
-/// Whether a program is there; says so where it is not, since the test then shows less.
+/// Whether a program is there; where not, a part of the test is skipped.
 fn has(name: &str) -> bool {
     let there = Command::new(name).arg("--version").output().is_ok();
     if !there {
-        eprintln!("SKIPPED: there is no {name}");
+        lacking(name);
     }
     there
 }
@@ -189,7 +190,7 @@ fn in_library(folder: &Path, arguments: &[&str]) {
 
 /// Those of one help come one after the other, in one folder: what the first stores the second may delete.
 #[test]
-fn every_example_of_every_help_does_what_it_says() {
+fn every_example_of_every_help_runs() {
     let binary = Path::new(env!("CARGO_BIN_EXE_taxel"));
     let mut path = binary.parent().expect("a folder").as_os_str().to_owned();
     path.push(":");
@@ -232,7 +233,10 @@ fn every_example_of_every_help_does_what_it_says() {
                 .env("HOME", folder)
                 .env("MANPATH", folder.join(".local/share/man"))
                 .env("TAXEL_LIBRARY", folder.join("library"))
+                .env_remove("TAXEL_CONFIG")
                 .env_remove("XDG_CACHE_HOME")
+                .env_remove("XDG_CONFIG_HOME")
+                .env_remove("XDG_DATA_HOME")
                 .env("LC_ALL", "C.UTF-8")
                 .output()
                 .expect("there is a shell");

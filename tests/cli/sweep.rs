@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use crate::paper::RING_IMPRINTS;
 
+use super::python_has;
 use super::refused;
 use super::{Run, taxel};
 
@@ -454,15 +455,7 @@ fn what_is_no_sweep_is_refused() {
 /// Read by the real numpy, where Python has it; with `TAXEL_NUMPY` set it must.
 #[test]
 fn numpy_reads_atlas_and_poses() {
-    let numpy = Command::new("python3")
-        .args(["-c", "import numpy"])
-        .output();
-    if !numpy.is_ok_and(|output| output.status.success()) {
-        assert!(
-            std::env::var_os("TAXEL_NUMPY").is_none(),
-            "python3 has no numpy"
-        );
-        eprintln!("SKIPPED: no python3 with numpy");
+    if !python_has("numpy") {
         return;
     }
     let scratch = folder();

@@ -3,7 +3,10 @@
 //! torn, no start blocked, the old file or the new one in its place.
 //!
 //! `cargo test --test crash` kills 300 times at random; `TAXEL_KILLS=2000 cargo test --test crash`, or `-- --ignored`,
-//! does it 2,000 times. What the machine does not allow is skipped, and said.
+//! does it 2,000 times. What the machine does not allow is skipped and reported.
+
+#[path = "../common/skip.rs"]
+mod skip;
 
 mod act;
 
@@ -61,6 +64,9 @@ fn main() -> ExitCode {
         let result = catch_unwind(campaign);
         let seconds = start.elapsed().as_secs_f64();
         if let Ok(seen) = result {
+            if let Some((_, why)) = seen.split_once("SKIPPED, ") {
+                skip::skipped(&format!("{name}: {}", why.trim_end()));
+            }
             println!("test {name} ... ok in {seconds:.1} s: {seen}");
         } else {
             println!("test {name} ... FAILED in {seconds:.1} s");

@@ -3,6 +3,9 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+#[path = "../common/skip.rs"]
+mod skip;
+
 mod drawing;
 
 mod exchange;

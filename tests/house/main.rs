@@ -18,6 +18,10 @@ mod examples;
 mod common;
 
 #[cfg(feature = "cli")]
+#[path = "../common/skip.rs"]
+mod skip;
+
+#[cfg(feature = "cli")]
 mod docs;
 
 #[cfg(feature = "cli")]

@@ -41,7 +41,7 @@ fn without_git_there_is_no_commit_but_that_of_the_package() {
 #[test]
 fn the_commit_is_that_of_the_packages_own_repository() {
     if Command::new("git").arg("--version").output().is_err() {
-        eprintln!("SKIPPED: there is no git");
+        crate::skip::lacking("git");
         return;
     }
     let folder = tempfile::tempdir().expect("a folder");

@@ -6,6 +6,9 @@ mod common;
 #[path = "../common/paper.rs"]
 mod paper;
 
+#[path = "../common/skip.rs"]
+mod skip;
+
 mod arithmetic;
 
 mod border_following;

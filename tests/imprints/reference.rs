@@ -1,6 +1,7 @@
 //! Poses answered by independent software, where that file is at hand; it is not part of the project.
 //!
-//! `TAXEL_REFERENCE` names the file of poses; without it, one beside the project's folder is looked for.
+//! `TAXEL_REFERENCE` names the file of poses, which must be there. Without it, one beside the project's folder is read if
+//! there is one.
 
 use std::path::PathBuf;
 
@@ -9,20 +10,27 @@ use taxel::formats::{DescribedImprint, Job};
 use taxel::sensor::Sensor;
 use taxel::touch::Plane;
 
+use crate::skip::skipped;
+
 #[test]
 fn every_reference_pose_is_answered_alike() {
-    let path = std::env::var_os("TAXEL_REFERENCE").map_or_else(
-        || {
-            PathBuf::from(concat!(
-                env!("CARGO_MANIFEST_DIR"),
-                "/../shared/reference/poses.jsonl"
-            ))
-        },
-        PathBuf::from,
+    let given = std::env::var_os("TAXEL_REFERENCE").map(PathBuf::from);
+    let must = given.is_some();
+    let beside = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../shared/reference/poses.jsonl"
     );
-    let Ok(text) = std::fs::read_to_string(&path) else {
-        eprintln!("SKIPPED: no reference poses at {}", path.display());
-        return;
+    let path = given.unwrap_or_else(|| PathBuf::from(beside));
+    let text = match std::fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(error) => {
+            assert!(!must, "TAXEL_REFERENCE: {}: {error}", path.display());
+            skipped(&format!(
+                "there are no reference poses at {}",
+                path.display()
+            ));
+            return;
+        }
     };
     let mut plane = Plane::new(Sensor::default());
     let mut differing = Vec::new();

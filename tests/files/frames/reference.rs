@@ -11,14 +11,15 @@ use taxel::frame::{Crop, FrameError, Peak, Processing, Rule, TareFrames};
 use taxel::matrix::Matrix;
 
 use super::{Recorded, recorded};
+use crate::skip::skipped;
 
-/// The folder, or none where it is missing, which is said aloud.
+/// The folder; where it is missing, the tests are skipped.
 fn folder() -> Option<PathBuf> {
     let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/reference"));
     if folder.join("frames.jsonl").is_file() {
         return Some(folder);
     }
-    eprintln!("SKIPPED: no recordings at {}", folder.display());
+    skipped(&format!("there are no recordings at {}", folder.display()));
     None
 }
 

@@ -14,6 +14,7 @@ use super::Scratch;
 use super::is_root;
 use super::refusal;
 use super::shape;
+use crate::skip::skipped;
 
 fn pipe(path: &Path) {
     mknodat(CWD, path, FileType::Fifo, Mode::from_raw_mode(0o666), 0).expect("a pipe");
@@ -276,9 +277,7 @@ fn a_file_that_is_read_only_is_not_replaced_and_the_mode_of_others_stays() {
 #[test]
 fn a_folder_that_cannot_be_written_to_can_be_read() {
     if is_root() {
-        eprintln!(
-            "SKIPPED: root may write everywhere; tests/crash does this with a read-only disk"
-        );
+        skipped("root may write everywhere; tests/crash does this with a read-only disk");
         return;
     }
     let scratch = Scratch::with(&["one"]);

@@ -73,7 +73,7 @@ fn each_is_what_its_command_makes() {
         .arg(&scratch.folder)
         .output();
     let Ok(made) = made else {
-        eprintln!("SKIPPED: there is no bash");
+        crate::skip::lacking("bash");
         return;
     };
     assert!(made.status.success(), "{made:?}");
