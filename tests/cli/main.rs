@@ -52,6 +52,7 @@ mod script;
 use std::ffi::OsStr;
 use std::io::Write;
 use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
 
 /// The program in a locale, its pipes open.
 fn program<A: AsRef<OsStr>>(arguments: &[A], locale: &str) -> Command {
@@ -139,6 +140,15 @@ fn misused(line: &str, message: &str) {
         "{line}: {}",
         run.stderr
     );
+}
+
+/// Waits until something holds, for half a minute at most.
+fn until(what: &str, mut holds: impl FnMut() -> bool) {
+    let start = Instant::now();
+    while !holds() {
+        assert!(start.elapsed() < Duration::from_secs(30), "no {what}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
 }
 
 /// Whether Python has these modules; where not, the test is skipped. With `TAXEL_NUMPY` set they must be there.

@@ -1,7 +1,6 @@
 //! What a sweep leaves: whole files, none that was there unless asked for, nothing where it is stopped.
 
 use std::fs;
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use super::finish;
@@ -10,6 +9,7 @@ use super::refused;
 use super::sweep::folder;
 use super::sweep::names;
 use super::taxel;
+use super::until;
 
 /// How long it takes is printed, not judged: `cargo test --release --test cli interrupt -- --nocapture`.
 #[test]
@@ -24,7 +24,7 @@ fn an_interrupt_stops_at_once_and_leaves_nothing() {
         path("p.npy")
     );
     let arguments: Vec<&str> = line.split_whitespace().collect();
-    let child = program(&arguments, "C.UTF-8")
+    let mut child = program(&arguments, "C.UTF-8")
         .spawn()
         .expect("the program starts");
     let id = i32::try_from(child.id()).expect("a process");
@@ -35,10 +35,11 @@ fn an_interrupt_stops_at_once_and_leaves_nothing() {
         let mut targets = files.filter_map(|file| fs::read_link(file.path()).ok());
         targets.any(|target| target.starts_with(folder)) || !names(folder).is_empty()
     };
-    while !is_open() {
-        assert!(Path::new(&opened).exists(), "it runs still");
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    until("open file", || {
+        let ended = child.try_wait().expect("a child");
+        assert_eq!(ended, None, "it ended before it was interrupted");
+        is_open()
+    });
     // Somewhere on its way.
     std::thread::sleep(Duration::from_millis(200));
     let start = Instant::now();
