@@ -1,5 +1,5 @@
-//! Hostile input: random and mutated bytes, and a mebibyte of each kind of malice. No panic, at most 64 MiB. The times
-//! are told, not held: `cargo test --release --test files hostile -- --nocapture --test-threads=1` measures them.
+//! Hostile input: random and mutated bytes, and a mebibyte of each kind of malice. No panic, at most 64 MiB. Times are
+//! printed, not judged: `cargo test --release --test files hostile -- --nocapture --test-threads=1` measures them.
 
 mod bodies;
 
@@ -7,7 +7,7 @@ mod found;
 
 mod malice;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
@@ -16,8 +16,8 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use taxel::tui::app::message::Message;
 
-/// The usual inputs of a body.
-fn seeds(folder: &str) -> Vec<Vec<u8>> {
+/// The usual inputs of a body, by their names.
+fn seeds(folder: &str) -> Vec<(String, Vec<u8>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("tests/files/hostile/seeds")
         .join(folder);
@@ -26,8 +26,12 @@ fn seeds(folder: &str) -> Vec<Vec<u8>> {
         .map(|file| file.expect("the folder can be read").path())
         .collect();
     files.sort();
-    let read = |path| std::fs::read(path).expect("a file that can be read");
-    files.into_iter().map(read).collect()
+    let read = |path: &PathBuf| {
+        let name = path.file_name().expect("a file").to_string_lossy();
+        let bytes = std::fs::read(path).expect("a file that can be read");
+        (name.into_owned(), bytes)
+    };
+    files.iter().map(read).collect()
 }
 
 /// A change of some bytes: where, how many go, what comes.
@@ -49,7 +53,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(3000))]
 
     #[test]
-    fn random_bytes_are_refused(index in 0..BODIES.len(), bytes in vec(any::<u8>(), 0..200)) {
+    fn random_bytes_do_no_harm(index in 0..BODIES.len(), bytes in vec(any::<u8>(), 0..200)) {
         BODIES[index].2(&bytes);
     }
 
@@ -58,7 +62,7 @@ proptest! {
         index in 0..BODIES.len(), seed in any::<usize>(), changes in changes()
     ) {
         let (_, folder, read) = BODIES[index];
-        let mut bytes = seeds(folder).swap_remove(seed % seeds(folder).len());
+        let (_, mut bytes) = seeds(folder).swap_remove(seed % seeds(folder).len());
         for (at, gone, new) in changes {
             let at = at % (bytes.len() + 1);
             let end = (at + gone).min(bytes.len());
@@ -70,13 +74,13 @@ proptest! {
 
 #[test]
 fn what_is_usual_is_read() {
-    for (_, folder, read) in BODIES {
-        for seed in seeds(folder) {
-            read(&seed);
+    for (body, folder, read) in BODIES {
+        for (name, seed) in seeds(folder) {
+            let is_read = read(&seed);
+            // Two bodies change the arrays of a sound archive, which may be refused then.
+            let changes = folder.ends_with("arrays") && name != "nothing";
+            assert!(is_read || changes, "{body} refuses its seed {name}");
         }
-    }
-    for seed in seeds("shape") {
-        assert!(taxel::formats::StoredShape::read(&seed).is_ok());
     }
 }
 

@@ -16,13 +16,16 @@ use taxel::sweep::{Shard, Sweep, SweepResult};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
-use super::is_short;
+use super::{is_short, refused};
 
 /// Any bytes.
-pub(crate) fn archive(bytes: &[u8]) {
+pub(crate) fn archive(bytes: &[u8]) -> bool {
     match read(Cursor::new(bytes)) {
-        Ok(result) => is_sound(result),
-        Err(error) => is_short(&error.to_string()),
+        Ok(result) => {
+            is_sound(result);
+            true
+        }
+        Err(error) => refused(&error.to_string()),
     }
 }
 
@@ -77,13 +80,12 @@ fn bytes_of(result: &SweepResult) -> Vec<u8> {
 /// how many come, and these. The first byte of all chooses the archive that is changed.
 ///
 /// The archive's own sums are those of what is in it, so that readers get to see the arrays.
-pub(crate) fn arrays(bytes: &[u8]) {
+pub(crate) fn arrays(bytes: &[u8]) -> bool {
     thread_local! {
         static SOUND: LazyCell<Vec<Arrays>> = const { LazyCell::new(sound) };
     }
-    if let Some(changed) = SOUND.with(|sound| changed(sound, bytes)) {
-        archive(&changed);
-    }
+    let changed = SOUND.with(|sound| changed(sound, bytes));
+    changed.is_some_and(|changed| archive(&changed))
 }
 
 /// One of some archives with other bytes in its arrays, see [`arrays`]; None without a first byte.

@@ -9,21 +9,22 @@ use taxel::sensor::{SENSOR_PARAMETERS, Sensor};
 use taxel::sweep::Shard;
 use taxel::touch::Plane;
 
-use super::is_short;
+use super::{is_short, refused};
 
 /// A file of the library.
-pub(crate) fn shape(bytes: &[u8]) {
+pub(crate) fn shape(bytes: &[u8]) -> bool {
     match StoredShape::read(bytes) {
         Ok(shape) => {
             let again = StoredShape::read(shape.write().as_bytes());
             assert_eq!(again.as_ref(), Ok(&shape));
+            true
         }
-        Err(error) => is_short(&error.to_string()),
+        Err(error) => refused(&error.to_string()),
     }
 }
 
 /// A line of `taxel batch`.
-pub(crate) fn job(bytes: &[u8]) {
+pub(crate) fn job(bytes: &[u8]) -> bool {
     let lookup = |name: &str| match name {
         "washer" => Ok(Imprint::empty(16, 16)),
         _ => Err("no shape is called so".to_owned()),
@@ -35,57 +36,66 @@ pub(crate) fn job(bytes: &[u8]) {
             let answer =
                 serde_json::to_string(&DescribedImprint(&imprint)).expect("every number is finite");
             assert!(!answer.contains('\n'));
+            true
         }
-        Err(error) => is_short(&error.to_string()),
+        Err(error) => refused(&error.to_string()),
     }
 }
 
 /// An imprint as text.
-pub(crate) fn imprint(bytes: &[u8]) {
+pub(crate) fn imprint(bytes: &[u8]) -> bool {
     let Ok(text) = str::from_utf8(bytes) else {
-        return;
+        return false;
     };
     match text.parse::<Imprint>() {
-        Ok(imprint) => assert_eq!(imprint.to_string().parse(), Ok(imprint)),
-        Err(error) => is_short(&error.to_string()),
+        Ok(imprint) => {
+            assert_eq!(imprint.to_string().parse(), Ok(imprint));
+            true
+        }
+        Err(error) => refused(&error.to_string()),
     }
 }
 
 /// An imprint as other programs write it: text, PBM, CSV, NPY.
-pub(crate) fn exchange(bytes: &[u8]) {
+pub(crate) fn exchange(bytes: &[u8]) -> bool {
     match imprint_file::read(bytes) {
         Ok(imprint) => {
             for form in ImprintFormat::ALL {
                 assert_eq!(imprint_file::read(&form.write(&imprint)), Ok(imprint));
             }
+            true
         }
-        Err(error) => is_short(&error.to_string()),
+        Err(error) => refused(&error.to_string()),
     }
 }
 
 /// The file of settings.
-pub(crate) fn config(bytes: &[u8]) {
+pub(crate) fn config(bytes: &[u8]) -> bool {
     let Ok(text) = str::from_utf8(bytes) else {
-        return;
+        return false;
     };
     match Config::read(text) {
-        Ok(config) => assert!(config.sensor_entries().len() <= SENSOR_PARAMETERS.len()),
+        Ok(config) => {
+            assert!(config.sensor_entries().len() <= SENSOR_PARAMETERS.len());
+            true
+        }
         Err(error) => {
-            is_short(&error.to_string());
             let lines = text.split('\n').count();
             assert!((1..=lines).contains(&error.line), "{error}");
+            refused(&error.to_string())
         }
     }
 }
 
 /// A range `start:end:step`, and a shard `K/N`.
-pub(crate) fn range(bytes: &[u8]) {
+pub(crate) fn range(bytes: &[u8]) -> bool {
     let Ok(text) = str::from_utf8(bytes) else {
-        return;
+        return false;
     };
-    match text.parse::<DecimalRange>() {
+    let range = text.parse::<DecimalRange>();
+    match &range {
         Ok(range) => {
-            assert_eq!(range.to_string().parse().as_ref(), Ok(&range), "{text:?}");
+            assert_eq!(range.to_string().parse().as_ref(), Ok(range), "{text:?}");
             assert!((1..=MAX_VALUES).contains(&range.count()));
             assert!(range.step() > 0.0 && range.last().is_finite());
             // Every value is another one, and none is beyond the last.
@@ -98,26 +108,31 @@ pub(crate) fn range(bytes: &[u8]) {
         }
         Err(error) => is_short(&error.to_string()),
     }
-    match text.parse::<Shard>() {
+    let shard = text.parse::<Shard>();
+    match &shard {
         Ok(shard) => {
-            assert_eq!(shard.to_string().parse().as_ref(), Ok(&shard));
+            assert_eq!(shard.to_string().parse().as_ref(), Ok(shard));
             let rows = shard.rows(u64::MAX);
             assert!(rows.start < rows.end, "some of so many are in each shard");
         }
         Err(error) => is_short(&error.to_string()),
     }
+    range.is_ok() || shard.is_ok()
 }
 
 /// A file of numpy.
-pub(crate) fn npy(bytes: &[u8]) {
+pub(crate) fn npy(bytes: &[u8]) -> bool {
+    let mut read = false;
     for kind in [Dtype::U8, Dtype::U16, Dtype::U32, Dtype::U64, Dtype::F64] {
         if let Some(numbers) = content(bytes, kind) {
             let length = u64::try_from(numbers.len()).expect("it is in memory");
             let again = [&header(kind, &[length]), numbers].concat();
             assert_eq!(content(&again, kind), Some(numbers));
+            read = true;
         }
     }
     let numbers = content(bytes, Dtype::U64).map(<[u8]>::len);
     let words = words(bytes).map(|words| words.len() * 8);
     assert_eq!(words, numbers.filter(|length| length.is_multiple_of(8)));
+    read
 }

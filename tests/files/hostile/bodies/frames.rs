@@ -7,11 +7,12 @@ use taxel::formats::recording::{ReadOptions, RecordingEvent, RecordingMetadata, 
 use taxel::formats::stream::{StreamDecoder, StreamEvent, StreamOptions};
 use taxel::frame::{Processing, Rule};
 
-use super::is_short;
+use super::{is_short, refused};
 
 /// A recording of any form, without and with a shape that may fit.
-pub(crate) fn recording(bytes: &[u8]) {
+pub(crate) fn recording(bytes: &[u8]) -> bool {
     let with_shape = ReadOptions::default().with_shape(4, 5);
+    let mut is_read = false;
     for options in [ReadOptions::default(), with_shape] {
         let mut processing = Processing::default();
         processing.rule = Rule::percent(50.0).ok();
@@ -34,30 +35,30 @@ pub(crate) fn recording(bytes: &[u8]) {
             }
             ControlFlow::Continue(())
         });
-        if let Err(error) = read {
-            is_short(&error.to_string());
-        }
+        is_read |= read.map_or_else(|error| refused(&error.to_string()), |_| true);
     }
+    is_read
 }
 
 /// What lies beside a recording. What is read is written and read as the same.
-pub(crate) fn description(bytes: &[u8]) {
+pub(crate) fn description(bytes: &[u8]) -> bool {
     match RecordingMetadata::read(bytes) {
         Some(Ok(metadata)) => {
             let text = metadata.text().expect("it is written");
             let again = RecordingMetadata::read(&text).expect("it is one");
             let again = again.expect("it is a right one").text();
             assert_eq!(again.expect("it is written"), text);
+            true
         }
-        Some(Err(error)) => is_short(&error),
-        None => {}
+        Some(Err(error)) => refused(&error),
+        None => false,
     }
 }
 
 /// A stream of any form: the first byte says what is known of it. It is decoded alike in pieces and as a whole.
-pub(crate) fn stream(bytes: &[u8]) {
+pub(crate) fn stream(bytes: &[u8]) -> bool {
     let Some((&first, bytes)) = bytes.split_first() else {
-        return;
+        return false;
     };
     let mut options = StreamOptions::default();
     options.from_start = first & 1 == 0;
@@ -84,4 +85,5 @@ pub(crate) fn stream(bytes: &[u8]) {
     let (start, rest) = bytes.split_at(start);
     let pieces: Vec<&[u8]> = std::iter::once(start).chain(rest.chunks(7)).collect();
     assert!(decoded(&pieces) == whole, "decoded in pieces");
+    !whole.is_empty()
 }

@@ -3,26 +3,27 @@
 use taxel::tui::keys::key::parse;
 use taxel::tui::terminal::input::{Input, InputReader};
 
-use super::is_short;
+use super::refused;
 
 /// Keys in notation.
-pub(crate) fn keys(bytes: &[u8]) {
+pub(crate) fn keys(bytes: &[u8]) -> bool {
     let Ok(text) = str::from_utf8(bytes) else {
-        return;
+        return false;
     };
     match parse(text) {
         // The way back takes longer, and is no other where there are more.
-        Ok(keys) if keys.len() > 10_000 => {}
+        Ok(keys) if keys.len() > 10_000 => true,
         Ok(keys) => {
             let written: String = keys.iter().map(ToString::to_string).collect();
             assert_eq!(parse(&written).as_ref(), Ok(&keys), "{written:?}");
+            true
         }
-        Err(error) => is_short(&error.to_string()),
+        Err(error) => refused(&error.to_string()),
     }
 }
 
-/// What a terminal sends: the same keys in one piece and byte by byte.
-pub(crate) fn terminal(bytes: &[u8]) {
+/// What a terminal sends: the same keys in one piece and byte by byte. Any bytes are some input.
+pub(crate) fn terminal(bytes: &[u8]) -> bool {
     let mut reader = InputReader::default();
     let mut whole = reader.read(bytes);
     let patience = reader.patience();
@@ -44,4 +45,5 @@ pub(crate) fn terminal(bytes: &[u8]) {
             assert!(text.len() <= 3 * bytes.len() && !text.contains('\r'));
         }
     }
+    true
 }

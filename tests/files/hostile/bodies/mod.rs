@@ -1,6 +1,6 @@
 //! What is done with hostile bytes: by property tests here, by the fuzz targets in `fuzz/`. Each must end without a
 //! panic, whatever the bytes are; what is read must come back the same when it is written and read again; and a
-//! message stays short however long the input is that it quotes.
+//! message stays short however long the input is that it quotes. A body returns whether the bytes could be read.
 
 mod archive;
 
@@ -19,7 +19,7 @@ pub(crate) use screen::session_of;
 
 /// A body: what it is called, here and as a fuzz target; the folder of usual inputs in `tests/files/hostile/seeds`; and what it
 /// does with bytes.
-pub(crate) type Body = (&'static str, &'static str, fn(&[u8]));
+pub(crate) type Body = (&'static str, &'static str, fn(&[u8]) -> bool);
 
 /// All of them.
 pub(crate) const BODIES: [Body; 21] = [
@@ -47,13 +47,19 @@ pub(crate) const BODIES: [Body; 21] = [
 ];
 
 /// The body of that name.
-pub(crate) fn body(name: &str) -> fn(&[u8]) {
+pub(crate) fn body(name: &str) -> fn(&[u8]) -> bool {
     let found = BODIES.into_iter().find(|(own, ..)| *own == name);
     found.expect("there is a body of that name").2
 }
 
 /// No message is longer, however long the input that it quotes.
 const LONGEST_MESSAGE: usize = 1000;
+
+/// Holds that the message of a refusal is short; false, since nothing was read.
+fn refused(message: &str) -> bool {
+    is_short(message);
+    false
+}
 
 fn is_short(message: &str) {
     let length = message.chars().count();

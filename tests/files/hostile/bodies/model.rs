@@ -13,28 +13,30 @@ use taxel::sensor::Sensor;
 use taxel::sweep::Shard;
 
 use super::archive::{Arrays, changed, unpacked};
-use super::is_short;
+use super::{is_short, refused};
 
 /// Any bytes.
-pub(crate) fn model(bytes: &[u8]) {
+pub(crate) fn model(bytes: &[u8]) -> bool {
     match read_model(Cursor::new(bytes)) {
-        Ok(model) => is_sound(&model),
-        Err(error) => is_short(&error.to_string()),
+        Ok(model) => {
+            is_sound(&model);
+            true
+        }
+        Err(error) => refused(&error.to_string()),
     }
 }
 
 /// Some bytes of an array in place of others, as in [`arrays`](super::archive::arrays).
-pub(crate) fn model_arrays(bytes: &[u8]) {
+pub(crate) fn model_arrays(bytes: &[u8]) -> bool {
     thread_local! {
         static SOUND: LazyCell<Vec<Arrays>> = const { LazyCell::new(sound) };
     }
-    if let Some(changed) = SOUND.with(|sound| changed(sound, bytes)) {
-        model(&changed);
-    }
+    let changed = SOUND.with(|sound| changed(sound, bytes));
+    changed.is_some_and(|changed| model(&changed))
 }
 
 /// A shape of a set, as a line of JSON and in words.
-pub(crate) fn named(bytes: &[u8]) {
+pub(crate) fn named(bytes: &[u8]) -> bool {
     let lookup = |name: &str| match name {
         "corner" => Ok("##\n#.".parse().expect("rows")),
         _ => Err("no such shape".to_owned()),
@@ -45,9 +47,11 @@ pub(crate) fn named(bytes: &[u8]) {
             .ok()
             .map(|text| named_shape_of_words(text, &lookup)),
     ];
+    let mut is_read = false;
     for read in read.into_iter().flatten() {
         match read {
             Ok(shape) => {
+                is_read = true;
                 let sensor = Sensor::LARGEST;
                 let trained = Training::new([shape], sensor, Anchor::Centre, one_pose());
                 if let Err(error) = trained {
@@ -57,6 +61,7 @@ pub(crate) fn named(bytes: &[u8]) {
             Err(error) => is_short(&error.to_string()),
         }
     }
+    is_read
 }
 
 /// The centre of the largest sensor.

@@ -21,7 +21,7 @@ use taxel::tui::script::runner::{ScriptFailure, ScriptOptions, run};
 use taxel::tui::script::setting::ScriptSetting;
 use tempfile::TempDir;
 
-use super::is_short;
+use super::refused;
 
 /// An empty library in this thread's scratch folder.
 fn world() -> World {
@@ -70,21 +70,21 @@ fn shows_text(session: &Session) {
 }
 
 /// A line of the command line. The first byte chooses what is on the matrix.
-pub(crate) fn command(bytes: &[u8]) {
+pub(crate) fn command(bytes: &[u8]) -> bool {
     thread_local! {
         static APPS: [App; 3] = ["", "f<Enter>g", ":picture washer<Enter><Enter>"].map(|keys| {
             session_of(keys).app().clone()
         });
     }
     let Some((&first, line)) = bytes.split_first() else {
-        return;
+        return false;
     };
     // The field takes no more.
     let Some(line) = str::from_utf8(line)
         .ok()
         .filter(|line| line.chars().count() <= 200)
     else {
-        return;
+        return false;
     };
     let (completed, _) = complete(line, &[]);
     assert!(completed.trim_start().starts_with(line.trim_start()));
@@ -96,41 +96,40 @@ pub(crate) fn command(bytes: &[u8]) {
                 // What is wished of the world is not done here.
                 let _ = update(&mut app, message);
                 is_sound(&app);
+                true
             }
-            Err(message) => is_short(&message),
+            Err(message) => refused(&message),
         }
-    });
+    })
 }
 
 /// A script that is read only.
-pub(crate) fn script(bytes: &[u8]) {
+pub(crate) fn script(bytes: &[u8]) -> bool {
     let Ok(text) = str::from_utf8(bytes) else {
-        return;
+        return false;
     };
-    if let Err(error) = read(text) {
-        is_short(&error.to_string());
-    }
+    read(text).map_or_else(|error| refused(&error.to_string()), |_| true)
 }
 
 /// The most cells that a script may draw here, so that no input takes long. A script that is longer is none that the
 /// program must refuse: it takes as long as it says.
 const MOST_DRAWN: u64 = 2_000_000;
 
-/// A script that is run.
-pub(crate) fn play(bytes: &[u8]) {
+/// A script that is run, to its end if it is read.
+pub(crate) fn play(bytes: &[u8]) -> bool {
     let Ok(text) = str::from_utf8(bytes) else {
-        return;
+        return false;
     };
     let commands = match read(text) {
         Ok(commands) => commands,
-        Err(error) => return is_short(&error.to_string()),
+        Err(error) => return refused(&error.to_string()),
     };
     // A library that is named is one of the world outside.
     let outside = |(_, command): &(usize, ScriptCommand)| {
         matches!(command, ScriptCommand::Set(ScriptSetting::Library(_)))
     };
     if drawn(&commands) > MOST_DRAWN || commands.iter().any(outside) {
-        return;
+        return false;
     }
     let settings = ScriptOptions {
         keymap: Keymap::default(),
@@ -145,13 +144,14 @@ pub(crate) fn play(bytes: &[u8]) {
         printed.push_str(text);
         ControlFlow::Continue(())
     });
-    match result {
-        Ok(()) => {}
-        Err(ScriptFailure::Expectation { message, .. }) => is_short(&message),
-        Err(failure) => is_short(&failure.to_string()),
-    }
+    let ended = match result {
+        Ok(()) => true,
+        Err(ScriptFailure::Expectation { message, .. }) => refused(&message),
+        Err(failure) => refused(&failure.to_string()),
+    };
     let control = printed.chars().find(|c| c.is_control() && *c != '\n');
     assert_eq!(control, None, "a control character is printed");
+    ended
 }
 
 /// How many cells a script draws.
@@ -182,8 +182,9 @@ fn drawn(commands: &[(usize, ScriptCommand)]) -> u64 {
     all
 }
 
-/// Keys, pastes, the mouse and new sizes, as bytes say; the state and the screen must hold throughout.
-pub(crate) fn session(bytes: &[u8]) {
+/// Keys, pastes, the mouse and new sizes, as bytes say; the state and the screen must hold throughout. Any bytes are some
+/// input.
+pub(crate) fn session(bytes: &[u8]) -> bool {
     let mut bytes = Bytes(bytes);
     let (columns, rows) = bytes.size();
     let mut session = Session::new(&options(), world(), columns, rows);
@@ -226,6 +227,7 @@ pub(crate) fn session(bytes: &[u8]) {
     }
     is_sound(session.app());
     shows_text(&session);
+    true
 }
 
 const NAMED: [Key; 16] = [
