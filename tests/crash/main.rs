@@ -3,7 +3,8 @@
 //! torn, no start blocked, the old file or the new one in its place.
 //!
 //! `cargo test --test crash` kills 300 times at random; `TAXEL_KILLS=2000 cargo test --test crash`, or `-- --ignored`,
-//! does it 2,000 times. What the machine does not allow is skipped and reported.
+//! does it 2,000 times. The seed of a run is printed, and `TAXEL_SEED` sets it. What the machine does not allow is skipped
+//! and reported.
 
 #[path = "../common/skip.rs"]
 mod skip;

@@ -1,5 +1,6 @@
 //! Killed at any moment, as a power cut or the system's own killer would; and a control that must fail.
 
+use std::io::{BufRead, BufReader, Read};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, SystemTime};
 
@@ -23,15 +24,23 @@ fn kills() -> usize {
     asked.and_then(|kills| kills.parse().ok()).unwrap_or(many)
 }
 
-/// Starts an act, kills it after some time, and answers the last numbers that it has said after "saved" and "kept".
+/// Starts an act, kills it some time after its first save, and answers the last numbers that it has said after "saved"
+/// and "kept".
 fn kill(act: &str, state: &State, after: Duration) -> (u32, u32) {
     let mut child = act::command(act, &state.folder)
         .spawn()
         .expect("the program starts");
+    let mut output = BufReader::new(child.stdout.take().expect("piped"));
+    let mut said = String::new();
+    // On a busy machine the start alone may take longer than the moments are.
+    while !said.contains("saved") {
+        let read = output.read_line(&mut said).expect("text");
+        assert!(read > 0, "{act} ended before it saved: {said}");
+    }
     std::thread::sleep(after);
     child.kill().expect("killed");
-    let output = child.wait_with_output().expect("a child");
-    let said = String::from_utf8(output.stdout).expect("text");
+    child.wait().expect("a child");
+    output.read_to_string(&mut said).expect("text");
     let last = |word: &str| {
         let number = said.lines().rev().find_map(|line| line.strip_prefix(word));
         number.map_or(1, |number| number.trim().parse().expect("a number"))
@@ -39,10 +48,19 @@ fn kill(act: &str, state: &State, after: Duration) -> (u32, u32) {
     (last("saved"), last("kept"))
 }
 
-/// Up to 40 ms, the start of the program included; other ones in each run.
-fn moments(count: usize) -> Vec<Duration> {
+/// The seed of the moments: `TAXEL_SEED`, or else another one in each run, which is printed.
+fn seed() -> u32 {
+    let given = std::env::var("TAXEL_SEED").ok();
+    let given = given.map(|seed| seed.parse::<u32>().expect("TAXEL_SEED is a whole number"));
     let clock = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
-    let mut word = clock.map_or(1, |time| time.subsec_nanos()) | 1;
+    let seed = given.unwrap_or_else(|| clock.map_or(1, |time| time.subsec_nanos()));
+    println!("TAXEL_SEED={seed} kills at these moments again");
+    seed
+}
+
+/// Up to 40 ms each.
+fn moments(count: usize) -> Vec<Duration> {
+    let mut word = seed() | 1;
     let mut next = || {
         // Xorshift: G. Marsaglia, *Xorshift RNGs*, 2003.
         word ^= word << 13;
@@ -82,6 +100,7 @@ pub(crate) fn killed() -> String {
         saves.fetch_add(saved - 1, Ordering::Relaxed);
     });
     let (saves, in_trash) = (saves.into_inner(), in_trash.into_inner());
+    assert!(saves > 0, "no kill after a save");
     format!(
         "{kills} kills in {saves} saves, nothing lost or torn, no start blocked; {in_trash} times between deleting and \
          restoring"
