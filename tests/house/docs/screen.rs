@@ -1,11 +1,8 @@
 //! Screens of the program, as text and drawn, and the tour through it.
 
+use std::fs;
 use std::ops::ControlFlow;
 
-use taxel::formats::Drawing;
-use taxel::sensor::Sensor;
-use taxel::source::Source;
-use taxel::touch::Plane;
 use taxel::tui::app::state::Options;
 use taxel::tui::keys::key::{Key, parse};
 use taxel::tui::keys::keymap::Keymap;
@@ -13,9 +10,10 @@ use taxel::tui::runtime::World;
 use taxel::tui::script::runner::{ScriptOptions, ScriptOutput, run_shown};
 use taxel::tui::widget::theme::{ColorDepth, Palette, Theme};
 
-use crate::common;
+use crate::docs::commands::shell_in;
+use crate::docs::document;
 
-/// What `tests/scripts.rs` runs, too.
+/// `tests/screen/scripts.rs` runs these, too.
 const FIGURE: &str = include_str!("../../scripts/paper_figure.taxel");
 const TOUR: &str = include_str!("../../scripts/tour.taxel");
 const FIRST_STEPS: &str = include_str!("../../scripts/first_steps.taxel");
@@ -101,18 +99,14 @@ Screen explore-angles
     all.map(|(name, _, drawn)| (name, drawn)).collect()
 }
 
-/// The same touch as on the screen, drawn in millimetres.
+/// The same touch as on the screen in millimetres, drawn by the command that the page about files shows.
 pub(crate) fn touch_svg() -> String {
-    let figure = common::figure(
-        "ellipse radius_x=4 radius_y=4 x0=1.99 y0=1.47 thickness=2",
-        16,
-    );
-    let imprint = Plane::new(Sensor::default()).touch(&figure);
-    Drawing::new(&imprint)
-        .with_outline(&figure)
-        .with_pitch(2.5)
-        .with_title(&Source::Figure(figure).to_string())
-        .svg()
+    let page = document("docs/files.md");
+    let ends = " --export touch.svg";
+    let line = page.lines().find(|line| line.ends_with(ends));
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    shell_in(folder.path(), line.expect("a command"));
+    fs::read_to_string(folder.path().join("touch.svg")).expect("written")
 }
 
 /// The tour as numbered steps: each comment of the script says what happens, the lines after it which keys do it.
