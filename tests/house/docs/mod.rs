@@ -68,6 +68,9 @@ fn documents() -> Vec<(PathBuf, String)> {
             paths.push(Path::new("docs").join(name));
         }
     }
+    for folder in ["examples/cluster", "examples/python"] {
+        paths.push(Path::new(folder).join("README.md"));
+    }
     // The package has no fuzz targets.
     if root().join("fuzz/README.md").exists() {
         paths.push(PathBuf::from("fuzz/README.md"));
