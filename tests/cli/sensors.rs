@@ -55,6 +55,22 @@ fn furnished(folder: &Path) {
     assert_eq!(trained.status, Some(0), "{}", trained.stderr);
 }
 
+/// The recording of the page, read by the lines of Python that stand below it.
+fn reads_by_numpy(folder: &Path) {
+    if !super::python_has("numpy") {
+        return;
+    }
+    let mut programs = fences("python").into_iter();
+    let program = programs.find(|program| program.contains("numpy.load"));
+    let run = Command::new("python3")
+        .args(["-c", program.expect("it reads the recording")])
+        .current_dir(folder)
+        .output()
+        .expect("Python runs");
+    let said = String::from_utf8_lossy(&run.stdout);
+    assert!(run.status.success() && !said.contains("nan"), "{run:?}");
+}
+
 #[test]
 fn every_line_that_can_be_run_is_run() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -89,6 +105,7 @@ fn every_line_that_can_be_run_is_run() {
         }
         answered += 1;
     }
+    reads_by_numpy(folder);
     assert!(answered > 15, "{answered} lines");
     for file in ["mask.txt", "touch.npy", "touch.json"] {
         assert!(folder.join(file).exists(), "{file}");
