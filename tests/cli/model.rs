@@ -819,7 +819,8 @@ fn a_torn_first_line_is_answered_by_its_error_as_any_other() {
     );
     assert!(answers[1].starts_with("{\"answer\":"), "{}", answers[1]);
     // A stored shape goes on in its next line.
-    let shape = place.done("export washer - --format json");
+    place.done("library save mine washer");
+    let shape = String::from_utf8(place.read("library/mine.json")).expect("UTF-8");
     assert!(shape.starts_with("{\n"));
     let run = place.run("recognise - --model m.npz", &shape);
     assert_eq!(run.status, Some(0), "{}", run.stderr);

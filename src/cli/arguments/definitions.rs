@@ -151,10 +151,7 @@ fn export() -> Command {
 /// `--format`, for names whose ending does not show the form.
 fn format() -> Arg {
     let names = export::names();
-    let help = format!(
-        "Its form, if its ending does not show it: {}",
-        names.join(", ")
-    );
+    let help = format!("Its form, if not that of its ending: {}", names.join(", "));
     Arg::new("format")
         .long("format")
         .value_name("FORMAT")
@@ -192,13 +189,9 @@ fn sweep() -> Command {
         .value_parser(value_parser!(OsString));
     let sizes = parameters::figure_parameters()
         .filter(|&parameter| Axis::ALL.iter().all(|axis| axis.parameter() != parameter));
-    let poses = option(
-        "poses",
-        "FILE.npy",
-        "Write the number of each pose's imprint",
-    )
-    .value_parser(parse_npy)
-    .conflicts_with("shard");
+    let poses = option("poses", "FILE.npy", "Write which imprint each pose leaves")
+        .value_parser(parse_npy)
+        .conflicts_with("shard");
     Command::new("sweep")
         .about("Find every imprint that a shape can leave")
         .after_help(SWEEP_EXAMPLES)

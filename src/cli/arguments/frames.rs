@@ -239,7 +239,7 @@ pub(crate) fn rules() -> [Arg; 6] {
         value(
             "low",
             "A",
-            "Active at A or more, if joined to a taxel of HIGH",
+            "Active at A or more, if connected to one of B or more",
         )
         .requires("high")
         .conflicts_with_all(others("low")),

@@ -94,7 +94,7 @@ pub(crate) const BATCH_EXAMPLES: &str = r###"Each line is a JSON object:
   {"imprint":[".##.","#..#",".##."]}
 Sizes, place, angle and zooms have no defaults here, unlike the flags of other
 commands; a figure without "thickness" is solid. A picture's name is one of the
-library. A line may bring a sensor of its own:
+library. A figure or picture may bring a sensor of its own:
   "sensor":{"columns":32,"rows":32,"threshold":0.5}
 
 Each answer is one line, in the order of the poses. A line that is wrong or
@@ -111,7 +111,7 @@ pub(crate) const SCRIPT_EXAMPLES: &str = r#"One command a line; places are colum
   Size 80x24          Set ascii on        Set theme light   Set columns 8
   Set library "DIR"   Set shape {...}     Set leftover {}   Set mouse off
   Resize 100x30       Seed 7 (of random touches)
-  Keys f<Right><Tab>4.00<Enter>           <lt> for '<'; <3x:Down> thrice
+  Keys f<Right><Tab>4.00<Enter>           <lt> for '<'; <3x:Down> three times
   Type "text"         Paste "1.5"         Click 12,5   Click "Figure"
   Drag 3,4 9,9        Scroll 12,5 -3      Signal HUP   Wait   Quit
   Screen [name]       State [json-pointer]
@@ -143,7 +143,7 @@ taxel among your settings, or the file that --config or TAXEL_CONFIG names:
   "<C-n>" = "new"
 Flags override the environment, which overrides the file. A file with anything
 unknown in it is refused with line and column, and nothing is started. Scripts
-heed --config only, so that they are the same for everybody.
+ignore the settings unless --config is given: they do the same for everybody.
 
 Examples:
   taxel config
@@ -203,15 +203,15 @@ All shards together give the same atlas as one sweep of the whole grid, or the
 same model as one training. Each file says whether it is an atlas or a model.
 
 Examples:
-  taxel merge hexagon-*.npz --atlas hexagon.npz
-  taxel merge a.npz b.npz --atlas both.csv --json
+  taxel merge hexagon-*.npz --out hexagon.npz
+  taxel merge a.npz b.npz --out both.csv --json
   taxel merge part-*.npz --out parts.npz";
 
 /// `taxel model`: what a model is.
 pub(crate) const MODEL_EXAMPLES: &str = "\
 A model holds every imprint that some shapes can leave, and in how many poses
-each shape leaves it. So the best possible answer to one touch is counted, and
-the share of touches that it gets wrong is a limit that no method can pass.
+each shape leaves it. So the best answer to one touch can be found by counting,
+and no method gets a smaller share of the touches wrong.
 MODEL is the name of a model beside the library, or a file.
 
 Examples:

@@ -1,7 +1,7 @@
 //! Tables of the documents, from the program's own.
 
 use taxel::description::{DESCRIPTORS, Dimension};
-use taxel::parameter::PARAMETERS;
+use taxel::parameter::{PARAMETERS, Parameter};
 use taxel::sensor::Sensor;
 use taxel::tui::keys::action::Arguments;
 use taxel::tui::keys::binding::Context;
@@ -71,12 +71,16 @@ pub(crate) fn prompt() -> String {
 pub(crate) fn parameters() -> String {
     let row = |row: &taxel::parameter::ParameterRow| {
         let (flag, range) = (row.parameter.flag(), Sensor::default().range(row.parameter));
+        // What these two are set to where they are switched on: without the flag there is neither a hole nor a scale.
+        let default = match row.parameter {
+            Parameter::Thickness | Parameter::Pitch => "none".to_owned(),
+            _ => row.default.to_string(),
+        };
         format!(
-            "| `{}` | `--{flag}` | {} | {range} | {} | {} |\n",
+            "| `{}` | `--{flag}` | {} | {range} | {} | {default} |\n",
             row.key,
             row.meaning,
-            row.unit.symbol(),
-            row.default
+            row.unit.symbol()
         )
     };
     let rows: String = PARAMETERS.iter().map(row).collect();
