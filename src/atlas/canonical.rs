@@ -75,7 +75,7 @@ impl Classes {
     fn pack(&mut self, block: &Block, row: impl Fn(usize) -> u64) {
         self.key.fill(0);
         for index in 0..block.height {
-            let (word, shift) = self.layout.place(index);
+            let (word, shift) = self.layout.slot(index);
             self.key[word] |= row(index) << shift;
         }
     }

@@ -65,7 +65,7 @@ impl Histogram {
         for (value, count) in values.iter().zip(atlas.counts()) {
             let bin = value.and_then(|value| {
                 let last = histogram.poses.len().checked_sub(1)?;
-                Some(place(value - start, width).min(last))
+                Some(interval(value - start, width).min(last))
             });
             match bin {
                 Some(bin) => histogram.poses[bin] += count,
@@ -98,15 +98,15 @@ impl Histogram {
     clippy::cast_sign_loss,
     reason = "saturates"
 )]
-fn place(way: f64, width: f64) -> usize {
+fn interval(way: f64, width: f64) -> usize {
     (way / width + 1e-9).floor().max(0.0) as usize
 }
 
 /// The intervals of a direction: all around, from −180.
 fn around(most: usize) -> (f64, f64, usize) {
-    let fits = |width: &&f64| place(360.0, **width) <= most;
+    let fits = |width: &&f64| interval(360.0, **width) <= most;
     let width = ARCS.iter().find(fits).copied().unwrap_or(360.0);
-    (-180.0, width, place(360.0, width))
+    (-180.0, width, interval(360.0, width))
 }
 
 /// The intervals from a multiple of their width on, as narrow as `most` allows.
@@ -130,7 +130,7 @@ fn straight(low: f64, high: f64, least: f64, most: usize) -> (f64, f64, usize) {
                 step * 10_f64.powi(exponent)
             };
             let start = (low / width + 1e-9).floor() * width;
-            let bins = place(high - start, width) + 1;
+            let bins = interval(high - start, width) + 1;
             if width >= least && bins <= most {
                 return (start + 0.0, width, bins);
             }

@@ -57,7 +57,7 @@ impl Layout {
     }
 
     /// The word that holds a row, and by how much it is shifted there.
-    pub(crate) fn place(&self, row: usize) -> (usize, usize) {
+    pub(crate) fn slot(&self, row: usize) -> (usize, usize) {
         let bits = row << self.log_width;
         (bits / 64, bits % 64)
     }
@@ -72,7 +72,7 @@ impl Layout {
     pub(crate) fn imprint(&self, key: &[u64]) -> Imprint {
         let mut imprint = Imprint::empty(self.columns, self.rows);
         for row in 0..usize::from(self.rows) {
-            let (word, shift) = self.place(row);
+            let (word, shift) = self.slot(row);
             imprint.set_word(row, key[word] >> shift);
         }
         imprint
@@ -83,7 +83,7 @@ impl Layout {
         let mut key = vec![0; self.words()];
         let mut hash = 0;
         for (row, &bits) in imprint.words().iter().enumerate() {
-            let (word, shift) = self.place(row);
+            let (word, shift) = self.slot(row);
             key[word] |= bits << shift;
             hash ^= self.hash(row, bits);
         }
@@ -101,7 +101,7 @@ impl Layout {
         turned.fill(0);
         let mut hash = 0;
         for row in 0..usize::from(self.rows) {
-            let (word, shift) = self.place(row);
+            let (word, shift) = self.slot(row);
             let bits = key[word] >> shift & u64::MAX >> (u64::BITS - u32::from(self.columns));
             if bits == 0 {
                 continue;
@@ -115,7 +115,7 @@ impl Layout {
                 reversed.unbounded_shl(apart.unsigned_abs())
             };
             let image = from_first(down - 1).saturating_sub(row);
-            let (word, shift) = self.place(image);
+            let (word, shift) = self.slot(image);
             turned[word] |= bits << shift;
             hash ^= self.hash(image, bits);
         }

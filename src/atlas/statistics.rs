@@ -1,14 +1,14 @@
 //! Statistics of every feature over all poses that have one, and how much of the variance comes from the position.
 //!
 //! Mean, standard deviation (of the population) and coefficient of variation are weighted by how often each imprint
-//! occurs. The variance of a feature is the mean of its variances at a fixed turn (one angle, one pair of zooms), plus
+//! occurs. The variance of a feature is the mean of its variances at a fixed orientation (one angle, one pair of zooms), plus
 //! the variance of its means at these: **`sd_position`** is the root of the first part, **`sd_angle`** that of the
-//! second, each turn weighted by its poses that have a value (which usually are as many for all), so
+//! second, each orientation weighted by its poses that have a value (which usually are as many for all), so
 //! `sd² = sd_position² + sd_angle²`.
 //!
 //! **Directions** that go all around have a circular mean, that of the unit vectors; with `R` the length of the mean
 //! vector the deviation is `√(−2 ln R)` (K. V. Mardia, *Statistics of Directional Data*, 1972), in degrees. In place of
-//! the variances stand `R`'s logarithms: `sd_position` is made from the mean over the turns of their own `R`,
+//! the variances stand `R`'s logarithms: `sd_position` is made from the mean over the orientations of their own `R`,
 //! `sd_angle` from what `R` falls short of that, and the squares add up as above. A smallest and a largest direction do
 //! not exist, nor does a coefficient of variation.
 //!
@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use crate::atlas::feature::{Feature, features};
 use crate::atlas::sums::{Wide, mean, signed_mean};
-use crate::atlas::values::{NONE, Table, places};
+use crate::atlas::values::{NONE, Table, columns};
 use crate::atlas::variance::{Sum, VarianceParts};
 use crate::index::lower_word;
 
@@ -168,7 +168,7 @@ impl Total {
         );
         // No vector is longer than its parts together: a file may say otherwise, and rounding may.
         let own = x.hypot(y).min(1.0);
-        let turns = between.mean(poses).clamp(own, 1.0);
+        let within = between.mean(poses).clamp(own, 1.0);
         // Vectors that cancel up to the rounding of their parts point nowhere.
         if own < 1e-11 {
             return;
@@ -176,8 +176,8 @@ impl Total {
         let deviation = |length: f64| (-2.0 * length.ln()).max(0.0).sqrt().to_degrees();
         statistic.mean = Some(y.atan2(x).to_degrees() + 0.0);
         statistic.sd = Some(deviation(own));
-        statistic.sd_position = Some(deviation(turns));
-        statistic.sd_angle = Some(deviation(own / turns));
+        statistic.sd_position = Some(deviation(within));
+        statistic.sd_angle = Some(deviation(own / within));
     }
 }
 
@@ -185,18 +185,18 @@ impl Total {
 pub(crate) fn statistics(
     table: &Table,
     counts: &[u64],
-    spread: &VarianceParts,
+    variance_parts: &VarianceParts,
     ideal: impl Fn(&str) -> Option<f64>,
 ) -> Vec<Statistic> {
-    let places = places();
-    let nothing = || vec![NOTHING; places.len()];
+    let columns = columns();
+    let nothing = || vec![NOTHING; columns.len()];
     let totals = (0..counts.len())
         .into_par_iter()
         .with_min_len(1024)
         .fold(nothing, |mut totals, index| {
             let row = table.row(index);
-            for (total, &(place, circular)) in totals.iter_mut().zip(&places) {
-                total.add(&row[place..], circular, counts[index]);
+            for (total, &(column, circular)) in totals.iter_mut().zip(&columns) {
+                total.add(&row[column..], circular, counts[index]);
             }
             totals
         })
@@ -206,7 +206,7 @@ pub(crate) fn statistics(
                 .map(|(one, other)| one.merged(other))
                 .collect()
         });
-    let parts = totals.iter().zip(features()).zip(spread.closed());
+    let parts = totals.iter().zip(features()).zip(variance_parts.closed());
     parts
         .enumerate()
         .map(|(index, ((total, feature), between))| {

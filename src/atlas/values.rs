@@ -36,14 +36,14 @@ fn width(circular: bool) -> usize {
 }
 
 /// Where the values of each feature stand in a row, and whether it is circular.
-pub(crate) fn places() -> Vec<(usize, bool)> {
+pub(crate) fn columns() -> Vec<(usize, bool)> {
     let all = features().iter().map(|feature| feature.circular);
-    let places = all.scan(0, |next, circular| {
-        let place = *next;
+    let columns = all.scan(0, |next, circular| {
+        let column = *next;
         *next += width(circular);
-        Some((place, circular))
+        Some((column, circular))
     });
-    places.collect()
+    columns.collect()
 }
 
 impl Default for Table {
@@ -62,17 +62,17 @@ impl Default for Table {
 impl Table {
     /// Adds the values of the imprints that are not in it yet.
     pub(crate) fn extend(&mut self, summaries: &[ImprintSummary]) {
-        let (places, width) = (places(), self.width);
+        let (columns, width) = (columns(), self.width);
         let new = &summaries[self.imprints.min(summaries.len())..];
         let room = self.imprints.next_multiple_of(PART) - self.imprints;
         let (first, rest) = new.split_at(room.min(new.len()));
         if let Some(part) = self.parts.last_mut() {
-            note(first, &places, width, part, &mut self.extremes);
+            note(first, &columns, width, part, &mut self.extremes);
         }
         let parts = rest.par_chunks(PART).map(|summaries| {
             let mut part = Vec::with_capacity(width * PART);
-            let mut extremes = vec![NOTHING; places.len()];
-            note(summaries, &places, width, &mut part, &mut extremes);
+            let mut extremes = vec![NOTHING; columns.len()];
+            note(summaries, &columns, width, &mut part, &mut extremes);
             (part, extremes)
         });
         for (part, extremes) in parts.collect::<Vec<_>>() {
@@ -99,7 +99,7 @@ impl Table {
 /// Adds rows of the values of imprints.
 fn note(
     summaries: &[ImprintSummary],
-    places: &[(usize, bool)],
+    columns: &[(usize, bool)],
     width: usize,
     part: &mut Vec<i64>,
     extremes: &mut [(f64, f64)],
@@ -112,12 +112,12 @@ fn note(
         };
         let row = &mut part[start..];
         feature_values(description, |index, value| {
-            let (place, circular) = places[index];
+            let (column, circular) = columns[index];
             if circular {
                 let (sin, cos) = value.to_radians().sin_cos();
-                (row[place], row[place + 1]) = (signed(cos), signed(sin));
+                (row[column], row[column + 1]) = (signed(cos), signed(sin));
             } else {
-                row[place] = fixed(value);
+                row[column] = fixed(value);
             }
             let (low, high) = &mut extremes[index];
             (*low, *high) = (low.min(value), high.max(value));

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use crate::atlas::feature::features;
 use crate::atlas::sums::Wide;
-use crate::atlas::values::{NONE, Table, places};
+use crate::atlas::values::{NONE, Table, columns};
 use crate::index::{lower_word, wide};
 use crate::pose::MAX_VALUES;
 
@@ -67,12 +67,12 @@ impl OrientationSums {
     /// The sums over imprints, given with the number of poses of one orientation that leave each.
     pub(crate) fn of(table: &Table, times: u64, counted: impl Iterator<Item = (u32, u64)>) -> Self {
         let mut sums = vec![Sum::default(); features().len()];
-        let places = places();
+        let columns = columns();
         let mut poses = 0;
         for (id, count) in counted {
             let row = table.row(wide(id));
-            for (sum, &(place, circular)) in sums.iter_mut().zip(&places) {
-                sum.add(&row[place..], circular, count);
+            for (sum, &(column, circular)) in sums.iter_mut().zip(&columns) {
+                sum.add(&row[column..], circular, count);
             }
             poses += count;
         }
@@ -112,8 +112,8 @@ impl VarianceParts {
     }
 
     /// Adds a part of an orientation. All parts of it must have the same `times`.
-    pub(crate) fn add(&mut self, turn: u64, part: OrientationSums) {
-        let sums = match self.open.remove(&turn) {
+    pub(crate) fn add(&mut self, orientation: u64, part: OrientationSums) {
+        let sums = match self.open.remove(&orientation) {
             Some(mut sums) => {
                 sums.poses += part.poses;
                 for (sum, other) in sums.sums.iter_mut().zip(&part.sums) {
@@ -126,7 +126,7 @@ impl VarianceParts {
         if sums.poses >= self.full {
             close(&mut self.between, &sums);
         } else {
-            self.open.insert(turn, sums);
+            self.open.insert(orientation, sums);
         }
     }
 
@@ -135,8 +135,8 @@ impl VarianceParts {
         for (sum, other) in self.between.iter_mut().zip(other.between) {
             *sum += other;
         }
-        for (turn, sums) in other.open {
-            self.add(turn, sums);
+        for (orientation, sums) in other.open {
+            self.add(orientation, sums);
         }
     }
 
@@ -147,8 +147,8 @@ impl VarianceParts {
             [lower_word(bits), lower_word(bits >> 64)]
         };
         let mut words: Vec<u64> = self.between.iter().flat_map(|sum| sum.words()).collect();
-        for (&turn, sums) in &self.open {
-            words.extend([turn, sums.poses, sums.times]);
+        for (&orientation, sums) in &self.open {
+            words.extend([orientation, sums.poses, sums.times]);
             for sum in &sums.sums {
                 words.push(sum.poses);
                 words.extend(halves(sum.x));
@@ -164,11 +164,11 @@ impl VarianceParts {
         let (between, open) = words.split_at_checked(3 * count)?;
         let whole =
             |words: &[u64]| (u128::from(words[0]) | u128::from(words[1]) << 64).cast_signed();
-        let turns = open.chunks_exact(3 + 5 * count);
-        if !turns.remainder().is_empty() {
+        let orientations = open.chunks_exact(3 + 5 * count);
+        if !orientations.remainder().is_empty() {
             return None;
         }
-        let turn = |words: &[u64]| {
+        let orientation = |words: &[u64]| {
             let sum = |words: &[u64]| Sum {
                 poses: words[0],
                 x: whole(&words[1..3]),
@@ -185,7 +185,7 @@ impl VarianceParts {
         Some(Self {
             full,
             between: between.chunks_exact(3).map(wide).collect(),
-            open: turns.map(turn).collect::<Option<_>>()?,
+            open: orientations.map(orientation).collect::<Option<_>>()?,
         })
     }
 
@@ -199,8 +199,8 @@ impl VarianceParts {
     }
 }
 
-fn close(between: &mut [Wide], turn: &OrientationSums) {
-    let features = between.iter_mut().zip(&turn.sums).zip(features());
+fn close(between: &mut [Wide], orientation: &OrientationSums) {
+    let features = between.iter_mut().zip(&orientation.sums).zip(features());
     for ((between, sum), feature) in features {
         if sum.poses == 0 {
             continue;
@@ -210,6 +210,6 @@ fn close(between: &mut [Wide], turn: &OrientationSums) {
         } else {
             Wide::square_over(sum.total(), sum.poses)
         };
-        *between += part.times(turn.times);
+        *between += part.times(orientation.times);
     }
 }

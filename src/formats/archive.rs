@@ -86,12 +86,12 @@ pub fn write(result: &SweepResult, mut output: impl Write + Seek) -> Result<(), 
     for (feature, column) in features().iter().zip(feature_columns(&result.atlas)) {
         archive.add(&feature.key, Dtype::F64, &[count], &column)?;
     }
-    let length = parts.spread.len() as u64;
+    let length = parts.variance_words.len() as u64;
     archive.add(
         "spread",
         Dtype::U64,
         &[length],
-        &little_endian(&parts.spread),
+        &little_endian(&parts.variance_words),
     )?;
     archive.finish()
 }
@@ -175,7 +175,7 @@ pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
         rows: archive.words("rows")?,
         counts: archive.words("count")?,
         first_poses: archive.words("first_pose")?,
-        spread: archive.words("spread")?,
+        variance_words: archive.words("spread")?,
     };
     Ok(SweepResult::from_parts(grid, shard, &parts)?)
 }

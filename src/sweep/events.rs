@@ -63,7 +63,7 @@ impl<'a> Events<'a> {
 
     /// Taxels of a row that are active at the first step.
     pub(crate) fn start(&mut self, row: usize, taxels: u64) {
-        let (word, shift) = self.layout.place(row);
+        let (word, shift) = self.layout.slot(row);
         self.key[word] ^= taxels << shift;
         self.hash ^= self.layout.hash(row, taxels);
     }
@@ -71,7 +71,7 @@ impl<'a> Events<'a> {
     /// A taxel turns over at a step, 1 to the last.
     pub(crate) fn turn_over(&mut self, row: usize, column: usize, step: u32) {
         let step = wide(step);
-        let (word, shift) = self.layout.place(row);
+        let (word, shift) = self.layout.slot(row);
         let (bits, bit) = (&mut self.marked[step / 64], 1 << (step % 64));
         let before = if *bits & bit == 0 {
             NONE

@@ -11,7 +11,7 @@ use crate::index::index;
 use crate::pose::{Boundary, PoseGrid};
 use crate::touch::least;
 
-/// How many values of x0 and of y0 are kept as places.
+/// How many values of x0 and of y0 are kept as positions.
 const REMEMBERED: usize = 128;
 
 /// The shape of one orientation, ready for exact decisions.
@@ -24,7 +24,7 @@ pub(crate) struct Exact<'a> {
     /// Drawn when it is asked for first: in most orientations nothing is in doubt.
     boundary: Option<Boundary<Double>>,
     /// Where the anchor lies for the values of x0 and of y0 asked for last.
-    places: Box<[(Option<u64>, Double)]>,
+    positions: Box<[(Option<u64>, Double)]>,
     /// Adds up the area in one cell.
     cell: Overlap<Double>,
     /// The coverage that counts as the threshold.
@@ -37,7 +37,7 @@ impl<'a> Exact<'a> {
             grid,
             orientation,
             boundary: None,
-            places: vec![(None, Double::ZERO); 2 * REMEMBERED].into(),
+            positions: vec![(None, Double::ZERO); 2 * REMEMBERED].into(),
             cell: Overlap::new(1, 1),
             least: least(grid.sensor().threshold()),
         }
@@ -49,8 +49,8 @@ impl<'a> Exact<'a> {
     pub(crate) fn active(&mut self, column: usize, row: usize, x: u64, y: u64) -> bool {
         let whole = |index: usize| Double::from(index as f64);
         let by = Point::new(
-            self.place(x, false) - whole(column),
-            self.place(y, true) - whole(row),
+            self.position(x, false) - whole(column),
+            self.position(y, true) - whole(row),
         );
         let boundary = self
             .boundary
@@ -61,13 +61,13 @@ impl<'a> Exact<'a> {
     }
 
     /// Where the anchor lies at a value of x0, or of y0. Reading a decimal takes longer than looking it up.
-    fn place(&mut self, number: u64, down: bool) -> Double {
+    fn position(&mut self, number: u64, down: bool) -> Double {
         let slot = index(number) % REMEMBERED;
-        let (known, place) = &mut self.places[2 * slot + usize::from(down)];
+        let (known, position) = &mut self.positions[2 * slot + usize::from(down)];
         if *known != Some(number) {
             let offset = self.grid.offset::<Double>(self.orientation, number, number);
-            (*known, *place) = (Some(number), if down { offset.y } else { offset.x });
+            (*known, *position) = (Some(number), if down { offset.y } else { offset.x });
         }
-        *place
+        *position
     }
 }

@@ -26,7 +26,7 @@ fn floor(place: f64) -> i32 {
 }
 
 /// Turns the spans of one row of the sensor into events.
-pub(crate) struct Marker<'s, 'e, 'a> {
+pub(crate) struct FlipWriter<'s, 'e, 'a> {
     /// The values of x0.
     pub(crate) steps: Steps,
     /// The row of the sensor.
@@ -39,7 +39,7 @@ pub(crate) struct Marker<'s, 'e, 'a> {
     pub(crate) exact: &'s mut Exact<'a>,
 }
 
-impl Marker<'_, '_, '_> {
+impl FlipWriter<'_, '_, '_> {
     /// Marks all spans of a row of the sensor.
     pub(crate) fn spans(&mut self, spans: &Spans) {
         // Fast path only if span ends are known more precisely than the grid step.

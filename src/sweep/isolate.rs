@@ -28,7 +28,7 @@ pub(crate) struct Ring {
 }
 
 /// A place, and the coverage there minus the threshold.
-type Mark = (f64, f64);
+type Sample = (f64, f64);
 
 impl Ring {
     /// Notes the levels of the whole band.
@@ -65,7 +65,7 @@ impl Ring {
     }
 
     /// Notes the levels between two places.
-    fn isolate(&self, from: Mark, to: Mark, spans: &mut Spans) {
+    fn isolate(&self, from: Sample, to: Sample, spans: &mut Spans) {
         let (before, after) = (Level::of(from.1), Level::of(to.1));
         let (least, most) = self.slopes(from.0, to.0);
         let width = to.0 - from.0;
@@ -96,7 +96,7 @@ impl Ring {
     }
 
     /// Notes the levels between two places where the slope keeps its sign.
-    fn passage(&self, from: Mark, to: Mark, spans: &mut Spans) {
+    fn passage(&self, from: Sample, to: Sample, spans: &mut Spans) {
         let (before, after) = (Level::of(from.1), Level::of(to.1));
         spans.turn(from.0, before);
         if before == after {
@@ -122,7 +122,7 @@ impl Ring {
     }
 
     /// Where the excess reaches a height, by Newton's method kept inside of a bracket.
-    fn solve(&self, from: Mark, to: Mark, height: f64, precision: f64) -> f64 {
+    fn solve(&self, from: Sample, to: Sample, height: f64, precision: f64) -> f64 {
         let rising = to.1 > from.1;
         let (mut low, mut high) = (from.0, to.0);
         let share = (height - from.1) / (to.1 - from.1);

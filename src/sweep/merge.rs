@@ -38,7 +38,7 @@ struct Begun {
     /// The number of the last one.
     last: u32,
     atlas: Atlas,
-    spread: VarianceParts,
+    variance_parts: VarianceParts,
     poses: u64,
     partly_off: u64,
 }
@@ -51,7 +51,7 @@ impl Begun {
             of: first.shard.of(),
             last: 0,
             atlas: Atlas::new(sensor.columns(), sensor.rows()),
-            spread: VarianceParts::new(grid.row_length() * grid.rows_per_orientation()),
+            variance_parts: VarianceParts::new(grid.row_length() * grid.rows_per_orientation()),
             grid,
             poses: 0,
             partly_off: 0,
@@ -84,7 +84,7 @@ impl SweepMerge {
         let begun = self.0.get_or_insert_with(|| Begun::of(&result));
         begun.last = number;
         begun.atlas.add_all(&result.atlas);
-        begun.spread.merge(result.spread);
+        begun.variance_parts.merge(result.variance_parts);
         begun.poses += result.poses;
         begun.partly_off += result.partly_off;
         Ok(())
@@ -100,7 +100,7 @@ impl SweepMerge {
             of,
             last,
             atlas,
-            spread,
+            variance_parts,
             poses,
             partly_off,
         } = self.0.ok_or(MergeError::Nothing)?;
@@ -117,7 +117,7 @@ impl SweepMerge {
             poses,
             atlas,
             &table,
-            spread,
+            variance_parts,
         ))
     }
 }

@@ -43,7 +43,7 @@ pub struct SweepResult {
     pub atlas: Atlas,
     /// The statistics of each feature, in the order of [`crate::atlas::features`].
     pub statistics: Vec<Statistic>,
-    pub(crate) spread: VarianceParts,
+    pub(crate) variance_parts: VarianceParts,
 }
 
 impl SweepResult {
@@ -59,11 +59,11 @@ impl SweepResult {
         (poses, partly_off): (u64, u64),
         atlas: Atlas,
         table: &Table,
-        spread: VarianceParts,
+        variance_parts: VarianceParts,
     ) -> Self {
         let ideal = Ideal::of(grid.source());
         let counts: Vec<u64> = atlas.counts().collect();
-        let statistics = statistics(table, &counts, &spread, |key| ideal?.get(key));
+        let statistics = statistics(table, &counts, &variance_parts, |key| ideal?.get(key));
         Self {
             grid,
             shard,
@@ -71,7 +71,7 @@ impl SweepResult {
             partly_off,
             atlas,
             statistics,
-            spread,
+            variance_parts,
         }
     }
 
@@ -129,7 +129,7 @@ impl SweepResult {
         let mut parts = Parts {
             poses: self.poses,
             partly_off: self.partly_off,
-            spread: self.spread.words(),
+            variance_words: self.variance_parts.words(),
             ..Parts::default()
         };
         for entry in self.atlas.entries() {
@@ -187,8 +187,9 @@ impl SweepResult {
             counter.add(&key, hash, count, first);
             check(counter.len() > known, "an imprint that is there twice")?;
         }
-        let spread = VarianceParts::from_words(width * grid.rows_per_orientation(), &parts.spread)
-            .ok_or(PartsError(
+        let variance_parts =
+            VarianceParts::from_words(width * grid.rows_per_orientation(), &parts.variance_words)
+                .ok_or(PartsError(
                 "sums that contradict each other, or of another version",
             ))?;
         atlas.add(&counter, 1);
@@ -196,7 +197,7 @@ impl SweepResult {
         let mut table = Table::default();
         table.extend(atlas.summaries());
         let poses = (parts.poses, parts.partly_off);
-        Ok(Self::new(grid, shard, poses, atlas, &table, spread))
+        Ok(Self::new(grid, shard, poses, atlas, &table, variance_parts))
     }
 }
 
@@ -214,7 +215,7 @@ pub(crate) struct Parts {
     /// The number of the first pose of each.
     pub(crate) first_poses: Vec<u64>,
     /// Sums about the orientations, in a form that may change between versions.
-    pub(crate) spread: Vec<u64>,
+    pub(crate) variance_words: Vec<u64>,
 }
 
 /// The error for numbers that are not those of a result.
@@ -278,10 +279,10 @@ mod tests {
         let doubled = fault(&|parts| parts.rows.copy_within(..height, height));
         assert_eq!(doubled, Some("an imprint that is there twice"));
         let sums = Some("sums that contradict each other, or of another version");
-        assert_eq!(fault(&|parts| parts.spread.push(0)), sums);
+        assert_eq!(fault(&|parts| parts.variance_words.push(0)), sums);
         // An orientation of more poses than it has.
         let orientation = 3 + 5 * features().len();
-        let unsound = |parts: &mut Parts| parts.spread.extend(vec![u64::MAX; orientation]);
+        let unsound = |parts: &mut Parts| parts.variance_words.extend(vec![u64::MAX; orientation]);
         assert_eq!(fault(&unsound), sums);
     }
 

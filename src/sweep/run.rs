@@ -99,7 +99,7 @@ impl<'a> Sweep<'a> {
             grid,
             atlas: Atlas::new(sensor.columns(), sensor.rows()),
             table: Table::default(),
-            spread: VarianceParts::new(grid.row_length() * grid.rows_per_orientation()),
+            variance_parts: VarianceParts::new(grid.row_length() * grid.rows_per_orientation()),
             poses: 0,
             partly_off: 0,
             rows: self.rows.take(),
@@ -107,8 +107,15 @@ impl<'a> Sweep<'a> {
         let (layout, keep_runs) = (done.atlas.layout().clone(), done.rows.is_some());
         self.each_portion(&layout, keep_runs, |portion| done.add(portion));
         let poses = (done.poses, done.partly_off);
-        let (table, spread) = (&done.table, done.spread);
-        let mut result = SweepResult::new(grid.clone(), shard, poses, done.atlas, table, spread);
+        let (table, variance_parts) = (&done.table, done.variance_parts);
+        let mut result = SweepResult::new(
+            grid.clone(),
+            shard,
+            poses,
+            done.atlas,
+            table,
+            variance_parts,
+        );
         if !keep_runs {
             result.atlas.sort_by_first_pose();
         }
@@ -185,7 +192,7 @@ struct Done<'a, 'w> {
     grid: &'a PoseGrid,
     atlas: Atlas,
     table: Table,
-    spread: VarianceParts,
+    variance_parts: VarianceParts,
     poses: u64,
     partly_off: u64,
     rows: Option<&'w mut TakeRow<'w>>,
@@ -215,7 +222,7 @@ impl Done<'_, '_> {
             .collect();
         for ((found, ids), sums) in portion.iter().zip(&ids).zip(sums) {
             let times = found.orientations.len() as u64;
-            self.spread.add(found.orientations[0], sums);
+            self.variance_parts.add(found.orientations[0], sums);
             self.poses += (found.rows.end - found.rows.start) * width * times;
             self.partly_off += found.partly_off * times;
             if let Some(rows) = &mut self.rows {

@@ -15,7 +15,7 @@ use crate::pose::{Axis, Boundary, PoseGrid};
 use crate::sweep::ellipse::Elliptic;
 use crate::sweep::events::Events;
 use crate::sweep::exact::Exact;
-use crate::sweep::flips::{Marker, Steps};
+use crate::sweep::flips::{FlipWriter, Steps};
 use crate::sweep::plan::Task;
 use crate::sweep::point_symmetry::PointSymmetry;
 use crate::sweep::polygon::Polygonal;
@@ -184,7 +184,7 @@ impl<'a> Sweeper<'a> {
             }
             let spans = [&self.spans, &self.mirrored];
             for (group, spans) in self.groups.iter_mut().zip(spans) {
-                group.mark(self.steps, row, y, spans);
+                group.add_flips(self.steps, row, y, spans);
             }
         }
     }
@@ -295,11 +295,11 @@ impl<'a> Group<'a> {
     }
 
     /// Marks what happens in a row of the sensor.
-    fn mark(&mut self, steps: Steps, row: usize, y: u64, spans: &Spans) {
+    fn add_flips(&mut self, steps: Steps, row: usize, y: u64, spans: &Spans) {
         if !self.due {
             return;
         }
-        Marker {
+        FlipWriter {
             steps,
             row,
             y,

@@ -28,9 +28,9 @@ impl TimingSample {
         let middle = PoseIndex::new([0, 0, angles / 2, zooms_x / 2, zooms_y / 2]);
         let part = grid.part(middle, PoseIndex::new([width, height, 1, 1, 1]));
         let part = part.unwrap_or_else(|| grid.clone());
-        let turns = distinct_angles(grid) as f64 / angles as f64;
+        let distinct = distinct_angles(grid) as f64 / angles as f64;
         Self {
-            times: grid.poses() as f64 * turns / part.poses() as f64,
+            times: grid.poses() as f64 * distinct / part.poses() as f64,
             grid: part,
         }
     }

@@ -5,7 +5,7 @@
 //! falling passage are all there are. From one row to the next a passage moves smoothly: three former ones tell where
 //! to look, and one step of Newton's method usually ends there.
 //!
-//! **Certainty.** At a place the excess over the level is `e` and the slope `m`; within `e/m` and a little the slope
+//! **Certainty.** At a position the excess over the level is `e` and the slope `m`; within `e/m` and a little the slope
 //! cannot change by more than `c` ([`EllipseBand::change`]). Then the passage lies between `e/(m + c)` and `e/(m − c)`
 //! away. It is taken for known once that is narrower than [`NEAR`] asks for.
 
@@ -15,14 +15,14 @@ use crate::sweep::span::{NEAR, STEEP};
 /// Where a passage was in the last rows.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Track {
-    places: [f64; 3],
+    positions: [f64; 3],
     known: usize,
 }
 
 impl Track {
     /// Where to expect it next, by extrapolation; None for a new one.
     fn expected(&self) -> Option<f64> {
-        let [last, before, first] = self.places;
+        let [last, before, first] = self.positions;
         match self.known {
             0 => None,
             1 => Some(last),
@@ -31,8 +31,8 @@ impl Track {
         }
     }
 
-    pub(crate) fn note(&mut self, place: f64) {
-        self.places = [place, self.places[0], self.places[1]];
+    pub(crate) fn note(&mut self, position: f64) {
+        self.positions = [position, self.positions[0], self.positions[1]];
         self.known = (self.known + 1).min(3);
     }
 

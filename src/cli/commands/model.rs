@@ -76,12 +76,12 @@ pub(crate) fn train(
     }
     let memory = MemoryGuard::new(asked.memory, TOO_LITTLE_MEMORY);
     let progress = Progress::new(training.poses(), asked.quiet, charset);
-    let tell = |poses: u64| {
+    let report = |poses: u64| {
         progress.add(poses);
         !stopped.load(Ordering::Relaxed) && memory.allows()
     };
     let pool = threads::pool(asked.jobs)?;
-    let model = pool.install(|| training.progress(&tell).run());
+    let model = pool.install(|| training.progress(&report).run());
     progress.finish();
     let model = model.map_err(|error| match error {
         TrainingError::Stopped if memory.exceeded() => CliError::Memory(memory.message()),

@@ -66,7 +66,7 @@ pub(crate) fn degradation(
     let each = asked.touches * model.shapes().len() as u64;
     let all = each * values.len() as u64 * asked.dead.len() as u64;
     let progress = Progress::counting("touches", all, asked.quiet, charset);
-    let tell = |touches: u64| {
+    let report = |touches: u64| {
         progress.add(touches);
         !signals.stopped.load(Ordering::Relaxed)
     };
@@ -82,9 +82,11 @@ pub(crate) fn degradation(
                     &noise,
                     asked.touches,
                     asked.seed,
-                    &tell,
+                    &report,
                 ),
-                Some(given) => given.rate(model, &sensor, &noise, asked.touches, asked.seed, &tell),
+                Some(given) => {
+                    given.rate(model, &sensor, &noise, asked.touches, asked.seed, &report)
+                }
             };
             let rate = rate.ok_or_else(|| signals.failure())?;
             table.push(NoiseRow {
@@ -310,11 +312,11 @@ pub(crate) fn touches(
     let signals = Signals::heard().map_err(CliError::System)?;
     let all = asked.runs * model.shapes().len() as u64;
     let progress = Progress::counting("runs", all, asked.quiet, charset);
-    let tell = |runs: u64| {
+    let report = |runs: u64| {
         progress.add(runs);
         !signals.stopped.load(Ordering::Relaxed)
     };
-    let results = model.touches_until(asked.until, asked.runs, asked.seed, &tell);
+    let results = model.touches_until(asked.until, asked.runs, asked.seed, &report);
     let results = results.ok_or_else(|| signals.failure())?;
     progress.finish();
     let names = model.shapes().iter().map(|shape| shape.name.as_str());

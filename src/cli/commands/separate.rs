@@ -56,12 +56,12 @@ pub(crate) fn separate(
     let points = (asked.sizes.count() + more) * thresholds.len() as u64;
     let progress = Progress::new(separation.touches() * points, asked.quiet, charset);
     let memory = MemoryGuard::new(None, "take fewer shapes, smaller sizes or coarser steps");
-    let tell = |poses: u64| {
+    let report = |poses: u64| {
         progress.add(poses);
         !signals.stopped.load(Ordering::Relaxed) && memory.allows()
     };
     let pool = threads::pool(asked.jobs)?;
-    let curves = pool.install(|| curves(asked, &separation, &thresholds, &tell));
+    let curves = pool.install(|| curves(asked, &separation, &thresholds, &report));
     progress.finish();
     let curves = curves.map_err(|error| match error {
         TrainingError::Stopped if memory.exceeded() => CliError::Memory(memory.message()),
@@ -95,13 +95,13 @@ fn curves(
     asked: &SeparateArguments,
     separation: &Separation,
     thresholds: &[f64],
-    tell: &(dyn Fn(u64) -> bool + Sync),
+    report: &(dyn Fn(u64) -> bool + Sync),
 ) -> Result<Vec<SeparationCurve>, TrainingError> {
     let mut curves = Vec::with_capacity(thresholds.len());
     for &threshold in thresholds {
-        let points = separation.scan(asked.axis, &asked.sizes, threshold, tell)?;
+        let points = separation.scan(asked.axis, &asked.sizes, threshold, report)?;
         let smallest = match asked.wanted {
-            Some(error) => separation.smallest(asked.axis, &points, error, tell)?,
+            Some(error) => separation.smallest(asked.axis, &points, error, report)?,
             None => None,
         };
         curves.push(SeparationCurve {

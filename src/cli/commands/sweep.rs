@@ -130,7 +130,7 @@ pub(crate) fn sweep(
     let rows = shard.rows(grid.rows());
     let all = (rows.end - rows.start) * grid.row_length();
     let progress = Progress::new(all, wanted.quiet, charset);
-    let tell = |poses: u64| {
+    let report = |poses: u64| {
         progress.add(poses);
         !stopped.load(Ordering::Relaxed) && memory.allows()
     };
@@ -139,7 +139,7 @@ pub(crate) fn sweep(
             file.take(row, ids, stopped);
         }
     };
-    let mut sweep = Sweep::new(grid).shard(shard).progress(&tell);
+    let mut sweep = Sweep::new(grid).shard(shard).progress(&report);
     if wanted.poses.is_some() {
         sweep = sweep.rows(&mut take);
     }
