@@ -67,4 +67,4 @@ pub use sets::{GridSteps, GridStepsError, default_figures, equal_figures};
 #[cfg(feature = "tui")]
 pub(crate) use simulation::below;
 pub use simulation::{MOST_TOUCHES, RecognitionRate, TouchesUntil, random_taxels};
-pub use training::{Training, TrainingError};
+pub use training::{LEAST_SIDE, Training, TrainingError};

@@ -448,6 +448,15 @@ fn poses(ranges: &Ranges, shard: Shard) -> Option<u64> {
     poses.filter(|&poses| poses <= MAX_POSES)
 }
 
+/// A count as a number to compute with.
+#[expect(
+    clippy::cast_precision_loss,
+    reason = "neither a mean nor a probability has more digits"
+)]
+pub(super) fn float(count: u64) -> f64 {
+    count as f64
+}
+
 /// A part of a whole; 0 of nothing, as in a shard that has no pose.
 #[expect(clippy::cast_precision_loss, reason = "a share has no more digits")]
 pub(super) fn share(part: u128, whole: u128) -> f64 {

@@ -16,7 +16,7 @@
 
 use crate::imprint::Imprint;
 use crate::index::wide;
-use crate::recognition::model::Model;
+use crate::recognition::model::{Model, float};
 use crate::recognition::scan::{Observed, places};
 
 /// What a probability may change by leaving out far keys.
@@ -366,15 +366,6 @@ fn added(mut one: Vec<u64>, other: Vec<u64>) -> Vec<u64> {
         .zip(other)
         .for_each(|(sum, more)| *sum += more);
     one
-}
-
-/// A count as a number to compute with.
-#[expect(
-    clippy::cast_precision_loss,
-    reason = "a probability has no more digits"
-)]
-fn float(count: u64) -> f64 {
-    count as f64
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use crate::imprint::Imprint;
 use crate::pose::{Axis, PoseGrid, exact_period};
 use crate::recognition::key::ImprintKey;
-use crate::recognition::model::{Model, share};
+use crate::recognition::model::{Model, float};
 use crate::source::Source;
 use crate::sweep::Sweep;
 use crate::touch::Plane;
@@ -254,7 +254,7 @@ struct PoseMoments {
 impl PoseMoments {
     /// Adds neighbours on a row from one x to another: `count` of them, which count as `weight` poses.
     fn add(&mut self, weight: u64, (from, to): (f64, f64), count: u64, y: f64) {
-        let (poses, number) = (real(weight), real(count));
+        let (poses, number) = (float(weight), float(count));
         let middle = f64::midpoint(from, to);
         // The variance of equal steps between two ends.
         let own = if count > 1 {
@@ -272,15 +272,15 @@ impl PoseMoments {
     /// Adds an angle as a part of a full turn.
     fn turn(&mut self, weight: u64, part: f64) {
         let (sine, cosine) = (part * std::f64::consts::TAU).sin_cos();
-        self.cosine += real(weight) * cosine;
-        self.sine += real(weight) * sine;
+        self.cosine += float(weight) * cosine;
+        self.sine += float(weight) * sine;
     }
 
     fn finish(self, angles: Option<(f64, Vec<u64>)>) -> Option<PoseEstimate> {
         if self.poses == 0 {
             return None;
         }
-        let all = real(self.poses);
+        let all = float(self.poses);
         let position = self.position.map(|sum| sum / all);
         let standard_deviation = [0, 1].map(|axis| {
             let variance: f64 = self.squares[axis] / all - position[axis] * position[axis];
@@ -305,10 +305,6 @@ impl PoseMoments {
             angle,
         })
     }
-}
-
-fn real(count: u64) -> f64 {
-    share(count.into(), 1)
 }
 
 /// The fewest neighbours on a circle that hold 95 % of all: the first, and how many. The first of equals.

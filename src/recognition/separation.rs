@@ -10,12 +10,9 @@ use crate::parameter::number::to_decimals;
 use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, PoseGrid, smallest_sensor};
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::model::{Model, NamedShape, check_shapes, share};
-use crate::recognition::training::{Training, TrainingError};
+use crate::recognition::training::{LEAST_SIDE, Training, TrainingError};
 use crate::sensor::Sensor;
 use crate::source::Source;
-
-/// The smallest side of a sensor, as for training.
-const LEAST_SIDE: u8 = 16;
 
 /// Steps into which a search divides the distance between two values of a scan.
 const FINER: u8 = 10;

@@ -4,7 +4,7 @@ use crate::figure::{Figure, FigureKind};
 use crate::parameter::Parameter;
 use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, Ranges, smallest_sensor};
 use crate::recognition::model::NamedShape;
-use crate::recognition::training::{Training, TrainingError};
+use crate::recognition::training::{LEAST_SIDE, Training, TrainingError};
 use crate::sensor::Sensor;
 use crate::source::Source;
 
@@ -137,7 +137,7 @@ impl Training<'_> {
         let mut given = GivenRanges::default();
         given[Axis::Angle] = Some(steps.angles());
         let sources: Vec<&Source> = shapes.iter().map(|shape| &shape.source).collect();
-        let fit = smallest_sensor(sources, Anchor::Centre, &given, 16);
+        let fit = smallest_sensor(sources, Anchor::Centre, &given, LEAST_SIDE);
         let fit = fit.map_err(|error| TrainingError::Grid {
             name: "the set".to_owned(),
             error,

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::imprint::Imprint;
 use crate::recognition::key::ImprintKey;
-use crate::recognition::model::{Model, share};
+use crate::recognition::model::{Model, float, share};
 use crate::recognition::noise::Noise;
 use crate::recognition::scan::places;
 use crate::sensor::Sensor;
@@ -39,13 +39,13 @@ impl RecognitionRate {
     /// Returns the standard error of [`Self::accuracy`].
     pub fn standard_error(&self) -> f64 {
         let share = self.accuracy();
-        (share * (1.0 - share) / count(self.touches.max(1))).sqrt()
+        (share * (1.0 - share) / float(self.touches.max(1))).sqrt()
     }
 
     /// Returns the mean probability that the names were given: the accuracy, if the
     /// noise that the classifier was given is the real one.
     pub fn claimed(&self) -> f64 {
-        self.claimed / count(self.touches.max(1))
+        self.claimed / float(self.touches.max(1))
     }
 
     /// Returns the share of touches whose imprint the model holds.
@@ -86,13 +86,7 @@ pub(crate) fn below(random: &mut Pcg64, end: u64) -> u64 {
 
 /// A number from 0 to below 1, in steps of 2⁻⁵³.
 fn unit(random: &mut Pcg64) -> f64 {
-    count(random.next_u64() >> 11) / count(1 << 53)
-}
-
-/// A count as a number to compute with.
-#[expect(clippy::cast_precision_loss, reason = "a mean has no more digits")]
-fn count(count: u64) -> f64 {
-    count as f64
+    float(random.next_u64() >> 11) / float(1 << 53)
 }
 
 /// Returns that many different taxels of a sensor, drawn with a seed; all of them if there are no more.
@@ -300,7 +294,7 @@ impl Model {
             let mut own = counts.iter().peekable();
             for (index, logarithm) in logarithms.iter_mut().enumerate() {
                 match own.next_if(|count| usize::from(count.shape) == index) {
-                    Some(found) => *logarithm += count(found.poses).ln(),
+                    Some(found) => *logarithm += float(found.poses).ln(),
                     None => *logarithm = f64::NEG_INFINITY,
                 }
             }
@@ -353,10 +347,10 @@ fn summary(runs: u64, lengths: &[Option<(u32, bool)>]) -> TouchesUntil {
         .map(|(length, _)| f64::from(*length))
         .collect();
     let reached = own.len() as u64;
-    let mean = (reached > 0).then(|| own.iter().sum::<f64>() / count(reached));
+    let mean = (reached > 0).then(|| own.iter().sum::<f64>() / float(reached));
     let standard_error = mean.filter(|_| reached > 1).map(|mean| {
         let squares = own.iter().map(|length| (length - mean) * (length - mean));
-        (squares.sum::<f64>() / count(reached - 1) / count(reached)).sqrt()
+        (squares.sum::<f64>() / float(reached - 1) / float(reached)).sqrt()
     });
     TouchesUntil {
         mean,

@@ -13,6 +13,9 @@ use crate::recognition::model::{
 use crate::sensor::Sensor;
 use crate::sweep::{CountedImprints, Shard, Sweep};
 
+/// The smallest side of a sensor that is chosen for a training: that of the paper.
+pub const LEAST_SIDE: u8 = 16;
+
 /// A training to run: shapes, a sensor and the poses in which each shape touches it.
 ///
 /// It uses rayon's current thread pool; the model is the same for any number of threads.

@@ -34,16 +34,13 @@ use crate::formats::value::counted;
 use crate::formats::{Name, json};
 use crate::memory::MemoryGuard;
 use crate::pose::{Anchor, Axis, GivenRanges, GridError, Ranges, common_ranges, smallest_sensor};
-use crate::recognition::{Evaluation, Model, NamedShape, Training, TrainingError};
+use crate::recognition::{Evaluation, LEAST_SIDE, Model, NamedShape, Training, TrainingError};
 use crate::sensor::Sensor;
 use crate::storage::{
     ArchiveFileError, ModelCache, ModelFolder, UnfinishedFile, load_model, load_whole_model,
     model_hash, save_model,
 };
 use crate::tui::recognise::sets::{ModelChoice, unknown_set};
-
-/// The smallest side of a sensor that training chooses.
-const LEAST_SIDE: u8 = 16;
 
 /// Trains a model and writes it. Returns what is printed.
 /// The path is tried before the work begins. A signal stops the training and leaves no file.
