@@ -1,17 +1,13 @@
 //! Reads a source, whatever it is.
 
 use std::fs::File;
-use std::io::Read;
 use std::sync::atomic::AtomicBool;
 
 use crate::acquire::event::{AcquireError, AcquireOptions};
 use crate::acquire::source::FrameSource;
 use crate::acquire::stream::Consumer;
 use crate::acquire::{playback, stream};
-use crate::formats::recording::recognised;
-
-/// Bytes at the start of a file that decide whether it is a recording.
-const LOOKED_AT: u64 = 1 << 16;
+use crate::formats::recording::recognised_input;
 
 /// Reads a source until it ends, `stop` is set, or the consumer breaks off. A file that is a recording is played back,
 /// unless the form of a stream is given; any other file is read as it grows.
@@ -25,13 +21,12 @@ pub fn acquire(
     consumer: &mut Consumer<'_>,
 ) -> Result<(), AcquireError> {
     if let (FrameSource::File(path), None) = (source, options.format) {
-        let mut start = Vec::new();
-        let file = File::open(path).and_then(|file| file.take(LOOKED_AT).read_to_end(&mut start));
-        file.map_err(|error| AcquireError::Io {
+        let format = File::open(path).and_then(recognised_input);
+        let format = format.map_err(|error| AcquireError::Io {
             doing: "open it",
             error,
         })?;
-        if recognised(&start).is_some() {
+        if format.is_some() {
             return playback::run(path, options, stop, consumer);
         }
     }

@@ -14,6 +14,16 @@ pub enum Content {
     Shape(StoredShape),
 }
 
+impl Content {
+    /// The imprint, alone or that of the shape.
+    pub fn imprint(&self) -> &Imprint {
+        match self {
+            Self::Imprint(imprint) => imprint,
+            Self::Shape(shape) => &shape.imprint,
+        }
+    }
+}
+
 /// Why bytes are neither.
 #[derive(Debug, thiserror::Error)]
 pub enum ContentError {

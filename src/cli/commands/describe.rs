@@ -8,10 +8,7 @@ use crate::formats::Content;
 /// Returns the answer: one line of JSON, or the matrix and a table of its regions. For a stored shape the table is
 /// preceded by its name, what made it, and its sensor.
 pub(crate) fn content(content: &Content, form: Form, charset: Charset) -> String {
-    let imprint = match content {
-        Content::Imprint(imprint) => imprint,
-        Content::Shape(shape) => &shape.imprint,
-    };
+    let imprint = content.imprint();
     let Form::Table(pitch) = form else {
         return report::json(imprint);
     };

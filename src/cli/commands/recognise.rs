@@ -25,7 +25,6 @@ use crate::cli::input::shapes::{Located, Shelf};
 use crate::cli::output::answer::{AnswerJson, AnswerText};
 use crate::cli::output::charset::Charset;
 use crate::cli::output::pose::PoseReport;
-use crate::formats::Content;
 use crate::formats::framed::{FrameRows, RuleRecord};
 use crate::formats::json;
 use crate::formats::record::Text;
@@ -220,10 +219,7 @@ impl<'a> Recogniser<'a> {
 
 /// The imprint that an argument names.
 fn imprint_of(what: &OsStr, shelf: &Shelf) -> Result<Imprint, CliError> {
-    Ok(match shelf.find(what)? {
-        Content::Imprint(imprint) => imprint,
-        Content::Shape(shape) => shape.imprint,
-    })
+    Ok(*shelf.find(what)?.imprint())
 }
 
 /// What is to be recognised.
@@ -270,10 +266,8 @@ fn input(what: &OsStr, shelf: &Shelf) -> Result<Asked, CliError> {
     if is_line {
         return Ok(Asked::Lines(Box::new(whole)));
     }
-    match content::read_from(whole).map_err(refused)? {
-        Content::Imprint(imprint) => Ok(Asked::Imprint(imprint)),
-        Content::Shape(shape) => Ok(Asked::Imprint(shape.imprint)),
-    }
+    let content = content::read_from(whole).map_err(refused)?;
+    Ok(Asked::Imprint(*content.imprint()))
 }
 
 /// Reads a line, or as much of it as a line may have. Returns its length; 0 at the end.

@@ -10,9 +10,6 @@ use crate::formats::shape::MAX_BYTES;
 use crate::formats::{Content, ContentError, read_content};
 use crate::quote::legible;
 
-/// How many of the first bytes show whether a file is a recording.
-const LOOKED_AT: usize = 1 << 16;
-
 /// Where to read from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum InputSource {
@@ -79,7 +76,7 @@ fn may_be_recording(bytes: &[u8]) -> bool {
     if matches!(bytes, [b'P', b'1'..=b'6', ..]) {
         return false;
     }
-    match recognised(&bytes[..bytes.len().min(LOOKED_AT)]) {
+    match recognised(bytes) {
         Some(RecordingFormat::JsonLines) => bytes.windows(frame.len()).any(|word| word == frame),
         found => found.is_some(),
     }

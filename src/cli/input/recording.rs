@@ -8,15 +8,11 @@ use crate::acquire::description_beside;
 use crate::cli::error::CliError;
 use crate::cli::input::content;
 use crate::cli::input::content::InputError;
-use crate::formats::Content;
 use crate::formats::recording::{
     ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata, read,
-    recognised,
+    recognised_input,
 };
 use crate::imprint::Imprint;
-
-/// Bytes at the start that are enough to tell the form of a recording.
-const LOOKED_AT: u64 = 1 << 16;
 
 /// A recording that can be read again and again.
 #[derive(Debug)]
@@ -111,11 +107,8 @@ impl RecordingFile {
 
     /// Its form, as far as its beginning tells; also that of a damaged one.
     pub(crate) fn format(&mut self) -> Option<RecordingFormat> {
-        let mut start = Vec::new();
         self.file.seek(SeekFrom::Start(0)).ok()?;
-        let file = &mut self.file;
-        file.take(LOOKED_AT).read_to_end(&mut start).ok()?;
-        recognised(&start)
+        recognised_input(&mut self.file).ok()?
     }
 
     /// The message about a damage.
@@ -142,8 +135,7 @@ impl RecordingFile {
 pub(crate) fn dead_cells(path: &Path) -> Result<Imprint, CliError> {
     let opened = File::open(path).map_err(InputError::Read);
     match opened.and_then(content::read_from) {
-        Ok(Content::Imprint(imprint)) => Ok(imprint),
-        Ok(Content::Shape(shape)) => Ok(shape.imprint),
+        Ok(content) => Ok(*content.imprint()),
         Err(error) => Err(CliError::Input {
             name: path.to_string_lossy().into_owned(),
             error,

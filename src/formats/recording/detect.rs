@@ -4,7 +4,7 @@
 //! vendor writes, then ROS, then a table. A `.csv` of XSENSOR or Tekscan would pass for a table, and is therefore
 //! looked for before it.
 
-use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingFormat, Sink};
@@ -19,13 +19,14 @@ use crate::formats::recording::{
 const MCAP: &[u8] = b"\x89MCAP0\r\n";
 
 /// Bytes at the start of a file that decide the form.
-const LOOKED_AT: u64 = 1 << 16;
+const LOOKED_AT: usize = 1 << 16;
 
 /// Bytes read at a time.
 const CHUNK: usize = 1 << 16;
 
 /// The form of a recording, by its first 64 KiB; None of what is not a recording. A text of numbers counts as a table.
 pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
+    let start = &start[..start.len().min(LOOKED_AT)];
     let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
     let trimmed = text.trim_ascii_start();
     let has = |word: &[u8]| start.windows(word.len()).any(|window| window == word);
@@ -79,6 +80,16 @@ fn is_table(line: &[u8]) -> bool {
     is_text && has_mark && (has_digit || line.contains(&b',') || line.contains(&b';'))
 }
 
+/// The same, of what is read from its present place on.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn recognised_input(input: impl Read) -> io::Result<Option<RecordingFormat>> {
+    let mut start = Vec::new();
+    input.take(LOOKED_AT as u64).read_to_end(&mut start)?;
+    Ok(recognised(&start))
+}
+
 /// Reads a recording from its beginning to its end, and reports what is found to `sink`, which may break off.
 ///
 /// # Errors
@@ -89,11 +100,9 @@ pub fn read(
     options: ReadOptions,
     sink: &mut Sink<'_>,
 ) -> Result<RecordingFormat, RecordingError> {
-    let mut start = Vec::new();
     input.seek(SeekFrom::Start(0))?;
-    input.by_ref().take(LOOKED_AT).read_to_end(&mut start)?;
+    let format = recognised_input(&mut input)?.ok_or(RecordingError::Unknown)?;
     input.seek(SeekFrom::Start(0))?;
-    let format = recognised(&start).ok_or(RecordingError::Unknown)?;
     let mut input = BufReader::with_capacity(CHUNK, input);
     match format {
         RecordingFormat::Tekscan => tekscan::read(input, sink),

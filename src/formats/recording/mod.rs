@@ -75,6 +75,6 @@ mod description;
 pub use answer::{FrameAnswer, RuleOrigin, SetRule};
 pub use channel_choice::ChannelChoice;
 pub use description::{FrameMark, RecordingMetadata};
-pub use detect::{read, recognised};
+pub use detect::{read, recognised, recognised_input};
 pub use error::RecordingError;
 pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingFormat, RecordingNote};
