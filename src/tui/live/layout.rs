@@ -68,11 +68,9 @@ impl HeatGrid {
         };
         let (wide, high) = form.size();
         let columns = AxisWindow::new(columns, area.width / wide, near.0);
-        let mut rows = AxisWindow::new(rows, area.height * high, near.1);
-        if form == CellForm::Half {
-            // Which two share a character does not change while the window moves.
-            rows.first -= rows.first % 2;
-        }
+        // Which two share a character does not change while the window moves.
+        let step = if form == CellForm::Half { 2 } else { 1 };
+        let rows = AxisWindow::in_steps(rows, area.height.saturating_mul(high), near.1, step);
         Self {
             form,
             columns,
@@ -123,5 +121,24 @@ impl LivePanes {
             map: Rect { width, ..rest },
             panel: right_of(rest, rest.x + width + 2),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_row_of_an_odd_number_is_visible() {
+        let area = Rect::new(0, 0, 40, 22);
+        let visible = |near: u8| {
+            let rows = HeatGrid::of(area, (40, 63), false, (0, near)).rows;
+            (rows.first, rows.first + rows.count - 1)
+        };
+        assert_eq!(visible(62), (20, 62));
+        assert!((0..63).all(|near| {
+            let (first, last) = visible(near);
+            first % 2 == 0 && (first..=last).contains(&near)
+        }));
     }
 }

@@ -85,7 +85,7 @@ impl AxisWindow {
     }
 
     /// The same of a window that begins at a multiple of `step`.
-    fn in_steps(cells: u8, room: u16, cursor: u8, step: u8) -> Self {
+    pub(in crate::tui) fn in_steps(cells: u8, room: u16, cursor: u8, step: u8) -> Self {
         let count = taxels(room).min(cells);
         let whole_steps = |number: u8| number / step * step;
         let stride = whole_steps(count / 2).max(step);

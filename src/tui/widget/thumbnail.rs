@@ -27,10 +27,13 @@ pub fn draw(theme: &Theme, imprint: &Imprint, buffer: &mut Buffer, area: Rect) {
     let (mut left, mut top) = (0, 0);
     if let Some(bounds) = imprint.bounds() {
         let middle = |low: u8, high: u8| low + (high - low) / 2;
-        let from = |middle: u8, seen: u8, all: u8| middle.saturating_sub(seen / 2).min(all - seen);
-        left = from(middle(bounds.left, bounds.right), width, columns);
+        let from = |middle: u8, seen: u8, all: u8, step: u8| {
+            let last = (all - seen).next_multiple_of(step);
+            (middle.saturating_sub(seen / 2) / step * step).min(last)
+        };
+        left = from(middle(bounds.left, bounds.right), width, columns, 1);
         // Rows stay paired as they are in the whole.
-        top = from(middle(bounds.top, bounds.bottom), height, rows) / step * step;
+        top = from(middle(bounds.top, bounds.bottom), height, rows, step);
     }
     for (line, row) in (top..rows).step_by(step.into()).enumerate() {
         let half = |column: u8| {
@@ -40,5 +43,24 @@ pub fn draw(theme: &Theme, imprint: &Imprint, buffer: &mut Buffer, area: Rect) {
         let text: String = (left..left + width).map(half).collect();
         let place = write::row(area, line);
         write::line(buffer, place, theme, [(text.as_str(), Role::Chosen)]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_row_of_an_odd_number_is_drawn() {
+        let mut imprint = Imprint::empty(3, 63);
+        imprint.set(1, 62, true);
+        for (ascii, height) in [(false, 22), (true, 22)] {
+            let area = Rect::new(0, 0, 3, height);
+            let mut buffer = Buffer::empty(area);
+            draw(&Theme::plain(ascii), &imprint, &mut buffer, area);
+            let last = buffer.cell((1, height - 1)).map(|cell| cell.symbol().to_owned());
+            let sign = if ascii { "#" } else { "▀" };
+            assert_eq!(last.as_deref(), Some(sign), "ascii: {ascii}");
+        }
     }
 }
