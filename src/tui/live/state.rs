@@ -10,7 +10,7 @@ use crate::tui::live::history::FrameHistory;
 use crate::tui::live::marks::FrameMarks;
 use crate::tui::live::message::{FeedStatus, FrameBatch, ProvisionalChange, SourceState};
 use crate::tui::live::naming::{NamedImprint, Naming, NamingRequest};
-use crate::tui::live::range::ShadeRange;
+use crate::tui::live::range::{ShadeRange, stepped};
 use crate::tui::live::reading::{HeatLayer, LiveReading, hold, nine_digits, round_up};
 use crate::tui::live::request::WatchRequest;
 use crate::tui::recognise::sets::ModelChoice;
@@ -438,11 +438,11 @@ impl Live {
         let step = round_up(self.range.top() / 100.0) * by;
         let rule = match self.rule.map(|set| set.rule) {
             None => Rule::at_least(round_up(self.range.top() / 20.0)),
-            Some(Rule::Percent(percent)) => Rule::percent((percent + 5.0 * by).clamp(5.0, 100.0)),
+            Some(Rule::Percent(percent)) => Rule::percent(stepped(percent, 5.0 * by, (5.0, 100.0))),
             Some(Rule::Hysteresis { low, high }) => {
                 Rule::hysteresis(nine_digits(low + step), nine_digits(high + step))
             }
-            Some(Rule::Noise(deviations)) => Rule::noise((deviations + by).max(1.0)),
+            Some(Rule::Noise(deviations)) => Rule::noise(stepped(deviations, by, (1.0, 1000.0))),
             Some(Rule::AtLeast(threshold)) => Rule::at_least(nine_digits(threshold + step)),
         };
         self.choose(&rule);
