@@ -32,6 +32,22 @@ fn the_threshold_goes_up_and_down_and_changes_its_unit() {
 }
 
 #[test]
+fn the_unit_changes_by_the_values_that_the_threshold_goes_by() {
+    let threshold = |keys: &str| {
+        let screen = watched(6, keys).screen();
+        let line = screen.lines().find(|line| line.contains("threshold"));
+        let line = line.and_then(|line| line.split_once("threshold"));
+        line.expect("it is shown").1.trim().to_owned()
+    };
+    // Whichever values are shown: tared, raw ones, or the imprint.
+    let expected = threshold("t+%");
+    assert!(expected.ends_with("% of the peak"), "{expected}");
+    assert_eq!([threshold("t+v%"), threshold("t+vv%")], [&*expected; 2]);
+    let expected = threshold("t+%%");
+    assert_eq!([threshold("t+%v%"), threshold("t+%vv%")], [&*expected; 2]);
+}
+
+#[test]
 fn a_tare_is_taken_off_and_given_up() {
     shows(
         &watched(6, "t"),

@@ -40,7 +40,9 @@ pub struct LiveReading {
     pub sum: f64,
     /// The largest of the values that are shown, and its column and row; None without cells.
     pub max: Option<(f64, (u8, u8))>,
-    /// The least of them, at most 0.
+    /// The largest of the values that the threshold goes by, which are those after tare and gain; None without cells.
+    pub tared_max: Option<f64>,
+    /// The least of the values that are shown, at most 0.
     pub least: f64,
     /// The active taxels; None without a threshold.
     pub imprint: Option<Imprint>,
@@ -73,6 +75,7 @@ impl LiveReading {
         let empty = || Imprint::empty(values.columns(), values.rows());
         Ok(Self {
             max: largest(values),
+            tared_max: largest(processed.tared).map(|(largest, _)| largest),
             least: values.values().iter().copied().fold(0.0, f64::min),
             values: values.clone(),
             sum: processed.sum,

@@ -451,11 +451,13 @@ impl Live {
     /// A threshold in percent in place of one in the sensor's unit, or the other way round: one that gives about the same
     /// imprint of the frame that is shown.
     pub fn switch_unit(&mut self) {
-        let largest = self.reading.as_ref().and_then(|reading| reading.max);
-        let largest = largest.map_or(self.range.top(), |(largest, _)| largest);
+        // Rules go by the tared values, whichever are shown.
+        let largest = self.reading.as_ref().and_then(|reading| reading.tared_max);
+        let largest = largest.filter(|&largest| largest > 0.0);
+        let largest = largest.unwrap_or(self.range.top());
         let rule = match self.rule.map(|set| set.rule) {
             Some(Rule::Percent(percent)) => Rule::at_least(nine_digits(percent / 100.0 * largest)),
-            Some(Rule::AtLeast(threshold)) if largest > 0.0 => {
+            Some(Rule::AtLeast(threshold)) => {
                 Rule::percent((100.0 * threshold / largest).round().clamp(1.0, 100.0))
             }
             _ => Rule::percent(50.0),
