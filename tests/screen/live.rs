@@ -188,6 +188,20 @@ fn marks_and_the_age_of_the_tare_end_with_the_source_that_they_belong_to() {
 }
 
 #[test]
+fn frames_of_an_earlier_watch_have_none_of_the_present_marks() {
+    let mut page = watched(2, "<Esc>w");
+    page.frames(1);
+    then(&mut page, "m", &["frame 0: marked", "marked     frame 0"]);
+    // The frame 0 of before, behind the frame 1 of before.
+    then(&mut page, "<Left><Left>", &["frame 0", "2 frames behind"]);
+    hides(&page, &["behind  marked", "marked  frozen"]);
+    let refused = "! frame 0 came before the source was watched again";
+    then(&mut page, "m", &[refused, "marked     frame 0"]);
+    then(&mut page, "<End>", &["frame 0", "marked     frame 0"]);
+    then(&mut page, "m", &["frame 0: no mark any more"]);
+}
+
+#[test]
 fn a_tare_of_the_users_own_stays_where_the_page_is_opened_again() {
     let mut page = watched(6, "tp");
     shows(&page, &["tare       6 frames", "peak held"]);

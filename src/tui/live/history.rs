@@ -59,6 +59,11 @@ impl FrameHistory {
         (length > 0).then(|| self.first + length - 1)
     }
 
+    /// The number that the next frame will have.
+    pub fn next_number(&self) -> u64 {
+        self.first + self.frames.len() as u64
+    }
+
     /// The number of the oldest frame that is still here; None before the first one.
     pub fn oldest(&self) -> Option<u64> {
         (!self.frames.is_empty()).then_some(self.first)

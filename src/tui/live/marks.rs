@@ -1,4 +1,7 @@
 //! Frames that were marked, by a key or in the recording itself.
+//!
+//! A key marks one frame of the history, by its number there: the source's own numbers begin at 0 again where it is watched
+//! anew, or where a recording is played in a loop.
 
 use crate::formats::recording::FrameMark;
 use crate::frame::Frame;
@@ -6,16 +9,16 @@ use crate::frame::Frame;
 /// The marks of a source.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FrameMarks {
-    /// Those that a key has set, in the order of their numbers.
-    own: Vec<FrameMark>,
+    /// Those that a key has set, each with the frame's number in the history, in the order of these.
+    own: Vec<(u64, FrameMark)>,
     /// Those that the recording itself has, by the labels of frames.
     recorded: Vec<FrameMark>,
 }
 
 impl FrameMarks {
-    /// Those that a key has set, in the order of their numbers.
-    pub(super) fn own(&self) -> &[FrameMark] {
-        &self.own
+    /// Those that a key has set, in the order in which their frames came.
+    pub(super) fn own(&self) -> Vec<FrameMark> {
+        self.own.iter().map(|(_, mark)| *mark).collect()
     }
 
     /// Takes those of the recording.
@@ -23,31 +26,40 @@ impl FrameMarks {
         self.recorded = recorded.to_vec();
     }
 
-    /// Whether a frame is marked.
-    pub(super) fn has(&self, frame: &Frame) -> bool {
+    /// Whether the frame of a number in the history is marked.
+    pub(super) fn has(&self, number: u64, frame: &Frame) -> bool {
         let label = frame.label.and_then(|label| u64::try_from(label).ok());
-        let is = |marks: &[FrameMark], number: u64| marks.iter().any(|mark| mark.number == number);
-        is(&self.own, frame.number) || label.is_some_and(|label| is(&self.recorded, label))
+        let is_recorded = |label: u64| self.recorded.iter().any(|mark| mark.number == label);
+        self.index(number).is_ok() || label.is_some_and(is_recorded)
     }
 
-    /// Marks a frame, or takes its mark off. Returns whether it is marked now.
-    pub(super) fn switch(&mut self, frame: &Frame) -> bool {
-        let (number, time) = (frame.number, frame.time);
-        let index = self.own.binary_search_by_key(&number, |mark| mark.number);
+    /// Marks the frame of a number in the history, or takes its mark off. Returns whether it is marked now.
+    pub(super) fn switch(&mut self, number: u64, frame: &Frame) -> bool {
+        let mark = FrameMark {
+            number: frame.number,
+            time: frame.time,
+        };
+        let index = self.index(number);
         match index {
             Ok(index) => drop(self.own.remove(index)),
-            Err(index) => self.own.insert(index, FrameMark { number, time }),
+            Err(index) => self.own.insert(index, (number, mark)),
         }
         index.is_err()
     }
 
-    /// Takes the mark that a key has set off the frame of a number.
-    pub(super) fn take_off(&mut self, number: u64) {
-        self.own.retain(|mark| mark.number != number);
+    /// Takes the mark that a key has set off the frame of a number in the history. Returns whether it had one.
+    pub(super) fn take_off(&mut self, number: u64) -> bool {
+        let index = self.index(number);
+        index.is_ok_and(|index| self.own.remove(index).0 == number)
     }
 
     /// Gives up those that a key has set.
     pub(super) fn clear(&mut self) {
         self.own.clear();
+    }
+
+    /// Where the mark of a number in the history is, or would be.
+    fn index(&self, number: u64) -> Result<usize, usize> {
+        self.own.binary_search_by_key(&number, |own| own.0)
     }
 }

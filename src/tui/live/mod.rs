@@ -7,6 +7,7 @@
 //! naming     what a model says of the imprint
 //! reading    what is read off one frame: values, imprint, descriptors
 //! marks      frames that were marked
+//! refusal    why something cannot be done with the frame that is shown
 //! range      between which values shades are spread
 //! state      which frame is shown and how
 //! layout     where taxels and numbers stand
@@ -26,6 +27,8 @@ pub mod naming;
 pub mod reading;
 
 mod marks;
+
+pub mod refusal;
 
 mod range;
 

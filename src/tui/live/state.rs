@@ -12,6 +12,7 @@ use crate::tui::live::message::{FeedStatus, FrameBatch, ProvisionalChange, Sourc
 use crate::tui::live::naming::{NamedImprint, Naming, NamingRequest};
 use crate::tui::live::range::{ShadeRange, stepped};
 use crate::tui::live::reading::{HeatLayer, LiveReading, hold, nine_digits, round_up};
+use crate::tui::live::refusal::LiveRefusal;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::recognise::sets::ModelChoice;
 
@@ -41,6 +42,8 @@ pub struct Live {
     /// The threshold, and whether the file, an option or a key set it.
     rule: Option<SetRule>,
     history: FrameHistory,
+    /// The number in the history of the first frame since the source was watched again; 0 where it was not.
+    watched_from: u64,
     /// The number in the history of the frame that is shown; None follows the source.
     frozen: Option<u64>,
     provisional: Option<Arc<Frame>>,
@@ -83,6 +86,7 @@ impl Live {
             processing: request.processing.clone(),
             rule: None,
             history: FrameHistory::new(request.history_bytes),
+            watched_from: 0,
             frozen: None,
             provisional: None,
             status: FeedStatus::default(),
@@ -190,22 +194,28 @@ impl Live {
         self.not_recorded.as_deref()
     }
 
-    /// The frames that were marked, in the order of their numbers.
-    pub fn marks(&self) -> &[FrameMark] {
+    /// The frames that were marked since the source is watched, in the order in which they came.
+    pub fn marks(&self) -> Vec<FrameMark> {
         self.marks.own()
     }
 
     /// Whether the frame that is shown is marked.
     pub fn is_marked(&self) -> bool {
-        let reading = self.reading.as_ref();
-        reading.is_some_and(|reading| self.marks.has(&reading.frame))
+        let shown = self.shown();
+        shown.is_some_and(|(number, frame)| self.marks.has(number, &frame))
     }
 
-    /// Marks the frame that is shown, or takes its mark off. Returns its number and whether it is marked now; None before
-    /// the first frame.
-    pub fn mark(&mut self) -> Option<(u64, bool)> {
-        let frame = &self.reading.as_ref()?.frame;
-        Some((frame.number, self.marks.switch(frame)))
+    /// Marks the frame that is shown, or takes its mark off. Returns its number and whether it is marked now.
+    ///
+    /// # Errors
+    /// Before the first frame, and for a frame that came before the source was watched again: marks are those of one
+    /// recording, in which that frame is not.
+    pub fn mark(&mut self) -> Result<(u64, bool), LiveRefusal> {
+        let (number, frame) = self.shown().ok_or(LiveRefusal::NoFrame)?;
+        if number < self.watched_from {
+            return Err(LiveRefusal::EarlierWatch(frame.number));
+        }
+        Ok((frame.number, self.marks.switch(number, &frame)))
     }
 
     /// The model that names imprints, and its last answer; None without one.
@@ -297,6 +307,7 @@ impl Live {
         if !had_channel && let Some(channel) = self.status.channel.clone() {
             self.take_channel(&channel);
         }
+        let next_number = self.history.next_number();
         for frame in &batch.frames {
             self.add(frame);
         }
@@ -306,10 +317,13 @@ impl Live {
         }
         let before = self.provisional.take();
         if let (ProvisionalChange::Gone, Some(gone)) = (&batch.provisional, &before)
-            && self.history.newest() < Some(gone.number)
+            && self
+                .history
+                .get(next_number)
+                .is_none_or(|frame| frame.number != gone.number)
         {
             // Withdrawn: another frame will have its number.
-            self.marks.take_off(gone.number);
+            self.marks.take_off(next_number);
         }
         let (provisional, is_changed) = match &batch.provisional {
             ProvisionalChange::Unchanged => (before, false),
@@ -500,7 +514,7 @@ impl Live {
     pub fn hold_peak(&mut self) -> bool {
         self.held = match self.held {
             Some(_) => None,
-            None => self.shown(),
+            None => self.shown().map(|(_, frame)| frame),
         };
         self.read();
         self.held.is_some()
@@ -546,10 +560,11 @@ impl Live {
         self.recording = None;
     }
 
-    /// Takes frames again, those of a piece of work of this number; history, threshold and tare stay. The frames are
-    /// counted from 0 again, so what goes by their numbers is given up: marks, the held peak, the age of the tare.
+    /// Takes frames again, those of a piece of work of this number; history, threshold and tare stay. The source counts
+    /// them from 0 again, so what goes by its numbers is given up: marks, the held peak, the age of the tare.
     pub fn restart(&mut self, number: u64) {
         self.number = number;
+        self.watched_from = self.history.next_number();
         self.stopped = false;
         self.frozen = None;
         self.provisional = None;
@@ -566,22 +581,28 @@ impl Live {
         self.name_by(choice, number);
     }
 
-    /// The frame that is shown, before anything is done with it.
-    fn shown(&self) -> Option<Arc<Frame>> {
-        let newest = || self.provisional.as_ref().filter(|_| self.frozen.is_none());
-        let number = self.frozen.or(self.history.newest());
-        let frame = newest().or_else(|| self.history.get(number?));
-        // One that has left the history stays as long as it is looked at; but not one that was withdrawn.
-        let reading = self.reading.as_ref().filter(|_| self.frozen.is_some());
-        let kept = || reading.map(|reading| &reading.frame);
-        frame.or_else(kept).cloned()
+    /// The frame that is shown, before anything is done with it, and its number in the history: of one that is not
+    /// confirmed yet the number that it will have.
+    fn shown(&self) -> Option<(u64, Arc<Frame>)> {
+        let Some(number) = self.frozen else {
+            // A held peak is that of confirmed frames.
+            if let (Some(frame), None) = (&self.provisional, &self.held) {
+                return Some((self.history.next_number(), Arc::clone(frame)));
+            }
+            let number = self.history.newest()?;
+            return Some((number, Arc::clone(self.history.get(number)?)));
+        };
+        // One that has left the history stays as long as it is looked at.
+        let looked_at = || self.reading.as_ref().map(|reading| &reading.frame);
+        let frame = self.history.get(number).or_else(looked_at)?;
+        Some((number, Arc::clone(frame)))
     }
 
     /// Reads the frame that is shown anew.
     fn read(&mut self) {
         let shown = match &self.held {
             Some(held) if self.frozen.is_none() => Some(Arc::clone(held)),
-            _ => self.shown(),
+            _ => self.shown().map(|(_, frame)| frame),
         };
         let Some(frame) = shown else {
             self.reading = None;

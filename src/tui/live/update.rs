@@ -218,14 +218,17 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
 
 /// Marks the frame that is shown, in the description of a recording, too.
 fn mark(app: &mut App, page: &mut Live) -> Option<Effect> {
-    let Some((number, marked)) = page.mark() else {
-        refuse(app, "no frame yet");
-        return None;
+    let (number, marked) = match page.mark() {
+        Ok(marked) => marked,
+        Err(refused) => {
+            refuse(app, refused.to_string());
+            return None;
+        }
     };
     let text = if marked { "marked" } else { "no mark any more" };
     inform(app, format!("frame {number}: {text}"));
     page.recording()?;
-    Some(Effect::Work(Work::Mark(page.marks().to_vec())))
+    Some(Effect::Work(Work::Mark(page.marks())))
 }
 
 /// Asks for the name of the imprint that is shown.
@@ -251,7 +254,7 @@ fn record(page: &mut Live) -> Effect {
         rule: page.rule(),
         tare: page.tare_values().cloned(),
         seconds_per_frame: channel.and_then(|channel| channel.seconds_per_frame),
-        marks: page.marks().to_vec(),
+        marks: page.marks(),
         ended: None,
         ended_by: None,
     };

@@ -202,12 +202,9 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap) -> Vec<PanelLine> {
     say("rate", rate.unwrap_or_else(|| theme.none().to_owned()));
     say("lost", lost(live));
     say("skipped", grouped(live.not_drawn()));
-    if !live.marks().is_empty() {
-        let numbers = live
-            .marks()
-            .iter()
-            .rev()
-            .map(|mark| mark.number.to_string());
+    let marks = live.marks();
+    if !marks.is_empty() {
+        let numbers = marks.iter().rev().map(|mark| mark.number.to_string());
         let numbers: Vec<String> = numbers.take(20).collect();
         say("marked", format!("frame {}", numbers.join(", ")));
     }

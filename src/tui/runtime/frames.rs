@@ -518,13 +518,13 @@ mod tests {
         frame.number = 1;
         let shown = after(&mut page, &feed, AcquireEvent::Provisional(&frame));
         assert_eq!(shown, Some(1));
-        assert_eq!(page.mark(), Some((1, true)));
+        assert_eq!(page.mark(), Ok((1, true)));
         let shown = after(&mut page, &feed, AcquireEvent::Withdrawn);
         assert_eq!(shown, Some(0));
         assert!(page.marks().is_empty(), "the frame is gone, so its mark is");
         // The mark of one that is confirmed remains.
         after(&mut page, &feed, AcquireEvent::Provisional(&frame));
-        assert_eq!(page.mark(), Some((1, true)));
+        assert_eq!(page.mark(), Ok((1, true)));
         let whole = AcquireEvent::Frame {
             frame: &frame,
             time,

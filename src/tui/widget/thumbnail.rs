@@ -58,7 +58,9 @@ mod tests {
             let area = Rect::new(0, 0, 3, height);
             let mut buffer = Buffer::empty(area);
             draw(&Theme::plain(ascii), &imprint, &mut buffer, area);
-            let last = buffer.cell((1, height - 1)).map(|cell| cell.symbol().to_owned());
+            let last = buffer
+                .cell((1, height - 1))
+                .map(|cell| cell.symbol().to_owned());
             let sign = if ascii { "#" } else { "▀" };
             assert_eq!(last.as_deref(), Some(sign), "ascii: {ascii}");
         }
