@@ -315,25 +315,31 @@ impl Live {
             let unseen = batch.frames.len().saturating_sub(1);
             self.not_drawn += unseen as u64;
         }
-        let before = self.provisional.take();
-        if let (ProvisionalChange::Gone, Some(gone)) = (&batch.provisional, &before)
-            && self
-                .history
-                .get(next_number)
-                .is_none_or(|frame| frame.number != gone.number)
-        {
-            // Withdrawn: another frame will have its number.
-            self.marks.take_off(next_number);
-        }
-        let (provisional, is_changed) = match &batch.provisional {
-            ProvisionalChange::Unchanged => (before, false),
-            ProvisionalChange::Shown(frame) => (Some(Arc::clone(frame)), true),
-            ProvisionalChange::Gone => (None, before.is_some()),
-        };
-        self.provisional = provisional;
+        let is_changed = self.take_provisional(&batch.provisional, next_number);
         if !batch.frames.is_empty() || is_changed {
             self.read();
         }
+    }
+
+    /// Takes what has become of a frame that is not confirmed yet, whose number in the history is or was to be this one.
+    /// Returns whether another frame, or none, is in its place.
+    fn take_provisional(&mut self, change: &ProvisionalChange, number: u64) -> bool {
+        let next = match change {
+            ProvisionalChange::Unchanged => return false,
+            ProvisionalChange::Shown(frame) => Some(Arc::clone(frame)),
+            ProvisionalChange::Gone => None,
+        };
+        let before = std::mem::replace(&mut self.provisional, next);
+        // One that has left the history again was confirmed or not: nobody knows.
+        let has_left = self.history.oldest() > Some(number);
+        if let Some(before) = before.as_ref().filter(|_| !has_left) {
+            let present = self.history.get(number).or(self.provisional.as_ref());
+            if !present.is_some_and(|present| is_same(present, before)) {
+                // Withdrawn: another frame has its number, or will have it.
+                self.marks.take_off(number);
+            }
+        }
+        before.is_some() || self.provisional.is_some()
     }
 
     /// Takes what a recording says of its channel: threshold, tare and marks.
@@ -620,4 +626,10 @@ impl Live {
             }
         }
     }
+}
+
+/// Whether two frames are one: a frame that is confirmed has the values that it was shown with before.
+fn is_same(one: &Frame, other: &Frame) -> bool {
+    let bits = |frame: &Frame| frame.values().iter().map(|value| value.to_bits());
+    one.number == other.number && bits(one).eq(bits(other))
 }

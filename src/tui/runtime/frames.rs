@@ -534,6 +534,27 @@ mod tests {
     }
 
     #[test]
+    fn a_mark_does_not_pass_to_the_frame_that_comes_in_place_of_a_withdrawn_one() {
+        let feed = FrameFeed::default();
+        let request = WatchRequest::new("none");
+        let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
+        let [first, mut second] = [Frame::new(2, 2), Frame::new(2, 2)];
+        second.values_mut()[0] = 9.0;
+        let whole = AcquireEvent::Frame {
+            frame: &second,
+            time: None,
+        };
+        for event in [AcquireEvent::Provisional(&second), whole] {
+            after(&mut page, &feed, AcquireEvent::Provisional(&first));
+            assert_eq!(page.mark(), Ok((0, true)));
+            // Both before the page takes anything.
+            feed.take_in(AcquireEvent::Withdrawn, &request);
+            assert_eq!(after(&mut page, &feed, event), Some(0));
+            assert!(!page.is_marked() && page.marks().is_empty());
+        }
+    }
+
+    #[test]
     fn frames_of_other_channels_are_not_shown_before_the_one_that_is_asked_for() {
         let mut request = WatchRequest::new("none");
         request.options.channel = Some("right".to_owned());
