@@ -1,5 +1,13 @@
 //! What the keys of the live page do, on a recording with a clock that stands still.
 
+use std::sync::Arc;
+
+use taxel::formats::recording::{RuleOrigin, SetRule};
+use taxel::frame::Rule;
+use taxel::matrix::Matrix;
+use taxel::tui::app::message::Message;
+use taxel::tui::live::message::LiveMessage;
+use taxel::tui::live::request::WatchRequest;
 use taxel::tui::script::Session;
 
 use crate::session::{hides, session, shows, sized, then};
@@ -10,6 +18,26 @@ fn watched(frames: usize, keys: &str) -> Session {
     session.frames(frames);
     then(&mut session, keys, &[]);
     session
+}
+
+/// The page with settings of the command line, before the first frame.
+fn set(change: impl FnOnce(&mut WatchRequest)) -> Session {
+    let mut request = WatchRequest::new("tests/scripts/touch.csv");
+    change(&mut request);
+    let mut session = session("");
+    session.send(Message::Live(LiveMessage::Watch(Arc::new(request))));
+    session
+}
+
+/// A threshold by noise, with a tare of the first frames.
+fn by_noise(request: &mut WatchRequest, tare: u64) {
+    let rule = Rule::noise(4.0).expect("in range");
+    request.rule = Some(SetRule {
+        rule,
+        least: 0,
+        from: RuleOrigin::Flag,
+    });
+    request.tare = tare;
 }
 
 #[test]
@@ -56,6 +84,102 @@ fn a_tare_is_taken_off_and_given_up() {
     shows(&watched(6, "tT"), &["tare       none"]);
     shows(&watched(6, "T"), &["there is no tare"]);
     shows(&watched(0, "t"), &["! no frame yet"]);
+}
+
+#[test]
+fn a_tare_that_is_being_made_says_how_far_it_is() {
+    let mut page = set(|request| request.tare = 4);
+    shows(&page, &["tare: 0 of 4 frames"]);
+    page.frames(3);
+    shows(
+        &page,
+        &[
+            "frame 2",
+            "raw  tare: 3 of 4 frames",
+            "tare       3 of 4 frames",
+        ],
+    );
+    page.frames(1);
+    shows(&page, &["frame 3", "tared", "tare       4 frames"]);
+    hides(&page, &["tare:"]);
+    // Watched anew before it is made, it begins anew.
+    let mut page = set(|request| request.tare = 4);
+    page.frames(3);
+    then(&mut page, "<Esc>w", &["tare: 0 of 4 frames"]);
+    // A key makes it of what is there, or gives it up.
+    page.frames(2);
+    then(&mut page, "T", &["tare       none"]);
+    hides(&page, &["tare:"]);
+}
+
+#[test]
+fn a_recording_of_too_few_frames_for_the_tare_is_an_error() {
+    let mut page = set(|request| request.tare = 9);
+    page.frames(20);
+    let lacking = "! frames for the tare: found 8, expected 9";
+    shows(&page, &["frame 7", "ended", "tare       none", lacking]);
+    then(&mut page, "<Left>", &["frame 6", lacking]);
+    then(&mut page, "<End>t", &["tare of the last 8 frames"]);
+    hides(&page, &["expected 9"]);
+}
+
+#[test]
+fn frames_are_shown_while_a_threshold_by_noise_has_no_tare() {
+    let mut page = set(|request| by_noise(request, 6));
+    page.frames(3);
+    shows(
+        &page,
+        &["frame 2", "4 x noise", "tare: 3 of 6 frames", "peak  "],
+    );
+    hides(&page, &["no frame yet", "needs a tare"]);
+    let not_yet = "! no imprint before the tare: 3 of 6 frames";
+    then(&mut page, "<Enter>", &[not_yet]);
+    page.frames(3);
+    shows(&page, &["frame 5", "tare       6 frames"]);
+    let needed = "! a threshold from noise needs a tare of at least two frames";
+    then(&mut page, "T<Left>", &["frame 4", "peak  ", needed]);
+    let refused = "! no imprint: a threshold from noise needs a tare";
+    then(&mut page, "<Enter>", &[refused]);
+    then(&mut page, "m", &["frame 4: marked"]);
+    then(&mut page, "t", &["tare of the last 5 frames"]);
+    hides(&page, &["needs a tare"]);
+    // It is made too late.
+    let mut page = set(|request| by_noise(request, 9));
+    page.frames(20);
+    shows(&page, &["frame 7", "! frames for the tare: found 8"]);
+    then(&mut page, "<Enter>", &[refused]);
+}
+
+#[test]
+fn a_frame_that_cannot_be_processed_has_come_all_the_same() {
+    let mut page = set(|request| {
+        request.processing.gain = Some(Matrix::filled(2, 2, 1.0));
+    });
+    page.frames(2);
+    shows(&page, &["frame 1  0.1 s", "! the gain has 2 columns"]);
+    hides(&page, &["no frame yet"]);
+    then(
+        &mut page,
+        "<Enter>",
+        &["! no imprint: the gain has 2 columns"],
+    );
+}
+
+#[test]
+fn a_frame_that_has_left_the_history_is_told_from_none() {
+    // Memory for the newest frame only.
+    let mut page = set(|request| request.history_bytes = 1);
+    page.frames(2);
+    then(&mut page, "<Space>", &["frame 1", "frozen"]);
+    page.frames(3);
+    shows(&page, &["frame 1", "frozen, 3 frames behind"]);
+    then(
+        &mut page,
+        "t",
+        &["! this frame is no longer in the history"],
+    );
+    then(&mut page, "m", &["frame 1: marked"]);
+    then(&mut page, "<End>t", &["tare of the last 1 frame"]);
 }
 
 #[test]

@@ -17,6 +17,16 @@ pub(in crate::tui) fn bytes_of(frame: &Frame) -> usize {
     size_of::<Frame>() + size_of_val(frame.values())
 }
 
+/// Whether two frames are one: a frame that is confirmed has the values that it was shown with before.
+pub(super) fn is_same(one: &Frame, other: &Frame) -> bool {
+    let values = one.values().iter().zip(other.values());
+    let size = |frame: &Frame| (frame.columns(), frame.rows());
+    (one.number, size(one)) == (other.number, size(other))
+        && values
+            .into_iter()
+            .all(|(one, other)| one.to_bits() == other.to_bits())
+}
+
 /// Frames, each with a number of its own that counts on over all that have come.
 #[derive(Clone, Debug)]
 pub struct FrameHistory {

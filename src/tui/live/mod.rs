@@ -8,6 +8,7 @@
 //! reading    what is read off one frame: values, imprint, descriptors
 //! marks      frames that were marked
 //! refusal    why something cannot be done with the frame that is shown
+//! tare       what is taken off, and how it is made
 //! range      between which values shades are spread
 //! state      which frame is shown and how
 //! layout     where taxels and numbers stand
@@ -29,6 +30,8 @@ pub mod reading;
 mod marks;
 
 pub mod refusal;
+
+pub mod tare;
 
 mod range;
 

@@ -3,10 +3,9 @@
 use std::sync::Arc;
 
 use crate::formats::recording::{ChannelInfo, FrameMark, RuleOrigin, SetRule};
-use crate::frame::{Frame, FrameError, Processing, Rule, Tare, TareFrames};
+use crate::frame::{Frame, FrameError, Processing, Rule, Tare};
 use crate::imprint::Imprint;
-use crate::matrix::Matrix;
-use crate::tui::live::history::FrameHistory;
+use crate::tui::live::history::{FrameHistory, is_same};
 use crate::tui::live::marks::FrameMarks;
 use crate::tui::live::message::{FeedStatus, FrameBatch, ProvisionalChange, SourceState};
 use crate::tui::live::naming::{NamedImprint, Naming, NamingRequest};
@@ -14,21 +13,11 @@ use crate::tui::live::range::{ShadeRange, stepped};
 use crate::tui::live::reading::{HeatLayer, LiveReading, hold, nine_digits, round_up};
 use crate::tui::live::refusal::LiveRefusal;
 use crate::tui::live::request::WatchRequest;
+use crate::tui::live::tare::{LiveTare, TareMark};
 use crate::tui::recognise::sets::ModelChoice;
 
 /// Frames that a tare by key is made of, at most.
 const TARED: usize = 30;
-
-/// How a tare was made.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TareMark {
-    /// How many frames it was made of.
-    pub frames: u64,
-    /// The number of the last of these; None where that is of another recording, or of the source as it was watched before.
-    pub number: Option<u64>,
-    /// Its time.
-    pub time: Option<f64>,
-}
 
 /// The state of the page.
 #[derive(Clone, Debug)]
@@ -57,12 +46,8 @@ pub struct Live {
     range: ShadeRange,
     /// The largest value that each cell has had, while that is shown.
     held: Option<Arc<Frame>>,
-    /// The first frames, until they are enough for the tare that was asked for.
-    first: Option<TareFrames>,
-    /// How the tare was made; None if nothing is taken off.
-    tare: Option<TareMark>,
-    /// Whether the tare that a recording's own description names is taken once that is known.
-    own_tare: bool,
+    /// How the tare is made.
+    tare: LiveTare,
     /// Frames that came between two pictures of the screen and were never seen.
     not_drawn: u64,
     /// The name of the file that is written.
@@ -73,10 +58,10 @@ pub struct Live {
     marks: FrameMarks,
     /// The model that names imprints, and its last answer.
     naming: Option<Naming>,
-    /// The frame that is shown, processed; None before the first.
+    /// The frame that is shown, processed; None before the first, and for one that cannot be processed.
     reading: Option<LiveReading>,
-    /// Why the frame cannot be processed.
-    error: Option<String>,
+    /// Why the frame that is shown cannot be processed, or not be made into an imprint.
+    error: Option<FrameError>,
 }
 
 impl Live {
@@ -95,9 +80,7 @@ impl Live {
             numbers: false,
             range: ShadeRange::default(),
             held: None,
-            first: (request.tare > 0).then(|| TareFrames::new(request.tare)),
-            tare: None,
-            own_tare: request.own_tare && request.tare == 0,
+            tare: LiveTare::new(&request),
             not_drawn: 0,
             recording: None,
             not_recorded: None,
@@ -133,14 +116,41 @@ impl Live {
         self.stopped
     }
 
-    /// What can be said of the frame that is shown; None before the first one.
+    /// The frame that is shown; None before the first one.
+    pub fn frame(&self) -> Option<Arc<Frame>> {
+        let processed = self.reading.as_ref().map(|reading| &reading.frame);
+        processed.cloned().or_else(|| Some(self.shown()?.1))
+    }
+
+    /// What can be said of the frame that is shown; None before the first one, and for one that cannot be processed.
     pub fn reading(&self) -> Option<&LiveReading> {
         self.reading.as_ref()
     }
 
-    /// Why the frame cannot be processed.
-    pub fn error(&self) -> Option<&str> {
-        self.error.as_deref()
+    /// Why there is no tare although one was asked for; otherwise why the frame that is shown cannot be processed, or not
+    /// be made into an imprint.
+    pub fn error(&self) -> Option<&FrameError> {
+        self.tare.error().or(self.error.as_ref())
+    }
+
+    /// Why there is no imprint to take.
+    pub fn no_imprint(&self) -> LiveRefusal {
+        match (&self.error, self.tare.progress()) {
+            _ if self.reading.is_some() && self.rule.is_none() => LiveRefusal::NoThreshold,
+            (Some(error), _) => LiveRefusal::NoImprint(error.clone()),
+            (None, Some((taken, wanted))) if self.reading.is_some() => {
+                LiveRefusal::TareIsMade { taken, wanted }
+            }
+            (None, _) => self.no_frame(),
+        }
+    }
+
+    /// Why there is no frame to do something with.
+    fn no_frame(&self) -> LiveRefusal {
+        match self.frozen {
+            Some(_) => LiveRefusal::LeftHistory,
+            None => LiveRefusal::NoFrame,
+        }
     }
 
     /// The threshold.
@@ -171,7 +181,13 @@ impl Live {
 
     /// How the tare was made; None without one.
     pub fn tare(&self) -> Option<TareMark> {
-        self.tare
+        self.tare.mark()
+    }
+
+    /// How many of the first frames have come for the tare that was asked for, and how many it needs; None where it is not
+    /// being made.
+    pub fn tare_progress(&self) -> Option<(u64, u64)> {
+        self.tare.progress()
     }
 
     /// What is taken off each cell; None without a tare.
@@ -211,7 +227,7 @@ impl Live {
     /// Before the first frame, and for a frame that came before the source was watched again: marks are those of one
     /// recording, in which that frame is not.
     pub fn mark(&mut self) -> Result<(u64, bool), LiveRefusal> {
-        let (number, frame) = self.shown().ok_or(LiveRefusal::NoFrame)?;
+        let (number, frame) = self.shown().ok_or_else(|| self.no_frame())?;
         if number < self.watched_from {
             return Err(LiveRefusal::EarlierWatch(frame.number));
         }
@@ -301,7 +317,6 @@ impl Live {
         let had_channel = self.status.channel.is_some();
         self.status = batch.status.clone();
         if let Some(error) = self.status.record_error.clone() {
-            self.error = Some(error.clone());
             self.fail_recording(error);
         }
         if !had_channel && let Some(channel) = self.status.channel.clone() {
@@ -311,12 +326,14 @@ impl Live {
         for frame in &batch.frames {
             self.add(frame);
         }
+        let is_ended = self.status.state == SourceState::Ended;
+        let tare_fails = is_ended && self.tare.end_of_source();
         if self.frozen.is_none() {
             let unseen = batch.frames.len().saturating_sub(1);
             self.not_drawn += unseen as u64;
         }
         let is_changed = self.take_provisional(&batch.provisional, next_number);
-        if !batch.frames.is_empty() || is_changed {
+        if !batch.frames.is_empty() || is_changed || tare_fails {
             self.read();
         }
     }
@@ -348,19 +365,7 @@ impl Live {
             self.set_rule(channel.own_rule(self.processing.least));
         }
         self.marks.set_recorded(&channel.marks);
-        let baseline = channel.tare.as_ref().map(Tare::baseline);
-        let size = baseline.map(|own| (own.columns().into(), own.rows().into()));
-        let seen = channel
-            .shape
-            .map(|(rows, columns)| self.processing.view.size(columns, rows));
-        if std::mem::take(&mut self.own_tare) && size.is_some() && size == seen {
-            self.processing.tare.clone_from(&channel.tare);
-            self.tare = channel.tare.as_ref().map(|tare| TareMark {
-                frames: tare.frames(),
-                number: None,
-                time: None,
-            });
-        }
+        self.tare.take_own(channel, &mut self.processing);
     }
 
     /// Takes a new frame into the history, the held peak, the range and a tare being made.
@@ -370,68 +375,28 @@ impl Live {
             hold(Arc::make_mut(held), frame);
         }
         self.history.push(Arc::clone(frame));
-        self.add_to_tare(frame);
+        self.tare.add(frame, &mut self.processing);
     }
 
-    /// Adds one of the first frames to the tare that was asked for at the start.
-    fn add_to_tare(&mut self, frame: &Frame) {
-        let Some(mut first) = self.first.take() else {
-            return;
-        };
-        let mut seen = Matrix::filled(1, 1, f64::NAN);
-        let view = &self.processing.view;
-        let added = view.of(frame, &mut seen).and_then(|()| first.add(&seen));
-        match added {
-            Ok(()) if first.missing() == 0 => self.end_tare(first, frame),
-            Ok(()) => self.first = Some(first),
-            Err(error) => self.error = Some(error.to_string()),
-        }
-    }
-
-    /// Puts the tare into use, and notes of which frame it is, to say its age. An error leaves the one before.
-    fn end_tare(&mut self, frames: TareFrames, last: &Frame) {
-        match frames.finish() {
-            Ok(tare) => {
-                self.tare = Some(TareMark {
-                    frames: tare.frames(),
-                    number: Some(last.number),
-                    time: last.time,
-                });
-                self.processing.tare = Some(tare);
-            }
-            Err(error) => self.error = Some(error.to_string()),
-        }
-    }
-
-    /// Takes off the median of the frames up to the one that is shown. Returns of how many; None before the first frame.
+    /// Takes off the median of the frames up to the one that is shown. Returns of how many.
     ///
     /// # Errors
-    /// If these are of different sizes.
-    pub fn tare_now(&mut self) -> Result<Option<u64>, FrameError> {
-        let Some(shown) = self.frozen.or(self.history.newest()) else {
-            return Ok(None);
-        };
+    /// Before the first frame, for a frame that has left the history, and if the frames are of different sizes.
+    pub fn tare_now(&mut self) -> Result<u64, LiveRefusal> {
+        let shown = self.frozen.or(self.history.newest());
+        let shown = shown.ok_or(LiveRefusal::NoFrame)?;
         let frames: Vec<_> = self.history.back_from(shown, TARED).cloned().collect();
-        let Some(last) = frames.first().cloned() else {
-            return Ok(None);
-        };
-        let mut tare = TareFrames::new(frames.len() as u64);
-        let mut seen = Matrix::filled(1, 1, f64::NAN);
-        for frame in frames.iter().rev() {
-            self.processing.view.of(frame, &mut seen)?;
-            tare.add(&seen)?;
+        if frames.is_empty() {
+            return Err(LiveRefusal::LeftHistory);
         }
-        self.first = None;
-        self.end_tare(tare, &last);
+        self.tare.of_last(&frames, &mut self.processing)?;
         self.read();
-        Ok(Some(frames.len() as u64))
+        Ok(frames.len() as u64)
     }
 
     /// Takes nothing off any more; `false` if there was no tare.
     pub fn drop_tare(&mut self) -> bool {
-        self.first = None;
-        self.processing.tare = None;
-        let any = self.tare.take().is_some();
+        let any = self.tare.give_up(&mut self.processing);
         self.read();
         any
     }
@@ -576,11 +541,7 @@ impl Live {
         self.provisional = None;
         self.held = None;
         self.marks.clear();
-        self.tare = self.tare.map(|tare| TareMark {
-            number: None,
-            time: None,
-            ..tare
-        });
+        self.tare.restart();
         self.read();
         self.status.state = SourceState::Waiting;
         let choice = self.naming.take().map(|naming| naming.request.choice);
@@ -606,30 +567,33 @@ impl Live {
 
     /// Reads the frame that is shown anew.
     fn read(&mut self) {
+        self.error = None;
         let shown = match &self.held {
             Some(held) if self.frozen.is_none() => Some(Arc::clone(held)),
             _ => self.shown().map(|(_, frame)| frame),
         };
-        let Some(frame) = shown else {
-            self.reading = None;
-            return;
-        };
-        match LiveReading::of(frame, &mut self.processing, self.layer) {
-            Ok(reading) => {
-                self.range.add_shown(&reading);
-                self.reading = Some(reading);
-                self.error = None;
-            }
-            Err(error) => {
-                self.error = Some(error.to_string());
-                self.reading = None;
-            }
+        let reading = shown.map(|frame| self.processed(frame)).transpose();
+        self.reading = reading.unwrap_or_else(|error| {
+            self.error = Some(error);
+            None
+        });
+        if let Some(reading) = &self.reading {
+            self.range.add_shown(reading);
         }
     }
-}
 
-/// Whether two frames are one: a frame that is confirmed has the values that it was shown with before.
-fn is_same(one: &Frame, other: &Frame) -> bool {
-    let bits = |frame: &Frame| frame.values().iter().map(|value| value.to_bits());
-    one.number == other.number && bits(one).eq(bits(other))
+    /// What can be said of a frame: all but the imprint where a threshold by noise has no tare to go by. That is an error
+    /// unless the tare is being made.
+    fn processed(&mut self, frame: Arc<Frame>) -> Result<LiveReading, FrameError> {
+        let reading = LiveReading::of(Arc::clone(&frame), &mut self.processing, self.layer);
+        if !matches!(reading, Err(FrameError::NoTare)) {
+            return reading;
+        }
+        let is_made = self.tare.progress().is_some();
+        self.error = (!is_made).then_some(FrameError::NoTare);
+        let rule = self.processing.rule.take();
+        let reading = LiveReading::of(frame, &mut self.processing, self.layer);
+        self.processing.rule = rule;
+        reading
+    }
 }

@@ -17,6 +17,7 @@ use crate::tui::app::state::App;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::live::message::{LiveEvent, LiveMessage};
+use crate::tui::live::refusal::LiveRefusal;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::live::state::Live;
 use crate::tui::runtime::effect::{Effect, Work};
@@ -154,12 +155,12 @@ fn take(app: &mut App, page: Box<Live>, document: Document) {
     }
 }
 
-/// Says why there is no imprint to take: no frame has come, or no threshold says which cells are active.
+/// Says why there is no imprint to take.
 fn refuse_imprint(app: &mut App, page: &Live) {
     let key = app.keymap().label(Context::Live, &action::THRESHOLD_UP);
-    let text = match page.reading() {
-        None => "no frame yet".to_owned(),
-        Some(_) => format!("no threshold, so no imprint; {key} sets one"),
+    let text = match page.no_imprint() {
+        refusal @ LiveRefusal::NoThreshold => format!("{refusal}; {key} sets one"),
+        refusal => refusal.to_string(),
     };
     refuse(app, text);
 }
@@ -168,12 +169,11 @@ fn refuse_imprint(app: &mut App, page: &Live) {
 fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect> {
     match asked {
         LiveMessage::Tare => match page.tare_now() {
-            Ok(Some(frames)) => {
+            Ok(frames) => {
                 let frames = counted(frames, "frame");
                 inform(app, format!("tare of the last {frames}"));
             }
-            Ok(None) => refuse(app, "no frame yet"),
-            Err(error) => refuse(app, error.to_string()),
+            Err(refused) => refuse(app, refused.to_string()),
         },
         LiveMessage::NoTare => {
             let text = if page.drop_tare() {

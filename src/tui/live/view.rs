@@ -78,7 +78,8 @@ impl Page for Live {
 
     fn remark(&self, _: &Keymap, _: Rect) -> Option<(String, Role)> {
         let status = self.status();
-        let trouble = self.error().or(status.record_error.as_deref());
+        let trouble = self.error().map(ToString::to_string);
+        let trouble = trouble.or_else(|| status.record_error.clone());
         if let Some(trouble) = trouble {
             return Some((format!("! {trouble}"), Role::Error));
         }
@@ -108,8 +109,8 @@ fn title(live: &Live, window: Option<String>) -> Vec<(String, Role)> {
     {
         say(format!("channel {name}"), Role::Text);
     }
-    match live.reading() {
-        Some(LiveReading { frame, .. }) => {
+    match live.frame() {
+        Some(frame) => {
             let label = frame
                 .label
                 .map_or(String::new(), |label| format!(" (label {label})"));
@@ -125,6 +126,9 @@ fn title(live: &Live, window: Option<String>) -> Vec<(String, Role)> {
         layer => layer,
     };
     say(layer.name().to_owned(), Role::Quiet);
+    if live.tare_progress().is_some() {
+        say(format!("tare: {}", tare(live)), Role::Focus);
+    }
     if let Some(window) = window {
         say(window, Role::Text);
     }
@@ -298,8 +302,12 @@ fn threshold(live: &Live, keymap: &Keymap) -> String {
 }
 
 /// How many frames the tare was made of, and how long ago.
-/// In seconds where the frames have times, otherwise in frames; no age for a tare made after the frame shown.
+/// In seconds where the frames have times, otherwise in frames; no age for a tare made after the frame shown. Of a tare that
+/// is being made, how many of its frames have come.
 fn tare(live: &Live) -> String {
+    if let Some((taken, wanted)) = live.tare_progress() {
+        return format!("{taken} of {}", counted(wanted, "frame"));
+    }
     let Some(mark) = live.tare() else {
         return "none".to_owned();
     };

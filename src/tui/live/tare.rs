@@ -1,0 +1,166 @@
+//! The tare of the live page: made of the first frames if that is asked for at the start, otherwise that of the recording,
+//! and by a key of the last frames.
+
+use std::sync::Arc;
+
+use crate::formats::recording::ChannelInfo;
+use crate::frame::{Frame, FrameError, Processing, Tare, TareFrames};
+use crate::matrix::Matrix;
+use crate::tui::live::request::WatchRequest;
+
+/// How a tare was made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TareMark {
+    /// How many frames it was made of.
+    pub frames: u64,
+    /// The number of the last of these; None where that is of another recording, or of the source as it was watched before.
+    pub number: Option<u64>,
+    /// Its time.
+    pub time: Option<f64>,
+}
+
+/// How the tare of the page is made. What is taken off stands in the [`Processing`] of the page.
+#[derive(Clone, Debug)]
+pub(super) struct LiveTare {
+    /// The first frames, until they are enough for the tare that was asked for.
+    first: Option<TareFrames>,
+    /// How the tare was made; None if nothing is taken off.
+    mark: Option<TareMark>,
+    /// Whether the tare that a recording's own description names is taken once that is known.
+    takes_own: bool,
+    /// Why the tare that was asked for at the start is not there.
+    error: Option<FrameError>,
+}
+
+impl LiveTare {
+    /// The tare that is asked for at the start.
+    pub(super) fn new(request: &WatchRequest) -> Self {
+        Self {
+            first: (request.tare > 0).then(|| TareFrames::new(request.tare)),
+            mark: None,
+            takes_own: request.own_tare && request.tare == 0,
+            error: None,
+        }
+    }
+
+    /// How it was made; None without one.
+    pub(super) fn mark(&self) -> Option<TareMark> {
+        self.mark
+    }
+
+    /// How many of the first frames have come, and of how many it will be made; None where it is not being made.
+    pub(super) fn progress(&self) -> Option<(u64, u64)> {
+        let first = self.first.as_ref()?;
+        Some((first.wanted() - first.missing(), first.wanted()))
+    }
+
+    /// Why the tare that was asked for at the start is not there.
+    pub(super) fn error(&self) -> Option<&FrameError> {
+        self.error.as_ref()
+    }
+
+    /// Takes what a recording says of its own tare, if none was asked for and it fits.
+    pub(super) fn take_own(&mut self, channel: &ChannelInfo, processing: &mut Processing) {
+        let baseline = channel.tare.as_ref().map(Tare::baseline);
+        let size = baseline.map(|own| (own.columns().into(), own.rows().into()));
+        let seen = channel
+            .shape
+            .map(|(rows, columns)| processing.view.size(columns, rows));
+        if std::mem::take(&mut self.takes_own) && size.is_some() && size == seen {
+            processing.tare.clone_from(&channel.tare);
+            self.mark = channel.tare.as_ref().map(|tare| TareMark {
+                frames: tare.frames(),
+                number: None,
+                time: None,
+            });
+        }
+    }
+
+    /// Adds one of the first frames, and takes the tare into use with the last of them.
+    pub(super) fn add(&mut self, frame: &Frame, processing: &mut Processing) {
+        let Some(mut first) = self.first.take() else {
+            return;
+        };
+        let mut seen = Matrix::filled(1, 1, f64::NAN);
+        let added = processing.view.of(frame, &mut seen);
+        let added = added.and_then(|()| first.add(&seen));
+        let ended = added.and_then(|()| {
+            if first.missing() > 0 {
+                self.first = Some(first);
+                return Ok(());
+            }
+            self.end(first, frame, processing)
+        });
+        self.error = ended.err();
+    }
+
+    /// Notes that no more frames will come. Returns whether a tare was being made, which cannot be made any more.
+    pub(super) fn end_of_source(&mut self) -> bool {
+        let Some(first) = self.first.take() else {
+            return false;
+        };
+        self.error = first.finish().err();
+        true
+    }
+
+    /// Makes it of frames, the last one first. Without a frame it stays as it is.
+    ///
+    /// # Errors
+    /// If they are of different sizes; then, too, it stays as it is.
+    pub(super) fn of_last(
+        &mut self,
+        frames: &[Arc<Frame>],
+        processing: &mut Processing,
+    ) -> Result<(), FrameError> {
+        let Some(last) = frames.first() else {
+            return Ok(());
+        };
+        let mut tare = TareFrames::new(frames.len() as u64);
+        let mut seen = Matrix::filled(1, 1, f64::NAN);
+        for frame in frames.iter().rev() {
+            processing.view.of(frame, &mut seen)?;
+            tare.add(&seen)?;
+        }
+        self.end(tare, last, processing)?;
+        (self.first, self.error) = (None, None);
+        Ok(())
+    }
+
+    /// Puts a tare into use, and notes of which frame it is, to say its age.
+    fn end(
+        &mut self,
+        frames: TareFrames,
+        last: &Frame,
+        processing: &mut Processing,
+    ) -> Result<(), FrameError> {
+        let tare = frames.finish()?;
+        self.mark = Some(TareMark {
+            frames: tare.frames(),
+            number: Some(last.number),
+            time: last.time,
+        });
+        processing.tare = Some(tare);
+        Ok(())
+    }
+
+    /// Takes nothing off any more; `false` if there was no tare.
+    pub(super) fn give_up(&mut self, processing: &mut Processing) -> bool {
+        (self.first, self.error) = (None, None);
+        processing.tare = None;
+        self.mark.take().is_some()
+    }
+
+    /// Notes that the source is watched again, which counts its frames from 0: a tare stays without its age, and one that
+    /// was being made begins anew.
+    pub(super) fn restart(&mut self) {
+        self.mark = self.mark.map(|mark| TareMark {
+            number: None,
+            time: None,
+            ..mark
+        });
+        self.first = self
+            .first
+            .as_ref()
+            .map(|first| TareFrames::new(first.wanted()));
+    }
+}
