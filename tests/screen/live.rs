@@ -10,7 +10,7 @@ use taxel::tui::live::message::LiveMessage;
 use taxel::tui::live::request::WatchRequest;
 use taxel::tui::script::Session;
 
-use crate::session::{hides, session, shows, sized, then};
+use crate::session::{hides, session, shows, sized, started, then, world};
 
 /// The page after this number of frames, and then these keys.
 fn watched(frames: usize, keys: &str) -> Session {
@@ -253,6 +253,27 @@ fn a_frame_is_marked_and_unmarked() {
         &["frame 4: no mark any more", "marked     frame 5"],
     );
     then(&mut page, "<End>", &["frame 5", "marked"]);
+}
+
+#[test]
+fn a_script_records_each_frame_once() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let world = world().confined_to(folder.path().to_owned());
+    let mut page = started(world, ":watch tests/scripts/touch.csv<Enter>");
+    page.frames(2);
+    then(&mut page, "r", &["recording in touch-1.npy"]);
+    page.frames(3);
+    shows(&page, &["frame 4", "recording  touch-1.npy, 3 frames"]);
+    page.frames(1);
+    shows(&page, &["frame 5", "recording  touch-1.npy, 4 frames"]);
+    then(&mut page, "mr", &["touch-1.npy: 4 frames recorded"]);
+    let array = std::fs::read(folder.path().join("touch-1.npy")).expect("written");
+    let text = String::from_utf8_lossy(&array[..256]).into_owned();
+    assert!(text.contains("'shape': (4,)"), "{text}");
+    assert_eq!(array[256 + 8..256 + 16], 2_u64.to_le_bytes(), "the third frame");
+    let beside = std::fs::read_to_string(folder.path().join("touch-1.json"));
+    let beside: serde_json::Value = serde_json::from_str(&beside.expect("written")).expect("JSON");
+    assert_eq!(beside["marks"][0]["number"], 5, "{beside}");
 }
 
 #[test]

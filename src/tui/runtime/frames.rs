@@ -214,6 +214,14 @@ impl FrameWatcher {
         (options.once, options.repeat) = (true, false);
         let (skipped, mut seen) = (watched.taken, 0);
         let feed = FrameFeed::of(&request);
+        let recording = watched.feed.recording();
+        // What is skipped was recorded before.
+        let record_from = |feed: &FrameFeed, seen: usize| {
+            if seen == skipped {
+                locked(&feed.recording).clone_from(&recording);
+            }
+        };
+        record_from(&feed, seen);
         let mut events = Vec::new();
         let source = source(&request.source);
         if self.only_files && !is_file(&source) {
@@ -235,6 +243,7 @@ impl FrameWatcher {
                     return ControlFlow::Continue(());
                 };
                 seen += batch.frames.len();
+                record_from(feed, seen);
                 if seen > skipped || batch.frames.is_empty() {
                     let event = LiveEvent::Arrived(Arc::new(batch));
                     events.push(WorkerEvent::Live(number, event));
