@@ -359,6 +359,21 @@ impl FrameRecorder {
         self.noted(written)
     }
 
+    /// Writes out everything that waits, and waits until it is synced; for a source that pauses, perhaps for ever.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub fn flush(&mut self) -> Result<(), RecorderError> {
+        if !matches!(self.names, Names::Given) {
+            return Ok(());
+        }
+        let written = self.write_out().and_then(|()| {
+            let synced = self.file.sync_data();
+            synced.map_err(|error| self.refused(error))
+        });
+        self.noted(written)
+    }
+
     /// Writes out all records, then their count. What the disk has no room for stays in the buffer.
     fn write_out(&mut self) -> Result<(), RecorderError> {
         let size = self.record_bytes();

@@ -270,7 +270,11 @@ fn a_script_records_each_frame_once() {
     let array = std::fs::read(folder.path().join("touch-1.npy")).expect("written");
     let text = String::from_utf8_lossy(&array[..256]).into_owned();
     assert!(text.contains("'shape': (4,)"), "{text}");
-    assert_eq!(array[256 + 8..256 + 16], 2_u64.to_le_bytes(), "the third frame");
+    assert_eq!(
+        array[256 + 8..256 + 16],
+        2_u64.to_le_bytes(),
+        "the third frame"
+    );
     let beside = std::fs::read_to_string(folder.path().join("touch-1.json"));
     let beside: serde_json::Value = serde_json::from_str(&beside.expect("written")).expect("JSON");
     assert_eq!(beside["marks"][0]["number"], 5, "{beside}");

@@ -14,7 +14,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::Builder;
 use std::time::{Duration, Instant};
 
-use crate::formats::recording::RecordingMetadata;
+use crate::formats::recording::{FrameMark, RecordingMetadata};
 use crate::formats::{Name, StoredShape};
 use crate::storage::{
     Expected, Library, LibraryError, LoadedShape, Orphan, RememberedFile, UNNAMED,
@@ -62,6 +62,8 @@ pub(super) enum DiskRequest {
     Remember(RememberedFile, Vec<String>),
     /// Create a file and record the frames of the source of that number in it.
     BeginRecording(u64, Box<RecordingMetadata>),
+    /// Write these marks into the description of a recording of the source of that number.
+    MarkRecording(u64, Arc<Recording>, Vec<FrameMark>),
     /// Finish a recording of the source of that number.
     EndRecording(u64, Arc<Recording>),
 }
@@ -118,6 +120,9 @@ impl DiskRequest {
             Self::Named(_, name) => format!("Reading {name}"),
             Self::Remember(..) => "Remembering it".to_owned(),
             Self::BeginRecording(..) => "Beginning a recording".to_owned(),
+            Self::MarkRecording(_, recording, _) => {
+                format!("Marking frames of {}", recording.path().display())
+            }
             Self::EndRecording(_, recording) => format!("Saving {}", recording.path().display()),
         }
     }
@@ -182,12 +187,19 @@ impl DiskRequest {
             Self::BeginRecording(number, metadata) => {
                 DiskAnswer::Recording(number, Recording::in_free_file(access, &metadata))
             }
+            Self::MarkRecording(number, recording, marks) => written(number, recording.mark(marks)),
             Self::EndRecording(number, recording) => {
                 let ended = recording.finish();
                 ended.map_or(DiskAnswer::Nothing, |event| DiskAnswer::Live(number, event))
             }
         }
     }
+}
+
+/// What became of a recording of the source of that number to which something was written: a failure ends it.
+fn written(number: u64, written: Result<Option<u64>, String>) -> DiskAnswer {
+    let failed = |reason| DiskAnswer::Live(number, LiveEvent::NotRecorded(reason));
+    written.map_or_else(failed, |_| DiskAnswer::Nothing)
 }
 
 /// An error of the library in a sentence.

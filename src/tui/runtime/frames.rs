@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
 use crate::acquire::{AcquireEvent, AcquireOptions, FrameSource, acquire};
-use crate::formats::recording::{ChannelChoice, ChannelInfo, FrameMark, RecordingMetadata};
+use crate::formats::recording::{ChannelChoice, ChannelInfo, RecordingMetadata};
 use crate::frame::Frame;
 use crate::storage::{Existing, location};
 use crate::tui::app::worker_event::WorkerEvent;
@@ -175,13 +175,10 @@ impl FrameWatcher {
         Some((watched.number, recording))
     }
 
-    /// Has the marks written into the description of the recording, by the thread that records.
-    pub(super) fn mark(&self, marks: &[FrameMark]) {
-        let watched = self.watched.as_ref();
-        let recording = watched.and_then(|watched| watched.feed.recording());
-        if let Some(recording) = recording {
-            recording.mark(marks);
-        }
+    /// The number of the source, and what is recorded of it; None where nothing is.
+    pub(super) fn recording(&self) -> Option<(u64, Arc<Recording>)> {
+        let watched = self.watched.as_ref()?;
+        Some((watched.number, watched.feed.recording()?))
     }
 
     /// Whether there is something to take.
@@ -358,6 +355,12 @@ impl FrameFeed {
             Err(error) => SourceState::Failed(error.to_string()),
         };
         if self.change(|pending| pending.batch.status.state = state) {
+            let _ = fresh(self);
+        }
+        // Nothing comes any more that would have the rest written, and the page may stay open for long. Said after the end
+        // of the source: a disk may hang.
+        let written = self.recorded(Recording::flush);
+        if written.is_err() && self.change(|pending| pending.note(written)) {
             let _ = fresh(self);
         }
     }

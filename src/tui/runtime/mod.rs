@@ -343,6 +343,10 @@ impl World {
                 };
                 return self.change(DiskRequest::BeginRecording(number, metadata));
             }
+            Work::Mark(marks) => {
+                let (number, recording) = self.workers.frames.recording()?;
+                return self.change(DiskRequest::MarkRecording(number, recording, marks));
+            }
             Work::StopRecording => {
                 let (number, recording) = self.workers.frames.end_recording()?;
                 return self.change(DiskRequest::EndRecording(number, recording));

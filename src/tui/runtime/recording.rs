@@ -3,7 +3,9 @@
 //! ```text
 //! begin    creates the file            the source's thread, or the one of the disk
 //! add      each frame                  the source's thread
-//! tick     what has waited, marks      the source's thread
+//! tick     what has waited             the source's thread
+//! flush    all that waits, synced      the source's thread at its end
+//! mark     the marks so far            the one of the disk
 //! finish   the rest, synced            the one of the disk
 //! ```
 //! A disk may hang in each of them, so none is called on the screen's thread.
@@ -30,8 +32,6 @@ pub(super) struct Recording {
     path: PathBuf,
     /// Held for as long as the disk takes to write.
     recorder: Mutex<RecorderState>,
-    /// Marks that are not in the description yet. Locked for a moment only: the screen's thread puts them here.
-    marks: Mutex<Option<Vec<FrameMark>>>,
 }
 
 /// How far a recording is.
@@ -51,7 +51,6 @@ impl Recording {
         Arc::new(Self {
             path,
             recorder: Mutex::new(RecorderState::New),
-            marks: Mutex::default(),
         })
     }
 
@@ -100,58 +99,62 @@ impl Recording {
         Ok(())
     }
 
-    /// Has marks written into the description by the next one that writes.
-    pub(super) fn mark(&self, marks: &[FrameMark]) {
-        *locked(&self.marks) = Some(marks.to_vec());
-    }
-
     /// Adds a frame. Returns how many are recorded, None where none are any more.
     ///
     /// # Errors
     /// A sentence. The recording ends then; what is in it so far stays.
     pub(super) fn add(&self, frame: &Frame, time: Option<f64>) -> Result<Option<u64>, String> {
-        let mut state = locked(&self.recorder);
-        let RecorderState::Open(recorder) = &mut *state else {
-            return Ok(None);
-        };
-        let added = recorder.add(frame, time);
-        let frames = recorder.frames();
-        added
-            .map(|()| Some(frames))
-            .map_err(|error| close(&mut state, &error))
+        self.write(|recorder| recorder.add(frame, time))
     }
 
-    /// Writes out what has waited for long enough, and marks. Returns how many frames are recorded.
+    /// Writes out what has waited for long enough. Returns how many frames are recorded.
     ///
     /// # Errors
     /// A sentence. The recording ends then.
     pub(super) fn tick(&self) -> Result<Option<u64>, String> {
+        self.write(FrameRecorder::tick)
+    }
+
+    /// Writes out all that waits, and syncs it. Returns how many frames are recorded.
+    ///
+    /// # Errors
+    /// A sentence. The recording ends then.
+    pub(super) fn flush(&self) -> Result<Option<u64>, String> {
+        self.write(FrameRecorder::flush)
+    }
+
+    /// Writes these marks into the description, in place of those before. Returns how many frames are recorded.
+    ///
+    /// # Errors
+    /// A sentence. The recording ends then.
+    pub(super) fn mark(&self, marks: Vec<FrameMark>) -> Result<Option<u64>, String> {
+        self.write(|recorder| recorder.mark(marks))
+    }
+
+    /// Writes something, if frames are recorded still. Returns how many are recorded then.
+    fn write(
+        &self,
+        write: impl FnOnce(&mut FrameRecorder) -> Result<(), RecorderError>,
+    ) -> Result<Option<u64>, String> {
         let mut state = locked(&self.recorder);
         let RecorderState::Open(recorder) = &mut *state else {
             return Ok(None);
         };
-        let written = self
-            .write_marks(recorder)
-            .and_then(|()| recorder.tick())
-            .map(|()| recorder.frames());
-        written.map(Some).map_err(|error| close(&mut state, &error))
-    }
-
-    /// Writes the marks that wait.
-    fn write_marks(&self, recorder: &mut FrameRecorder) -> Result<(), RecorderError> {
-        let marks = locked(&self.marks).take();
-        marks.map_or(Ok(()), |marks| recorder.mark(marks))
+        let written = write(recorder);
+        let frames = recorder.frames();
+        written
+            .map(|()| Some(frames))
+            .map_err(|error| close(&mut state, &error))
     }
 
     /// Finishes it. None where nothing is recorded any more: that has been said.
     pub(super) fn finish(&self) -> Option<LiveEvent> {
         let mut state = locked(&self.recorder);
         let before = std::mem::replace(&mut *state, RecorderState::Closed);
-        let RecorderState::Open(mut recorder) = before else {
+        let RecorderState::Open(recorder) = before else {
             return None;
         };
-        let marked = self.write_marks(&mut recorder);
-        Some(match marked.and_then(|()| recorder.finish()) {
+        Some(match recorder.finish() {
             Ok(frames) => LiveEvent::Recorded(self.path.to_string_lossy().into_owned(), frames),
             Err(error) => LiveEvent::NotFinished(error.to_string()),
         })

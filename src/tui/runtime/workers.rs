@@ -156,10 +156,6 @@ impl Workers {
                 None
             }
             Work::Name(imprint) => self.namer.name(&imprint),
-            Work::Mark(marks) => {
-                self.frames.mark(&marks);
-                None
-            }
             Work::StopWatching => {
                 self.namer.end();
                 None

@@ -160,6 +160,28 @@ fn recorded_on_a_hanging_disk() -> Option<(Watched, PathBuf, Tracer)> {
 }
 
 #[test]
+fn what_is_recorded_of_a_source_that_has_ended_is_on_the_disk() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let rows = "time,r0c0,r0c1\n0.0,1,2\n0.1,3,4\n0.2,5,6\n";
+    fs::write(folder.join("touch.csv"), rows).expect("written");
+    let file = folder.join("a.npy");
+    let mut program = watching(folder, "touch.csv --write a.npy");
+    program.shows("ended");
+    program.until("the frames", |_| records(&file) == Some(3));
+    // A mark that is set later, too.
+    program.types(b"m");
+    program.shows("frame 2: marked");
+    program.until("the mark", |_| {
+        let beside = fs::read_to_string(file.with_extension("json")).expect("it is there");
+        beside.contains("\"number\":2") || beside.contains("\"number\": 2")
+    });
+    program.signal(Signal::KILL);
+    program.ends();
+    assert_eq!(records(&file), Some(3));
+}
+
+#[test]
 fn leaving_the_page_says_what_was_recorded() {
     let Some(mut watched) = Watched::start() else {
         return;
