@@ -64,6 +64,8 @@ pub(super) enum DiskRequest {
     BeginRecording(u64, Box<RecordingMetadata>),
     /// Write these marks into the description of a recording of the source of that number.
     MarkRecording(u64, Arc<Recording>, Vec<FrameMark>),
+    /// Write out all that waits of a recording of the source of that number.
+    FlushRecording(u64, Arc<Recording>),
     /// Finish a recording of the source of that number.
     EndRecording(u64, Arc<Recording>),
 }
@@ -123,7 +125,9 @@ impl DiskRequest {
             Self::MarkRecording(_, recording, _) => {
                 format!("Marking frames of {}", recording.path().display())
             }
-            Self::EndRecording(_, recording) => format!("Saving {}", recording.path().display()),
+            Self::FlushRecording(_, recording) | Self::EndRecording(_, recording) => {
+                format!("Saving {}", recording.path().display())
+            }
         }
     }
 
@@ -188,6 +192,7 @@ impl DiskRequest {
                 DiskAnswer::Recording(number, Recording::in_free_file(access, &metadata))
             }
             Self::MarkRecording(number, recording, marks) => written(number, recording.mark(marks)),
+            Self::FlushRecording(number, recording) => written(number, recording.flush()),
             Self::EndRecording(number, recording) => {
                 let ended = recording.finish();
                 ended.map_or(DiskAnswer::Nothing, |event| DiskAnswer::Live(number, event))

@@ -140,12 +140,16 @@ impl FrameWatcher {
         recording
     }
 
-    /// Notes that a recording is being begun. Returns the number of the source; None where there is no source, or it is
-    /// so already.
-    pub(super) fn begins(&mut self) -> Option<u64> {
-        let watched = self.watched.as_mut().filter(|watched| !watched.begins)?;
-        watched.begins = true;
-        Some(watched.number)
+    /// Notes that a recording is being begun. Returns the number of the source.
+    ///
+    /// # Errors
+    /// A sentence, where there is no source, or a recording of it is being begun already.
+    pub(super) fn begins(&mut self) -> Result<u64, &'static str> {
+        let watched = self.watched.as_mut().ok_or("no source is watched")?;
+        if std::mem::replace(&mut watched.begins, true) {
+            return Err("a recording is being begun already");
+        }
+        Ok(watched.number)
     }
 
     /// Notes that it has begun, or cannot be: from now on each frame of the source of that number goes into it. Returns
@@ -598,8 +602,11 @@ mod tests {
         let write = Some((folder.path().join("a.npy"), Existing::Kept));
         let request = Arc::new(WatchRequest::new("none"));
         let mut watcher = FrameWatcher::default();
+        assert_eq!(watcher.begins(), Err("no source is watched"));
         assert_eq!(watcher.watch(7, request, write, None), None);
-        assert_eq!(watcher.begins(), Some(7));
+        assert_eq!(watcher.begins(), Ok(7));
+        let already = "a recording is being begun already";
+        assert_eq!(watcher.begins(), Err(already));
         let access = WriteAccess::below(folder.path().to_owned());
         let metadata = RecordingMetadata::default();
         let next = Recording::in_free_file(&access, &metadata).map(|(_, next)| next);

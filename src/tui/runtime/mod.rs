@@ -337,11 +337,10 @@ impl World {
     fn work(&mut self, work: Work) -> Option<Message> {
         match work {
             Work::Record(metadata) => {
-                let Some(number) = self.workers.frames.begins() else {
-                    let text = "a recording is being begun already".to_owned();
-                    return Some(Message::Worker(WorkerEvent::Refused(text)));
+                return match self.workers.frames.begins() {
+                    Ok(number) => self.change(DiskRequest::BeginRecording(number, metadata)),
+                    Err(refused) => Some(Message::Worker(WorkerEvent::Refused(refused.to_owned()))),
                 };
-                return self.change(DiskRequest::BeginRecording(number, metadata));
             }
             Work::Mark(marks) => {
                 let (number, recording) = self.workers.frames.recording()?;
@@ -396,15 +395,47 @@ impl World {
     /// Finishes changes and recordings and writes unsaved work at once, because the program is about to end; but waits for
     /// at most two seconds. Returns lines about what is not on the disk, because of an error or because the disk does not
     /// answer.
-    pub fn secure(&mut self, app: &mut App) -> Vec<String> {
-        let end = Instant::now() + PATIENCE;
-        // Half of the time: the journal keeps what could not be saved.
-        let saved_by = Instant::now() + PATIENCE / 2;
+    pub fn end(&mut self, app: &mut App) -> Vec<String> {
         if let Some((number, recording)) = self.workers.frames.stop() {
             let request = DiskRequest::EndRecording(number, recording);
             self.writer.ask_aside(request);
         }
-        let mut lines = self.finish_changes(app, saved_by);
+        let (mut lines, is_kept) = self.write_all(app, |_, app, answer| {
+            // Nothing is begun any more.
+            let _ = update(app, answer);
+        });
+        if is_kept && !lines.is_empty() && app.unsaved_work().is_some() {
+            lines.push("the next start offers it as unsaved work\n".to_owned());
+        }
+        lines
+    }
+
+    /// Finishes changes and writes out unsaved work and what is recorded, because the program is about to be stopped,
+    /// perhaps for ever; but waits for at most two seconds. All goes on where it is continued. Returns lines about what is
+    /// not on the disk.
+    pub fn flush(&mut self, app: &mut App) -> Vec<String> {
+        if let Some((number, recording)) = self.workers.frames.recording() {
+            let request = DiskRequest::FlushRecording(number, recording);
+            self.writer.ask_aside(request);
+        }
+        let (lines, _) = self.write_all(app, |world, app, answer| {
+            // The terminal is about to be given back: nothing is done to it.
+            let _ = world.handle(app, answer);
+        });
+        lines
+    }
+
+    /// Waits for changes, memories and the journal, two seconds at most, and has answers taken. Returns lines about what
+    /// is not on the disk, and whether unsaved work is.
+    fn write_all(
+        &mut self,
+        app: &mut App,
+        take: fn(&mut Self, &mut App, Message),
+    ) -> (Vec<String>, bool) {
+        let end = Instant::now() + PATIENCE;
+        // Half of the time: the journal keeps what could not be saved.
+        let saved_by = Instant::now() + PATIENCE / 2;
+        let mut lines = self.finish_changes(app, saved_by, take);
         while !self.memories.is_idle() {
             let time = saved_by.saturating_duration_since(Instant::now());
             if self.memories.wait(time).is_none() {
@@ -412,38 +443,39 @@ impl World {
             }
         }
         self.journal.note(app);
-        let kept = (self.journal).written(end.saturating_duration_since(Instant::now()));
+        let is_kept = (self.journal).written(end.saturating_duration_since(Instant::now()));
         // What the journal has left of the time.
-        lines.extend(self.finish_changes(app, end));
+        lines.extend(self.finish_changes(app, end, take));
         self.journal.note(app);
         lines.extend(self.writer.left());
-        if app.unsaved_work().is_some() {
-            if !kept {
-                lines.push(
-                    "unsaved work may not be on the disk, which refuses it or does not answer\n"
-                        .to_owned(),
-                );
-            } else if !lines.is_empty() {
-                lines.push("the next start offers it as unsaved work\n".to_owned());
-            }
+        if !is_kept && app.unsaved_work().is_some() {
+            let line = "unsaved work may not be on the disk, which refuses it or does not answer\n";
+            lines.push(line.to_owned());
         }
-        lines
+        (lines, is_kept)
     }
 
-    /// Waits for changes and recordings until `end`. Returns lines about recordings that could not be finished.
-    fn finish_changes(&mut self, app: &mut App, end: Instant) -> Vec<String> {
+    /// Waits for changes and recordings until `end`, and has answers taken. Returns lines about recordings that could not
+    /// be finished or written on.
+    fn finish_changes(
+        &mut self,
+        app: &mut App,
+        end: Instant,
+        take: fn(&mut Self, &mut App, Message),
+    ) -> Vec<String> {
         let mut lines = Vec::new();
         while !self.writer.is_idle() {
             let time = end.saturating_duration_since(Instant::now());
             let Some(answer) = self.writer.wait(time) else {
                 break;
             };
-            if let DiskAnswer::Live(_, LiveEvent::NotFinished(reason)) = &answer {
+            if let DiskAnswer::Live(_, event) = &answer
+                && let LiveEvent::NotFinished(reason) | LiveEvent::NotRecorded(reason) = event
+            {
                 lines.push(format!("{reason}\n"));
             }
             if let Some(answer) = self.answer(answer) {
-                // Nothing is begun any more.
-                let _ = update(app, answer);
+                take(self, app, answer);
             }
         }
         lines

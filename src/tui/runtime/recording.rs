@@ -4,7 +4,7 @@
 //! begin    creates the file            the source's thread, or the one of the disk
 //! add      each frame                  the source's thread
 //! tick     what has waited             the source's thread
-//! flush    all that waits, synced      the source's thread at its end
+//! flush    all that waits, synced      the source's thread at its end; the one of the disk before the program is stopped
 //! mark     the marks so far            the one of the disk
 //! finish   the rest, synced            the one of the disk
 //! ```

@@ -68,7 +68,7 @@ pub(in crate::tui) fn run(
             .world
             .handle(&mut event_loop.app, Message::Terminate);
     }
-    for line in event_loop.world.secure(&mut event_loop.app) {
+    for line in event_loop.world.end(&mut event_loop.app) {
         session::tell_later(&line);
     }
     let left = session::leave();
@@ -423,7 +423,9 @@ impl<'a> EventLoop<'a> {
             self.refuse("there is no shell to go back to");
             return Ok(());
         }
-        self.world.secure(&mut self.app);
+        for line in self.world.flush(&mut self.app) {
+            session::tell_later(&line);
+        }
         session::leave()?;
         // From here on a "continue" is the answer to this stop.
         let before = self.signals.received();

@@ -160,6 +160,52 @@ fn recorded_on_a_hanging_disk() -> Option<(Watched, PathBuf, Tracer)> {
 }
 
 #[test]
+fn ctrl_z_and_fg_leave_a_source_and_its_recording_as_they_are() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("a.npy");
+    let source = fs::canonicalize("tests/scripts/touch.csv").expect("it is there");
+    let line = format!(
+        "set -m; cd '{}'; {TAXEL} watch '{}' --loop --write a.npy; echo stopped $?; read line; fg >/dev/null; echo ended $?; read line",
+        folder.path().display(),
+        source.display()
+    );
+    let mut program = Program::start(&Start {
+        command: &["sh", "-c", &line],
+        ..Start::default()
+    });
+    let shows_recorded = |program: &mut Program, name: &str, least: u64| {
+        let before = format!("recording  {name}, ");
+        program.until("a longer recording", |program| {
+            let screen = program.screen().contents();
+            let frames = screen.split_once(&before).map(|(_, rest)| rest);
+            let frames = frames.and_then(|rest| rest.split_once(" frame")?.0.parse().ok());
+            frames >= Some(least)
+        });
+    };
+    shows_recorded(&mut program, "a.npy", 5);
+    program.types(b"\x1a");
+    program.shows("stopped");
+    program.is_left();
+    let before = records(&file).expect("a recording");
+    assert!(before >= 5, "{before} frames are in the file");
+    assert!(!is_ended(&file));
+    program.forget();
+    program.types(b"\n");
+    shows_recorded(&mut program, "a.npy", before + 5);
+    program.types(b"r");
+    program.shows("frames recorded");
+    assert!(records(&file) >= Some(before + 5) && is_ended(&file));
+    // Another one begins.
+    program.types(b"r");
+    shows_recorded(&mut program, "touch-1.npy", 1);
+    program.types(b"q");
+    program.types(b"q");
+    program.shows("ended 0");
+    program.is_left();
+    assert!(is_ended(&folder.path().join("touch-1.npy")));
+}
+
+#[test]
 fn what_is_recorded_of_a_source_that_has_ended_is_on_the_disk() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
