@@ -13,12 +13,25 @@ pub(super) struct FrameMarks {
     own: Vec<(u64, FrameMark)>,
     /// Those that the recording itself has, by the labels of frames.
     recorded: Vec<FrameMark>,
+    /// Whether a key's marks have changed since they were taken last.
+    is_changed: bool,
 }
 
 impl FrameMarks {
     /// Those that a key has set, in the order in which their frames came.
     pub(super) fn own(&self) -> Vec<FrameMark> {
         self.own.iter().map(|(_, mark)| *mark).collect()
+    }
+
+    /// The same, which are to be written into a recording; afterwards they count as written.
+    pub(super) fn take(&mut self) -> Vec<FrameMark> {
+        self.is_changed = false;
+        self.own()
+    }
+
+    /// Whether they have changed since they were taken last.
+    pub(super) fn is_changed(&self) -> bool {
+        self.is_changed
     }
 
     /// Takes those of the recording.
@@ -39,6 +52,7 @@ impl FrameMarks {
             number: frame.number,
             time: frame.time,
         };
+        self.is_changed = true;
         let index = self.index(number);
         match index {
             Ok(index) => drop(self.own.remove(index)),
@@ -47,10 +61,12 @@ impl FrameMarks {
         index.is_err()
     }
 
-    /// Takes the mark that a key has set off the frame of a number in the history. Returns whether it had one.
-    pub(super) fn take_off(&mut self, number: u64) -> bool {
-        let index = self.index(number);
-        index.is_ok_and(|index| self.own.remove(index).0 == number)
+    /// Takes the mark that a key has set off the frame of a number in the history.
+    pub(super) fn take_off(&mut self, number: u64) {
+        if let Ok(index) = self.index(number) {
+            self.own.remove(index);
+            self.is_changed = true;
+        }
     }
 
     /// Gives up those that a key has set.

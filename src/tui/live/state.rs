@@ -215,6 +215,16 @@ impl Live {
         self.marks.own()
     }
 
+    /// The marks, which are to be written into a recording; afterwards they count as written.
+    pub fn take_marks(&mut self) -> Vec<FrameMark> {
+        self.marks.take()
+    }
+
+    /// Whether there are marks, or one was taken off, that the recording does not know of.
+    pub fn has_unwritten_marks(&self) -> bool {
+        self.recording.is_some() && self.marks.is_changed()
+    }
+
     /// Whether the frame that is shown is marked.
     pub fn is_marked(&self) -> bool {
         let shown = self.shown();

@@ -199,7 +199,7 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
             page.switch_range();
         }
         LiveMessage::Record => return Some(record(page)),
-        LiveMessage::Mark => return mark(app, page),
+        LiveMessage::Mark => mark(app, page),
         LiveMessage::NextModel => {
             app.works += 1;
             page.next_model(app.works);
@@ -216,24 +216,25 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
     None
 }
 
-/// Marks the frame that is shown, in the description of a recording, too.
-fn mark(app: &mut App, page: &mut Live) -> Option<Effect> {
+/// Marks the frame that is shown, or takes its mark off.
+fn mark(app: &mut App, page: &mut Live) {
     let (number, marked) = match page.mark() {
         Ok(marked) => marked,
         Err(refused) => {
-            refuse(app, refused.to_string());
-            return None;
+            return refuse(app, refused.to_string());
         }
     };
     let text = if marked { "marked" } else { "no mark any more" };
     inform(app, format!("frame {number}: {text}"));
-    page.recording()?;
-    Some(Effect::Work(Work::Mark(page.marks())))
 }
 
-/// Asks for the name of the imprint that is shown.
+/// Has marks that have changed written into the description of the recording, whether by a key, because their frame was
+/// withdrawn, or while the recording was being begun; otherwise asks for the name of the imprint that is shown.
 pub(in crate::tui) fn follow(app: &mut App) -> Option<Effect> {
     let page = page(app).filter(|page| !page.stopped())?;
+    if page.has_unwritten_marks() {
+        return Some(Effect::Work(Work::Mark(page.take_marks())));
+    }
     let imprint = page.ask_name()?;
     Some(Effect::Work(Work::Name(Box::new(imprint))))
 }
@@ -254,7 +255,7 @@ fn record(page: &mut Live) -> Effect {
         rule: page.rule(),
         tare: page.tare_values().cloned(),
         seconds_per_frame: channel.and_then(|channel| channel.seconds_per_frame),
-        marks: page.marks(),
+        marks: page.take_marks(),
         ended: None,
         ended_by: None,
     };

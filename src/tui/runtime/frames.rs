@@ -560,13 +560,17 @@ mod tests {
             frame: &second,
             time: None,
         };
+        page.set_recording(Some("a.npy".to_owned()));
         for event in [AcquireEvent::Provisional(&second), whole] {
             after(&mut page, &feed, AcquireEvent::Provisional(&first));
             assert_eq!(page.mark(), Ok((0, true)));
+            assert_eq!(page.take_marks().len(), 1);
             // Both before the page takes anything.
             feed.take_in(AcquireEvent::Withdrawn, &request);
             assert_eq!(after(&mut page, &feed, event), Some(0));
             assert!(!page.is_marked() && page.marks().is_empty());
+            // The description of the recording has the mark until then.
+            assert!(page.has_unwritten_marks());
         }
     }
 
