@@ -9,6 +9,7 @@
 //! marks      frames that were marked
 //! refusal    why something cannot be done with the frame that is shown
 //! tare       what is taken off, and how it is made
+//! threshold  what keys make of a threshold
 //! range      between which values shades are spread
 //! state      which frame is shown and how
 //! layout     where taxels and numbers stand
@@ -32,6 +33,8 @@ mod marks;
 pub mod refusal;
 
 pub mod tare;
+
+mod threshold;
 
 mod range;
 

@@ -1,4 +1,4 @@
-//! Between which values shades are spread, and by what a threshold is stepped.
+//! Between which values shades are spread.
 
 use crate::frame::Frame;
 use crate::tui::live::reading::{LiveReading, round_up};
@@ -52,28 +52,9 @@ impl ShadeRange {
     }
 }
 
-/// A value after a step within bounds. One that is beyond a bound already stays where the step would lead further away: a
-/// step down never goes up, and a step up never down.
-pub(super) fn stepped(value: f64, step: f64, (least, most): (f64, f64)) -> f64 {
-    let next = value + step;
-    if step < 0.0 {
-        next.max(least).min(value)
-    } else {
-        next.min(most).max(value)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_step_never_goes_the_other_way() {
-        let percent = |value, step| stepped(value, step, (5.0, 100.0));
-        assert_eq!([percent(3.0, -5.0), percent(3.0, 5.0)], [3.0, 8.0]);
-        assert_eq!([percent(7.0, -5.0), percent(98.0, 5.0)], [5.0, 100.0]);
-        assert_eq!([percent(50.0, -5.0), percent(100.0, 5.0)], [45.0, 100.0]);
-    }
 
     #[test]
     fn the_top_is_that_of_the_values_however_small_they_are() {

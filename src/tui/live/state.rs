@@ -9,11 +9,12 @@ use crate::tui::live::history::{FrameHistory, is_same};
 use crate::tui::live::marks::FrameMarks;
 use crate::tui::live::message::{FeedStatus, FrameBatch, ProvisionalChange, SourceState};
 use crate::tui::live::naming::{NamedImprint, Naming, NamingRequest};
-use crate::tui::live::range::{ShadeRange, stepped};
-use crate::tui::live::reading::{HeatLayer, LiveReading, hold, nine_digits, round_up};
+use crate::tui::live::range::ShadeRange;
+use crate::tui::live::reading::{HeatLayer, LiveReading, hold};
 use crate::tui::live::refusal::LiveRefusal;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::live::tare::{LiveTare, TareMark};
+use crate::tui::live::threshold;
 use crate::tui::recognise::sets::ModelChoice;
 
 /// Frames that a tare by key is made of, at most.
@@ -426,21 +427,10 @@ impl Live {
         }
     }
 
-    /// The threshold up or down by a step, a hundredth of the largest value so far in round numbers; without one, a
-    /// twentieth of that. In percent the step is 5 %, in deviations of the noise it is 1.
+    /// The threshold up or down by a step, which goes by the largest value so far; without one, one is set.
     pub fn step_threshold(&mut self, direction: i8) {
-        let by = f64::from(direction);
-        let step = round_up(self.range.top() / 100.0) * by;
-        let rule = match self.rule.map(|set| set.rule) {
-            None => Rule::at_least(round_up(self.range.top() / 20.0)),
-            Some(Rule::Percent(percent)) => Rule::percent(stepped(percent, 5.0 * by, (5.0, 100.0))),
-            Some(Rule::Hysteresis { low, high }) => {
-                Rule::hysteresis(nine_digits(low + step), nine_digits(high + step))
-            }
-            Some(Rule::Noise(deviations)) => Rule::noise(stepped(deviations, by, (1.0, 1000.0))),
-            Some(Rule::AtLeast(threshold)) => Rule::at_least(nine_digits(threshold + step)),
-        };
-        self.choose(&rule);
+        let rule = self.rule.map(|set| set.rule);
+        self.choose(&threshold::step(rule, direction, self.range.top()));
     }
 
     /// A threshold in percent in place of one in the sensor's unit, or the other way round: one that gives about the same
@@ -450,14 +440,8 @@ impl Live {
         let largest = self.reading.as_ref().and_then(|reading| reading.tared_max);
         let largest = largest.filter(|&largest| largest > 0.0);
         let largest = largest.unwrap_or(self.range.top());
-        let rule = match self.rule.map(|set| set.rule) {
-            Some(Rule::Percent(percent)) => Rule::at_least(nine_digits(percent / 100.0 * largest)),
-            Some(Rule::AtLeast(threshold)) => {
-                Rule::percent((100.0 * threshold / largest).round().clamp(1.0, 100.0))
-            }
-            _ => Rule::percent(50.0),
-        };
-        self.choose(&rule);
+        let rule = self.rule.map(|set| set.rule);
+        self.choose(&threshold::other_unit(rule, largest));
     }
 
     /// Stays at the frame that is shown, or follows the source again. Returns whether it stays.
