@@ -511,6 +511,8 @@ impl Live {
     pub fn set_recording(&mut self, name: Option<String>) {
         self.recording = name;
         self.not_recorded = None;
+        // That of the one before.
+        self.status.recorded = None;
     }
 
     /// Notes that a recording has failed, or cannot be begun, and why.
