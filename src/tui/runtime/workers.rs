@@ -186,9 +186,12 @@ impl Workers {
                 post(WorkerEvent::Estimate(grid, time));
             }
         });
-        // Without a thread there is no estimate.
-        drop(thread);
-        None
+        match thread.err()? {
+            WorkerEvent::Failed(_, reason) => Some(WorkerEvent::Refused(format!(
+                "the time of the sweep cannot be measured: {reason}"
+            ))),
+            event => Some(event),
+        }
     }
 
     /// Sweeps a grid, on a thread of its own if there is a receiver.
