@@ -91,7 +91,7 @@ impl Confusion {
 }
 
 /// Where the parts of the page are.
-struct Layout {
+struct ConfusionPanes {
     /// The headings of the columns.
     head: Rect,
     /// The rows of the matrix.
@@ -111,7 +111,7 @@ struct Layout {
 /// Lines for what the cursor is on.
 const DETAIL: u16 = 2;
 
-impl Layout {
+impl ConfusionPanes {
     /// Divides the page; the cell under the cursor is always among the visible ones.
     fn of(area: Rect, page: &Confusion) -> Self {
         let count = page.count();
@@ -178,7 +178,7 @@ impl Page for Confusion {
         area: Rect,
     ) -> Option<Position> {
         write::clear(buffer, area);
-        let layout = Layout::of(area, self);
+        let panes = ConfusionPanes::of(area, self);
         let evaluation = &self.trained.evaluation;
         let title = format!("Confusion: {}", self.trained.choice);
         let error = percent(evaluation.error());
@@ -191,32 +191,32 @@ impl Page for Confusion {
         ];
         let meaning = write::first_fitting(&meanings, area.width.into());
         write::line(buffer, write::row(area, 1), theme, [(meaning, Role::Quiet)]);
-        let last = layout.first.1 + layout.columns;
-        for (index, column) in (layout.first.1..last.min(self.count())).enumerate() {
+        let last = panes.first.1 + panes.columns;
+        for (index, column) in (panes.first.1..last.min(self.count())).enumerate() {
             let number = format!("{:>5} ", column + 1);
-            let place = layout.cell(layout.head, index);
+            let place = panes.cell(panes.head, index);
             write::line(buffer, place, theme, [(number.as_str(), Role::Title)]);
         }
-        let rows = (layout.first.0..self.count()).take(layout.rows.height.into());
+        let rows = (panes.first.0..self.count()).take(panes.rows.height.into());
         let mut cursor = None;
         for (index, row) in rows.enumerate() {
-            let line = write::row(layout.rows, index);
-            cursor = self.draw_row(theme, &layout, row, buffer, line).or(cursor);
+            let line = write::row(panes.rows, index);
+            cursor = self.draw_row(theme, &panes, row, buffer, line).or(cursor);
         }
-        self.draw_detail(theme, &layout, buffer);
+        self.draw_detail(theme, &panes, buffer);
         cursor
     }
 
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
-        let layout = Layout::of(area, self);
-        if !layout.rows.contains(at) {
+        let panes = ConfusionPanes::of(area, self);
+        if !panes.rows.contains(at) {
             return None;
         }
-        let row = layout.first.0 + usize::from(at.y - layout.rows.y);
-        let across = at.x.checked_sub(layout.rows.x + layout.label)? / CELL;
-        let column = layout.first.1 + usize::from(across);
+        let row = panes.first.0 + usize::from(at.y - panes.rows.y);
+        let across = at.x.checked_sub(panes.rows.x + panes.label)? / CELL;
+        let column = panes.first.1 + usize::from(across);
         let inside =
-            row < self.count() && column < self.count() && usize::from(across) < layout.columns;
+            row < self.count() && column < self.count() && usize::from(across) < panes.columns;
         inside.then_some(Message::Recognise(RecogniseMessage::SelectCell(
             row, column,
         )))
@@ -232,7 +232,7 @@ impl Confusion {
     fn draw_row(
         &self,
         theme: &Theme,
-        layout: &Layout,
+        panes: &ConfusionPanes,
         row: usize,
         buffer: &mut Buffer,
         line: Rect,
@@ -240,7 +240,7 @@ impl Confusion {
         let digits = self.count().to_string().len();
         let number = format!("{:>digits$} ", row + 1);
         let name = Rect {
-            width: layout.label.saturating_sub(1).min(line.width),
+            width: panes.label.saturating_sub(1).min(line.width),
             ..line
         };
         let pieces = [
@@ -250,9 +250,9 @@ impl Confusion {
         write::line(buffer, name, theme, pieces);
         let touches: u128 = self.trained.evaluation.confusion[row].iter().sum();
         let mut cursor = None;
-        let last = layout.first.1 + layout.columns;
-        for (index, column) in (layout.first.1..last.min(self.count())).enumerate() {
-            let place = layout.cell(line, index);
+        let last = panes.first.1 + panes.columns;
+        for (index, column) in (panes.first.1..last.min(self.count())).enumerate() {
+            let place = panes.cell(line, index);
             let count = self.trained.evaluation.confusion[row][column];
             let text = cell_text(theme, count, touches, row == column);
             let here = (row, column) == self.cell;
@@ -271,7 +271,7 @@ impl Confusion {
     }
 
     /// What the cursor is on.
-    fn draw_detail(&self, theme: &Theme, layout: &Layout, buffer: &mut Buffer) {
+    fn draw_detail(&self, theme: &Theme, panes: &ConfusionPanes, buffer: &mut Buffer) {
         let (row, column) = self.cell;
         let confusion = &self.trained.evaluation.confusion[row];
         let touches: u128 = confusion.iter().sum();
@@ -282,16 +282,16 @@ impl Confusion {
             grouped(confusion[column]),
             grouped(touches),
         );
-        write::line(buffer, layout.detail, theme, [(text.as_str(), Role::Text)]);
+        write::line(buffer, panes.detail, theme, [(text.as_str(), Role::Text)]);
         let Some(example) = &self.example else { return };
         let text = example.in_words(|shape| self.trained.name(shape));
         write::line(
             buffer,
-            write::row(layout.detail, 1),
+            write::row(panes.detail, 1),
             theme,
             [(text.as_str(), Role::Text)],
         );
-        if let (Some(area), Some(imprint)) = (layout.picture, &example.imprint) {
+        if let (Some(area), Some(imprint)) = (panes.picture, &example.imprint) {
             thumbnail::draw(theme, imprint, buffer, area);
         }
     }

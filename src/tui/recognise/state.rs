@@ -250,7 +250,7 @@ impl Recognition {
     }
 
     /// Keeps the touch on the matrix; `false` if it is kept already, or nothing is touched.
-    pub fn keep(&mut self) -> bool {
+    pub fn add_touch(&mut self) -> bool {
         if self.present_kept || self.present.is_empty() {
             return false;
         }
@@ -260,7 +260,7 @@ impl Recognition {
     }
 
     /// Keeps these touches of a shape in place of all others; the last of them is on the matrix.
-    pub fn keep_all(&mut self, touches: Vec<Imprint>) {
+    pub fn set_touches(&mut self, touches: Vec<Imprint>) {
         if let Some(&last) = touches.last() {
             self.present = last;
         }

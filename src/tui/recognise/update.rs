@@ -49,7 +49,7 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
             None
         }
         RecogniseMessage::Keep => {
-            keep(app);
+            add_touch(app);
             None
         }
         RecogniseMessage::Forget => {
@@ -175,9 +175,9 @@ fn forget(app: &mut App) {
 
 /// Keeps the touch on the matrix.
 /// Kept touches count as touches of one and the same shape; the answer takes them all together.
-fn keep(app: &mut App) {
+fn add_touch(app: &mut App) {
     let Some(page) = state(app) else { return };
-    let kept = page.keep();
+    let kept = page.add_touch();
     let text = match (kept, page.kept()) {
         (true, 1) => "1 touch kept; now touch the shape elsewhere".to_owned(),
         (true, count) => format!("{count} touches kept"),
@@ -259,7 +259,7 @@ fn guess(app: &mut App, exercise: Exercise, named: bool) {
         ),
     };
     if let Some(page) = state(app) {
-        page.keep_all(exercise.into_touches());
+        page.set_touches(exercise.into_touches());
         let best = page.answer().and_then(|answer| answer.shape);
         page.score.asked += 1;
         page.score.right += u32::from(right);

@@ -259,7 +259,7 @@ impl Panel<'_> {
         }
         if let Some((shape, pose)) = &look.pose {
             let own = look.nearest.as_ref().map(|nearest| nearest.distance);
-            for line in place(trained, *shape, pose, own == Some(0)) {
+            for line in pose_lines(trained, *shape, pose, own == Some(0)) {
                 self.text(&line, Role::Text);
             }
         }
@@ -329,7 +329,7 @@ fn legend(look: &Look, nearest: &Nearest) -> String {
 const MARKS: [char; 2] = ['+', '-'];
 
 /// Where the shape lies: the mean and the spread over the poses that leave the imprint, in lines.
-fn place(trained: &TrainedModel, shape: usize, pose: &PoseEstimate, own: bool) -> [String; 3] {
+fn pose_lines(trained: &TrainedModel, shape: usize, pose: &PoseEstimate, own: bool) -> [String; 3] {
     let name = if own {
         String::new()
     } else {
@@ -342,7 +342,7 @@ fn place(trained: &TrainedModel, shape: usize, pose: &PoseEstimate, own: bool) -
     let [x, y] = pose.position;
     let [dx, dy] = pose.standard_deviation;
     let (dx, dy) = (spread_of(dx, 2), spread_of(dy, 2));
-    let place = format!("{name}{what} {x:.2} ± {dx}, {y:.2} ± {dy}");
+    let position = format!("{name}{what} {x:.2} ± {dx}, {y:.2} ± {dy}");
     let poses = counted(pose.poses, "pose");
     let any = || ("any angle".to_owned(), poses.clone());
     let (angle, poses) = pose.angle.as_ref().map_or_else(any, |angle| {
@@ -360,7 +360,7 @@ fn place(trained: &TrainedModel, shape: usize, pose: &PoseEstimate, own: bool) -
             format!("95 % in {first}°..{last}°; {poses}"),
         )
     });
-    [place, angle, poses]
+    [position, angle, poses]
 }
 
 /// A number to whole ones, half of one up. Formatting alone would make 22 of 22.5 and 24 of 23.5: symmetric shapes often

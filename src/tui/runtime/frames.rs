@@ -21,8 +21,9 @@ use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::live::history::bytes_of;
 use crate::tui::live::message::{FrameBatch, LiveEvent, ProvisionalChange, SourceState};
 use crate::tui::live::request::WatchRequest;
+use crate::tui::runtime::lock::locked;
 use crate::tui::runtime::progress::WorkerEventSink;
-use crate::tui::runtime::recording::{Recording, locked};
+use crate::tui::runtime::recording::Recording;
 
 /// The source that is watched.
 #[derive(Debug, Default)]

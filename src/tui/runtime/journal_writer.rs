@@ -1,10 +1,10 @@
 //! Writes unsaved work to the journal on a thread of its own, so that no key waits for a disk.
 //!
 //! ```text
-//!             Keep                   400 ms, or Flush
+//!             Persist                400 ms, or Flush
 //! Nothing ------------> Since(shape) -----------------> written: Nothing
 //!    ^                       ^                          error:   Failed(shape), reported once
-//!    |  Clear                |  Keep                       |
+//!    |  Clear                |  Persist                    |
 //!    +---- any               +-----------------------------+  tried again with the next change
 //! ```
 //! Changes within the interval are written together, the last one only. The thread sleeps while there is nothing to
@@ -45,7 +45,7 @@ pub(in crate::tui) struct JournalWriter {
 /// A request to the thread.
 enum JournalRequest {
     /// Keep this unsaved work.
-    Keep(Box<StoredShape>),
+    Persist(Box<StoredShape>),
     /// Keep this work of a program that crashed, and then take it out of that one's journal.
     Adopt(Box<Orphan>),
     /// There is no unsaved work any more.
@@ -111,7 +111,7 @@ impl JournalWriter {
             return;
         }
         if let Some(shape) = work {
-            self.keep(shape);
+            self.persist(shape);
         } else {
             self.last = None;
             self.send(JournalRequest::Clear);
@@ -119,9 +119,9 @@ impl JournalWriter {
     }
 
     /// Keeps unsaved work, even if it was noted before.
-    pub(in crate::tui) fn keep(&mut self, shape: StoredShape) {
+    pub(in crate::tui) fn persist(&mut self, shape: StoredShape) {
         self.last = Some(shape.clone());
-        self.send(JournalRequest::Keep(Box::new(shape)));
+        self.send(JournalRequest::Persist(Box::new(shape)));
     }
 
     /// Keeps the work of a program that crashed, in place of that one's journal.
@@ -203,7 +203,7 @@ impl JournalThread {
                 _ => inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
             };
             match note {
-                Ok(JournalRequest::Keep(shape)) => {
+                Ok(JournalRequest::Persist(shape)) => {
                     let since = match self.pending {
                         Pending::Since(_, since) => since,
                         _ => Instant::now(),

@@ -13,6 +13,7 @@
 //! recording        the file that frames are recorded in
 //! naming           the shapes that left the imprints of frames
 //! disk             work with the disk, which may answer late
+//! lock             a mutex, locked whatever another thread has done
 //! slow_work        work that is waited for, and when that is said
 //! reading          what is read from it, for the page that asked
 //! journal_writer   unsaved work, written beside the program
@@ -47,6 +48,8 @@ pub mod mailbox;
 mod write_access;
 
 mod disk;
+
+mod lock;
 
 mod slow_work;
 

@@ -22,10 +22,10 @@ use crate::storage::{Library, ModelCache, ModelFolder, load_whole_model};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::recognise::message::{Look, Prepared, RecognitionEvent};
 use crate::tui::recognise::sets::{ModelChoice, TrainedModel, unknown_set};
+use crate::tui::runtime::lock::locked;
 use crate::tui::runtime::progress::{
     ProgressReporter, WorkerEventSink, guarded, on_a_thread, proceed,
 };
-use crate::tui::runtime::recording::locked;
 use crate::tui::runtime::slow_work::SlowWork;
 
 /// Where models are.

@@ -170,7 +170,7 @@ mod tests {
 
     use super::*;
     use crate::tui::recognise::sets::ModelChoice;
-    use crate::tui::runtime::recording::locked;
+    use crate::tui::runtime::lock::locked;
 
     #[test]
     fn a_training_that_is_given_up_says_nothing() {

@@ -11,19 +11,15 @@
 //! A disk may hang in each of them, so none is called on the screen's thread.
 
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use crate::acquire::{FrameRecorder, RecorderError};
 use crate::formats::recording::{FrameMark, RecordingMetadata};
 use crate::frame::Frame;
 use crate::storage::Existing;
 use crate::tui::live::message::LiveEvent;
+use crate::tui::runtime::lock::locked;
 use crate::tui::runtime::write_access::WriteAccess;
-
-/// A panic while it was locked does not matter: what it holds is always whole.
-pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
 
 /// A file that is recorded in, shared by the source's thread and the one that finishes it.
 #[derive(Debug)]

@@ -5,9 +5,10 @@
 //! `taxel script --allow-outside` lifts that.
 
 use std::path::{Component, Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
 use crate::storage::{Existing, location};
+use crate::tui::runtime::lock::locked;
 
 /// Where files may be written.
 #[derive(Debug, Default)]
@@ -42,7 +43,7 @@ impl WriteAccess {
             )
         })?;
         // A thread that panicked here has added a path or not.
-        let mut written = self.written.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut written = locked(&self.written);
         if existing == Existing::Replaced && path.exists() && !written.contains(&path) {
             return Err(format!(
                 "{name}: was there before the script, which replaces only its own files; --allow-outside lifts that"

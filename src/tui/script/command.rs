@@ -143,7 +143,7 @@ fn command(line: &str) -> Result<ScriptCommand, String> {
         "Type" => quoted(rest).map(ScriptCommand::Type),
         "Paste" => quoted(rest).map(ScriptCommand::Paste),
         "Click" if rest.starts_with('"') => quoted(rest).map(ScriptCommand::ClickText),
-        "Click" => place(rest).map(ScriptCommand::Click),
+        "Click" => position(rest).map(ScriptCommand::Click),
         "Drag" => drag(rest),
         "Scroll" => scroll(rest),
         "Screen" if rest.contains(char::is_control) => Err(format!(
@@ -156,11 +156,11 @@ fn command(line: &str) -> Result<ScriptCommand, String> {
         "ExpectNot" => pattern(rest).map(ScriptCommand::ExpectNot),
         "ExpectAt" => {
             let (at, text) = two(rest)?;
-            Ok(ScriptCommand::ExpectAt(place(at)?, quoted(text)?))
+            Ok(ScriptCommand::ExpectAt(position(at)?, quoted(text)?))
         }
         "ExpectStyle" => {
             let (at, name) = two(rest)?;
-            Ok(ScriptCommand::ExpectStyle(place(at)?, style(name)?))
+            Ok(ScriptCommand::ExpectStyle(position(at)?, style(name)?))
         }
         "Signal" if SIGNALS.contains(&rest) => Ok(ScriptCommand::Signal(rest.to_owned())),
         "Signal" => Err(format!(
@@ -206,7 +206,7 @@ fn seed(text: &str) -> Result<u64, String> {
 
 /// Two places or more.
 fn drag(text: &str) -> Result<ScriptCommand, String> {
-    let places: Result<Vec<_>, _> = text.split_whitespace().map(place).collect();
+    let places: Result<Vec<_>, _> = text.split_whitespace().map(position).collect();
     let places = places?;
     if places.len() < 2 {
         let found = shortened(text);
@@ -224,7 +224,7 @@ fn scroll(text: &str) -> Result<ScriptCommand, String> {
         let found = shortened(turns);
         format!("expected a whole number of turns, found {found:?}")
     })?;
-    Ok(ScriptCommand::Scroll(place(at)?, number))
+    Ok(ScriptCommand::Scroll(position(at)?, number))
 }
 
 /// The letter of a style, from its name.
@@ -263,7 +263,7 @@ pub(crate) fn size(text: &str) -> Result<(u16, u16), String> {
 }
 
 /// `12,5`: column and row of the screen.
-fn place(text: &str) -> Result<ScreenPosition, String> {
+fn position(text: &str) -> Result<ScreenPosition, String> {
     let numbers = text
         .split_once(',')
         .and_then(|(column, row)| Some((column.parse().ok()?, row.parse().ok()?)));

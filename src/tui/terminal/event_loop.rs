@@ -313,8 +313,8 @@ impl<'a> EventLoop<'a> {
             };
             self.read_at = Instant::now();
             self.reader.read(&buffer[..count])
-        } else if ready.late && self.is_settled() {
-            self.reader.settle()
+        } else if ready.late && self.has_timed_out() {
+            self.reader.on_timeout()
         } else {
             return Ok(());
         };
@@ -338,7 +338,7 @@ impl<'a> EventLoop<'a> {
     }
 
     /// Whether nothing more came in time after half a sequence.
-    fn is_settled(&self) -> bool {
+    fn has_timed_out(&self) -> bool {
         let patience = self.reader.patience();
         patience.is_some_and(|patience| self.read_at.elapsed() >= patience)
     }

@@ -112,7 +112,7 @@ impl InputReader {
         std::mem::take(&mut self.found)
     }
 
-    /// How long to wait for more before [`InputReader::settle`]; none: for ever.
+    /// How long to wait for more before [`InputReader::on_timeout`]; none: for ever.
     pub fn patience(&self) -> Option<Duration> {
         match self.state {
             InputState::Escape | InputState::Answer => Some(MOMENT),
@@ -122,7 +122,7 @@ impl InputReader {
     }
 
     /// Nothing more came in time.
-    pub fn settle(&mut self) -> Vec<Input> {
+    pub fn on_timeout(&mut self) -> Vec<Input> {
         match self.state {
             InputState::Escape => self.key(Key::Esc),
             InputState::Paste => self.paste(self.held.len()),

@@ -39,7 +39,7 @@ const TABLE: u16 = 48;
 const DETAIL: u16 = 3;
 
 /// Where the parts of the page are.
-struct Layout {
+struct SeparatePanes {
     /// The curve; empty where there is no room.
     curve: Rect,
     /// The heading of the table.
@@ -54,7 +54,7 @@ struct Layout {
     detail: Rect,
 }
 
-impl Layout {
+impl SeparatePanes {
     /// Below ten lines the curve is left out, because the table says the same in numbers.
     fn of(area: Rect, page: &Separate) -> Self {
         let body = write::below(area, 2);
@@ -100,7 +100,7 @@ impl Page for Separate {
         area: Rect,
     ) -> Option<Position> {
         write::clear(buffer, area);
-        let layout = Layout::of(area, self);
+        let panes = SeparatePanes::of(area, self);
         let request = self.request();
         let title = format!("Separate: {}", request.trained.choice);
         let what = match request.axis {
@@ -116,16 +116,16 @@ impl Page for Separate {
             let steps = request.steps();
             write::line(buffer, second, theme, [(steps.as_str(), Role::Quiet)]);
         }
-        self.draw_curve(theme, buffer, layout.curve);
-        let cursor = self.draw_table(theme, &layout, buffer);
-        self.draw_detail(theme, keymap, &layout, buffer);
+        self.draw_curve(theme, buffer, panes.curve);
+        let cursor = self.draw_table(theme, &panes, buffer);
+        self.draw_detail(theme, keymap, &panes, buffer);
         cursor
     }
 
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
-        let layout = Layout::of(area, self);
-        let inside = layout.rows.contains(at) && at.x < layout.picture.x;
-        let row = layout.first + usize::from(at.y.checked_sub(layout.rows.y)?);
+        let panes = SeparatePanes::of(area, self);
+        let inside = panes.rows.contains(at) && at.x < panes.picture.x;
+        let row = panes.first + usize::from(at.y.checked_sub(panes.rows.y)?);
         (inside && row < self.found().len())
             .then_some(Message::Recognise(RecogniseMessage::Select(row)))
     }
@@ -185,14 +185,19 @@ impl Separate {
     }
 
     /// What was found of each size. Returns where the cursor is.
-    fn draw_table(&self, theme: &Theme, layout: &Layout, buffer: &mut Buffer) -> Option<Position> {
+    fn draw_table(
+        &self,
+        theme: &Theme,
+        panes: &SeparatePanes,
+        buffer: &mut Buffer,
+    ) -> Option<Position> {
         let name = self.size_name();
         let head = format!("{name:<8}    error   certain       keys  sensor");
-        write::line(buffer, layout.head, theme, [(head.as_str(), Role::Title)]);
+        write::line(buffer, panes.head, theme, [(head.as_str(), Role::Title)]);
         let mut cursor = None;
-        let rows = self.found().iter().enumerate().skip(layout.first);
-        for (line, (row, size)) in rows.take(layout.rows.height.into()).enumerate() {
-            let place = write::row(layout.rows, line);
+        let rows = self.found().iter().enumerate().skip(panes.first);
+        for (line, (row, size)) in rows.take(panes.rows.height.into()).enumerate() {
+            let place = write::row(panes.rows, line);
             let here = row == self.cursor();
             let role = match (here, size.point.error() <= self.request().wanted) {
                 (true, _) => Role::Focus,
@@ -209,9 +214,15 @@ impl Separate {
     }
 
     /// What was looked for, and the pair that is confused most at the cursor.
-    fn draw_detail(&self, theme: &Theme, keymap: &Keymap, layout: &Layout, buffer: &mut Buffer) {
+    fn draw_detail(
+        &self,
+        theme: &Theme,
+        keymap: &Keymap,
+        panes: &SeparatePanes,
+        buffer: &mut Buffer,
+    ) {
         let wanted = self.wanted_text(keymap);
-        let line = |index| write::row(layout.detail, index);
+        let line = |index| write::row(panes.detail, index);
         write::line(buffer, line(0), theme, [(wanted.as_str(), Role::Title)]);
         let Some(size) = self.selected() else { return };
         let place = said(self.request().axis, size.point.value);
@@ -232,7 +243,7 @@ impl Separate {
             let text = example.in_words(name);
             write::line(buffer, line(2), theme, [(text.as_str(), Role::Quiet)]);
             if let Some(imprint) = &example.imprint {
-                thumbnail::draw(theme, imprint, buffer, layout.picture);
+                thumbnail::draw(theme, imprint, buffer, panes.picture);
             }
         }
     }

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 fn read(bytes: &[u8]) -> Vec<Input> {
     let mut reader = InputReader::default();
     let mut found = reader.read(bytes);
-    found.extend(reader.settle());
+    found.extend(reader.on_timeout());
     found
 }
 
@@ -63,7 +63,7 @@ fn an_escape_waits_for_a_moment_and_a_sequence_for_ever() {
     let mut reader = InputReader::default();
     assert_eq!(reader.read(b"\x1b"), []);
     assert_eq!(reader.patience(), Some(MOMENT));
-    assert_eq!(reader.settle(), keys("<Esc>"));
+    assert_eq!(reader.on_timeout(), keys("<Esc>"));
     assert_eq!(reader.patience(), None);
     assert_eq!(reader.read(b"\x1b["), []);
     assert_eq!(reader.patience(), None);
@@ -125,7 +125,7 @@ proptest! {
         let bytes = pieces.concat();
         let mut reader = InputReader::default();
         let mut found: Vec<_> = bytes.iter().flat_map(|&byte| reader.read(&[byte])).collect();
-        found.extend(reader.settle());
+        found.extend(reader.on_timeout());
         prop_assert_eq!(found, read(&bytes));
     }
 }

@@ -27,7 +27,7 @@ pub(crate) fn terminal(bytes: &[u8]) -> bool {
     let mut reader = InputReader::default();
     let mut whole = reader.read(bytes);
     let patience = reader.patience();
-    whole.extend(reader.settle());
+    whole.extend(reader.on_timeout());
     assert_eq!(reader.patience(), None, "nothing is waited for any more");
 
     let mut reader = InputReader::default();
@@ -36,7 +36,7 @@ pub(crate) fn terminal(bytes: &[u8]) -> bool {
         pieces.extend(reader.read(byte));
     }
     assert_eq!(reader.patience(), patience);
-    pieces.extend(reader.settle());
+    pieces.extend(reader.on_timeout());
     assert_eq!(pieces, whole);
 
     for input in whole {
