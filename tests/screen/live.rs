@@ -266,10 +266,15 @@ fn a_script_records_each_frame_once() {
     shows(&page, &["frame 4", "recording  touch-1.npy, 3 frames"]);
     page.frames(1);
     shows(&page, &["frame 5", "recording  touch-1.npy, 4 frames"]);
-    then(&mut page, "mr", &["touch-1.npy: 4 frames recorded"]);
+    then(&mut page, "m", &["frame 5: marked"]);
+    for _ in 0..2 {
+        page.frames(20);
+        shows(&page, &["ended", "recording  touch-1.npy, 6 frames"]);
+    }
+    then(&mut page, "r", &["touch-1.npy: 6 frames recorded"]);
     let array = std::fs::read(folder.path().join("touch-1.npy")).expect("written");
     let text = String::from_utf8_lossy(&array[..256]).into_owned();
-    assert!(text.contains("'shape': (4,)"), "{text}");
+    assert!(text.contains("'shape': (6,)"), "{text}");
     assert_eq!(
         array[256 + 8..256 + 16],
         2_u64.to_le_bytes(),

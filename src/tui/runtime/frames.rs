@@ -221,6 +221,8 @@ impl FrameWatcher {
         let record_from = |feed: &FrameFeed, seen: usize| {
             if seen == skipped {
                 locked(&feed.recording).clone_from(&recording);
+                let recorded = feed.recorded(Recording::tick);
+                locked(&feed.pending).note(recorded);
             }
         };
         record_from(&feed, seen);
