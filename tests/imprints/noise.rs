@@ -293,7 +293,8 @@ fn independent_posteriors_agree() {
     );
     let Ok(text) = std::fs::read_to_string(&path) else {
         assert!(!is_given, "there is nothing at {}", path.display());
-        eprintln!("SKIPPED: no reference posteriors at {}", path.display());
+        let missing = format!("no reference posteriors at {}", path.display());
+        crate::skip::skipped(&missing);
         return;
     };
     let model = train(s4(), 32, published());

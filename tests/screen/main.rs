@@ -1,5 +1,8 @@
 //! The program's screen: in memory, driven by keys and scripts, and the real program in a pseudo-terminal.
 
+#[path = "../common/skip.rs"]
+mod skip;
+
 mod session;
 
 mod files;

@@ -3,7 +3,7 @@
 //! A worker answers one imprint at a time, and then the newest: neither its training nor its search holds up drawing.
 
 use crate::imprint::Imprint;
-use crate::recognition::{Answer, AnswerState, Evidence, Model, Noise};
+use crate::recognition::{AnswerState, Evidence, Model, Noise};
 use crate::tui::recognise::sets::ModelChoice;
 
 /// What a model says of an imprint.
@@ -22,14 +22,15 @@ pub struct NamedImprint {
 }
 
 impl NamedImprint {
-    /// The answer of a model to an imprint.
-    pub fn new(model: &Model, imprint: &Imprint, answer: &Answer) -> Self {
+    /// The answer of a model to an imprint, of which the evidence is.
+    pub fn new(model: &Model, imprint: &Imprint, evidence: Evidence<'_>) -> Self {
+        let answer = model.recognise(evidence);
         let name = |shape: usize| model.shapes()[shape].name.clone();
         let shapes = match answer.state {
-            AnswerState::Tied => answer.tied.clone(),
+            AnswerState::Tied => answer.tied,
             _ => answer.shape.into_iter().collect(),
         };
-        let nearest = model.nearest_of(Evidence::of(&[*imprint]));
+        let nearest = model.nearest_of(evidence);
         Self {
             imprint: *imprint,
             state: answer.state,

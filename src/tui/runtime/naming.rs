@@ -161,7 +161,7 @@ fn answer(
 fn named(model: &Model, noise: Option<&Noise>, imprint: &Imprint) -> NamedImprint {
     let touches = [*imprint];
     let evidence = Evidence::of(&touches).under(noise);
-    NamedImprint::new(model, imprint, &model.recognise(evidence))
+    NamedImprint::new(model, imprint, evidence)
 }
 
 #[cfg(test)]

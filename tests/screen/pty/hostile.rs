@@ -7,6 +7,7 @@ use std::time::Instant;
 use rustix::process::Signal;
 
 use super::program::{Program, Start, TAXEL};
+use crate::skip;
 
 /// Starts the program with some of its calls tampered with; None where that is not possible.
 fn tampered(calls: &str, how: &str) -> Option<Program> {
@@ -15,7 +16,7 @@ fn tampered(calls: &str, how: &str) -> Option<Program> {
         .stderr(Stdio::null())
         .status();
     if !traced.is_ok_and(|status| status.success()) {
-        println!("SKIPPED, there is no strace that may trace");
+        skip::skipped("there is no strace that may trace");
         return None;
     }
     let (trace, inject) = (format!("trace={calls}"), format!("inject={calls}:{how}"));

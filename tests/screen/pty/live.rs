@@ -11,6 +11,7 @@ use rustix::process::Signal;
 
 use super::program::{Program, Start, TAXEL};
 use super::tracer::Tracer;
+use crate::skip;
 
 /// A pipe with a name in a folder; None where there is no mkfifo.
 fn fifo(folder: &Path) -> Option<PathBuf> {
@@ -19,7 +20,7 @@ fn fifo(folder: &Path) -> Option<PathBuf> {
     if made.is_ok_and(|status| status.success()) {
         return Some(path);
     }
-    eprintln!("SKIPPED: there is no mkfifo");
+    skip::lacking("mkfifo");
     None
 }
 

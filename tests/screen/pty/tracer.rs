@@ -5,6 +5,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
 use super::program::Program;
+use crate::skip;
 
 /// Longer than any test waits: only the end of the [`Tracer`] lets the program go on.
 const DELAY: &str = "delay_enter=600000000";
@@ -34,7 +35,7 @@ impl Tracer {
             strace.arg("-P").arg(path);
         }
         let Ok(child) = strace.stderr(Stdio::null()).spawn() else {
-            println!("SKIPPED, there is no strace");
+            skip::lacking("strace");
             return None;
         };
         let mut tracer = Self(child);
@@ -44,7 +45,7 @@ impl Tracer {
             refused || is_traced(&pid)
         });
         if refused {
-            println!("SKIPPED, strace may not trace");
+            skip::skipped("strace may not trace");
             return None;
         }
         Some(tracer)
