@@ -187,7 +187,7 @@ impl Panel<'_> {
         self.text(&limit, Role::Quiet);
         if let Some(unknown) = trained.unknown_between {
             let text = format!(
-                "{} of poses between are unknown",
+                "off the grid, {} of poses are unknown",
                 percent(unknown).trim_start()
             );
             self.text(&text, Role::Quiet);
