@@ -121,7 +121,8 @@ impl Plane {
                 continue;
             };
             let is_open = !areas.crosses(row, column);
-            if is_open && open == column.checked_sub(1) && whole.is_none() {
+            let after_open = open.is_some_and(|last: usize| last + 1 == column);
+            if is_open && after_open && whole.is_none() {
                 whole = Some(row_areas(solid, self.sensor.columns(), cell_row));
             }
             open = is_open.then_some(column);

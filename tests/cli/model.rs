@@ -818,7 +818,11 @@ fn a_torn_first_line_is_answered_by_its_error_as_any_other() {
         answers[0]
     );
     assert!(answers[1].starts_with("{\"answer\":"), "{}", answers[1]);
-    // A stored shape goes on in its next line.
+    // A stored shape goes on in its next line, wherever its first one ends.
+    let shape = "{\"format\":\"taxel-shape/1\",\"name\":\"a\",\"imprint\":[\"##\"],\"sensor\":\n\
+        {\"columns\":2,\"rows\":1,\"pitch_mm\":1.0,\"threshold\":0.5}}\n";
+    let run = place.run("recognise - --model m.npz", shape);
+    assert_eq!(run.status, Some(0), "{}", run.stderr);
     place.done("library save mine washer");
     let shape = String::from_utf8(place.read("library/mine.json")).expect("UTF-8");
     assert!(shape.starts_with("{\n"));

@@ -198,6 +198,16 @@ fn without_noise_a_mask_does_not_make_the_impossible_certain() {
         model.nearest_of(evidence).map(|near| near.distance),
         Some(0)
     );
+    // Of several touches it is the one that is not left, though a dead taxel is a hole in the other.
+    let square: Imprint = ".....\n.##..\n.##..\n.....\n....."
+        .parse()
+        .expect("an imprint");
+    let mut hole = Imprint::empty(5, 5);
+    hole.set(1, 1, true);
+    let noise = Noise::new(0.0).expect("in range").without(hole);
+    let touches = [square, torn];
+    let nearest = model.nearest_of(Evidence::of(&touches).under(Some(&noise)));
+    assert_eq!(nearest.map(|near| near.distance), Some(1));
     let distance = model.nearest(&torn).map(|near| near.distance);
     assert_eq!(distance, Some(1), "where it is not known");
 }

@@ -215,8 +215,8 @@ pub(crate) fn is_kept(name: &Name, shelf: &Shelf) -> bool {
     folder(shelf).is_ok_and(|models| models.file(name).exists())
 }
 
-/// Finds a model that can be asked: one beside the library, then a file, then a built-in set, which is trained if the cache
-/// has not got it.
+/// Finds a model that can be asked: one beside the library, then a built-in set, which is trained if the cache has not got
+/// it, then a file.
 ///
 /// # Errors
 /// [`CliError::NoSet`] if nothing has that name; otherwise why the file cannot be read, or that it is one shard only.

@@ -257,10 +257,9 @@ fn input(what: &OsStr, shelf: &Shelf) -> Result<Asked, CliError> {
     let is_line = if let Some(is_line) = is_line(&start) {
         is_line
     } else {
-        let length = start.len();
         line(&mut input, &mut start).map_err(|error| refused(error.into()))?;
-        // In an object that goes on no other one begins here: the first line was torn.
-        start[length..].trim_ascii_start().starts_with(b"{")
+        // Both together make no sense where the first line was torn.
+        is_line(&start).unwrap_or(false)
     };
     let whole = blank.chain(Cursor::new(start)).chain(input);
     if is_line {

@@ -337,7 +337,10 @@ impl Live {
         for frame in &batch.frames {
             self.add(frame);
         }
-        let is_ended = self.status.state == SourceState::Ended;
+        let is_ended = matches!(
+            self.status.state,
+            SourceState::Ended | SourceState::Failed(_)
+        );
         let tare_fails = is_ended && self.tare.end_of_source();
         if self.frozen.is_none() {
             let unseen = batch.frames.len().saturating_sub(1);
@@ -477,9 +480,12 @@ impl Live {
 
     /// Shows the largest value that each cell has from now on, or the present values again. Returns whether it does.
     pub fn hold_peak(&mut self) -> bool {
-        self.held = match self.held {
-            Some(_) => None,
-            None => self.shown().map(|(_, frame)| frame),
+        self.held = if self.held.is_some() {
+            None
+        } else {
+            // Not of one that may be withdrawn.
+            let confirmed = self.frozen.or_else(|| self.history.newest());
+            confirmed.and_then(|number| self.history.get(number).cloned())
         };
         self.read();
         self.held.is_some()

@@ -22,6 +22,8 @@ pub struct TareMark {
 /// How the tare of the page is made. What is taken off stands in the [`Processing`] of the page.
 #[derive(Clone, Debug)]
 pub(super) struct LiveTare {
+    /// Of how many of the first frames it is to be made, until a key has made or taken off one; 0 for none.
+    wanted: u64,
     /// The first frames, until they are enough for the tare that was asked for.
     first: Option<TareFrames>,
     /// How the tare was made; None if nothing is taken off.
@@ -36,6 +38,7 @@ impl LiveTare {
     /// The tare that is asked for at the start.
     pub(super) fn new(request: &WatchRequest) -> Self {
         Self {
+            wanted: request.tare,
             first: (request.tare > 0).then(|| TareFrames::new(request.tare)),
             mark: None,
             takes_own: request.own_tare && request.tare == 0,
@@ -122,7 +125,7 @@ impl LiveTare {
             tare.add(&seen)?;
         }
         self.end(tare, last, processing)?;
-        (self.first, self.error) = (None, None);
+        (self.first, self.error, self.wanted) = (None, None, 0);
         Ok(())
     }
 
@@ -145,22 +148,48 @@ impl LiveTare {
 
     /// Takes nothing off any more; `false` if there was no tare.
     pub(super) fn give_up(&mut self, processing: &mut Processing) -> bool {
-        (self.first, self.error) = (None, None);
+        (self.first, self.error, self.wanted) = (None, None, 0);
         processing.tare = None;
         self.mark.take().is_some()
     }
 
     /// Notes that the source is watched again, which counts its frames from 0: a tare stays without its age, and one that
-    /// was being made begins anew.
+    /// was being made, or for which there were too few frames, begins anew.
     pub(super) fn restart(&mut self) {
         self.mark = self.mark.map(|mark| TareMark {
             number: None,
             time: None,
             ..mark
         });
-        self.first = self
-            .first
-            .as_ref()
-            .map(|first| TareFrames::new(first.wanted()));
+        let begins = self.mark.is_none() && self.wanted > 0;
+        self.first = begins.then(|| TareFrames::new(self.wanted));
+        self.error = None;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tare_for_which_frames_lacked_is_made_when_the_source_is_watched_again() {
+        let mut request = WatchRequest::new("none");
+        request.tare = 2;
+        let (mut tare, mut processing) = (LiveTare::new(&request), Processing::default());
+        let frame = Frame::new(2, 2);
+        tare.add(&frame, &mut processing);
+        assert!(tare.end_of_source() && tare.error().is_some());
+        tare.restart();
+        assert_eq!((tare.progress(), tare.error()), (Some((0, 2)), None));
+        for _ in 0..2 {
+            tare.add(&frame, &mut processing);
+        }
+        assert_eq!((tare.progress(), processing.tare.is_some()), (None, true));
+        // One that is there stays; one that was taken off does not come back.
+        tare.restart();
+        assert!(tare.progress().is_none() && processing.tare.is_some());
+        assert!(tare.give_up(&mut processing));
+        tare.restart();
+        assert_eq!(tare.progress(), None);
     }
 }

@@ -255,7 +255,8 @@ fn record(page: &mut Live) -> Effect {
         rule: page.rule(),
         tare: page.tare_values().cloned(),
         seconds_per_frame: channel.and_then(|channel| channel.seconds_per_frame),
-        marks: page.take_marks(),
+        // Not taken: if a recording is being begun already, its description does not have them yet.
+        marks: page.marks(),
         ended: None,
         ended_by: None,
     };

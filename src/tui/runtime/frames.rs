@@ -578,6 +578,27 @@ mod tests {
     }
 
     #[test]
+    fn a_held_peak_does_not_begin_with_a_frame_that_may_be_withdrawn() {
+        let feed = FrameFeed::default();
+        let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
+        let [mut first, mut garbled] = [Frame::new(2, 2), Frame::new(2, 2)];
+        first.values_mut().fill(1.0);
+        garbled.values_mut()[0] = 9.0;
+        let whole = AcquireEvent::Frame {
+            frame: &first,
+            time: None,
+        };
+        after(&mut page, &feed, whole);
+        after(&mut page, &feed, AcquireEvent::Provisional(&garbled));
+        assert!(page.hold_peak());
+        after(&mut page, &feed, AcquireEvent::Withdrawn);
+        assert_eq!(
+            page.reading().and_then(|reading| Some(reading.max?.0)),
+            Some(1.0)
+        );
+    }
+
+    #[test]
     fn frames_of_other_channels_are_not_shown_before_the_one_that_is_asked_for() {
         let mut request = WatchRequest::new("none");
         request.options.channel = Some("right".to_owned());
