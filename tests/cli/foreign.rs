@@ -183,12 +183,27 @@ def message(values):
     data = struct.pack('<I', len(values)) + struct.pack('<%dH' % len(values), *values)
     return b'\\0\\1\\0\\0' + layout + data
 
+# A camera beside the sensor: colours, and an image larger than any frame.
+def image(encoding, width, height, step):
+    text = encoding + b'\\0' * (4 - len(encoding) % 4)
+    head = struct.pack('<III', 0, 0, 1) + b'\\0' * 4 + struct.pack('<II', height, width)
+    head += struct.pack('<I', len(encoding) + 1) + text + struct.pack('<I', step)
+    return b'\\0\\1\\0\\0' + head + struct.pack('<I', step * height) + bytes(step * height)
+
 for name, packing in [('none', CompressionType.NONE), ('lz4', CompressionType.LZ4), ('zstd', CompressionType.ZSTD)]:
     with open(name + '.mcap', 'wb') as file:
         writer = Writer(file, compression=packing, chunk_size=500)
         writer.start('ros2', 'test')
         schema = writer.register_schema('std_msgs/msg/UInt16MultiArray', 'ros2msg', b'')
         channel = writer.register_channel('/pad', 'cdr', schema)
+        schema = writer.register_schema('sensor_msgs/msg/Image', 'ros2msg', b'')
+        camera = writer.register_channel('/cam', 'cdr', schema)
+        for data in [image(b'rgb8', 4, 4, 12), image(b'mono8', 640, 480, 640)]:
+            writer.add_message(camera, log_time=0, data=data, publish_time=0)
+        schema = writer.register_schema('sensor_msgs/msg/PointCloud2', 'ros2msg', b'')
+        cloud = writer.register_channel('/cloud', 'cdr', schema)
+        for channel_id in [camera, cloud] if name == 'none' else []:
+            writer.add_message(channel_id, log_time=0, data=bytes(17 << 20), publish_time=0)
         for frame in range(40):
             values = [100 * (index % 12 == frame % 12) + frame for index in range(12)]
             writer.add_message(channel, log_time=frame * 10_000_000, data=message(values), publish_time=0)

@@ -388,3 +388,65 @@ fn a_listing_has_no_threshold_and_no_tare() {
         );
     }
 }
+
+/// A file in a folder of its own, and the imprints of all its frames.
+fn imprints_of(name: &str, content: &[u8], flags: &str) -> Vec<Value> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join(name);
+    std::fs::write(&path, content).expect("written");
+    let path = path.to_str().expect("UTF-8");
+    let run = taxel(&format!("frames {path} --all {flags} --json"), "");
+    assert_eq!(run.status, Some(0), "{name}: {}", run.stderr);
+    let answers = run.stdout.lines();
+    answers
+        .map(|line| serde_json::from_str::<Value>(line).expect("JSON")["imprint"].clone())
+        .collect()
+}
+
+/// An array of numpy's in the first axis' order.
+fn fortran(shape: &str, values: &[f64]) -> Vec<u8> {
+    let header = format!("{{'descr': '<f8', 'fortran_order': True, 'shape': {shape}, }}");
+    let mut array = b"\x93NUMPY\x01\x00".to_vec();
+    array.extend(118_u16.to_le_bytes());
+    array.extend(format!("{header:<117}\n").bytes());
+    array.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+    array
+}
+
+#[test]
+fn cells_are_where_the_file_says_in_less_usual_tables() {
+    let two_rows = serde_json::json!(["..#", "###"]);
+    // Two frames of six cells each, the frames next to each other.
+    let flat: Vec<f64> = (1..=6).flat_map(|cell| [f64::from(cell), 0.0]).collect();
+    let flags = "--rows 2 --columns 3 --at-least 3";
+    let found = imprints_of("flat.npy", &fortran("(2, 6)", &flat), flags);
+    assert_eq!(found[0], two_rows);
+    let square = [1.0, 4.0, 2.0, 5.0, 3.0, 6.0];
+    let found = imprints_of("one.npy", &fortran("(2, 3)", &square), "--at-least 3");
+    assert_eq!(found[0], two_rows);
+    for (text, flags) in [
+        // What is said of the frame after its cells.
+        ("S0_0,S0_1,S0_2,S1_0,S1_1,S1_2,total\n1,2,3,4,5,6,21\n", ""),
+        // Comments above and between rows.
+        (
+            "# tactile frames\n1 2 3\n# the second row\n4 5 6\n\n1 2 3\n4 5 6\n",
+            "",
+        ),
+        // Numbers in a row are values unless they count from 0.
+        ("1 2 3\n4 5 6\n\n1 2 3\n4 5 6\n", ""),
+    ] {
+        let found = imprints_of(
+            "table.csv",
+            text.as_bytes(),
+            &format!("{flags} --at-least 3"),
+        );
+        assert_eq!(found[0], two_rows, "{text}");
+    }
+    // The last cell is none.
+    let text = "r0c0,r0c1,r1c0,r1c1\n1,2,3,\n4,5,6,7\n";
+    let found = imprints_of("none.csv", text.as_bytes(), "--at-least 3");
+    assert_eq!(found[0], serde_json::json!(["..", "#."]));
+    let text = "{\"t\":0,\"n_columns\":2,\"frame\":[[1,2],[3,4]]}\n{\"t\":1,\"n_columns\":2,\"frame\":[[1,2],[3,4]]}\n";
+    let found = imprints_of("lines.jsonl", text.as_bytes(), "--at-least 3");
+    assert_eq!(found[0], serde_json::json!(["..", "##"]));
+}

@@ -27,9 +27,18 @@ pub(crate) enum FieldRole {
     Time(f64),
 }
 
+/// Patterns of names that are told apart.
+const MOST_PATTERNS: usize = 64;
+
 /// The cells that the names describe; None where they describe none.
 pub(crate) fn cells(names: &[&str]) -> Option<NamedCells> {
-    grid(names).or_else(|| counted(names))
+    let named = largest_grid(names);
+    // Names by row and column, of which some are missing, are not a row of cells.
+    if named.len() < 2 {
+        counted(names)
+    } else {
+        grid(&named)
+    }
 }
 
 /// A name's text around its last numbers, and these.
@@ -51,30 +60,47 @@ fn split<const N: usize>(name: &str) -> Option<(String, [u32; N])> {
     Some((format!("{rest}{skeleton}"), numbers))
 }
 
-/// Cells named by row and column, in the pattern of the last field's name; there must be exactly one for each.
-fn grid(names: &[&str]) -> Option<NamedCells> {
-    let (last, _) = split::<2>(names.last()?)?;
-    let named = names.iter().enumerate().filter_map(|(field, name)| {
-        let (skeleton, numbers) = split::<2>(name)?;
-        (skeleton == last).then_some((field, numbers))
-    });
-    let named: Vec<(usize, [u32; 2])> = named.collect();
+/// The index of a field, and the last two numbers of its name.
+type NumberedField = (usize, [u32; 2]);
+
+/// The fields whose names have two numbers, with these, in the pattern that most of them have.
+fn largest_grid(names: &[&str]) -> Vec<NumberedField> {
+    let split = names.iter().map(|name| split::<2>(name)).enumerate();
+    let mut patterns: Vec<(String, Vec<NumberedField>)> = Vec::new();
+    for (field, found) in split {
+        let Some((skeleton, numbers)) = found else {
+            continue;
+        };
+        let is_full = patterns.len() == MOST_PATTERNS;
+        match patterns.iter_mut().find(|(own, _)| *own == skeleton) {
+            Some((_, fields)) => fields.push((field, numbers)),
+            // A table of cells has few patterns; one of words and dates may have one for each name.
+            None if is_full => {}
+            None => patterns.push((skeleton, vec![(field, numbers)])),
+        }
+    }
+    let fields = patterns.into_iter().map(|(_, fields)| fields);
+    // Of equals the last, as cells come after what is said of the frame.
+    fields.max_by_key(Vec::len).unwrap_or_default()
+}
+
+/// Cells named by row and column; there must be exactly one for each.
+fn grid(named: &[NumberedField]) -> Option<NamedCells> {
     let range = |part: usize| {
         let numbers = named.iter().map(|(_, numbers)| numbers[part]);
         numbers.clone().min().zip(numbers.max())
     };
     let ((top, bottom), (left, right)) = range(0).zip(range(1))?;
     let side = |low: u32, high: u32| {
-        u16::try_from(high - low + 1)
-            .ok()
-            .filter(|&side| side <= 512)
+        let side = u16::try_from(high - low).ok()?.checked_add(1);
+        side.filter(|&side| side <= 512)
     };
     let (rows, columns) = side(top, bottom).zip(side(left, right))?;
     let mut fields = vec![None; usize::from(rows) * usize::from(columns)];
     if named.len() != fields.len() || named.len() < 2 {
         return None;
     }
-    for &(field, [row, column]) in &named {
+    for &(field, [row, column]) in named {
         // Below 512 both.
         let index = (row - top) * u32::from(columns) + (column - left);
         fields[usize::try_from(index).ok()?] = Some(field);
@@ -181,6 +207,13 @@ mod tests {
         // A cell is missing; nothing counts.
         assert_eq!(cells(&["r0c0", "r0c1", "r1c0"]), None);
         assert_eq!(cells(&["a", "b"]), None);
+        // What is said of the frame may come after its cells.
+        let named = [
+            "S0_0", "S0_1", "S0_2", "S1_0", "S1_1", "S1_2", "total", "run_1_2",
+        ];
+        assert_eq!(cells(&named), grid(2, 3, &[0, 1, 2, 3, 4, 5]));
+        assert_eq!(cells(&["S0_0", "S0_1", "S0_2", "S1_0", "label"]), None);
+        assert_eq!(cells(&["s0_0", "s0_4294967295"]), None);
     }
 
     #[test]

@@ -50,6 +50,18 @@ impl Separator {
         found.map_or(Self::Spaces, Self::Byte)
     }
 
+    /// The fields of a line that is to have so many, as [`Self::fields`]; but one at the end is empty if that makes them so
+    /// many.
+    fn fields_of(self, line: &[u8], expected: usize) -> impl Iterator<Item = &[u8]> {
+        let is_short = match self {
+            Self::Byte(_) => self.fields(line).count() + 1 == expected,
+            Self::Spaces => false,
+        };
+        let ends_empty = |mark| line.trim_ascii().ends_with(&[mark]);
+        let has_empty = is_short && matches!(self, Self::Byte(mark) if ends_empty(mark));
+        self.fields(line).chain(has_empty.then_some(&line[..0]))
+    }
+
     /// The fields of a line without blanks and quotes around them; an empty one at the end is none.
     fn fields(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
         let line = line.trim_ascii();
@@ -212,8 +224,10 @@ fn layout(
     let has_words = separator
         .fields(&first)
         .any(|field| !separator.is_numeric(field));
-    let counts =
-        || matches!(cells(&names), Some(NamedCells::Counted(0, length)) if length == names.len());
+    let counts = || {
+        names[0] == "0"
+            && matches!(cells(&names), Some(NamedCells::Counted(0, length)) if length == names.len())
+    };
     if !has_words && !counts() {
         return of_numbers(lines, separator, &first, options);
     }
@@ -252,6 +266,9 @@ fn of_numbers(
         if is_blank(lines.line()) {
             parted = true;
             break;
+        }
+        if is_comment(lines.line()) {
+            continue;
         }
         second.get_or_insert_with(|| separator.numbers(lines.line()));
         block += 1;
@@ -450,7 +467,7 @@ impl FrameFields {
     ) -> Result<Option<f64>, RecordingError> {
         let (mut found, mut label, mut time) = (0, None, None);
         let values = frame.values_mut();
-        for field in separator.fields(line) {
+        for field in separator.fields_of(line, self.count) {
             let index = found;
             found += 1;
             let Some(slot) = slots.get(index) else {
@@ -556,7 +573,7 @@ impl RowBlock {
         let start = usize::from(self.found) * columns;
         let slots = &mut self.frame.values_mut()[start..start + columns];
         let mut count = 0;
-        for field in self.separator.fields(line) {
+        for field in self.separator.fields_of(line, columns) {
             count += 1;
             let Some(slot) = slots.get_mut(count - 1) else {
                 continue;

@@ -34,7 +34,11 @@ pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
         let mut lines = text.split(|&byte| byte == b'\n');
         lines.any(|line| line.starts_with(word))
     };
-    let first = trimmed.split(|&byte| byte == b'\n').next().unwrap_or(b"");
+    let mut lines = trimmed.split(|&byte| byte == b'\n');
+    let first = lines.clone().next().unwrap_or(b"");
+    // Comments may stand above a table.
+    let is_row = |line: &&[u8]| !line.is_empty() && !line.starts_with(b"#");
+    let row = lines.find(is_row).unwrap_or(first);
     if start.starts_with(MCAP) {
         return Some(RecordingFormat::Mcap);
     }
@@ -44,7 +48,7 @@ pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
         [b'P', b'K', 3 | 5, 4 | 6, ..] => RecordingFormat::Npz,
         _ if is_blank(trimmed) || start.contains(&0) => return None,
         _ if trimmed.starts_with(b"{") => {
-            if has(b"\"snapshots\"") || has(b"_columns\"") {
+            if has(b"\"snapshots\"") || has(b"_columns\"") && !has(b"\"frame\"") {
                 RecordingFormat::Popu
             } else {
                 RecordingFormat::JsonLines
@@ -55,7 +59,7 @@ pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
         _ if has(b"SensCountX=") => RecordingFormat::Zebris,
         _ if has(b"Pict-No.:") && has(b"Matrix:") => RecordingFormat::Emed,
         _ if is_ros(trimmed, first) => RecordingFormat::Ros2,
-        _ if is_table(first) => RecordingFormat::Csv,
+        _ if is_table(row) => RecordingFormat::Csv,
         _ => return None,
     })
 }

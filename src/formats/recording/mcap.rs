@@ -288,6 +288,7 @@ impl McapState<'_, '_> {
                         return Ok(Ended::ByReader);
                     }
                 }
+                MESSAGE if length > LARGEST_RECORD => self.pass_large(input, length)?,
                 SCHEMA | CHANNEL | MESSAGE => {
                     if length > LARGEST_RECORD {
                         return Err(RecordingError::damaged("a record of more than 16 MiB"));
@@ -308,6 +309,21 @@ impl McapState<'_, '_> {
                 }
                 _ => pass_over(input, length)?,
             }
+        }
+    }
+
+    /// Passes over a message that is too large to be read, unless it is one of frames. No image of that size is one.
+    ///
+    /// # Errors
+    /// If it is a message of frames.
+    fn pass_large(&mut self, input: &mut dyn Read, length: u64) -> Result<(), RecordingError> {
+        let mut id = [0; 2];
+        whole(input, &mut id)?;
+        match self.topics.get(&u16::from_le_bytes(id)) {
+            None | Some((_, MessageKind::Image)) => pass_over(input, length - 2),
+            Some((topic, _)) => Err(RecordingError::damaged(format!(
+                "{topic}: a message of more than 16 MiB"
+            ))),
         }
     }
 
@@ -428,10 +444,10 @@ impl McapState<'_, '_> {
                 };
                 Some(self.give(topic, shape))
             }
-            MessageKind::Image => {
-                let shape = image(&mut cdr, &mut self.values)?;
-                Some(self.give(topic, Some(shape)))
-            }
+            MessageKind::Image => match image(&mut cdr, &mut self.values)? {
+                ImageFrame::Values(rows, columns) => Some(self.give(topic, Some((rows, columns)))),
+                ImageFrame::OfCamera => Some(Ok(false)),
+            },
             MessageKind::TactileState => {
                 header(&mut cdr)?;
                 for _ in 0..cdr.count(8)? {
@@ -518,22 +534,31 @@ fn header(cdr: &mut CdrReader<'_>) -> Option<()> {
     cdr.text().map(drop)
 }
 
-/// Reads an image; rows and columns.
-/// `step` is the number of bytes from a row to the next. None if it is broken, or in an encoding with more than one
-/// value a pixel.
-fn image(cdr: &mut CdrReader<'_>, values: &mut Vec<f64>) -> Option<(u16, u16)> {
+/// What an image is.
+enum ImageFrame {
+    /// A frame of so many rows and columns.
+    Values(u16, u16),
+    /// No frame: in another encoding than one value a pixel, or too large.
+    OfCamera,
+}
+
+/// Reads an image.
+/// `step` is the number of bytes from a row to the next. None if it is broken.
+fn image(cdr: &mut CdrReader<'_>, values: &mut Vec<f64>) -> Option<ImageFrame> {
     header(cdr)?;
     let (height, width) = (cdr.word()?, cdr.word()?);
     let (kind, size) = match cdr.text()? {
         "mono8" | "8UC1" => (b'u', 1),
         "mono16" | "16UC1" => (b'u', 2),
         "32FC1" => (b'f', 4),
-        _ => return None,
+        _ => return Some(ImageFrame::OfCamera),
     };
     let big_endian = cdr.byte()? != 0;
     let step = usize::try_from(cdr.word()?).ok()?;
     let data = cdr.bytes()?;
-    let (rows, columns) = shape(height, width)?;
+    let Some((rows, columns)) = shape(height, width) else {
+        return Some(ImageFrame::OfCamera);
+    };
     let line = usize::from(columns) * size;
     values.clear();
     for row in 0..usize::from(rows) {
@@ -542,5 +567,5 @@ fn image(cdr: &mut CdrReader<'_>, values: &mut Vec<f64>) -> Option<(u16, u16)> {
         let number = super::numpy::NumberType::new(kind, size, big_endian);
         values.extend(bytes.chunks(size).map(|bytes| number.value(bytes)));
     }
-    Some((rows, columns))
+    Some(ImageFrame::Values(rows, columns))
 }

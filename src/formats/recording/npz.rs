@@ -64,15 +64,8 @@ pub(super) fn read(
         ));
     }
     let alone = channels.len() == 1;
-    let mut layouts = Vec::new();
-    for array in &channels {
-        // What is meant for one of several arrays need not fit the others.
-        let layout = match ArrayLayout::of(&array.header, options) {
-            Err(_) if !alone && options.shape.is_some() => {
-                ArrayLayout::of(&array.header, ReadOptions::default())?
-            }
-            layout => layout?,
-        };
+    let channels = with_layouts(channels, options)?;
+    for (array, layout) in &channels {
         let info = ChannelInfo {
             name: (!alone).then(|| array.name.clone()),
             shape: Some(layout.shape()),
@@ -81,9 +74,8 @@ pub(super) fn read(
         if sink(RecordingEvent::Channel(&info)).is_break() {
             return Ok(());
         }
-        layouts.push(layout);
     }
-    for (channel, (array, layout)) in channels.iter().zip(&layouts).enumerate() {
+    for (channel, (array, layout)) in channels.iter().enumerate() {
         let times = times(&mut archive, &arrays, layout.frames())?;
         let mut file = archive.by_index(array.index).map_err(damaged)?;
         numpy::header(&mut file)?;
@@ -123,21 +115,54 @@ fn arrays(archive: &mut ZipArchive<impl Read + Seek>) -> Result<Vec<ArchiveArray
     Ok(arrays)
 }
 
+/// The arrays whose numbers can be frames, and how. Others, such as a list of poses, may lie beside them.
+///
+/// # Errors
+/// What is wrong with the first, if none can.
+fn with_layouts(
+    arrays: Vec<&ArchiveArray>,
+    options: ReadOptions,
+) -> Result<Vec<(&ArchiveArray, ArrayLayout)>, RecordingError> {
+    let alone = arrays.len() == 1;
+    let (mut found, mut first_error) = (Vec::new(), None);
+    for array in arrays {
+        // What is meant for one of several arrays need not fit the others.
+        let layout = match ArrayLayout::of(&array.header, options) {
+            Err(_) if !alone && options.shape.is_some() => {
+                ArrayLayout::of(&array.header, ReadOptions::default())
+            }
+            layout => layout,
+        };
+        match layout {
+            Ok(layout) => found.push((array, layout)),
+            Err(error) => {
+                first_error.get_or_insert(error);
+            }
+        }
+    }
+    match first_error {
+        Some(error) if found.is_empty() => Err(error),
+        _ => Ok(found),
+    }
+}
+
 /// The times of all `frames`, in seconds since the first; empty where there are none.
-fn times(
+fn times<'a>(
     archive: &mut ZipArchive<impl Read + Seek>,
-    arrays: &[ArchiveArray],
+    arrays: &'a [ArchiveArray],
     frames: u64,
 ) -> Result<Vec<f64>, RecordingError> {
-    let found = arrays.iter().find_map(|array| {
-        let factor = match role(&array.name) {
-            Some(FieldRole::Time(factor)) => factor,
-            _ if array.name.starts_with(['t', 'T']) => 1.0,
-            _ => return None,
-        };
-        let number = NumberType::of(&array.header.code)?;
-        (array.header.shape == [frames]).then_some((array, number, factor))
-    });
+    let fits = |array: &&ArchiveArray| array.header.shape == [frames];
+    let number = |array: &ArchiveArray| NumberType::of(&array.header.code);
+    let timed = |array: &'a ArchiveArray| match role(&array.name) {
+        Some(FieldRole::Time(factor)) => Some((array, number(array)?, factor)),
+        _ => None,
+    };
+    // Only where no array is called a time: `temperature` is none.
+    let mut others = arrays.iter().filter(fits);
+    let other = others.find(|array| array.name.starts_with(['t', 'T']));
+    let found = arrays.iter().filter(fits).find_map(timed);
+    let found = found.or_else(|| other.and_then(|array| Some((array, number(array)?, 1.0))));
     let Some((array, number, factor)) = found.filter(|_| frames <= MOST_TIMES) else {
         return Ok(Vec::new());
     };

@@ -177,6 +177,8 @@ pub(super) struct ArrayLayout {
     columns: u16,
     /// Whether the first axis is the fastest.
     fortran: bool,
+    /// Whether rows and columns of a frame are one axis.
+    is_flat: bool,
     /// Where the fields are, in an array of records.
     record: Option<RecordLayout>,
 }
@@ -201,6 +203,7 @@ impl ArrayLayout {
             rows,
             columns,
             fortran: header.fortran_order && header.shape.len() > 1,
+            is_flat: matches!(header.shape[..], [_, cells] if cells == u64::from(rows) * u64::from(columns)),
             record: None,
         })
     }
@@ -222,6 +225,7 @@ impl ArrayLayout {
             rows: record.rows,
             columns: record.columns,
             fortran: false,
+            is_flat: false,
             record: Some(record),
         })
     }
@@ -505,7 +509,12 @@ fn fortran(
     for number in 0..frames {
         for row in 0..rows {
             for column in 0..columns {
-                let index = (number + frames * (row + rows * column)) * size;
+                let cell = if layout.is_flat {
+                    row * columns + column
+                } else {
+                    row + rows * column
+                };
+                let index = (number + frames * cell) * size;
                 let value = layout.number.value(&bytes[index..index + size]);
                 frame.values_mut()[row * columns + column] = value;
             }

@@ -28,7 +28,11 @@ const ENOUGH: &str = "no more is wanted";
 ///
 /// # Errors
 /// With line and column: of what is no JSON, of a snapshot of another size, and of one before its rows and columns.
-pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), RecordingError> {
+pub(super) fn read(mut input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), RecordingError> {
+    let mark = b"\xef\xbb\xbf";
+    if input.fill_buf()?.starts_with(mark) {
+        input.consume(mark.len());
+    }
     let mut content = serde_json::Deserializer::from_reader(input);
     let mut state = PopuState {
         rows: None,

@@ -63,6 +63,7 @@ impl TekscanHeader {
         let end = line.iter().position(is_end);
         let (key, value) = line.split_at(end.unwrap_or(line.len()));
         let value = value.trim_ascii();
+        let value = value.strip_prefix(b",").unwrap_or(value).trim_ascii();
         let side = || stated(&text(key), ' ', &text(value), number);
         match key {
             b"ROWS" if self.rows.is_none() => self.rows = Some(side()?),
