@@ -67,7 +67,7 @@ fn arg_with(parameter: Parameter, default: &str) -> Arg {
         unit => format!("{}, ", unit.symbol()),
     };
     let also = match parameter {
-        Parameter::Pitch => "; gives lengths and areas in mm too",
+        Parameter::Pitch => "; tables and drawings are in mm too",
         _ => "",
     };
     let range = Sensor::default().range(parameter);

@@ -125,6 +125,12 @@ impl History {
             let own = origin.name.as_ref();
             let own = own.filter(|stored| stored.owner == ShapeOrigin::Own);
             if own.is_some_and(|stored| folded(&stored.name) == gone) {
+                // Deleted twice, it comes back as it was last.
+                let is_same = |(own, before): &(usize, DocumentOrigin)| {
+                    let stored = before.name.as_ref();
+                    *own == index && stored.is_some_and(|stored| folded(&stored.name) == gone)
+                };
+                self.gone.retain(|before| !is_same(before));
                 self.gone.push((index, origin.clone()));
                 origin.name = None;
                 origin.saved = Document::empty(origin.saved.sensor);

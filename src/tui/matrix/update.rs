@@ -43,7 +43,14 @@ const NO_REGION: &str = "no region: the matrix is empty";
 pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
     let sensor = app.history.present().sensor;
     match message {
-        Message::New => begin(app, Document::empty(sensor), None),
+        Message::New => {
+            let origin = app.history.origin();
+            if origin.name.is_none() && *app.history.present() == Document::empty(sensor) {
+                inform(app, "the matrix is empty already");
+            } else {
+                begin(app, Document::empty(sensor), None);
+            }
+        }
         Message::Become(document) => {
             app.mode = Mode::Draw;
             replace(app, *document);
@@ -54,7 +61,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
             .map(|before| Reading::of(before).imprint)
         {
             Some(before) => compare_with(app, "the state before", &before),
-            None => inform(app, "nothing to compare with: there was no step yet"),
+            None => inform(app, "nothing to compare with: this is the first state"),
         },
         Message::Replace(shape, stamp) => {
             let text = format!("Replace {}?", shape.name);
@@ -143,6 +150,8 @@ fn library_request(message: Message) -> Result<LibraryRequest, Message> {
 
 /// Takes note of what is being saved. Keys may change the matrix before the library answers.
 fn begin_save(app: &mut App, shape: &StoredShape) {
+    // From now on undo is about the drawing again, not about a shape that was deleted before.
+    app.removed = None;
     let present = app.history.present();
     let own = present.to_shape(shape.name.clone(), &Reading::of(present));
     let document = if own == *shape {

@@ -53,7 +53,7 @@ impl<'a> MatrixView<'a> {
     pub fn of(app: &'a App) -> Self {
         Self {
             reading: app.reading(),
-            pitch_mm: app.history.present().sensor.pitch_mm(),
+            pitch_mm: app.shown().sensor.pitch_mm(),
             cursor: app.cursor(),
             chosen: app.chosen(),
             display: app.display,

@@ -135,6 +135,23 @@ fn deleting_asks_and_is_undone() {
     then(&mut session, "lone<Enter>", &["one loaded"]);
     // After something else was done, u takes that back instead.
     then(&mut session, "d<Enter>y<Right><Space>u", &["NA 1 in all"]);
+    // So it is after a save, even of the same name.
+    let mut session = self::session("<Space><Right><Space>sone<Enter>done<Enter>ysone<Enter>");
+    then(&mut session, "<Right>u", &["undone: taxel 9, 8 on"]);
+}
+
+#[test]
+fn a_shape_that_is_deleted_twice_comes_back_as_it_was_last() {
+    let mut session =
+        session("<Space>sone<Enter><Right><Space>done<Enter>ysone<Enter>done<Enter>y");
+    then(&mut session, "u", &["one is back", "· one\n"]);
+}
+
+#[test]
+fn nothing_is_done_to_a_matrix_that_is_empty_already() {
+    let mut session = session("n");
+    shows(&session, &["the matrix is empty already"]);
+    then(&mut session, "u", &["nothing to undo"]);
 }
 
 #[test]
