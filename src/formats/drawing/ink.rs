@@ -5,6 +5,8 @@
 //! A pixel's share of a rectangle is the product of two overlaps. Its share of a line follows from its distance: within
 //! half a pixel of the edge it falls from 1 to 0, so ends and corners are round.
 
+use std::ops::Range;
+
 use crate::formats::drawing::scene::{Position, Segment, Stroke};
 use crate::index::wide;
 
@@ -67,13 +69,15 @@ impl Ink {
 
     /// Fills rectangles that do not overlap; where they touch no seam is left.
     pub(super) fn fill(&mut self, rectangles: &[(Position, Position)], grey: u8) {
-        let mut shares = Shares::new(self);
+        let areas = rectangles.iter();
+        let areas = areas.map(|&area| Area::touched(area, self.all()));
+        let mut shares = Shares::new(areas.collect());
         for &(low, high) in rectangles {
             let overlap = |at: u32, low: f64, high: f64| {
                 let at = f64::from(at);
                 (high.min(at + 1.0) - low.max(at)).clamp(0.0, 1.0)
             };
-            shares.each((low, high), self.all(), |share, x, y| {
+            shares.each(&Area::touched((low, high), self.all()), |share, x, y| {
                 share + overlap(x, low.0, high.0) * overlap(y, low.1, high.1)
             });
         }
@@ -87,25 +91,32 @@ impl Ink {
         line: Stroke,
         within: Option<(Position, Position)>,
     ) {
-        let within = within.unwrap_or(self.all());
+        let (least, most) = self.all();
+        let within = within.map_or((least, most), |(low, high)| {
+            (larger(low, least), smaller(high, most))
+        });
         let mut pieces = flat(steps);
         if let Some(dash) = line.dash {
             pieces = dashed(&pieces, dash);
         }
         let half = line.width / 2.0;
-        let mut shares = Shares::new(self);
-        for piece in pieces {
-            for pair in piece.windows(2) {
-                let (from, to) = (pair[0], pair[1]);
-                let reach = half + 1.0;
-                let low = (from.0.min(to.0) - reach, from.1.min(to.1) - reach);
-                let high = (from.0.max(to.0) + reach, from.1.max(to.1) + reach);
-                shares.each((low, high), within, |share, x, y| {
-                    let middle = (f64::from(x) + 0.5, f64::from(y) + 0.5);
-                    let off = distance(middle, from, to);
-                    share.max((half + 0.5 - off).clamp(0.0, 1.0))
-                });
-            }
+        let reach = half + 1.0;
+        let area = |from: Position, to: Position| {
+            let (low, high) = (smaller(from, to), larger(from, to));
+            let low = (low.0 - reach, low.1 - reach);
+            Area::touched((low, (high.0 + reach, high.1 + reach)), within)
+        };
+        let lines = || {
+            let pairs = pieces.iter().flat_map(|piece| piece.windows(2));
+            pairs.map(|pair| (pair[0], pair[1]))
+        };
+        let mut shares = Shares::new(lines().map(|(from, to)| area(from, to)).collect());
+        for (from, to) in lines() {
+            shares.each(&area(from, to), |share, x, y| {
+                let middle = (f64::from(x) + 0.5, f64::from(y) + 0.5);
+                let off = distance(middle, from, to);
+                share.max((half + 0.5 - off).clamp(0.0, 1.0))
+            });
         }
         self.blend(&shares, line.grey);
     }
@@ -117,9 +128,15 @@ impl Ink {
         reason = "between two greys"
     )]
     fn blend(&mut self, shares: &Shares, grey: u8) {
-        for (pixel, &share) in self.pixels.iter_mut().zip(&shares.0) {
-            let (old, share) = (f64::from(*pixel), f64::from(share).min(1.0));
-            *pixel = (old + (f64::from(grey) - old) * share).round() as u8;
+        let Area { columns, rows } = &shares.area;
+        let width = columns.len();
+        for (row, y) in shares.values.chunks(width.max(1)).zip(rows.clone()) {
+            let first = index(columns.start, y, self.width);
+            let pixels = self.pixels.iter_mut().skip(first);
+            for (pixel, &share) in pixels.zip(row) {
+                let (old, share) = (f64::from(*pixel), f64::from(share).min(1.0));
+                *pixel = (old + (f64::from(grey) - old) * share).round() as u8;
+            }
         }
     }
 }
@@ -129,34 +146,101 @@ fn index(x: u32, y: u32, width: u32) -> usize {
     wide(y).saturating_mul(wide(width)).saturating_add(wide(x))
 }
 
-/// How much of each pixel of a page is drawn on.
-struct Shares(Vec<f32>, u32);
+/// The smaller of both coordinates.
+fn smaller(one: Position, other: Position) -> Position {
+    (one.0.min(other.0), one.1.min(other.1))
+}
 
-impl Shares {
-    /// No pixel is drawn on yet.
-    fn new(page: &Ink) -> Self {
-        Self(vec![0.0; page.pixels.len()], page.width)
-    }
+/// The larger of both coordinates.
+fn larger(one: Position, other: Position) -> Position {
+    (one.0.max(other.0), one.1.max(other.1))
+}
 
-    /// Gives each pixel that a rectangle and `within` touch another share.
+/// Pixels side by side, in rows one below the other.
+#[derive(Default)]
+struct Area {
+    columns: Range<u32>,
+    rows: Range<u32>,
+}
+
+impl Area {
+    /// The pixels that a rectangle touches inside of another one, which lies on the page.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "saturates: what is beyond the page has no pixels; a share needs no more digits"
+        reason = "saturates: what is beyond the page has no pixels"
     )]
-    fn each(
-        &mut self,
-        (low, high): (Position, Position),
-        within: (Position, Position),
-        share: impl Fn(f64, u32, u32) -> f64,
-    ) {
-        let pixels = |low: f64, high: f64, least: f64, most: f64| {
-            low.max(least).floor() as u32..high.min(most).ceil() as u32
+    fn touched((low, high): (Position, Position), (least, most): (Position, Position)) -> Self {
+        let (low, high) = (larger(low, least), smaller(high, most));
+        let pixels = |low: f64, high: f64| low.floor() as u32..high.ceil() as u32;
+        Self {
+            columns: pixels(low.0, high.0),
+            rows: pixels(low.1, high.1),
+        }
+    }
+
+    /// The smallest area that holds both.
+    fn with(self, other: Self) -> Self {
+        if self.is_empty() {
+            return other;
+        }
+        if other.is_empty() {
+            return self;
+        }
+        let both =
+            |one: Range<u32>, other: Range<u32>| one.start.min(other.start)..one.end.max(other.end);
+        Self {
+            columns: both(self.columns, other.columns),
+            rows: both(self.rows, other.rows),
+        }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.columns.is_empty() || self.rows.is_empty()
+    }
+}
+
+impl FromIterator<Area> for Area {
+    fn from_iter<I: IntoIterator<Item = Area>>(areas: I) -> Self {
+        areas.into_iter().fold(Self::default(), Self::with)
+    }
+}
+
+/// How much of each pixel around a mark is drawn on. A mark is mostly far smaller than the page.
+struct Shares {
+    /// Row by row.
+    values: Vec<f32>,
+    /// Where they are.
+    area: Area,
+}
+
+impl Shares {
+    /// No pixel is drawn on yet.
+    fn new(area: Area) -> Self {
+        Self {
+            values: vec![0.0; area.columns.len() * area.rows.len()],
+            area,
+        }
+    }
+
+    /// Gives each pixel of a part of the area another share.
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "a share needs no more digits"
+    )]
+    fn each(&mut self, part: &Area, share: impl Fn(f64, u32, u32) -> f64) {
+        let Area { columns, rows } = &self.area;
+        let (left, top) = (columns.start, rows.start);
+        let Ok(width) = u32::try_from(columns.len()) else {
+            return;
         };
-        let (least, most) = within;
-        for y in pixels(low.1, high.1, least.1, most.1) {
-            for x in pixels(low.0, high.0, least.0, most.0) {
-                if let Some(slot) = self.0.get_mut(index(x, y, self.1)) {
+        // A part without pixels may lie outside of the area.
+        if part.is_empty() {
+            return;
+        }
+        for y in part.rows.clone() {
+            for x in part.columns.clone() {
+                if let Some(slot) = self.values.get_mut(index(x - left, y - top, width)) {
                     *slot = share(f64::from(*slot), x, y) as f32;
                 }
             }
@@ -274,6 +358,69 @@ mod tests {
         let column = |x: usize| (0..4).map(|y| page.pixels()[y * 3 + x]).collect::<Vec<_>>();
         assert_eq!(column(1), [255, 0, 0, 255]);
         assert_eq!((column(0), column(2)), (vec![255; 4], vec![255; 4]));
+    }
+
+    /// Blends a mark over all of a page, as the pixels of a mark alone must come out.
+    fn blended(page: &Ink, grey: u8, share: impl Fn(f64, f64) -> f64) -> Vec<u8> {
+        let pixels = page.pixels().iter().zip(0_u32..);
+        let blend = |(&old, at): (&u8, u32)| {
+            let (x, y) = (at % page.width(), at / page.width());
+            let old = f64::from(old);
+            let share = share(f64::from(x), f64::from(y));
+            format!("{:.0}", (old + (f64::from(grey) - old) * share).round())
+        };
+        let pixels = pixels.map(blend).map(|pixel| pixel.parse());
+        pixels.collect::<Result<_, _>>().expect("between two greys")
+    }
+
+    #[test]
+    fn a_mark_has_the_pixels_that_blending_all_of_the_page_gives() {
+        let places = [
+            (-3.5, -2.0),
+            (1.25, 0.5),
+            (4.5, 6.75),
+            (11.0, 3.0),
+            (30.0, 9.5),
+        ];
+        let mut page = Ink::new(13, 9);
+        for (&from, grey) in places.iter().zip([0, 200, 90, 255, 30]) {
+            for &to in &places {
+                let (low, high) = (smaller(from, to), larger(from, to));
+                let overlap = |at: f64, low: f64, high: f64| {
+                    (high.min(at + 1.0) - low.max(at)).clamp(0.0, 1.0)
+                };
+                let filled = blended(&page, grey, |x, y| {
+                    overlap(x, low.0, high.0) * overlap(y, low.1, high.1)
+                });
+                page.fill(&[(low, high)], grey);
+                assert_eq!(page.pixels(), filled, "{low:?} {high:?}");
+                let line = Stroke {
+                    grey,
+                    ..Stroke::black(1.5)
+                };
+                let drawn = blended(&page, grey, |x, y| {
+                    (1.25 - distance((x + 0.5, y + 0.5), from, to)).clamp(0.0, 1.0)
+                });
+                page.stroke(&[Segment::Move(from), Segment::Line(to)], line, None);
+                assert_eq!(page.pixels(), drawn, "{from:?} {to:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_small_mark_takes_no_time_for_the_rest_of_the_page() {
+        let mut page = Ink::new(4000, 4000);
+        let start = std::time::Instant::now();
+        for at in 0..1000_u32 {
+            let low = (f64::from(at) * 3.0, f64::from(at));
+            let high = (low.0 + 2.0, low.1 + 2.0);
+            page.fill(&[(low, high)], 0);
+            let line = [Segment::Move(low), Segment::Line(high)];
+            page.stroke(&line, Stroke::black(1.0), None);
+        }
+        // Blending all of the page for each of them takes minutes.
+        assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+        assert_eq!(page.pixels()[0], 0);
     }
 
     #[test]
