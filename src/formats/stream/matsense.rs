@@ -1,6 +1,8 @@
 //! Bytes with an end: a byte a cell, then `FF`; or `5B`, the cells with escapes, `5D`.
 //!
-//! The first two frames of the right length decide which of the two it is. Frames of another length are dropped.
+//! The first two frames of the right length decide which of the two it is. Frames of another length are dropped. Bytes
+//! between two `FF` that are cells of a bracketed stream may have the right length, too: where there are signs of that,
+//! more frames are waited for.
 //! ```text
 //! 00 0C 07 03 FF          cells are 0 to 254; FF ends the frame
 //! 5B 00 0C 07 03 5D       cells are 0 to 255; 5B, 5C and 5D among them are 5C 01, 5C 00 and 5C 02
@@ -20,6 +22,8 @@ const ESCAPE: u8 = 0x5c;
 
 /// Frames of the right length that decide the form.
 const SURE: usize = 2;
+/// Frames between `FF` that decide it against signs of brackets, beyond those between brackets.
+const SURE_IN_DOUBT: usize = 4;
 
 /// How frames are parted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -130,6 +134,13 @@ impl Parts {
         Part::More
     }
 
+    /// Whether a frame between [`END`] looks as if the stream had brackets: it has another length, or the end of a
+    /// bracketed frame and the beginning of the next inside.
+    fn is_doubtful(&self, part: &Part) -> bool {
+        let brackets = || self.values.windows(2).any(|pair| pair == [CLOSE, OPEN]);
+        self.framing == Framing::Ended && (*part == Part::Dropped || brackets())
+    }
+
     /// The values stay until the next byte.
     fn end(&mut self, inside: bool) -> Part {
         let whole = !std::mem::take(&mut self.broken) && self.values.len() == self.cells;
@@ -147,6 +158,8 @@ impl Parts {
 pub(super) struct MatsenseDecoder {
     /// Those that it may still be.
     candidates: Vec<(Parts, Vec<Vec<u8>>)>,
+    /// Whether a frame of the first form looked like parts of bracketed ones.
+    doubted: bool,
     /// The frame that is given.
     frame: Frame,
 }
@@ -158,6 +171,7 @@ impl MatsenseDecoder {
         let of = |framing| (Parts::new(framing, cells, from_start), Vec::new());
         Self {
             candidates: vec![of(Framing::Ended), of(Framing::Bracketed)],
+            doubted: false,
             frame: Frame::new(columns, rows),
         }
     }
@@ -171,17 +185,14 @@ impl MatsenseDecoder {
     ) {
         for &byte in bytes {
             let undecided = self.candidates.len() > 1;
-            let mut sure = None;
-            for (index, (parts, waiting)) in self.candidates.iter_mut().enumerate() {
+            for (parts, waiting) in &mut self.candidates {
                 let part = parts.byte(byte);
                 if part == Part::More {
                     continue;
                 }
+                self.doubted |= undecided && parts.is_doubtful(&part);
                 if undecided && part == Part::Whole {
                     waiting.push(parts.values.clone());
-                    if waiting.len() == SURE {
-                        sure = Some(index);
-                    }
                 } else if undecided {
                     parts.dropped += u64::from(!waiting.is_empty());
                 } else if part == Part::Whole {
@@ -191,10 +202,26 @@ impl MatsenseDecoder {
                 }
                 parts.values.clear();
             }
-            if let Some(index) = sure {
+            if let Some(index) = self.sure() {
                 self.decide(index, counts, sink);
             }
         }
+    }
+
+    /// The candidate that has frames enough; None before, and once it is decided.
+    fn sure(&self) -> Option<usize> {
+        let [(_, ended), (_, bracketed)] = self.candidates.as_slice() else {
+            return None;
+        };
+        let enough = if self.doubted {
+            SURE_IN_DOUBT + bracketed.len()
+        } else {
+            SURE
+        };
+        if bracketed.len() >= SURE {
+            return Some(1);
+        }
+        (ended.len() >= enough).then_some(0)
     }
 
     /// Gives the frames that were waiting for the decision, and forgets the other form.
@@ -211,12 +238,9 @@ impl MatsenseDecoder {
 
     /// The end of the input: of a single frame the form is that in which it has the right length.
     pub(super) fn finish(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
-        if self.candidates.len() > 1 {
-            let index = self
-                .candidates
-                .iter()
-                .position(|(_, waiting)| !waiting.is_empty());
-            self.decide(index.unwrap_or_default(), counts, sink);
+        if let [(_, ended), (_, bracketed)] = self.candidates.as_slice() {
+            let brackets = !bracketed.is_empty() && (self.doubted || ended.is_empty());
+            self.decide(usize::from(brackets), counts, sink);
         }
         for (parts, _) in &mut self.candidates {
             if parts.inside && !parts.values.is_empty() {
@@ -235,4 +259,59 @@ fn give(frame: &mut Frame, values: &[u8], counts: &mut StreamCounts, sink: &mut 
     frame.number = counts.frames;
     counts.frames += 1;
     sink(StreamEvent::Frame(frame));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The frames of bytes, and how many were dropped.
+    fn decoded(bytes: &[u8], shape: (u16, u16), from_start: bool) -> (Vec<Vec<f64>>, u64) {
+        let mut decoder = MatsenseDecoder::new(shape, from_start);
+        let (mut frames, mut counts) = (Vec::new(), StreamCounts::default());
+        let mut sink = |event: StreamEvent<'_>| {
+            if let StreamEvent::Frame(frame) = event {
+                frames.push(frame.values().to_vec());
+            }
+        };
+        decoder.push(bytes, &mut counts, &mut sink);
+        decoder.finish(&mut counts, &mut sink);
+        (frames, counts.dropped)
+    }
+
+    #[test]
+    fn bright_cells_between_brackets_end_no_frame() {
+        // Two neighbours of 255; and two of 255 that are a frame apart by their escapes.
+        let neighbours: &[u8] = b"\x5b\x01\x02\x03\x04\xff\xff\x05\x06\x07\x5d";
+        let escapes: &[u8] = b"\x5b\xff\x02\x5c\x00\x04\x05\x5c\x01\x06\x07\xff\x5d";
+        let wanted = [
+            [1, 2, 3, 4, 255, 255, 5, 6, 7],
+            [255, 2, 0x5c, 4, 5, 0x5b, 6, 7, 255],
+        ];
+        for (frame, wanted) in [neighbours, escapes].into_iter().zip(wanted) {
+            let wanted = wanted.map(f64::from).to_vec();
+            let stream = frame.repeat(20);
+            for joined in 0..frame.len() {
+                let (frames, _) = decoded(&stream[joined..], (3, 3), joined == 0);
+                let whole = 20 - usize::from(joined > 0);
+                assert_eq!(frames, vec![wanted.clone(); whole], "{joined}");
+            }
+        }
+    }
+
+    #[test]
+    fn cells_that_look_like_brackets_are_cells_of_ended_frames() {
+        // The same in all frames, and in one of them only.
+        let always = b"\x01\x5d\x5b\x04\xff".repeat(9);
+        assert_eq!(decoded(&always, (2, 2), true).0.len(), 9);
+        let once = b"\x01\x5b\x03\x04\xff\x01\x5d\x03\x04\xff";
+        assert_eq!(decoded(once, (2, 2), true).0.len(), 2);
+        // A damaged frame among them is dropped, wherever it is.
+        for at in 0..9 {
+            let mut stream = always.clone();
+            stream.remove(at * 5);
+            let (frames, _) = decoded(&stream, (2, 2), true);
+            assert_eq!(frames.len(), 8, "{at}");
+        }
+    }
 }
