@@ -8,7 +8,7 @@
 //! 7 3
 //! ```
 //! A frame with a row of another length is dropped as a whole, up to the next empty line: rows of two frames are never
-//! joined.
+//! joined. A shape that was not named is that of the first frame, until three frames in a row have another one.
 
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::formats::stream::numbers;
@@ -17,11 +17,18 @@ use crate::frame::{Frame, MAX_FRAME_SIDE};
 /// The most values of a frame.
 const MOST: usize = 512 * 512;
 
+/// Frames in a row that another shape needs to become the shape, where none was named.
+const AGAIN: u8 = 3;
+
 /// A decoder of lines of numbers.
 #[derive(Debug)]
 pub(super) struct LinesDecoder {
-    /// Rows and columns: as named, else those of the first whole frame.
+    /// Rows and columns: as named, else those of the first whole frame, until other ones come again and again.
     shape: Option<(u16, u16)>,
+    /// Those that were named.
+    named: Option<(u16, u16)>,
+    /// Another shape, and how many frames in a row have had it.
+    other: Option<((u16, u16), u8)>,
     /// Whether a boundary was seen, so that a frame may begin.
     begun: bool,
     /// The rows of the frame so far.
@@ -43,6 +50,8 @@ impl LinesDecoder {
     pub(super) fn new(shape: Option<(u16, u16)>, from_start: bool) -> Self {
         Self {
             shape,
+            named: shape,
+            other: None,
             begun: from_start,
             values: Vec::new(),
             rows: 0,
@@ -79,6 +88,7 @@ impl LinesDecoder {
                 counts.drop_frames(1, &self.broken_row);
             }
             self.values.drain(..before);
+            self.other = None;
             // The line before it was ended.
             self.begun = true;
             self.give(counts, sink);
@@ -86,9 +96,9 @@ impl LinesDecoder {
             return;
         }
         let expected = match self.shape {
-            Some((_, columns)) => usize::from(columns),
-            None if self.rows > 0 => before / usize::from(self.rows),
-            None => count,
+            Some((_, columns)) if self.named.is_some() => usize::from(columns),
+            _ if self.rows > 0 => before / usize::from(self.rows),
+            _ => count,
         };
         self.rows = self.rows.saturating_add(1);
         if self.broken || read.is_none() || count != expected || self.rows > MAX_FRAME_SIDE {
@@ -110,7 +120,7 @@ impl LinesDecoder {
 
     /// Counts a broken line at once where no empty line parts frames, as far as is known.
     fn give_up(&mut self, line: &[u8], counts: &mut StreamCounts) {
-        if self.shape.is_some_and(|(rows, _)| self.rows > rows) || self.rows > MAX_FRAME_SIDE {
+        if self.named.is_some_and(|(rows, _)| self.rows > rows) || self.rows > MAX_FRAME_SIDE {
             if self.begun {
                 counts.drop_frames(1, line);
             }
@@ -129,12 +139,35 @@ impl LinesDecoder {
         let columns = width(self.values.len() / usize::from(self.rows.max(1)));
         let own = (self.rows, columns);
         let fits = !self.broken && (1..=MAX_FRAME_SIDE).contains(&columns);
-        if fits && own == *self.shape.get_or_insert(own) {
+        if fits && self.has_shape(own) {
             self.give(counts, sink);
         } else {
+            if !fits {
+                self.other = None;
+            }
             counts.drop_frames(1, &self.broken_row);
         }
         self.clear();
+    }
+
+    /// Whether a whole frame has the shape. The first one may have been something else, such as the number of a version:
+    /// where no shape was named, another one that comes often enough takes its place.
+    fn has_shape(&mut self, own: (u16, u16)) -> bool {
+        let shape = *self.shape.get_or_insert(own);
+        if own == shape || self.named.is_some() {
+            self.other = None;
+            return own == shape;
+        }
+        let times = match self.other {
+            Some((other, times)) if other == own => times + 1,
+            _ => 1,
+        };
+        if times < AGAIN {
+            self.other = Some((own, times));
+            return false;
+        }
+        (self.shape, self.other) = (Some(own), None);
+        true
     }
 
     /// Gives a frame of the shape.
@@ -182,4 +215,54 @@ impl LinesDecoder {
 fn width(count: usize) -> u16 {
     // A frame of more is refused.
     u16::try_from(count).unwrap_or(MAX_FRAME_SIDE + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The frames of lines as rows, columns and first value, and how many were dropped.
+    fn decoded(text: &str, shape: Option<(u16, u16)>) -> (Vec<(u16, u16, f64)>, u64) {
+        let mut decoder = LinesDecoder::new(shape, true);
+        let (mut frames, mut counts) = (Vec::new(), StreamCounts::default());
+        let mut sink = |event: StreamEvent<'_>| {
+            if let StreamEvent::Frame(frame) = event {
+                frames.push((frame.rows(), frame.columns(), frame.values()[0]));
+            }
+        };
+        for line in text.lines() {
+            decoder.line(line.as_bytes(), &mut counts, &mut sink);
+        }
+        decoder.finish(b"", &mut counts, &mut sink);
+        (frames, counts.dropped)
+    }
+
+    #[test]
+    fn a_number_before_the_frames_does_not_fix_their_shape() {
+        let frames: String = (1..=5).map(|n| format!("{n} 2\n3 4\n\n")).collect();
+        let stream = format!("1.2\n\n{frames}");
+        let found = vec![(1, 1, 1.2), (2, 2, 3.0), (2, 2, 4.0), (2, 2, 5.0)];
+        assert_eq!(decoded(&stream, None), (found, 2));
+        // A shape that was named stays.
+        assert_eq!(decoded(&stream, Some((1, 1))).0, [(1, 1, 1.2)]);
+    }
+
+    #[test]
+    fn torn_frames_do_not_change_the_shape() {
+        let (whole, torn) = ("1 2\n3 4\n\n", "1 2\n\n");
+        // Two in a row, and then again two; frames of other shapes in between.
+        let stream = [
+            whole,
+            "9\n\n",
+            "9\n\n",
+            whole,
+            "9\n\n",
+            "9\n\n",
+            "5 5 5\n\n",
+            whole,
+        ];
+        assert_eq!(decoded(&stream.concat(), None), (vec![(2, 2, 1.0); 3], 5));
+        let stream = [whole, torn, torn, "1 x\n\n", torn, whole];
+        assert_eq!(decoded(&stream.concat(), None), (vec![(2, 2, 1.0); 2], 4));
+    }
 }
