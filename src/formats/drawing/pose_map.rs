@@ -7,6 +7,7 @@ use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT};
 use crate::formats::drawing::plane::{label, path_of, width};
 use crate::formats::drawing::scene::{Element, Position, Segment, Stroke, TextAnchor, rectangle};
 use crate::formats::drawing::svg;
+use crate::formats::value::decimal;
 
 /// The larger side of the plane, in points.
 const PLANE: f64 = 288.0;
@@ -16,6 +17,10 @@ const MOST: usize = 1024;
 
 /// Greys of areas, by the number of the imprint.
 const GREYS: [u8; 5] = [255, 232, 209, 186, 163];
+
+/// What the axes are.
+const X_TITLE: &str = "x0 / cells";
+const Y_TITLE: &str = "y0 / cells";
 
 /// Between two areas.
 const BORDER: Stroke = Stroke::black(0.5);
@@ -103,12 +108,19 @@ impl PoseMap {
     /// Lays out areas, borders and axes.
     fn page(&self) -> DrawingPage {
         let side = PLANE / count(self.columns.max(self.rows()));
-        let high = |ends: (f64, f64)| Ticks::between(ordered(ends), 0.0, 6.0);
-        let [across, along] = self.ends.map(high);
+        let [x0, y0] = self.ends;
+        let across = ticks(x0, self.columns);
+        let along = ticks(y0, self.rows());
         let above = if self.title.is_empty() { 0.0 } else { ROW };
+        // The titles of the axes stand at the middle, and may be longer than the axes.
+        let title = width(X_TITLE.len().max(Y_TITLE.len())) / 2.0;
+        let middle = |cells: usize| count(cells) * side / 2.0;
+        let (half_width, half_height) = (middle(self.columns), middle(self.rows()));
+        let left = MARGIN + TEXT * 2.0 + width(along.width()) + 6.0;
+        let top = MARGIN + above + TEXT * 3.0 + 4.0;
         let corner = (
-            MARGIN + TEXT * 2.0 + width(along.width()) + 6.0,
-            MARGIN + above + TEXT * 3.0 + 4.0,
+            left.max(MARGIN + title - half_width),
+            top.max(MARGIN + above + title - half_height),
         );
         let place = |column: usize, row: usize| {
             (
@@ -130,8 +142,12 @@ impl PoseMap {
         }
         self.axes(&mut marks, [&across, &along], (corner, end), side);
         let right = end.0.max(corner.0 + width(self.title.chars().count()));
+        // A mark stands at the middle of a cell, half a cell from the end.
+        let mark = width(across.width()) / 2.0 - side / 2.0;
+        let right = right.max(end.0 + mark).max(end.0 - half_width + title);
+        let bottom = (end.1 + TEXT).max(end.1 - half_height + title);
         DrawingPage {
-            size: (right + MARGIN, end.1 + TEXT + MARGIN),
+            size: (right + MARGIN, bottom + MARGIN),
             plane: (corner, end),
             title: "imprints of positions".to_owned(),
             marks,
@@ -218,9 +234,9 @@ impl PoseMap {
         marks.push(path_of("axes", ticks, Stroke::black(0.6)));
         let middle = (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1));
         let above = (middle.0, from.1 - 5.0 - TEXT * 1.5);
-        marks.push(label("x0 / cells", above, TextAnchor::Middle));
+        marks.push(label(X_TITLE, above, TextAnchor::Middle));
         marks.push(Element::Text {
-            text: "y0 / cells".to_owned(),
+            text: Y_TITLE.to_owned(),
             place: (MARGIN + TEXT, middle.1),
             anchor: TextAnchor::Middle,
             upright: true,
@@ -241,13 +257,13 @@ fn shade(id: u32) -> usize {
     shade.into()
 }
 
-/// The ends of an axis, the smaller first; of a single value a little around it.
-fn ordered((one, other): (f64, f64)) -> (f64, f64) {
+/// The marks of an axis with a number of cells from one value to another; a single one of a single value.
+fn ticks((one, other): (f64, f64), cells: usize) -> Ticks {
     let (low, high) = (one.min(other), one.max(other));
-    if low < high {
-        (low, high)
+    if cells > 1 && low < high {
+        Ticks::between((low, high), 0.0, 6.0)
     } else {
-        (low - 1e-6, high + 1e-6)
+        Ticks(vec![(one, decimal(one, 6))])
     }
 }
 
@@ -261,4 +277,52 @@ fn runs(count: usize, holds: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
         }
     }
     runs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_single_value_has_one_mark() {
+        let marks = |ends, cells| ticks(ends, cells).0;
+        assert_eq!(marks((5.0, 5.0), 1), [(5.0, "5".to_owned())]);
+        assert_eq!(marks((5.25, 5.25), 3), [(5.25, "5.25".to_owned())]);
+        assert_eq!(marks((5.0, 6.0), 1), [(5.0, "5".to_owned())]);
+        assert_eq!(marks((5.0, 6.0), 2).len(), 6);
+    }
+
+    #[test]
+    fn the_page_holds_all_texts_of_narrow_and_flat_maps() {
+        for (columns, rows) in [(1, 1), (1, 100), (100, 1), (3, 200), (1024, 1)] {
+            let ids = vec![Some(1); columns * rows];
+            for title in ["", "a title"] {
+                let map = PoseMap::new((5.0, 5.99), (5.0, 5.99), columns, &ids);
+                let page = map.expect("few cells").with_title(title).page();
+                for mark in &page.marks {
+                    let Element::Text {
+                        text,
+                        place: (x, y),
+                        anchor,
+                        upright,
+                    } = mark
+                    else {
+                        continue;
+                    };
+                    let length = width(text.chars().count());
+                    let before = match anchor {
+                        TextAnchor::Start => 0.0,
+                        TextAnchor::Middle => length / 2.0,
+                        TextAnchor::End => length,
+                    };
+                    let (low, high, size) = if *upright {
+                        (y - length + before, y + before, page.size.1)
+                    } else {
+                        (x - before, x - before + length, page.size.0)
+                    };
+                    assert!(low >= 0.0 && high <= size, "{text} {columns} {rows}");
+                }
+            }
+        }
+    }
 }
