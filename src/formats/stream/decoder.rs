@@ -19,6 +19,9 @@ const LONGEST_LINE: usize = 8 << 20;
 /// Bytes in which text must have the end of a line, otherwise it is not a known stream.
 const LOOKED_AT: usize = 1 << 16;
 
+/// Bytes in which two markers of the largest frames are found.
+const MARKERS_IN: usize = 3 * (512 * 512 + 2) + 3;
+
 /// Decodes a stream, piece by piece.
 #[derive(Debug)]
 pub struct StreamDecoder {
@@ -244,15 +247,17 @@ fn form(bytes: &[u8], shape: Option<(u16, u16)>, ended: bool) -> Option<StreamFo
     if bytes.len() < MARK.len() && MARK.starts_with(bytes) && !ended {
         return None;
     }
-    let bytes = &bytes[..bytes.len().min(LOOKED_AT)];
-    let ended = ended || bytes.len() == LOOKED_AT;
-    let text = bytes.strip_prefix(MARK).unwrap_or(bytes);
+    let looked_at = &bytes[..bytes.len().min(LOOKED_AT)];
+    let all_ended = ended;
+    let ended = ended || looked_at.len() == LOOKED_AT;
+    let text = looked_at.strip_prefix(MARK).unwrap_or(looked_at);
     let is_binary = |byte: &u8| !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c | b' '..=b'~');
     let mut lines = text.split(|&byte| byte == b'\n').peekable();
     let mut first = true;
     while let Some(line) = lines.next() {
         if line.iter().any(is_binary) {
-            return form_of_bytes(bytes, shape, ended);
+            // Large frames need more bytes than text does.
+            return form_of_bytes(bytes, shape, all_ended);
         }
         // The last one is not ended, unless all is.
         if lines.peek().is_none() && !ended {
@@ -301,7 +306,7 @@ fn form_of_bytes(bytes: &[u8], shape: Option<(u16, u16)>, ended: bool) -> Option
     };
     let period = usize::from(rows) * usize::from(columns) + 2;
     // In two frames and a half a marker and the next would have been found.
-    let enough = 3 * period + 3;
+    let enough = (3 * period + 3).min(MARKERS_IN);
     let ended = ended || bytes.len() >= enough;
     let bytes = &bytes[..bytes.len().min(enough)];
     let pair = |at: usize| has_marker(bytes, at) && has_marker(bytes, at + period);
@@ -313,4 +318,36 @@ fn form_of_bytes(bytes: &[u8], shape: Option<(u16, u16)>, ended: bool) -> Option
     } else {
         StreamFormat::Matsense
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn large_frames_behind_markers_are_found_wherever_they_are_joined() {
+        let side = 200_u16;
+        let cells = usize::from(side) * usize::from(side);
+        let frame = [vec![0xaa, 0x55], vec![7; cells]].concat();
+        let stream = frame.repeat(6);
+        for piece in [1 << 12, stream.len()] {
+            for joined in [0, 1, cells / 2, cells] {
+                let options = StreamOptions::default().with_shape(side, side);
+                let mut decoder = StreamDecoder::new(options);
+                let mut sink = |_: crate::formats::stream::StreamEvent<'_>| {};
+                for bytes in stream[joined..].chunks(piece) {
+                    decoder.push(bytes, &mut sink);
+                }
+                decoder.finish(&mut sink);
+                assert_eq!(decoder.format(), Some(StreamFormat::Flexitac), "{joined}");
+                let whole = if joined == 0 { 6 } else { 5 };
+                assert_eq!(decoder.counts().frames, whole, "{joined}");
+            }
+        }
+        // Bytes without a marker are judged at last.
+        let shape = Some((512, 512));
+        let bytes = vec![7; MARKERS_IN];
+        assert_eq!(form(&bytes[1..], shape, false), None);
+        assert_eq!(form(&bytes, shape, false), Some(StreamFormat::Matsense));
+    }
 }
