@@ -408,19 +408,20 @@ mod tests {
     }
 
     #[test]
-    fn a_small_mark_takes_no_time_for_the_rest_of_the_page() {
-        let mut page = Ink::new(4000, 4000);
-        let start = std::time::Instant::now();
-        for at in 0..1000_u32 {
-            let low = (f64::from(at) * 3.0, f64::from(at));
-            let high = (low.0 + 2.0, low.1 + 2.0);
-            page.fill(&[(low, high)], 0);
-            let line = [Segment::Move(low), Segment::Line(high)];
-            page.stroke(&line, Stroke::black(1.0), None);
-        }
-        // Blending all of the page for each of them takes minutes.
-        assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
-        assert_eq!(page.pixels()[0], 0);
+    fn a_small_mark_takes_the_pixels_that_it_touches_and_no_others() {
+        let page = Ink::new(4000, 4000);
+        let touched = |low, high| Area::touched((low, high), page.all());
+        let areas = [
+            touched((3.5, 1.0), (5.5, 2.0)),
+            touched((4.0, 3.5), (5.0, 4.5)),
+        ];
+        let shares = Shares::new(areas.into_iter().collect());
+        assert_eq!(
+            (&shares.area.columns, &shares.area.rows),
+            (&(3..6), &(1..5))
+        );
+        assert_eq!(shares.values.len(), 3 * 4);
+        assert!(touched((-9.0, 1.0), (-2.0, 2.0)).is_empty());
     }
 
     #[test]
