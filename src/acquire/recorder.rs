@@ -191,8 +191,8 @@ impl Drop for Syncer {
 }
 
 impl FrameRecorder {
-    /// Creates the file, whose name ends in `.npy`, and `.json` beside it: both, or none. They appear with the first frame, and what is to be replaced
-    /// stays until then.
+    /// Creates the file, whose name ends in `.npy`, and `.json` beside it: both, or none. They appear with the first frame,
+    /// and what is to be replaced stays until then.
     ///
     /// # Errors
     /// If the name ends otherwise, if one of the two is there and is to be kept, or if they cannot be created.

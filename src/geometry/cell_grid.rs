@@ -140,8 +140,8 @@ impl<T: Real> CellGrid<T> {
         (here[row % 2], beyond[row % 2]) != (T::ZERO, T::ZERO)
     }
 
-    /// The index of the entry in a row, from [`Self::start`] on, of the column that `x` lies in by [`Real::cell`], and that column's
-    /// right end.
+    /// The index of the entry in a row, from [`Self::start`] on, of the column that `x` lies in by [`Real::cell`], and that
+    /// column's right end.
     pub(crate) fn locate(&self, x: T) -> (usize, T) {
         if x < T::ZERO {
             (0, T::ZERO)

@@ -152,8 +152,8 @@ impl Model {
         }
     }
 
-    /// The logarithm of w Π P(touch | s) for each shape, at least and at most, and which keys that took. `further` more
-    /// distances are looked at than one touch needs.
+    /// A lower and an upper bound of ln(w Π P(touch | s)) for each shape, and which keys that took. `further` distances more
+    /// are looked at than one touch needs.
     fn odds_under(
         &self,
         noise: &Noise,

@@ -176,8 +176,8 @@ impl Model {
             .collect()
     }
 
-    /// ln P(imprint | s) for each shape, all plus one number: at least, as far as `distances` reach, and at most. A shape
-    /// without a touch that fits the matrix has −∞ for both.
+    /// A lower and an upper bound of ln P(imprint | s) for each shape, all plus the same number: without and with all that
+    /// lies beyond `distances`. Both are −∞ for a shape of which no imprint fits the matrix.
     pub(super) fn log_likelihoods(
         &self,
         imprint: &Imprint,

@@ -27,7 +27,7 @@ pub(crate) enum FieldRole {
     Time(f64),
 }
 
-/// Patterns of names that are told apart.
+/// The most patterns of names that are distinguished.
 const MOST_PATTERNS: usize = 64;
 
 /// The cells that the names describe; None where they describe none.

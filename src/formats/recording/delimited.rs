@@ -50,8 +50,8 @@ impl Separator {
         found.map_or(Self::Spaces, Self::Byte)
     }
 
-    /// The fields of a line that is to have so many, as [`Self::fields`]; but one at the end is empty if that makes them so
-    /// many.
+    /// The fields of a line, as [`Self::fields`]; but where one is missing to `expected`, a separator at the end of the line
+    /// is followed by an empty field.
     fn fields_of(self, line: &[u8], expected: usize) -> impl Iterator<Item = &[u8]> {
         let is_short = match self {
             Self::Byte(_) => self.fields(line).count() + 1 == expected,

@@ -1,4 +1,5 @@
-//! The state of the live page: which frame is shown and how, and what can be said of it.
+//! The state of the live page: which frame is shown and how, and what can be said of it. What keys ask for changes all of
+//! this together, so it stands in one file, long as it is.
 
 use std::sync::Arc;
 
@@ -361,7 +362,7 @@ impl Live {
             ProvisionalChange::Gone => None,
         };
         let before = std::mem::replace(&mut self.provisional, next);
-        // One that has left the history again was confirmed or not: nobody knows.
+        // A frame that the history no longer holds can no longer be compared; its mark stays.
         let has_left = self.history.oldest() > Some(number);
         if let Some(before) = before.as_ref().filter(|_| !has_left) {
             let present = self.history.get(number).or(self.provisional.as_ref());

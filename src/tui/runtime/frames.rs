@@ -5,6 +5,8 @@
 //!         -> FrameFeed: what has not been taken yet, bounded in bytes -> at most 30 times a second -> Arrived
 //! ```
 //! Without a receiver of events, as in a script, nothing is watched: frames are read when they are asked for.
+//!
+//! The file is long because what is taken in, recorded and shown shares one lock, and its tests are about that.
 
 use std::ffi::OsStr;
 use std::mem::take;

@@ -1,6 +1,7 @@
 //! The runtime: performs the effects that `update` returns, and feeds the answers back as messages.
 //!
-//! Nothing else on the screen touches files or threads, but for the terminal itself.
+//! Nothing else on the screen touches files or threads, but for the terminal itself. The file is long because each effect has
+//! an arm here, and ending the program waits for all of them.
 //! ```text
 //! effect           what update may ask for: the library, a worker, the terminal
 //! files            opens and writes files of imprints
