@@ -31,6 +31,10 @@ fn taxels_are_turned_over_and_undone() {
     shows("<Space><Right><Space>u", &["NA 1 in all"]);
     shows("<Space><Right><Space>uu", &["NA 0 in all"]);
     shows("<Space><Right><Space>uuu", &["nothing to undo"]);
+    // A count that is too large ends at the first step, which stays named.
+    shows("<Space><Right><Space>9u", &["undone: taxel 8, 8 on"]);
+    shows("<Space><Right><Space>uu9<C-r>", &["redone: taxel 9, 8 on"]);
+    shows("9u", &["nothing to undo"]);
     shows("<Space><Right><Space>uuUU", &["NA 2 in all"]);
     shows("<Space><Right><Space>uu<C-r>", &["NA 1 in all"]);
     shows(
@@ -191,6 +195,14 @@ fn pasted_text_goes_into_fields_only() {
     let mut form = session("f<Tab>");
     form.send(Message::Paste(" 2.5\n".to_owned()));
     shows(&form, &["rx 2.50"]);
+    // On the row of kinds too: a name, or the first field's number.
+    let mut form = session("f");
+    form.send(Message::Paste("Hexagon\n".to_owned()));
+    shows(&form, &["< hexagon   >"]);
+    form.send(Message::Paste("nut".to_owned()));
+    shows(&form, &["no kind is called \"nut\": ellipse, rectangle"]);
+    form.send(Message::Paste("2.5".to_owned()));
+    shows(&form, &["side 2.50"]);
     let mut matrix = session("");
     matrix.send(Message::Paste("qqq f".to_owned()));
     assert!(!matrix.app().ended());
@@ -373,6 +385,27 @@ fn no_key_means_two_things_in_one_place() {
     }
 }
 
+/// However long it is held, and whatever is looked at meanwhile.
+#[test]
+fn what_is_put_back_leaves_no_step() {
+    for look in ["?<Esc>", "c", "+", ":coverage<Enter>", ""] {
+        let moved = format!("f<Enter>g<Right>{look}<Right>");
+        shows(&format!("{moved}<Esc>"), &["put back", "at 4.00, 4.00"]);
+        shows(&format!("{moved}<Esc>u"), &["NA 0 in all"]);
+        shows(&format!("{moved}u"), &["at 4.00, 4.00"]);
+    }
+}
+
+#[test]
+fn a_figure_that_a_smaller_sensor_does_not_allow_is_said_to_be_a_drawing() {
+    let smaller = ":figure rectangle --length 10<Enter>:sensor --columns 4 --rows 4<Enter>";
+    shows(
+        smaller,
+        &["the rectangle does not fit this sensor and is a drawing now; u undoes it"],
+    );
+    shows(&format!("{smaller}u"), &["rectangle length 10.0"]);
+}
+
 /// Nothing moves, so nothing that was set by hand goes.
 #[test]
 fn a_move_by_nothing_changes_nothing() {
@@ -495,6 +528,13 @@ fn touches_are_kept_multiplied_and_forgotten() {
         &["the kept touches are forgotten", "45.3 %"],
     );
     shows(":recognise figures-30<Enter>a", &["nothing is touched"]);
+    // What is on the matrix, although it came while the page was closed.
+    let closed = format!(":recognise figures-30<Enter><Esc>{hexagon}:keep<Enter>");
+    shows(&closed, &["1 touch kept", "45.3 %"]);
+    shows(
+        &format!("{closed}<Esc>n:keep<Enter>"),
+        &["nothing is touched"],
+    );
     shows(":recognise figures-30<Enter>x", &["no touches are kept"]);
 }
 
@@ -520,6 +560,10 @@ fn a_random_touch_is_named_by_row_letter_or_number_and_scored() {
     shows(
         &format!("{touch}<Esc>"),
         &["it was: ellipse; u takes its touch back", "0 of 1 right"],
+    );
+    shows(
+        &format!("{touch}<Space><Esc>"),
+        &["it was: ellipse; u takes its last touch back"],
     );
     let drawn = "<Space>:seed 7<Enter>:recognise figures-30<Enter>t";
     shows(

@@ -435,6 +435,12 @@ fn required<T: Clone + Send + Sync + 'static>(
 /// What to keep of a touch.
 fn kept(matches: &ArgMatches, command: &mut clap::Command, name: &str) -> Result<Kept, CliError> {
     let path = matches.get_one::<PathBuf>("export");
+    if path.is_some_and(|path| path.as_os_str() == "-") && matches.get_flag("json") {
+        return Err(CliError::Unused {
+            flag: "json",
+            reason: "with '--export -', which writes to standard output in its place".to_owned(),
+        });
+    }
     let export = path.map(|path| export(matches, path, command, name));
     Ok(Kept {
         saving: saving(matches),

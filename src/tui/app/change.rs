@@ -3,6 +3,7 @@
 //! Each change goes through `change`, `begin` or `travel`, which bring everything that depends on the document
 //! back into range: the cursor, the chosen region, the mode.
 
+use crate::figure::FigureKind;
 use crate::formats::value::counted;
 use crate::imprint::Imprint;
 use crate::parameter::Parameter;
@@ -179,6 +180,11 @@ pub(in crate::tui) fn replace(app: &mut App, document: Document) {
         return;
     }
     let dropped = present.edits.count().saturating_sub(document.edits.count());
+    let lost = present
+        .source
+        .as_ref()
+        .filter(|_| document.source.is_none());
+    let lost = lost.map(|source| source.kind().map_or("picture", FigureKind::name));
     if is_other(app, &document) {
         let origin = stored_nowhere(&document);
         app.history.begin(document, origin);
@@ -186,7 +192,14 @@ pub(in crate::tui) fn replace(app: &mut App, document: Document) {
     } else {
         change(app, document);
     }
-    say_dropped(app, dropped);
+    match lost {
+        Some(what) => {
+            let undo = app.key_of(&action::UNDO);
+            let text = format!("the {what} does not fit this sensor and is a drawing now");
+            inform(app, format!("{text}; {undo} undoes it"));
+        }
+        None => say_dropped(app, dropped),
+    }
 }
 
 /// Says how many taxels set by hand were dropped, if any.

@@ -223,6 +223,11 @@ impl History {
         (steps, self.past.len())
     }
 
+    /// How many steps lead to the present state.
+    pub fn step_number(&self) -> usize {
+        self.past.len()
+    }
+
     /// The state before the last step that changed something, None if there is none.
     pub fn before(&self) -> Option<&Document> {
         let past = self.past.iter().rev();

@@ -9,7 +9,7 @@ use crate::tui::app::document::Reading;
 use crate::tui::app::message::Message;
 use crate::tui::app::mouse;
 use crate::tui::app::quit::can_save_first;
-use crate::tui::app::state::{App, Notice, RunState};
+use crate::tui::app::state::{App, Mode, Notice, RunState};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::help::Help;
 use crate::tui::history::HistoryDialog;
@@ -90,12 +90,20 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
         return None;
     }
     let times = app.count.take().filter(|_| message.repeats());
-    for _ in 1..times.unwrap_or(1) {
+    let times = times.unwrap_or(1);
+    for time in 1..=times {
+        let (said, step) = (app.notice.take(), app.history.step_number());
         if let Some(effect) = perform(app, message.clone()) {
             return Some(effect);
         }
+        let stays = app.history.step_number() == step;
+        // What was undone last stays named where the count is larger than the number of steps.
+        if time > 1 && stays && matches!(message, Message::Undo | Message::Redo) {
+            app.notice = said;
+            break;
+        }
     }
-    perform(app, message)
+    None
 }
 
 /// Handles the answer to a request. The prompt that it came from opens again where it is refused: so it can be put right,
@@ -117,7 +125,8 @@ fn perform(app: &mut App, message: Message) -> Option<Effect> {
     if matches!(message, Message::Cancel | Message::Quit) {
         app.quits_when_saved = false;
     }
-    if !message.moves_shape() {
+    // What is held stays one step while only help or another page is looked at.
+    if !message.moves_shape() && app.mode != Mode::Grab {
         app.moves = None;
     }
     match app.dialogs.pop() {

@@ -278,7 +278,7 @@ impl FormDialog {
     /// A character: into the field; on the kind, the next kind that begins with it. No kind begins with a digit, a sign
     /// or a point: these begin the number in the first field.
     pub fn insert(&mut self, character: char) {
-        if self.form.focus().is_none() && matches!(character, '0'..='9' | '-' | '+' | '.') {
+        if self.form.focus().is_none() && begins_number(character) {
             self.move_focus(1);
         }
         if self.form.focus().is_some() {
@@ -288,6 +288,21 @@ impl FormDialog {
                 kind.name().starts_with(character.to_ascii_lowercase())
             });
         }
+    }
+
+    /// Pasted text: into the field; on the kind, the kind of that name. Returns whether it had a use.
+    pub fn paste(&mut self, text: &str) -> bool {
+        let name = text.trim().to_lowercase();
+        let on_kind = self.form.focus().is_none() && self.kind().is_some();
+        if on_kind && name.starts_with(begins_number) {
+            self.move_focus(1);
+        } else if on_kind {
+            let kind = FigureKind::from_name(&name);
+            self.next_kind(1, |other| Some(other) == kind);
+            return kind.is_some();
+        }
+        self.edit(|form| form.take(&Message::Paste(text.to_owned())));
+        true
     }
 
     /// The first kind, `step` after `step` from the present one on, that fits; the present one where none does.
@@ -306,6 +321,11 @@ impl FormDialog {
             self.edit(|_| {});
         }
     }
+}
+
+/// Whether a number may begin with a character.
+fn begins_number(character: char) -> bool {
+    matches!(character, '0'..='9' | '-' | '+' | '.')
 }
 
 /// A figure of a kind: as it was accepted last, or with the defaults.

@@ -3,6 +3,7 @@
 //! Accept puts the form's document onto the matrix if all fields are valid; otherwise it moves the focus to the first
 //! one that is not, and says what is wrong. Everything else edits the fields, and the matrix follows.
 
+use crate::figure::FigureKind;
 use crate::tui::app::change::{refuse, replace};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
@@ -37,6 +38,12 @@ pub(in crate::tui) fn update(
         Message::ToField(field) => dialog.edit(|form| form.set_focus(field)),
         Message::Choose(arrow) => dialog.choose(arrow),
         Message::Type(character) => dialog.insert(character),
+        Message::Paste(text) => {
+            if !dialog.paste(&text) {
+                let kinds = FigureKind::ALL.map(FigureKind::name).join(", ");
+                refuse(app, format!("no kind is called {text:?}: {kinds}"));
+            }
+        }
         Message::Step(direction) => dialog.edit(|form| form.step(direction)),
         other => dialog.edit(|form| form.take(&other)),
     }

@@ -75,6 +75,11 @@ impl Exercise {
         self.trained.name(shape)
     }
 
+    /// How often it touched the matrix.
+    pub fn touched(&self) -> usize {
+        self.touches.len()
+    }
+
     /// Its touches.
     pub fn into_touches(self) -> Vec<Imprint> {
         self.touches
@@ -133,9 +138,9 @@ impl Exercise {
 
 /// An imprint on the user's sensor if it fits on that, otherwise on that of its model; and the sensor.
 pub(super) fn onto(imprint: &Imprint, sensor: Sensor, own: Sensor) -> (Sensor, Imprint) {
-    let place = |sensor: Sensor| Some((sensor, moved_onto(imprint, &sensor)?));
-    let placed = place(sensor).or_else(|| place(own));
-    placed.unwrap_or((sensor, Imprint::empty(sensor.columns(), sensor.rows())))
+    let moved = |sensor: Sensor| Some((sensor, moved_onto(imprint, &sensor)?));
+    let moved = moved(sensor).or_else(|| moved(own));
+    moved.unwrap_or((sensor, Imprint::empty(sensor.columns(), sensor.rows())))
 }
 
 /// The same imprint where it fits on a sensor: as near to its own place as that allows, off the rim if there is room.

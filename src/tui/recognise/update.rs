@@ -176,12 +176,15 @@ fn forget(app: &mut App) {
 /// Keeps the touch on the matrix.
 /// Kept touches count as touches of one and the same shape; the answer takes them all together.
 fn add_touch(app: &mut App) {
+    // A page that was closed has not followed the matrix.
+    let imprint = app.reading().imprint;
     let Some(page) = state(app) else { return };
+    page.show(imprint);
     let kept = page.add_touch();
     let text = match (kept, page.kept()) {
         (true, 1) => "1 touch kept; now touch the shape elsewhere".to_owned(),
         (true, count) => format!("{count} touches kept"),
-        (false, 0) => "nothing is touched".to_owned(),
+        (false, _) if page.present().is_empty() => "nothing is touched".to_owned(),
         (false, _) => "this touch is kept already".to_owned(),
     };
     inform(app, text);
@@ -253,10 +256,15 @@ fn guess(app: &mut App, exercise: Exercise, named: bool) {
     let text = match (named, right) {
         (true, true) => format!("right: {name}; {touch} touches another shape"),
         (true, false) => format!("no: {name}, not {}", exercise.name(selected)),
-        (false, _) => format!(
-            "it was: {name}; {} takes its touch back",
-            app.key_of(&action::UNDO)
-        ),
+        (false, _) => {
+            let touch = if exercise.touched() > 1 {
+                "last touch"
+            } else {
+                "touch"
+            };
+            let undo = app.key_of(&action::UNDO);
+            format!("it was: {name}; {undo} takes its {touch} back")
+        }
     };
     if let Some(page) = state(app) {
         page.set_touches(exercise.into_touches());
