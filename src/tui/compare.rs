@@ -162,7 +162,9 @@ impl Comparison {
                 format!("{sign}{}", text(theme, descriptor, by))
             });
             let symbol = format!("{:SYMBOL$} ", descriptor.symbol);
-            let both = format!("{first:VALUE$} {second:VALUE$} ");
+            // A long first value moves the second one, but not the difference.
+            let both = format!("{first:VALUE$} {second}");
+            let both = format!("{both:0$} ", 2 * VALUE + 1);
             let role = if first == second {
                 Role::Quiet
             } else {

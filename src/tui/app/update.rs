@@ -90,7 +90,11 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
         return None;
     }
     let times = app.count.take().filter(|_| message.repeats());
-    let times = times.unwrap_or(1);
+    repeat(app, &message, times.unwrap_or(1))
+}
+
+/// Does what a message of the user says so often, or until there is an effect.
+fn repeat(app: &mut App, message: &Message, times: u16) -> Option<Effect> {
     for time in 1..=times {
         let (said, step) = (app.notice.take(), app.history.step_number());
         if let Some(effect) = perform(app, message.clone()) {
