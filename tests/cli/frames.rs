@@ -432,6 +432,15 @@ fn cells_are_where_the_file_says_in_less_usual_tables() {
             "# tactile frames\n1 2 3\n# the second row\n4 5 6\n\n1 2 3\n4 5 6\n",
             "",
         ),
+        (
+            "# from Windows\r\n\r\n  # indented\r\n \t\r\n1 2 3\r\n4 5 6\r\n\r\n1 2 3\r\n4 5 6\r\n",
+            "",
+        ),
+        // A pair of numbers in a name by chance.
+        (
+            "a_1_1,a_1_2,c0,c1,c2,c3,c4,c5\n9,9,1,2,3,4,5,6\n",
+            "--rows 2 --columns 3",
+        ),
         // Numbers in a row are values unless they count from 0.
         ("1 2 3\n4 5 6\n\n1 2 3\n4 5 6\n", ""),
     ] {

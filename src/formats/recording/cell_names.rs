@@ -16,6 +16,8 @@ pub(crate) enum NamedCells {
     Grid(u16, u16, Vec<usize>),
     /// Counted fields, one after the other: the first of them and how many.
     Counted(usize, usize),
+    /// Most of the cells of these rows and columns, but not all: so many of them.
+    Incomplete(u16, u16, usize),
 }
 
 /// What a field that is not a cell says of a frame.
@@ -32,10 +34,14 @@ const MOST_PATTERNS: usize = 64;
 
 /// The cells that the names describe; None where they describe none.
 pub(crate) fn cells(names: &[&str]) -> Option<NamedCells> {
-    let named = largest_grid(names);
-    // Names by row and column, of which some are missing, are not a row of cells.
-    if named.len() < 2 {
-        counted(names)
+    let (named, counted) = (largest_grid(names), counted(names));
+    let in_row = match counted {
+        Some(NamedCells::Counted(_, length)) => length,
+        _ => 0,
+    };
+    // Each row of a grid counts, too. What has a pair of numbers by chance is less than the cells.
+    if named.len() < in_row {
+        counted
     } else {
         grid(&named)
     }
@@ -84,7 +90,8 @@ fn largest_grid(names: &[&str]) -> Vec<NumberedField> {
     fields.max_by_key(Vec::len).unwrap_or_default()
 }
 
-/// Cells named by row and column; there must be exactly one for each.
+/// Cells named by row and column; there must be exactly one for each. None of names that are cells by chance at most:
+/// of which less than half are there, or one is there twice.
 fn grid(named: &[NumberedField]) -> Option<NamedCells> {
     let range = |part: usize| {
         let numbers = named.iter().map(|(_, numbers)| numbers[part]);
@@ -97,8 +104,12 @@ fn grid(named: &[NumberedField]) -> Option<NamedCells> {
     };
     let (rows, columns) = side(top, bottom).zip(side(left, right))?;
     let mut fields = vec![None; usize::from(rows) * usize::from(columns)];
-    if named.len() != fields.len() || named.len() < 2 {
+    if named.len() < 2 || named.len() > fields.len() {
         return None;
+    }
+    if named.len() < fields.len() {
+        let found = named.len();
+        return (2 * found > fields.len()).then_some(NamedCells::Incomplete(rows, columns, found));
     }
     for &(field, [row, column]) in named {
         // Below 512 both.
@@ -205,14 +216,27 @@ mod tests {
             Some(NamedCells::Counted(0, 3))
         );
         // A cell is missing; nothing counts.
-        assert_eq!(cells(&["r0c0", "r0c1", "r1c0"]), None);
+        let incomplete = |rows, columns, found| Some(NamedCells::Incomplete(rows, columns, found));
+        assert_eq!(cells(&["r0c0", "r0c1", "r1c0"]), incomplete(2, 2, 3));
+        assert_eq!(
+            cells(&["r0c0", "r0c1", "r0c2", "r0c4"]),
+            incomplete(1, 5, 4)
+        );
+        // One is there twice.
+        assert_eq!(cells(&["r0c0", "r0c1", "r0c1"]), None);
         assert_eq!(cells(&["a", "b"]), None);
         // What is said of the frame may come after its cells.
         let named = [
             "S0_0", "S0_1", "S0_2", "S1_0", "S1_1", "S1_2", "total", "run_1_2",
         ];
         assert_eq!(cells(&named), grid(2, 3, &[0, 1, 2, 3, 4, 5]));
-        assert_eq!(cells(&["S0_0", "S0_1", "S0_2", "S1_0", "label"]), None);
+        let label = cells(&["S0_0", "S0_1", "S0_2", "S1_0", "label"]);
+        assert_eq!(label, incomplete(2, 3, 4));
+        // A pair of numbers is no cell where more names count.
+        let counted = Some(NamedCells::Counted(2, 4));
+        for [first, second] in [["a_1_1", "a_1_2"], ["x_2024_01", "x_2025_02"]] {
+            assert_eq!(cells(&[first, second, "c0", "c1", "c2", "c3"]), counted);
+        }
         assert_eq!(cells(&["s0_0", "s0_4294967295"]), None);
     }
 

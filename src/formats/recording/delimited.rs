@@ -201,7 +201,7 @@ pub(super) fn read(
 }
 
 /// Whether a line is a comment, wherever it stands.
-fn is_comment(line: &[u8]) -> bool {
+pub(super) fn is_comment(line: &[u8]) -> bool {
     line.trim_ascii_start().starts_with(b"#")
 }
 
@@ -365,6 +365,10 @@ fn named_cells(
             let values = length as u64;
             let side = side.ok_or(RecordingError::Shape { values })?;
             Ok(((side, side), fields, Some(RecordingNote::Square { side })))
+        }
+        Some(NamedCells::Incomplete(rows, columns, found)) => {
+            let message = format!("the header names {found} cells of {rows} rows of {columns}");
+            Err(RecordingError::in_line(number, message))
         }
         None => {
             let leading = roles.iter().take_while(|role| role.is_some()).count();

@@ -6,6 +6,7 @@
 
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
+use crate::formats::recording::delimited::is_comment;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingFormat, Sink};
 use crate::formats::recording::lines::is_blank;
@@ -37,7 +38,7 @@ pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
     let mut lines = trimmed.split(|&byte| byte == b'\n');
     let first = lines.clone().next().unwrap_or(b"");
     // Comments may stand above a table.
-    let is_row = |line: &&[u8]| !line.is_empty() && !line.starts_with(b"#");
+    let is_row = |line: &&[u8]| !is_blank(line) && !is_comment(line);
     let row = lines.find(is_row).unwrap_or(first);
     if start.starts_with(MCAP) {
         return Some(RecordingFormat::Mcap);

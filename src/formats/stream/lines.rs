@@ -77,12 +77,13 @@ impl LinesDecoder {
         let room = MOST.saturating_sub(before);
         let read = numbers::read(line, &mut self.values, room);
         let count = self.values.len() - before;
-        // A line of all cells is a boundary itself.
+        // A line of all cells is a boundary itself. Frames of one row have to be named as such: one line before the frames,
+        // such as the numbers of their columns, would make each of their rows a frame.
         let is_frame = |(rows, columns): (u16, u16)| {
             rows > 1 && count == usize::from(rows) * usize::from(columns)
         };
         if read.is_some()
-            && (self.shape.is_some_and(is_frame) || self.shape == Some((1, width(count))))
+            && (self.shape.is_some_and(is_frame) || self.named == Some((1, width(count))))
         {
             if self.rows > 0 && self.begun {
                 counts.drop_frames(1, &self.broken_row);
@@ -245,6 +246,13 @@ mod tests {
         assert_eq!(decoded(&stream, None), (found, 2));
         // A shape that was named stays.
         assert_eq!(decoded(&stream, Some((1, 1))).0, [(1, 1, 1.2)]);
+        // As many numbers as the frames have columns.
+        let found = vec![(1, 2, 0.0), (2, 2, 3.0), (2, 2, 4.0), (2, 2, 5.0)];
+        assert_eq!(decoded(&format!("0 1\n\n{frames}"), None), (found, 2));
+        // Frames of one row are each ended by an empty line, or named.
+        let rows = vec![(1, 2, 1.0), (1, 2, 3.0)];
+        assert_eq!(decoded("1 2\n\n3 4\n\n", None), (rows.clone(), 0));
+        assert_eq!(decoded("1 2\n3 4\n", Some((1, 2))), (rows, 0));
     }
 
     #[test]
