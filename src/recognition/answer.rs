@@ -210,13 +210,14 @@ impl Model {
     /// of the noise are left out. None without a touch, or if no key fits its matrix.
     pub fn nearest_of(&self, evidence: Evidence<'_>) -> Option<Nearest> {
         let dead = evidence.noise.and_then(Noise::dead);
-        let unknown = |touch: &&Imprint| match dead {
-            None => self.counts_of(touch).is_empty(),
-            // Its key alone says nothing: a dead taxel may be a hole in it.
-            Some(_) => (self.nearest_without(touch, dead)).is_none_or(|near| near.distance > 0),
-        };
-        let touches = evidence.touches;
-        self.nearest_without(touches.iter().find(unknown).or(touches.last())?, dead)
+        let mut last = None;
+        for touch in evidence.touches {
+            last = self.nearest_without(touch, dead);
+            if last.as_ref().is_none_or(|near| near.distance > 0) {
+                break;
+            }
+        }
+        last
     }
 }
 

@@ -354,8 +354,11 @@ impl Rounding {
     fn steps(&self, number: f64) -> i64 {
         let (steps, turn) = ((number / self.step).round() as i64, 360.0 / self.step);
         let is_circular = self.descriptor.0.dimension == Dimension::Direction;
-        if is_circular && turn >= 1.0 && turn.fract() == 0.0 {
-            steps.rem_euclid(turn as i64)
+        let whole_turn = turn.round();
+        // A quotient of decimals is a rounding off.
+        let is_whole = (turn - whole_turn).abs() <= 4.0 * f64::EPSILON * turn;
+        if is_circular && whole_turn >= 1.0 && is_whole {
+            steps.rem_euclid(whole_turn as i64)
         } else {
             steps
         }

@@ -37,8 +37,10 @@ impl Model {
         observed: &Imprint,
         dead: Option<&Imprint>,
     ) -> Option<Nearest> {
-        let alike = self.keys().find(&ImprintKey::of(observed));
-        if let Some(key) = alike.filter(|_| dead.is_none()) {
+        // With dead taxels its key alone says nothing: one of them may be a hole in it.
+        if dead.is_none()
+            && let Some(key) = self.keys().find(&ImprintKey::of(observed))
+        {
             return Some(Nearest {
                 shape: self.most_frequent(key).0,
                 distance: 0,
