@@ -1,6 +1,8 @@
 //! Reads a source, whatever it is.
 
 use std::fs::File;
+use std::io;
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use crate::acquire::event::{AcquireError, AcquireOptions};
@@ -20,15 +22,27 @@ pub fn acquire(
     stop: &AtomicBool,
     consumer: &mut Consumer<'_>,
 ) -> Result<(), AcquireError> {
-    if let (FrameSource::File(path), None) = (source, options.format) {
-        let format = File::open(path).and_then(recognised_input);
-        let format = format.map_err(|error| AcquireError::Io {
-            doing: "open it",
-            error,
-        })?;
-        if format.is_some() {
-            return playback::run(path, options, stop, consumer);
-        }
+    let recording = source.recording(options);
+    let recording = recording.map_err(|error| AcquireError::Io {
+        doing: "open it",
+        error,
+    })?;
+    match recording {
+        Some(path) => playback::run(path, options, stop, consumer),
+        None => stream::run(source, options, stop, consumer),
     }
-    stream::run(source, options, stop, consumer)
+}
+
+impl FrameSource {
+    /// Returns the file if it is played as a recording: of a known form, and no form of a stream was asked for.
+    ///
+    /// # Errors
+    /// If the file cannot be read.
+    pub fn recording(&self, options: &AcquireOptions) -> io::Result<Option<&Path>> {
+        let (Self::File(path), None) = (self, options.format) else {
+            return Ok(None);
+        };
+        let format = File::open(path).and_then(recognised_input)?;
+        Ok(format.map(|_| path.as_path()))
+    }
 }

@@ -97,14 +97,21 @@ impl ModelFolder {
     /// Returns the file of a model: that of the same name in other cases, if there is one, as for shapes. So a folder can
     /// move to a file system that makes no difference between them.
     pub fn file(&self, name: &Name) -> PathBuf {
-        let path = |name: &Name| self.0.join(format!("{name}.{ENDING}"));
-        let own = path(name);
-        if own.exists() {
-            return own;
+        self.path_of(&self.stored_name(name))
+    }
+
+    fn path_of(&self, name: &Name) -> PathBuf {
+        self.0.join(format!("{name}.{ENDING}"))
+    }
+
+    /// A model's name as its file has it; the same where there is none.
+    fn stored_name(&self, name: &Name) -> Name {
+        if self.path_of(name).exists() {
+            return name.clone();
         }
         let names = self.names().into_iter().flatten();
         let alike = names.into_iter().find(|other| name.same(other.as_str()));
-        alike.map_or(own, |other| path(&other))
+        alike.unwrap_or_else(|| name.clone())
     }
 
     /// Returns the names of all models, sorted; files that do not look like models are left out.
@@ -148,13 +155,15 @@ impl ModelFolder {
         Ok(path)
     }
 
-    /// Removes a model for good.
+    /// Removes a model for good. Returns its name as it was stored.
     ///
     /// # Errors
     /// Those of the system, with the file's name.
-    pub fn delete(&self, name: &Name) -> Result<(), ArchiveFileError> {
-        let path = self.file(name);
-        fs::remove_file(&path).map_err(|error| ArchiveFileError::new(&path, error))
+    pub fn delete(&self, name: &Name) -> Result<Name, ArchiveFileError> {
+        let stored = self.stored_name(name);
+        let path = self.path_of(&stored);
+        fs::remove_file(&path).map_err(|error| ArchiveFileError::new(&path, error))?;
+        Ok(stored)
     }
 }
 

@@ -743,7 +743,7 @@ fn flags_that_would_be_ignored_are_refused() {
         ),
         (
             "model confusion figures --given cg_cd --round cg_cd=0.5 --round cg_cd=0.1",
-            "--round has no effect for cg_cd a second time",
+            "--round has no effect for cg_cd, which has a step already",
         ),
         (
             "model train a.jsonl --out a.npz --positions 10 --x0 5 --y0 5",

@@ -191,6 +191,27 @@ fn lines_are_answered_in_their_order() {
     let two = read(lines[3])["ranking"][0]["probability"].as_f64();
     assert!(two > one, "two touches tell more than one");
     assert_eq!(read(lines[4])["state"], "unknown");
+    // A first line that was torn is answered as any other, wherever that was.
+    for torn in [
+        "{\"imprint\":",
+        "{\"touches\":[",
+        "{\"imprint\":[\"##\"",
+        "{",
+    ] {
+        let input = format!("{torn}\n{{\"imprint\":{bar}}}\n{{\"imprint\":{bar}}}\n");
+        let run = place.run("recognise - --model r", &input);
+        assert_eq!(
+            run.stderr, "error: 1 of 3 lines could not be answered\n",
+            "{torn}"
+        );
+    }
+    let run = place.run("recognise - --model r", "{\"touches\":[\n");
+    assert!(
+        run.stdout.contains("\"error\""),
+        "{}{}",
+        run.stdout,
+        run.stderr
+    );
     // Answers of a batch are such lines.
     let poses = "{\"figure\":\"rectangle\",\"length\":4.2,\"width\":4.2,\"x0\":5.2,\"y0\":5.3,\"angle\":20}\n";
     let answers = place.run("batch", &poses.repeat(3));

@@ -176,16 +176,11 @@ fn sizes_that_fit_on_no_sensor_are_refused_before_the_work() {
         1,
         "scale 10, threshold 0.5: the shapes do not fit on 64 x 64 taxels in every angle",
     );
-    let run = place.run(
-        "model separate rectangles.jsonl --threshold 0:0.5:0.1 --quiet",
-        "",
-    );
-    assert_eq!(run.status, Some(1));
-    assert!(
-        run.stderr.contains("threshold: 0 is out of range"),
-        "{}",
-        run.stderr
-    );
+    for (range, value) in [("0:0.5:0.1", "0"), ("0.5:1.5:0.5", "1.5")] {
+        let line = format!("model separate rectangles.jsonl --threshold {range} --quiet");
+        let expected = format!("--threshold {value}: out of range, expected above 0, up to 1");
+        refused(&place.run(&line, ""), 1, &expected);
+    }
     let run = place.run(
         "model separate rectangles.jsonl --pitch 0:1:0.5 --quiet",
         "",

@@ -315,10 +315,25 @@ fn a_recording_without_frames_is_refused_and_not_repeated() {
         let run = taxel(&format!("watch {name} {more} --json --at-least 1"), "");
         super::refused(&run, 1, &format!("{name}: no frames"));
     }
-    let run = taxel("watch - --format lines --loop", "");
-    super::refused(
-        &run,
-        2,
-        "--loop has no effect on a stream: it is for recordings",
+    let growing = folder.path().join("growing.txt");
+    fs::write(&growing, "5\n6\n").expect("written");
+    for stream in ["- --format lines", &growing.to_string_lossy()] {
+        for flag in ["loop", "speed"] {
+            let value = if flag == "speed" { " 3" } else { "" };
+            let run = taxel(&format!("watch {stream} --{flag}{value}"), "");
+            let expected = format!("--{flag} has no effect on a stream: it is for recordings");
+            super::refused(&run, 2, &expected);
+        }
+    }
+    // What is wrong with the source comes before the tare that lacks frames.
+    let bad = folder.path().join("bad.csv");
+    fs::write(&bad, "r0c0,r0c1\n1,2\n3,x\n").expect("written");
+    let run = taxel(&format!("watch {} --tare 3 --once", bad.display()), "");
+    let expected = format!(
+        "{}: line 3, column 2: found \"x\", expected a number",
+        bad.display()
     );
+    super::refused(&run, 1, &expected);
+    let run = taxel("watch nowhere.npy --tare 3 --once", "");
+    assert!(!run.stderr.contains("tare"), "{}", run.stderr);
 }

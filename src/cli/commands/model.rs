@@ -308,12 +308,12 @@ pub(crate) fn show(
             1 => String::new(),
             weight => format!(", weight {weight}"),
         };
-        text += &format!(
-            "  {}: {}{weight}, recognised in {}\n",
-            shape.name,
-            described(shape),
-            evaluation::percent(limit.recall(index))
-        );
+        text += &format!("  {}: {}{weight}", shape.name, described(shape));
+        if model.poses() > 0 {
+            text += ", recognised in ";
+            text += &evaluation::percent(limit.recall(index));
+        }
+        text.push('\n');
     }
     let first = model.shapes().first().map(|shape| shape.weight);
     let is_even = |shape: &NamedShape| Some(shape.weight) == first;
@@ -331,21 +331,29 @@ pub(crate) fn show(
         text += &format!(", {cut} of all cut off by the sensor");
     }
     text.push('\n');
-    text += &evaluation::summary(&limit, NamedBy::Imprint);
-    let never = model.never_certain();
-    let names = never.iter().map(|&shape| &*model.shapes()[shape].name);
-    text += &match names.collect::<Vec<_>>().join(", ") {
-        none if none.is_empty() => {
-            "never certain: none; each leaves imprints of its own\n".to_owned()
-        }
-        names => format!("never certain: {names}; other shapes leave all their imprints, too\n"),
-    };
+    // An empty shard has nothing to say of touches.
+    if model.poses() > 0 {
+        text += &evaluation::summary(&limit, NamedBy::Imprint);
+        text += &never_certain(&model);
+    }
     text += &format!(
         "hash {}, taxel {}\n",
         model_hash(&model)?,
         env!("CARGO_PKG_VERSION")
     );
     Ok(charset.lines(&text))
+}
+
+/// The shapes of which no touch is certain, in a line.
+fn never_certain(model: &Model) -> String {
+    let never = model.never_certain();
+    let names = never.iter().map(|&shape| &*model.shapes()[shape].name);
+    match names.collect::<Vec<_>>().join(", ") {
+        none if none.is_empty() => {
+            "never certain: none; each leaves imprints of its own\n".to_owned()
+        }
+        names => format!("never certain: {names}; other shapes leave all their imprints, too\n"),
+    }
 }
 
 /// What a shape of a set is, in a few words.
@@ -471,9 +479,6 @@ pub(crate) fn delete(name: &Name, shelf: &Shelf) -> Result<String, CliError> {
         Err(error) if error.is_missing() => Err(CliError::NoModel {
             name: name.to_string(),
         }),
-        deleted => {
-            deleted?;
-            Ok(format!("deleted: {name}\n"))
-        }
+        deleted => Ok(format!("deleted: {}\n", deleted?)),
     }
 }

@@ -257,9 +257,15 @@ fn input(what: &OsStr, shelf: &Shelf) -> Result<Asked, CliError> {
     let is_line = if let Some(is_line) = is_line(&start) {
         is_line
     } else {
+        let first = start.len();
         line(&mut input, &mut start).map_err(|error| refused(error.into()))?;
-        // Both together make no sense where the first line was torn.
-        is_line(&start).unwrap_or(false)
+        // Where the first line was torn, the second one tells; else both are the beginning of a stored shape.
+        let (torn, second) = start.split_at(first);
+        match is_line(second) {
+            Some(true) if !has(torn, b"\"format\"") => true,
+            _ if second.is_empty() => is_torn_line(torn),
+            _ => is_line(&start).unwrap_or(false),
+        }
     };
     let whole = blank.chain(Cursor::new(start)).chain(input);
     if is_line {
@@ -292,6 +298,16 @@ fn is_line(text: &[u8]) -> Option<bool> {
         Err(error) if error.is_eof() => None,
         Err(_) => Some(true),
     }
+}
+
+/// Whether a text without its end was a question: it has a key of one, and none that only stored shapes have.
+fn is_torn_line(text: &[u8]) -> bool {
+    let keys = [&b"\"imprint\""[..], b"\"touches\"", b"\"frame\""];
+    !has(text, b"\"format\"") && keys.into_iter().any(|key| has(text, key))
+}
+
+fn has(text: &[u8], word: &[u8]) -> bool {
+    text.windows(word.len()).any(|window| window == word)
 }
 
 /// Why a line with none of its keys, or with two, is refused.

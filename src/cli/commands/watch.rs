@@ -143,7 +143,8 @@ pub(crate) fn watch(
 /// Refuses flags that mean nothing for a source: of playing for a stream, and a channel that a recording does not have.
 fn check(source: &FrameSource, asked: &WatchArguments) -> Result<(), CliError> {
     let usual = AcquireOptions::default();
-    if !matches!(source, FrameSource::File(_)) || asked.options.format.is_some() {
+    // One that cannot be read is reported when it is watched.
+    if matches!(source.recording(&asked.options), Ok(None)) {
         for (flag, is_given) in [
             ("loop", asked.options.repeat),
             ("speed", asked.options.speed != usual.speed),
@@ -525,19 +526,20 @@ impl Watcher<'_> {
 
     /// Writes out everything.
     /// The first error in this order is returned: of recording, of writing answers, of the frames, of the source. A
-    /// tare that lacks frames is an error of the frames: nothing was answered.
+    /// tare that lacks frames is an error of the frames, unless the source is to blame: nothing was answered.
     fn finish(mut self, acquired: Result<(), AcquireError>, stopped: bool) -> Result<(), CliError> {
         let mut failure = self.failure.take();
         if failure.is_none() {
             failure = self.release().err();
         }
-        if let (None, Some((tare, _)), false) = (&failure, &self.tare, stopped) {
+        let ended_well = acquired.is_ok() && !stopped;
+        if let (None, Some((tare, _)), true) = (&failure, &self.tare, ended_well) {
             let wanted = tare.wanted();
             let frames = wanted - tare.missing();
             failure = Some(self.refused(&FrameError::Tare { frames, wanted }.to_string()));
         }
         // A stream has said so already.
-        if failure.is_none() && acquired.is_ok() && !stopped && !self.begun {
+        if failure.is_none() && ended_well && !self.begun {
             failure = Some(self.refused("no frames"));
         }
         let recorded = self.recorder.take().map(FrameRecorder::finish);

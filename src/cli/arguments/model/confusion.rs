@@ -113,7 +113,8 @@ pub(super) fn command() -> Command {
             )
             .action(ArgAction::Append)
             .value_parser(parse_rounding)
-            .requires("descriptors"),
+            .requires("descriptors")
+            .conflicts_with("classifier"),
         )
         .args(of_classifiers())
         .arg(seed())
@@ -276,9 +277,6 @@ fn check_classifier(matches: &ArgMatches) -> Result<(), CliError> {
             return unused(flag, format!("with --classifier {name}"));
         }
     }
-    if name.is_some() && given("given") && given("round") {
-        return unused("round", "with --classifier".to_owned());
-    }
     if given("seed") && !is_drawn {
         let reason = "without --noise or --classifier knn, which draw touches".to_owned();
         return unused("seed", reason);
@@ -294,7 +292,7 @@ fn check_roundings(matches: &ArgMatches) -> Result<(), CliError> {
     for (index, key) in keys.iter().enumerate() {
         let name = key.key();
         let reason = if keys[..index].contains(key) {
-            format!("for {name} a second time")
+            format!("for {name}, which has a step already")
         } else if given.is_some_and(|given| !given.descriptors().contains(key)) {
             format!("for {name}, which --given does not name")
         } else {

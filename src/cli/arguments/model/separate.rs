@@ -131,18 +131,26 @@ impl SeparateArguments {
     /// What the arguments of [`command`] ask for.
     ///
     /// # Errors
-    /// [`CliError::Range`] for sizes that are not above 0.
+    /// [`CliError::Range`] for sizes that are not above 0, and thresholds that are not above 0 or above 1.
     pub(super) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
         let range = |id: &str| matches.get_one::<DecimalRange>(id).copied();
-        for (id, flag) in [("range_scale", "scale"), ("range_pitch", "pitch")] {
-            if let Some(first) = range(id)
-                .map(|range| range.value(0))
-                .filter(|&first| first <= 0.0)
-            {
+        for (id, flag, most, expected) in [
+            ("range_scale", "scale", f64::MAX, "expected above 0"),
+            ("range_pitch", "pitch", f64::MAX, "expected above 0"),
+            (
+                "range_threshold",
+                "threshold",
+                1.0,
+                "expected above 0, up to 1",
+            ),
+        ] {
+            let ends = range(id).map(|range| [range.value(0), range.last()]);
+            let wrong = |value: &f64| *value <= 0.0 || *value > most;
+            if let Some(value) = ends.into_iter().flatten().find(wrong) {
                 return Err(CliError::Range {
                     flag: flag.to_owned(),
-                    text: short(first),
-                    expected: "expected above 0".to_owned(),
+                    text: short(value),
+                    expected: expected.to_owned(),
                 });
             }
         }
