@@ -62,9 +62,14 @@ pub(crate) enum CliError {
         /// How many there were, not counting blank ones.
         lines: u64,
     },
-    /// Standard input failed in the middle of a batch.
-    #[error("standard input: cannot read: {0}")]
-    Read(io::Error),
+    /// Lines cannot be read, or not to their end.
+    #[error("{name}: cannot read: {error}")]
+    Read {
+        /// The file, or standard input.
+        name: String,
+        /// The system's reason.
+        error: io::Error,
+    },
     /// Standard output failed.
     #[error("cannot write: {0}")]
     Write(io::Error),

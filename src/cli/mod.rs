@@ -55,6 +55,7 @@ use commands::{
     recognise, screen, script, separate, sweep, touch, watch,
 };
 use error::CliError;
+use input::lines::LineInput;
 use input::shapes::Shelf;
 use output::charset::Charset;
 use settings::resolved::Effective;
@@ -145,9 +146,13 @@ impl Surroundings {
                     Exported::Said(said) => print(&(charset.line(&said).into_owned() + "\n"))?,
                 }
             }
-            Request::Batch(sensor, jobs) => {
+            Request::Batch(file, sensor, jobs) => {
                 let by_name = |name: &str| shelf.imprint(name).map_err(|error| error.to_string());
-                batch::answer_lines(sensor, jobs, &by_name, io::stdin(), io::stdout().lock())?;
+                let input = match file {
+                    Some(path) => LineInput::of_file(&path)?,
+                    None => LineInput::standard(),
+                };
+                batch::answer_lines(sensor, jobs, &by_name, input, io::stdout().lock())?;
             }
             Request::Sweep(asked) => self.sweep(*asked)?,
             Request::Merge(files, wanted) => {

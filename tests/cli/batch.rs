@@ -22,6 +22,25 @@ fn the_files_of_the_examples_are_answered() {
     let run = taxel("batch", poses.as_str());
     assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
     assert_eq!(run.stdout.lines().count(), poses.lines().count());
+    let named = taxel(&format!("batch {folder}/poses.jsonl"), "");
+    assert_eq!(named.stdout, run.stdout, "the same as a file");
+    let marked = format!("\u{feff}{poses}");
+    for line in ["batch", "batch -"] {
+        assert_eq!(
+            taxel(line, &*marked).stdout,
+            run.stdout,
+            "with a byte order mark"
+        );
+    }
+    for (file, reason) in [
+        ("nothing.jsonl", "No such file"),
+        (folder, "Is a directory"),
+    ] {
+        let run = taxel(&format!("batch {file}"), "");
+        let begins = format!("error: {file}: cannot read: {reason}");
+        assert!(run.stderr.starts_with(&begins), "{}", run.stderr);
+        assert_eq!(run.status, Some(1));
+    }
     let first = run.stdout.lines().next().expect("an answer");
     let run = taxel(&format!("describe {folder}/imprint.txt --json"), "");
     assert_eq!(run.stdout.trim_end(), first, "Fig. 1, drawn and touched");

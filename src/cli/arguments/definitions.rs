@@ -165,8 +165,14 @@ fn format() -> Arg {
 /// do not.
 fn batch() -> Command {
     Command::new("batch")
-        .about("Describe poses read from standard input, one JSON object per line")
+        .about("Describe poses, one JSON object per line")
         .after_help(BATCH_EXAMPLES)
+        .arg(
+            Arg::new("file")
+                .value_name("FILE")
+                .value_parser(value_parser!(PathBuf))
+                .help("Lines of JSON; standard input without it, or with '-'"),
+        )
         .args(sensor_of_imprints())
         .arg(jobs())
 }

@@ -103,7 +103,7 @@ the exit status is 1. Blank lines are skipped. Answers are written out whenever
 the input pauses.
 
 Examples:
-  taxel batch < poses.jsonl > answers.jsonl
+  taxel batch poses.jsonl > answers.jsonl
   echo '{"imprint":["##","#."]}' | taxel batch"###;
 
 /// `taxel script`: all commands of a script.

@@ -64,8 +64,9 @@ pub(crate) enum Request {
     Describe(OsString, Form),
     /// Write a stored shape or a file in another form.
     Export(OsString, Export, Pitch),
-    /// Answer lines of JSON; the sensor for lines without one, and the number of threads (0: one per core).
-    Batch(Sensor, usize),
+    /// Answer lines of JSON, of a file or of standard input; the sensor for lines without one, and the number of threads (0:
+    /// one per core).
+    Batch(Option<PathBuf>, Sensor, usize),
     /// Sweep a grid of poses.
     Sweep(Box<SweepArguments>),
     /// Merge the shards in these files.
@@ -306,7 +307,11 @@ fn request(
             own,
             pitch(own, settings)?.of(None),
         ))),
-        _ => Request::Batch(settings.sensor(), flags::jobs_of(own)),
+        _ => {
+            let file = own.get_one::<PathBuf>("file").cloned();
+            let file = file.filter(|file| file.as_os_str() != "-");
+            Request::Batch(file, settings.sensor(), flags::jobs_of(own))
+        }
     })
 }
 

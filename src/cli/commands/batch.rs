@@ -4,10 +4,10 @@
 //! {"figure":"hexagonal"}    ->   {"error":"line 2: …"}
 //! ```
 
-use std::io::{Read, Write};
+use std::io::Write;
 
 use crate::cli::error::CliError;
-use crate::cli::input::lines;
+use crate::cli::input::lines::{self, LineInput};
 use crate::formats::{DescribedImprint, Job};
 use crate::imprint::Imprint;
 use crate::quote::legible;
@@ -23,7 +23,7 @@ pub(crate) fn answer_lines(
     sensor: Sensor,
     jobs: usize,
     lookup: &(dyn Fn(&str) -> Result<Imprint, String> + Sync),
-    input: impl Read + Send + 'static,
+    input: LineInput,
     output: impl Write,
 ) -> Result<(), CliError> {
     lines::answer_all(jobs, input, output, "pose", || {

@@ -20,7 +20,7 @@ use crate::cli::arguments::recognise::RecogniseArguments;
 use crate::cli::commands::model;
 use crate::cli::error::CliError;
 use crate::cli::input::content;
-use crate::cli::input::lines::{self, MAX_LINE};
+use crate::cli::input::lines::{self, LineInput, MAX_LINE};
 use crate::cli::input::shapes::{Located, Shelf};
 use crate::cli::output::answer::{AnswerJson, AnswerText};
 use crate::cli::output::charset::Charset;
@@ -128,11 +128,7 @@ impl<'a> Recogniser<'a> {
     }
 
     /// Answers each line by a line of JSON. Returns whether all answers are the expected one.
-    fn answer_lines(
-        &self,
-        input: Box<dyn Read + Send>,
-        output: &mut dyn Write,
-    ) -> Result<bool, CliError> {
+    fn answer_lines(&self, input: LineInput, output: &mut dyn Write) -> Result<bool, CliError> {
         let all_expected = AtomicBool::new(true);
         let answer = |line: &[u8], text: &mut Vec<u8>| {
             let line = Line::read(line)?;
@@ -228,7 +224,7 @@ enum Asked {
     /// One touch.
     Imprint(Imprint),
     /// Lines of JSON, not read yet.
-    Lines(Box<dyn Read + Send>),
+    Lines(LineInput),
 }
 
 /// Finds out what the argument means: a shape of the library, a file or standard input; and whether that holds lines.
@@ -269,7 +265,8 @@ fn input(what: &OsStr, shelf: &Shelf) -> Result<Asked, CliError> {
     };
     let whole = blank.chain(Cursor::new(start)).chain(input);
     if is_line {
-        return Ok(Asked::Lines(Box::new(whole)));
+        let read = Box::new(whole);
+        return Ok(Asked::Lines(LineInput { name, read }));
     }
     let content = content::read_from(whole).map_err(refused)?;
     Ok(Asked::Imprint(*content.imprint()))

@@ -8,12 +8,15 @@
 //! input -> BlockReader -> blocks -> workers: a line each to `answer` -> answers of a block -> output
 //! ```
 
+use std::fs::File;
 use std::io::{self, Read, Write};
 use std::num::NonZero;
+use std::path::Path;
 use std::sync::Arc;
 use std::thread;
 
 use crate::cli::error::CliError;
+use crate::cli::input::content::InputSource;
 use crate::cli::input::lines::block::{Block, BlockReader};
 use crate::cli::input::lines::buffers::Buffers;
 use crate::formats::json;
@@ -24,6 +27,39 @@ pub(crate) mod in_order;
 
 pub(crate) use block::MAX_LINE;
 
+/// Lines to be answered, and what they come from.
+pub(crate) struct LineInput {
+    /// What errors call it.
+    pub(crate) name: String,
+    /// The lines.
+    pub(crate) read: Box<dyn Read + Send>,
+}
+
+impl LineInput {
+    /// Those of standard input.
+    pub(crate) fn standard() -> Self {
+        Self {
+            name: InputSource::Standard.name(),
+            read: Box::new(io::stdin()),
+        }
+    }
+
+    /// Those of a file.
+    ///
+    /// # Errors
+    /// [`CliError::Read`] if it cannot be opened.
+    pub(crate) fn of_file(path: &Path) -> Result<Self, CliError> {
+        let name = InputSource::File(path.to_owned()).name();
+        match File::open(path) {
+            Ok(file) => Ok(Self {
+                name,
+                read: Box::new(file),
+            }),
+            Err(error) => Err(CliError::Read { name, error }),
+        }
+    }
+}
+
 /// Answers each line of `input` by up to `jobs` threads (0: one per core): the answers do not depend on their number. Each
 /// thread answers by a closure of its own, which `answerer` makes: it appends an answer, without a line end, or says what
 /// is wrong with the line. `noun` is what a line holds, for the message about one that is too long.
@@ -32,7 +68,7 @@ pub(crate) use block::MAX_LINE;
 /// [`CliError::Lines`] at the end if some lines were wrong; [`CliError::Read`] or [`CliError::Write`] at once.
 pub(crate) fn answer_all<A>(
     jobs: usize,
-    input: impl Read + Send + 'static,
+    input: LineInput,
     output: impl Write,
     noun: &str,
     answerer: impl Fn() -> A + Sync,
@@ -46,8 +82,8 @@ where
     };
     // Of the lines, and of their answers, which are longer.
     let (read, written) = (Arc::<Buffers>::default(), Buffers::default());
-    let mut blocks = BlockReader::new(input, Arc::clone(&read));
-    let mut output = AnswerWriter::new(output);
+    let mut blocks = BlockReader::new(input.read, Arc::clone(&read));
+    let mut output = AnswerWriter::new(output, input.name);
     in_order::in_order(
         jobs,
         move || blocks.next_block(),
@@ -93,6 +129,11 @@ fn answer_block(
     };
     for (number, line) in block.lines() {
         let begin = answers.text.len();
+        // Some programs begin a text with a mark of its encoding.
+        let line = line.map(|content| match number {
+            1 => content.strip_prefix(b"\xef\xbb\xbf").unwrap_or(content),
+            _ => content,
+        });
         let result = match line {
             Some(content) if content.trim_ascii().is_empty() => continue,
             Some(content) => answer(content, &mut answers.text),
@@ -116,6 +157,8 @@ fn refuse(answer: &mut Vec<u8>, message: &str) {
 
 /// Writes answers, block by block, and counts them.
 struct AnswerWriter<W> {
+    /// What the lines come from.
+    input: String,
     /// Where they go.
     output: W,
     /// How many lines have been answered.
@@ -126,8 +169,9 @@ struct AnswerWriter<W> {
 
 impl<W: Write> AnswerWriter<W> {
     /// Nothing is written yet.
-    fn new(output: W) -> Self {
+    fn new(output: W, input: String) -> Self {
         Self {
+            input,
             output,
             answered: 0,
             bad: 0,
@@ -139,7 +183,10 @@ impl<W: Write> AnswerWriter<W> {
     /// # Errors
     /// [`CliError::Read`] if there is no block because the input failed, and [`CliError::Write`].
     fn write(&mut self, answers: io::Result<BlockAnswers>) -> Result<Vec<u8>, CliError> {
-        let answers = answers.map_err(CliError::Read)?;
+        let answers = answers.map_err(|error| CliError::Read {
+            name: self.input.clone(),
+            error,
+        })?;
         self.answered += answers.answered;
         self.bad += answers.bad;
         let written = self.output.write_all(&answers.text);
@@ -171,6 +218,10 @@ mod tests {
     /// Answers a line by its number of bytes; one with an `x` is wrong.
     fn answers(jobs: usize, input: &'static [u8]) -> (String, Option<(u64, u64)>) {
         let mut output = Vec::new();
+        let input = LineInput {
+            name: "a test".to_owned(),
+            read: Box::new(input),
+        };
         let done = answer_all(jobs, input, &mut output, "line", || {
             |line: &[u8], text: &mut Vec<u8>| {
                 text.extend(line.len().to_string().bytes());
