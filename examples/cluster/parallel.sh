@@ -5,4 +5,6 @@
 set -euo pipefail
 . "$(dirname "$0")/study"
 export OUT TAXEL SEED STUDY="${STUDY:-small}" KILLED="${KILLED:-}"
-seq "$SHARDS" | parallel "$@" "$HERE/shard" {}
+# Other machines see the variables that are named here.
+variables=(--env OUT --env TAXEL --env TAXEL_CONFIG --env SEED --env STUDY --env KILLED)
+seq "$SHARDS" | parallel --quote "${variables[@]}" "$@" "$HERE/shard" {}
