@@ -177,6 +177,7 @@ pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
         first_poses: archive.words("first_pose")?,
         variance_words: archive.words("spread")?,
     };
+    archive.finish()?;
     Ok(SweepResult::from_parts(grid, shard, &parts)?)
 }
 

@@ -189,6 +189,7 @@ pub fn read(input: impl Read + Seek) -> Result<Model, ArchiveError> {
     let mut parts = ModelParts::new(shapes, sensor, poses, part);
     parts.cut = header.shapes.iter().map(|shape| shape.cut).collect();
     parts.keys = keys(&mut archive)?;
+    archive.finish()?;
     Ok(Model::from_parts(parts)?)
 }
 

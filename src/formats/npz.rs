@@ -1,7 +1,7 @@
 //! Archives of numpy arrays (`numpy.load`): a zip without compression and without dates, so that equal contents are
 //! equal files.
 
-use std::io::{Read, Seek, Write};
+use std::io::{self, Read, Seek, Write};
 
 use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
@@ -11,6 +11,7 @@ use crate::formats::npy;
 use crate::formats::npy::Dtype;
 use crate::formats::record::RecordError;
 use crate::pose::{GridError, RangeError};
+use crate::quote::shortened;
 use crate::sweep::{PartsError, Shard, ShardError};
 
 /// The array that says what an archive holds: JSON as bytes.
@@ -63,16 +64,24 @@ impl<'a> ArrayWriter<'a> {
 }
 
 /// Reads arrays by name.
-pub(crate) struct ArrayReader<R>(ZipArchive<R>);
+pub(crate) struct ArrayReader<R> {
+    archive: ZipArchive<R>,
+    /// The arrays that were read.
+    read: Vec<&'static str>,
+}
 
 impl<R: Read + Seek> ArrayReader<R> {
     pub(crate) fn new(input: R) -> Result<Self, ArchiveError> {
-        Ok(Self(ZipArchive::new(input)?))
+        Ok(Self {
+            archive: ZipArchive::new(input)?,
+            read: Vec::new(),
+        })
     }
 
     /// Returns the file of an array.
     fn file(&mut self, name: &'static str) -> Result<Vec<u8>, ArchiveError> {
-        let mut file = match self.0.by_name(&format!("{name}.npy")) {
+        self.read.push(name);
+        let mut file = match self.archive.by_name(&format!("{name}.npy")) {
             Err(ZipError::FileNotFound) => return Err(ArchiveError::Array(name)),
             file => file?,
         };
@@ -86,8 +95,24 @@ impl<R: Read + Seek> ArrayReader<R> {
         }
         let mut bytes = Vec::new();
         // The size that the archive states may be wrong.
-        file.by_ref().take(most).read_to_end(&mut bytes)?;
+        let read = file.by_ref().take(most).read_to_end(&mut bytes);
+        read.map_err(|error| damaged(name, error))?;
         Ok(bytes)
+    }
+
+    /// Reads all arrays that nobody asked for, and forgets them: a damaged one is found at its end only, and what is called
+    /// whole has none.
+    pub(crate) fn finish(mut self) -> Result<(), ArchiveError> {
+        for index in 0..self.archive.len() {
+            let mut file = self.archive.by_index(index)?;
+            let name = file.name()?.trim_end_matches(".npy").to_owned();
+            if self.read.contains(&name.as_str()) {
+                continue;
+            }
+            let read = io::copy(&mut file.by_ref().take(MAX_BYTES), &mut io::sink());
+            read.map_err(|error| damaged(&name, error))?;
+        }
+        Ok(())
     }
 
     /// Returns the numbers of an array as bytes, little-endian.
@@ -112,6 +137,14 @@ impl<R: Read + Seek> ArrayReader<R> {
     pub(crate) fn header(&mut self) -> Result<Vec<u8>, ArchiveError> {
         self.bytes(HEADER, Dtype::U8)
     }
+}
+
+/// Why an array cannot be read to its end: the system's reason, or its checksum.
+fn damaged(name: &str, error: io::Error) -> ArchiveError {
+    if error.raw_os_error().is_some() {
+        return error.into();
+    }
+    ArchiveError::Damaged(shortened(name))
 }
 
 /// Whole numbers as bytes.
@@ -172,10 +205,13 @@ fn zip_reason(error: &ZipError) -> String {
 pub enum ArchiveError {
     /// The system's word.
     #[error(transparent)]
-    Io(#[from] std::io::Error),
+    Io(#[from] io::Error),
     /// No zip, or a broken one.
     #[error("no archive of arrays: {}", zip_reason(.0))]
     Zip(#[from] ZipError),
+    /// An array whose bytes are not those that were written.
+    #[error("array {0:?} is damaged")]
+    Damaged(String),
     /// An array that is not what it should be.
     #[error("array {0:?} is not as taxel writes it")]
     Array(&'static str),
