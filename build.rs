@@ -80,9 +80,21 @@ fn watch(folder: &Path) {
     }
 }
 
+/// What names another repository than that of the folder, as git sets it for its hooks.
+pub(crate) const OF_GIT: [&str; 4] = [
+    "GIT_DIR",
+    "GIT_WORK_TREE",
+    "GIT_INDEX_FILE",
+    "GIT_OBJECT_DIRECTORY",
+];
+
 /// What git answers; none where it does not know, or is not there.
 fn git(folder: &Path, arguments: &[&str]) -> Option<String> {
-    let output = Command::new("git")
+    let mut command = Command::new("git");
+    for variable in OF_GIT {
+        command.env_remove(variable);
+    }
+    let output = command
         .arg("-C")
         .arg(folder)
         .args(arguments)

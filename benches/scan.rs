@@ -74,7 +74,7 @@ fn scan(criterion: &mut Criterion) {
         .expect("a thread");
     let touch = touch();
 
-    // Nothing is skipped: at e = 0.4 every distance matters.
+    // Nothing is skipped: at e = 0.45 every distance matters.
     let model_of_10_000 = model(10_000);
     let every = Noise::new(0.45).expect("in range");
     group.throughput(Throughput::Elements(model_of_10_000.pairs((16, 16))));

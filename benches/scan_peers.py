@@ -8,8 +8,10 @@ template of 256 bits, about a million of them. QUERIES (default 500) are templat
 probability 0.01. All three give the distance of the nearest template; where they differ, it is said. faiss and numpy are
 installed by pip, for this run only, if they are not there.
 """
+import atexit
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -34,6 +36,7 @@ try:
     import numpy as np
 except ImportError:
     own = tempfile.mkdtemp()
+    atexit.register(shutil.rmtree, own)
     subprocess.run([sys.executable, "-m", "pip", "install", "-q", "--target", own, "faiss-cpu", "numpy"], check=True)
     sys.path.insert(0, own)
     import faiss

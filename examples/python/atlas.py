@@ -11,6 +11,8 @@ import tempfile
 import numpy as np
 
 TAXEL = os.environ.get("TAXEL", "taxel")
+# The numbers do not depend on your settings.
+os.environ["TAXEL_CONFIG"] = os.devnull
 GRID = ["--x0", "5:5.95:0.05", "--y0", "5:5.95:0.05", "--angle", "0:59:1"]
 
 

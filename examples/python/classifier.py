@@ -18,6 +18,8 @@ from sklearn.model_selection import train_test_split
 from sklearn.tree import DecisionTreeClassifier
 
 TAXEL = os.environ.get("TAXEL", "taxel")
+# The numbers do not depend on your settings.
+os.environ["TAXEL_CONFIG"] = os.devnull
 SHAPES = {"6x3": (6, 3), "6x3.4": (6, 3.4), "5x4": (5, 4), "4.4x4.4": (4.4, 4.4)}
 GRID = ["--x0", "7:7.95:0.05", "--y0", "7:7.95:0.05", "--angle", "0:89:1", "--anchor", "centre"]
 DESCRIPTORS = ["na", "p", "area", "side_ratio"]

@@ -16,6 +16,8 @@ import sys
 import tempfile
 
 TAXEL = os.environ.get("TAXEL", "taxel")
+# The numbers do not depend on your settings.
+os.environ["TAXEL_CONFIG"] = os.devnull
 THRESHOLD = "20"
 # Frames of the second step, and what they show.
 SHAPES = {"heel": 32, "whole": 42, "ball": 48}

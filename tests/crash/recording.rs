@@ -32,7 +32,8 @@ fn record(folder: &Path, source: &str) -> Command {
     )
 }
 
-/// What is there: of which source, how many frames, ended or not; None without the description or the array.
+/// What is there: of which source, how many frames, ended or not; None without the description or the array. Both are of the
+/// same source, as far as the array has frames.
 fn found(folder: &Path) -> Option<(bool, u32, bool)> {
     let array = fs::read(folder.join("touch.npy")).ok()?;
     let header = String::from_utf8_lossy(&array[..256]).into_owned();
@@ -45,11 +46,14 @@ fn found(folder: &Path) -> Option<(bool, u32, bool)> {
     let json: serde_json::Value = serde_json::from_str(&text).expect("whole");
     let source = json["source"].as_str().expect("a source");
     let ended = json["ended"].as_bool().expect("said");
-    Some((
-        source.ends_with("new.txt"),
-        frames.expect("a number"),
-        ended,
-    ))
+    let is_new = source.ends_with("new.txt");
+    // A record begins with its time and its number.
+    let start = 10 + usize::from(u16::from_le_bytes([array[8], array[9]])) + 16;
+    if let Some(value) = array.get(start..start + 8) {
+        let first = f64::from_le_bytes(value.try_into().expect("eight bytes"));
+        assert_eq!(first, if is_new { 0.0 } else { 1.0 }, "of two recordings");
+    }
+    Some((is_new, frames.expect("a number"), ended))
 }
 
 pub(crate) fn killed() -> String {
@@ -59,6 +63,7 @@ pub(crate) fn killed() -> String {
     let folder = before();
     let calls = strace::calls(&record(folder.path(), "new.txt"), folder.path());
     assert_eq!(found(folder.path()), Some((true, 3, true)), "{calls:?}");
+    assert!(calls.len() > 3, "{calls:?}");
     each(&calls, |call| {
         let folder = before();
         let command = record(folder.path(), "new.txt");

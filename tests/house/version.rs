@@ -8,7 +8,16 @@ use std::process::Command;
 mod build;
 
 fn git(folder: &Path, line: &str) -> String {
-    let output = Command::new("git")
+    let mut command = Command::new("git");
+    // A hook of git runs the tests with the variables of its own repository; and settings may sign commits.
+    for variable in build::OF_GIT {
+        command.env_remove(variable);
+    }
+    command.envs([
+        ("GIT_CONFIG_GLOBAL", "/dev/null"),
+        ("GIT_CONFIG_NOSYSTEM", "1"),
+    ]);
+    let output = command
         .arg("-C")
         .arg(folder)
         .args(["-c", "user.name=test", "-c", "user.email=test@localhost"])
