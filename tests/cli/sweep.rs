@@ -578,6 +578,7 @@ fn a_file_beyond_the_limit_is_an_error_like_a_full_disk() {
     let path = scratch.path().join("a.npz").display().to_string();
     let mut command = Command::new("sh");
     command.args(["-c", "ulimit -f 8; exec \"$@\"", "sh"]);
+    command.env("TAXEL_CONFIG", "/dev/null");
     command.arg(env!("CARGO_BIN_EXE_taxel"));
     command.args("sweep hexagon --side 3 --quiet --angle 0:50:10 --atlas".split(' '));
     let run = command.arg(&path).output().expect("started");

@@ -196,6 +196,7 @@ fn a_recording_that_has_no_more_room_ends_with_its_last_whole_record() {
         .arg(own.get_program())
         .args(own.get_args())
         .arg(&file)
+        .env("TAXEL_CONFIG", "/dev/null")
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())

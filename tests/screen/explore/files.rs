@@ -45,6 +45,7 @@ fn files_are_those_of_the_command_line() {
             .args("sweep pentagon --x0 5:5.9:0.1 --y0 5:5.9:0.1 --angle 0:50:10 --quiet".split(' '))
             .arg(flag)
             .arg(&other)
+            .env("TAXEL_CONFIG", "/dev/null")
             .output()
             .expect("it runs");
         assert!(status.status.success(), "{status:?}");

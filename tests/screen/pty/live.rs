@@ -47,7 +47,7 @@ impl Watched {
         let folder = tempfile::tempdir().expect("a folder");
         let fifo = fifo(folder.path())?;
         let line = format!(
-            "cd '{}' && exec {TAXEL} watch frames --format lines --at-least 9",
+            "cd '{}' && exec '{TAXEL}' watch frames --format lines --at-least 9",
             folder.path().display()
         );
         let program = Program::start(&Start {
@@ -166,7 +166,7 @@ fn ctrl_z_and_fg_leave_a_source_and_its_recording_as_they_are() {
     let file = folder.path().join("a.npy");
     let source = fs::canonicalize("tests/scripts/touch.csv").expect("it is there");
     let line = format!(
-        "set -m; cd '{}'; {TAXEL} watch '{}' --loop --write a.npy; echo stopped $?; read line; fg >/dev/null; echo ended $?; read line",
+        "set -m; cd '{}'; '{TAXEL}' watch '{}' --loop --write a.npy; echo stopped $?; read line; fg >/dev/null; echo ended $?; read line",
         folder.path().display(),
         source.display()
     );
@@ -429,7 +429,7 @@ fn it_is_drawn_at_most_thirty_times_a_second() {
 /// A command that watches, in a folder.
 fn watching(folder: &Path, arguments: &str) -> Program {
     let line = format!(
-        "cd '{}' && exec {TAXEL} watch {arguments}",
+        "cd '{}' && exec '{TAXEL}' watch {arguments}",
         folder.display()
     );
     Program::start(&Start {

@@ -183,6 +183,7 @@ fn a_record_does_not_replace_a_file() {
             .arg("--record")
             .arg(name)
             .env("TAXEL_LIBRARY", folder.path().join("library"))
+            .env("TAXEL_CONFIG", "/dev/null")
             .stdin(std::process::Stdio::null())
             .output()
             .expect("it runs")
