@@ -5,7 +5,6 @@
 """
 
 import json
-import math
 import os
 import subprocess
 
@@ -34,13 +33,12 @@ def row(name, text):
     print(
         f"| {name} | {region['p']:.2f} | {cv2.arcLength(outline, True):.2f}"
         f" | {perimeter(np.pad(filled, 1)):.2f} | {perimeter_crofton(np.pad(filled, 1)):.2f}"
-        f" | {region['nae']} | {cv2.contourArea(outline):.0f} | {props.area_filled:.0f}"
-        f" | {region['f']:.2f} | {4 * math.pi * props.area_filled / props.perimeter**2:.2f} |"
+        f" | {region['nae']} | {cv2.contourArea(outline):.0f} | {props.area_filled:.0f} |"
     )
 
 
 if __name__ == "__main__":
-    print("| shape | P taxel | arcLength | perimeter | Crofton | NAE | contourArea | area_filled | P²/NAE | 4πA/P² |")
-    print("|---" * 10 + "|")
+    print("| shape | P taxel | arcLength | perimeter | Crofton | NAE | contourArea | area_filled |")
+    print("|---" * 8 + "|")
     for name, text in SHAPES.items():
         row(name, text)

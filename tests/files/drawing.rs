@@ -358,16 +358,44 @@ fn a_map_has_areas_with_borders() {
 #[test]
 fn matrices_and_curves_are_drawn_in_pixels() {
     let labels = ["a", "b"].map(str::to_owned);
-    let map = ConfusionMap::new(&labels, &[vec![5, 5], vec![0, 10]]).expect("few shapes");
-    let plot = LinePlot::new("x", "y").with_curve("c", &[(0.0, 0.0), (1.0, 1.0)]);
-    let points = PointPlot::new("x", "y").with_points(&[(0.0, 3.0), (1.0, 4.0)]);
-    let areas = PoseMap::new((0.0, 1.0), (0.0, 1.0), 2, &[Some(1), Some(2)]).expect("a row");
-    for png in [map.png(), plot.png(), points.png(), areas.png()] {
-        let png = png.expect("in memory");
-        let decoder = png::Decoder::new(std::io::Cursor::new(&png));
-        let mut reader = decoder.read_info().expect("a PNG");
-        let mut pixels = vec![0; reader.output_buffer_size().expect("small")];
-        reader.next_frame(&mut pixels).expect("pixels");
-        assert!(pixels.contains(&0) && pixels.contains(&255));
+    let map = |row| {
+        let map = ConfusionMap::new(&labels, &[row, vec![0, 10]]);
+        map.expect("few shapes").png()
+    };
+    let plot = |ends: [(f64, f64); 2]| LinePlot::new("x", "y").with_curve("c", &ends).png();
+    let points = |[one, other, third]: [(f64, f64); 3]| {
+        PointPlot::new("x", "y")
+            .with_points(&[one, other, third])
+            .png()
+    };
+    let areas = |values: [Option<u32>; 2]| {
+        let map = PoseMap::new((0.0, 1.0), (0.0, 1.0), 2, &values);
+        map.expect("a row").png()
+    };
+    // Two of each with the same axes: only what is drawn differs.
+    for pair in [
+        [map(vec![5, 5]), map(vec![9, 1])],
+        [
+            plot([(0.0, 0.0), (1.0, 1.0)]),
+            plot([(0.0, 1.0), (1.0, 0.0)]),
+        ],
+        [
+            points([(0.0, 3.0), (1.0, 4.0), (0.2, 3.2)]),
+            points([(0.0, 3.0), (1.0, 4.0), (0.2, 3.8)]),
+        ],
+        [areas([Some(1), Some(2)]), areas([Some(2), Some(1)])],
+    ] {
+        let [one, other] = pair.map(|png| {
+            let png = png.expect("in memory");
+            let decoder = png::Decoder::new(std::io::Cursor::new(&png));
+            let mut reader = decoder.read_info().expect("a PNG");
+            let mut pixels = vec![0; reader.output_buffer_size().expect("small")];
+            reader.next_frame(&mut pixels).expect("pixels");
+            assert!(pixels.contains(&0) && pixels.contains(&255));
+            pixels
+        });
+        assert_eq!(one.len(), other.len());
+        let differing = one.iter().zip(&other).filter(|(one, other)| one != other);
+        assert!(differing.count() > 50);
     }
 }
