@@ -7,8 +7,9 @@ use std::os::fd::AsFd;
 use std::os::unix::fs::{FileTypeExt, MetadataExt};
 use std::path::{Path, PathBuf};
 
-use crate::acquire::event::AcquireError;
+use crate::acquire::event::{AcquireError, AcquireOptions};
 use crate::acquire::recorder::RecorderError;
+use crate::formats::recording::recognised_input;
 
 /// Where frames come from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,6 +44,18 @@ impl FrameSource {
             Err(_) if is_for_devices(&path) => Self::Serial(path),
             _ => Self::File(path),
         }
+    }
+
+    /// Returns the file if it is played as a recording: of a known form, and no form of a stream was asked for.
+    ///
+    /// # Errors
+    /// If the file cannot be read.
+    pub fn recording(&self, options: &AcquireOptions) -> io::Result<Option<&Path>> {
+        let (Self::File(path), None) = (self, options.format) else {
+            return Ok(None);
+        };
+        let format = File::open(path).and_then(recognised_input)?;
+        Ok(format.map(|_| path.as_path()))
     }
 
     /// Its name in messages.

@@ -1,7 +1,7 @@
 //! Archives of numpy arrays (`numpy.load`): a zip without compression and without dates, so that equal contents are
 //! equal files.
 
-use std::io::{self, Read, Seek, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 
 use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
@@ -66,13 +66,17 @@ impl<'a> ArrayWriter<'a> {
 /// Reads arrays by name.
 pub(crate) struct ArrayReader<R> {
     archive: ZipArchive<R>,
+    /// The bytes of the whole archive.
+    length: u64,
     /// The arrays that were read.
     read: Vec<&'static str>,
 }
 
 impl<R: Read + Seek> ArrayReader<R> {
-    pub(crate) fn new(input: R) -> Result<Self, ArchiveError> {
+    pub(crate) fn new(mut input: R) -> Result<Self, ArchiveError> {
+        let length = input.seek(SeekFrom::End(0))?;
         Ok(Self {
+            length,
             archive: ZipArchive::new(input)?,
             read: Vec::new(),
         })
@@ -103,12 +107,18 @@ impl<R: Read + Seek> ArrayReader<R> {
     /// Reads all arrays that nobody asked for, and forgets them: a damaged one is found at its end only, and what is called
     /// whole has none.
     pub(crate) fn finish(mut self) -> Result<(), ArchiveError> {
+        // Arrays that share their bytes would take for ever, however short the archive.
+        let mut rest = self.length;
         for index in 0..self.archive.len() {
             let mut file = self.archive.by_index(index)?;
             let name = file.name()?.trim_end_matches(".npy").to_owned();
             if self.read.contains(&name.as_str()) {
                 continue;
             }
+            let Some(left) = rest.checked_sub(file.compressed_size()) else {
+                return Err(ArchiveError::Damaged(shortened(&name)));
+            };
+            rest = left;
             let read = io::copy(&mut file.by_ref().take(MAX_BYTES), &mut io::sink());
             read.map_err(|error| damaged(&name, error))?;
         }

@@ -132,6 +132,11 @@ fn standard_streams_take_part() {
     let run = taxel("export - - --format pbm-plain", "1,0,1\n1,1,1\n");
     assert_eq!(run, said(plain));
     assert_eq!(taxel("export - - --format txt", plain), said("#.#\n###\n"));
+    refused(
+        &taxel("figure ellipse --export - --format txt --json", ""),
+        2,
+        "--json has no effect with '--export -', which writes to standard output in its place",
+    );
     let run = taxel(
         "figure hexagon --export - --format csv --columns 4 --rows 1",
         "",
