@@ -55,10 +55,10 @@ fn main() -> ExitCode {
     if act::perform() {
         return ExitCode::SUCCESS;
     }
-    let asked = asked();
+    let asked = Asked::read();
     let mut failed = 0;
     for (name, campaign) in CAMPAIGNS {
-        if !asked.is_empty() && !asked.iter().any(|part| name.contains(part.as_str())) {
+        if !asked.runs(name) {
             continue;
         }
         let start = Instant::now();
@@ -81,22 +81,44 @@ fn main() -> ExitCode {
     }
 }
 
-/// Parts of the names of the campaigns that are asked for, as `cargo test` passes them on.
-fn asked() -> Vec<String> {
-    let mut arguments = std::env::args().skip(1);
-    let mut asked = Vec::new();
-    while let Some(argument) = arguments.next() {
-        match argument.as_str() {
-            "--list" => {
-                for (name, _) in CAMPAIGNS {
-                    println!("{name}: test");
+/// Which campaigns are asked for, as `cargo test` passes it on.
+#[derive(Default)]
+struct Asked {
+    /// Parts of their names; all if there are none.
+    names: Vec<String>,
+    /// Parts of the names of those to leave out.
+    skipped: Vec<String>,
+    /// Whether these are whole names.
+    exact: bool,
+}
+
+impl Asked {
+    fn read() -> Self {
+        let mut arguments = std::env::args().skip(1);
+        let mut asked = Self::default();
+        while let Some(argument) = arguments.next() {
+            match argument.as_str() {
+                "--list" => {
+                    for (name, _) in CAMPAIGNS {
+                        println!("{name}: test");
+                    }
+                    std::process::exit(0);
                 }
-                std::process::exit(0);
+                "--skip" => asked.skipped.extend(arguments.next()),
+                "--exact" => asked.exact = true,
+                "--test-threads" | "--color" | "--format" => drop(arguments.next()),
+                flag if flag.starts_with('-') => {}
+                _ => asked.names.push(argument),
             }
-            "--test-threads" | "--skip" | "--color" | "--format" => drop(arguments.next()),
-            flag if flag.starts_with('-') => {}
-            _ => asked.push(argument),
         }
+        asked
     }
-    asked
+
+    fn runs(&self, name: &str) -> bool {
+        let is_among = |parts: &[String]| {
+            let is = |part: &String| name == part || !self.exact && name.contains(part.as_str());
+            parts.iter().any(is)
+        };
+        (self.names.is_empty() || is_among(&self.names)) && !is_among(&self.skipped)
+    }
 }
