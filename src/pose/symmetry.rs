@@ -3,7 +3,8 @@
 //! (x0, y0) places the corner of the figure *before* it is turned, so the centre stays where it is, and two angles give
 //! the same shape when they differ by a symmetry of the figure: 180° for rectangles and ellipses, 90° for squares,
 //! 360°/n for regular polygons where that is a whole number of degrees (not the heptagon's), and any angle for circles.
-//! A picture that a half turn maps onto itself has 180°. Angles are compared as exact decimals.
+//! A picture that a half turn maps onto itself has 180°; for sweeps also one that has a quarter turn, since its zooms may differ.
+//! Angles are compared as exact decimals.
 //!
 //! Upright figures have right and left alike, so at minus an angle they are the mirror image of themselves at that angle,
 //! about the vertical line through their centre. So do some pictures; others have top and bottom alike, and are their
@@ -12,6 +13,8 @@
 use crate::figure::FigureKind;
 use crate::imprint::{Bounds, Imprint};
 use crate::parameter::Parameter;
+#[cfg(feature = "recognition")]
+use crate::pose::axis::{Axis, Ranges};
 use crate::pose::range::DecimalRange;
 use crate::source::Source;
 
@@ -49,10 +52,31 @@ pub(crate) fn period(source: &Source) -> Option<u32> {
     order(source).map(|order| if 360 % order == 0 { 360 / order } else { 360 })
 }
 
-/// The least rotation in degrees after which a shape looks the same, 360/7 of a heptagon; None as of [`period`].
+/// The least rotation in degrees after which a shape in the poses of a grid looks the same: 360/7 of a heptagon; a quarter turn
+/// of a picture that has it, where both zooms are the same. None as of [`period`].
 #[cfg(feature = "recognition")]
-pub(crate) fn exact_period(source: &Source) -> Option<f64> {
-    order(source).map(|order| 360.0 / f64::from(order))
+pub(crate) fn exact_period(source: &Source, ranges: &Ranges) -> Option<f64> {
+    let order = order(source)?;
+    let zooms = [ranges[Axis::ZoomX], ranges[Axis::ZoomY]];
+    let one_zoom = zooms[0] == zooms[1] && zooms[0].count() == 1;
+    let order = match source {
+        Source::Picture(picture) if one_zoom && quarter_turned(picture.imprint()) => 4,
+        _ => order,
+    };
+    Some(360.0 / f64::from(order))
+}
+
+/// Whether a quarter turn maps an imprint onto itself.
+#[cfg(feature = "recognition")]
+fn quarter_turned(imprint: &Imprint) -> bool {
+    let turned = |bounds: &Bounds, column, row| {
+        (
+            bounds.left + (bounds.bottom - 1 - row),
+            bounds.top + (column - bounds.left),
+        )
+    };
+    let is_square = |bounds: Bounds| bounds.right - bounds.left == bounds.bottom - bounds.top;
+    imprint.bounds().is_some_and(is_square) && maps_onto_itself(imprint, turned)
 }
 
 /// The sum of two angles, in degrees, at which a shape shows its mirror image, right and left exchanged; None if it has

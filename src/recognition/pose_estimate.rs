@@ -116,7 +116,7 @@ impl Model {
         let bounds = imprint.bounds()?;
         let key = ImprintKey::of(imprint);
         let source = self.shapes().get(shape)?.source.clone();
-        let period = exact_period(&source);
+        let period = exact_period(&source, self.ranges());
         let grid = PoseGrid::new(source, *self.sensor(), self.anchor(), *self.ranges()).ok()?;
         let wanted = |other: &Imprint| ImprintKey::of(other) == key;
         let runs = Sweep::new(&grid).progress(progress).poses_where(&wanted)?;

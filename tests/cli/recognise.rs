@@ -274,6 +274,22 @@ fn a_pose_is_told_in_cells_degrees_and_mm() {
     );
 }
 
+/// A picture that a quarter turn maps onto itself has its angle modulo that.
+#[test]
+fn the_angle_of_a_cross_is_known_modulo_a_quarter_turn() {
+    let place = Place::new();
+    place.done(
+        "model train --shape 'cross=picture cross' --positions 2 --angle 0:345:15 --out c.npz",
+    );
+    let cross = place.done("picture cross --angle 15 --json");
+    let run = place.run("recognise - --model c.npz --pose", &cross);
+    let answer = answer(&run);
+    let angle = &answer["pose"]["angle"];
+    assert_eq!(angle["period"], 90.0, "{answer}");
+    let mean = angle["mean"].as_f64().expect("an angle");
+    assert!((mean - 15.0).abs() < 8.0, "{answer}");
+}
+
 #[test]
 fn a_heptagon_repeats_every_seventh_of_a_turn() {
     let place = Place::new();

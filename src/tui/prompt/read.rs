@@ -136,6 +136,14 @@ fn degrees(text: &str) -> Result<Message, String> {
 
 /// A taxel of the sensor.
 fn taxel(column: &str, row: &str, sensor: &Sensor) -> Result<Message, String> {
+    for text in [column, row] {
+        if text.parse::<u64>().is_err() {
+            let text = shortened(text);
+            return Err(format!(
+                "cursor takes a column and a row like 3 4, found {text:?}"
+            ));
+        }
+    }
     let within = |text: &str, count: u8| text.parse().ok().filter(|&at: &u8| at < count);
     match (within(column, sensor.columns()), within(row, sensor.rows())) {
         (Some(column), Some(row)) => Ok(Message::PointAt(column, row)),
