@@ -221,6 +221,9 @@ fn the_imprint_goes_to_the_matrix_and_the_source_stays() {
         &page,
         &["the imprint of frame 5; w goes back", "drawn by hand"],
     );
+    // The history names the frame, and not the sensor that came with it.
+    then(&mut page, "u", &["undone: frame 5"]);
+    then(&mut page, "<C-r>", &["redone: frame 5"]);
     then(&mut page, "w", &["frame 5", "threshold  5"]);
     then(&mut page, "<Esc>w", &["frame 5"]);
     shows("w", &["! no source yet: ':watch SOURCE'"]);

@@ -300,6 +300,10 @@ fn commands_do_what_keys_do() {
         ),
         ("undo now", "! undo takes nothing, found \"now\""),
         (
+            "cursor left 5",
+            "! cursor takes a column and a row like 3 4, found \"left\"",
+        ),
+        (
             "turn round",
             "! turn takes degrees like 30.5, found \"round\"",
         ),

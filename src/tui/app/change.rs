@@ -70,9 +70,12 @@ fn begin_from(
     begin_with(app, document, origin);
 }
 
-/// A document that is stored nowhere: all of it would be lost.
-pub(in crate::tui) fn begin_unsaved(app: &mut App, document: Document) {
-    let origin = stored_nowhere(&document);
+/// A document that is stored nowhere: all of it would be lost. The history calls the step so.
+pub(in crate::tui) fn begin_unsaved(app: &mut App, document: Document, brought_by: &str) {
+    let origin = DocumentOrigin {
+        brought_by: Some(brought_by.to_owned()),
+        ..stored_nowhere(&document)
+    };
     begin_with(app, document, origin);
 }
 

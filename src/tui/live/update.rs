@@ -145,14 +145,13 @@ fn document(page: &Live) -> Option<Document> {
 fn take(app: &mut App, page: Box<Live>, document: Document) {
     let number = page.reading().map(|reading| reading.frame.number);
     app.live = Some(page);
-    begin_unsaved(app, document);
+    let frame = number.map_or("a frame".to_owned(), |number| format!("frame {number}"));
+    begin_unsaved(app, document, &frame);
     let back = app.key_of(&action::WATCH);
-    if let Some(number) = number {
-        inform(
-            app,
-            format!("the imprint of frame {number}; {back} goes back to the source"),
-        );
-    }
+    inform(
+        app,
+        format!("the imprint of {frame}; {back} goes back to the source"),
+    );
 }
 
 /// Says why there is no imprint to take.

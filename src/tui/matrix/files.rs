@@ -10,7 +10,7 @@ use crate::imprint::Imprint;
 use crate::parameter::Parameter;
 use crate::quote::shortened;
 use crate::storage::{Existing, UNNAMED};
-use crate::tui::app::change::{begin, inform, refuse};
+use crate::tui::app::change::{begin_by, inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Document;
 use crate::tui::app::message::{FileEvent, Message, OpenedFile};
@@ -91,9 +91,10 @@ pub(in crate::tui) fn on_file(app: &mut App, answer: FileEvent) -> Option<Effect
     match answer {
         FileEvent::Opened(name, file) => match opened(app, file) {
             Ok(document) => {
-                begin(app, document, None);
+                let opened = format!("{name} opened");
+                begin_by(app, document, &opened);
                 app.chosen = None;
-                inform(app, format!("{name} opened"));
+                inform(app, opened);
             }
             Err(reason) => refuse(app, format!("{name}: {reason}")),
         },
