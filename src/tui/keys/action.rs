@@ -3,8 +3,10 @@
 //! ```text
 //! alone            CURSOR_LEFT "cursor-left" ["cursor left"] Message::Cursor(Arrow::Left);
 //!                  constant    name          spellings       message
-//! with arguments   "load" Arguments::Shape(Purpose::Load);
-//!                  name   what follows the name
+//!                  KEEP "keep" [] Recognise(RecogniseMessage::Keep), "keep this touch as one of several";
+//!                                                                    what it does, if its key's row does not say it
+//! with arguments   "load" Arguments::Shape(Purpose::Load), "Load: bring a stored shape onto the matrix";
+//!                  name   what follows the name             what it does
 //! ```
 //! Everything else refers to the rows. [`crate::tui::keys::default_keys`] gives them keys, with a hint and a line of
 //! help for each place; a settings file gives them other keys, by name; and [`crate::tui::prompt::commands`] makes the
@@ -28,6 +30,8 @@ pub struct Action {
     pub spellings: &'static [&'static str],
     /// What it does, or the arguments that it needs to do something.
     pub does: Does,
+    /// The same in words, for the `:` commands; empty where the row of its key says it.
+    pub help: &'static str,
 }
 
 /// What an action does.
@@ -132,12 +136,12 @@ impl Arguments {
     }
 }
 
-/// Rows of the table: `CONSTANT "name" ["spelling"…] message`, and `"name" takes arguments`. A macro, so that the default keys
-/// can name each row and the compiler knows the names.
+/// Rows of the table: `CONSTANT "name" ["spelling"…] message, "help"`, where the help may be left out, and `"name" arguments,
+/// "help"`. A macro, so that the default keys can name each row and the compiler knows the names.
 macro_rules! actions {
     (
-        alone {$($constant:ident $name:literal [$($spelling:literal),*] $message:expr;)+}
-        with_arguments {$($command:literal $arguments:expr;)+}
+        alone {$($constant:ident $name:literal [$($spelling:literal),*] $message:expr $(, $help:literal)?;)+}
+        with_arguments {$($command:literal $arguments:expr, $use:literal;)+}
     ) => {
         $(
             #[doc = concat!("`", $name, "`.")]
@@ -145,6 +149,7 @@ macro_rules! actions {
                 name: $name,
                 spellings: &[$($spelling),*],
                 does: Does::Message($message),
+                help: concat!($($help)?),
             };
         )+
 
@@ -155,6 +160,7 @@ macro_rules! actions {
                 name: $command,
                 spellings: &[],
                 does: Does::With($arguments),
+                help: $use,
             }),+
         ];
     };
@@ -172,7 +178,7 @@ actions! {
         SAVE "save" [] Message::Save;
         DELETE "delete" [] Message::Delete;
         QUIT "quit" [] Message::Quit;
-        QUIT_NOW "quit!" [] Message::QuitNow;
+        QUIT_NOW "quit!" [] Message::QuitNow, "quit without asking about unsaved work";
         CURSOR_LEFT "cursor-left" ["cursor left"] Message::Cursor(Arrow::Left);
         CURSOR_RIGHT "cursor-right" ["cursor right"] Message::Cursor(Arrow::Right);
         CURSOR_UP "cursor-up" ["cursor up"] Message::Cursor(Arrow::Up);
@@ -187,8 +193,8 @@ actions! {
         REGION "region" ["region next"] Message::Region(1);
         PREVIOUS_REGION "previous-region" ["region previous"] Message::Region(-1);
         COVERAGE "coverage" [] Message::Display;
-        OUTLINE "outline" [] Message::Layer(Layer::Outline);
-        RECTANGLE "rectangle" [] Message::Layer(Layer::Rectangle);
+        OUTLINE "outline" [] Message::Layer(Layer::Outline), "show or hide the true outline";
+        RECTANGLE "rectangle" [] Message::Layer(Layer::Rectangle), "show or hide the rectangle with CG (G), CD (D)";
         COUNT_ZERO "count-0" [] Message::Count(0);
         COUNT_ONE "count-1" [] Message::Count(1);
         COUNT_TWO "count-2" [] Message::Count(2);
@@ -207,10 +213,10 @@ actions! {
         NUDGE_RIGHT "nudge-right" ["nudge right"] Message::Nudge(Arrow::Right);
         NUDGE_UP "nudge-up" ["nudge up"] Message::Nudge(Arrow::Up);
         NUDGE_DOWN "nudge-down" ["nudge down"] Message::Nudge(Arrow::Down);
-        TURN_LEFT "turn-left" [] Message::Turn(-1.0);
-        TURN_RIGHT "turn-right" [] Message::Turn(1.0);
-        TURN_LEFT_10 "turn-left-10" [] Message::Turn(-10.0);
-        TURN_RIGHT_10 "turn-right-10" [] Message::Turn(10.0);
+        TURN_LEFT "turn-left" [] Message::Turn(-1.0), "turn the shape left by 1 degree";
+        TURN_RIGHT "turn-right" [] Message::Turn(1.0), "turn the shape right by 1 degree";
+        TURN_LEFT_10 "turn-left-10" [] Message::Turn(-10.0), "turn the shape left by 10 degrees";
+        TURN_RIGHT_10 "turn-right-10" [] Message::Turn(10.0), "turn the shape right by 10 degrees";
         ZOOM_IN "zoom-in" ["zoom in"] Message::Zoom(1);
         ZOOM_OUT "zoom-out" ["zoom out"] Message::Zoom(-1);
         ZOOM_CENTRE "zoom-centre" [] Message::ZoomCentre;
@@ -286,10 +292,10 @@ actions! {
         PREVIOUS_ZOOM_Y "previous-zoom-y" [] Explore(Zoomed(Zoom::Y, -1));
         RECOGNISE "recognise" [] Recognise(RecogniseMessage::Open);
         TOUCH "touch" [] Recognise(RecogniseMessage::Touch);
-        KEEP "keep" [] Recognise(RecogniseMessage::Keep);
-        FORGET "forget" [] Recognise(RecogniseMessage::Forget);
-        NEXT_SET "next-set" [] Recognise(RecogniseMessage::NextSet(1));
-        PREVIOUS_SET "previous-set" [] Recognise(RecogniseMessage::NextSet(-1));
+        KEEP "keep" [] Recognise(RecogniseMessage::Keep), "keep this touch as one of several";
+        FORGET "forget" [] Recognise(RecogniseMessage::Forget), "forget the touches that were kept";
+        NEXT_SET "next-set" [] Recognise(RecogniseMessage::NextSet(1)), "the next set of shapes";
+        PREVIOUS_SET "previous-set" [] Recognise(RecogniseMessage::NextSet(-1)), "the previous set of shapes";
         CONFUSION "confusion" [] Recognise(RecogniseMessage::Confusion);
         POSES "poses" [] Recognise(RecogniseMessage::Poses);
         SEPARATE "separate" [] Recognise(RecogniseMessage::Separate(SeparationFlags::NONE));
@@ -314,25 +320,25 @@ actions! {
     }
 
     with_arguments {
-        "compare" Arguments::Shape(Purpose::Compare);
-        "cursor" Arguments::Taxel;
-        "delete" Arguments::Shape(Purpose::Delete);
-        "explore" Arguments::Ranges;
-        "export" Arguments::File(FilePurpose::Write);
-        "figure" Arguments::Figure;
-        "load" Arguments::Shape(Purpose::Load);
-        "move" Arguments::Distance;
-        "open" Arguments::File(FilePurpose::Open);
-        "picture" Arguments::Shape(Purpose::Picture);
-        "recognise" Arguments::Model;
-        "restore" Arguments::Deleted;
-        "save" Arguments::Name;
-        "seed" Arguments::Seed;
-        "sensor" Arguments::Sensor;
-        "separate" Arguments::Sizes;
-        "turn" Arguments::Degrees;
-        "watch" Arguments::FrameSource;
-        "write" Arguments::File(FilePurpose::Write);
+        "compare" Arguments::Shape(Purpose::Compare), "compare with a stored shape; alone, with the state before the last step";
+        "cursor" Arguments::Taxel, "move the cursor, or put it on a taxel";
+        "delete" Arguments::Shape(Purpose::Delete), "Delete: move a stored shape to the trash";
+        "explore" Arguments::Ranges, "Explore: all imprints of the shape, over all poses in these ranges";
+        "export" Arguments::File(FilePurpose::Write), "the same as write";
+        "figure" Arguments::Figure, "Figure: place one of the seven figures";
+        "load" Arguments::Shape(Purpose::Load), "Load: bring a stored shape onto the matrix";
+        "move" Arguments::Distance, "move the shape by cells to the right and down";
+        "open" Arguments::File(FilePurpose::Open), "open a shape or an imprint from a file";
+        "picture" Arguments::Shape(Purpose::Picture), "Picture: place a stored shape, or move the one here";
+        "recognise" Arguments::Model, "Recognise: name the shape from its touch, among those of a set";
+        "restore" Arguments::Deleted, "bring back a deleted shape; alone, the one deleted last";
+        "save" Arguments::Name, "Save: store what is on the matrix";
+        "seed" Arguments::Seed, "make the random touches of the quiz repeatable";
+        "sensor" Arguments::Sensor, "Sensor: columns, rows, threshold, pitch";
+        "separate" Arguments::Sizes, "the error against the size of the shapes";
+        "turn" Arguments::Degrees, "turn the shape";
+        "watch" Arguments::FrameSource, "Watch: the frames of a sensor, live or recorded";
+        "write" Arguments::File(FilePurpose::Write), "write the matrix to a file: imprint, shape or drawing, by its ending";
     }
 }
 

@@ -41,10 +41,15 @@ pub struct PromptCommand {
 const MOST_RECENT: usize = 5;
 
 impl PromptCommand {
-    /// What follows the name, or what the key of the same action does.
+    /// What it does: in its own words, or in those of the key of the same action.
     pub fn help(&self) -> &'static str {
-        if let Some(arguments) = self.arguments {
-            return arguments.form();
+        let with = ACTIONS.iter().filter(|action| action.name == self.name);
+        let with = with.filter(|action| action.arguments().is_some());
+        let mut own = with
+            .copied()
+            .chain(self.words.iter().map(|(_, action)| *action));
+        if let Some(action) = own.find(|action| !action.help.is_empty()) {
+            return action.help;
         }
         let own = |action: &Action| self.words.iter().any(|(_, word)| *word == action);
         let mut rows = DEFAULT_KEYS.iter();
@@ -257,8 +262,8 @@ fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
 pub struct Offer {
     /// The line, or its first word where arguments follow.
     pub line: String,
-    /// What it does, or what follows it; empty for a line that was given before.
-    pub help: &'static str,
+    /// What follows the word, and what that does; None for a line that was given before.
+    pub help: Option<String>,
 }
 
 /// What the prompt offers while a line is typed: lines given before that begin with it, the last one first, then commands
@@ -273,7 +278,7 @@ pub fn offers(typed: &str, given: &[String]) -> Vec<Offer> {
     }
     let recent = recent.into_iter().take(MOST_RECENT).map(|line| Offer {
         line: line.clone(),
-        help: "",
+        help: None,
     });
     let name = typed.split(' ').next().unwrap_or(typed);
     let more = name.len() < typed.len();
@@ -284,7 +289,10 @@ pub fn offers(typed: &str, given: &[String]) -> Vec<Offer> {
     named.sort_by_key(|command| !command.name.starts_with(name));
     let named = named.into_iter().map(|command| Offer {
         line: command.name.to_owned(),
-        help: command.help(),
+        help: Some(match command.arguments {
+            Some(arguments) => format!("{}: {}", arguments.form(), command.help()),
+            None => command.help().to_owned(),
+        }),
     });
     recent.chain(named).collect()
 }

@@ -259,7 +259,7 @@ fn sensor(pairs: &[&str], app: &App) -> Result<Message, String> {
 /// What is wrong with them, in a sentence.
 fn explore(words: &[&str], app: &App) -> Result<Message, String> {
     let document = app.shown();
-    let source = explored(document).ok_or_else(|| app.nothing_to_explore())?;
+    let source = explored(document, app.stored_name()).ok_or_else(|| app.nothing_to_explore())?;
     let (mut ranges, mut anchor) = (GivenRanges::default(), Anchor::default());
     let mut given: Vec<&str> = Vec::new();
     for pair in words.chunks(2) {

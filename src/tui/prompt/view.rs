@@ -88,11 +88,7 @@ impl LinePrompt for CommandDialog {
             let sign = if here { "> " } else { "  " };
             let role = if here { Role::Focus } else { Role::Key };
             let line = format!("{:indent$}", offer.line);
-            let help = if offer.help.is_empty() {
-                "earlier"
-            } else {
-                offer.help
-            };
+            let help = offer.help.as_deref().unwrap_or("earlier");
             let pieces = [
                 (sign, Role::Text),
                 (line.as_str(), role),

@@ -7,6 +7,8 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use taxel::tui::prompt::commands::commands;
+
 mod commands;
 mod dependencies;
 mod glossary;
@@ -189,4 +191,21 @@ fn the_settings_shown_can_be_read() {
         (config.sensor_entries().len(), config.changes().len()),
         (4, 2)
     );
+}
+
+/// The list after `:` is where one looks for what a command does, so each says so, and not in the words of another.
+#[test]
+fn every_command_says_what_it_does() {
+    let mut said: Vec<(&str, &str)> = Vec::new();
+    for command in commands() {
+        let help = command.help();
+        assert!(
+            !help.is_empty(),
+            ":{} does not say what it does",
+            command.name
+        );
+        let other = said.iter().find(|(_, other)| *other == help);
+        assert_eq!(other, None, ":{} says the same", command.name);
+        said.push((command.name, help));
+    }
 }

@@ -53,11 +53,7 @@ pub(crate) fn prompt() -> String {
             .into_iter()
             .map(|word| format!("`{word}`"))
             .collect();
-        let mut rows = DEFAULT_KEYS.iter().filter(|row| {
-            let mut actions = row.keys.iter().map(|(_, action)| *action);
-            actions.any(|action| command.words.iter().any(|(_, own)| *own == action))
-        });
-        let help = rows.next().map_or("", |row| row.help);
+        let help = command.help();
         text += &format!(
             "| `:{}` | {} | {help} |\n",
             command.name,
