@@ -26,7 +26,7 @@ pub enum ModelState {
 }
 
 /// A model on its way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Preparation {
     /// The number of the piece of work.
     pub number: u64,
@@ -36,6 +36,19 @@ pub struct Preparation {
     pub done: u64,
     /// Whether a stop was requested.
     pub stopping: bool,
+    /// What comes back if no model can be read.
+    before: Option<Box<SetBefore>>,
+}
+
+/// The set before another one was chosen.
+#[derive(Clone, Debug)]
+struct SetBefore {
+    /// Its model.
+    trained: Arc<TrainedModel>,
+    /// The touches that were kept.
+    kept: Vec<Imprint>,
+    /// The score of its exercise.
+    score: Score,
 }
 
 /// How the exercise goes.
@@ -137,19 +150,35 @@ impl Recognition {
     }
 
     /// Chooses a set, whose model is prepared by the piece of work of that number. Touches and score begin anew with
-    /// another set.
+    /// another set. A stored model may be missing or damaged; then the set before it comes back.
     pub fn prepare(&mut self, choice: ModelChoice, number: u64) {
+        let state = std::mem::replace(&mut self.state, ModelState::Missing);
+        let (mut before, trained) = match state {
+            ModelState::Preparing(preparation) => (preparation.before, None),
+            ModelState::Ready(trained) => (None, Some(trained)),
+            ModelState::Missing => (None, None),
+        };
         if choice != self.choice {
-            self.kept.clear();
+            let kept = std::mem::take(&mut self.kept);
+            let score = std::mem::take(&mut self.score);
             self.present_kept = false;
-            self.score = Score::default();
+            if let Some(trained) = trained {
+                let set = SetBefore {
+                    trained,
+                    kept,
+                    score,
+                };
+                before = Some(Box::new(set));
+            }
         }
+        before = before.filter(|_| choice.is_read());
         self.choice = choice;
         self.state = ModelState::Preparing(Preparation {
             number,
             poses: None,
             done: 0,
             stopping: false,
+            before,
         });
         self.look = None;
         self.looking = false;
@@ -197,16 +226,29 @@ impl Recognition {
 
     /// Takes a model. Returns why there is none.
     pub fn take_model(&mut self, prepared: Prepared) -> Option<String> {
-        self.preparation(prepared.number)?;
+        let before = self.preparation(prepared.number)?.before.take();
         self.stored = prepared.stored;
-        match prepared.trained {
-            Ok(trained) => {
+        match (prepared.trained, before) {
+            (Ok(trained), _) => {
                 self.state = ModelState::Ready(trained);
                 self.ask();
                 None
             }
-            Err(reason) => {
+            (Err(reason), None) => {
                 self.state = ModelState::Missing;
+                Some(reason)
+            }
+            (Err(reason), Some(before)) => {
+                let SetBefore {
+                    trained,
+                    kept,
+                    score,
+                } = *before;
+                self.choice = trained.choice.clone();
+                self.present_kept = kept.last() == Some(&self.present);
+                (self.kept, self.score) = (kept, score);
+                self.state = ModelState::Ready(trained);
+                self.ask();
                 Some(reason)
             }
         }

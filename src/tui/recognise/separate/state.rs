@@ -126,9 +126,9 @@ impl Separate {
         }
     }
 
-    /// Lets stopped work go on.
-    pub fn go_on(&mut self) {
-        self.stopped = false;
+    /// Lets stopped work go on; `false` if none was stopped.
+    pub fn go_on(&mut self) -> bool {
+        std::mem::take(&mut self.stopped)
     }
 
     /// Notes that the work should stop; `false` if there is none, or a stop was requested already.

@@ -5,7 +5,7 @@ use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
-use crate::tui::explore::export::ExportDialog;
+use crate::tui::explore::export::{ExportDialog, ExportKind};
 use crate::tui::explore::message::ExploreMessage;
 use crate::tui::recognise::exercise::onto;
 use crate::tui::recognise::message::RecogniseMessage;
@@ -65,11 +65,18 @@ pub(in crate::tui) fn in_separate(
             }
         }
         Message::Recognise(RecogniseMessage::Want(by)) => page.want(*by),
-        Message::Recognise(RecogniseMessage::Separate(_)) => page.go_on(),
-        Message::Explore(ExploreMessage::Export) if !page.found().is_empty() => {
+        Message::Recognise(RecogniseMessage::Separate(_)) => {
+            if !page.go_on() && page.work().is_none() {
+                inform(app, "all sizes are done");
+            }
+        }
+        Message::Explore(ExploreMessage::Export) if page.found().is_empty() => {
+            refuse(app, "there is nothing to export yet");
+        }
+        Message::Explore(ExploreMessage::Export) => {
             let name = format!("{}.svg", page.request().trained.choice.name());
             app.dialogs.push(Dialog::Separate(page));
-            let dialog = ExportDialog::of_curves(&name);
+            let dialog = ExportDialog::proposing(&name, ExportKind::Curve);
             app.dialogs.push(Dialog::Export(dialog));
             return None;
         }
