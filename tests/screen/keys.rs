@@ -445,8 +445,8 @@ fn what_is_copied_is_said() {
 /// What is typed is seen, however many columns its characters have.
 #[test]
 fn wide_characters_in_a_number_are_seen() {
-    shows("f<Tab>字字字字字字1", &["字字字1"]);
-    shows("f<Enter>e字字字字字字字字1", &["字字字字字字1"]);
+    shows("f<Tab>字字字字字字1", &["… 字字1"]);
+    shows("f<Enter>e字字字字字字字字1", &["… 字字字字字字1"]);
 }
 
 #[test]
@@ -499,6 +499,17 @@ fn recognise_goes_through_sets_and_takes_one_by_name() {
             "no model or file \"nothing\"; there are figures, figures-30, shapes",
         ],
     );
+    // The set in use stays, with the touches that were kept and their answer.
+    let hexagon = ":figure hexagon --side 3.4 --x0 4.31 --y0 4.52 --angle 17<Enter>";
+    shows(
+        &format!(":recognise figures-30<Enter>{hexagon}a:recognise nothing<Enter>"),
+        &[
+            "no model or file \"nothing\"; there are figures, figures-30, shapes",
+            "Recognise: the seven figures of 30 cells",
+            "likely: hexagon",
+            "1 touch kept",
+        ],
+    );
     shows(
         ":recognise nothing<Enter><Esc>o",
         &["Recognise: the seven figures", "Nothing is touched"],
@@ -543,7 +554,11 @@ fn a_random_touch_is_named_by_row_letter_or_number_and_scored() {
     let touch = ":seed 7<Enter>:recognise figures-30<Enter>t";
     shows(
         touch,
-        &["Which shape is this?", "> 1 ellipse", "drawn by hand"],
+        &[
+            "Which shape is this?",
+            "> 1 ellipse",
+            "random touch: Space draws",
+        ],
     );
     hides(touch, &["%"]);
     shows(
@@ -601,7 +616,7 @@ fn the_confusion_matrix_starts_at_the_worst_pair() {
     );
     shows(
         &format!("{open}<Enter>"),
-        &["likely: ellipse", "drawn by hand"],
+        &["likely: ellipse", "confused imprint: Space draws"],
     );
     shows(&format!("{open}<Esc>"), &["Recognise:"]);
 }

@@ -219,7 +219,10 @@ fn the_imprint_goes_to_the_matrix_and_the_source_stays() {
     let mut page = watched(6, "+<Enter>");
     shows(
         &page,
-        &["the imprint of frame 5; w goes back", "drawn by hand"],
+        &[
+            "the imprint of frame 5; w goes back",
+            "frame 5: Space draws",
+        ],
     );
     // The history names the frame, and not the sensor that came with it.
     then(&mut page, "u", &["undone: frame 5"]);

@@ -112,7 +112,7 @@ pub struct StreamCounts {
 const SAMPLE: usize = 40;
 
 impl StreamCounts {
-    /// What may be wrong where no frame has come for some time, given the bytes a second that came meanwhile.
+    /// What came instead of frames in some time without any, given the bytes a second meanwhile, and what may be wrong.
     pub fn silence(&self, bytes_per_second: f64) -> String {
         #[expect(
             clippy::cast_possible_truncation,
@@ -120,12 +120,11 @@ impl StreamCounts {
             reason = "a rate for a message"
         )]
         let rate = grouped(bytes_per_second.round() as u64);
-        let question = match (self.bytes, bytes_per_second > 0.0) {
-            (_, true) => ": baud, rows, columns or format?",
-            (0, _) => ": is it sending?",
-            _ => "",
-        };
-        format!("{rate} B/s and no frame{question}")
+        match (self.bytes, bytes_per_second > 0.0) {
+            (_, true) => format!("{rate} B/s, none of it a frame; baud, rows, columns or format?"),
+            (0, _) => "nothing has come; is it sending?".to_owned(),
+            _ => "nothing comes any more".to_owned(),
+        }
     }
 
     /// Counts dropped frames.

@@ -223,9 +223,7 @@ fn refuse_to_move(app: &mut App) {
     let (figure, picture) = (app.key_of(&action::FIGURE), app.key_of(&action::PICTURE));
     refuse(
         app,
-        format!(
-            "nothing to move: this was drawn by hand; {figure} places a figure, {picture} a stored shape"
-        ),
+        format!("nothing to move: {figure} places a figure, {picture} a stored shape"),
     );
 }
 

@@ -89,7 +89,10 @@ fn source(app: &App, panes: &Panes) -> String {
             let place = app.key_of(&action::PICTURE);
             return format!("{name}stored shape: {place} moves and turns it, {draw} draws");
         }
-        return format!("{name}drawn by hand: {draw} draws, {figure} places a figure");
+        let origin = app.history.origin();
+        let brought_by = origin.brought_by.as_deref();
+        let made = brought_by.unwrap_or("drawn by hand");
+        return format!("{name}{made}: {draw} draws, {figure} places a figure");
     };
     let mut text = name + &source.to_string();
     if by_hand > 0 {

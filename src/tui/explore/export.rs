@@ -15,8 +15,10 @@ const LONGEST: usize = 4096;
 /// What is exported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExportKind {
-    /// The imprints and poses of a sweep, and the drawing of a page.
+    /// The imprints and poses of a sweep, from a page that has no drawing.
     Imprints,
+    /// The same and the drawing of a page.
+    Drawing,
     /// The error of a set against size.
     Curve,
 }
@@ -25,15 +27,16 @@ impl ExportKind {
     /// What a name can end in.
     fn endings(self) -> &'static str {
         match self {
-            Self::Imprints => ".csv, .jsonl, .npz, .npy, .svg or .png",
+            Self::Imprints => ".csv, .jsonl, .npz or .npy",
+            Self::Drawing => ".csv, .jsonl, .npz, .npy, .svg or .png",
             Self::Curve => ".csv, .svg or .png",
         }
     }
 
-    /// Whether a name ends so.
+    /// Whether a file of that name can be made, on some page at least.
     fn takes(self, name: &str) -> bool {
         match self {
-            Self::Imprints => {
+            Self::Imprints | Self::Drawing => {
                 is_poses(name) || drawn_form(name).is_some() || AtlasFile::new(name).is_ok()
             }
             Self::Curve => {
@@ -56,25 +59,17 @@ pub struct ExportDialog {
 
 impl ExportDialog {
     /// A field that proposes a name: what is typed replaces it.
-    pub fn proposing(name: &str) -> Self {
-        let mut dialog = Self::new(name);
+    pub fn proposing(name: &str, what: ExportKind) -> Self {
+        let mut dialog = Self::new(name, what);
         dialog.field.enter();
         dialog
     }
 
     /// A field that starts with a name.
-    pub fn new(name: &str) -> Self {
+    pub fn new(name: &str, what: ExportKind) -> Self {
         Self {
             field: TextField::new(name, LONGEST),
-            what: ExportKind::Imprints,
-        }
-    }
-
-    /// A field for the file of a curve, which proposes a name.
-    pub fn of_curves(name: &str) -> Self {
-        Self {
-            what: ExportKind::Curve,
-            ..Self::proposing(name)
+            what,
         }
     }
 
@@ -121,7 +116,7 @@ mod tests {
 
     #[test]
     fn the_ending_tells_the_form() {
-        let name = |text: &str| ExportDialog::new(text).name();
+        let name = |text: &str| ExportDialog::new(text, ExportKind::Drawing).name();
         for good in ["a.csv", " a/b.jsonl ", "./c.npz", "poses.npy", "map.SVG"] {
             assert_eq!(name(good).as_deref(), Ok(good.trim()));
         }

@@ -2,7 +2,6 @@
 
 use std::time::Duration;
 
-use crate::figure::FigureKind;
 use crate::pose::PoseGrid;
 use crate::source::Source;
 use crate::storage::Existing;
@@ -25,9 +24,12 @@ impl PartialEq for Findings {
     }
 }
 
-/// What is swept, in a word: the kind of a figure, or a picture.
-pub fn name_of(source: &Source) -> &'static str {
-    source.kind().map_or("picture", FigureKind::name)
+/// What is swept, in a word: the kind of a figure, the name of a stored shape, or a picture.
+pub fn name_of(source: &Source) -> &str {
+    match source {
+        Source::Figure(figure) => figure.kind().name(),
+        Source::Picture(picture) => picture.name().unwrap_or("picture"),
+    }
 }
 
 /// The pages that they are shown on.

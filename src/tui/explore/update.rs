@@ -51,9 +51,8 @@ pub(crate) fn in_results(
         }
         Message::Paste(_) => inform(app, "pasted text goes into fields only"),
         Message::Explore(ExploreMessage::Export) => {
-            let name = proposed(&results);
+            let dialog = export_of(&results);
             app.dialogs.push(Dialog::Results(results));
-            let dialog = ExportDialog::proposing(&name);
             app.dialogs.push(Dialog::Export(dialog));
             return None;
         }
@@ -96,18 +95,22 @@ pub(crate) fn in_results(
 fn compare(app: &mut App, results: Box<Results>) {
     let entry = results.rows_from(results.selected()).next();
     app.dialogs.push(Dialog::Results(results));
-    if let Some((_, entry)) = entry {
-        compare_with(app, &format!("imprint {}", entry.id), &entry.imprint);
+    match entry {
+        Some((_, entry)) => compare_with(app, &format!("imprint {}", entry.id), &entry.imprint),
+        None => refuse(app, "nothing is selected here"),
     }
 }
 
-/// The name that an export proposes: of the page's drawing where it has one, otherwise of the table of imprints.
-fn proposed(results: &Results) -> String {
-    let name = name_of(results.sweep().grid.source());
+/// The prompt for a file. It proposes the page's drawing where it has one, otherwise the table of imprints.
+fn export_of(results: &Results) -> ExportDialog {
+    // A path has other uses for a slash.
+    let name = name_of(results.sweep().grid.source()).replace('/', "-");
     let row = pages::row(results.page());
-    match row.drawing {
-        Some(_) => format!("{name}-{}.svg", row.title),
-        None => format!("{name}.csv"),
+    if row.drawing.is_some() {
+        let name = format!("{name}-{}.svg", row.title);
+        ExportDialog::proposing(&name, ExportKind::Drawing)
+    } else {
+        ExportDialog::proposing(&format!("{name}.csv"), ExportKind::Imprints)
     }
 }
 
@@ -178,7 +181,9 @@ fn select(app: &mut App, results: &mut Results, id: u32) -> bool {
 /// From the list and the points to the first pose on the map, from the map and the angles to the imprint in the list.
 /// A sweep that was stopped has poses without an imprint: these are refused.
 fn follow(app: &mut App, results: &mut Results) {
-    let Some(pose) = results.pose() else { return };
+    let Some(pose) = results.pose() else {
+        return refuse(app, "nothing is selected here");
+    };
     if !matches!(results.page(), ExplorePage::Map | ExplorePage::Angles) {
         results.go_to_pose(pose);
         return results.turn_to(ExplorePage::Map);

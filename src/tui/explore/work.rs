@@ -18,7 +18,7 @@ use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Mode};
 use crate::tui::explore::drawing::drawn_form;
-use crate::tui::explore::export::ExportDialog;
+use crate::tui::explore::export::{ExportDialog, ExportKind};
 use crate::tui::explore::message::{ExploreMessage, Findings, SweepProgress};
 use crate::tui::explore::pages;
 use crate::tui::explore::ranges::state::{RangesForm, explored};
@@ -77,7 +77,7 @@ fn open(app: &mut App) -> Option<Effect> {
 fn is_of(app: &App, results: &Results) -> bool {
     let grid = &results.sweep().grid;
     let present = app.history.present();
-    explored(present).is_some_and(|source| grid.is_of(&source, &present.sensor))
+    explored(present, app.stored_name()).is_some_and(|source| grid.is_of(&source, &present.sensor))
 }
 
 /// The form, with the ranges of the results below it or those that were last.
@@ -87,7 +87,7 @@ fn open_ranges(app: &mut App) -> Option<Effect> {
         _ => None,
     });
     let present = app.history.present();
-    let Some(source) = explored(present) else {
+    let Some(source) = explored(present, app.stored_name()) else {
         refuse(app, app.nothing_to_explore());
         return None;
     };
@@ -207,7 +207,11 @@ pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) -> bo
         return false;
     };
     if let Some(name) = name {
-        ask(app, place, Dialog::Export(ExportDialog::new(&name)));
+        ask(
+            app,
+            place,
+            Dialog::Export(ExportDialog::new(&name, ExportKind::Imprints)),
+        );
     }
     refuse(app, reason);
     true

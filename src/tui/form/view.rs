@@ -165,8 +165,8 @@ fn draw_field(
     row: Rect,
 ) -> Position {
     let label = format!("{:LABEL$}", field.parameter().row().label);
-    let (shown, cursor) = write::window(field.text(), field.cursor(), INPUT);
-    let shown = write::fitted(shown, INPUT, theme);
+    let (shown, cursor) = write::typed(field.text(), field.cursor(), INPUT, theme);
+    let shown = write::fitted(&shown, INPUT, theme);
     let padded = format!("{shown}{}", " ".repeat(INPUT - write::width(&shown)));
     let role = if focused { Role::Focus } else { Role::Text };
     write::line(

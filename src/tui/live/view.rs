@@ -121,6 +121,19 @@ fn title(live: &Live, window: Option<String>) -> Vec<(String, Role)> {
         }
         None => say("no frame yet".to_owned(), Role::Quiet),
     }
+    match live.frozen() {
+        Some(0) => say("frozen".to_owned(), Role::Focus),
+        Some(back) => {
+            let behind = counted(back, "frame");
+            say(format!("frozen, {behind} behind"), Role::Focus);
+        }
+        None => {}
+    }
+    match (&status.state, live.stopped()) {
+        (_, true) => say("stopped".to_owned(), Role::Quiet),
+        (SourceState::Ended, _) => say("ended".to_owned(), Role::Quiet),
+        _ => {}
+    }
     let layer = match live.layer() {
         HeatLayer::Tared if live.tare().is_none() => HeatLayer::Raw,
         layer => layer,
@@ -137,19 +150,6 @@ fn title(live: &Live, window: Option<String>) -> Vec<(String, Role)> {
     }
     if live.is_marked() {
         say("marked".to_owned(), Role::Focus);
-    }
-    match live.frozen() {
-        Some(0) => say("frozen".to_owned(), Role::Focus),
-        Some(back) => {
-            let behind = counted(back, "frame");
-            say(format!("frozen, {behind} behind"), Role::Focus);
-        }
-        None => {}
-    }
-    match (&status.state, live.stopped()) {
-        (_, true) => say("stopped".to_owned(), Role::Quiet),
-        (SourceState::Ended, _) => say("ended".to_owned(), Role::Quiet),
-        _ => {}
     }
     pieces
 }
@@ -228,7 +228,7 @@ fn regions(reading: &LiveReading) -> String {
         0 | 1 => reading.regions.to_string(),
         several => {
             let all = reading.imprint.as_ref().map_or(0, Imprint::count);
-            format!("{several}, above the largest; NA {all} in all")
+            format!("{several}, largest above; NA {all} in all")
         }
     }
 }

@@ -111,6 +111,33 @@ pub fn right_of(area: Rect, x: u16) -> Rect {
     }
 }
 
+/// What a field of `room` columns shows of its text, and the column of the cursor in that: the part that has the cursor
+/// in sight, with an ellipsis at its start if more is before it.
+pub fn typed<'a>(
+    text: &'a str,
+    cursor: usize,
+    room: usize,
+    theme: &Theme,
+) -> (Cow<'a, str>, usize) {
+    let (shown, column) = window(text, cursor, room);
+    let ellipsis = theme.text("…");
+    if shown.len() == text.len() || width(&ellipsis) > column {
+        return (Cow::Borrowed(shown), column);
+    }
+    let mut kept = shown.chars();
+    let mut covered = 0;
+    while covered < width(&ellipsis)
+        && let Some(character) = kept.next()
+    {
+        covered += width(character.encode_utf8(&mut [0; 4]));
+    }
+    let gap = " ".repeat(covered - width(&ellipsis));
+    (
+        Cow::Owned(format!("{ellipsis}{gap}{}", kept.as_str())),
+        column,
+    )
+}
+
 /// A prompt: a label, the text of a field, and a remark after it. Returns where the cursor is. If the text is too
 /// long, the part before the cursor is shown.
 pub fn prompt(
@@ -124,8 +151,8 @@ pub fn prompt(
     clear(buffer, area);
     let before = width(label);
     let room = usize::from(area.width).saturating_sub(before);
-    let (shown, column) = window(field.text(), field.cursor(), room);
-    let pieces = [label, shown, remark].map(|piece| (piece, Role::Text));
+    let (shown, column) = typed(field.text(), field.cursor(), room, theme);
+    let pieces = [label, &shown, remark].map(|piece| (piece, Role::Text));
     line(buffer, area, theme, pieces);
     let column = narrow(before + column).min(area.width.saturating_sub(1));
     Position::new(area.x.saturating_add(column), area.y)
@@ -184,5 +211,21 @@ mod tests {
         }
         assert_eq!(fitted("washer", 5, &ascii), "wa...");
         assert_eq!(fitted("washer", 2, &ascii), "wa");
+    }
+
+    #[test]
+    fn a_field_marks_what_is_hidden_before_its_start() {
+        let (unicode, ascii) = (Theme::plain(false), Theme::plain(true));
+        for (text, cursor, expected) in [
+            ("1234", 4, ("1234", 4)),
+            ("12345", 5, ("…345", 4)),
+            ("12345", 0, ("12345", 0)),
+            ("字字字", 6, ("… 字", 4)),
+        ] {
+            let (shown, column) = typed(text, cursor, 5, &unicode);
+            assert_eq!((&*shown, column), expected, "{text} at {cursor}");
+        }
+        assert_eq!(typed("1234567", 7, 5, &ascii).0, "...7");
+        assert_eq!(typed("1234567", 7, 2, &ascii).0, "7");
     }
 }

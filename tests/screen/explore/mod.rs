@@ -161,6 +161,21 @@ fn the_time_is_told_while_ranges_are_typed() {
 }
 
 #[test]
+fn a_stored_shape_is_explored_under_its_name() {
+    let mut page = Beside::new(":load cross<Enter>e");
+    page.then("", &["Explore: cross"]);
+    page.press("<Esc>:explore --x0 0:1:0.5 --y0 0 --angle 0<Enter>");
+    page.until("cross: 3 poses");
+    page.then("x", &["Export to: cross.csv   (.csv .jsonl .npz .npy)"]);
+    page.then("<Esc>4x", &["Export to: cross-map.svg", ".npy .svg .png)"]);
+    // No imprint has a thousand taxels: there is none to compare, to follow or to put onto the matrix.
+    page.press("<Esc>1/na>=1000<Enter>");
+    for key in ["=", "g", "<Enter>"] {
+        page.then(key, &["nothing is selected here"]);
+    }
+}
+
+#[test]
 fn results_wait_where_they_were() {
     let mut program = Beside::new("fp<Enter>");
     program.press(SHORT);

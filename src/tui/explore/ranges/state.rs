@@ -7,6 +7,7 @@
 
 use std::time::Duration;
 
+use crate::figure::FigureKind;
 use crate::formats::value::{counted, grouped};
 use crate::parameter::{Parameter, Range};
 use crate::picture::Picture;
@@ -69,12 +70,22 @@ pub struct RangesError {
 }
 
 /// What is explored of a document: its figure or picture, or what is drawn as a picture; nothing of an empty matrix.
-pub fn explored(document: &Document) -> Option<Source> {
+/// A stored imprint without a source has the name of its shape.
+pub fn explored(document: &Document, name: Option<&str>) -> Option<Source> {
     document.source.clone().or_else(|| {
         // Without a source, the edits are all there is.
         let imprint = document.edits;
-        (!imprint.is_empty()).then(|| Source::Picture(Picture::at_home(imprint)))
+        let picture = (!imprint.is_empty()).then(|| Picture::at_home(imprint))?;
+        Some(Source::Picture(match name {
+            Some(name) => picture.named(name),
+            None => picture,
+        }))
     })
+}
+
+/// Under which name the ranges of a source are remembered.
+fn remembered(source: &Source) -> &'static str {
+    source.kind().map_or("picture", FigureKind::name)
 }
 
 /// The form.
@@ -122,7 +133,7 @@ impl RangesForm {
         };
         let ranges = earlier.map_or_else(Ranges::default, |grid| *grid.ranges());
         let last = last.filter(|_| earlier.is_none());
-        let known = |axis| last.and_then(|last| last.get(name_of(&source), axis));
+        let known = |axis| last.and_then(|last| last.get(remembered(&source), axis));
         let fields = Axis::of(&source).map(|axis| RangeField {
             axis,
             input: TextField::new(known(axis).unwrap_or(ranges[axis]).to_string(), LONGEST),
@@ -197,7 +208,7 @@ impl RangesForm {
         let own = self.fields.iter().filter(|field| field.proposed.is_none());
         let ranges = own.filter_map(|field| Some((field.axis, field.text().parse().ok()?)));
         RememberedRanges {
-            of: name_of(&self.source).to_owned(),
+            of: remembered(&self.source).to_owned(),
             anchor: self.anchor,
             ranges: ranges.collect(),
         }

@@ -115,8 +115,8 @@ fn draw_field(
     let room = input(row);
     // A field is read from its start; what is typed must be seen.
     let at = if focused { field.cursor() } else { 0 };
-    let (shown, cursor) = write::window(field.text(), at, room);
-    let shown = write::fitted(shown, room, theme);
+    let (shown, cursor) = write::typed(field.text(), at, room, theme);
+    let shown = write::fitted(&shown, room, theme);
     let padded = format!("{shown}{}", " ".repeat(room - write::width(&shown)));
     let role = if focused { Role::Focus } else { Role::Text };
     let pieces = [(label.as_str(), Role::Text), (padded.as_str(), role)];
@@ -151,7 +151,7 @@ fn draw_anchor(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, row: Rect)
         (label.as_str(), Role::Text),
         ("< ", Role::Quiet),
         (name, role),
-        (" >       ", Role::Quiet),
+        (" > ", Role::Quiet),
         (meaning, Role::Quiet),
     ];
     write::line(buffer, row, theme, pieces);
