@@ -73,7 +73,7 @@ impl fmt::Display for MemorySize {
                 let number = self.0 as f64 / *bytes as f64;
                 write!(f, "{number:.1}{letter}")
             }
-            None => write!(f, "{}", self.0),
+            None => write!(f, "{} bytes", self.0),
         }
     }
 }

@@ -4,10 +4,12 @@
 //! files or arguments is shortened before it is quoted, and escaped when it is printed.
 
 use std::io;
+use std::path::PathBuf;
 
 use crate::acquire::RecorderError;
 use crate::cli::input::content::InputError;
 use crate::cli::output::charset::Charset;
+use crate::formats::Name;
 use crate::formats::recording::RecordingError;
 use crate::pose::GridError;
 use crate::quote::legible;
@@ -102,6 +104,12 @@ pub(crate) enum CliError {
         what: &'static str,
         /// The ending that is right.
         expected: &'static str,
+    },
+    /// A model under the name of a built-in set would never be used.
+    #[error("{name} is the name of a built-in set; choose another")]
+    BuiltInSet {
+        /// The name.
+        name: Name,
     },
     /// The argument is neither the name of a set of shapes nor a file.
     #[error("{0}")]
@@ -257,6 +265,14 @@ pub(crate) enum CliError {
     /// An atlas cannot be read; or it cannot be written, or the file of all poses.
     #[error(transparent)]
     SweepFile(ArchiveFileError),
+    /// A shard that does not fit the others, or that would be replaced.
+    #[error("{}: {reason}", legible(&path.to_string_lossy()))]
+    Shard {
+        /// Its file.
+        path: PathBuf,
+        /// Why it is refused.
+        reason: String,
+    },
     /// The shards are not those of one grid, or some are missing or given twice.
     #[error(transparent)]
     Merge(#[from] MergeError),

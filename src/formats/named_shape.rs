@@ -55,6 +55,20 @@ pub enum NamedShapeError {
         /// What was given.
         found: String,
     },
+    /// A key that no figure has. A weight needs a line of JSON.
+    #[error(
+        "{found:?} is no parameter of a figure, such as radius_x (a weight goes into a line of JSON)"
+    )]
+    Key {
+        /// What was given.
+        found: String,
+    },
+    /// A parameter that is given twice.
+    #[error("{key}: given twice")]
+    Twice {
+        /// Its key.
+        key: &'static str,
+    },
 }
 
 /// Finds the imprint of a stored shape.
@@ -120,15 +134,21 @@ pub fn named_shape_of_words(
                 found: shortened(word),
             };
             let (key, value) = word.split_once('=').ok_or_else(error)?;
-            let row = PARAMETERS.iter().find(|row| row.key == key);
             let value = number::read(value).ok_or_else(error)?;
-            record.values.set(row.ok_or_else(error)?.parameter, value);
+            let row = PARAMETERS.iter().find(|row| row.key == key);
+            let row = row.ok_or_else(|| NamedShapeError::Key {
+                found: shortened(key),
+            })?;
+            if record.values.get(row.parameter).is_some() {
+                return Err(NamedShapeError::Twice { key: row.key });
+            }
+            record.values.set(row.parameter, value);
         }
     }
     Ok(NamedShape::new(name.trim(), source(record, lookup)?))
 }
 
-/// The shape of a record, at the origin where it says nothing of its position.
+/// The shape of a record, at the origin.
 fn source(mut record: Record<'_>, lookup: &ShapeLookup<'_>) -> Result<Source, RecordError> {
     if let Record {
         figure: None,
@@ -143,12 +163,14 @@ fn source(mut record: Record<'_>, lookup: &ShapeLookup<'_>) -> Result<Source, Re
         return Ok(Picture::at_home(rows.imprint("imprint", &no_name)?).into());
     }
     let kind = record.figure.as_deref().and_then(FigureKind::from_name);
+    // A set has all poses of its grid, so the pose that a line gives must not make its file another one. Zooms are sizes.
     for axis in Axis::ALL {
-        if kind.is_some() && axis.is_zoom() || record.values.get(axis.parameter()).is_some() {
-            continue;
+        let parameter = axis.parameter();
+        if !axis.is_zoom() {
+            record.values.set(parameter, 0.0);
+        } else if kind.is_none() && record.values.get(parameter).is_none() {
+            record.values.set(parameter, 1.0);
         }
-        let neutral = if axis.is_zoom() { 1.0 } else { 0.0 };
-        record.values.set(axis.parameter(), neutral);
     }
     record.source(&Sensor::LARGEST, lookup)
 }

@@ -269,7 +269,14 @@ fn shards_and_threads_give_the_same_bytes() {
     let run = place.run("merge part-1.npz part-3.npz --out no.npz", "");
     refused(&run, 1, "shard 2/3 is missing");
     let run = place.run("merge part-1.npz one.npz --out no.npz", "");
-    refused(&run, 1, "shard 1/1 belongs to another training");
+    let message = "one.npz: shard 1/1 belongs to another training";
+    refused(&run, 1, message);
+    let run = place.run(
+        "merge part-1.npz part-2.npz part-3.npz --out ./part-1.npz --force",
+        "",
+    );
+    let message = "part-1.npz: is one of the shards; write to another file";
+    refused(&run, 1, message);
     assert!(!names(place.0.path()).contains(&"no.npz".to_owned()));
 }
 
@@ -655,6 +662,40 @@ fn a_built_in_set_is_meant_before_a_file_of_its_name() {
     assert!(!text.is_empty());
     let run = place.run("recognise washer --model ./figures", "");
     refused(&run, 1, "./figures: not a regular file");
+    let train = format!("model train --shape a=hexagon {COARSE} --name");
+    for name in ["figures", "Figures-30", "shapes"] {
+        let run = place.run(&format!("{train} {name}"), "");
+        let message = format!("{name} is the name of a built-in set; choose another");
+        refused(&run, 1, &message);
+    }
+}
+
+/// A set has every pose of its grid, whatever pose its lines have.
+#[test]
+fn the_pose_of_a_line_does_not_change_a_model() {
+    let place = Place::new();
+    for (name, pose) in [("one", ""), ("two", r#""x0":1,"y0":2.5,"angle":33,"#)] {
+        let line = format!(r#"{{"name":"a",{pose}"figure":"hexagon","side":3}}"#);
+        place.write(&format!("{name}.jsonl"), &line);
+        place.done(&format!(
+            "model train {name}.jsonl {COARSE} --out {name}.npz"
+        ));
+    }
+    assert!(
+        place.read("one.npz") == place.read("two.npz"),
+        "the pose is in the file"
+    );
+    let words = [
+        ("a=hexagon side=3 side=4", "--shape: side: given twice"),
+        (
+            "a=hexagon weight=2",
+            "--shape: \"weight\" is no parameter of a figure, such as radius_x (a weight goes into a line of JSON)",
+        ),
+    ];
+    for (shape, message) in words {
+        let run = place.run(&format!("model train --shape '{shape}' --out no.npz"), "");
+        refused(&run, 1, message);
+    }
 }
 
 #[test]

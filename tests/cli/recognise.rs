@@ -166,7 +166,7 @@ fn lines_are_answered_in_their_order() {
     let bar = r#"["........",".######.",".######.",".######.","........"]"#;
     let input = format!(
         "{{\"frame\":7,\"imprint\":{bar},\"label\":\"x\",\"other\":[1]}}\n\n\
-         {{\"time\":0.10,\"channel\":\"left\",\"imprint\":{square}}}\n\
+         {{\"time\":0.10,\"label\":null,\"channel\":\"left\",\"imprint\":{square}}}\n\
          {{\"imprint\":[\"#?\"]}}\n\
          {{\"touches\":[{bar},{bar}]}}\n\
          {{\"touches\":[{bar},{square}]}}\n"
@@ -177,9 +177,9 @@ fn lines_are_answered_in_their_order() {
     let lines: Vec<&str> = run.stdout.lines().collect();
     assert_eq!(lines.len(), 5, "{}", run.stdout);
     assert!(lines[0].starts_with(r#"{"frame":7,"label":"x","answer":"a","state":"likely""#));
-    assert!(
-        lines[1].starts_with(r#"{"time":0.10,"channel":"left","answer":"d","state":"certain""#)
-    );
+    assert!(lines[1].starts_with(
+        r#"{"label":null,"time":0.10,"channel":"left","answer":"d","state":"certain""#
+    ));
     let error: Value = serde_json::from_str(lines[2]).expect("JSON");
     let error = error["error"].as_str().expect("a message");
     assert!(

@@ -134,7 +134,7 @@ fn a_summary_for_people_fits_their_eyes() {
     );
     assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
     let first = run.stdout.lines().next();
-    assert_eq!(first, Some("12 poses: y0 5:5.3:0.1, angle 0:90:45"));
+    assert_eq!(first, Some("12 poses: x0 5, y0 5:5.3:0.1, angle 0:90:45"));
     assert!(run.stdout.is_ascii());
     assert!(run.stdout.contains("\ncg_cd_direction "));
     assert!(run.stdout.lines().all(|line| line.len() <= 110));

@@ -159,7 +159,10 @@ fn a_long_name_is_typed_and_told_in_whole() {
         // What is hidden before its end is marked, and the text cursor has a column behind it.
         let (hidden, end) = name.split_at(name.len() - seen);
         let mark = if hidden.is_empty() { "" } else { "…" };
-        assert!(screen.contains(&format!("Save as: {mark}{end}\n")), "{screen}");
+        assert!(
+            screen.contains(&format!("Save as: {mark}{end}\n")),
+            "{screen}"
+        );
         let error = "! a name has at most 64 characters, this has 67";
         assert!(joined(&screen).contains(error), "{size:?}\n{screen}");
     }

@@ -92,10 +92,13 @@ pub(crate) const BATCH_EXAMPLES: &str = r###"Each line is a JSON object:
   {"picture":["##","#."],"x0":5,"y0":3,"angle":10,"zoom_x":1.5,"zoom_y":1}
   {"picture":"washer","x0":2,"y0":2,"angle":0,"zoom_x":1,"zoom_y":1}
   {"imprint":[".##.","#..#",".##."]}
+  {"frame":[[0,3,8],[1,9,12]],"at_least":5}
 Sizes, place, angle and zooms have no defaults here, unlike the flags of other
 commands; a figure without "thickness" is solid. A picture's name is one of the
 library. A figure or picture may bring a sensor of its own:
   "sensor":{"columns":32,"rows":32,"threshold":0.5}
+A frame has the values of a sensor in rows, and "at_least":VALUE, "percent":P
+or "low":VALUE,"high":VALUE, with "least":TAXELS if smaller pieces are dropped.
 
 Each answer is one line, in the order of the poses. A line that is wrong or
 longer than 1 MiB is answered by {"error":"line 3: ..."}, the others go on, and
@@ -117,6 +120,7 @@ pub(crate) const SCRIPT_EXAMPLES: &str = r#"One command a line; places are colum
   Screen [name]       State [json-pointer]
   Expect /re/         ExpectNot /re/      ExpectAt 3,10 "text"
   ExpectStyle 3,10 reverse
+  Source touch.csv    Frames 3  (a recording, and as many of its frames)
 Quit succeeds if the program has ended. Without --library the script has an
 empty library of its own. It writes files only below its own folder, and
 replaces none that was there before; --allow-outside, for scripts that you

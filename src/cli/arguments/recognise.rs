@@ -51,7 +51,7 @@ pub(super) fn command() -> Command {
     let model = option(
         "model",
         "MODEL",
-        "Name or file of a model; default the seven figures",
+        "Model or file; figures (default), figures-30, shapes",
     )
     .value_parser(value_parser!(OsString))
     .default_value(DEFAULT_MODEL)

@@ -8,6 +8,7 @@
 //! merged: 212,907 imprints, 402.3M of memory
 //! ```
 
+use std::fmt;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -22,9 +23,11 @@ use crate::cli::signals::Signals;
 use crate::formats::value::counted;
 use crate::formats::{MODEL_FORMAT, archive_kind, json};
 use crate::memory::{MemoryGuard, MemorySize, peak};
-use crate::recognition::{Evaluation, Model, ModelMerge, TrainingError};
-use crate::storage::{ArchiveFileError, load_atlas, load_model, open_archive, save_model};
-use crate::sweep::{Shard, SweepMerge};
+use crate::recognition::{Evaluation, Model, ModelError, ModelMerge, TrainingError};
+use crate::storage::{
+    ArchiveFileError, AtlasFile, load_atlas, load_model, open_archive, save_model,
+};
+use crate::sweep::{MergeError, Shard, SweepMerge, SweepResult};
 
 /// What the program needs without any shard.
 const BYTES_OF_PROGRAM: u64 = 24 << 20;
@@ -60,6 +63,30 @@ impl Part {
             bytes,
         })
     }
+
+    /// That it does not fit the others.
+    fn refused(&self, error: &dyn fmt::Display) -> CliError {
+        CliError::Shard {
+            path: self.path.clone(),
+            reason: error.to_string(),
+        }
+    }
+}
+
+/// Refuses to replace one of the shards by the result: the others could not be merged again.
+fn check_no_shard(files: &[PathBuf], wanted: &Wanted) -> Result<(), CliError> {
+    let written = wanted.atlas.as_ref().map(AtlasFile::path);
+    let written = written.into_iter().chain(wanted.poses.as_deref());
+    for written in written.filter_map(|path| path.canonicalize().ok()) {
+        let own = |path: &&PathBuf| path.canonicalize().is_ok_and(|path| path == written);
+        if let Some(path) = files.iter().find(own) {
+            return Err(CliError::Shard {
+                path: path.clone(),
+                reason: "is one of the shards; write to another file".to_owned(),
+            });
+        }
+    }
+    Ok(())
 }
 
 /// Merges the shards in `files`, writes the atlas or the model, and returns the summary to print.
@@ -75,6 +102,7 @@ pub(crate) fn merge(
     if let Some(file) = &wanted.atlas {
         file.check(wanted.there.existing())?;
     }
+    check_no_shard(files, wanted)?;
     let parts = files.iter().map(|path| Part::of(path));
     let mut parts = parts.collect::<Result<Vec<_>, _>>()?;
     let is_model = parts
@@ -109,12 +137,7 @@ pub(crate) fn merge(
         let model = models(&parts, &memory)?;
         (model.keys().len(), leave_model(&model, wanted)?)
     } else {
-        let mut merge = SweepMerge::default();
-        for part in &parts {
-            merge.add(load_atlas(&part.path)?)?;
-            within(&memory)?;
-        }
-        let result = merge.finish()?;
+        let result = sweeps(&parts, &memory)?;
         // Until here nothing is written, so a signal may simply end the program.
         let signals = Signals::heard().map_err(CliError::System)?;
         let summary = leave(&result, start, wanted, None, charset, &signals)?;
@@ -160,12 +183,29 @@ fn check_model_file(wanted: &Wanted) -> Result<(), CliError> {
     }
 }
 
+/// The result of all shards of a sweep.
+fn sweeps(parts: &[Part], memory: &MemoryGuard) -> Result<SweepResult, CliError> {
+    let mut merge = SweepMerge::default();
+    for part in parts {
+        let shard = load_atlas(&part.path)?;
+        merge.add(shard).map_err(|error| match error {
+            MergeError::Foreign { .. } | MergeError::Twice { .. } => part.refused(&error),
+            other => other.into(),
+        })?;
+        within(memory)?;
+    }
+    Ok(merge.finish()?)
+}
+
 /// The model of all shards of a training.
 fn models(parts: &[Part], memory: &MemoryGuard) -> Result<Model, CliError> {
     let mut merge = ModelMerge::default();
     for part in parts {
         let model = load_model(&part.path)?;
-        merge.add(&model).map_err(TrainingError::from)?;
+        merge.add(&model).map_err(|error| match error {
+            ModelError::Foreign { .. } | ModelError::Twice { .. } => part.refused(&error),
+            other => TrainingError::from(other).into(),
+        })?;
         within(memory)?;
     }
     Ok(merge.finish().map_err(TrainingError::from)?)

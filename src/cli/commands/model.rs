@@ -120,6 +120,9 @@ fn path_of(target: &ModelTarget, shelf: &Shelf) -> Result<PathBuf, CliError> {
     match target {
         ModelTarget::File(path) => Ok(path.clone()),
         ModelTarget::Named(name) => {
+            if !matches!(ModelChoice::from_name(name.clone()), ModelChoice::Stored(_)) {
+                return Err(CliError::BuiltInSet { name: name.clone() });
+            }
             let models = folder(shelf)?;
             std::fs::create_dir_all(models.path()).map_err(|error| CliError::File {
                 name: models.path().to_string_lossy().into_owned(),
@@ -246,16 +249,13 @@ fn found(
 /// If there is none.
 pub(crate) fn choice(which: &OsStr, shelf: &Shelf) -> Result<ModelChoice, CliError> {
     let name = which.to_str().and_then(|name| Name::new(name).ok());
-    if let Some(name) = &name
-        && folder(shelf).is_ok_and(|models| models.file(name).exists())
-    {
-        return Ok(ModelChoice::Stored(name.clone()));
-    }
-    // Before a file of that name, so that a folder `figures` does not change what the default means; `./figures` is the
-    // file.
-    let built_in = name.map(ModelChoice::from_name);
-    if let Some(own) = built_in.filter(|own| ModelChoice::BUILT_IN.contains(own)) {
-        return Ok(own);
+    // Built-in sets come before models and files of their names, so that nothing changes what the default means;
+    // `./figures` is the file.
+    match name.map(ModelChoice::from_name) {
+        Some(ModelChoice::Stored(name))
+            if !folder(shelf).is_ok_and(|models| models.file(&name).exists()) => {}
+        Some(choice) => return Ok(choice),
+        None => {}
     }
     if Path::new(which).exists() {
         return Ok(ModelChoice::File(which.into()));

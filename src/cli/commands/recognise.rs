@@ -13,7 +13,7 @@ use std::ffi::OsStr;
 use std::io::{self, BufRead, BufReader, Cursor, Read, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
 
 use crate::cli::arguments::recognise::RecogniseArguments;
@@ -322,11 +322,19 @@ struct LineKeys<'a> {
     /// The number of a frame, as `taxel frames --json` writes it.
     frame: Option<Box<RawValue>>,
     /// What the recording calls that frame.
+    #[serde(default, deserialize_with = "given")]
     label: Option<Box<RawValue>>,
     /// Its time in seconds.
+    #[serde(default, deserialize_with = "given")]
     time: Option<Box<RawValue>>,
-    /// Its channel.
+    /// Its channel. A recording without channels has null there, which is copied like a name.
+    #[serde(default, deserialize_with = "given")]
     channel: Option<Box<RawValue>>,
+}
+
+/// Any value of a key that is there, null too.
+fn given<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Box<RawValue>>, D::Error> {
+    Deserialize::deserialize(deserializer).map(Some)
 }
 
 /// The values of a frame, in place of an imprint; then `frame` is not a number.

@@ -71,8 +71,10 @@ impl<'a> SweepSummary<'a> {
             1 => String::new(),
             _ => format!(", shard {shard}"),
         };
-        let several = grid.axes().filter(|&axis| grid.counts()[axis] > 1);
-        let ranges = several.map(|axis| format!("{} {}", axis.name(), grid.ranges()[axis]));
+        // A picture is swept at its own size unless zooms are given.
+        let ranges = grid.axes();
+        let ranges = ranges.filter(|&axis| grid.counts()[axis] > 1 || !axis.is_zoom());
+        let ranges = ranges.map(|axis| format!("{} {}", axis.name(), grid.ranges()[axis]));
         line(&format!(
             "{}{part}: {}",
             counted(*poses, "pose"),
