@@ -64,7 +64,7 @@ impl FromStr for MemorySize {
 }
 
 impl fmt::Display for MemorySize {
-    /// Rounded to a tenth: `1.5G`.
+    /// Rounded to a tenth: `1.5G`; `12 bytes` where that is less than 1K.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let unit = UNITS.iter().find(|(_, bytes)| self.0 >= *bytes);
         match unit {
@@ -303,7 +303,7 @@ mod tests {
             ("1.5g", 3 << 29, "1.5G"),
             ("500M", 500 << 20, "500.0M"),
             ("1024", 1024, "1.0K"),
-            ("12", 12, "12"),
+            ("12", 12, "12 bytes"),
         ] {
             assert_eq!(text.parse(), Ok(MemorySize(bytes)), "{text}");
             assert_eq!(MemorySize(bytes).to_string(), shown);

@@ -86,7 +86,14 @@ impl Job {
                 let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
                 Ok(Self::Describe(content.imprint("imprint", &no_name)?))
             }
-            _ => Ok(Self::Touch(sensor, record.source(&sensor, lookup)?)),
+            _ => {
+                let source = record.source(&sensor, lookup);
+                let source = source.map_err(|error| match error {
+                    RecordError::Which(_) => RecordError::Which(KEYS),
+                    other => other,
+                });
+                Ok(Self::Touch(sensor, source?))
+            }
         }
     }
 
@@ -103,6 +110,9 @@ impl Job {
         }
     }
 }
+
+/// A line has one of these keys.
+const KEYS: &str = "figure, picture, imprint, frame";
 
 /// A line as it stands.
 #[derive(Default)]
@@ -123,7 +133,7 @@ impl JobLine<'_> {
             values,
         } = &self.record
         else {
-            return Err(RecordError::Which("figure, picture, imprint, frame").into());
+            return Err(RecordError::Which(KEYS).into());
         };
         values.only("frame", &[])?;
         self.rule.imprint(frame).map_err(JobError::Frame)

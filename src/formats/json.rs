@@ -186,7 +186,9 @@ fn noun(found: &str) -> String {
 fn kind(expected: &str) -> &str {
     match expected {
         "f64" | "f32" => "a number",
-        "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number from 0 up",
+        "u8" => "a whole number from 0 to 255",
+        "u32" => "a whole number from 0 to 4294967295",
+        "u16" | "u64" | "usize" => "a whole number from 0 up",
         "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number",
         "a string" | "a borrowed string" => "a text",
         "a boolean" => "true or false",

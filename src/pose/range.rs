@@ -305,7 +305,7 @@ pub enum RangeError {
         text: String,
     },
     /// Not a plain decimal.
-    #[error("\"{text}\" is not a number")]
+    #[error("\"{text}\" is not a decimal number, such as 0.25")]
     Number {
         /// The text, shortened.
         text: String,

@@ -40,8 +40,14 @@ fn ranges_are_exact_or_refused() {
         refused("1:2"),
         "\"1:2\" is not a range, expected a number or start:end:step"
     );
-    assert_eq!(refused("1:2:x"), "\"x\" is not a number");
-    assert_eq!(refused("1e5"), "\"1e5\" is not a number");
+    assert_eq!(
+        refused("1:2:x"),
+        "\"x\" is not a decimal number, such as 0.25"
+    );
+    assert_eq!(
+        refused("1e5"),
+        "\"1e5\" is not a decimal number, such as 0.25"
+    );
     for odd in [
         "",
         ":",
