@@ -86,14 +86,7 @@ impl Job {
                 let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
                 Ok(Self::Describe(content.imprint("imprint", &no_name)?))
             }
-            _ => {
-                let source = record.source(&sensor, lookup);
-                let source = source.map_err(|error| match error {
-                    RecordError::Which(_) => RecordError::Which(KEYS),
-                    other => other,
-                });
-                Ok(Self::Touch(sensor, source?))
-            }
+            _ => Ok(Self::Touch(sensor, touched(&record, &sensor, lookup)?)),
         }
     }
 
@@ -109,6 +102,18 @@ impl Job {
             }
         }
     }
+}
+
+/// The figure or the picture of a line; the error for none of them names all keys that a line can have.
+fn touched(
+    record: &Record<'_>,
+    sensor: &Sensor,
+    lookup: &dyn Fn(&str) -> Result<Imprint, String>,
+) -> Result<Source, RecordError> {
+    record.source(sensor, lookup).map_err(|error| match error {
+        RecordError::Which(_) => RecordError::Which(KEYS),
+        other => other,
+    })
 }
 
 /// A line has one of these keys.
