@@ -71,6 +71,11 @@ impl Source {
         }
     }
 
+    /// Returns the name of its kind of figure; "picture" for a picture.
+    pub fn kind_name(&self) -> &'static str {
+        self.kind().map_or("picture", FigureKind::name)
+    }
+
     /// Returns the sense in which it turns as its angle grows, as seen: +1 clockwise, −1 counter-clockwise.
     pub fn sense(&self) -> f64 {
         match self {

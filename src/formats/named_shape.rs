@@ -55,9 +55,9 @@ pub enum NamedShapeError {
         /// What was given.
         found: String,
     },
-    /// A key that no figure has. A weight needs a line of JSON.
+    /// A key that no figure has; a weight can be given in JSON only.
     #[error(
-        "{found:?} is no parameter of a figure, such as radius_x (a weight goes into a line of JSON)"
+        "{found:?}: expected a parameter of a figure, such as radius_x; weights are given in JSON"
     )]
     Key {
         /// What was given.

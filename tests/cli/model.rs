@@ -689,7 +689,7 @@ fn the_pose_of_a_line_does_not_change_a_model() {
         ("a=hexagon side=3 side=4", "--shape: side: given twice"),
         (
             "a=hexagon weight=2",
-            "--shape: \"weight\" is no parameter of a figure, such as radius_x (a weight goes into a line of JSON)",
+            "--shape: \"weight\": expected a parameter of a figure, such as radius_x; weights are given in JSON",
         ),
     ];
     for (shape, message) in words {

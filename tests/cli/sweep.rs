@@ -332,6 +332,18 @@ fn what_a_merge_costs_is_bounded_and_printed() {
         "{}",
         run.stderr
     );
+    let run = merge(&format!("--atlas {one} --force"));
+    let expected = format!("error: {one}: is one of the shards; write to another file\n");
+    assert_eq!((run.status, run.stderr), (Some(1), expected));
+    let run = taxel(
+        &format!("merge {one} {} --atlas {}", path("m.npz"), path("no.npz")),
+        "",
+    );
+    let foreign = format!(
+        "{}: shard 1/1 is of another grid than the first one\n",
+        path("m.npz")
+    );
+    assert!(run.stderr.ends_with(&foreign), "{}", run.stderr);
     let run = merge(&format!("--atlas {} --quiet", path("q.npz")));
     assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
     let run = merge(&format!("--atlas {} --memory 1M", path("no.npz")));

@@ -98,7 +98,7 @@ commands; a figure without "thickness" is solid. A picture's name is one of the
 library. A figure or picture may bring a sensor of its own:
   "sensor":{"columns":32,"rows":32,"threshold":0.5}
 A frame has the values of a sensor in rows, and "at_least":VALUE, "percent":P
-or "low":VALUE,"high":VALUE, with "least":TAXELS if smaller pieces are dropped.
+or "low":VALUE,"high":VALUE; "least":TAXELS drops pieces of fewer taxels.
 
 Each answer is one line, in the order of the poses. A line that is wrong or
 longer than 1 MiB is answered by {"error":"line 3: ..."}, the others go on, and
@@ -120,7 +120,7 @@ pub(crate) const SCRIPT_EXAMPLES: &str = r#"One command a line; places are colum
   Screen [name]       State [json-pointer]
   Expect /re/         ExpectNot /re/      ExpectAt 3,10 "text"
   ExpectStyle 3,10 reverse
-  Source touch.csv    Frames 3  (a recording, and as many of its frames)
+  Source touch.csv    Frames 3  (watch a recording, and take its next 3 frames)
 Quit succeeds if the program has ended. Without --library the script has an
 empty library of its own. It writes files only below its own folder, and
 replaces none that was there before; --allow-outside, for scripts that you

@@ -51,7 +51,7 @@ pub(super) fn command() -> Command {
     let model = option(
         "model",
         "MODEL",
-        "Model or file; figures (default), figures-30, shapes",
+        "Name or file; figures (default), figures-30, shapes",
     )
     .value_parser(value_parser!(OsString))
     .default_value(DEFAULT_MODEL)

@@ -120,7 +120,7 @@ fn path_of(target: &ModelTarget, shelf: &Shelf) -> Result<PathBuf, CliError> {
     match target {
         ModelTarget::File(path) => Ok(path.clone()),
         ModelTarget::Named(name) => {
-            if !matches!(ModelChoice::from_name(name.clone()), ModelChoice::Stored(_)) {
+            if !ModelChoice::from_name(name.clone()).is_read() {
                 return Err(CliError::BuiltInSet { name: name.clone() });
             }
             let models = folder(shelf)?;
@@ -251,11 +251,12 @@ pub(crate) fn choice(which: &OsStr, shelf: &Shelf) -> Result<ModelChoice, CliErr
     let name = which.to_str().and_then(|name| Name::new(name).ok());
     // Built-in sets come before models and files of their names, so that nothing changes what the default means;
     // `./figures` is the file.
-    match name.map(ModelChoice::from_name) {
-        Some(ModelChoice::Stored(name))
-            if !folder(shelf).is_ok_and(|models| models.file(&name).exists()) => {}
-        Some(choice) => return Ok(choice),
-        None => {}
+    let is_there = |choice: &ModelChoice| match choice {
+        ModelChoice::Stored(name) => folder(shelf).is_ok_and(|models| models.file(name).exists()),
+        _ => true,
+    };
+    if let Some(choice) = name.map(ModelChoice::from_name).filter(is_there) {
+        return Ok(choice);
     }
     if Path::new(which).exists() {
         return Ok(ModelChoice::File(which.into()));

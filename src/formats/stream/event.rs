@@ -112,7 +112,7 @@ pub struct StreamCounts {
 const SAMPLE: usize = 40;
 
 impl StreamCounts {
-    /// What came instead of frames in some time without any, given the bytes a second meanwhile, and what may be wrong.
+    /// Why no frame may have come for some time, given the bytes a second that came meanwhile.
     pub fn silence(&self, bytes_per_second: f64) -> String {
         #[expect(
             clippy::cast_possible_truncation,
@@ -122,8 +122,8 @@ impl StreamCounts {
         let rate = grouped(bytes_per_second.round() as u64);
         match (self.bytes, bytes_per_second > 0.0) {
             (_, true) => format!("{rate} B/s, none of it a frame; baud, rows, columns or format?"),
-            (0, _) => "nothing has come; is it sending?".to_owned(),
-            _ => "nothing comes any more".to_owned(),
+            (0, _) => "nothing has come yet; is it sending?".to_owned(),
+            _ => "the source has gone silent".to_owned(),
         }
     }
 

@@ -3,7 +3,6 @@
 //! Each change goes through `change`, `begin` or `travel`, which bring everything that depends on the document
 //! back into range: the cursor, the chosen region, the mode.
 
-use crate::figure::FigureKind;
 use crate::formats::value::counted;
 use crate::imprint::Imprint;
 use crate::parameter::Parameter;
@@ -187,7 +186,7 @@ pub(in crate::tui) fn replace(app: &mut App, document: Document) {
         .source
         .as_ref()
         .filter(|_| document.source.is_none());
-    let lost = lost.map(|source| source.kind().map_or("picture", FigureKind::name));
+    let lost = lost.map(Source::kind_name);
     if is_other(app, &document) {
         let origin = stored_nowhere(&document);
         app.history.begin(document, origin);

@@ -26,10 +26,11 @@ impl PartialEq for Findings {
 
 /// What is swept, in a word: the kind of a figure, the name of a stored shape, or a picture.
 pub fn name_of(source: &Source) -> &str {
-    match source {
-        Source::Figure(figure) => figure.kind().name(),
-        Source::Picture(picture) => picture.name().unwrap_or("picture"),
-    }
+    let stored = match source {
+        Source::Figure(_) => None,
+        Source::Picture(picture) => picture.name(),
+    };
+    stored.unwrap_or(source.kind_name())
 }
 
 /// The pages that they are shown on.

@@ -11,7 +11,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::formats::value::{counted, grouped};
+use crate::picture::Picture;
 use crate::pose::PoseGrid;
+use crate::source::Source;
 use crate::storage::{Existing, is_poses};
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
@@ -21,7 +23,7 @@ use crate::tui::explore::drawing::drawn_form;
 use crate::tui::explore::export::{ExportDialog, ExportKind};
 use crate::tui::explore::message::{ExploreMessage, Findings, SweepProgress};
 use crate::tui::explore::pages;
-use crate::tui::explore::ranges::state::{RangesForm, explored};
+use crate::tui::explore::ranges::state::RangesForm;
 use crate::tui::explore::results::Results;
 use crate::tui::explore::running::{Running, WorkKind};
 use crate::tui::runtime::effect::{Effect, FileRequest, Work};
@@ -73,11 +75,27 @@ fn open(app: &mut App) -> Option<Effect> {
     }
 }
 
+/// What is explored: the figure or picture on the matrix, or what is drawn there as a picture, with the name that it is
+/// stored under; None of an empty matrix.
+pub(in crate::tui) fn explored(app: &App) -> Option<Source> {
+    let document = app.history.present();
+    if document.source.is_some() {
+        return document.source.clone();
+    }
+    // Without a source, the edits are all there is.
+    let imprint = document.edits;
+    let picture = (!imprint.is_empty()).then(|| Picture::at_home(imprint))?;
+    Some(Source::Picture(match app.stored_name() {
+        Some(name) => picture.named(name),
+        None => picture,
+    }))
+}
+
 /// Whether results are those of the shape on the matrix, wherever it is now.
 fn is_of(app: &App, results: &Results) -> bool {
     let grid = &results.sweep().grid;
     let present = app.history.present();
-    explored(present, app.stored_name()).is_some_and(|source| grid.is_of(&source, &present.sensor))
+    explored(app).is_some_and(|source| grid.is_of(&source, &present.sensor))
 }
 
 /// The form, with the ranges of the results below it or those that were last.
@@ -87,7 +105,7 @@ fn open_ranges(app: &mut App) -> Option<Effect> {
         _ => None,
     });
     let present = app.history.present();
-    let Some(source) = explored(present, app.stored_name()) else {
+    let Some(source) = explored(app) else {
         refuse(app, app.nothing_to_explore());
         return None;
     };

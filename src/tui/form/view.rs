@@ -165,15 +165,13 @@ fn draw_field(
     row: Rect,
 ) -> Position {
     let label = format!("{:LABEL$}", field.parameter().row().label);
-    let (shown, cursor) = write::typed(field.text(), field.cursor(), INPUT, theme);
-    let shown = write::fitted(&shown, INPUT, theme);
-    let padded = format!("{shown}{}", " ".repeat(INPUT - write::width(&shown)));
+    let (shown, cursor) = write::field_columns(field.text(), field.cursor(), INPUT, theme);
     let role = if focused { Role::Focus } else { Role::Text };
     write::line(
         buffer,
         row,
         theme,
-        [(label.as_str(), Role::Text), (padded.as_str(), role)],
+        [(label.as_str(), Role::Text), (shown.as_str(), role)],
     );
     Position::new(row.x + narrow(LABEL + cursor), row.y)
 }

@@ -4,7 +4,7 @@
 //! alone            CURSOR_LEFT "cursor-left" ["cursor left"] Message::Cursor(Arrow::Left);
 //!                  constant    name          spellings       message
 //!                  KEEP "keep" [] Recognise(RecogniseMessage::Keep), "keep this touch as one of several";
-//!                                                                    what it does, if its key's row does not say it
+//!                                                                    what it does, if the help of its key does not say it
 //! with arguments   "load" Arguments::Shape(Purpose::Load), "Load: bring a stored shape onto the matrix";
 //!                  name   what follows the name             what it does
 //! ```
@@ -30,7 +30,7 @@ pub struct Action {
     pub spellings: &'static [&'static str],
     /// What it does, or the arguments that it needs to do something.
     pub does: Does,
-    /// The same in words, for the `:` commands; empty where the row of its key says it.
+    /// The same in words, for the list of `:` commands; empty where the help of its key says it.
     pub help: &'static str,
 }
 
@@ -323,20 +323,20 @@ actions! {
         "compare" Arguments::Shape(Purpose::Compare), "compare with a stored shape; alone, with the state before the last step";
         "cursor" Arguments::Taxel, "move the cursor, or put it on a taxel";
         "delete" Arguments::Shape(Purpose::Delete), "Delete: move a stored shape to the trash";
-        "explore" Arguments::Ranges, "Explore: all imprints of the shape, over all poses in these ranges";
-        "export" Arguments::File(FilePurpose::Write), "the same as write";
+        "explore" Arguments::Ranges, "Explore: all imprints of the shape in these ranges";
+        "export" Arguments::File(FilePurpose::Write), "the same as :write";
         "figure" Arguments::Figure, "Figure: place one of the seven figures";
         "load" Arguments::Shape(Purpose::Load), "Load: bring a stored shape onto the matrix";
-        "move" Arguments::Distance, "move the shape by cells to the right and down";
+        "move" Arguments::Distance, "move the shape right and down, in cells";
         "open" Arguments::File(FilePurpose::Open), "open a shape or an imprint from a file";
         "picture" Arguments::Shape(Purpose::Picture), "Picture: place a stored shape, or move the one here";
-        "recognise" Arguments::Model, "Recognise: name the shape from its touch, among those of a set";
+        "recognise" Arguments::Model, "Recognise: which shape of this set left the imprint";
         "restore" Arguments::Deleted, "bring back a deleted shape; alone, the one deleted last";
         "save" Arguments::Name, "Save: store what is on the matrix";
-        "seed" Arguments::Seed, "make the random touches of the quiz repeatable";
+        "seed" Arguments::Seed, "begin the random touches of the quiz at a seed";
         "sensor" Arguments::Sensor, "Sensor: columns, rows, threshold, pitch";
         "separate" Arguments::Sizes, "the error against the size of the shapes";
-        "turn" Arguments::Degrees, "turn the shape";
+        "turn" Arguments::Degrees, "turn the shape to the right; negative degrees: to the left";
         "watch" Arguments::FrameSource, "Watch: the frames of a sensor, live or recorded";
         "write" Arguments::File(FilePurpose::Write), "write the matrix to a file: imprint, shape or drawing, by its ending";
     }

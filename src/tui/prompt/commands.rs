@@ -35,28 +35,12 @@ pub struct PromptCommand {
     pub words: Vec<(&'static str, &'static Action)>,
     /// The arguments that may follow instead.
     pub arguments: Option<Arguments>,
+    /// What it does.
+    pub help: &'static str,
 }
 
 /// No more lines that were given before are offered.
 const MOST_RECENT: usize = 5;
-
-impl PromptCommand {
-    /// What it does: in its own words, or in those of the key of the same action.
-    pub fn help(&self) -> &'static str {
-        let with = ACTIONS.iter().filter(|action| action.name == self.name);
-        let with = with.filter(|action| action.arguments().is_some());
-        let mut own = with
-            .copied()
-            .chain(self.words.iter().map(|(_, action)| *action));
-        if let Some(action) = own.find(|action| !action.help.is_empty()) {
-            return action.help;
-        }
-        let own = |action: &Action| self.words.iter().any(|(_, word)| *word == action);
-        let mut rows = DEFAULT_KEYS.iter();
-        let row = rows.find(|row| row.keys.iter().any(|(_, action)| own(action)));
-        row.map_or("", |row| row.help)
-    }
-}
 
 /// Short forms of commands.
 const SHORT: [(&str, &str); 2] = [("q", "quit"), ("q!", "quit!")];
@@ -140,12 +124,25 @@ fn command(name: &'static str) -> PromptCommand {
             words.push((word, action));
         }
     }
-    let mut with = actions().filter(|action| action.name == name);
+    let with = actions().find(|action| action.name == name && action.arguments().is_some());
+    let all = with.into_iter().chain(words.iter().map(|(_, word)| *word));
+    let mut helps = all.map(help).filter(|help| !help.is_empty());
     PromptCommand {
         name,
+        arguments: with.and_then(Action::arguments),
+        help: helps.next().unwrap_or(""),
         words,
-        arguments: with.find_map(Action::arguments),
     }
+}
+
+/// What an action does: in its own words, otherwise in those of its key's row.
+fn help(action: &Action) -> &'static str {
+    if !action.help.is_empty() {
+        return action.help;
+    }
+    let mut rows = DEFAULT_KEYS.iter();
+    let row = rows.find(|row| row.keys.iter().any(|(_, own)| *own == action));
+    row.map_or("", |row| row.help)
 }
 
 /// The command of that name or short form.
@@ -290,8 +287,8 @@ pub fn offers(typed: &str, given: &[String]) -> Vec<Offer> {
     let named = named.into_iter().map(|command| Offer {
         line: command.name.to_owned(),
         help: Some(match command.arguments {
-            Some(arguments) => format!("{}: {}", arguments.form(), command.help()),
-            None => command.help().to_owned(),
+            Some(arguments) => format!("{}  {}", arguments.form(), command.help),
+            None => command.help.to_owned(),
         }),
     });
     recent.chain(named).collect()

@@ -22,7 +22,7 @@ use crate::tui::app::document::Document;
 use crate::tui::app::message::{Message, Purpose};
 use crate::tui::app::state::App;
 use crate::tui::explore::message::ExploreMessage;
-use crate::tui::explore::ranges::state::explored;
+use crate::tui::explore::work::explored;
 use crate::tui::keys::action::{self, Arguments, FilePurpose};
 use crate::tui::keys::binding::Context;
 use crate::tui::live::message::LiveMessage;
@@ -259,7 +259,7 @@ fn sensor(pairs: &[&str], app: &App) -> Result<Message, String> {
 /// What is wrong with them, in a sentence.
 fn explore(words: &[&str], app: &App) -> Result<Message, String> {
     let document = app.shown();
-    let source = explored(document, app.stored_name()).ok_or_else(|| app.nothing_to_explore())?;
+    let source = explored(app).ok_or_else(|| app.nothing_to_explore())?;
     let (mut ranges, mut anchor) = (GivenRanges::default(), Anchor::default());
     let mut given: Vec<&str> = Vec::new();
     for pair in words.chunks(2) {

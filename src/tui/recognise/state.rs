@@ -36,7 +36,7 @@ pub struct Preparation {
     pub done: u64,
     /// Whether a stop was requested.
     pub stopping: bool,
-    /// What comes back if no model can be read.
+    /// The set that comes back if this one cannot be read.
     before: Option<Box<SetBefore>>,
 }
 

@@ -111,9 +111,9 @@ pub fn right_of(area: Rect, x: u16) -> Rect {
     }
 }
 
-/// What a field of `room` columns shows of its text, and the column of the cursor in that: the part that has the cursor
-/// in sight, with an ellipsis at its start if more is before it.
-pub fn typed<'a>(
+/// The part of a text in a field of `room` columns that has the cursor in sight, and the column of the cursor in it. An
+/// ellipsis at its start stands for what is hidden there.
+pub fn field_text<'a>(
     text: &'a str,
     cursor: usize,
     room: usize,
@@ -132,14 +132,20 @@ pub fn typed<'a>(
         covered += width(character.encode_utf8(&mut [0; 4]));
     }
     let gap = " ".repeat(covered - width(&ellipsis));
-    (
-        Cow::Owned(format!("{ellipsis}{gap}{}", kept.as_str())),
-        column,
-    )
+    let marked = format!("{ellipsis}{gap}{}", kept.as_str());
+    (Cow::Owned(marked), column)
+}
+
+/// The same, filled up with spaces or shortened to exactly `room` columns.
+pub fn field_columns(text: &str, cursor: usize, room: usize, theme: &Theme) -> (String, usize) {
+    let (shown, column) = field_text(text, cursor, room, theme);
+    let shown = fitted(&shown, room, theme);
+    let fill = " ".repeat(room - width(&shown));
+    (format!("{shown}{fill}"), column)
 }
 
 /// A prompt: a label, the text of a field, and a remark after it. Returns where the cursor is. If the text is too
-/// long, the part before the cursor is shown.
+/// long, the part before the cursor is shown after an ellipsis.
 pub fn prompt(
     buffer: &mut Buffer,
     area: Rect,
@@ -151,7 +157,7 @@ pub fn prompt(
     clear(buffer, area);
     let before = width(label);
     let room = usize::from(area.width).saturating_sub(before);
-    let (shown, column) = typed(field.text(), field.cursor(), room, theme);
+    let (shown, column) = field_text(field.text(), field.cursor(), room, theme);
     let pieces = [label, &shown, remark].map(|piece| (piece, Role::Text));
     line(buffer, area, theme, pieces);
     let column = narrow(before + column).min(area.width.saturating_sub(1));
@@ -222,10 +228,10 @@ mod tests {
             ("12345", 0, ("12345", 0)),
             ("字字字", 6, ("… 字", 4)),
         ] {
-            let (shown, column) = typed(text, cursor, 5, &unicode);
+            let (shown, column) = field_text(text, cursor, 5, &unicode);
             assert_eq!((&*shown, column), expected, "{text} at {cursor}");
         }
-        assert_eq!(typed("1234567", 7, 5, &ascii).0, "...7");
-        assert_eq!(typed("1234567", 7, 2, &ascii).0, "7");
+        assert_eq!(field_text("1234567", 7, 5, &ascii).0, "...7");
+        assert_eq!(field_text("1234567", 7, 2, &ascii).0, "7");
     }
 }

@@ -198,7 +198,7 @@ fn the_settings_shown_can_be_read() {
 fn every_command_says_what_it_does() {
     let mut said: Vec<(&str, &str)> = Vec::new();
     for command in commands() {
-        let help = command.help();
+        let help = command.help;
         assert!(
             !help.is_empty(),
             ":{} does not say what it does",

@@ -53,11 +53,11 @@ pub(crate) fn prompt() -> String {
             .into_iter()
             .map(|word| format!("`{word}`"))
             .collect();
-        let help = command.help();
         text += &format!(
-            "| `:{}` | {} | {help} |\n",
+            "| `:{}` | {} | {} |\n",
             command.name,
-            follows.join(", ")
+            follows.join(", "),
+            command.help
         );
     }
     text + "\n"

@@ -7,10 +7,8 @@
 
 use std::time::Duration;
 
-use crate::figure::FigureKind;
 use crate::formats::value::{counted, grouped};
 use crate::parameter::{Parameter, Range};
-use crate::picture::Picture;
 use crate::pose::{
     Anchor, Axis, DecimalRange, GivenRanges, GridError, MAX_POSES, PoseGrid, Ranges, default_ranges,
 };
@@ -69,25 +67,6 @@ pub struct RangesError {
     pub full: String,
 }
 
-/// What is explored of a document: its figure or picture, or what is drawn as a picture; nothing of an empty matrix.
-/// A stored imprint without a source has the name of its shape.
-pub fn explored(document: &Document, name: Option<&str>) -> Option<Source> {
-    document.source.clone().or_else(|| {
-        // Without a source, the edits are all there is.
-        let imprint = document.edits;
-        let picture = (!imprint.is_empty()).then(|| Picture::at_home(imprint))?;
-        Some(Source::Picture(match name {
-            Some(name) => picture.named(name),
-            None => picture,
-        }))
-    })
-}
-
-/// Under which name the ranges of a source are remembered.
-fn remembered(source: &Source) -> &'static str {
-    source.kind().map_or("picture", FigureKind::name)
-}
-
 /// The form.
 #[derive(Clone, Debug)]
 pub struct RangesForm {
@@ -133,7 +112,7 @@ impl RangesForm {
         };
         let ranges = earlier.map_or_else(Ranges::default, |grid| *grid.ranges());
         let last = last.filter(|_| earlier.is_none());
-        let known = |axis| last.and_then(|last| last.get(remembered(&source), axis));
+        let known = |axis| last.and_then(|last| last.get(source.kind_name(), axis));
         let fields = Axis::of(&source).map(|axis| RangeField {
             axis,
             input: TextField::new(known(axis).unwrap_or(ranges[axis]).to_string(), LONGEST),
@@ -208,7 +187,7 @@ impl RangesForm {
         let own = self.fields.iter().filter(|field| field.proposed.is_none());
         let ranges = own.filter_map(|field| Some((field.axis, field.text().parse().ok()?)));
         RememberedRanges {
-            of: remembered(&self.source).to_owned(),
+            of: self.source.kind_name().to_owned(),
             anchor: self.anchor,
             ranges: ranges.collect(),
         }

@@ -115,11 +115,9 @@ fn draw_field(
     let room = input(row);
     // A field is read from its start; what is typed must be seen.
     let at = if focused { field.cursor() } else { 0 };
-    let (shown, cursor) = write::typed(field.text(), at, room, theme);
-    let shown = write::fitted(&shown, room, theme);
-    let padded = format!("{shown}{}", " ".repeat(room - write::width(&shown)));
+    let (shown, cursor) = write::field_columns(field.text(), at, room, theme);
     let role = if focused { Role::Focus } else { Role::Text };
-    let pieces = [(label.as_str(), Role::Text), (padded.as_str(), role)];
+    let pieces = [(label.as_str(), Role::Text), (shown.as_str(), role)];
     write::line(buffer, row, theme, pieces);
     let column = narrow(LABEL + cursor);
     Position::new(row.x.saturating_add(column), row.y)
