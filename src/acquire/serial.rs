@@ -15,7 +15,7 @@ use rustix::termios::{
 /// thrown away.
 ///
 /// # Errors
-/// [`io::ErrorKind::ResourceBusy`] if another program has it open; else what the system reports.
+/// [`io::ErrorKind::ResourceBusy`] if another program has it open; if it is another kind of device; else what the system reports.
 pub(super) fn open_line(path: &Path, baud: u32) -> io::Result<File> {
     let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
     let busy = || io::Error::new(io::ErrorKind::ResourceBusy, "another program has it open");
@@ -27,7 +27,10 @@ pub(super) fn open_line(path: &Path, baud: u32) -> io::Result<File> {
     if flock(&line, FlockOperation::NonBlockingLockExclusive) == Err(Errno::WOULDBLOCK) {
         return Err(busy());
     }
-    let mut settings = tcgetattr(&line)?;
+    let mut settings = match tcgetattr(&line) {
+        Err(Errno::NOTTY) => return Err(io::Error::other("it is not a serial line")),
+        settings => settings?,
+    };
     settings.make_raw();
     settings.control_modes |= ControlModes::CREAD | ControlModes::CLOCAL;
     settings.set_speed(baud)?;

@@ -92,6 +92,8 @@ pub enum ImprintFormatError {
     Text(TextError),
     /// No bitmap.
     Pbm(PbmError),
+    /// No grey image of two shades.
+    Pgm(PbmError),
     /// No table.
     Table(TableError),
     /// No array.
@@ -108,6 +110,7 @@ impl fmt::Display for ImprintFormatError {
             ),
             Self::Text(error) => error.fmt(f),
             Self::Pbm(error) => write!(f, "PBM: {error}"),
+            Self::Pgm(error) => write!(f, "PGM: {error}"),
             Self::Table(error) => write!(f, "CSV: {error}"),
             Self::Array(error) => write!(f, "NPY: {error}"),
         }
@@ -135,6 +138,7 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ImprintFormatError> {
         [0x93, ..] => return array::read(bytes).map_err(ImprintFormatError::Array),
         // Tables may name their columns P1, P2.
         [b'P', b'0'..=b'9', b',' | b';' | b'\t', ..] => {}
+        [b'P', b'2' | b'5', ..] => return pbm::read(bytes).map_err(ImprintFormatError::Pgm),
         [b'P', b'0'..=b'9', ..] => return pbm::read(bytes).map_err(ImprintFormatError::Pbm),
         _ => {}
     }

@@ -1,5 +1,7 @@
 //! `taxel frames`: recordings listed, and their frames as imprints.
 
+use std::io::Write;
+
 use serde_json::Value;
 
 use super::{Run, misused, taxel};
@@ -231,14 +233,56 @@ fn whole_frames_before_a_damage_are_answered_then_the_damage() {
         run.stderr,
         "warning: standard input: frame 1 (label 2): Raw Sum should be 68, but the values give 67\n"
     );
-    let run = taxel("frames -", "no recording");
-    assert_eq!(run.status, Some(1));
-    assert!(
-        run.stderr
-            .starts_with("error: standard input: not a recording"),
-        "{}",
-        run.stderr
+}
+
+#[test]
+fn what_is_no_recording_is_refused_by_its_beginning() {
+    for content in ["no recording", &"no recording\n".repeat(1 << 16)] {
+        let run = taxel("frames -", content);
+        assert_eq!(run.status, Some(1));
+        assert!(
+            run.stderr
+                .starts_with("error: standard input: not a recording"),
+            "{}",
+            run.stderr
+        );
+    }
+    // A pipe whose writer goes on is not read to its end, for it may have none.
+    let mut endless = super::program(&["frames", "-"], "C.UTF-8")
+        .spawn()
+        .expect("the program starts");
+    let mut input = endless.stdin.take().expect("standard input is piped");
+    let mut written = 0_u64;
+    let piece = vec![b'x'; 1 << 16];
+    while input.write_all(&piece).is_ok() {
+        written += 1 << 16;
+        assert!(written < 1 << 26, "64 MiB of it are read");
+    }
+    let status = endless.wait().expect("the program ends");
+    assert_eq!(status.code(), Some(1));
+}
+
+#[test]
+fn records_that_the_header_counts_but_the_file_lacks_are_named() {
+    let whole = std::fs::read(sample("records.npy")).expect("an array");
+    // Two are counted; the third came after that, as in the file of a program that was killed.
+    let cut = &whole[..whole.len() - 97];
+    let run = taxel("frames - --all --at-least 1 --json", cut);
+    assert_eq!((run.status, answers(&run).len()), (Some(0), 1));
+    assert_eq!(
+        run.stderr,
+        "warning: standard input: the file was cut off: it has 1 of the 2 frames that its header counts\n"
     );
+    assert_eq!(taxel("frames -", &whole).stderr, "");
+}
+
+#[test]
+fn rows_and_columns_that_a_recording_states_itself_are_not_taken() {
+    let run = frames("tekscan.asf", "--rows 2 --columns 2");
+    assert_eq!(run.status, Some(0));
+    let expected = "it states 4 rows and 5 columns; --rows and --columns have no effect\n";
+    assert!(run.stderr.ends_with(expected), "{}", run.stderr);
+    assert_eq!(frames("tekscan.asf", "--rows 4 --columns 5").stderr, "");
 }
 
 #[test]
@@ -380,6 +424,8 @@ fn a_listing_has_no_threshold_and_no_tare() {
         "--tare 2 --deviations 3",
         "--least 3",
         "--gain gain.csv",
+        "--flip x",
+        "--turn 90",
     ] {
         let arguments = format!("frames {} {flags}", sample("tekscan.asf"));
         misused(

@@ -301,3 +301,20 @@ fn frames_are_looked_at_as_the_file_says() {
     ));
     assert_eq!(own.lines().count(), 3, "{own}");
 }
+
+#[test]
+fn a_number_that_a_flag_cannot_take_is_answered_with_what_it_expects() {
+    for (line, expected) in [
+        ("batch --jobs -1", " from 1 to 1024"),
+        ("batch --jobs many", " from 1 to 1024"),
+        ("frames a.csv --rows 0", " from 1 to 512"),
+        ("frames a.csv --frame -1", ", 0 or more"),
+        ("frames a.csv --label nope", ""),
+        ("recognise a.txt --top 0.5", ", 1 or more"),
+    ] {
+        let run = run(&mut taxel(line));
+        assert_eq!(run.status, Some(2), "{line}");
+        let expected = format!(">': expected a whole number{expected}\n");
+        assert!(run.stderr.contains(&expected), "{line}: {}", run.stderr);
+    }
+}

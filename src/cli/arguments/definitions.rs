@@ -65,9 +65,21 @@ pub(crate) fn all() -> Command {
         .subcommand(completions())
         .subcommand(man());
     // Their own argument, which is not shown, stands in place of the one that every command has.
-    WITHOUT_LIBRARY.into_iter().fold(program, |program, name| {
+    let program = WITHOUT_LIBRARY.into_iter().fold(program, |program, name| {
         program.mut_subcommand(name, |command| command.arg(folder().hide(true)))
-    })
+    });
+    with_negative_numbers(program)
+}
+
+/// Lets every argument of a command and of its subcommands take `-1`, so that its own parser says what it expects.
+/// clap would take it for a flag, and advise `-- -1`, which no flag takes.
+fn with_negative_numbers(command: Command) -> Command {
+    command
+        .mut_args(|arg| {
+            let takes = arg.get_action().takes_values();
+            arg.allow_negative_numbers(takes)
+        })
+        .mut_subcommands(with_negative_numbers)
 }
 
 /// `taxel figure KIND`: a flag for each parameter that some kind has; [`Given::foreign`](parameters::Given::foreign)
@@ -213,7 +225,7 @@ fn sweep() -> Command {
         .args([
             atlas(),
             poses,
-            replace(),
+            replace().requires("files"),
             jobs(),
             memory(),
             shard(),
@@ -221,6 +233,11 @@ fn sweep() -> Command {
             json(),
             quiet(),
         ])
+        .group(
+            ArgGroup::new("files")
+                .args(["atlas", "poses"])
+                .multiple(true),
+        )
 }
 
 /// `taxel merge FILE.npz…`.

@@ -5,7 +5,10 @@
 //! `error: invalid value '7' for '--positions <N>': expected 1, 2, 4, …`.
 
 use std::ffi::OsString;
+use std::fmt::Display;
+use std::ops::{Bound, RangeBounds};
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 
@@ -29,6 +32,31 @@ pub(super) fn switch(name: &'static str, help: &'static str) -> Arg {
 /// A flag with a value, `--NAME VALUE`. Without a parser of its own the value is a text.
 pub(super) fn option(name: &'static str, value: &'static str, help: &'static str) -> Arg {
     Arg::new(name).long(name).value_name(value).help(help)
+}
+
+/// A parser of whole numbers within a range. It says what is expected in words, where clap's own would say
+/// `invalid digit found in string` or `0 is not in 1..=4096`.
+pub(super) fn whole<T>(
+    range: impl RangeBounds<T> + Clone,
+) -> impl Fn(&str) -> Result<T, String> + Clone
+where
+    T: FromStr + PartialOrd + Display,
+{
+    move |text| {
+        let number = text.trim().parse().ok();
+        number
+            .filter(|number| range.contains(number))
+            .ok_or_else(|| {
+                let bounds = match (range.start_bound(), range.end_bound()) {
+                    (Bound::Included(least), Bound::Included(most)) => {
+                        format!(" from {least} to {most}")
+                    }
+                    (Bound::Included(least), _) => format!(", {least} or more"),
+                    _ => String::new(),
+                };
+                format!("expected a whole number{bounds}")
+            })
+    }
 }
 
 /// The flag of an axis of the grid, which takes a range. `default` says what is taken without it; empty for the range
@@ -68,8 +96,7 @@ pub(super) fn anchor() -> Arg {
 
 /// `--jobs`, the number of threads.
 pub(super) fn jobs() -> Arg {
-    option("jobs", "N", "Threads; default all cores")
-        .value_parser(value_parser!(u16).range(1..=1024))
+    option("jobs", "N", "Threads; default all cores").value_parser(whole::<u16>(1..=1024))
 }
 
 /// The value of [`jobs`]; 0, which means a thread for each core, if it is not given.

@@ -13,7 +13,7 @@ use std::path::PathBuf;
 
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
 
-use crate::cli::arguments::flags::{option, switch};
+use crate::cli::arguments::flags::{option, switch, whole};
 use crate::cli::arguments::help::FRAMES_EXAMPLES;
 use crate::cli::arguments::recognise::parse_noise;
 use crate::cli::commands::naming::NamingArguments;
@@ -90,10 +90,10 @@ pub(crate) fn command() -> Command {
         .value_parser(value_parser!(PathBuf))
         .help("Recording; '-' for standard input");
     let frame =
-        option("frame", "N", "This frame of its channel, from 0").value_parser(value_parser!(u64));
+        option("frame", "N", "This frame of its channel, from 0").value_parser(whole::<u64>(0..));
     let label = option("label", "L", "The frame that the recording itself labels L")
         .allow_hyphen_values(true)
-        .value_parser(value_parser!(i64));
+        .value_parser(whole::<i64>(..));
     let peak = switch("peak", "The frame with the greatest sum of values");
     let every = switch("all", "All frames, one after the other");
     let flips = switch(
@@ -108,8 +108,8 @@ pub(crate) fn command() -> Command {
         .args([frame, label, peak, every, flips].map(|arg| arg.help_heading("Frames")))
         .group(ArgGroup::new("choice").args(choices))
         .args(processing().map(|arg| match arg.get_id().as_str() {
-            // A listing is of values as they are.
-            "tare" | "gain" => arg.requires("choice"),
+            // A listing is of values as they are, wherever they lie.
+            "tare" | "gain" | "flip" | "turn" => arg.requires("choice"),
             _ => arg,
         }))
         .args(rules().map(|arg| arg.requires("choice")))
@@ -131,7 +131,7 @@ pub(crate) fn processing() -> [Arg; 9] {
         Arg::new(id)
             .long(flag)
             .value_name(flag.to_ascii_uppercase())
-            .value_parser(value_parser!(u16).range(1..=512))
+            .value_parser(whole::<u16>(1..=512))
             .help(help)
     };
     let text = |flag: &'static str, value: &'static str, help: &'static str| {
@@ -177,7 +177,7 @@ pub(crate) fn processing() -> [Arg; 9] {
             "N",
             "Subtract the median of each cell over N frames",
         )
-        .value_parser(value_parser!(u64)),
+        .value_parser(whole::<u64>(0..)),
         text("gain", "FILE", "Table of what each cell is multiplied by")
             .value_parser(value_parser!(PathBuf)),
     ]
@@ -221,7 +221,7 @@ pub(crate) fn rules() -> [Arg; 6] {
         .long("least")
         .alias("min-taxels")
         .value_name("K")
-        .value_parser(value_parser!(u32).range(1..=4096))
+        .value_parser(whole::<u32>(1..=4096))
         .help("Drop pieces of fewer than K taxels");
     [
         value(

@@ -11,7 +11,7 @@ use std::ffi::OsString;
 use clap::{ArgMatches, Command, value_parser};
 
 use crate::cli::arguments::flags::{
-    self, jobs, json, of_sensor, option, parse_probability, switch, what,
+    self, jobs, json, of_sensor, option, parse_probability, switch, what, whole,
 };
 use crate::cli::arguments::help::RECOGNISE_EXAMPLES;
 use crate::cli::arguments::model::DEFAULT_MODEL;
@@ -56,8 +56,8 @@ pub(super) fn command() -> Command {
     .value_parser(value_parser!(OsString))
     .default_value(DEFAULT_MODEL)
     .hide_default_value(true);
-    let top = option("top", "K", "Show the K likeliest shapes only")
-        .value_parser(value_parser!(u32).range(1..));
+    let top =
+        option("top", "K", "Show the K likeliest shapes only").value_parser(whole::<u32>(1..));
     let reject = option(
         "reject",
         "P",

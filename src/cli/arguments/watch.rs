@@ -14,7 +14,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, Command, value_parser};
 
 use crate::acquire::AcquireOptions;
-use crate::cli::arguments::flags::{self, option, switch};
+use crate::cli::arguments::flags::{self, option, switch, whole};
 use crate::cli::arguments::frames::{self, ProcessingArguments};
 use crate::cli::arguments::help::WATCH_EXAMPLES;
 use crate::cli::arguments::parameters;
@@ -65,7 +65,7 @@ pub(crate) fn command() -> Command {
             52,
         ));
     let baud = option("baud", "BAUD", "Speed of a serial line; default 115200")
-        .value_parser(value_parser!(u32).range(50..=20_000_000));
+        .value_parser(whole::<u32>(50..=20_000_000));
     let once = switch("once", "Read to the end, as fast as it goes, and stop")
         .conflicts_with_all(["loop", "speed"]);
     let again = switch("loop", "Start a recording again when it ends");

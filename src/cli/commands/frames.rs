@@ -115,6 +115,20 @@ impl Scan {
         lines
     }
 
+    /// That rows and columns were given for a recording that states its own, and others.
+    fn unused_shape(&self, given: Option<(u16, u16)>) -> Option<String> {
+        let stated = self
+            .channels
+            .iter()
+            .find_map(|channel| channel.info.shape)?;
+        let (rows, columns) = stated;
+        (given? != stated).then(|| {
+            format!(
+                "it states {rows} rows and {columns} columns; --rows and --columns have no effect"
+            )
+        })
+    }
+
     /// The number of the channel that is asked for.
     /// Without `--channel` there must be one only; a channel without a name is called `unnamed`.
     ///
@@ -191,6 +205,9 @@ pub(crate) fn frames(
         .chain(scan.warnings(recording.name()))
     {
         (output.notes)(&format!("warning: {warning}"));
+    }
+    if let Some(unused) = scan.unused_shape(asked.processing.shape) {
+        (output.notes)(&format!("warning: {}: {unused}", recording.name()));
     }
     let damage = scan.error.take().map(|error| recording.damaged(error));
     if scan.channels.is_empty() {

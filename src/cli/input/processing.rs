@@ -44,6 +44,7 @@ pub(crate) fn mask(asked: &ProcessingArguments) -> Result<Option<Imprint>, CliEr
 /// If the file is damaged or has no frame.
 fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
     let mut file = RecordingFile::open(path, ReadOptions::default())?;
+    file.prefix_name("--gain ");
     let mut gain = Matrix::filled(1, 1, 1.0);
     let mut found = None;
     let read = file.read(&mut |event| {

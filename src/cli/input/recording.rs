@@ -9,10 +9,13 @@ use crate::cli::error::CliError;
 use crate::cli::input::content;
 use crate::cli::input::content::InputError;
 use crate::formats::recording::{
-    ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata, read,
-    recognised_input,
+    LOOKED_AT, ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata,
+    read, recognised_input,
 };
 use crate::imprint::Imprint;
+
+/// The most that is copied of standard input or a pipe, in bytes, so that an input without an end does not fill the disk.
+const MOST_SPOOLED: u64 = 4 << 30;
 
 /// A recording that can be read again and again.
 #[derive(Debug)]
@@ -79,6 +82,11 @@ impl RecordingFile {
     /// Its name in messages.
     pub(crate) fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Puts the flag that named it before its name in messages.
+    pub(crate) fn prefix_name(&mut self, flag: &str) {
+        self.name.insert_str(0, flag);
     }
 
     /// What is wrong with the description beside it.
@@ -157,9 +165,22 @@ fn unended(path: &Path, description: &RecordingMetadata) -> Option<String> {
 }
 
 /// A copy of all that comes, which has no name.
+/// Of an input that is no recording only the beginning is copied, which is enough to refuse it: it may have no end.
+///
+/// # Errors
+/// If it cannot be read or written, or is longer than [`MOST_SPOOLED`].
 fn spooled(input: &mut dyn Read) -> io::Result<File> {
     let mut file = tempfile::tempfile()?;
-    io::copy(input, &mut file)?;
+    io::copy(&mut input.take(LOOKED_AT as u64), &mut file)?;
+    file.seek(SeekFrom::Start(0))?;
+    if recognised_input(&mut file)?.is_some() {
+        let copied = io::copy(&mut input.take(MOST_SPOOLED), &mut file)?;
+        if copied == MOST_SPOOLED {
+            return Err(io::Error::other(
+                "more than 4 GiB, save it to a file and name that; taxel watch reads what has no end",
+            ));
+        }
+    }
     file.seek(SeekFrom::Start(0))?;
     Ok(file)
 }

@@ -11,6 +11,7 @@ use crate::cli::output::evaluation::{bar, percent};
 use crate::cli::output::pose::PoseReport;
 use crate::formats::described::Rows;
 use crate::imprint::Imprint;
+use crate::parameter::number::short;
 use crate::recognition::{Answer, AnswerState, Evidence, Method, Model, Nearest, Noise};
 
 /// How many shapes a text shows, unless another number is asked for.
@@ -128,7 +129,7 @@ impl AnswerText<'_> {
             let _ = writeln!(
                 text,
                 "noise {}: {}",
-                noise.flip(),
+                short(noise.flip()),
                 compared(self.answer.method)
             );
         }

@@ -82,8 +82,8 @@ impl<'a> SweepSummary<'a> {
         ));
         let number = |count: usize| grouped(count as u64);
         line(&format!(
-            "{} distinct imprints, {} up to shifts, {} up to quarter turns and mirror images too",
-            number(atlas.len()),
+            "{}, {} up to shifts, {} up to quarter turns and mirror images too",
+            counted(atlas.len() as u64, "distinct imprint"),
             number(self.classes.0),
             number(self.classes.1)
         ));

@@ -154,6 +154,13 @@ pub enum RecordingNote {
         /// How many frames were dropped.
         frames: u64,
     },
+    /// The file ends before the last of the records that its header counts.
+    Cut {
+        /// How many whole records it has.
+        records: u64,
+        /// How many the header counts.
+        counted: u64,
+    },
     /// The description beside the recording is broken or cannot be read, and is left out.
     Description {
         /// What is wrong with it, headed by its path.
@@ -188,6 +195,10 @@ impl fmt::Display for RecordingNote {
                     "{frames} torn, short, long or garbled frames were dropped"
                 )
             }
+            Self::Cut { records, counted } => write!(
+                f,
+                "the file was cut off: it has {records} of the {counted} frames that its header counts"
+            ),
             Self::Description { complaint } => f.write_str(complaint),
         }
     }

@@ -75,6 +75,8 @@ mod description;
 pub use answer::{FrameAnswer, RuleOrigin, SetRule};
 pub use channel_choice::ChannelChoice;
 pub use description::{FrameMark, RecordingMetadata};
+#[cfg(feature = "cli")]
+pub(crate) use detect::LOOKED_AT;
 pub use detect::{read, recognised, recognised_input};
 pub use error::RecordingError;
 pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingFormat, RecordingNote};

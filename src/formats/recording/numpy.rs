@@ -10,15 +10,17 @@
 //! | (cells) | one frame, if rows and columns are known beforehand |
 //! | (records) of `time`, `number`, `values` | what `taxel watch --write` writes |
 //!
-//! Records end anywhere, since the file of a program that was killed is not complete: whole ones count. A file of any
-//! other array must have exactly the bytes that its header names.
+//! Records end anywhere, since the file of a program that was killed is not complete: whole ones count, and a note says
+//! if the header counts more. A file of any other array must have exactly the bytes that its header names.
 
 use std::io::{ErrorKind, Read};
 
 use crate::formats::npy;
 use crate::formats::npy::Header;
 use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
+use crate::formats::recording::event::{
+    ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
+};
 use crate::formats::recording::side::shape;
 use crate::formats::recording::text_row::too_large;
 use crate::formats::seconds::since;
@@ -213,11 +215,12 @@ impl ArrayLayout {
     /// # Errors
     /// If they have no field `values` of two axes.
     fn of_records(header: &Header) -> Result<Self, RecordingError> {
-        let record = RecordLayout::of(&header.code).filter(|_| header.shape.len() == 1);
-        let record = record.ok_or_else(|| {
+        let (Some(mut record), &[counted]) = (RecordLayout::of(&header.code), &header.shape[..])
+        else {
             let message = "records other than taxel writes, expected time, number and values";
-            RecordingError::damaged(message)
-        })?;
+            return Err(RecordingError::damaged(message));
+        };
+        record.counted = counted;
         Ok(Self {
             number: record.number,
             // A recording that was cut off may have more frames than its header counts.
@@ -277,6 +280,8 @@ fn axes_shape(axes: &[u64], options: ReadOptions) -> Result<(u64, u16, u16), Rec
 /// Where the fields of a record of taxel's own recordings are.
 #[derive(Debug)]
 struct RecordLayout {
+    /// How many the header counts. The file of a program that was killed may have more.
+    counted: u64,
     /// Bytes of a record.
     size: usize,
     /// Where in it the time is, in seconds, and its type.
@@ -336,6 +341,7 @@ impl RecordLayout {
         }
         let (values, number, rows, columns) = values?;
         (rest.is_empty() && shape(rows, columns).is_some() && size < 1 << 24).then_some(Self {
+            counted: 0,
             size,
             time,
             label,
@@ -393,11 +399,13 @@ pub(super) fn frames(
     while frame.number < layout.frames {
         let length = fill(input, &mut bytes)?;
         if length < size {
+            let Some(record) = &layout.record else {
+                return Err(short(frame.number, layout.frames));
+            };
             // A recording that is being written, or was cut off, ends anywhere.
-            if layout.record.is_some() {
-                break;
-            }
-            return Err(short(frame.number, layout.frames));
+            let (records, counted) = (frame.number, record.counted);
+            let note = RecordingNote::Cut { records, counted };
+            return Ok(records < counted && sink(RecordingEvent::Note(&note)).is_break());
         }
         let values = layout.record.as_ref().map_or(0, |record| record.values);
         let values = &bytes[values..values + cells];

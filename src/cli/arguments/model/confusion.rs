@@ -16,10 +16,10 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use clap::parser::ValueSource;
-use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command};
 
 use crate::cli::arguments::flags::{
-    self, EvaluationForm, json, option, parse_report, quiet, replace, switch,
+    self, EvaluationForm, json, option, parse_report, quiet, replace, switch, whole,
 };
 use crate::cli::arguments::help::MODEL_CONFUSION_EXAMPLES;
 use crate::cli::arguments::model::{number, seed, which_model};
@@ -159,7 +159,7 @@ fn of_classifiers() -> [Arg; 3] {
     ]
     .map(|(name, help)| {
         option(name, "N", help)
-            .value_parser(value_parser!(u32).range(1..))
+            .value_parser(whole::<u32>(1..))
             .requires("classifier")
     })
 }
@@ -189,10 +189,10 @@ fn noisy() -> [Arg; 5] {
         "Also with N dead taxels, spread at random;\ndefault 0",
     )
     .value_delimiter(',')
-    .value_parser(value_parser!(u32).range(..4096))
+    .value_parser(whole::<u32>(0..=4095))
     .requires("noise");
     let touches = option("touches", "N", "Noisy touches of each shape; default 1000")
-        .value_parser(value_parser!(u64).range(1..=1_000_000_000))
+        .value_parser(whole::<u64>(1..=1_000_000_000))
         .requires("noise");
     let matrix = option("matrix", "CxR", "Size of the matrix; default the model's")
         .value_parser(parse_matrix)

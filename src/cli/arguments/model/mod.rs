@@ -15,7 +15,7 @@ use std::ffi::OsString;
 
 use clap::{Arg, ArgMatches, Command, value_parser};
 
-use crate::cli::arguments::flags::{self, json, option};
+use crate::cli::arguments::flags::{self, json, option, whole};
 use crate::cli::arguments::help::{
     MODEL_DELETE_EXAMPLES, MODEL_EXAMPLES, MODEL_LIST_EXAMPLES, MODEL_SHOW_EXAMPLES,
 };
@@ -118,7 +118,7 @@ fn which_model() -> Arg {
 /// `--seed`: the same seed draws the same touches, whatever the number of threads.
 fn seed() -> Arg {
     option("seed", "N", "Seed of the random numbers; default 0")
-        .value_parser(value_parser!(u64))
+        .value_parser(whole::<u64>(0..))
         .default_value("0")
         .hide_default_value(true)
 }

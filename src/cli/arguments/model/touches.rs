@@ -2,9 +2,9 @@
 
 use std::ffi::OsString;
 
-use clap::{ArgMatches, Command, value_parser};
+use clap::{ArgMatches, Command};
 
-use crate::cli::arguments::flags::{self, json, option, parse_probability, quiet};
+use crate::cli::arguments::flags::{self, json, option, parse_probability, quiet, whole};
 use crate::cli::arguments::help::MODEL_TOUCHES_EXAMPLES;
 use crate::cli::arguments::model::{number, seed, which_model};
 
@@ -31,7 +31,7 @@ pub(super) fn command() -> Command {
         .value_parser(parse_probability)
         .default_value("0.99");
     let runs = option("runs", "N", "Runs of each shape")
-        .value_parser(value_parser!(u64).range(1..=1_000_000_000))
+        .value_parser(whole::<u64>(1..=1_000_000_000))
         .default_value("10000");
     Command::new("touches")
         .about("Simulate how many touches it takes to name a shape")

@@ -98,7 +98,7 @@ struct Measured {
 }
 
 impl RangesForm {
-    /// The form for what is explored of a document. The ranges are those of an earlier sweep, or those that were accepted
+    /// The form for exploring a document. The ranges are those of an earlier sweep, or those that were accepted
     /// last where they suit, or the defaults.
     pub fn new(
         document: &Document,
