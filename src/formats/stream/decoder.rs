@@ -45,7 +45,7 @@ pub struct StreamDecoder {
 #[derive(Debug)]
 enum State {
     /// Nothing yet: the form is not certain.
-    Looking,
+    Looking(FormSearch),
     /// Numbers in lines.
     Lines(LinesDecoder),
     /// JSON lines.
@@ -66,7 +66,7 @@ impl StreamDecoder {
         let mut decoder = Self {
             options,
             counts: StreamCounts::default(),
-            state: State::Looking,
+            state: State::Looking(FormSearch::default()),
             bytes: Vec::new(),
             skipping: false,
             torn: !options.from_start,
@@ -81,7 +81,7 @@ impl StreamDecoder {
     /// The form of the stream; None as long as it is not known.
     pub fn format(&self) -> Option<StreamFormat> {
         match self.state {
-            State::Looking | State::Unshaped => self.options.format,
+            State::Looking(_) | State::Unshaped => self.options.format,
             State::Lines(_) => Some(StreamFormat::Lines),
             State::Json(_) => Some(StreamFormat::JsonLines),
             State::Ros(_) => Some(StreamFormat::Ros2),
@@ -115,7 +115,7 @@ impl StreamDecoder {
         if let State::Json(decoder) = &self.state {
             self.start = decoder.start();
         }
-        self.state = State::Looking;
+        self.state = State::Looking(FormSearch::default());
         self.options.from_start = from_start;
         if let Some(format) = format {
             self.begin(format, from_start);
@@ -144,7 +144,7 @@ impl StreamDecoder {
     pub fn push(&mut self, bytes: &[u8], sink: &mut StreamSink<'_>) {
         self.counts.bytes += bytes.len() as u64;
         match &mut self.state {
-            State::Looking => {
+            State::Looking(_) => {
                 self.bytes.extend_from_slice(bytes);
                 self.look(false, sink);
             }
@@ -157,9 +157,7 @@ impl StreamDecoder {
 
     /// The end of the input: what is whole is given, what is not is counted.
     pub fn finish(&mut self, sink: &mut StreamSink<'_>) {
-        if let State::Looking = self.state {
-            self.look(true, sink);
-        }
+        self.look(true, sink);
         let torn = std::mem::take(&mut self.bytes);
         match &mut self.state {
             State::Lines(decoder) => decoder.finish(&torn, &mut self.counts, sink),
@@ -170,7 +168,7 @@ impl StreamDecoder {
             }
             State::Flexitac(decoder) => decoder.finish(&mut self.counts, sink),
             State::Matsense(decoder) => decoder.finish(&mut self.counts, sink),
-            State::Looking | State::Unshaped => {}
+            State::Looking(_) | State::Unshaped => {}
         }
     }
 
@@ -219,9 +217,12 @@ impl StreamDecoder {
         }
     }
 
-    /// Finds the form, and decodes what has come so far.
+    /// Finds the form if it is not known, and decodes what has come so far.
     fn look(&mut self, ended: bool, sink: &mut StreamSink<'_>) {
-        let Some(format) = form(&self.bytes, self.options.shape, ended) else {
+        let State::Looking(search) = &mut self.state else {
+            return;
+        };
+        let Some(format) = search.form(&self.bytes, self.options.shape, ended) else {
             return;
         };
         let mut lines = self.bytes.split(|&byte| byte == b'\n');
@@ -236,41 +237,107 @@ impl StreamDecoder {
     }
 }
 
-/// The form of what begins with these bytes; None if more are needed. The answer does not depend on the
-/// pieces in which the bytes arrive.
+/// The search for the form of a stream. It goes on where it was when more bytes come, and the answer does not depend on
+/// the pieces in which they arrive.
 ///
 /// Bytes that are not text are `FlexiTac` if two markers are a frame apart, otherwise `MatSense`. The form of text
 /// is decided by the first line that only one form can have: an object, what `ros2 topic echo` prints, or numbers. The
 /// first line may be the end of another one, so numbers in it decide nothing. Text without such a line is numbers, too.
-fn form(bytes: &[u8], shape: Option<(u16, u16)>, ended: bool) -> Option<StreamFormat> {
-    const MARK: &[u8] = b"\xef\xbb\xbf";
-    if bytes.len() < MARK.len() && MARK.starts_with(bytes) && !ended {
-        return None;
-    }
-    let looked_at = &bytes[..bytes.len().min(LOOKED_AT)];
-    let all_ended = ended;
-    let ended = ended || looked_at.len() == LOOKED_AT;
-    let text = looked_at.strip_prefix(MARK).unwrap_or(looked_at);
-    let is_binary = |byte: &u8| !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c | b' '..=b'~');
-    let mut lines = text.split(|&byte| byte == b'\n').peekable();
-    let mut first = true;
-    while let Some(line) = lines.next() {
-        if line.iter().any(is_binary) {
-            // Large frames need more bytes than text does.
-            return form_of_bytes(bytes, shape, all_ended);
-        }
-        // The last one is not ended, unless all is.
-        if lines.peek().is_none() && !ended {
+#[derive(Clone, Debug, Default)]
+struct FormSearch {
+    /// Up to where the bytes have been looked at.
+    seen: usize,
+    /// Where the line begins that is not ended there.
+    line: usize,
+    /// Whether another line was before it.
+    after_first: bool,
+    /// Whether the bytes are not text.
+    is_binary: bool,
+    /// Up to where no marker is followed by another one.
+    unmarked: usize,
+}
+
+impl FormSearch {
+    /// The form of what begins with these bytes; None if more are needed.
+    fn form(
+        &mut self,
+        bytes: &[u8],
+        shape: Option<(u16, u16)>,
+        ended: bool,
+    ) -> Option<StreamFormat> {
+        const MARK: &[u8] = b"\xef\xbb\xbf";
+        if bytes.len() < MARK.len() && MARK.starts_with(bytes) && !ended {
             return None;
         }
-        match line.trim_ascii() {
-            [b'{', ..] => return Some(StreamFormat::JsonLines),
-            line if is_ros(line) => return Some(StreamFormat::Ros2),
-            line if !first && is_numbers(line) => return Some(StreamFormat::Lines),
-            _ => first = false,
+        if self.seen == 0 && bytes.starts_with(MARK) {
+            (self.seen, self.line) = (MARK.len(), MARK.len());
         }
+        let looked_at = &bytes[..bytes.len().min(LOOKED_AT)];
+        while let Some(&byte) = looked_at.get(self.seen)
+            && !self.is_binary
+        {
+            self.seen += 1;
+            if byte == b'\n' {
+                let line = &looked_at[self.line..self.seen];
+                if let Some(format) = form_of_line(line, self.after_first) {
+                    return Some(format);
+                }
+                (self.line, self.after_first) = (self.seen, true);
+            }
+            self.is_binary = !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c | b' '..=b'~');
+        }
+        if self.is_binary {
+            // Large frames need more bytes than text does.
+            return self.form_of_bytes(bytes, shape, ended);
+        }
+        let ended = ended || looked_at.len() == LOOKED_AT;
+        let last = || form_of_line(&looked_at[self.line..], self.after_first);
+        ended.then(|| last().unwrap_or(StreamFormat::Lines))
     }
-    ended.then_some(StreamFormat::Lines)
+
+    /// The form of bytes that are not text.
+    fn form_of_bytes(
+        &mut self,
+        bytes: &[u8],
+        shape: Option<(u16, u16)>,
+        ended: bool,
+    ) -> Option<StreamFormat> {
+        let has_marker = |bytes: &[u8], at: usize| bytes.get(at..at + 2) == Some(&[0xaa, 0x55]);
+        let Some((rows, columns)) = shape else {
+            let known = ended || bytes.len() >= 2;
+            return known.then_some(if has_marker(bytes, 0) {
+                StreamFormat::Flexitac
+            } else {
+                StreamFormat::Matsense
+            });
+        };
+        let period = usize::from(rows) * usize::from(columns) + 2;
+        // In two frames and a half a marker and the next would have been found.
+        let enough = (3 * period + 3).min(MARKERS_IN);
+        let ended = ended || bytes.len() >= enough;
+        let bytes = &bytes[..bytes.len().min(enough)];
+        let pair = |at: usize| has_marker(bytes, at) && has_marker(bytes, at + period);
+        if (self.unmarked..bytes.len()).any(pair) {
+            return Some(StreamFormat::Flexitac);
+        }
+        // From here on, the second marker may still come.
+        self.unmarked = bytes.len().saturating_sub(period + 1);
+        ended.then_some(if bytes.len() < enough && has_marker(bytes, 0) {
+            StreamFormat::Flexitac
+        } else {
+            StreamFormat::Matsense
+        })
+    }
+}
+
+/// The form of text that has such a line; None if others may have it, too.
+fn form_of_line(line: &[u8], after_first: bool) -> Option<StreamFormat> {
+    match line.trim_ascii() {
+        [b'{', ..] => Some(StreamFormat::JsonLines),
+        line if is_ros(line) => Some(StreamFormat::Ros2),
+        line if after_first && is_numbers(line) => Some(StreamFormat::Lines),
+        _ => None,
+    }
 }
 
 /// Whether only `ros2 topic echo` prints such a line.
@@ -291,33 +358,6 @@ fn is_numbers(line: &[u8]) -> bool {
     let mut words = line.split(separators).filter(|word| !word.is_empty());
     let is_number = |word: &str| word.parse::<f64>().is_ok();
     words.next().is_some_and(is_number) && words.all(is_number)
-}
-
-/// The form of bytes that are not text.
-fn form_of_bytes(bytes: &[u8], shape: Option<(u16, u16)>, ended: bool) -> Option<StreamFormat> {
-    let has_marker = |bytes: &[u8], at: usize| bytes.get(at..at + 2) == Some(&[0xaa, 0x55]);
-    let Some((rows, columns)) = shape else {
-        let known = ended || bytes.len() >= 2;
-        return known.then_some(if has_marker(bytes, 0) {
-            StreamFormat::Flexitac
-        } else {
-            StreamFormat::Matsense
-        });
-    };
-    let period = usize::from(rows) * usize::from(columns) + 2;
-    // In two frames and a half a marker and the next would have been found.
-    let enough = (3 * period + 3).min(MARKERS_IN);
-    let ended = ended || bytes.len() >= enough;
-    let bytes = &bytes[..bytes.len().min(enough)];
-    let pair = |at: usize| has_marker(bytes, at) && has_marker(bytes, at + period);
-    if (0..bytes.len()).any(pair) {
-        return Some(StreamFormat::Flexitac);
-    }
-    ended.then_some(if bytes.len() < enough && has_marker(bytes, 0) {
-        StreamFormat::Flexitac
-    } else {
-        StreamFormat::Matsense
-    })
 }
 
 #[cfg(test)]
@@ -347,7 +387,43 @@ mod tests {
         // Bytes without a marker are judged at last.
         let shape = Some((512, 512));
         let bytes = vec![7; MARKERS_IN];
-        assert_eq!(form(&bytes[1..], shape, false), None);
-        assert_eq!(form(&bytes, shape, false), Some(StreamFormat::Matsense));
+        let mut search = FormSearch::default();
+        assert_eq!(search.form(&bytes[1..], shape, false), None);
+        let found = search.form(&bytes, shape, false);
+        assert_eq!(found, Some(StreamFormat::Matsense));
+    }
+
+    /// A search that went on piece by piece, and one that begins anew, give the same answer after each byte.
+    #[test]
+    fn the_form_does_not_depend_on_the_pieces() {
+        let markers = [&b"\x01\x02\xaa\x55"[..], &[9; 6], b"\xaa\x55", &[9; 9]].concat();
+        let streams: [&[u8]; 9] = [
+            b"",
+            b"\xef\xbb\xbf1 2\n3 4\n",
+            b"\xef\xbb",
+            b"version 1\n\n1 2\n",
+            b"1 2\n\n\n{\"t\":1}\n",
+            b"7]\ndata: 1\n",
+            b"1 2\n3 \xff4\n5 6\n",
+            b"ab\xaa\x55c",
+            &markers,
+        ];
+        for stream in streams {
+            for shape in [None, Some((2, 3))] {
+                let mut search = FormSearch::default();
+                for end in 0..=stream.len() {
+                    let found = search.form(&stream[..end], shape, false);
+                    let anew = |ended| FormSearch::default().form(&stream[..end], shape, ended);
+                    assert_eq!(found, anew(false), "{end} of {stream:?}");
+                    if found.is_some() {
+                        assert_eq!(found, anew(true), "{end} of {stream:?}");
+                        break;
+                    }
+                    // The input may end here.
+                    let found = search.clone().form(&stream[..end], shape, true);
+                    assert_eq!(found, anew(true), "{end} of {stream:?}");
+                }
+            }
+        }
     }
 }
