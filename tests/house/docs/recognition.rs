@@ -2,30 +2,39 @@
 
 use std::fs;
 use std::path::Path;
+use std::sync::OnceLock;
 
 use crate::docs::commands::shell_in;
 
 /// The set of the page.
 const SET: &str = include_str!("../../../examples/figures.jsonl");
 
-/// Lines of a shell in a folder with the set, and after the first block with its model; each with what it prints.
-fn shown(trained: bool, lines: &[&str]) -> String {
-    let folder = tempfile::tempdir().expect("a folder can be made");
-    fs::write(folder.path().join("figures.jsonl"), SET).expect("written");
-    if trained {
-        train_in(folder.path());
-    }
+/// Lines of a shell in a folder with the set and its model; each with what it prints.
+fn shown(lines: &[&str]) -> String {
+    trained();
     let shown = lines
         .iter()
-        .map(|line| format!("$ {line}\n{}", shell_in(folder.path(), line)));
+        .map(|line| format!("$ {line}\n{}", shell_in(Path::new(FOLDER), line)));
     let shown: Vec<String> = shown.collect();
     format!("\n```text\n{}```\n\n", shown.join("\n"))
 }
 
 const TRAIN: &str = "taxel model train figures.jsonl --out figures.npz --quiet";
 
-fn train_in(folder: &Path) {
-    shell_in(folder, TRAIN);
+/// A folder of this build.
+const FOLDER: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/recognition");
+
+/// Trains the model in the folder, once for all blocks of the page. Gives what the training printed.
+fn trained() -> &'static str {
+    static PRINTED: OnceLock<String> = OnceLock::new();
+    PRINTED.get_or_init(|| {
+        let folder = Path::new(FOLDER);
+        // Of an earlier run.
+        fs::remove_dir_all(folder).ok();
+        fs::create_dir_all(folder).expect("a folder can be made");
+        fs::write(folder.join("figures.jsonl"), SET).expect("written");
+        shell_in(folder, TRAIN)
+    })
 }
 
 pub(crate) fn set() -> String {
@@ -33,46 +42,38 @@ pub(crate) fn set() -> String {
 }
 
 pub(crate) fn train() -> String {
-    shown(false, &[TRAIN])
+    format!("\n```text\n$ {TRAIN}\n{}```\n\n", trained())
 }
 
 pub(crate) fn confusion() -> String {
-    shown(true, &["taxel model confusion figures.npz | tail -n +9"])
+    shown(&["taxel model confusion figures.npz | tail -n +9"])
 }
 
 pub(crate) fn worth() -> String {
-    shown(
-        true,
-        &[
-            "taxel model confusion figures.npz --given na,p | grep wrong",
-            "taxel model confusion figures.npz --greedy",
-            "taxel model confusion figures.npz --greedy --round cg_cd=0.01",
-        ],
-    )
+    shown(&[
+        "taxel model confusion figures.npz --given na,p | grep wrong",
+        "taxel model confusion figures.npz --greedy",
+        "taxel model confusion figures.npz --greedy --round cg_cd=0.01",
+    ])
 }
 
 pub(crate) fn peers() -> String {
-    shown(
-        true,
-        &["taxel model confusion figures.npz --classifier all"],
-    )
+    shown(&["taxel model confusion figures.npz --classifier all"])
 }
 
 pub(crate) fn sizes() -> String {
-    shown(
-        true,
-        &["for scale in 0.577 1 1.414 2; do \
-           taxel model separate figures.npz --scale $scale --csv --quiet | tail -1; done"],
-    )
+    static SIZES: OnceLock<String> = OnceLock::new();
+    let sizes = || {
+        shown(&["for scale in 0.577 1 1.414 2; do \
+           taxel model separate figures.npz --scale $scale --csv --quiet | tail -1; done"])
+    };
+    SIZES.get_or_init(sizes).clone()
 }
 
 pub(crate) fn want() -> String {
-    shown(
-        true,
-        &[
-            "taxel model separate figures.npz --scale 0.5:3:0.1 --positions 20 --want 0.01 --quiet | tail -19",
-        ],
-    )
+    shown(&[
+        "taxel model separate figures.npz --scale 0.5:3:0.1 --positions 20 --want 0.01 --quiet | tail -19",
+    ])
 }
 
 /// The figures that the text of the page tells, held to what the program prints.
