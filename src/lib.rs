@@ -111,8 +111,8 @@
 //! - Every [`figure::Figure`], [`picture::Picture`] and [`sensor::Sensor`] is in range for the sensor that it is made for;
 //!   a picture at home lies where its imprint does.
 //! - What follows from a document (coverage, imprint, regions, descriptors) is computed, never stored beside it.
-//! - No number that is not finite is ever shown or written: a value that does not exist is none (in `.npz`, which has no
-//!   other word for it, NaN).
+//! - Infinity is never shown or written. A value that does not exist is None; in arrays (`.npz`, recordings), which have
+//!   no other word for it, it is NaN.
 
 // The examples of the README are compiled and run with those of the documentation.
 #[cfg(doctest)]

@@ -164,7 +164,7 @@ pub(crate) enum CliError {
         error: TrainingError,
     },
     /// There is a shape or a file of that name already.
-    #[error("{name:?} is there already; --force replaces it")]
+    #[error("{name:?} already exists; --force replaces it")]
     Taken {
         /// The name.
         name: String,
@@ -210,7 +210,7 @@ pub(crate) enum CliError {
         failure: runner::ScriptFailure,
     },
     /// `--record` names a file that exists.
-    #[error("{name} is there already, and a record does not replace it; {free} would be a new one")]
+    #[error("{name} already exists and is not replaced; {free} is free")]
     Recorded {
         /// Its name.
         name: String,
@@ -252,7 +252,7 @@ pub(crate) enum CliError {
     },
     /// `--resume` finds a file that is not this shard.
     #[error(
-        "{name} is {what} ({reason}), so it is not taken up; remove it, or replace it by --force instead of --resume"
+        "{name} is {what} ({reason}), remove it, or use --force instead of --resume to replace it"
     )]
     NotResumed {
         /// Its name.

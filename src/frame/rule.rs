@@ -13,9 +13,10 @@ use crate::matrix::Matrix;
 pub enum Rule {
     /// Active from this value on, in the sensor's unit.
     AtLeast(f64),
-    /// Active from this share of the frame's largest value on, in percent; nothing is where that is 0 or less.
+    /// Active from this percentage of the frame's largest value on; no taxel is active if that value is 0 or less.
     Percent(f64),
-    /// Active from `high` on, and from `low` on where an 8-connected path of such cells leads to one that is.
+    /// Active from `high` on. A cell from `low` on is active if an 8-connected path of such cells joins it to one from
+    /// `high` on.
     Hysteresis {
         /// The lower threshold.
         low: f64,

@@ -139,8 +139,8 @@ impl Tare {
         &self.baseline
     }
 
-    /// A tare that was made before: the median of each cell, its median absolute deviation, and one step of the values.
-    /// Without these two a rule by noise has only steps of 1 to go by.
+    /// Rebuilds a tare from the median of each cell, its median absolute deviation, and one step of the values. The
+    /// deviation defaults to 0 and the step to 1.
     ///
     /// # Errors
     /// If the sizes differ.

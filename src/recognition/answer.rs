@@ -53,8 +53,7 @@ impl<'a> Evidence<'a> {
         }
     }
 
-    /// The taxels fail like this. The prior then is that of every pose in every place on the matrix. Without a noise they
-    /// never fail.
+    /// Assumes that taxels fail as the noise says, and a prior uniform over poses and places. None: taxels never fail.
     #[must_use]
     pub fn under(self, noise: impl Into<Option<&'a Noise>>) -> Self {
         Self {
@@ -87,7 +86,7 @@ pub struct Answer {
     pub at_rim: bool,
     /// Every shape of positive probability, the likeliest first, equals in the order of the set.
     pub ranking: Vec<(usize, f64)>,
-    /// Which keys it took, of several touches the most.
+    /// Which keys were looked up; for several touches, by the touch that needed the most.
     pub method: Method,
 }
 

@@ -35,7 +35,7 @@ pub struct Evaluation {
     pub right: u128,
     /// Touches that only one shape can leave.
     pub certain: u128,
-    /// Touches whose most frequent shape is not the only one that is as frequent: named by the order of the set.
+    /// Touches whose greatest count two or more shapes share; the first of these in the set is the answer.
     pub tied: u128,
     /// Touches whose shape is one of the two most frequent.
     pub right_in_top_two: u128,

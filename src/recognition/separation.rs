@@ -300,11 +300,11 @@ impl Separation {
             .collect()
     }
 
-    /// Returns the smallest size that has at most this error: of a scan the first, then the first of nine values between
-    /// it and the one before. None if none of the scan has.
+    /// Returns the smallest size with at most this error. Takes the first such size of the scan, then tries nine values
+    /// between it and the size before. None if every size of the scan has a larger error.
     ///
-    /// The error is not monotonic: it falls with the size on the whole, but rises here and there, and between the values
-    /// that were looked at it may fall below what is wanted unseen. So this is the smallest size *of those that were
+    /// The error is not monotonic: it falls with the size on the whole, but rises here and there. Between the values
+    /// that were tried it may reach the wanted error unnoticed. So this is the smallest size *of those that were
     /// tried*.
     ///
     /// # Errors

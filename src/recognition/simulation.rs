@@ -42,8 +42,7 @@ impl RecognitionRate {
         (share * (1.0 - share) / float(self.touches.max(1))).sqrt()
     }
 
-    /// Returns the mean probability that the names were given: the accuracy, if the
-    /// noise that the classifier was given is the real one.
+    /// Returns the mean probability of the answers. It estimates the accuracy if the assumed noise is the real one.
     pub fn claimed(&self) -> f64 {
         self.claimed / float(self.touches.max(1))
     }

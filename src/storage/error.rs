@@ -89,7 +89,7 @@ pub enum LibraryError {
         name: String,
     },
     /// The name is taken.
-    #[error("{name:?} is there already")]
+    #[error("{name:?} already exists")]
     Exists {
         /// The name as the file has it.
         name: String,

@@ -94,8 +94,8 @@ impl ModelFolder {
         &self.0
     }
 
-    /// Returns the file of a model: that of the same name in other cases, if there is one, as for shapes. So a folder can
-    /// move to a file system that makes no difference between them.
+    /// Returns the file of a model. Upper and lower case are the same, as for shapes, so a folder can move to a file
+    /// system that ignores case.
     pub fn file(&self, name: &Name) -> PathBuf {
         self.path_of(&self.stored_name(name))
     }

@@ -1,6 +1,6 @@
 //! What the screen remembers between runs, in small files of the library's folder: a line an entry, the last one last.
 //!
-//! It is a convenience. What cannot be read is none, and what cannot be written is forgotten.
+//! Errors are ignored: a file that cannot be read counts as empty, and lines that cannot be written are dropped.
 
 use std::fs;
 use std::path::PathBuf;

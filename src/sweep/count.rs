@@ -1,5 +1,5 @@
-//! The distinct imprints of a grid and nothing about them but how often each occurs, and the poses that leave one of
-//! them: what models of recognition are made of.
+//! Counts the distinct imprints of a grid without describing them, and finds the poses that leave an imprint. Models
+//! are made from these counts.
 
 use crate::atlas::{ImprintCounter, Layout};
 use crate::imprint::Imprint;

@@ -121,11 +121,11 @@ fn what_is_unknown_or_unfit_is_refused_with_its_place() {
 fn changes_of_keys_that_would_surprise_are_refused_where_they_stand() {
     refused(
         "[keys.matrix]\n'<CR>' = 'toggle'\n'<Enter>' = 'undo'\n",
-        "3:1: <Enter> has been given a meaning here already",
+        "3:1: <Enter> is bound twice here",
     );
     refused(
         "[keys.matrix]\nx = 'undo'\nd = 'toggle'\n",
-        "3:1: d is the only key of \"delete\" here, which needs another one",
+        "3:1: d is the only key of \"delete\" here; give the action another key first",
     );
     refused(
         "keys.matrix.x = 'increase'\n",
@@ -133,7 +133,7 @@ fn changes_of_keys_that_would_surprise_are_refused_where_they_stand() {
     );
     refused(
         "[keys.list]\nj = 'scroll-down'\n",
-        "2:1: j is typed as text here; a key like <C-x> is not",
+        "2:1: j types text here; choose a key like <C-x>",
     );
     refused(
         "[keys.everywhere]\n'<C-c>' = 'none'\n",

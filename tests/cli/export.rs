@@ -149,7 +149,7 @@ fn standard_streams_take_part() {
 fn nothing_is_overwritten_unless_asked_for() {
     let folder = Folder::new();
     folder.write("old.svg", b"mine");
-    let there = "\"old.svg\" is there already; --force replaces it";
+    let there = "\"old.svg\" already exists; --force replaces it";
     refused(&folder.run("export washer old.svg"), 1, there);
     refused(&folder.run(&format!("{RING} --export old.svg")), 1, there);
     assert_eq!(folder.read("old.svg"), b"mine");
@@ -181,7 +181,7 @@ fn a_refusal_says_what_is_expected() {
     );
     misused(
         "export washer -",
-        "what goes to standard output needs a '--format'",
+        "writing to standard output needs '--format'",
     );
     misused(
         "export washer a.svg --format gif",
@@ -237,7 +237,7 @@ fn a_drawn_screen_has_its_theme_and_is_not_overwritten() {
     );
     assert!(dark.contains("fill=\"#1c1c1c\"/>") && dark.contains("fill=\"#87d787\"/>"));
     assert!(dark.contains("NA 52 in all</text>"));
-    let there = "\"./screen-1.svg\" is there already; --force replaces it";
+    let there = "\"./screen-1.svg\" already exists; --force replaces it";
     refused(&folder.run(line), 1, there);
     folder.write(
         "light.taxel",

@@ -113,7 +113,7 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
 fn an_existing_shape_is_replaced_by_force_only() {
     let shelf = Shelf::new();
     shelf.does("library|save|one|-", RING);
-    let taken = "\"one\" is there already; --force replaces it";
+    let taken = "\"one\" already exists; --force replaces it";
     let other = shelf.file("other.txt", "#");
     shelf.refuses(&format!("library|save|ONE|{other}"), taken);
     shelf.refuses("figure|hexagon|--save|one", taken);

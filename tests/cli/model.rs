@@ -294,7 +294,7 @@ fn a_training_is_taken_up_where_it_was_left() {
     let again = train(of);
     let kept = first
         .stdout
-        .replace("written: ", "kept, whole and of this study: ");
+        .replace("written: ", "kept, complete and of this study: ");
     assert_eq!((again.status, again.stdout), (Some(0), kept));
     assert!(place.read("part.npz") == written);
     for (more, reason) in [
@@ -360,7 +360,7 @@ fn models_have_names_and_cards() {
         "",
     );
     let there = format!(
-        "{:?} is there already; --force replaces it",
+        "{:?} already exists; --force replaces it",
         place.path("models/parts.npz")
     );
     refused(&run, 1, &there);
@@ -533,7 +533,7 @@ fn the_matrix_goes_into_files() {
     let table = place.done("model confusion m.npz --csv");
     assert_eq!(place.read("m.csv"), table.as_bytes());
     let run = place.run("model confusion m.npz --export m.svg", "");
-    refused(&run, 1, "\"m.svg\" is there already; --force replaces it");
+    refused(&run, 1, "\"m.svg\" already exists; --force replaces it");
     misused(
         "model confusion m.npz --export m.txt",
         "invalid value 'm.txt' for '--export <FILE>': expected a name that ends in .csv, .svg or .png",

@@ -95,7 +95,7 @@ fn people_read_names_bars_and_differences() {
     assert!(
         rejected
             .stdout
-            .starts_with("rejected: no shape is as probable as asked for\n"),
+            .starts_with("rejected: no shape reaches the probability of --reject\n"),
         "{}",
         rejected.stdout
     );
@@ -256,9 +256,9 @@ fn a_pose_is_told_in_cells_degrees_and_mm() {
         &BAR.replacen("........\n", "#.......\n", 1),
     );
     assert!(
-        noisy
-            .stdout
-            .ends_with("no pose: the shape leaves exactly this imprint in no pose of the model\n")
+        noisy.stdout.ends_with(
+            "no pose: the shape leaves this imprint in none of the poses of the model\n"
+        )
     );
     let unknown = answer(&place.run("recognise - --model r --pose --json", SPECK));
     assert!(unknown["pose"].is_null() && unknown.get("pose").is_some());

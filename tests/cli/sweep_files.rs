@@ -68,9 +68,9 @@ fn files_are_replaced_by_force_only() {
     );
     let first = fs::read(path("a.NPZ")).expect("written");
     fs::write(path("a.NPZ"), "mine").expect("written");
-    let there = format!("{:?} is there already; --force replaces it", path("a.NPZ"));
+    let there = format!("{:?} already exists; --force replaces it", path("a.NPZ"));
     refused(&sweep(&format!("--atlas {atlas}")), 1, &there);
-    let there = format!("{:?} is there already; --force replaces it", path("p.npy"));
+    let there = format!("{:?} already exists; --force replaces it", path("p.npy"));
     refused(&sweep(&format!("--poses {poses}")), 1, &there);
     assert_eq!(fs::read(path("a.NPZ")).ok().as_deref(), Some(&b"mine"[..]));
     assert_eq!(sweep(&format!("--atlas {atlas} --force")).status, Some(0));
@@ -80,7 +80,7 @@ fn files_are_replaced_by_force_only() {
     refused(
         &run,
         1,
-        &format!("{:?} is there already; --force replaces it", path("a.NPZ")),
+        &format!("{:?} already exists; --force replaces it", path("a.NPZ")),
     );
     let run = sweep(&format!("--poses {atlas}"));
     assert_eq!(run.status, Some(2));

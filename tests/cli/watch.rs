@@ -90,7 +90,7 @@ fn a_stream_is_a_filter_in_a_pipeline() {
     );
     // Numbers are of a known form, but these are no frame.
     let run = taxel("watch -", "1 2\n3\n\n");
-    let numbers = "7 bytes and no frame: rows, columns or format?";
+    let numbers = "7 bytes but no frame; check --rows, --columns and --format";
     assert!(run.stderr.contains(numbers), "{}", run.stderr);
     misused("watch - --once --speed 2", "the argument '--once'");
     misused("watch - --write touch.txt", "invalid value 'touch.txt'");

@@ -85,7 +85,7 @@ fn of_two_recordings_in_one_file_the_later_is_refused() {
     let both = || [file.clone(), file.with_extension("json")].map(|path| fs::read(path).ok());
     let before = both();
     let error = late.add(&frame, None).expect_err("the file is there");
-    assert!(error.to_string().contains("is there already"), "{error}");
+    assert!(error.to_string().contains("already exists"), "{error}");
     assert!(late.describe(&RecordingMetadata::default()).is_ok());
     assert_eq!(late.finish().expect("nothing to write"), 0);
     assert_eq!(both(), before);

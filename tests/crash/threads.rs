@@ -74,6 +74,6 @@ pub(crate) fn refused() -> String {
     let run = alone("watch touch.txt --format lines --at-least 2 --json", folder);
     assert_eq!(run.status.code(), Some(1), "{run:?}");
     let message = String::from_utf8_lossy(&run.stderr).into_owned();
-    assert!(message.contains("the system gives no thread"), "{message}");
+    assert!(message.contains("cannot start a thread"), "{message}");
     "the same answers on one thread; a stream says that it cannot be written".to_owned()
 }

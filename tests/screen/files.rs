@@ -46,7 +46,7 @@ fn the_matrix_is_written_by_the_ending_and_opened_by_the_content() {
     then(
         &mut session,
         &format!(":export {place}/made.txt<Enter>"),
-        &["is there already. Replace it?"],
+        &["already exists. Replace it?"],
     );
     then(&mut session, "y", &["written: "]);
     let drawing = std::fs::read_to_string(folder.path().join("made.svg")).expect("written");

@@ -163,7 +163,10 @@ fn export() -> Command {
 /// `--format`, for names whose ending does not show the form.
 fn format() -> Arg {
     let names = export::names();
-    let help = format!("Its form, if not that of its ending: {}", names.join(", "));
+    let help = format!(
+        "Format, if not given by the extension: {}",
+        names.join(", ")
+    );
     Arg::new("format")
         .long("format")
         .value_name("FORMAT")

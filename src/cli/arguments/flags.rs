@@ -126,7 +126,7 @@ pub(super) fn memory_of(matches: &ArgMatches) -> Option<MemorySize> {
 
 /// `--shard`, for work that several machines share.
 pub(super) fn shard() -> Arg {
-    option("shard", "K/N", "Do this piece of the grid only").value_parser(parse_shard)
+    option("shard", "K/N", "Compute only shard K of N of the grid").value_parser(parse_shard)
 }
 
 /// The value of [`shard`]; the whole grid if it is not given.
@@ -138,7 +138,7 @@ pub(super) fn shard_of(matches: &ArgMatches) -> Shard {
 pub(super) fn resume() -> Arg {
     switch(
         "resume",
-        "Skip it if the file is whole and of this study;\nrefuse any other file",
+        "Skip the shard if its file is complete and fits;\nrefuse any other file",
     )
     .conflicts_with("force")
 }
@@ -218,7 +218,7 @@ pub(super) fn what(help: &'static str) -> Arg {
 
 /// `--json`.
 pub(super) fn json() -> Arg {
-    switch("json", "Answer in one line of JSON")
+    switch("json", "Print JSON, one line per answer")
 }
 
 /// How an evaluation is printed.

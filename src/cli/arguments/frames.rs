@@ -178,7 +178,7 @@ pub(crate) fn processing() -> [Arg; 9] {
             "Subtract the median of each cell over N frames",
         )
         .value_parser(whole::<u64>(0..)),
-        text("gain", "FILE", "Table of what each cell is multiplied by")
+        text("gain", "FILE", "Table of factors, one for each cell")
             .value_parser(value_parser!(PathBuf)),
     ]
     .map(|arg| arg.help_heading("Processing"))

@@ -72,7 +72,7 @@ Examples:
 
 /// `taxel export`: the forms that can be written.
 pub(crate) const EXPORT_EXAMPLES: &str = "\
-The ending of TO decides the form:
+The extension of TO decides the format:
   .txt  rows of '#' and '.'         .svg  a drawing: matrix, outline where it is
   .pbm  a bitmap, P4                      known, rectangle, CG, CD, axes, legend
   .csv  a table of 0 and 1          .png  the same in pixels, 288 an inch
@@ -121,7 +121,7 @@ pub(crate) const SCRIPT_EXAMPLES: &str = r#"One command a line; places are colum
   Expect /re/         ExpectNot /re/      ExpectAt 3,10 "text"
   ExpectStyle 3,10 reverse
   Source touch.csv    Frames 3  (watch a recording, and take its next 3 frames)
-Quit succeeds if the program has ended. Without --library the script has an
+Quit checks that the program has ended. Without --library the script has an
 empty library of its own. It writes files only below its own folder, and
 replaces none that was there before; --allow-outside, for scripts that you
 trust, lets it write anywhere and set a library.
@@ -189,10 +189,9 @@ pub(crate) const SWEEP_EXAMPLES: &str = "\
 A range is START:END:STEP with the end included, or one number; decimals are
 exact. A range that is not given has the paper's resolution: one cell by
 hundredths and every whole degree, 3.6 million poses. Figures start at x0 = y0 =
-5, pictures at the cell that they lie in; if the sensor would cut off the shape
-there in any of the angles, a cell around the middle is taken. The ranges that
-were taken are printed. Figures are solid, the sensor is 16 x 16; that of a
-picture is its own. --force replaces existing files.
+5, pictures in the cell that they lie in. If the sensor would cut the shape off
+there at any angle, a cell near the middle is used. The sweep prints its ranges.
+Figures are solid without --thickness. A picture keeps its own sensor.
 
 Examples:
   taxel sweep rectangle --length 6 --width 3
@@ -242,7 +241,7 @@ Examples:
 
 /// `taxel model show`: what a card says.
 pub(crate) const MODEL_SHOW_EXAMPLES: &str = "\
-The card says what was trained and how well one touch tells the shapes apart.
+Prints shapes, sensor and poses, and how well one touch tells the shapes apart.
 
 Examples:
   taxel model show parts
@@ -308,7 +307,7 @@ Examples:
 pub(crate) const RECOGNISE_EXAMPLES: &str = "\
 Reads an imprint in any form that 'taxel describe' reads, or lines of JSON, each
 {\"imprint\":[\"..##\",...]} or, for several touches of one shape,
-{\"touches\":[[...],[...]]}. Lines are answered in lines; other keys are ignored,
+{\"touches\":[[...],[...]]}. Each line gets one line back; other keys are ignored,
 except frame, label, time and channel, which are copied. An imprint at the rim
 may be cut off and is never 'certain'. With --noise an imprint that no shape
 leaves is answered too: every key in every place on the matrix is compared.
@@ -327,8 +326,8 @@ pub(crate) const LIBRARY_EXAMPLES: &str = "\
 A library is a folder with one JSON file a shape. The shapes that come with the
 program are always listed; they can be copied, not changed. A name has 1 to 64
 letters, digits, spaces, '-', '_', '.'; upper and lower case are the same.
-Without --library the folder is that of the variable TAXEL_LIBRARY, else 'taxel'
-among the user's data.
+Without --library the folder is TAXEL_LIBRARY, else the 'library' of the
+settings, else ~/.local/share/taxel/library.
 
 Examples:
   taxel library list
@@ -399,7 +398,7 @@ Examples:
 pub(crate) const FRAMES_EXAMPLES: &str = "\
 A recording is a file of Tekscan, XSENSOR, emed or zebris, PoPu, MCAP, NPY, NPZ,
 JSON lines, what 'ros2 topic echo' prints, or a table of numbers; its content
-decides which. Without a choice of frames its channels are listed. Frames are
+decides which. Without a flag under Frames its channels are listed. Frames are
 cropped, flipped, turned and masked, then tared, then multiplied by the gain;
 then the threshold makes the imprint. Values are in the recording's own unit.
 

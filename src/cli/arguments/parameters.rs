@@ -59,6 +59,11 @@ pub(crate) fn arg_with_own(parameter: Parameter) -> Arg {
     }
 }
 
+/// The flag of a side of the sensor that, without it, is large enough for all shapes of a model.
+pub(crate) fn arg_fitting(side: Parameter) -> Arg {
+    arg_with(side, "; default large enough for all shapes, at least 16")
+}
+
 /// The flag of a parameter; `default` is the end of its help.
 fn arg_with(parameter: Parameter, default: &str) -> Arg {
     let row = parameter.row();

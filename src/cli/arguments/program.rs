@@ -77,7 +77,7 @@ pub(crate) fn script() -> Command {
     let keys = Arg::new("keys")
         .short('k')
         .value_name("KEYS")
-        .help("Keys to press first; without a script the screen follows");
+        .help("Keys to press first; without a script, print the screen");
     let styles = switch("styles", "Screens with a grid of style letters");
     let json = switch("json", "Screens as lines of JSON");
     let svg = option(
@@ -89,7 +89,7 @@ pub(crate) fn script() -> Command {
     let force = switch("force", "Replace existing drawings").requires("svg");
     let allow_outside = switch(
         "allow-outside",
-        "Let it write outside its folder, and set a library",
+        "Let the script write anywhere and set a library",
     );
     Command::new("script")
         .about("Drive the screen without a terminal")
@@ -192,5 +192,5 @@ fn parse_size(text: &str) -> Result<(u16, u16), String> {
 /// `--ascii`. [`Charset`](crate::cli::output::charset::Charset) has looked for it before clap does, because messages
 /// about wrong arguments need it; this declares it for the help and for the screen.
 pub(crate) fn ascii() -> Arg {
-    switch("ascii", "Use ASCII only, as where the locale is not UTF-8")
+    switch("ascii", "Use ASCII only, as if the locale were not UTF-8")
 }

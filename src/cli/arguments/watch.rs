@@ -82,7 +82,7 @@ pub(crate) fn command() -> Command {
     )
     .value_parser(flags::parse_npy);
     Command::new("watch")
-        .about("Answer the frames of a sensor, live or played back")
+        .about("Show or describe the frames of a sensor, live or played back")
         .after_help(WATCH_EXAMPLES)
         .arg(source)
         .args([format, baud, once, again, speed].map(|arg| arg.help_heading("Source")))

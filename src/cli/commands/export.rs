@@ -82,7 +82,7 @@ impl Export {
         let is_standard = path.as_os_str() == "-";
         let format = format.ok_or_else(|| {
             if is_standard {
-                return "what goes to standard output needs a '--format'".to_owned();
+                return "writing to standard output needs '--format'".to_owned();
             }
             format!(
                 "'{}': expected a name that ends in .txt, .pbm, .csv, .npy, .svg or .png, or a '--format'",

@@ -16,7 +16,7 @@ use crate::storage::{ArchiveFileError, load_atlas, load_model};
 use crate::sweep::{Shard, SweepResult};
 
 /// What is said before the name of a file that is there already.
-pub(crate) const KEPT: &str = "kept, whole and of this study";
+pub(crate) const KEPT: &str = "kept, complete and of this study";
 
 /// The atlas of a shard that was swept before; None if there is no such file.
 ///

@@ -472,9 +472,9 @@ impl Watcher<'_> {
                 name: self.name.clone(),
                 error: RecordingError::Unknown,
             }),
-            Some(0) => {
-                Err(self.refused("bytes, but not how many a frame: name --rows and --columns"))
-            }
+            Some(0) => Err(self.refused(
+                "the stream does not state the size of a frame; give --rows and --columns",
+            )),
             Some(values) => Err(CliError::Recording {
                 name: self.name.clone(),
                 error: RecordingError::Shape { values },
@@ -518,7 +518,7 @@ impl Watcher<'_> {
             }
             let bytes = grouped(counts.bytes);
             return Err(self.refused(&format!(
-                "{bytes} bytes and no frame: rows, columns or format?"
+                "{bytes} bytes but no frame; check --rows, --columns and --format"
             )));
         }
         Ok(())

@@ -155,7 +155,7 @@ impl AnswerText<'_> {
                 format!("{}: tied\n", tied.join(" or "))
             }
             (AnswerState::Rejected, _) => {
-                "rejected: no shape is as probable as asked for\n".to_owned()
+                "rejected: no shape reaches the probability of --reject\n".to_owned()
             }
             (state, Some(shape)) => format!("{}: {}\n", self.name(shape), state.name()),
             (_, None) => "unknown: no shape of the model leaves this imprint\n".to_owned(),

@@ -38,8 +38,7 @@ impl LineWriter {
     ) -> Result<Self, CliError> {
         let (lines, receiver) = sync_channel(WAITING);
         let thread = Builder::new().spawn(move || run(&WaitingLines(receiver)));
-        let refused =
-            |error| io::Error::other(format!("the system gives no thread for it: {error}"));
+        let refused = |error| io::Error::other(format!("cannot start a thread: {error}"));
         Ok(Self {
             lines,
             thread: thread.map_err(|error| CliError::Write(refused(error)))?,

@@ -131,7 +131,7 @@ fn channel_lines(channel: &ListedChannel) -> Vec<String> {
             counted(channel.cells as u64, "cell")
         ),
         None => format!(
-            "{} in rows and columns to be named with --rows and --columns",
+            "{} a frame; give --rows and --columns",
             counted(channel.values, "value")
         ),
     };

@@ -328,7 +328,7 @@ impl Effective {
                 let whole = std::path::absolute(folder).unwrap_or_else(|_| folder.clone());
                 format!("library = {}", quoted(&whole.to_string_lossy()))
             }
-            None => "# no library: there is no home".to_owned(),
+            None => "# no library: no home folder".to_owned(),
         };
         line(&library, &self.library.origin);
         text + "\n[sensor]\n"

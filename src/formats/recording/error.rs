@@ -24,9 +24,7 @@ pub enum RecordingError {
     },
     /// The file does not say how its values are arranged.
     /// A list of cells, without rows. The numbers can be named with [`ReadOptions`](super::ReadOptions).
-    #[error(
-        "{values} values a frame, but not in how many rows and columns: name them with --rows and --columns"
-    )]
+    #[error("{values} values a frame, but no rows and columns; give --rows and --columns")]
     Shape {
         /// How many values a frame has.
         values: u64,

@@ -342,7 +342,7 @@ fn on_worker(app: &mut App, event: WorkerEvent) {
         WorkerEvent::Live(number, event) => live::update::on_worker(app, number, &event),
         WorkerEvent::Refused(reason) => refuse(app, reason),
         WorkerEvent::Waiting(what) => app.waiting = what,
-        WorkerEvent::GivenUp(what) => inform(app, format!("{what}: no longer waited for")),
+        WorkerEvent::GivenUp(what) => inform(app, format!("{what}: stopped waiting")),
         // The runtime takes the answer itself.
         WorkerEvent::Answered => {}
     }

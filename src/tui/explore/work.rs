@@ -209,7 +209,7 @@ pub(in crate::tui) fn on_written(app: &mut App, number: u64, name: &str) {
 /// Asks whether a file that exists is to be replaced.
 pub(in crate::tui) fn on_existing(app: &mut App, number: u64, name: String) {
     if let Some(place) = finish(app, number) {
-        let text = format!("{name} is there already. Replace it?");
+        let text = format!("{name} already exists. Replace it?");
         let yes = Message::Explore(ExploreMessage::Write(name, Existing::Replaced));
         ask(app, place, Dialog::Question(Question::new(text, yes)));
     }

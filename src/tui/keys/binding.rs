@@ -123,9 +123,9 @@ contexts! {
     /// At a yes-or-no question.
     Question "question" "At a question" Ignored, EVERYWHERE;
     /// In the list of keys.
-    Help "help" "In this list" Ignored, EVERYWHERE;
+    Help "help" "In the help" Ignored, EVERYWHERE;
     /// In the field for what is searched for in that list.
-    Search "search" "Searching in this list" Typed, LINE;
+    Search "search" "Searching the help" Typed, LINE;
     /// In any field that is typed into, unless its page gives the key another meaning.
     Line "line" "In a line of text" Typed, EVERYWHERE;
     /// Everywhere, unless the key means something else there.

@@ -83,7 +83,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "" "copy descriptors, imprint to your terminal's clipboard";
         [Char('m') => MOUSE] "" "the mouse sets taxels, or selects text";
         [Char(':') => COMMAND] "" "type a command";
-        [Char('?') => HELP] "help" "Help: this list";
+        [Char('?') => HELP] "help" "Help: all keys";
     }
 
     /// Only what differs from the matrix: any other key does what it does there.
@@ -162,7 +162,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     Command {
         [Enter => ACCEPT] "run" "run the command";
         [Tab => NEXT] "complete" "complete the word";
-        [UP => UP, DOWN => DOWN] "earlier" "earlier commands, those that are offered";
+        [UP => UP, DOWN => DOWN] "earlier" "earlier commands; choose a completion";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "run nothing";
         [F1 => HELP] "help" "these keys";
     }
@@ -170,7 +170,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     Ranges {
         [Tab => NEXT, BackTab => PREVIOUS] "field" "next, previous field";
         [LEFT => LEFT, RIGHT => RIGHT, UP => UP, DOWN => DOWN]
-            "" "move in a field, to other fields; the other anchor";
+            "" "move within and between fields; change the anchor";
         [Enter => ACCEPT] "start" "sweep all poses; refused while a range is invalid";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "close it and change nothing";
         [Char('?') => HELP] "help" "these keys";
@@ -313,7 +313,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('v') => CONFUSION] "confusion" "which shapes are taken for which";
         [Char('V') => SEPARATE] "" "the error against the size of the shapes";
         [Char('P') => POSES] "" "outlines of the likeliest pose and of others";
-        [Enter => ACCEPT] "" "train the set, after that was stopped";
+        [Enter => ACCEPT] "" "train the set after a stop";
         [Esc => CANCEL, Char('r') => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]
             "close" "stop training; back to the descriptors";
     }
@@ -324,7 +324,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten shapes back, on";
         [Home => FIRST, End => LAST] "" "first, last shape";
         [Enter => ACCEPT] "name it" "name the shape, or 1 to 9";
-        [Char(' ') => TOUCH] "again" "it touches again, in another pose";
+        [Char(' ') => TOUCH] "again" "touch again, in another pose";
         [Tab => PANEL] "list" "on a narrow screen: list or matrix";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "give up" "show which shape it was";
         [F1 => HELP] "help" "these keys";
@@ -346,10 +346,10 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten sizes back, on";
         [Home => FIRST, End => LAST] "" "first, last size";
         [Char('+') => HIGHER_ERROR, Char('=') => HIGHER_ERROR, Char('-') => LOWER_ERROR]
-            "error" "look for a larger, a smaller error";
+            "error" "raise, lower the wanted error";
         [Char('x') => EXPORT] "export" "write a file: .csv numbers, .svg .png curve";
         [Enter => ACCEPT] "to matrix" "put the imprint that is confused onto the matrix";
-        [Char('V') => SEPARATE] "" "go on after that was stopped";
+        [Char('V') => SEPARATE] "" "go on after a stop";
         [Char('?') => HELP] "help" "these keys";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]
             "close" "stop the work; back to the matrix";

@@ -46,16 +46,16 @@ pub enum KeymapError {
     #[error("{WAY_OUT} always closes what is open and cannot be changed")]
     WayOut,
     /// A letter where text is typed.
-    #[error("{0} is typed as text here; a key like <C-x> is not")]
+    #[error("{0} types text here; choose a key like <C-x>")]
     Text(Key),
     /// The key is changed twice.
-    #[error("{0} has been given a meaning here already")]
+    #[error("{0} is bound twice here")]
     Twice(Key),
     /// The place does not have the action.
     #[error("{0:?} is not an action of this place; 'taxel config' lists them")]
     Elsewhere(&'static str),
     /// The former action of the key would have no key left.
-    #[error("{key} is the only key of {action:?} here, which needs another one")]
+    #[error("{key} is the only key of {action:?} here; give the action another key first")]
     LastKey {
         /// The key.
         key: Key,
@@ -375,23 +375,20 @@ mod tests {
             ),
             (
                 change(List, "j", "scroll-down"),
-                "j is typed as text here; a key like <C-x> is not",
+                "j types text here; choose a key like <C-x>",
             ),
             (
                 change(Everywhere, "r", "redraw"),
-                "r is typed as text here; a key like <C-x> is not",
+                "r types text here; choose a key like <C-x>",
             ),
-            (
-                change(Matrix, "x", "undo"),
-                "x has been given a meaning here already",
-            ),
+            (change(Matrix, "x", "undo"), "x is bound twice here"),
             (
                 change(Matrix, "a", "increase"),
                 "\"increase\" is not an action of this place; 'taxel config' lists them",
             ),
             (
                 change(Matrix, "d", "undo"),
-                "d is the only key of \"delete\" here, which needs another one",
+                "d is the only key of \"delete\" here; give the action another key first",
             ),
         ] {
             let expected = (1, message.to_owned());

@@ -100,7 +100,7 @@ pub(in crate::tui) fn on_file(app: &mut App, answer: FileEvent) -> Option<Effect
         },
         FileEvent::Written(path) => inform(app, format!("written: {path}")),
         FileEvent::Exists(name, content) => {
-            let text = format!("{name} is there already. Replace it?");
+            let text = format!("{name} already exists. Replace it?");
             let yes = Message::Overwrite(name, content);
             app.dialogs.push(Dialog::Question(Question::new(text, yes)));
         }

@@ -128,7 +128,7 @@ fn show_poses(app: &mut App) {
         app,
         match (seen, none) {
             (true, _) => "without poses",
-            (false, true) => "no pose: nothing that the set knows touches the matrix",
+            (false, true) => "no pose: no shape of the set leaves this imprint",
             (false, false) => "the likeliest pose; others of the 95 % faintly",
         },
     );
@@ -310,7 +310,7 @@ pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) {
         RecognitionEvent::Begun(number, poses) => page.take_poses(number, poses),
         RecognitionEvent::GivenUp(number, what) => {
             page.leave_model(number);
-            inform(app, format!("{what}: no longer waited for"));
+            inform(app, format!("{what}: stopped waiting"));
         }
         RecognitionEvent::Prepared(prepared) => {
             if let Some(reason) = page.take_model(*prepared) {

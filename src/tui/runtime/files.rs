@@ -33,7 +33,7 @@ pub(in crate::tui) fn perform(request: FileRequest, access: &WriteAccess) -> Fil
 
 /// A shape, or an imprint in any form.
 fn open(name: &str) -> Result<OpenedFile, String> {
-    let path = location::below_home(name).ok_or("there is no home, expected a path without ~")?;
+    let path = location::below_home(name).ok_or("no home folder, so ~ cannot be used")?;
     let sentence = |error: std::io::Error| error.to_string();
     let kind = fs::metadata(&path).map_err(sentence)?;
     if !kind.is_file() {

@@ -121,7 +121,7 @@ impl FrameWatcher {
             });
         });
         if let Err(error) = thread {
-            let reason = format!("the system gives no thread for it: {error}");
+            let reason = format!("cannot start a thread: {error}");
             let recording = locked(&watched.feed.recording).take();
             watched.feed.change(|pending| {
                 pending.batch.status.state = SourceState::Failed(reason.clone());

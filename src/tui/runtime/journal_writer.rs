@@ -97,8 +97,7 @@ impl JournalWriter {
     /// Reports errors to `post` from now on.
     pub(in crate::tui) fn report_to(&self, post: WorkerEventSink) {
         if let Some(error) = &self.refused {
-            let message =
-                format!("unsaved work cannot be kept: the system gives no thread: {error}");
+            let message = format!("unsaved work cannot be kept: cannot start a thread: {error}");
             post(WorkerEvent::Refused(message));
         }
         self.send(JournalRequest::ReportTo(post));

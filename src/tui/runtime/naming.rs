@@ -90,7 +90,7 @@ impl ShapeNamer {
         match thread {
             Ok(thread) => self.thread = Some(thread),
             Err(error) => {
-                let reason = format!("the system gives no thread for it: {error}");
+                let reason = format!("cannot start a thread: {error}");
                 refused(WorkerEvent::Live(number, LiveEvent::NotNamed(by, reason)));
             }
         }

@@ -72,7 +72,7 @@ pub(super) fn on_a_thread(
     let own = Arc::clone(post);
     let thread = Builder::new().spawn(move || threads::run(|| work(&own)));
     thread.map_err(|error| {
-        let message = format!("the system gives no thread for it: {error}");
+        let message = format!("cannot start a thread: {error}");
         WorkerEvent::Failed(number, message)
     })
 }

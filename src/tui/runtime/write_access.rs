@@ -35,7 +35,7 @@ impl WriteAccess {
     pub(super) fn path(&self, name: &str, existing: Existing) -> Result<PathBuf, String> {
         let Some(folder) = &self.folder else {
             return location::below_home(name)
-                .ok_or_else(|| format!("{name}: there is no home, expected a path without ~"));
+                .ok_or_else(|| format!("{name}: no home folder, so ~ cannot be used"));
         };
         let path = inside(folder, name).ok_or_else(|| {
             format!(

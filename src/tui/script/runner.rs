@@ -52,7 +52,7 @@ pub enum ScriptFailure {
     #[error("the script's own library: {0}")]
     World(String),
     /// Nobody takes any more of what is printed.
-    #[error("stopped by whoever reads it")]
+    #[error("stopped: nobody reads the output any more")]
     Stopped,
     /// The program ended before the script.
     #[error("line {line}: the program had already ended")]

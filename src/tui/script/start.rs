@@ -121,7 +121,7 @@ impl<'a> ScriptStart<'a> {
             }
             ScriptSetting::Library(folder) => {
                 let folder = location::below_home(&folder.to_string_lossy())
-                    .ok_or("there is no home, expected a path without ~")?;
+                    .ok_or("no home folder, so ~ cannot be used")?;
                 self.library = Some((line, Library::open(folder)));
             }
             ScriptSetting::Shape(_) => {}

@@ -74,10 +74,7 @@ fn upper_and_lower_case_are_one_name() {
     let saved = scratch
         .library
         .save(&shape("washing LINE", 3), Expected::Nothing);
-    assert_eq!(
-        refusal(saved, &scratch),
-        "\"Washing Line\" is there already"
-    );
+    assert_eq!(refusal(saved, &scratch), "\"Washing Line\" already exists");
     let stamp = scratch.library.load("WASHING line").expect("loaded").stamp;
     let replaced = scratch
         .library

@@ -68,16 +68,16 @@ fn a_file_that_is_there_is_asked_about() {
     program.press(SHORT);
     program.until("pentagon: 600 poses");
     export(&mut program.session, &path);
-    program.until("is there already. Replace it?");
+    program.until("already exists. Replace it?");
     program.press("n");
     assert_eq!(std::fs::read(&path).ok().as_deref(), Some(&b"mine"[..]));
     export(&mut program.session, &path);
-    program.until("is there already. Replace it?");
+    program.until("already exists. Replace it?");
     program.press("n");
     // Help that lies over the work gives way to the question.
     export(&mut program.session, &path);
     program.press("<F1>");
-    program.until("is there already. Replace it?");
+    program.until("already exists. Replace it?");
     shows(&program.session, &["pentagon: 600 poses"]);
     program.press("y");
     program.until("written: ");
@@ -130,7 +130,7 @@ fn a_plot_is_written_as_a_drawing() {
     let path = folder.path().join("6.svg");
     std::fs::write(&path, "mine").expect("written");
     export(&mut session, &path);
-    shows(&session, &["is there already. Replace it?"]);
+    shows(&session, &["already exists. Replace it?"]);
     press(&mut session, "n");
     assert_eq!(std::fs::read(&path).ok().as_deref(), Some(&b"mine"[..]));
     export(&mut session, &path);

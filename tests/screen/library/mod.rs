@@ -64,7 +64,7 @@ fn names_are_checked_while_they_are_typed() {
 #[test]
 fn saving_over_another_shape_asks() {
     let mut session = session("<Space>sone<Enter>n<Space><Right><Space>sone<Enter>");
-    shows(&session, &["\"one\" is there already. Replace it? (y/n)"]);
+    shows(&session, &["\"one\" already exists. Replace it? (y/n)"]);
     then(&mut session, "nlone<Enter>", &["NA 1 in all"]);
     // One's own shape too, and a name in other letters is the same name.
     then(
@@ -76,7 +76,7 @@ fn saving_over_another_shape_asks() {
     then(
         &mut session,
         "n<Space>sOne<Enter>",
-        &["\"one\" is there already"],
+        &["\"one\" already exists"],
     );
     then(&mut session, "ynlone<Enter>", &["NA 1 in all"]);
 }

@@ -118,7 +118,7 @@ fn threads_that_cannot_be_started_are_done_without() {
         program.types(b":explore --x0 0:0.99:0.1 --y0 0 --angle 0\r");
         program.until("a sweep or a reason", |program| {
             let screen = program.screen().contents();
-            screen.contains("distinct") || screen.contains("the system gives no thread")
+            screen.contains("distinct") || screen.contains("cannot start a thread")
         });
         program.types(b"\x1b\x1b");
         program.types(b"\x1b");

@@ -344,7 +344,7 @@ fn frames_are_recorded_where_the_system_gives_no_more_threads() {
     assert!(is_ended(&file));
     // Nor one that names imprints.
     watched.program.types(b"n");
-    watched.program.shows("the system gives no thread for it");
+    watched.program.shows("cannot start a thread");
     watched.sends(6..8);
     watched.program.shows("frame 7");
     watched.ends();
@@ -360,7 +360,7 @@ fn a_source_without_a_thread_is_said_not_to_be_read() {
         return;
     };
     program.types(format!(":watch {}\r", source.display()).as_bytes());
-    program.shows("the system gives no thread for it");
+    program.shows("cannot start a thread");
     program.types(b"\x1b");
     program.shows("? Help");
     // It is read when there are threads again.
@@ -483,7 +483,7 @@ fn a_recording_that_cannot_be_begun_opens_no_page() {
     let folder = folder.path();
     fs::write(folder.join("touch.txt"), frames(0..3)).expect("written");
     fs::write(folder.join("old.npy"), "mine").expect("written");
-    let there = "error: old.npy is there already; --force replaces it";
+    let there = "error: old.npy already exists; --force replaces it";
     is_refused(folder, "touch.txt --write old.npy", there);
     let missing = "error: no/new.npy: cannot record: No such file or directory (os error 2)";
     is_refused(folder, "touch.txt --write no/new.npy", missing);

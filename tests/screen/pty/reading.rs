@@ -93,7 +93,7 @@ fn esc_gives_up_waiting() {
         program.types(b"l");
         program.shows("Listing the shapes: waiting for the disk");
         program.types(b"\x1b");
-        program.shows("Listing the shapes: no longer waited for");
+        program.shows("Listing the shapes: stopped waiting");
     }
     program.types(b" ");
     program.shows("NA 1 in all");
@@ -145,7 +145,7 @@ fn a_file_that_is_not_waited_for_is_not_opened() {
     program.types(command.as_bytes());
     program.shows("waiting for the disk; Esc gives up");
     program.types(b"\x1b");
-    program.shows("no longer waited for");
+    program.shows("stopped waiting");
     hanging.end();
     program.types(b" ");
     program.shows("NA 1 in all");
@@ -222,7 +222,7 @@ fn the_end_does_not_wait_for_a_model() {
     program.types(b":recognise own\r");
     program.shows("being read");
     program.types(b"\x1b");
-    program.shows("Reading model own: no longer waited for");
+    program.shows("Reading model own: stopped waiting");
     program.types(b"\x1b");
     program.shows("? Help");
     program.types(b"q");
@@ -247,7 +247,7 @@ fn a_model_is_waited_for_like_all_that_is_read() {
     program.types(b" ");
     program.shows("NA 1 in all");
     program.types(b"\x1b");
-    program.shows("no longer waited for");
+    program.shows("stopped waiting");
     program.shows("not read; Enter reads it");
     program.types(b"\r");
     program.shows(waiting);

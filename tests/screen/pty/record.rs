@@ -193,7 +193,7 @@ fn a_record_does_not_replace_a_file() {
     let shown = file.display();
     assert_eq!(output.status.code(), Some(1));
     assert!(
-        told.starts_with(&format!("error: {shown} is there already")),
+        told.starts_with(&format!("error: {shown} already exists")),
         "{told}"
     );
     assert!(told.contains("walk-3.taxel would be a new one"), "{told}");

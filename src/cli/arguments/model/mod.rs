@@ -82,7 +82,7 @@ impl ModelRequest {
 /// `taxel model` with its subcommands.
 pub(super) fn command() -> Command {
     let show = Command::new("show")
-        .about("Show the card of a model")
+        .about("Show what a model was trained on, and its error")
         .after_help(MODEL_SHOW_EXAMPLES)
         .args([which_model(), json()]);
     let list = Command::new("list")

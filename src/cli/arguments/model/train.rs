@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{ArgGroup, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
 
 use crate::cli::arguments::flags::{
     self, anchor, jobs, json, memory, option, parse_name, quiet, range, replace, resume,
@@ -10,7 +10,7 @@ use crate::cli::arguments::flags::{
 };
 use crate::cli::arguments::help::MODEL_TRAIN_EXAMPLES;
 use crate::cli::arguments::model::shape_set::{self, SetArguments};
-use crate::cli::arguments::parameters::{Given, ShardFile};
+use crate::cli::arguments::parameters::{self, Given, ShardFile};
 use crate::cli::error::CliError;
 use crate::formats::Name;
 use crate::memory::MemorySize;
@@ -95,6 +95,10 @@ pub(super) fn command() -> Command {
         .arg(shape_set::positions())
         .arg(anchor)
         .args(sensor_of_imprints())
+        .mut_arg(Parameter::Columns.row().key, |_| {
+            fitting(Parameter::Columns)
+        })
+        .mut_arg(Parameter::Rows.row().key, |_| fitting(Parameter::Rows))
         .args([
             allow_cut,
             jobs(),
@@ -105,6 +109,11 @@ pub(super) fn command() -> Command {
             json(),
             quiet(),
         ])
+}
+
+/// The flag of a side of the sensor.
+fn fitting(side: Parameter) -> Arg {
+    parameters::arg_fitting(side).help_heading("Sensor")
 }
 
 impl TrainArguments {
