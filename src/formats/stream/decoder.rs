@@ -22,6 +22,9 @@ const LOOKED_AT: usize = 1 << 16;
 /// Bytes in which two markers of the largest frames are found.
 const MARKERS_IN: usize = 3 * (512 * 512 + 2) + 3;
 
+/// What some programs put before a text.
+const MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// Decodes a stream, piece by piece.
 #[derive(Debug)]
 pub struct StreamDecoder {
@@ -35,6 +38,8 @@ pub struct StreamDecoder {
     bytes: Vec<u8>,
     /// Inside of a line that is too long.
     skipping: bool,
+    /// Whether the next line is the first one.
+    first: bool,
     /// Whether the first line may lack its beginning.
     torn: bool,
     /// The time from which those of frames count, once there is one.
@@ -69,6 +74,7 @@ impl StreamDecoder {
             state: State::Looking(FormSearch::default()),
             bytes: Vec::new(),
             skipping: false,
+            first: true,
             torn: !options.from_start,
             start: None,
         };
@@ -111,7 +117,7 @@ impl StreamDecoder {
 
     fn reset(&mut self, format: Option<StreamFormat>, from_start: bool) {
         self.bytes.clear();
-        (self.skipping, self.torn) = (false, !from_start);
+        (self.skipping, self.first, self.torn) = (false, true, !from_start);
         if let State::Json(decoder) = &self.state {
             self.start = decoder.start();
         }
@@ -159,11 +165,12 @@ impl StreamDecoder {
     pub fn finish(&mut self, sink: &mut StreamSink<'_>) {
         self.look(true, sink);
         let torn = std::mem::take(&mut self.bytes);
+        let torn = self.without_mark(&torn);
         match &mut self.state {
-            State::Lines(decoder) => decoder.finish(&torn, &mut self.counts, sink),
-            State::Json(decoder) => decoder.line(&torn, &mut self.counts, sink),
+            State::Lines(decoder) => decoder.finish(torn, &mut self.counts, sink),
+            State::Json(decoder) => decoder.line(torn, &mut self.counts, sink),
             State::Ros(decoder) => {
-                decoder.line(&torn, &mut self.counts, sink);
+                decoder.line(torn, &mut self.counts, sink);
                 decoder.finish(&mut self.counts, sink);
             }
             State::Flexitac(decoder) => decoder.finish(&mut self.counts, sink),
@@ -206,6 +213,7 @@ impl StreamDecoder {
 
     /// Decodes a line without its end; the first one of a stream that was joined late is passed over.
     fn line(&mut self, line: &[u8], sink: &mut StreamSink<'_>) {
+        let line = self.without_mark(line);
         if std::mem::take(&mut self.torn) {
             return;
         }
@@ -215,6 +223,12 @@ impl StreamDecoder {
             State::Ros(decoder) => decoder.line(line, &mut self.counts, sink),
             _ => {}
         }
+    }
+
+    /// A line without the mark that may stand before the first one.
+    fn without_mark<'a>(&mut self, line: &'a [u8]) -> &'a [u8] {
+        let first = std::mem::take(&mut self.first);
+        line.strip_prefix(MARK).filter(|_| first).unwrap_or(line)
     }
 
     /// Finds the form if it is not known, and decodes what has come so far.
@@ -265,7 +279,6 @@ impl FormSearch {
         shape: Option<(u16, u16)>,
         ended: bool,
     ) -> Option<StreamFormat> {
-        const MARK: &[u8] = b"\xef\xbb\xbf";
         if bytes.len() < MARK.len() && MARK.starts_with(bytes) && !ended {
             return None;
         }
@@ -317,11 +330,12 @@ impl FormSearch {
         let ended = ended || bytes.len() >= enough;
         let bytes = &bytes[..bytes.len().min(enough)];
         let pair = |at: usize| has_marker(bytes, at) && has_marker(bytes, at + period);
-        if (self.unmarked..bytes.len()).any(pair) {
+        // From there on, the second marker may still come.
+        let looked_at = bytes.len().saturating_sub(period + 1);
+        if (self.unmarked..looked_at).any(pair) {
             return Some(StreamFormat::Flexitac);
         }
-        // From here on, the second marker may still come.
-        self.unmarked = bytes.len().saturating_sub(period + 1);
+        self.unmarked = self.unmarked.max(looked_at);
         ended.then_some(if bytes.len() < enough && has_marker(bytes, 0) {
             StreamFormat::Flexitac
         } else {
@@ -391,6 +405,30 @@ mod tests {
         assert_eq!(search.form(&bytes[1..], shape, false), None);
         let found = search.form(&bytes, shape, false);
         assert_eq!(found, Some(StreamFormat::Matsense));
+    }
+
+    #[test]
+    fn a_byte_order_mark_costs_no_frame() {
+        for (text, frames) in [
+            ("{\"frame\":[[1,2],[3,4]]}\n{\"frame\":[[5,6],[7,8]]}\n", 2),
+            ("{\"frame\":[[1,2],[3,4]]}", 1),
+            ("1 2\n3 4\n\n5 6\n7 8\n\n", 2),
+            ("data:\n- 1\n- 2\n---\n", 1),
+        ] {
+            for format in [None, Some(StreamFormat::JsonLines)] {
+                let mut options = StreamOptions::default().from_start();
+                options.format = format.filter(|_| text.starts_with('{'));
+                if text.starts_with('d') {
+                    options = options.with_shape(1, 2);
+                }
+                let mut decoder = StreamDecoder::new(options);
+                let mut sink = |_: crate::formats::stream::StreamEvent<'_>| {};
+                decoder.push(&[MARK, text.as_bytes()].concat(), &mut sink);
+                decoder.finish(&mut sink);
+                let counts = decoder.counts();
+                assert_eq!((counts.frames, counts.dropped), (frames, 0), "{text}");
+            }
+        }
     }
 
     /// A search that went on piece by piece, and one that begins anew, give the same answer after each byte.
