@@ -309,9 +309,14 @@ fn with_header(
     if cells.len() != expected {
         return Err(text_row::count(number, cells.len(), expected));
     }
+    // A line may have millions of names.
+    let mut is_cell = vec![false; names.len()];
+    for &cell in &cells {
+        is_cell[cell] = true;
+    }
     let others = || {
         let roles = roles.iter().enumerate();
-        roles.filter(|(field, _)| !cells.contains(field))
+        roles.filter(|&(field, _)| !is_cell[field])
     };
     let label = others().find(|(_, role)| **role == Some(FieldRole::Label));
     let time = others().find_map(|(field, role)| match role {

@@ -111,7 +111,7 @@ impl EmedHeading {
         let numbers = &words[..words.len() - usize::from(has_force)];
         let first = numbers.first().and_then(|first| first.parse::<u32>().ok());
         let first = first.filter(|&first| {
-            let mut expected = (first..).zip(numbers);
+            let mut expected = (u64::from(first)..).zip(numbers);
             expected.all(|(number, word)| word.parse() == Ok(number))
         });
         let Some((first_column, columns)) = first.zip(side(numbers.len())) else {

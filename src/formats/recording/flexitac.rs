@@ -4,6 +4,7 @@
 //! if they are not known, the error says how many cells the first frame has. Frames that are torn are dropped and
 //! counted in a note, as there is no checksum that would tell what is wrong with them.
 
+use std::cell::Cell;
 use std::io::Read;
 use std::ops::ControlFlow;
 
@@ -45,19 +46,19 @@ pub(super) fn read(
         .with_shape(rows, columns)
         .from_start();
     let mut decoder = StreamDecoder::new(stream);
-    let mut state = ControlFlow::Continue(());
+    let state = Cell::new(ControlFlow::Continue(()));
     let mut give = |event: StreamEvent<'_>| {
-        if let (StreamEvent::Frame(frame), ControlFlow::Continue(())) = (event, state) {
-            state = sink(RecordingEvent::Frame(frame));
+        if let (StreamEvent::Frame(frame), ControlFlow::Continue(())) = (event, state.get()) {
+            state.set(sink(RecordingEvent::Frame(frame)));
         }
     };
-    while length > 0 {
+    while length > 0 && state.get().is_continue() {
         decoder.push(&bytes[..length], &mut give);
         length = super::numpy::fill(input, &mut bytes)?;
     }
     decoder.finish(&mut give);
     let frames = decoder.counts().dropped;
-    if state.is_continue() && frames > 0 {
+    if state.get().is_continue() && frames > 0 {
         let _ = sink(RecordingEvent::Note(&RecordingNote::Garbled { frames }));
     }
     Ok(())

@@ -119,6 +119,8 @@ struct McapState<'a, 'b> {
     given: Vec<GivenChannel>,
     /// The time of the first message with a frame, in nanoseconds.
     start: Option<u64>,
+    /// The time of the message that is read.
+    time: u64,
     /// The cells of a message.
     values: Vec<f64>,
     /// The frame made of them.
@@ -144,6 +146,7 @@ pub(super) fn read(
         topics: HashMap::new(),
         given: Vec::new(),
         start: None,
+        time: 0,
         values: Vec::new(),
         frame: Frame::new(1, 1),
         record: Vec::new(),
@@ -421,10 +424,7 @@ impl McapState<'_, '_> {
         time: u64,
         data: &[u8],
     ) -> Option<Result<bool, RecordingError>> {
-        let start = *self.start.get_or_insert(time);
-        #[expect(clippy::cast_precision_loss, reason = "a difference in nanoseconds")]
-        let seconds = (i128::from(time) - i128::from(start)) as f64 / 1e9;
-        self.frame.time = Some(seconds);
+        self.time = time;
         let mut cdr = CdrReader::new(data)?;
         match kind {
             MessageKind::Array(kind, size) => {
@@ -499,6 +499,10 @@ impl McapState<'_, '_> {
                 self.given.len() - 1
             }
         };
+        let start = *self.start.get_or_insert(self.time);
+        #[expect(clippy::cast_precision_loss, reason = "a difference in nanoseconds")]
+        let seconds = (i128::from(self.time) - i128::from(start)) as f64 / 1e9;
+        self.frame.time = Some(seconds);
         self.frame.channel = channel;
         self.frame.number = self.given[channel].frames;
         match shape {

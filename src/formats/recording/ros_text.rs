@@ -55,6 +55,9 @@ pub(crate) enum RosLine {
 /// The most values that are kept of a message; one more than any frame has.
 const MOST_VALUES: usize = 512 * 512 + 1;
 
+/// Sizes of a layout that are kept: more than any message has, and input without an end takes no memory.
+const MOST_SIZES: usize = 64;
+
 impl RosMessage {
     /// Makes ready for the next message.
     pub(crate) fn clear(&mut self) {
@@ -104,7 +107,9 @@ impl RosMessage {
         }
         self.any = true;
         if let Some(size) = line.strip_prefix(b"size:") {
-            self.sizes.extend(whole(size));
+            if self.sizes.len() < MOST_SIZES {
+                self.sizes.extend(whole(size));
+            }
             return RosLine::More;
         }
         if line == b"data:" {
