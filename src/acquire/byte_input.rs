@@ -9,6 +9,7 @@ use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{Mode, OFlags, open};
+use rustix::net::sockopt;
 
 use crate::acquire::growing_file::{GrowingFile, ReadAnew};
 use crate::acquire::serial;
@@ -22,6 +23,12 @@ const MOMENT: Timespec = Timespec {
 
 /// How long a connection may take.
 const CONNECTING: Duration = Duration::from_secs(5);
+
+/// How long a connection may be silent until its other end is asked for a sign of life, how long an answer may take, and
+/// how many answers may be missing.
+const SILENT: Duration = Duration::from_secs(15);
+const BETWEEN_PROBES: Duration = Duration::from_secs(5);
+const PROBES: u32 = 3;
 
 /// What a read has brought.
 #[derive(Debug, PartialEq, Eq)]
@@ -120,12 +127,26 @@ fn connect(address: &str) -> io::Result<TcpStream> {
     check_address(address)?;
     let mut failure = io::Error::new(ErrorKind::NotFound, "no such host");
     for address in address.to_socket_addrs()? {
-        match TcpStream::connect_timeout(&address, CONNECTING) {
+        let connected = TcpStream::connect_timeout(&address, CONNECTING);
+        match connected.and_then(|stream| kept_alive(&stream).map(|()| stream)) {
             Ok(stream) => return Ok(stream),
             Err(error) => failure = error,
         }
     }
     Err(failure)
+}
+
+/// Has the system ask the other end for a sign of life when nothing comes. Nothing is ever sent to a sensor, so one that
+/// lost its power would not be noticed otherwise; half a minute later, reading fails, and the connection is made again.
+///
+/// # Errors
+/// What the system reports.
+fn kept_alive(stream: &TcpStream) -> io::Result<()> {
+    sockopt::set_socket_keepalive(stream, true)?;
+    sockopt::set_tcp_keepidle(stream, SILENT)?;
+    sockopt::set_tcp_keepintvl(stream, BETWEEN_PROBES)?;
+    sockopt::set_tcp_keepcnt(stream, PROBES)?;
+    Ok(())
 }
 
 #[cfg(test)]
@@ -135,6 +156,17 @@ mod tests {
     use rustix::fs::{CWD, FileType, mknodat};
 
     use super::*;
+
+    #[test]
+    fn a_connection_whose_other_end_vanishes_is_noticed() {
+        let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("bound");
+        let address = listener.local_addr().expect("an address").to_string();
+        let stream = connect(&address).expect("connected");
+        assert_eq!(sockopt::socket_keepalive(&stream), Ok(true));
+        assert_eq!(sockopt::tcp_keepidle(&stream), Ok(SILENT));
+        assert_eq!(sockopt::tcp_keepintvl(&stream), Ok(BETWEEN_PROBES));
+        assert_eq!(sockopt::tcp_keepcnt(&stream), Ok(PROBES));
+    }
 
     #[test]
     fn a_pipe_without_a_writer_is_waited_for_a_moment_at_a_time() {
