@@ -10,7 +10,8 @@ use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions};
 use crate::acquire::recorder::description_beside;
 use crate::acquire::stream::Consumer;
 use crate::formats::recording::{
-    ChannelChoice, ChannelInfo, ReadOptions, RecordingEvent, RecordingMetadata, RecordingNote, read,
+    ChannelChoice, ChannelInfo, ReadOptions, RecordingError, RecordingEvent, RecordingMetadata,
+    RecordingNote, read,
 };
 use crate::formats::stream::StreamCounts;
 use crate::frame::Frame;
@@ -64,8 +65,10 @@ impl Pace {
         let own = f64::from(self.frames) * self.step;
         self.frames = self.frames.saturating_add(1);
         let due = frame.time.unwrap_or(own);
-        self.span = Some((self.span.map_or(due, |(first, _)| first), due));
-        self.until(due, stop, consumer)
+        // Times may count from another channel's first frame, or from the start of a longer recording.
+        let first = self.span.map_or(due, |(first, _)| first);
+        self.span = Some((first, due));
+        self.until(due - first, stop, consumer)
     }
 
     /// Waits for as long after the last frame as one frame lasts, so that a recording that is repeated keeps its pace.
@@ -79,10 +82,10 @@ impl Pace {
         } else {
             self.step
         };
-        self.until(last + step, stop, consumer)
+        self.until(last - first + step, stop, consumer)
     }
 
-    /// Waits until a time of the recording has come.
+    /// Waits until so many seconds have been played.
     fn until(
         &self,
         seconds: f64,
@@ -123,6 +126,8 @@ pub(super) fn run(
         return Ok(());
     };
     let mut round = 0;
+    // Values of a frame of the channel that is watched, if nothing says its rows and columns.
+    let mut unshaped = None;
     loop {
         let mut pace = Pace::new(options);
         let mut flow = ControlFlow::Continue(());
@@ -132,11 +137,17 @@ pub(super) fn run(
                     let info = completed(info, description.as_ref());
                     if pace.channel.add(&info) {
                         pace.step = info.seconds_per_frame.unwrap_or(STEP);
+                        unshaped = info.values.filter(|_| info.shape.is_none());
                     }
                     match round {
                         0 => consumer(AcquireEvent::Channel(&info)),
                         _ => ControlFlow::Continue(()),
                     }
+                }
+                RecordingEvent::Frame(frame)
+                    if unshaped.is_some() && pace.channel.takes(frame.channel) =>
+                {
+                    ControlFlow::Break(())
                 }
                 RecordingEvent::Frame(frame) => {
                     let time = frame.time;
@@ -151,6 +162,9 @@ pub(super) fn run(
             };
             flow
         })?;
+        if let Some(values) = unshaped {
+            return Err(RecordingError::Shape { values }.into());
+        }
         round += 1;
         // What has no frame is not repeated: it would be read again and again without a pause.
         let ends = flow.is_break() || !options.repeat || pace.frames == 0;
@@ -221,6 +235,19 @@ mod tests {
         (frame.channel, frame.time) = (1, None);
         assert!(!waits(&frame), "the first one");
         assert!(waits(&frame), "the second one");
+    }
+
+    #[test]
+    fn the_first_frame_is_not_waited_for_whatever_its_time_is() {
+        let mut pace = Pace::new(&AcquireOptions::default());
+        pace.channel.add(&ChannelInfo::default());
+        let consumer = &mut |_: AcquireEvent<'_>| ControlFlow::Break(());
+        let mut frame = Frame::new(1, 1);
+        for (time, is_waited_for) in [(1000.0, false), (1000.0, false), (2000.0, true)] {
+            frame.time = Some(time);
+            let wait = pace.wait(&frame, &AtomicBool::new(false), consumer);
+            assert_eq!(wait.is_break(), is_waited_for, "{time}");
+        }
     }
 
     #[test]
