@@ -128,7 +128,11 @@ pub(super) fn run(
             }
             Ok(ReadOutcome::End) => break,
             Err(error) if source.comes_back() && !options.once => error,
-            Err(error) => return Err(refused("read it", error)),
+            Err(error) => {
+                // What has come is whole, or counted.
+                let _ = step(&mut decoder, StreamDecoder::finish, &mut clock, consumer);
+                return Err(refused("read it", error));
+            }
         };
         // What comes next may begin inside of a frame.
         if step(&mut decoder, StreamDecoder::restart, &mut clock, consumer).is_break() {
