@@ -226,6 +226,11 @@ fn whole_frames_before_a_damage_are_answered_then_the_damage() {
         run.stderr,
         "error: standard input: line 32, column 3: found \"?\", expected a number\n"
     );
+    // Frames for the tare lack because of the damage.
+    let torn = whole.replace("0,4,10,0,0", "0,4,?,0,0");
+    let run = taxel("frames - --all --tare 3 --at-least 9", torn);
+    assert_eq!((run.status, run.stdout.as_str()), (Some(1), ""));
+    assert!(run.stderr.contains("line 32, column 3"), "{}", run.stderr);
     let wrong = whole.replace("Raw Sum=,,67", "Raw Sum=,,68");
     let run = taxel("frames - --json", wrong);
     assert_eq!(run.status, Some(0));
@@ -433,6 +438,28 @@ fn a_listing_has_no_threshold_and_no_tare() {
             "the following required arguments were not provided:",
         );
     }
+}
+
+#[test]
+fn a_plain_table_of_factors_is_a_gain() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("gain.csv");
+    let gain = path.to_str().expect("UTF-8");
+    let flags = format!("--frame 1 --at-least 9 --json --gain {gain}");
+    let na = |content: &str| {
+        std::fs::write(&path, content).expect("written");
+        answered("tekscan.asf", &flags)[0]["na"].clone()
+    };
+    let table = |factor: &str| format!("{}\n", [factor; 5].join(",")).repeat(4);
+    assert_eq!(na(&table("0")), 0);
+    assert_eq!(na(&table("1000")), na(&format!("{}\n", table("1000"))));
+    assert_ne!(na(&table("1000")), 0);
+    std::fs::write(&path, format!("{}\n", ["1"; 20].join(","))).expect("written");
+    refused(
+        "tekscan.asf",
+        &flags,
+        "expected a table: a line for each row",
+    );
 }
 
 /// A file in a folder of its own, and the imprints of all its frames.

@@ -210,6 +210,9 @@ pub(crate) fn frames(
         (output.notes)(&format!("warning: {}: {unused}", recording.name()));
     }
     let damage = scan.error.take().map(|error| recording.damaged(error));
+    if damage.is_some() {
+        recording.remember_damage();
+    }
     if scan.channels.is_empty() {
         return Err(damage.unwrap_or_else(|| recording.refused("no frames")));
     }
@@ -228,8 +231,17 @@ pub(crate) fn frames(
     };
     let channel = scan.channel(&recording, asked.processing.channel.as_deref())?;
     let listed = &scan.channels[channel];
-    let (selection, mut processing) =
-        Selection::new(asked, choice, processing, &mut recording, (channel, listed))?;
+    if asked.processing.tare.is_none()
+        && let Some(unused) = processing::unused_tare(&listed.info, &processing.view)
+    {
+        (output.notes)(&format!("warning: {}: {unused}", recording.name()));
+    }
+    let selected = Selection::new(asked, choice, processing, &mut recording, (channel, listed));
+    let (selection, mut processing) = match selected {
+        Ok(selected) => selected,
+        // Where frames lack, the damage is why.
+        Err(error) => return Err(damage.unwrap_or(error)),
+    };
     let answered = if choice == FrameChoice::NoiseReport {
         let found = noise_report::gather(&mut recording, channel, &mut processing)?;
         let name = recording.name();
@@ -361,7 +373,7 @@ impl Selection {
         let (mut answered, mut failure) = (false, None);
         let name = recording.name().to_owned();
         // A damage was found before, and is reported afterwards.
-        let _ = recording.read(&mut |event| {
+        let read = recording.read_again(&mut |event| {
             let RecordingEvent::Frame(frame) = event else {
                 return ControlFlow::Continue(());
             };
@@ -382,7 +394,8 @@ impl Selection {
             }
             ControlFlow::Continue(())
         });
-        failure.map_or(Ok(answered), Err)
+        failure.map_or(read, Err)?;
+        Ok(answered)
     }
 
     /// Answers a frame.

@@ -39,7 +39,7 @@ pub(crate) fn gather(
     let mut counter: Option<FlipCounter> = None;
     let mut failure = None;
     // A damage was found before, and is reported afterwards.
-    let _ = recording.read(&mut |event| {
+    let read = recording.read_again(&mut |event| {
         let RecordingEvent::Frame(frame) = event else {
             return ControlFlow::Continue(());
         };
@@ -72,6 +72,7 @@ pub(crate) fn gather(
     if let Some(error) = failure {
         return Err(recording.refused(&error));
     }
+    read?;
     Ok(counter.map(|counter| counter.finish()))
 }
 

@@ -6,7 +6,9 @@ use crate::cli::arguments::frames::ProcessingArguments;
 use crate::cli::error::CliError;
 use crate::cli::input::recording::{RecordingFile, dead_cells};
 use crate::cli::output::recording_list::ListedChannel;
-use crate::formats::recording::{ChannelInfo, ReadOptions, RecordingEvent, SetRule};
+use crate::formats::recording::{
+    ChannelInfo, ReadOptions, RecordingError, RecordingEvent, SetRule,
+};
 use crate::frame::{Peak, Processing, Tare, TareFrames, View};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
@@ -47,14 +49,22 @@ fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
     file.prefix_name("--gain ");
     let mut gain = Matrix::filled(1, 1, 1.0);
     let mut found = None;
-    let read = file.read(&mut |event| {
+    let mut take = |event: RecordingEvent<'_>| {
         if let RecordingEvent::Frame(frame) = event {
             found = Some(View::default().of(frame, &mut gain));
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
-    });
-    read.map_err(|error| file.damaged(error))?;
+    };
+    let read = match file.read(&mut take) {
+        // Its lines could be frames; of factors there is one.
+        Err(RecordingError::Shape { .. }) => file.read_table(&mut take),
+        read => read,
+    };
+    read.map_err(|error| match error {
+        RecordingError::Shape { .. } => file.refused(&"expected a table: a line for each row"),
+        error => file.damaged(error),
+    })?;
     let found = found.ok_or_else(|| file.refused(&"no frame, expected one of factors"))?;
     found.map_err(|error| file.refused(&error))?;
     Ok(gain)
@@ -77,6 +87,21 @@ pub(crate) fn rule(
              --low and --high, or --deviations",
         )
     })
+}
+
+/// That the tare of a recording is left out, since it is of another size than what is seen of the frames; None where it
+/// is used, or there is none.
+pub(crate) fn unused_tare(info: &ChannelInfo, view: &View) -> Option<String> {
+    let tare = info
+        .tare
+        .as_ref()
+        .filter(|_| own_tare(info, view).is_none())?;
+    let baseline = tare.baseline();
+    Some(format!(
+        "the recording's tare of {} x {} cells is left out; it fits with the --crop and --turn of the recording",
+        baseline.columns(),
+        baseline.rows()
+    ))
 }
 
 /// The tare that a recording's description names, if it is of the size of what is seen of the frames.
@@ -104,7 +129,7 @@ pub(crate) fn tare(
     let mut failure = None;
     let view = processing.view.clone();
     // A damage behind the frames of the tare is none of its business.
-    let _ = recording.read(&mut |event| {
+    let read = recording.read_again(&mut |event| {
         if let RecordingEvent::Frame(frame) = event
             && frame.channel == channel
         {
@@ -116,6 +141,9 @@ pub(crate) fn tare(
         }
         ControlFlow::Continue(())
     });
+    if failure.is_none() {
+        read?;
+    }
     let tare = failure.map_or_else(|| frames.finish(), Err);
     processing.tare = Some(tare.map_err(|error| recording.refused(&error))?);
     Ok(())
@@ -135,7 +163,7 @@ pub(crate) fn peak(
     }
     let mut peak = Peak::default();
     let mut failure = None;
-    let _ = recording.read(&mut |event| {
+    let read = recording.read_again(&mut |event| {
         if let RecordingEvent::Frame(frame) = event
             && frame.channel == channel
         {
@@ -151,6 +179,6 @@ pub(crate) fn peak(
     });
     match failure {
         Some(error) => Err(recording.refused(&error)),
-        None => Ok(peak.number()),
+        None => read.map(|()| peak.number()),
     }
 }

@@ -17,6 +17,9 @@ use crate::imprint::Imprint;
 /// The most that is copied of standard input or a pipe, in bytes, so that an input without an end does not fill the disk.
 const MOST_SPOOLED: u64 = 4 << 30;
 
+/// The most that is read of a table. One of 64 × 64 factors is much smaller.
+const LARGEST_TABLE: u64 = 1 << 20;
+
 /// A recording that can be read again and again.
 #[derive(Debug)]
 pub(crate) struct RecordingFile {
@@ -30,6 +33,8 @@ pub(crate) struct RecordingFile {
     description: Option<RecordingMetadata>,
     /// What is wrong with that.
     complaint: Option<String>,
+    /// Whether it is known to be damaged, so that reading it again finds nothing new.
+    is_damaged: bool,
 }
 
 impl RecordingFile {
@@ -71,6 +76,7 @@ impl RecordingFile {
                 options,
                 description,
                 complaint,
+                is_damaged: false,
             }),
             Err(error) => Err(CliError::Input {
                 name,
@@ -111,6 +117,43 @@ impl RecordingFile {
             info.complete(description);
             sink(RecordingEvent::Channel(&info))
         })
+    }
+
+    /// Reads the lines of a small text as the rows of one frame: with an empty line at its end they are not frames of a
+    /// line each.
+    ///
+    /// # Errors
+    /// If it cannot be read, or is no such text.
+    pub(crate) fn read_table(
+        &mut self,
+        sink: &mut dyn FnMut(RecordingEvent<'_>) -> std::ops::ControlFlow<()>,
+    ) -> Result<RecordingFormat, RecordingError> {
+        self.file.seek(SeekFrom::Start(0))?;
+        let mut bytes = Vec::new();
+        Read::by_ref(&mut self.file)
+            .take(LARGEST_TABLE)
+            .read_to_end(&mut bytes)?;
+        bytes.extend(b"\n\n");
+        read(io::Cursor::new(bytes), self.options, sink)
+    }
+
+    /// Remembers that reading all of it has found a damage, which the caller reports.
+    pub(crate) fn remember_damage(&mut self) {
+        self.is_damaged = true;
+    }
+
+    /// Reads it again from its beginning.
+    ///
+    /// # Errors
+    /// If it cannot be read as before: the disk is gone, or the file was changed. A known damage is no error.
+    pub(crate) fn read_again(
+        &mut self,
+        sink: &mut dyn FnMut(RecordingEvent<'_>) -> std::ops::ControlFlow<()>,
+    ) -> Result<(), CliError> {
+        match self.read(sink) {
+            Err(error) if !self.is_damaged => Err(self.damaged(error)),
+            _ => Ok(()),
+        }
     }
 
     /// Its form, as far as its beginning tells; also that of a damaged one.
