@@ -303,6 +303,50 @@ fn what_is_wrong_with_a_recording_is_called_by_its_name() {
 }
 
 #[test]
+fn a_tare_that_does_not_fit_is_said_to_be_left_out() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("touch.npy");
+    let file = file.to_str().expect("UTF-8");
+    let crop = "--at-least 5 --crop 1,1,3x2";
+    let record = format!(
+        "watch --once {} {crop} --tare 2 --write {file}",
+        sample("tekscan.asf")
+    );
+    let recorded = lines(&taxel(&record, "").stdout);
+    for command in ["frames --all --json", "watch --once"] {
+        let run = taxel(&format!("{command} {file} --at-least 5"), "");
+        let expected = "the recording's tare of 3 x 2 cells is left out";
+        assert!(run.stderr.contains(expected), "{}", run.stderr);
+        let again = taxel(&format!("{command} {file} {crop}"), "");
+        assert_eq!((again.status, again.stderr.as_str()), (Some(0), ""));
+        let imprints = |lines: &[Value]| -> Vec<Value> {
+            lines.iter().map(|line| line["imprint"].clone()).collect()
+        };
+        assert_eq!(imprints(&lines(&again.stdout)), imprints(&recorded));
+    }
+}
+
+#[test]
+fn a_channel_whose_rows_and_columns_are_unknown_is_refused() {
+    let topics = sample("topics.mcap");
+    let all = refused(&format!("watch --once {topics}"), "");
+    let names = "--channel: /pad, /state#pad, /state#tip, /image";
+    assert!(all.contains(names), "{all}");
+    let tip = "--channel /state#tip --at-least 1";
+    let said = refused(&format!("watch --once {topics} {tip}"), "");
+    assert!(
+        said.contains("3 values a frame, but no rows and columns"),
+        "{said}"
+    );
+    assert_eq!(said, refused(&format!("frames {topics} --all {tip}"), ""));
+    let run = taxel(
+        &format!("watch --once {topics} {tip} --rows 1 --columns 3"),
+        "",
+    );
+    assert_eq!((run.status, run.stdout.lines().count()), (Some(0), 3));
+}
+
+#[test]
 fn a_recording_without_frames_is_refused_and_not_repeated() {
     let folder = tempfile::tempdir().expect("a folder");
     let empty = folder.path().join("empty.npy");

@@ -15,6 +15,7 @@
 //! screen's live page opens instead ([`request`]).
 
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::acquire::{
@@ -166,25 +167,9 @@ fn check_channel(source: &FrameSource, asked: &WatchArguments) -> Result<(), Cli
     else {
         return Ok(());
     };
-    let options = ReadOptions {
-        shape: asked.options.shape,
-    };
-    let mut names = Vec::new();
-    let mut found = false;
-    let read = RecordingFile::open(path, options)?.read(&mut |event| {
-        if let RecordingEvent::Channel(info) = event {
-            let name = info.shown_name();
-            found = name == wanted;
-            names.push(name.to_owned());
-        }
-        if found {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
-    });
+    let (names, is_whole) = channels(path, asked, Some(wanted))?;
     // A stream, or a damage, which is reported when it is watched.
-    if found || read.is_err() {
+    if names.contains(wanted) || !is_whole {
         return Ok(());
     }
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
@@ -192,6 +177,31 @@ fn check_channel(source: &FrameSource, asked: &WatchArguments) -> Result<(), Cli
         name: source.name(),
         message: no_channel(wanted, &names),
     })
+}
+
+/// The names of the channels of a recording, up to one of them or all; and whether it could be read up to there.
+///
+/// # Errors
+/// If it cannot be opened.
+fn channels(
+    path: &Path,
+    asked: &WatchArguments,
+    up_to: Option<&str>,
+) -> Result<(Vec<String>, bool), CliError> {
+    let options = ReadOptions {
+        shape: asked.options.shape,
+    };
+    let mut names = Vec::new();
+    let read = RecordingFile::open(path, options)?.read(&mut |event| {
+        if let RecordingEvent::Channel(info) = event {
+            names.push(info.shown_name().to_owned());
+            if up_to == Some(info.shown_name()) {
+                return ControlFlow::Break(());
+            }
+        }
+        ControlFlow::Continue(())
+    });
+    Ok((names, read.is_ok()))
 }
 
 /// That a recording has no channel of that name, but others.
@@ -320,13 +330,17 @@ impl Watcher<'_> {
     /// Another channel of a recording. With its first one come unit and threshold.
     ///
     /// # Errors
-    /// If there are several channels and none is chosen: unlike a file, a stream cannot be read again to list them.
+    /// If there are several channels and none is chosen. All are named if they are in a file; a pipe cannot be read again.
     fn add_channel(&mut self, info: &ChannelInfo) -> Result<(), CliError> {
         self.channels.push(info.clone());
         let is_chosen = self.choice.add(info);
         let names = self.choice.names();
         if self.asked.processing.channel.is_none() && names.len() > 1 {
-            let names = names.join(", ");
+            let all = match FrameSource::new(&self.asked.source) {
+                FrameSource::File(path) => channels(&path, self.asked, None)?.0,
+                _ => names.to_vec(),
+            };
+            let names = all.join(", ");
             let message = format!("several channels, choose one with --channel: {names}");
             return Err(self.refused(&message));
         }
@@ -338,6 +352,9 @@ impl Watcher<'_> {
         }
         if self.asked.processing.tare.is_none() {
             self.processing.tare = processing::own_tare(info, &self.processing.view);
+            if let Some(unused) = processing::unused_tare(info, &self.processing.view) {
+                self.say(&format!("warning: {unused}"));
+            }
             self.metadata.tare.clone_from(&self.processing.tare);
         }
         self.metadata.seconds_per_frame = info.seconds_per_frame;
