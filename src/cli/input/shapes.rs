@@ -15,6 +15,7 @@ use crate::cli::input::content;
 use crate::cli::input::content::InputSource;
 use crate::formats::Content;
 use crate::formats::StoredShape;
+use crate::formats::name::folded;
 use crate::imprint::Imprint;
 use crate::storage::{Expected, Library, LibraryError};
 
@@ -123,15 +124,14 @@ impl Shelf {
     pub(crate) fn imprint(&self, name: &str) -> Result<Imprint, LibraryError> {
         // It is whole at any time, whether or not a thread has panicked.
         let found = || self.found.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(imprint) = found().get(name) {
+        // Upper and lower case are the same in names, and only shapes that exist are kept: so the map never outgrows the
+        // library, whatever the input asks for.
+        let own = folded(name);
+        if let Some(imprint) = found().get(&own) {
             return Ok(*imprint);
         }
         let shape = self.library()?.load(name)?.shape;
-        // Only shapes that exist are kept, each under its stored name and not as it was spelled in the input: so the
-        // map never outgrows the library, whatever the input asks for.
-        Ok(*found()
-            .entry(shape.name.to_string())
-            .or_insert(shape.imprint))
+        Ok(*found().entry(own).or_insert(shape.imprint))
     }
 
     /// Stores a shape and returns the name that it has in the library, which may differ in upper and lower case. With
