@@ -5,10 +5,12 @@
 //! and its writer holds a lock on it. Such a file without a lock is one of a program that died; the next program that
 //! writes into the folder removes it ([`remove_left_over`]).
 
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, SystemTime};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant, SystemTime};
 
 use tempfile::{Builder, NamedTempFile, TempPath};
 
@@ -264,12 +266,29 @@ impl ScratchFolder {
 const LOCK: &str = ".lock";
 
 /// Removes the temporary files that programs have left in a folder when they died. What cannot be removed stays.
+///
+/// A folder is searched once a minute at most, since a program may write thousands of files into it.
 fn remove_left_over(folder: &Path) {
+    if was_searched(folder) {
+        return;
+    }
     for path in temporaries(folder) {
         if is_left_over(&path).unwrap_or(false) {
             let _ = fs::remove_file(path);
         }
     }
+}
+
+/// Whether this program has searched a folder in the last minute; from now on it has.
+fn was_searched(folder: &Path) -> bool {
+    static SEARCHED: Mutex<BTreeMap<PathBuf, Instant>> = Mutex::new(BTreeMap::new());
+    let mut searched = SEARCHED.lock().unwrap_or_else(PoisonError::into_inner);
+    searched.retain(|_, at| at.elapsed() < FRESH);
+    let is_new = !searched.contains_key(folder);
+    if is_new {
+        searched.insert(folder.to_owned(), Instant::now());
+    }
+    !is_new
 }
 
 /// The paths in a folder that have the name of something temporary.
@@ -352,6 +371,10 @@ mod tests {
             "taxel-AbC123",
         ];
         assert_eq!(left, stays);
+        // It was searched just now.
+        aged(folder.path(), ".taxel-Later1", hour);
+        drop(TemporaryFile::new(folder.path()).expect("made"));
+        assert!(folder.path().join(".taxel-Later1").exists());
     }
 
     #[cfg(all(unix, feature = "tui"))]
