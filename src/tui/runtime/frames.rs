@@ -14,6 +14,8 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
 
 use crate::acquire::{AcquireEvent, AcquireOptions, FrameSource, acquire};
 use crate::formats::recording::{ChannelChoice, ChannelInfo, RecordingMetadata};
@@ -32,6 +34,8 @@ use crate::tui::runtime::recording::Recording;
 pub(super) struct FrameWatcher {
     /// None before the first source and after the page was closed.
     watched: Option<Watched>,
+    /// The thread of the last source, which may still read it after it was stopped.
+    thread: Option<JoinHandle<()>>,
     /// Whether only files are read, as is right for a script of a stranger: a serial line would be set up and its device
     /// reset, a connection made, a pipe waited for.
     pub(super) only_files: bool,
@@ -52,6 +56,19 @@ struct Watched {
     taken: usize,
     /// Whether a file is being created for a recording.
     begins: bool,
+}
+
+/// How long a source waits for the thread of the one before.
+const ENDING: Duration = Duration::from_millis(500);
+
+/// Waits until a thread that was stopped has closed its source: the next one may be the same serial line, which only one
+/// can open, or the same pipe, whose bytes it would take. It is not joined, since a disk or a host that does not answer
+/// may hold it up.
+fn give_time_to_end(thread: &JoinHandle<()>) {
+    let begun = Instant::now();
+    while !thread.is_finished() && begun.elapsed() < ENDING {
+        std::thread::sleep(Duration::from_millis(5));
+    }
 }
 
 /// What has come and was not taken yet.
@@ -105,8 +122,11 @@ impl FrameWatcher {
             return Some(WorkerEvent::Live(number, LiveEvent::NotRecorded(refused)));
         };
         let stop = Arc::clone(&watched.stop);
-        // It is not joined: opening a pipe waits for its other end.
+        let before = self.thread.take();
         let thread = std::thread::Builder::new().spawn(move || {
+            if let Some(before) = before {
+                give_time_to_end(&before);
+            }
             // Before the first frame: each one is wanted. Not on the screen's thread: the disk may hang.
             if let Err(refused) = feed.begin_recording(&request, existing) {
                 post(WorkerEvent::Live(number, LiveEvent::NotRecorded(refused)));
@@ -120,6 +140,7 @@ impl FrameWatcher {
                 ControlFlow::Continue(())
             });
         });
+        let thread = thread.map(|thread| self.thread = Some(thread));
         if let Err(error) = thread {
             let reason = format!("cannot start a thread: {error}");
             let recording = locked(&watched.feed.recording).take();
