@@ -186,11 +186,12 @@ impl<'a> EventLoop<'a> {
     fn run(&mut self) -> io::Result<Outcome> {
         session::enter(&self.device, &self.settings, self.mouse)?;
         self.tell_size();
-        if let Some(greeting) = self.world.greeting() {
-            self.update(greeting)?;
-        }
+        // Below the question about unsaved work: a source is watched and recorded while that is thought over.
         if let Some(first) = self.first.take() {
             self.update(first)?;
+        }
+        if let Some(greeting) = self.world.greeting() {
+            self.update(greeting)?;
         }
         self.draw()?;
         while self.outcome.is_none() {

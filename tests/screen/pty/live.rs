@@ -8,8 +8,10 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use rustix::process::Signal;
+use taxel::storage::{Journal, Library};
 
 use super::program::{Program, Start, TAXEL};
+use super::record::shape;
 use super::tracer::Tracer;
 use crate::skip;
 
@@ -522,6 +524,41 @@ fn a_page_that_is_opened_again_leaves_its_recording_alone() {
         program.types(b"q");
         program.ends_well(0);
         assert_eq!(fs::read_to_string(&file).expect("it is there"), "mine");
+    }
+}
+
+/// After a connection that was lost, say: the source is watched and recorded, whatever the answer is.
+#[test]
+fn unsaved_work_that_was_left_keeps_no_source_from_being_recorded() {
+    for answer in [b"y", b"n"] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (folder, place) = (folder.path(), folder.path().join("library"));
+        Journal::new(&Library::open(place.clone()))
+            .keep(&shape("lost", ".#.#.#......"))
+            .expect("kept");
+        fs::write(
+            folder.join("touch.csv"),
+            "time,r0c0,r0c1\n0.0,1,2\n0.1,3,4\n0.2,5,6\n",
+        )
+        .expect("written");
+        let [source, file] = ["touch.csv", "a.npy"].map(|name| folder.join(name));
+        let text = |path: &Path| path.to_str().expect("UTF-8").to_owned();
+        let mut program = Program::start(&Start {
+            command: &[TAXEL, "watch", &text(&source), "--write", &text(&file)],
+            library: Some(&place),
+            ..Start::default()
+        });
+        program.shows("Unsaved work was left: 3 taxels of lost");
+        program.types(answer);
+        program.shows("ended");
+        program.types(b"\x1b");
+        program.shows("a.npy: 3 frames recorded");
+        assert_eq!(records(&file), Some(3));
+        program.types(b"q");
+        if answer == b"y" {
+            program.types(b"y");
+        }
+        program.ends_well(0);
     }
 }
 

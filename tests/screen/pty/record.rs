@@ -11,7 +11,7 @@ use super::program::{Program, Start, TAXEL};
 use super::tracer::Tracer;
 
 /// A shape with this first row, on 12 x 10 taxels.
-fn shape(name: &str, row: &str) -> StoredShape {
+pub(super) fn shape(name: &str, row: &str) -> StoredShape {
     let text = format!(
         "{{\"format\":\"taxel-shape/1\",\"name\":\"{name}\",\"sensor\":{{\"columns\":12,\"rows\":10}},\
           \"imprint\":[\"{row}\"{}]}}",
@@ -196,7 +196,7 @@ fn a_record_does_not_replace_a_file() {
         told.starts_with(&format!("error: {shown} already exists")),
         "{told}"
     );
-    assert!(told.contains("walk-3.taxel would be a new one"), "{told}");
+    assert!(told.contains("walk-3.taxel is free"), "{told}");
     assert_eq!(fs::read_to_string(&file).expect("it is there"), "mine");
     let nowhere = folder.path().join("no/walk.taxel");
     let told = String::from_utf8_lossy(&run(&nowhere).stderr).into_owned();
