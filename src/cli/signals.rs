@@ -1,5 +1,6 @@
 //! Signals that stop a long command: a sweep, a merge, a training.
 
+use std::fs;
 use std::io::{self, IsTerminal};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -19,6 +20,20 @@ pub(crate) fn outlive_file_limit() {
     let _ = flag::register(SIGXFSZ, Arc::default());
 }
 
+/// Whether SIGHUP is ignored and has to stay so, as `nohup` asks for. Where the system does not say, it may be without a
+/// terminal.
+fn hangup_is_ignored() -> bool {
+    let ignored = || {
+        let status = fs::read_to_string("/proc/self/status").ok()?;
+        let mask = status
+            .lines()
+            .find_map(|line| line.strip_prefix("SigIgn:"))?;
+        let mask = u64::from_str_radix(mask.trim(), 16).ok()?;
+        Some(mask >> (SIGHUP - 1) & 1 == 1)
+    };
+    ignored().unwrap_or_else(|| !io::stderr().is_terminal())
+}
+
 /// Whether the work is to stop. A second signal ends the program at once, as if none were caught.
 pub(crate) struct Signals {
     /// Whether one came.
@@ -34,10 +49,8 @@ impl Signals {
     /// If the system does not allow it.
     pub(crate) fn heard() -> io::Result<Self> {
         let (stopped, last) = (Arc::default(), Arc::default());
-        let terminal = io::stderr().is_terminal();
         for (index, &(signal, status)) in STOPPING.iter().enumerate() {
-            // Without a terminal SIGHUP keeps its meaning: `nohup` may have told the program to ignore it.
-            if signal == SIGHUP && !terminal {
+            if signal == SIGHUP && hangup_is_ignored() {
                 continue;
             }
             flag::register_conditional_shutdown(signal, status.into(), Arc::clone(&stopped))?;

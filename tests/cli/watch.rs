@@ -440,6 +440,51 @@ fn clocked(from: f64, frames: u32) -> String {
     "torn\n".to_owned() + &lines.collect::<String>()
 }
 
+/// As where the connection to the machine is lost; but not under `nohup`.
+#[test]
+fn a_hangup_ends_a_recording_in_a_pipeline() {
+    for ignored in [false, true] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("touch.npy");
+        let path = file.to_str().expect("UTF-8");
+        let trap = if ignored { "trap '' HUP;" } else { "" };
+        let line = format!(
+            "{trap} exec '{}' watch - --write '{path}'",
+            env!("CARGO_BIN_EXE_taxel")
+        );
+        let mut command = Command::new("sh");
+        let piped = std::process::Stdio::piped;
+        command.args(["-c", &line]).env("TAXEL_CONFIG", "/dev/null");
+        let child = command
+            .stdin(piped())
+            .stdout(piped())
+            .stderr(piped())
+            .spawn();
+        let mut child = child.expect("it starts");
+        let mut output = BufReader::new(child.stdout.take().expect("piped"));
+        let mut input = child.stdin.take().expect("piped");
+        let mut sends = |frames| {
+            input
+                .write_all(stream(frames).as_bytes())
+                .expect("it reads");
+            let mut answer = String::new();
+            output.read_line(&mut answer).expect("it answers");
+        };
+        sends(0..3);
+        let id = rustix::process::Pid::from_child(&child);
+        rustix::process::kill_process(id, rustix::process::Signal::HUP).expect("it runs still");
+        if ignored {
+            sends(3..5);
+        }
+        drop(input);
+        let status = child.wait().expect("it ends").code();
+        assert_eq!(status, Some(if ignored { 0 } else { 129 }));
+        let beside = fs::read_to_string(file.with_extension("json")).expect("it is there");
+        let beside: Value = serde_json::from_str(&beside).expect("JSON");
+        assert_eq!(beside["ended"], true, "{beside}");
+    }
+}
+
 /// The clock of the sensor may go on while the connection is lost, begin anew, or be set.
 #[test]
 fn times_count_on_when_a_connection_is_made_again() {
