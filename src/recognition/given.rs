@@ -204,8 +204,8 @@ impl GivenDescriptors {
             .collect();
         let judge = |rate: &mut RecognitionRate, shape: usize, touch: &Imprint| {
             let description = ImprintSummary::of(touch).description;
-            let named = names.get(&self.values(description.as_ref()));
-            rate.count(shape, named.copied());
+            let named = names.get(&self.values(description.as_ref())).copied();
+            rate.count(model, shape, named.is_some(), named);
         };
         model.simulated(sensor, noise, per_shape, seed, progress, &judge)
     }

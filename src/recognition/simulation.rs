@@ -16,7 +16,8 @@ use crate::recognition::noise::Noise;
 use crate::recognition::scan::places;
 use crate::sensor::Sensor;
 
-/// How often noisy touches are named right.
+/// How often noisy touches are named right. As many touches are drawn of each shape; in shares and means, each counts
+/// with the weight of its shape.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct RecognitionRate {
@@ -26,30 +27,46 @@ pub struct RecognitionRate {
     pub right: u64,
     /// Touches that left an imprint that some shape leaves without noise, too.
     pub held: u64,
-    /// The sum of the probabilities that the names were given.
+    sums: WeightedSums,
+}
+
+/// Sums over touches of the weights of their shapes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct WeightedSums {
+    touches: u128,
+    right: u128,
+    held: u128,
+    /// Squares of the weights.
+    touches_squared: u128,
+    right_squared: u128,
+    /// Probabilities that the names were given, times the weights.
     claimed: f64,
 }
 
 impl RecognitionRate {
     /// Returns the share of touches that were named right.
     pub fn accuracy(&self) -> f64 {
-        share(self.right.into(), u128::from(self.touches.max(1)))
+        share(self.sums.right, self.sums.touches.max(1))
     }
 
     /// Returns the standard error of [`Self::accuracy`].
     pub fn standard_error(&self) -> f64 {
-        let share = self.accuracy();
-        (share * (1.0 - share) / float(self.touches.max(1))).sqrt()
+        let accuracy = self.accuracy();
+        let all = self.sums.touches_squared;
+        let right = share(self.sums.right_squared, all.max(1));
+        let spread = right * (1.0 - accuracy).powi(2) + (1.0 - right) * accuracy.powi(2);
+        let weight = self.sums.touches.max(1);
+        (spread * share(all, weight) * share(1, weight)).sqrt()
     }
 
     /// Returns the mean probability of the answers. It estimates the accuracy if the assumed noise is the real one.
     pub fn claimed(&self) -> f64 {
-        self.claimed / float(self.touches.max(1))
+        self.sums.claimed * share(1, self.sums.touches.max(1))
     }
 
     /// Returns the share of touches whose imprint the model holds.
     pub fn held_share(&self) -> f64 {
-        share(self.held.into(), u128::from(self.touches.max(1)))
+        share(self.sums.held, self.sums.touches.max(1))
     }
 }
 
@@ -198,12 +215,7 @@ impl Model {
                 rate
             })
             .collect();
-        let sum = rates.into_iter().reduce(|one, other| RecognitionRate {
-            touches: one.touches + other.touches,
-            right: one.right + other.right,
-            held: one.held + other.held,
-            claimed: one.claimed + other.claimed,
-        });
+        let sum = rates.into_iter().reduce(RecognitionRate::and);
         sum.filter(|_| !stopped.into_inner())
     }
 
@@ -308,26 +320,52 @@ impl Model {
 }
 
 impl RecognitionRate {
-    /// Counts a touch of a shape by the name that it was given and how probable that was; None for no name.
-    pub(super) fn count(&mut self, shape: usize, named: Option<(usize, f64)>) {
+    /// Counts a touch of a shape: whether the model holds it, and the name that it was given with its probability, or
+    /// None.
+    pub(super) fn count(
+        &mut self,
+        model: &Model,
+        shape: usize,
+        is_held: bool,
+        named: Option<(usize, f64)>,
+    ) {
+        let weight = u128::from(model.shapes()[shape].weight);
+        let is_right = named.is_some_and(|(named, _)| named == shape);
         self.touches += 1;
-        if let Some((named, probability)) = named {
-            self.held += 1;
-            self.right += u64::from(named == shape);
-            self.claimed += probability;
-        }
+        self.right += u64::from(is_right);
+        self.held += u64::from(is_held);
+        self.sums.touches += weight;
+        self.sums.touches_squared += weight * weight;
+        self.sums.right += weight * u128::from(is_right);
+        self.sums.right_squared += weight * weight * u128::from(is_right);
+        self.sums.held += weight * u128::from(is_held);
+        let probability = named.map_or(0.0, |(_, probability)| probability);
+        self.sums.claimed += f64::from(model.shapes()[shape].weight) * probability;
     }
 
     /// Names one touch.
     fn add(&mut self, model: &Model, assumed: &Noise, shape: usize, touch: &Imprint) {
-        self.touches += 1;
-        self.held += u64::from(model.keys().find(&ImprintKey::of(touch)).is_some());
-        let Some(posterior) = model.posterior_under(touch, assumed) else {
-            return;
-        };
-        if let Some((named, probability)) = first_of_most(&posterior) {
-            self.right += u64::from(named == shape);
-            self.claimed += probability;
+        let is_held = model.keys().find(&ImprintKey::of(touch)).is_some();
+        let posterior = model.posterior_under(touch, assumed);
+        let named = posterior.and_then(|posterior| first_of_most(&posterior));
+        self.count(model, shape, is_held, named);
+    }
+
+    /// The touches of both.
+    fn and(self, other: Self) -> Self {
+        let (own, others) = (self.sums, other.sums);
+        Self {
+            touches: self.touches + other.touches,
+            right: self.right + other.right,
+            held: self.held + other.held,
+            sums: WeightedSums {
+                touches: own.touches + others.touches,
+                right: own.right + others.right,
+                held: own.held + others.held,
+                touches_squared: own.touches_squared + others.touches_squared,
+                right_squared: own.right_squared + others.right_squared,
+                claimed: own.claimed + others.claimed,
+            },
         }
     }
 }
@@ -372,6 +410,30 @@ mod tests {
         let taxels = random_taxels(&Sensor::LARGEST, 5000, 0);
         assert_eq!(taxels.count(), 64 * 64);
         assert_eq!(random_taxels(&Sensor::default(), 7, 1).count(), 7);
+    }
+
+    #[test]
+    fn a_touch_counts_with_the_weight_of_its_shape() {
+        let sensor = Sensor::default();
+        let bar = |length| {
+            Figure::rectangle(length, 2.0)
+                .on(&sensor)
+                .expect("in range")
+        };
+        let shapes = [("long", 4.4, 9), ("short", 4.0, 1)];
+        let shapes = shapes
+            .map(|(name, length, weight)| NamedShape::new(name, bar(length)).weighted(weight));
+        let range = |text: &str| text.parse().expect("a range");
+        let ranges = Ranges::new(["8:8.9:0.1", "8", "0", "1", "1"].map(range));
+        let training = Training::new(shapes, sensor, Anchor::Centre, ranges);
+        let model = training.expect("a set").run().expect("not stopped");
+        let noise = Noise::new(0.0).expect("in range");
+        let rate = model.recognition_rate(&sensor, &noise, &noise, 2000, 0, &|_| true);
+        let rate = rate.expect("not stopped");
+        assert!((rate.accuracy() - rate.claimed()).abs() < 4.0 * rate.standard_error());
+        // The long one is nearly always named.
+        assert!(rate.accuracy() > 0.85, "{rate:?}");
+        assert!(rate.right < rate.touches * 3 / 4, "{rate:?}");
     }
 
     /// Two names of one shape are as probable after every touch.

@@ -243,6 +243,12 @@ fn what_is_said_and_written_fits_what_is_asked() {
         let rows = answer["degradation"].as_array().expect("rows").clone();
         [0, 2].map(|row: usize| rows[row]["accuracy"].as_f64().expect("a share"))
     };
+    let run = place.run("model confusion m.npz --noise 0 --dead 257", "");
+    refused(
+        &run,
+        1,
+        "--dead 257: out of range, expected 0 to 256, the taxels of the matrix",
+    );
     let (whole, given) = (right(""), right("--given na,p"));
     assert!(given[0] <= whole[0] + 0.1 && given[1] < whole[1] - 0.05);
     assert!(given[1] < given[0] - 0.1, "one taxel more is another count");

@@ -62,6 +62,14 @@ pub(crate) fn degradation(
     let given = given_of(asked, all_asked);
     let signals = Signals::heard().map_err(CliError::System)?;
     let sensor = matrix(model, asked.size)?;
+    let cells = u32::from(sensor.columns()) * u32::from(sensor.rows());
+    if let Some(dead) = asked.dead.iter().find(|&&dead| dead > cells) {
+        return Err(CliError::Range {
+            flag: "dead".to_owned(),
+            text: dead.to_string(),
+            expected: format!("expected 0 to {cells}, the taxels of the matrix"),
+        });
+    }
     let values: Vec<f64> = asked.noise.values().collect();
     let each = asked.touches * model.shapes().len() as u64;
     let all = each * values.len() as u64 * asked.dead.len() as u64;
@@ -321,7 +329,8 @@ pub(crate) fn touches(
     progress.finish();
     let names = model.shapes().iter().map(|shape| shape.name.as_str());
     let shapes: Vec<_> = names.zip(&results).collect();
-    let all = mean(&results);
+    let weights = model.shapes().iter().map(|shape| f64::from(shape.weight));
+    let all = mean(&weights.collect::<Vec<_>>(), &results);
     Ok(if asked.json {
         touches_json(asked, &shapes, all) + "\n"
     } else {
@@ -329,17 +338,16 @@ pub(crate) fn touches(
     })
 }
 
-/// The mean of the shapes' means, each shape counted once, and its standard error. Their runs are independent, so the
-/// variances add up. None if a shape has none.
-fn mean(results: &[TouchesUntil]) -> (Option<f64>, Option<f64>) {
-    #[expect(clippy::cast_precision_loss, reason = "the number of shapes is small")]
-    let shapes = results.len() as f64;
-    let mean = results.iter().map(|own| own.mean).sum::<Option<f64>>();
-    let variances = results.iter().map(|own| Some(own.standard_error?.powi(2)));
-    let variance = variances.sum::<Option<f64>>();
+/// The mean of the shapes' means by their weights, and its standard error. Their runs are independent, so the variances
+/// add up. None if a shape has none.
+fn mean(weights: &[f64], results: &[TouchesUntil]) -> (Option<f64>, Option<f64>) {
+    let sum: f64 = weights.iter().sum();
+    let shapes = || weights.iter().zip(results);
+    let means = shapes().map(|(weight, own)| Some(weight * own.mean?));
+    let variances = shapes().map(|(weight, own)| Some((weight * own.standard_error?).powi(2)));
     (
-        mean.map(|sum| sum / shapes),
-        variance.map(|sum| sum.sqrt() / shapes),
+        means.sum::<Option<f64>>().map(|all| all / sum),
+        variances.sum::<Option<f64>>().map(|all| all.sqrt() / sum),
     )
 }
 
