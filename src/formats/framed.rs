@@ -50,6 +50,12 @@ impl RuleRecord {
     pub(crate) fn imprint(&self, rows: &[Vec<Option<f64>>]) -> Result<Imprint, String> {
         let mut processing = Processing::default();
         processing.rule = Some(self.rule()?);
+        if let Some(least) = self
+            .least
+            .filter(|least| !(1..=MOST_TAXELS).contains(least))
+        {
+            return Err(format!("least: {least}, expected 1 to {MOST_TAXELS}"));
+        }
         processing.least = self.least.unwrap_or_default();
         let wrong = |error: String| format!("frame: {error}");
         let values = matrix(rows).map_err(wrong)?;
@@ -63,6 +69,9 @@ impl RuleRecord {
             .ok_or_else(|| wrong("no threshold".to_owned()))
     }
 }
+
+/// The taxels of the largest imprint.
+const MOST_TAXELS: u32 = MAX_SIDE as u32 * MAX_SIDE as u32;
 
 /// A matrix of its rows; NaN where there is no cell.
 ///

@@ -312,6 +312,7 @@ const ONE_KEY: &str = "expected exactly one of the keys frame (with values), imp
 
 /// The keys of a line that mean something; others are ignored.
 #[derive(Deserialize)]
+#[serde(expecting = "an object with an imprint, touches or a frame")]
 struct LineKeys<'a> {
     /// One touch: a text for each row, `#` for an active taxel.
     #[serde(borrow)]
