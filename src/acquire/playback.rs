@@ -37,6 +37,8 @@ struct Pace {
     span: Option<(f64, f64)>,
     /// The channel that sets the pace. Frames of others, which come before it, between its own or after it, wait for nothing.
     channel: ChannelChoice,
+    /// How many values a frame of it has, if nothing says their rows and columns.
+    unshaped: Option<u64>,
 }
 
 impl Pace {
@@ -49,7 +51,21 @@ impl Pace {
             frames: 0,
             span: None,
             channel: ChannelChoice::new(options.channel.as_deref()),
+            unshaped: None,
         }
+    }
+
+    /// Adds the next channel of the recording.
+    fn add(&mut self, info: &ChannelInfo) {
+        if self.channel.add(info) {
+            self.step = info.seconds_per_frame.unwrap_or(STEP);
+            self.unshaped = info.values.filter(|_| info.shape.is_none());
+        }
+    }
+
+    /// Whether a frame is one of the channel that is watched, and has no rows and columns.
+    fn has_no_shape(&self, frame: &Frame) -> bool {
+        self.unshaped.is_some() && self.channel.takes(frame.channel)
     }
 
     /// Waits until a frame is due; `Break` if no more is wanted.
@@ -126,8 +142,6 @@ pub(super) fn run(
         return Ok(());
     };
     let mut round = 0;
-    // Values of a frame of the channel that is watched, if nothing says its rows and columns.
-    let mut unshaped = None;
     loop {
         let mut pace = Pace::new(options);
         let mut flow = ControlFlow::Continue(());
@@ -135,20 +149,13 @@ pub(super) fn run(
             flow = match event {
                 RecordingEvent::Channel(info) => {
                     let info = completed(info, description.as_ref());
-                    if pace.channel.add(&info) {
-                        pace.step = info.seconds_per_frame.unwrap_or(STEP);
-                        unshaped = info.values.filter(|_| info.shape.is_none());
-                    }
+                    pace.add(&info);
                     match round {
                         0 => consumer(AcquireEvent::Channel(&info)),
                         _ => ControlFlow::Continue(()),
                     }
                 }
-                RecordingEvent::Frame(frame)
-                    if unshaped.is_some() && pace.channel.takes(frame.channel) =>
-                {
-                    ControlFlow::Break(())
-                }
+                RecordingEvent::Frame(frame) if pace.has_no_shape(frame) => ControlFlow::Break(()),
                 RecordingEvent::Frame(frame) => {
                     let time = frame.time;
                     let given_up = !options.once && pace.wait(frame, stop, consumer).is_break();
@@ -162,7 +169,7 @@ pub(super) fn run(
             };
             flow
         })?;
-        if let Some(values) = unshaped {
+        if let Some(values) = pace.unshaped {
             return Err(RecordingError::Shape { values }.into());
         }
         round += 1;

@@ -128,11 +128,7 @@ pub(super) fn run(
             }
             Ok(ReadOutcome::End) => break,
             Err(error) if source.comes_back() && !options.once => error,
-            Err(error) => {
-                // What has come is whole, or counted.
-                let _ = step(&mut decoder, StreamDecoder::finish, &mut clock, consumer);
-                return Err(refused("read it", error));
-            }
+            Err(error) => return Err(broken(&mut decoder, &mut clock, consumer, error)),
         };
         // What comes next may begin inside of a frame.
         if step(&mut decoder, StreamDecoder::restart, &mut clock, consumer).is_break() {
@@ -184,6 +180,17 @@ fn step(
         }
     });
     flow
+}
+
+/// What has come before a source failed is given or counted. Returns the error.
+fn broken(
+    decoder: &mut StreamDecoder,
+    clock: &mut StreamClock,
+    consumer: &mut Consumer<'_>,
+    error: io::Error,
+) -> AcquireError {
+    let _ = step(decoder, StreamDecoder::finish, clock, consumer);
+    refused("read it", error)
 }
 
 fn refused(doing: &'static str, error: io::Error) -> AcquireError {

@@ -65,7 +65,7 @@ impl Template {
     }
 
     fn count(&self) -> u32 {
-        self.above.last().copied().unwrap_or_default()
+        self.above[self.words.len()]
     }
 
     /// The least number of taxels in which two imprints differ, over all shifts of one against the other; `most` if it is

@@ -100,6 +100,7 @@ impl Scan {
             Err(error) => {
                 scan.format = recording.format();
                 scan.error = Some(error);
+                recording.remember_damage();
             }
         }
         scan
@@ -210,9 +211,6 @@ pub(crate) fn frames(
         (output.notes)(&format!("warning: {}: {unused}", recording.name()));
     }
     let damage = scan.error.take().map(|error| recording.damaged(error));
-    if damage.is_some() {
-        recording.remember_damage();
-    }
     if scan.channels.is_empty() {
         return Err(damage.unwrap_or_else(|| recording.refused("no frames")));
     }
@@ -231,11 +229,8 @@ pub(crate) fn frames(
     };
     let channel = scan.channel(&recording, asked.processing.channel.as_deref())?;
     let listed = &scan.channels[channel];
-    if asked.processing.tare.is_none()
-        && let Some(unused) = processing::unused_tare(&listed.info, &processing.view)
-    {
-        (output.notes)(&format!("warning: {}: {unused}", recording.name()));
-    }
+    let tare = processing::unused_tare(&asked.processing, &listed.info, &processing.view);
+    tare.inspect(|unused| (output.notes)(&format!("warning: {}: {unused}", recording.name())));
     let selected = Selection::new(asked, choice, processing, &mut recording, (channel, listed));
     let (selection, mut processing) = match selected {
         Ok(selected) => selected,
@@ -243,12 +238,7 @@ pub(crate) fn frames(
         Err(error) => return Err(damage.unwrap_or(error)),
     };
     let answered = if choice == FrameChoice::NoiseReport {
-        let found = noise_report::gather(&mut recording, channel, &mut processing)?;
-        let name = recording.name();
-        found
-            .map(|found| report_noise(&found, name, &mut output))
-            .transpose()?
-            .is_some()
+        report_noise(&mut recording, channel, &mut processing, &mut output)?
     } else {
         selection.answer(&mut recording, listed, &mut processing, &mut output)?
     };
@@ -259,8 +249,21 @@ pub(crate) fn frames(
     }
 }
 
-/// Answers which taxels flip or are stuck, and writes the mask of these if a file is named.
+/// Answers which taxels flip or are stuck in a channel, if it has frames, and writes the mask of these if a file is named.
+/// True if it has.
 fn report_noise(
+    recording: &mut RecordingFile,
+    channel: usize,
+    processing: &mut Processing,
+    output: &mut FramesOutput<'_>,
+) -> Result<bool, CliError> {
+    let found = noise_report::gather(recording, channel, processing)?;
+    let found = found.map(|found| write_noise(&found, recording.name(), output));
+    Ok(found.transpose()?.is_some())
+}
+
+/// Writes such a report.
+fn write_noise(
     found: &FlipReport,
     name: &str,
     output: &mut FramesOutput<'_>,

@@ -62,14 +62,7 @@ pub(crate) fn degradation(
     let given = given_of(asked, all_asked);
     let signals = Signals::heard().map_err(CliError::System)?;
     let sensor = matrix(model, asked.size)?;
-    let cells = u32::from(sensor.columns()) * u32::from(sensor.rows());
-    if let Some(dead) = asked.dead.iter().find(|&&dead| dead > cells) {
-        return Err(CliError::Range {
-            flag: "dead".to_owned(),
-            text: dead.to_string(),
-            expected: format!("expected 0 to {cells}, the taxels of the matrix"),
-        });
-    }
+    check_dead(&asked.dead, &sensor)?;
     let values: Vec<f64> = asked.noise.values().collect();
     let each = asked.touches * model.shapes().len() as u64;
     let all = each * values.len() as u64 * asked.dead.len() as u64;
@@ -114,6 +107,19 @@ pub(crate) fn degradation(
             charset.lines(&(text + &noise_curves(&table, charset)))
         }
     })
+}
+
+/// Refuses more dead taxels than the matrix has.
+fn check_dead(dead: &[u32], sensor: &Sensor) -> Result<(), CliError> {
+    let cells = u32::from(sensor.columns()) * u32::from(sensor.rows());
+    match dead.iter().find(|&&dead| dead > cells) {
+        None => Ok(()),
+        Some(dead) => Err(CliError::Range {
+            flag: "dead".to_owned(),
+            text: dead.to_string(),
+            expected: format!("expected 0 to {cells}, the taxels of the matrix"),
+        }),
+    }
 }
 
 /// Writes the table as numbers or as curves, if a file is asked for.

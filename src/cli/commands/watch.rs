@@ -352,7 +352,8 @@ impl Watcher<'_> {
         }
         if self.asked.processing.tare.is_none() {
             self.processing.tare = processing::own_tare(info, &self.processing.view);
-            if let Some(unused) = processing::unused_tare(info, &self.processing.view) {
+            let view = &self.processing.view;
+            if let Some(unused) = processing::unused_tare(&self.asked.processing, info, view) {
                 self.say(&format!("warning: {unused}"));
             }
             self.metadata.tare.clone_from(&self.processing.tare);

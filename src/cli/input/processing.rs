@@ -90,12 +90,16 @@ pub(crate) fn rule(
 }
 
 /// That the tare of a recording is left out, since it is of another size than what is seen of the frames; None where it
-/// is used, or there is none.
-pub(crate) fn unused_tare(info: &ChannelInfo, view: &View) -> Option<String> {
-    let tare = info
-        .tare
-        .as_ref()
-        .filter(|_| own_tare(info, view).is_none())?;
+/// is used, none is wanted or there is none.
+pub(crate) fn unused_tare(
+    asked: &ProcessingArguments,
+    info: &ChannelInfo,
+    view: &View,
+) -> Option<String> {
+    if asked.tare.is_some() || own_tare(info, view).is_some() {
+        return None;
+    }
+    let tare = info.tare.as_ref()?;
     let baseline = tare.baseline();
     Some(format!(
         "the recording's tare of {} x {} cells is left out; it fits with the --crop and --turn of the recording",
