@@ -252,7 +252,7 @@ pub(crate) enum CliError {
     },
     /// `--resume` finds a file that is not this shard.
     #[error(
-        "{name} is {what} ({reason}), remove it, or use --force instead of --resume to replace it"
+        "{name} is {what} ({reason}); remove it, or use --force instead of --resume to replace it"
     )]
     NotResumed {
         /// Its name.
