@@ -101,7 +101,7 @@ impl Pace {
         self.until(last - first + step, stop, consumer)
     }
 
-    /// Waits until so many seconds have been played.
+    /// Waits until this many seconds have been played.
     fn until(
         &self,
         seconds: f64,

@@ -99,7 +99,7 @@ impl Template {
     }
 }
 
-/// For each number from 0 on the sum of as many values.
+/// Returns the sums of the first 0, 1, 2 … values.
 fn sums_before(values: impl Iterator<Item = u32>) -> Vec<u32> {
     let mut sum = 0;
     let after = values.map(|value| {

@@ -234,7 +234,7 @@ pub(crate) fn frames(
     let selected = Selection::new(asked, choice, processing, &mut recording, (channel, listed));
     let (selection, mut processing) = match selected {
         Ok(selected) => selected,
-        // Where frames lack, the damage is why.
+        // If frames are missing, the damage is the reason.
         Err(error) => return Err(damage.unwrap_or(error)),
     };
     let answered = if choice == FrameChoice::NoiseReport {

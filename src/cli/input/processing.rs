@@ -57,7 +57,7 @@ fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
         ControlFlow::Continue(())
     };
     let read = match file.read(&mut take) {
-        // Its lines could be frames; of factors there is one.
+        // Its lines were taken for frames, but it is one table of factors.
         Err(RecordingError::Shape { .. }) => file.read_table(&mut take),
         read => read,
     };

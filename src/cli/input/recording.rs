@@ -119,7 +119,7 @@ impl RecordingFile {
         })
     }
 
-    /// Reads the lines of a small text as the rows of one frame: with an empty line at its end they are not frames of a
+    /// Reads the lines of a small text as the rows of one frame. An empty line at its end says that they are not frames of a
     /// line each.
     ///
     /// # Errors

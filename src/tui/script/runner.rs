@@ -52,7 +52,7 @@ pub enum ScriptFailure {
     #[error("the script's own library: {0}")]
     World(String),
     /// Nobody takes any more of what is printed.
-    #[error("stopped: nobody reads the output any more")]
+    #[error("stopped: the output was closed")]
     Stopped,
     /// The program ended before the script.
     #[error("line {line}: the program had already ended")]
