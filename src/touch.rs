@@ -6,15 +6,22 @@
 //! **Exactly the threshold is active**, in real arithmetic, for the decimals that the user wrote. Coverages are
 //! computed in `f64` first, with an error below 1e-11 ([`crate::geometry::cell_area`]). One that lies within 1e-10 of
 //! the threshold is computed again with 32 digits ([`Double`]), and is active unless it falls short by more than 1e-20
-//! ([`Real::TIE`]).
+//! ([`Real::TIE`]). Of ellipses at a threshold of one half hardly any coverage needs to be computed at all: where the
+//! cells' centres lie decides ([`CentreSampling`]).
 //!
 //! Whether two algebraic expressions of the input are *equal* cannot be decided by any number of digits: what falls
 //! short by less than 1e-20 is taken for a tie. For an upright rectangle whose numbers have at most nine decimals that
 //! is exact, since its coverages are multiples of 1e-18; with more decimals a coverage can come nearer than 1e-20
 //! (0.9999999999 × 0.50000000005). Turned figures of hundredths come within 3e-11.
 
-use crate::geometry::{Double, Extent, Overlap, Real, Solid, cell_area, row_areas};
+use std::ops::Range;
+
+use crate::geometry::{
+    CentreSampling, Double, Ellipse, Extent, Overlap, Pen, Point, Real, Side, Solid, cell_area,
+    row_areas,
+};
 use crate::imprint::Imprint;
+use crate::index::from_first;
 use crate::sensor::Sensor;
 
 /// A coverage this near to the threshold is decided with more digits, of every shape of the program; a share of a cell.
@@ -36,7 +43,10 @@ const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 #[derive(Clone, Debug)]
 pub struct Plane {
     sensor: Sensor,
+    /// The areas of the last touch, without those of `ellipses`.
     areas: Overlap<f64>,
+    /// The ellipses of the last touch whose areas were not computed, because their centres decided.
+    ellipses: CentreSampling,
 }
 
 impl Plane {
@@ -45,6 +55,7 @@ impl Plane {
         Self {
             sensor,
             areas: Overlap::new(sensor.columns(), sensor.rows()),
+            ellipses: CentreSampling::new(sensor.rows()),
         }
     }
 
@@ -56,14 +67,50 @@ impl Plane {
     /// The imprint that a shape leaves. Total: a shape without a boundary leaves none.
     pub fn touch(&mut self, solid: &impl Solid) -> Imprint {
         self.areas.clear();
-        solid.draw(&mut self.areas);
+        self.ellipses.clear();
+        let mut pen = TouchPen {
+            areas: &mut self.areas,
+            ellipses: &mut self.ellipses,
+            edges: false,
+        };
+        solid.draw(&mut pen);
+        let round = !pen.edges;
         let mut imprint = Imprint::empty(self.sensor.columns(), self.sensor.rows());
-        self.activate(solid, &mut imprint);
+        if round
+            && self.sensor.threshold() == CentreSampling::THRESHOLD
+            && let Some(rows) = self.ellipses.sample()
+        {
+            self.activate_by_centres(solid, rows, &mut imprint);
+        } else {
+            self.ellipses.draw(&mut self.areas);
+            self.ellipses.clear();
+            self.activate_by_areas(solid, &mut imprint);
+        }
         imprint
     }
 
-    /// Activates the taxels that are covered enough.
-    fn activate(&self, solid: &impl Solid, imprint: &mut Imprint) {
+    /// Activates the taxels that are covered enough, most of them by where their centres lie.
+    fn activate_by_centres(&mut self, solid: &impl Solid, rows: Range<i32>, imprint: &mut Imprint) {
+        let columns = imprint.mask();
+        for row in rows {
+            let (mut active, open) = self.ellipses.row(row);
+            let (mut open, mut doubtful) = (open & columns, 0);
+            while open != 0 {
+                let column = open.trailing_zeros();
+                open &= open - 1;
+                let excess = self.ellipses.area(column, row) - CentreSampling::THRESHOLD;
+                active = active & !(1 << column) | u64::from(excess > 0.0) << column;
+                doubtful |= u64::from(excess.abs() < DOUBTFUL) << column;
+            }
+            if doubtful != 0 {
+                active = self.decide(solid, from_first(row), active, doubtful);
+            }
+            imprint.set_word(from_first(row), active);
+        }
+    }
+
+    /// Activates the taxels that are covered enough, by their areas.
+    fn activate_by_areas(&self, solid: &impl Solid, imprint: &mut Imprint) {
         let (threshold, doubt) = (self.sensor.threshold(), self.doubt());
         let areas = self.areas.grid();
         let rows = areas.rows();
@@ -86,10 +133,8 @@ impl Plane {
             }
             let mut active = short.map(|short| (!short >> unused) << first);
             if Real::min(nearest[0], nearest[1]) < doubt {
-                for lane in 0..2 {
-                    if nearest[lane] < doubt {
-                        active[lane] = self.decide(solid, 2 * pair + lane, active[lane]);
-                    }
+                for (row, active) in (2 * pair..).zip(&mut active) {
+                    *active = self.decide(solid, row, *active, self.doubtful(row));
                 }
             }
             imprint.set_pair(pair, active);
@@ -101,57 +146,58 @@ impl Plane {
         DOUBTFUL.max(ROUNDINGS * self.areas.grid().magnitude())
     }
 
-    /// The active taxels of a row, those in doubt computed again.
-    #[cold]
-    fn decide(&self, solid: &impl Solid, row: usize, mut active: u64) -> u64 {
+    /// The taxels of a row whose areas are in doubt.
+    fn doubtful(&self, row: usize) -> u64 {
         let (threshold, doubt) = (self.sensor.threshold(), self.doubt());
-        let least = least(threshold);
         let areas = self.areas.grid();
         let columns = areas.columns();
-        // Cells next to each other that no boundary seems to cross, as full ones at a threshold of 1, are decided by
-        // one drawing of their row. Their areas need not be the same: an edge that is horizontal up to a rounding of
-        // `f64` has a height in more digits.
-        let mut open = None;
-        let mut whole: Option<Vec<Double>> = None;
+        let mut doubtful = 0;
         for (column, area) in columns.clone().zip(areas.row(row, &columns)) {
-            if (area - threshold).abs() >= doubt {
-                continue;
+            doubtful |= u64::from((area - threshold).abs() < doubt) << column;
+        }
+        doubtful
+    }
+
+    /// The active taxels of a row, those in doubt computed again.
+    #[cold]
+    fn decide(&self, solid: &impl Solid, row: usize, mut active: u64, doubtful: u64) -> u64 {
+        let Ok(row) = u8::try_from(row) else {
+            return active;
+        };
+        let least = least(self.sensor.threshold());
+        // Several in a row, as full ones at a threshold of 1, are computed by drawing the shape once.
+        let areas = (doubtful.count_ones() > 1)
+            .then(|| row_areas::<Double>(solid, self.sensor.columns(), row));
+        for column in 0..self.sensor.columns() {
+            if doubtful >> column & 1 == 1 {
+                let area = match &areas {
+                    Some(areas) => areas[usize::from(column)],
+                    None => cell_area(solid, column, row),
+                };
+                active = active & !(1 << column) | u64::from(area >= least) << column;
             }
-            let (Ok(cell_column), Ok(cell_row)) = (u8::try_from(column), u8::try_from(row)) else {
-                continue;
-            };
-            let is_open = !areas.crosses(row, column);
-            let after_open = open.is_some_and(|last: usize| last + 1 == column);
-            if is_open && after_open && whole.is_none() {
-                whole = Some(row_areas(solid, self.sensor.columns(), cell_row));
-            }
-            open = is_open.then_some(column);
-            let area = match &whole {
-                Some(areas) => areas[column],
-                None => cell_area(solid, cell_column, cell_row),
-            };
-            active = active & !(1 << column) | u64::from(area >= least) << column;
         }
         active
     }
 
     /// How much of a taxel's cell the shape of the last touch covers, 0 to 1; of one beyond the sensor, 0.
+    ///
+    /// Takes as long as [`Self::coverages`], which gives those of all taxels.
     pub fn coverage(&self, column: u8, row: u8) -> f64 {
-        let (column, row) = (usize::from(column), usize::from(row));
-        let areas = self.areas.grid();
-        let columns = areas.columns();
-        if !areas.rows().contains(&row) || !columns.contains(&column) {
+        let width = self.sensor.columns();
+        if column >= width || row >= self.sensor.rows() {
             return 0.0;
         }
-        let area = areas.row(row, &columns).nth(column - columns.start);
-        area.map_or(0.0, share)
+        self.coverages()[usize::from(row) * usize::from(width) + usize::from(column)]
     }
 
     /// All coverages of the last touch in reading order, each 0 to 1.
     pub fn coverages(&self) -> Vec<f64> {
         let width = usize::from(self.sensor.columns());
         let mut all = vec![0.0; width * usize::from(self.sensor.rows())];
-        let areas = self.areas.grid();
+        let mut areas = self.areas.clone();
+        self.ellipses.draw(&mut areas);
+        let areas = areas.grid();
         let columns = areas.columns();
         // A shape beside the sensor has no columns.
         if columns.is_empty() {
@@ -164,6 +210,25 @@ impl Plane {
             }
         }
         all
+    }
+}
+
+/// Draws edges at once, and keeps the ellipses: if there is nothing else, their areas may not be needed.
+struct TouchPen<'a> {
+    areas: &'a mut Overlap<f64>,
+    ellipses: &'a mut CentreSampling,
+    /// Whether there are edges.
+    edges: bool,
+}
+
+impl Pen<f64> for TouchPen<'_> {
+    fn edge(&mut self, from: Point<f64>, to: Point<f64>) {
+        self.edges = true;
+        self.areas.edge(from, to);
+    }
+
+    fn ellipse(&mut self, ellipse: &Ellipse<f64>, material: Side) {
+        self.ellipses.add(ellipse, material);
     }
 }
 

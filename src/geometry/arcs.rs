@@ -11,7 +11,7 @@
 
 use crate::geometry::cell_grid::CellGrid;
 use crate::geometry::ellipse_cuts::{EllipseCuts, Sums};
-use crate::geometry::outline::{Ellipse, Point, Side};
+use crate::geometry::outline::{Point, Side};
 use crate::geometry::real::Real;
 use crate::index::from_first;
 
@@ -61,10 +61,7 @@ impl<T: Real> Arcs<T> {
     }
 
     /// Draws an ellipse on a grid of the size given at first.
-    pub(crate) fn draw(&mut self, grid: &mut CellGrid<T>, ellipse: &Ellipse<T>, material: Side) {
-        let Some(curve) = EllipseCuts::of(ellipse) else {
-            return;
-        };
+    pub(crate) fn draw(&mut self, grid: &mut CellGrid<T>, curve: &EllipseCuts<T>, material: Side) {
         let (top, end) = (curve.top.y.max(T::ZERO), curve.bottom.y.min(grid.bottom()));
         if top >= end {
             return;
@@ -82,7 +79,7 @@ impl<T: Real> Arcs<T> {
             line = line + T::ONE;
         }
         let first = top.floor();
-        let rows = self.cross(grid, &curve, top, end);
+        let rows = self.cross(grid, curve, top, end);
         let quarter = curve.quarter();
         for side in 0..2 {
             let (turn, far, sign) = if side == 0 {

@@ -134,10 +134,14 @@ impl<T: Real> CellGrid<T> {
             .map(move |areas| areas[row % 2])
     }
 
-    /// Whether a piece of boundary that is not horizontal, up to a rounding, runs through a cell.
-    pub(crate) fn crosses(&self, row: usize, column: usize) -> bool {
-        let CellSums { here, beyond } = self.entries[row / 2 * self.stride + column + 1];
-        (here[row % 2], beyond[row % 2]) != (T::ZERO, T::ZERO)
+    /// The area in the top left cell, which is the only one of a grid of 1 × 1.
+    pub(crate) fn first(&self) -> T {
+        let (rows, columns) = (self.rows(), self.columns());
+        if !rows.contains(&0) || !columns.contains(&0) {
+            return T::ZERO;
+        }
+        let area = self.row(0, &columns).next();
+        area.unwrap_or(T::ZERO)
     }
 
     /// The index of the entry in a row, from [`Self::start`] on, of the column that `x` lies in by [`Real::cell`], and that

@@ -12,7 +12,7 @@ use crate::geometry::outline::{Ellipse, Point};
 use crate::geometry::real::Real;
 
 /// An ellipse: its extreme points, and where it meets horizontal and vertical lines.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct EllipseCuts<T> {
     centre: Point<T>,
     reach: Point<T>,
@@ -112,6 +112,48 @@ impl<T: Real> EllipseCuts<T> {
             moment: height * mean + sector,
         };
         [at(middle - half, sector), at(middle + half, -sector)]
+    }
+
+    /// Where the horizontal line at `y` meets it: the x on the left and on the right. Where it passes by, the middle, twice.
+    pub(crate) fn chord(&self, y: T) -> [T; 2] {
+        self.chords(y, T::ONE)[0]
+    }
+
+    /// The same, and where the line meets the ellipse made smaller about its centre by the root of `size`.
+    pub(crate) fn chords(&self, y: T, size: T) -> [[T; 2]; 2] {
+        let height = y - self.centre.y;
+        let sin = height * self.inverse.y;
+        let middle = self.centre.x + self.shear.x * height;
+        [T::ONE, size].map(|size| {
+            let half = self.extent.x * (size - sin * sin).sqrt();
+            [middle - half, middle + half]
+        })
+    }
+
+    /// The area of the parallelogram that its axes span.
+    pub(crate) fn span(&self) -> T {
+        self.half_area / T::HALF
+    }
+
+    /// The square of the smaller radius.
+    pub(crate) fn smaller_radius_squared(&self) -> T {
+        // Of the squares of the two radii the sum and the product are known.
+        let span = self.span();
+        let sum = self.reach.x * self.reach.x + self.reach.y * self.reach.y;
+        let larger = (sum + (sum * sum - T::whole(4) * span * span).sqrt()) * T::HALF;
+        span * span / larger
+    }
+
+    /// The same ellipse elsewhere.
+    pub(crate) fn moved(&self, by: Point<T>) -> Self {
+        Self {
+            centre: self.centre.moved(by),
+            left: self.left.moved(by),
+            top: self.top.moved(by),
+            right: self.right.moved(by),
+            bottom: self.bottom.moved(by),
+            ..*self
+        }
     }
 
     /// A quarter turn's share of a moment. On a way down that goes to the right it is to be taken off what

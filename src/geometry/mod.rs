@@ -20,6 +20,9 @@ mod arcs;
 
 mod overlap;
 
+mod centre_sampling;
+
+pub(crate) use centre_sampling::CentreSampling;
 #[cfg(feature = "sweep")]
 pub(crate) use outline::Moving;
 pub use outline::{Ellipse, Extent, Pen, Point, Polygon, Side, Solid, Turn};

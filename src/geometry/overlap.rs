@@ -10,6 +10,7 @@
 
 use crate::geometry::arcs::Arcs;
 use crate::geometry::cell_grid::CellGrid;
+use crate::geometry::ellipse_cuts::EllipseCuts;
 use crate::geometry::outline::{Ellipse, Moving, Pen, Point, Side, Solid};
 use crate::geometry::real::Real;
 use crate::index::from_first;
@@ -38,16 +39,6 @@ impl<T: Real> Overlap<T> {
     /// What has been drawn since.
     pub(crate) fn grid(&self) -> &CellGrid<T> {
         &self.grid
-    }
-
-    /// The area in the top left cell, which is the only one of a grid of 1 × 1.
-    pub(crate) fn first(&self) -> T {
-        let (rows, columns) = (self.grid.rows(), self.grid.columns());
-        if !rows.contains(&0) || !columns.contains(&0) {
-            return T::ZERO;
-        }
-        let area = self.grid.row(0, &columns).next();
-        area.unwrap_or(T::ZERO)
     }
 
     /// Draws a part of an edge that lies on the grid or at its rim.
@@ -219,7 +210,9 @@ impl<T: Real> Pen<T> for Overlap<T> {
     }
 
     fn ellipse(&mut self, ellipse: &Ellipse<T>, material: Side) {
-        self.arcs.draw(&mut self.grid, ellipse, material);
+        if let Some(curve) = EllipseCuts::of(ellipse) {
+            self.arcs.draw(&mut self.grid, &curve, material);
+        }
     }
 }
 
@@ -250,5 +243,5 @@ pub fn cell_area<T: Real>(solid: &impl Solid, column: u8, row: u8) -> T {
         by: corner,
         pen: &mut overlap,
     });
-    overlap.first()
+    overlap.grid().first()
 }

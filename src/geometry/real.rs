@@ -93,7 +93,6 @@ pub trait Real:
 const WHOLE: f64 = 6_755_399_441_055_744.0;
 
 /// The whole number nearest to a number from −2³¹ to below 2³¹; of two, the even one.
-#[cfg(feature = "sweep")]
 #[expect(
     clippy::cast_possible_truncation,
     reason = "the lowest bits are wanted"

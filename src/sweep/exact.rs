@@ -57,7 +57,7 @@ impl<'a> Exact<'a> {
             .get_or_insert_with(|| self.grid.boundary(self.orientation));
         self.cell.clear();
         boundary.draw(by, &mut self.cell);
-        self.cell.first() >= self.least
+        self.cell.grid().first() >= self.least
     }
 
     /// Where the anchor lies at a value of x0, or of y0. Reading a decimal takes longer than looking it up.

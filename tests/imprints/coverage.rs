@@ -4,8 +4,8 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-use crate::common::{figure, picture, sensor};
-use taxel::geometry::{Ellipse, Pen, Point, Polygon, Side, Solid};
+use crate::common::{Random, figure, picture, sensor};
+use taxel::geometry::{Ellipse, Pen, Point, Polygon, Real, Side, Solid};
 use taxel::touch::Plane;
 
 /// Columns and rows of the sensor.
@@ -227,4 +227,63 @@ fn coverages_add_up_to_the_area_of_the_figure() {
             "{text}: covers {sum}, expected {area}"
         );
     }
+}
+
+/// Ellipses, each in the material or the hole of the one before.
+struct Rings(Vec<(Ellipse<f64>, Side)>);
+
+impl Solid for Rings {
+    fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
+        let point = |point: Point<f64>| Point::new(T::decimal(point.x), T::decimal(point.y));
+        for (ellipse, material) in &self.0 {
+            let ellipse = Ellipse {
+                centre: point(ellipse.centre),
+                across: point(ellipse.across),
+                along: point(ellipse.along),
+            };
+            pen.ellipse(&ellipse, *material);
+        }
+    }
+}
+
+/// At a threshold of one half centres decide about ellipses, and coverages come from areas.
+#[test]
+fn ellipses_are_active_where_they_cover_half() {
+    let mut random = Random::new(7);
+    let mut plane = Plane::new(sensor(24, 20, 0.5));
+    let (mut active, mut near) = (0, 0);
+    for _ in 0..40_000 {
+        let mut between =
+            |low: f64, high: f64| low + (high - low) * f64::from(random.whole(0, 1_000_000)) / 1e6;
+        let centre = Point::new(between(-3.0, 27.0), between(-3.0, 23.0));
+        let (longer, turn) = (between(0.1, 11.0), between(0.0, 2.0 * PI));
+        let shorter = longer * between(0.02, 1.0);
+        let (sin, cos) = turn.sin_cos();
+        let shear = between(-0.5, 0.5);
+        let mut ellipse = Ellipse {
+            centre,
+            across: Point::new(longer * cos, longer * sin),
+            along: Point::new(shear - shorter * sin, shorter * cos),
+        };
+        let mut rings = vec![(ellipse, Side::Inside)];
+        for material in [Side::Outside, Side::Inside] {
+            // From walls as thin as a hair to no hole.
+            let scale = between(0.0, 1.3).min(0.9999);
+            let smaller = |axis: Point<f64>| Point::new(axis.x * scale, axis.y * scale);
+            ellipse.across = smaller(ellipse.across);
+            ellipse.along = smaller(ellipse.along);
+            rings.push((ellipse, material));
+        }
+        let imprint = plane.touch(&Rings(rings));
+        for (index, &coverage) in plane.coverages().iter().enumerate() {
+            let (column, row) = (index % 24, index / 24);
+            let found = imprint.words()[row] >> column & 1 == 1;
+            if (coverage - 0.5).abs() > 1e-9 {
+                assert_eq!(found, coverage > 0.5, "{ellipse:?}: {column}, {row}");
+            }
+            active += u32::from(found);
+            near += u32::from((coverage - 0.5).abs() < 0.01);
+        }
+    }
+    assert!(active > 1_000_000 && near > 10_000, "{active}, {near}");
 }

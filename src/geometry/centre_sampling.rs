@@ -1,0 +1,361 @@
+//! Which cells of a grid ellipses cover by half or more, decided by the cells' centres.
+//!
+//! **Method.** A cell is symmetric about its centre. So a straight line through the centre halves it, and whatever is
+//! convex covers less than half of a cell whose centre it does not cover.
+//!
+//! Conversely, let `u` be the centre in the frame in which the ellipse is the unit disc, and `r` the smaller radius. Of two
+//! points of the cell on opposite sides of its centre the ellipse covers at least one if `1 − |u|² ≥ 1 / (2·r²)`, since
+//! no point of a cell is further than √½ from its centre: so it covers more than half. Half of that depth is enough where
+//! the larger radius is at most `0.9·r²`: then a lens about the centre, of which the ellipse covers both of such points,
+//! is more than twice as large as the corners of the cell of which it covers neither.
+//!
+//! So it is enough to find where the ellipses meet the lines through the centres of the rows. What this leaves *open* is
+//! computed from areas: cells whose centre lies just inside an ellipse, and cells that two ellipses cross. Of a circle of
+//! radius 4 those are 2 % of the cells that it crosses.
+//!
+//! No other cell is near to one half: where the centre lies on an ellipse, its area in the cell falls short of one half by
+//! a 24th of its least curvature. Ellipses that are too flat for that are left to [`super::overlap`].
+
+use std::ops::Range;
+
+use crate::geometry::arcs::Arcs;
+use crate::geometry::cell_grid::CellGrid;
+use crate::geometry::ellipse_cuts::EllipseCuts;
+use crate::geometry::outline::{Ellipse, Pen, Point, Side};
+use crate::geometry::real::{Real, nearest};
+use crate::index::from_first;
+
+/// As many rows as a grid can have, and as many columns.
+const SIDE: usize = u64::BITS as usize;
+/// With coordinates or moments beyond this, the areas of open cells are not exact to 1e-10.
+const FAR: f64 = 25_000.0;
+/// With less curvature than this, a cell that is not open may be covered by one half up to 1e-10.
+const FLAT: f64 = 1e-8;
+
+/// Ellipses on a grid of at most 64 × 64 unit cells with its top left corner at the origin.
+#[derive(Clone, Debug)]
+pub(crate) struct CentreSampling {
+    rows: i32,
+    curves: Vec<Curve>,
+    shape: [ShapeRow; SIDE],
+    /// The rows that may hold something; all others are empty.
+    drawn: Range<i32>,
+    /// For the areas in one cell.
+    cell: CellGrid<f64>,
+    arcs: Arcs<f64>,
+}
+
+/// A row of the shape, bit `i` for column `i`.
+#[derive(Clone, Copy, Debug, Default)]
+struct ShapeRow {
+    /// The cells whose centre is covered.
+    inside: u64,
+    /// The cells that an ellipse crosses.
+    crossed: u64,
+    /// The cells that their centres do not decide.
+    open: u64,
+}
+
+/// An ellipse that was drawn.
+#[derive(Clone, Debug)]
+struct Curve {
+    ellipse: Ellipse<f64>,
+    material: Side,
+    cuts: EllipseCuts<f64>,
+    /// The square of its smaller radius.
+    radius_squared: f64,
+}
+
+impl CentreSampling {
+    /// The share of a cell that centres decide about.
+    pub(crate) const THRESHOLD: f64 = 0.5;
+
+    /// An empty grid.
+    pub(crate) fn new(rows: u8) -> Self {
+        Self {
+            rows: rows.into(),
+            curves: Vec::new(),
+            shape: [ShapeRow::default(); SIDE],
+            drawn: 0..0,
+            cell: CellGrid::new(1, 1),
+            arcs: Arcs::new(1, 1),
+        }
+    }
+
+    /// Forgets all ellipses.
+    pub(crate) fn clear(&mut self) {
+        self.curves.clear();
+    }
+
+    /// Adds an ellipse.
+    pub(crate) fn add(&mut self, ellipse: &Ellipse<f64>, material: Side) {
+        if let Some(cuts) = EllipseCuts::of(ellipse) {
+            self.curves.push(Curve {
+                ellipse: *ellipse,
+                material,
+                cuts,
+                radius_squared: cuts.smaller_radius_squared(),
+            });
+        }
+    }
+
+    /// Draws the ellipses with a pen.
+    pub(crate) fn draw(&self, pen: &mut impl Pen<f64>) {
+        for curve in &self.curves {
+            pen.ellipse(&curve.ellipse, curve.material);
+        }
+    }
+
+    /// Samples the ellipses. Gives the rows that may have cells covered by half. None if centres do not decide: where an
+    /// ellipse is very large or flat, material overlaps, or a hole does not lie in material drawn before.
+    pub(crate) fn sample(&mut self) -> Option<Range<i32>> {
+        self.shape[slots(&self.drawn)].fill(ShapeRow::default());
+        self.drawn = 0..0;
+        let mut undecided = false;
+        for curve in &self.curves {
+            let rows = rows_between(curve.cuts.top.y, curve.cuts.bottom.y, self.rows);
+            undecided |= !curve.is_fit() || curve.sample(&mut self.shape[slots(&rows)], rows.start);
+            self.drawn = around(&self.drawn, &rows);
+        }
+        (!undecided).then(|| self.drawn.clone())
+    }
+
+    /// The cells of a row whose centre is covered, and those that are open; without regard to the number of columns.
+    pub(crate) fn row(&self, row: i32) -> (u64, u64) {
+        let ShapeRow { inside, open, .. } = self.shape[from_first(row)];
+        (inside, open)
+    }
+
+    /// The area of the ellipses in a cell.
+    pub(crate) fn area(&mut self, column: u32, row: i32) -> f64 {
+        let corner = Point::new(f64::from(column), f64::from(row));
+        let mut area = 0.0;
+        for curve in &self.curves {
+            area += curve.area(corner, &mut self.cell, &mut self.arcs);
+        }
+        area
+    }
+}
+
+impl Curve {
+    /// Whether centres decide of an ellipse of this size and form.
+    fn is_fit(&self) -> bool {
+        let (left, right) = (self.cuts.left.x.abs(), self.cuts.right.x.abs());
+        let (top, bottom) = (self.cuts.top.y, self.cuts.bottom.y);
+        let farthest = max(max(left, right), max(top.abs(), bottom.abs()));
+        let moment = 0.5 * max(left, right) * (bottom - top);
+        // The smaller radius over the square of the larger one.
+        let (square, span) = (self.radius_squared, self.cuts.span());
+        let flattest = square * square.sqrt() / (span * span);
+        farthest < FAR && moment < FAR && flattest > FLAT
+    }
+
+    /// Adds itself to the rows from `first` on. Returns whether it is material in material, or a hole elsewhere.
+    fn sample(&self, rows: &mut [ShapeRow], first: i32) -> bool {
+        let cuts = &self.cuts;
+        // What lies deep enough lies in an ellipse that is smaller by the root of this.
+        let deep = 1.0 - self.sure_depth();
+        let chord = |y: f64| {
+            let level = min(max(y, cuts.top.y), cuts.bottom.y);
+            cuts.chord(level).map(columns_from)
+        };
+        let farthest = [cuts.left, cuts.right].map(|point| (cell(point.y), columns_from(point.x)));
+        let mut line = f64::from(first);
+        let mut above = chord(line);
+        let mut misplaced = 0;
+        for (number, row) in (first..).zip(rows) {
+            let [whole, deep] = cuts.chords(line + 0.5, deep).map(centres_between);
+            line += 1.0;
+            let below = chord(line);
+            let mut crossed = 0;
+            for side in 0..2 {
+                crossed |= columns_between(above[side], below[side]);
+                // Between two lines the ellipse reaches further only at its leftmost and at its rightmost point.
+                let (level, columns) = farthest[side];
+                if number == level {
+                    crossed |= columns_between(above[side], columns);
+                }
+            }
+            above = below;
+            row.open |= whole & !deep & crossed | row.crossed & crossed;
+            row.crossed |= crossed;
+            misplaced |= match self.material {
+                Side::Inside => whole & row.inside,
+                Side::Outside => whole & !row.inside,
+            } & !row.open;
+            row.inside ^= whole;
+        }
+        misplaced != 0
+    }
+
+    /// How large `1 − |u|²` is of the centres of cells of which it surely covers more than half.
+    fn sure_depth(&self) -> f64 {
+        let square = self.radius_squared;
+        let span = self.cuts.span();
+        let round = span * span <= 0.81 * square * square * square;
+        (if round { 0.25 } else { 0.5 }) / square
+    }
+
+    /// Its area in the cell with this corner; negative for a hole.
+    fn area(&self, corner: Point<f64>, cell: &mut CellGrid<f64>, arcs: &mut Arcs<f64>) -> f64 {
+        cell.clear();
+        let seen = self.cuts.moved(Point::new(-corner.x, -corner.y));
+        arcs.draw(cell, &seen, self.material);
+        cell.first()
+    }
+}
+
+/// The smallest range that holds both.
+fn around(one: &Range<i32>, other: &Range<i32>) -> Range<i32> {
+    match (one.is_empty(), other.is_empty()) {
+        (true, _) => other.clone(),
+        (_, true) => one.clone(),
+        _ => one.start.min(other.start)..one.end.max(other.end),
+    }
+}
+
+/// The rows of a grid from one height to another.
+fn rows_between(top: f64, bottom: f64, rows: i32) -> Range<i32> {
+    let end = cell(bottom).clamp(-1, rows - 1) + 1;
+    cell(top).clamp(0, end)..end
+}
+
+/// Rows as indices.
+fn slots(rows: &Range<i32>) -> Range<usize> {
+    from_first(rows.start)..from_first(rows.end)
+}
+
+/// The cell of a line that a number lies in; a whole number lies in either of two.
+fn cell(number: f64) -> i32 {
+    nearest(number - 0.5)
+}
+
+/// The columns from that on which `x` lies in, or from the nearest one.
+fn columns_from(x: f64) -> u64 {
+    u64::MAX.wrapping_shl(cell(min(max(x, 0.5), 63.5)).cast_unsigned())
+}
+
+/// The columns from one place to another, in either order, each given as [`columns_from`] it.
+fn columns_between(one: u64, other: u64) -> u64 {
+    let first = |columns: u64| columns & columns.wrapping_neg();
+    one ^ other | first(one) | first(other)
+}
+
+/// The columns whose centre lies between two places.
+fn centres_between([left, right]: [f64; 2]) -> u64 {
+    let from = |x: f64| u64::MAX.unbounded_shl(nearest(min(max(x, 0.0), 64.0)).cast_unsigned());
+    from(left) & !from(right)
+}
+
+/// The larger of two numbers, in one instruction: `f64::max` takes six, for the sake of NaN.
+fn max(one: f64, other: f64) -> f64 {
+    Real::max(one, other)
+}
+
+/// The smaller one, likewise.
+fn min(one: f64, other: f64) -> f64 {
+    Real::min(one, other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::outline::Turn;
+
+    fn ellipse(centre: Point<f64>, radii: [f64; 2], degrees: f64) -> Ellipse<f64> {
+        let turn = Turn::clockwise(degrees);
+        Ellipse {
+            centre,
+            across: turn.of(Point::new(radii[0], 0.0)),
+            along: turn.of(Point::new(0.0, radii[1])),
+        }
+    }
+
+    /// The ellipse as it is sampled.
+    fn curve(ellipse: &Ellipse<f64>) -> Curve {
+        let mut sampling = CentreSampling::new(1);
+        sampling.add(ellipse, Side::Inside);
+        sampling.curves.pop().expect("it has an area")
+    }
+
+    /// The area in the cell at the origin.
+    fn area(curve: &Curve) -> f64 {
+        let origin = Point::new(0.0, 0.0);
+        curve.area(origin, &mut CellGrid::new(1, 1), &mut Arcs::new(1, 1))
+    }
+
+    #[test]
+    fn a_centre_that_is_deep_enough_means_more_than_half() {
+        let (mut tried, mut least) = (0, 1.0_f64);
+        for radii in [0.71, 0.8, 1.0, 1.12, 1.2, 1.5, 2.0, 3.0, 5.0, 9.0, 30.0] {
+            for longer in [1.0, 1.02, 1.1, 1.3, 1.7, 2.5, 4.0, 9.0] {
+                for step in 0..72_u32 {
+                    let turned = 2.5 * f64::from(step);
+                    let around = ellipse(Point::new(0.0, 0.0), [radii * longer, radii], turned);
+                    let depth = curve(&around).sure_depth();
+                    if depth >= 1.0 {
+                        continue;
+                    }
+                    // The centre of the cell lies on an ellipse smaller by the root of this.
+                    let size = (1.0 - depth).sqrt();
+                    for place in 0..40_u32 {
+                        let (sin, cos) = (9.0 * f64::from(place)).to_radians().sin_cos();
+                        let aside = |across: f64, along: f64| size * (across * cos + along * sin);
+                        let centre = Point::new(
+                            0.5 - aside(around.across.x, around.along.x),
+                            0.5 - aside(around.across.y, around.along.y),
+                        );
+                        let area = area(&curve(&Ellipse { centre, ..around }));
+                        (tried, least) = (tried + 1, least.min(area));
+                    }
+                }
+            }
+        }
+        assert!(least > 0.5 && tried > 200_000, "{least} of {tried}");
+    }
+
+    #[test]
+    fn few_cells_are_open() {
+        let (mut open, mut crossed) = (0, 0);
+        let mut sampling = CentreSampling::new(16);
+        for step in 0..1000_u32 {
+            let at = |factor: f64| 8.0 + (f64::from(step) * factor).fract();
+            let centre = Point::new(at(0.618_034), at(0.754_878));
+            sampling.clear();
+            sampling.add(&ellipse(centre, [4.0, 4.0], 0.0), Side::Inside);
+            let rows = sampling.sample().expect("a circle on the sensor");
+            for row in &sampling.shape[slots(&rows)] {
+                open += row.open.count_ones();
+                crossed += row.crossed.count_ones();
+            }
+        }
+        assert!(
+            crossed > 20_000 && 25 * open < crossed,
+            "{open} of {crossed}"
+        );
+    }
+
+    #[test]
+    fn what_is_too_large_too_flat_or_misplaced_is_left_to_areas() {
+        let circle = |x: f64, radius: f64| ellipse(Point::new(x, 8.2), [radius; 2], 0.0);
+        let sampled = |drawn: &[(Ellipse<f64>, Side)]| {
+            let mut sampling = CentreSampling::new(16);
+            for (ellipse, material) in drawn {
+                sampling.add(ellipse, *material);
+            }
+            sampling.sample()
+        };
+        let plate = (circle(8.0, 4.0), Side::Inside);
+        let hole = (circle(8.0, 2.0), Side::Outside);
+        let beside = (circle(10.0, 4.0), Side::Inside);
+        assert_eq!(sampled(&[]), Some(0..0));
+        assert_eq!(sampled(&[plate]), Some(4..13));
+        assert_eq!(sampled(&[plate, hole]), Some(4..13));
+        assert_eq!(sampled(&[hole, plate]), None);
+        assert_eq!(sampled(&[plate, beside]), None);
+        assert_eq!(sampled(&[(circle(1e5, 4.0), Side::Inside)]), None);
+        assert_eq!(sampled(&[(circle(0.0, 1e3), Side::Inside)]), None);
+        let blade = ellipse(Point::new(8.0, 8.0), [60.0, 1e-5], 10.0);
+        assert_eq!(sampled(&[(blade, Side::Inside)]), None);
+    }
+}
